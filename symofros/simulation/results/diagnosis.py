@@ -15,15 +15,13 @@ from symofros.simulation.analysis.postures import nearest_to_singular
 from symofros.simulation.results.constraint_faults import jump, lost_energy, violation
 from symofros.simulation.results.input_faults import input_failure, input_fault
 from symofros.simulation.results.outcome import Kind, Outcome
-from symofros.simulation.results.step_size import energy_note, remedy, step_size_note, unresolved_mode
+from symofros.simulation.results.step_size import EXPLODED, energy_note, remedy, step_size_note, unresolved_mode
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.loops import Recorded
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
 
 _ROUNDING = float(np.finfo(np.float64).eps)
-# Growth of speeds that no mechanism explains.
-_EXPLODED = 1e6
 # A step this short, relative to the run, is creeping.
 _CREEP = 1e-8
 
@@ -148,7 +146,7 @@ def _immobile(stepper: Stepper, start: tuple[Array, Array], q: Array, v: Array) 
     Constraints may bind such a direction. A last state whose speeds have exploded says nothing of the mechanism.
     """
     model = stepper.model
-    sane = _EXPLODED * (1.0 + float(np.abs(start[1]).max(initial=0.0)))
+    sane = EXPLODED * (1.0 + float(np.abs(start[1]).max(initial=0.0)))
     states = [start[0], *([q] if float(np.abs(v).max(initial=0.0)) < sane else [])]
     return not model.nc and any(_singular_mass(stepper, state) for state in states)
 

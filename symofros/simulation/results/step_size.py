@@ -16,6 +16,8 @@ from symofros.simulation.stepping.stepper import Stepper
 
 # A power is a difference over this share of a step.
 _MOMENT = 1e-3
+# Growth of speeds that no mechanism explains.
+EXPLODED = 1e6
 # Records, about, among which the fastest is looked for.
 _SPEEDS = 200
 # Records, about, among which energy is looked at first.
@@ -47,9 +49,25 @@ def unresolved_mode(
     wanted = states_to_examine(steps, stepper.method.tableau.stages, stepper.model.nv)
     later = sorted({good * k // (wanted - 1) - 1 for k in range(1, wanted)}) if good else []
     examined = [(settings.t0, *start), *((float(t[i]), q[i], v[i]) for i in later)]
-    speed = max(_largest_norm(start[1][np.newaxis]), _largest_norm(v[: good : max(1, good // _SPEEDS)]))
+    stride = max(1, good // _SPEEDS)
+    norms = _norms(np.concatenate([start[1][np.newaxis], v[:good:stride]]))
+    speeds = [_speed_of_motion(norms, i // stride + 2) for i in (0, *later)]
     with stepper.preserved(), np.errstate(all="ignore"):  # States that have exploded overflow.
-        return worst_mode(stepper, settings.dt, steps, examined, speed)
+        return worst_mode(stepper, settings.dt, steps, examined, speeds)
+
+
+def _speed_of_motion(norms: Array, at: int) -> float:
+    """The largest speed that is a measure of the motion about a state.
+
+    It is the largest of the run, unless the run exploded after that state: what an unstable step makes is no measure
+    of the motion that it spoils.
+
+    Args:
+        norms: Speeds in the order of time.
+        at: Number of the one after the state.
+    """
+    largest, here = float(norms.max()), float(norms[: at + 1].max())
+    return here if largest > EXPLODED * here > 0.0 else largest
 
 
 def _finite_rows(q: Array, v: Array) -> int:
@@ -60,10 +78,13 @@ def _finite_rows(q: Array, v: Array) -> int:
     return int(bad[0]) if len(bad) else len(q)
 
 
-def _largest_norm(rows: Array) -> float:
-    """The largest norm of the rows, without overflow."""
+def _norms(rows: Array) -> Array:
+    """Norm of each row, without overflow."""
     size = max(float(rows.max(initial=0.0)), -float(rows.min(initial=0.0)))
-    return size * math.sqrt(float(np.einsum("ij,ij->i", rows / size, rows / size).max())) if size > 0.0 else 0.0
+    if size == 0.0:
+        return np.zeros(len(rows))
+    norms: Array = size * np.sqrt(np.einsum("ij,ij->i", rows / size, rows / size))
+    return norms
 
 
 def step_size_note(mode: Mode, stepper: Stepper, settings: Settings, states: Sequence[Array]) -> str:

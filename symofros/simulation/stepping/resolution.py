@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 
@@ -61,7 +61,7 @@ def states_to_examine(steps: int, stages: int, nv: int) -> int:
 
 
 def worst_mode(
-    stepper: Stepper, h: float, steps: int, states: Iterable[tuple[float, Array, Array]], speed: float
+    stepper: Stepper, h: float, steps: int, states: Sequence[tuple[float, Array, Array]], speeds: Sequence[float]
 ) -> Mode | None:
     """The mode that a run resolves worst, if it errs beyond TOLERANCE.
 
@@ -70,12 +70,13 @@ def worst_mode(
         h: Step [s].
         steps: Number of steps.
         states: States of the run (t, q, v); each stands for an equal part of the run.
-        speed: Largest norm of the speeds in the run.
+        speeds: Largest norm of the speeds in the motion about each state.
     """
-    states = list(states) if speed > 0.0 else []  # Rest is kept exactly.
-    method, part = stepper.method, max(1, steps // max(1, len(states)))
+    if max(speeds) == 0.0:  # Rest is kept exactly.
+        return None
+    method, part = stepper.method, max(1, steps // len(states))
     total, worst = 0.0, None
-    for t, q, v in states:
+    for (t, q, v), speed in zip(states, speeds, strict=True):
         spectrum = stepper.spectrum(t, q, v, h, min(2 * stepper.model.nv, _DIRECTIONS))
         if spectrum is None:
             continue

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 
 import numpy as np
 import pytest
@@ -166,3 +167,28 @@ def test_a_damped_contact_takes_energy_without_a_note() -> None:
     ball = sf.RigidBody("ball", sf.Joint("z", "prismatic", axis=(0, 0, 1), elements=(stop,)), sf.Inertia(1.0))
     run = sf.simulate(sf.compile(sf.System("ball", [ball])), [1.0], t_end=2.0, method="rk4", dt=1e-3)
     assert run.energy[-1] < 0.8 * run.energy[0] and not energy_notes(run)
+
+
+@cache
+def light_end() -> sf.Model:
+    """A double pendulum whose second bar has a hundredth of the length and mass of the first."""
+    bodies, parent = [], "world"
+    for name, length, mass in (("upper", 1e-2, 1.0), ("lower", 1e-4, 1e-2)):
+        j = mass * length**2 / 12
+        joint = sf.Joint(f"q.{name}", "revolute", parent, "end" if bodies else None, axis=(0, -1, 0))
+        bar = sf.Inertia(mass, (length / 2, 0, 0), (j / 100, j, j))
+        bodies.append(sf.RigidBody(name, joint, bar, (sf.Frame("end", (length, 0, 0)),)))
+        parent = name
+    return sf.compile(sf.System("light_end", tuple(bodies)))
+
+
+@pytest.mark.parametrize("method", ["dopri5", "rk4", "semi_implicit_euler"])
+@pytest.mark.parametrize("step", [5e-3, 1e-2, 2e-2])
+def test_an_explosion_is_no_measure_of_the_motion(method: str, step: float) -> None:
+    """Whatever the number of steps, to the last one before numbers overflow."""
+    for steps in range(1, 25):
+        run = sf.simulate(light_end(), [0.0, 1.0], [30.0, 0.0], steps * step, method=method, dt=step, adaptive=False)
+        if run.outcome.kind != "finished":
+            break
+        gained = run.energy[-1] - run.energy[0]
+        assert run.outcome.notes or gained < run.kinetic_energy[0], (steps, str(run.outcome))

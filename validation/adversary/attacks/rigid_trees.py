@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import symofros as sf
 from validation.adapters.pinocchio import tree as pinocchio
-from validation.adversary.attack import Attack, Scene, Verdict, compared, decades, undecided
+from validation.adversary.attack import Attack, Scene, Verdict, compared, decades, refused, undecided
 from validation.contract.interface import States, Subject, Unsupported
 from validation.inputs.sampling import sample
 from validation.mechanics.assembly import assemble
@@ -77,6 +77,8 @@ def judge(scene: Scene) -> Verdict:
             v[:, mover.v] *= sum(lengths)
     states = replace(states, q=q, v=v)
     a = model.forward_dynamics(q, v, states.u)
+    if not np.all(np.isfinite(a)):
+        return refused("not a number: M has no factors in doubles")
     left = theirs.inverse_dynamics(_with(states, a))
     M = theirs.mass_matrix(states)
     root = np.sqrt(np.einsum("nii->ni", M))
