@@ -14,8 +14,9 @@ from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.resolution import Mode, largest_stable_step, states_to_examine, worst_mode
 from symofros.simulation.stepping.stepper import Stepper
 
-# A power is a difference over this share of a step.
-_MOMENT = 1e-3
+# A power is a difference over this share of a step, or of the time in which speeds change by themselves where that is
+# shorter; but not shorter than this share of that.
+_MOMENT, _SHORTEST = 1e-3, 1e-9
 # Growth of speeds that no mechanism explains.
 EXPLODED = 1e6
 # Records, about, among which the fastest is looked for.
@@ -147,8 +148,11 @@ def energy_note(stepper: Stepper, settings: Settings, states: Sequence[Array]) -
         if energies is None:
             return ""
         kinetic, energy = energies
+        cure = f"{'a smaller dt' if not settings.adaptive else 'tighter tolerances'}, or another method"
+        if not np.isfinite(energy).all():
+            return f"energy overflows, although the states do not: speeds have exploded; {cure}"
         change, largest = float(np.abs(energy - energy[0]).max()), float(kinetic.max())
-        if not (math.isfinite(change) and change > _NOTED_CHANGE * largest > 0.0):
+        if not change > _NOTED_CHANGE * largest > 0.0:
             return ""
         # Most forces that do work are seen at once; a short contact is seen among all records.
         span = float(states[0][-1] - states[0][0])
@@ -160,7 +164,7 @@ def energy_note(stepper: Stepper, settings: Settings, states: Sequence[Array]) -
         return ""
     return (
         f"energy changes by {change:.3g} J although no force does work, where the motion has {largest:.3g} J at most:"
-        f" {'a smaller dt' if not settings.adaptive else 'tighter tolerances'}, or another method"
+        f" {cure}"
     )
 
 
@@ -194,11 +198,13 @@ def _energies(stepper: Stepper, states: Sequence[Array]) -> tuple[Array, Array] 
 def _power(stepper: Stepper, step: float, states: Sequence[Array]) -> Array:
     """Rate of the energy along the motion (n), by central differences: the power of all but conservative forces."""
     model, par, (t, q, v, u) = stepper.model, stepper.par, states
-    moment = _MOMENT * step
     a = model.forward_dynamics(q, v, u, par=par, t=t)
+    # A fast motion changes its speeds within less than a step that does not follow it.
+    pace = _norms(v) / np.maximum(_norms(a), 1e-300)
+    moment = _MOMENT * step * np.clip(pace / step, _SHORTEST, 1.0)
     ends = []
     for s in (moment, -moment):
-        q_s, v_s = retract(model.record.segments, q, s * v), v + s * a
+        q_s, v_s = retract(model.record.segments, q, s[:, np.newaxis] * v), v + s[:, np.newaxis] * a
         kinetic = model.kinetic_energy(q_s, v_s, u=u, par=par)
         ends.append(kinetic + model.potential_energy(q_s, u=u, par=par, t=t + s))
     rate: Array = (ends[0] - ends[1]) / (2.0 * moment)

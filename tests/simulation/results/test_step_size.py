@@ -170,16 +170,16 @@ def test_a_damped_contact_takes_energy_without_a_note() -> None:
 
 
 @cache
-def light_end() -> sf.Model:
-    """A double pendulum whose second bar has a hundredth of the length and mass of the first."""
+def two_bars(length: float, size: float, mass: float) -> sf.Model:
+    """A double pendulum of the first bar's length; length and mass of the second are relative to the first's."""
     bodies, parent = [], "world"
-    for name, length, mass in (("upper", 1e-2, 1.0), ("lower", 1e-4, 1e-2)):
-        j = mass * length**2 / 12
+    for name, extent, m in (("upper", length, 1.0), ("lower", size * length, mass)):
+        j = m * extent**2 / 12
         joint = sf.Joint(f"q.{name}", "revolute", parent, "end" if bodies else None, axis=(0, -1, 0))
-        bar = sf.Inertia(mass, (length / 2, 0, 0), (j / 100, j, j))
-        bodies.append(sf.RigidBody(name, joint, bar, (sf.Frame("end", (length, 0, 0)),)))
+        bar = sf.Inertia(m, (extent / 2, 0, 0), (j / 100, j, j))
+        bodies.append(sf.RigidBody(name, joint, bar, (sf.Frame("end", (extent, 0, 0)),)))
         parent = name
-    return sf.compile(sf.System("light_end", tuple(bodies)))
+    return sf.compile(sf.System("two_bars", tuple(bodies)))
 
 
 @pytest.mark.parametrize("method", ["dopri5", "rk4", "semi_implicit_euler"])
@@ -187,8 +187,22 @@ def light_end() -> sf.Model:
 def test_an_explosion_is_no_measure_of_the_motion(method: str, step: float) -> None:
     """Whatever the number of steps, to the last one before numbers overflow."""
     for steps in range(1, 25):
-        run = sf.simulate(light_end(), [0.0, 1.0], [30.0, 0.0], steps * step, method=method, dt=step, adaptive=False)
+        run = sf.simulate(
+            two_bars(1e-2, 1e-2, 1e-2), [0.0, 1.0], [30.0, 0.0], steps * step, method=method, dt=step, adaptive=False
+        )
         if run.outcome.kind != "finished":
             break
         gained = run.energy[-1] - run.energy[0]
         assert run.outcome.notes or gained < run.kinetic_energy[0], (steps, str(run.outcome))
+
+
+@pytest.mark.parametrize("step", [0.1, 0.32, 1.0])
+@pytest.mark.parametrize("method", ["rodas4", "rk4", "dopri5", "semi_implicit_euler", "generalized_alpha"])
+def test_energy_of_motions_much_faster_than_the_step_is_judged(method: str, step: float) -> None:
+    """Their power is that of a moment in which they turn little, however long the step is."""
+    model = two_bars(1.0, 1.0, 100.0)
+    for speed in (1.0, 6.3, 40.0):
+        run = sf.simulate(model, [1.0, 0.0], [0.0, speed], 10 * step, method=method, dt=step, adaptive=False)
+        if run.outcome.ok and not run.outcome.notes:
+            change = np.abs(run.energy - run.energy[0]).max() / run.kinetic_energy.max()
+            assert change < 0.1, (speed, change, str(run.outcome))

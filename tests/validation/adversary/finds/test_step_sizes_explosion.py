@@ -21,6 +21,6 @@ SCENE = {
 }
 
 
-def test_step_sizes_error_of_the_last_speeds() -> None:
+def test_step_sizes_explosion() -> None:
     verdict = ATTACKS["step_sizes"].verdict(SCENE)
     assert verdict.sound, verdict.said
