@@ -51,7 +51,7 @@ class Find:
         attack: Name of the attack.
         scene: Scene, as small as it could be made.
         said: Sentence on the contradiction.
-        quantity: What is contradicted.
+        quantity: What is contradicted, with the choices in words that the scene makes, such as a method.
     """
 
     attack: str
@@ -126,7 +126,7 @@ def hunt(
         if verdict.sound:
             setattr(tally, verdict.kind, getattr(tally, verdict.kind) + 1)
             tally.largest = max(tally.largest, verdict.share)
-        elif verdict.quantity in known or (smallest and verdict.quantity != smallest[0][1].quantity):
+        elif (what := quantity_of(scene, verdict)) in known or (smallest and what != quantity_of(*smallest[0])):
             tally.again += 1
         else:
             if not smallest or _size(scene) <= _size(smallest[-1][0]):
@@ -155,7 +155,13 @@ def hunt(
     if not smallest:
         return None
     scene, verdict = smallest[-1]
-    return Find(attack.name, scene, verdict.said, verdict.quantity)
+    return Find(attack.name, scene, verdict.said, quantity_of(scene, verdict))
+
+
+def quantity_of(scene: Scene, verdict: Verdict) -> str:
+    """What tells finds of one attack apart: what is contradicted, and the choices in words that the scene makes."""
+    words = sorted(value for value in scene.values() if isinstance(value, str))
+    return ", ".join((verdict.quantity, *words))
 
 
 def _size(scene: Scene) -> tuple[int, str]:

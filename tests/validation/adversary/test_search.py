@@ -68,6 +68,16 @@ def test_what_is_known_is_counted_and_passed_over(tmp_path: Path) -> None:
     assert tally.again > 0 and tally.tried == tally.again + tally.agreed
 
 
+def test_finds_by_other_methods_are_others(tmp_path: Path) -> None:
+    scenes = st.fixed_dictionaries({"x": st.integers(0, 1000), "method": st.sampled_from(["one", "two"])})
+    attack, known = replace(FAULTY, scenes=scenes), set[str]()
+    for _ in range(2):
+        find = hunt(attack, tmp_path, 0, Budget(inf, ROUND), Tally(), known)
+        assert find is not None and find.scene["x"] == 37
+        known.add(find.quantity)
+    assert known == {"size, one", "size, two"}
+
+
 def test_an_exception_that_is_no_refusal_is_a_contradiction() -> None:
     def crash(scene: Scene) -> Verdict:
         raise IndexError("out of bounds")
