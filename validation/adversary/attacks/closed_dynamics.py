@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import cache
 from typing import Any, Literal
 
@@ -170,19 +171,20 @@ def judge(scene: Scene) -> Verdict:
         exact = inverse * mpmath.matrix(b)
         # Terms of each row, as large as cancellation may have left them unseen.
         root = [mpmath.sqrt(M[i, i]) for i in range(nv)]
+        # Gravity, turned into a direction that it does not act along, leaves rounding there.
+        weight = 9.81 * math.sqrt(scene["m1"] + scene["m2"] + scene["m3"])
         momentum = sum(r * abs(x) for r, x in zip(root, map(mpmath.mpf, map(float, v)), strict=True))
         terms = [
             root[i] * sum(root[j] * abs(exact[j]) for j in range(nv))
             + abs(b[i])
             + sum(abs(G[k, i] * exact[nv + k]) for k in range(nc))
-            + root[i] * momentum * scene["speed"]
+            + root[i] * (momentum * scene["speed"] + weight)
             for i in range(nv)
         ]
         terms += [
             sum(abs(G[k, j] * exact[j]) for j in range(nv))
             + abs(b[nv + k])
             + sum(abs(G[k, j] * v[j]) for j in range(nv)) * scene["speed"]
-            + 9.81  # Conditions, here all on lengths, are solved together: large accelerations leave rounding in small.
             for k in range(nc)
         ]
         bound = [sum(abs(inverse[i, j]) * terms[j] for j in range(nv + nc)) for i in range(nv)]
