@@ -133,5 +133,5 @@ def hunted_scene(name: str, folder: Path) -> tuple[dict[str, Any], Tally]:
     tally = Tally()
     anything = replace(ATTACKS[name], judge=lambda scene: 1 / 0)
     find = hunt(anything, folder, 0, Budget(inf, 40), tally, set())
-    assert find is not None and find.quantity == "ZeroDivisionError"
+    assert find is not None and find.quantity.startswith("ZeroDivisionError")
     return find.scene, tally
