@@ -379,7 +379,15 @@ def test_models_without_states_or_inputs(tmp_path: Path, version: int, prescribe
     assert fmpy.simulate_fmu(str(done.files[0]), fmi_type="CoSimulation", stop_time=0.01)["time"][-1] == 0.01
 
 
-@pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
+@pytest.mark.parametrize(
+    ("version", "kind"),
+    [
+        (2, "CoSimulation"),
+        (3, "ModelExchange"),
+        pytest.param(2, "ModelExchange", marks=pytest.mark.slow),
+        pytest.param(3, "CoSimulation", marks=pytest.mark.slow),
+    ],
+)
 def test_beams_beyond_their_theory_are_told(tmp_path: Path, version: int, kind: str) -> None:
     """A warning from 1 % on; beyond the limit a step of Co-Simulation is discarded, and Model Exchange is ended."""
     blade = sf.Beam("blade", sf.Joint("root", "fixed"), 1.0, 1.0, EI_z=1.0, bend_y=2)
