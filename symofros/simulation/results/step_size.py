@@ -14,9 +14,9 @@ from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.resolution import Mode, largest_stable_step, states_to_examine, worst_mode
 from symofros.simulation.stepping.stepper import Stepper
 
-# A power is a difference over this share of a step, or of the time in which speeds change by themselves where that is
+# A power is a difference over this share of a step, or of the time in which the largest speed arises where that is
 # shorter; but not shorter than this share of that.
-_MOMENT, _SHORTEST = 1e-3, 1e-9
+_MOMENT, _SHORTEST = 1e-3, 1e-60
 # Growth of speeds that no mechanism explains.
 EXPLODED = 1e6
 # Records, about, among which the fastest is looked for.
@@ -151,6 +151,11 @@ def energy_note(stepper: Stepper, settings: Settings, states: Sequence[Array]) -
         cure = f"{'a smaller dt' if not settings.adaptive else 'tighter tolerances'}, or another method"
         if not np.isfinite(energy).all():
             return f"energy overflows, although the states do not: speeds have exploded; {cure}"
+        gain = float(energy.max() - energy[0])
+        growth = math.sqrt(float(kinetic.max()) / max(_first_energy(stepper, few), 1e-300))
+        if growth > EXPLODED and gain > 0.5 * kinetic.max() and not few[3].any():
+            # Angles may have no digits left, and power none.
+            return f"speeds grow {growth:.3g}-fold and energy by {gain:.3g} J although no input acts: {cure}"
         change, largest = float(np.abs(energy - energy[0]).max()), float(kinetic.max())
         if not change > _NOTED_CHANGE * largest > 0.0:
             return ""
@@ -183,6 +188,13 @@ def _energy_that_appeared(stepper: Stepper, settings: Settings, states: Sequence
     return f"{appeared:.3g} J appeared that no force supplied, where the motion has {largest:.3g} J at most; "
 
 
+def _first_energy(stepper: Stepper, states: Sequence[Array]) -> float:
+    """Kinetic energy of the first record, or that which its accelerations give within a record, if that is more."""
+    model, par, (t, q, v, u) = stepper.model, stepper.par, (x[:1] for x in states)
+    gained = (states[0][1] - states[0][0]) * model.forward_dynamics(q, v, u, par=par, t=t)
+    return max(float(model.kinetic_energy(q, speeds, u=u, par=par)[0]) for speeds in (v, gained))
+
+
 def _energies(stepper: Stepper, states: Sequence[Array]) -> tuple[Array, Array] | None:
     """Kinetic and total energy (n) of records; None where motions are prescribed or the model has no energies."""
     model, (t, q, v, u) = stepper.model, states
@@ -200,7 +212,7 @@ def _power(stepper: Stepper, step: float, states: Sequence[Array]) -> Array:
     model, par, (t, q, v, u) = stepper.model, stepper.par, states
     a = model.forward_dynamics(q, v, u, par=par, t=t)
     # A fast motion changes its speeds within less than a step that does not follow it.
-    pace = _norms(v) / np.maximum(_norms(a), 1e-300)
+    pace = _norms(v).max() / np.maximum(_norms(a), 1e-300)
     moment = _MOMENT * step * np.clip(pace / step, _SHORTEST, 1.0)
     ends = []
     for s in (moment, -moment):
