@@ -23,7 +23,7 @@ from symofros.diagrams.result import DiagramRun
 from tests.blocks.sockets import free_port
 from tests.blocks.sources import Ramp
 
-ROOT = Path(__file__).parent.parent.parent
+ROOT = Path(__file__).parents[3]
 # So few that a socket's buffer holds them all: however slow the machine, only the relay loses any.
 PACKETS, PERIOD = 250, 2e-3
 # A sender counts as silent after this; between two packets a busy machine can take a while [s].
