@@ -159,14 +159,14 @@ def energy_note(stepper: Stepper, settings: Settings, states: Sequence[Array]) -
         change, largest = float(np.abs(energy - energy[0]).max()), float(kinetic.max())
         if not change > _NOTED_CHANGE * largest > 0.0:
             return ""
+        if int(stepper.run.steps) > _DENSE * (len(states[0]) - 1):
+            return ""
         # Most forces that do work are seen at once; a short contact is seen among all records.
         span = float(states[0][-1] - states[0][0])
         for records in (few, states):
             power = _power(stepper, span / int(stepper.run.steps), records)
             if not float(np.abs(power).max()) * span <= _NOTED_WORK * change:
                 return ""
-    if int(stepper.run.steps) > _DENSE * (len(states[0]) - 1):
-        return ""
     return (
         f"energy changes by {change:.3g} J although no force does work, where the motion has {largest:.3g} J at most:"
         f" {cure}"
