@@ -26,6 +26,15 @@ def native_text(name: str) -> str:
 
 
 @cache
+def native_number(name: str, macro: str) -> float:
+    """Value of a macro of a file that is one number, such as SYM_ABI of "model/symofros_model.h"."""
+    match = re.search(rf"^#define {macro} (?P<number>[-+.\de]+)u?$", native_text(name), re.MULTILINE)
+    if match is None:
+        raise LookupError(f"{name} has lost {macro}")
+    return float(match["number"])
+
+
+@cache
 def amalgamated(name: str) -> str:
     """Text of a C file with the C files that it includes in their places; headers stay included."""
     folder = PurePosixPath(name).parent

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from symofros.native import native_number
 from symofros.runtime.calls.kernel import Array
 
-# Error over the square of the largest slope, and where it begins to grow as the slope itself (24). The same numbers
-# stand in native/stepping/beams.c, which judges each step; tests compare the two.
-SLOPE_ERROR, LARGE_SLOPE = 0.457, 0.47
+# Judges each step of a run, and has the numbers of (24).
+_JUDGE = "stepping/beams.c"
 # Estimated error from which results carry a note.
 NOTED_ERROR = 0.01
 # Estimated error beyond which a result fails by default: up to there the estimate is calibrated (section 6).
@@ -163,7 +163,8 @@ class ElasticBeam:
 
     def _error(self, yaw: float, pitch: float, slope: float, twist: float) -> float:
         """Estimated error from squares of the largest angles (24), (25)."""
-        error = SLOPE_ERROR * slope / math.sqrt(1.0 + LARGE_SLOPE * slope)
+        error = native_number(_JUDGE, "SYM_BEAM_SLOPE_ERROR") * slope
+        error /= math.sqrt(1.0 + native_number(_JUDGE, "SYM_BEAM_LARGE_SLOPE") * slope)
         stiffness = self.EI_y * pitch + self.EI_z * yaw
         if twist > 0.0 and self.contrast > 0.0 and stiffness > 0.0:
             contrast = abs(self.EI_z - self.EI_y) * abs(pitch - yaw) / stiffness

@@ -13,7 +13,7 @@ from typing import Any
 import cffi
 
 from symofros.errors import CompileError
-from symofros.native import HEADERS, native_text
+from symofros.native import HEADERS, native_number, native_text
 
 _CDEF = re.compile(r"/\* cdef begin.*?\*/(?P<declarations>.*?)/\* cdef end \*/", re.DOTALL)
 _ENUMS = ("sym_status", "sym_method", "sym_segment_kind")
@@ -35,10 +35,7 @@ def interface() -> Any:
 @cache
 def model_abi() -> int:
     """Version of the struct sym_model, SYM_ABI of symofros_model.h."""
-    match = re.search(r"^#define SYM_ABI (\d+)u$", native_text(HEADERS[0]), re.MULTILINE)
-    if match is None:
-        raise CompileError("symofros_model.h has lost SYM_ABI")
-    return int(match[1])
+    return int(native_number(HEADERS[0], "SYM_ABI"))
 
 
 @cache
