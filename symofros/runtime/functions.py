@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from types import MappingProxyType
 from typing import Any, Self
 
 import numpy as np
@@ -130,30 +129,6 @@ class Functions:
         """Number of constraints."""
         return self.record.nc
 
-    @property
-    def parameters(self) -> Mapping[str, float]:
-        """Name -> value of the run-time parameters."""
-        return MappingProxyType(dict(zip(self.record.par_names, self._par.tolist(), strict=True)))
-
-    def with_parameters(self, **values: float) -> Self:
-        """The same compiled code with other parameter values, judged by the conditions of the description.
-
-        Raises:
-            UnknownNameError: No such run-time parameter.
-            ParameterError: A value is not a finite number, or the description refuses it (a negative mass).
-        """
-        par = self._par.copy()
-        for name, value in values.items():
-            if name not in self.record.par_names:
-                raise self._unknown(
-                    "run-time parameter",
-                    name,
-                    self.record.par_names,
-                    "constants are hard-coded: change them in the description",
-                )
-            par[self.record.par_names.index(name)] = self._finite(name, value)
-        return self._like(par=self.checked_parameters(par))
-
     def checked_parameters(self, par: ArrayLike) -> Array:
         """Sets of run-time parameters (..., npar), which the conditions of the description hold for.
 
@@ -177,31 +152,6 @@ class Functions:
                 )
             self._last_checked = content
         return array
-
-    def with_parameter_checks(self, checks: bool) -> Self:
-        """The same model, whose run-time parameters are judged by the description's conditions, or taken as they come.
-
-        They are judged wherever they enter: `with_parameters`, `par=` of functions, of simulations and of batches. That
-        takes a microsecond where they are those of the call before, otherwise some hundred and, in batches, about ten a
-        state: loops that change them at every call may leave it out.
-
-        Raises:
-            SymofrosError: The model came without its description.
-        """
-        if not checks:
-            other = self._like()
-            other._parameter_check = None
-            return other
-        if self._parameter_check is None:
-            raise SymofrosError(
-                Problem(
-                    f"model '{self.record.name}': nothing is known of its parameters",
-                    "checks that were left out, or a model without its description",
-                    "a compiled model checks its parameters unless that is turned off",
-                    "use the model that with_parameter_checks(False) was called on",
-                )
-            )
-        return self._like()
 
     @property
     def threads(self) -> int:
@@ -337,11 +287,6 @@ class Functions:
             raise SymofrosError(f"model '{self.record.name}': a model without its description compiles no formulas")
         return self._build_formulas(tuple(formulas), derivatives).kernels["formulas", ""]
 
-    @property
-    def parameter_values(self) -> Array:
-        """The run-time parameters (npar), read-only."""
-        return self._par
-
     # How a call is made.
 
     def _frame(self, frame: str) -> str:
@@ -355,20 +300,6 @@ class Functions:
         listed = f"{len(known)} {kind}s" + (": " + ", ".join(known[:12]) if known else "")
         what = f"model '{self.record.name}': no {kind} '{name}'"
         return UnknownNameError(Problem(what, listed, rule, did_you_mean(name, known) or "use another model"))
-
-    def _finite(self, name: str, value: float) -> float:
-        number = real_array(value)
-        if number is None or number.shape != () or not np.isfinite(number):
-            what = f"model '{self.record.name}': parameter '{name}' is not a finite number"
-            raise ParameterError(
-                Problem(
-                    what,
-                    repr(value)[:80],
-                    "a parameter is one finite number",
-                    "pass par=… to a function for values that vary by state",
-                )
-            )
-        return float(number)
 
     def _one(self, name: str, given: Mapping[str, ArrayLike | None], par: ArrayLike | None, frame: str = "") -> Numbers:
         return self._call(name, self._frame(frame) if frame else "", given, par)[0]
