@@ -87,6 +87,19 @@ def spinning(rod: Rod, elements: int) -> Timed:
     return Timed(build)
 
 
+def _position_sensor(made: Any, body: Any, place: Any) -> Any:
+    """A sensor of the position of a point that is fixed to a body, at a place in the body's frame."""
+    return made.AddSensor(
+        items.SensorBody(
+            bodyNumber=body,
+            localPosition=place,
+            writeToFile=False,
+            storeInternal=True,
+            outputVariableType=exudyn.OutputVariableType.Position,
+        )
+    )
+
+
 def planar(
     system: sf.System, angles: Mapping[str, float], cables: Mapping[str, Cable], place: tuple[float, float]
 ) -> Timed:
@@ -103,15 +116,7 @@ def planar(
         container = exudyn.SystemContainer()
         made = container.AddSystem()
         last = populate(made, system, angles, cables)[-1].moved(np.array(place))
-        sensor = made.AddSensor(
-            items.SensorBody(
-                bodyNumber=last.body,
-                localPosition=last.place(),
-                writeToFile=False,
-                storeInternal=True,
-                outputVariableType=exudyn.OutputVariableType.Position,
-            )
-        )
+        sensor = _position_sensor(made, last.body, last.place())
         made.Assemble()
         return container, made, [sensor]
 
@@ -158,15 +163,7 @@ def bars(links: Sequence[Link], hinges: Sequence[tuple[int, float, int, float]],
 
     def build() -> tuple[Any, Any, Sequence[Any]]:
         container, made, _ = linkage(links, hinges, grounded)
-        sensor = made.AddSensor(
-            items.SensorBody(
-                bodyNumber=_FIRST_BAR,
-                localPosition=[0.5, 0, 0],
-                writeToFile=False,
-                storeInternal=True,
-                outputVariableType=exudyn.OutputVariableType.Position,
-            )
-        )
+        sensor = _position_sensor(made, _FIRST_BAR, [0.5, 0, 0])
         made.Assemble()
         return container, made, [sensor]
 
