@@ -16,7 +16,8 @@ import numpy.typing as npt
 
 Array = npt.NDArray[Any]
 
-# What damaged archives, streams and headers make the standard library raise.
+# What damaged archives, streams and headers make the standard library raise; NotImplementedError: a compression method
+# or an encryption that zipfile does not know.
 _DAMAGE = (
     EOFError,
     KeyError,

@@ -19,7 +19,7 @@ def swung(load: float, **changes: object) -> sf.Trajectory:
     return sf.simulate(model, t_end=1.0, **{"dt": 1e-3, **changes})  # type: ignore[arg-type]
 
 
-def told(outcome: sf.Outcome) -> list[str]:
+def beam_notes(outcome: sf.Outcome) -> list[str]:
     """Notes on the theory of beams."""
     return [note for note in outcome.notes if "second-order theory errs" in note]
 
@@ -38,14 +38,14 @@ def test_a_run_ends_where_a_beam_bends_beyond_its_theory(method: str) -> None:
 
 def test_a_note_names_the_largest_bending_between_recorded_states() -> None:
     run = swung(0.3, output=[0.0, 1.0])
-    (note,) = told(run.outcome)
+    (note,) = beam_notes(run.outcome)
     (bending,) = run.bendings
     assert "'blade'" in note and "t = " in note and 0.0 < bending.t < 1.0
     every = swung(0.3)
     slopes = [cantilever().beams()[0].bending(q).slope for q in every.q]
     assert bending.slope == pytest.approx(max(slopes), rel=1e-12)
     assert bending.t == pytest.approx(every.t[int(np.argmax(slopes))])
-    assert not told(swung(0.1).outcome)
+    assert not beam_notes(swung(0.1).outcome)
 
 
 def test_the_steps_judge_as_python_does() -> None:
@@ -69,7 +69,7 @@ def test_each_trajectory_of_a_batch_is_judged_by_its_own_length() -> None:
     alone = [sf.simulate(model, t_end=4.0, par=row, dt=1e-3) for row in par]
     assert list(runs.kinds) == [run.outcome.kind for run in alone] == ["finished", "finished", "beyond theory"]
     for run, single in zip(runs, alone, strict=True):
-        assert told(run.outcome) == told(single.outcome)
+        assert beam_notes(run.outcome) == beam_notes(single.outcome)
         assert run.bendings[0].error == pytest.approx(single.bendings[0].error, rel=1e-9)
     assert "'blade'" in runs.outcome(2).reason
     assert "beams bend much in 2, first: [1]: beam 'blade'" in str(runs)

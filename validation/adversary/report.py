@@ -53,7 +53,7 @@ def measure(
     run.expect(len(wanted) * 1000, "attacking")
     for position, name in enumerate(wanted):
         budget = Budget(seconds / len(wanted), examples)
-        told = log.tallies.setdefault(name, Tally())
+        tally = log.tallies.setdefault(name, Tally())
         run.reached(1000 * position)
 
         def show(name: str = name, position: int = position, budget: Budget = budget) -> None:
@@ -62,7 +62,7 @@ def measure(
             run.reached(1000 * position + min(1000, int(1000 * share)))
 
         try:
-            _attack(name, log, seed, budget, told, show, run.say)
+            _attack(name, log, seed, budget, tally, show, run.say)
         except KeyboardInterrupt:
             unfinished = wanted[position:]
             break

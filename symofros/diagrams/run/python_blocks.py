@@ -124,7 +124,7 @@ class ExternalCalls:
         return self._writer.external(due)
 
     def call(self, which: int, t: float, gathered: Array) -> Array:
-        """Call a block with its inputs, one after the other; its outputs likewise.
+        """Call a block with its inputs, one after the other; outputs lie one after the other, too.
 
         Raises:
             SymofrosError: It returned what its ports do not promise.

@@ -69,8 +69,9 @@ class BatchExamination:
 
     def _stepper(self, i: int) -> Stepper:
         """A single run in the place of run i."""
-        alike = len(self.initial.par) == len(self.initial.inputs.constant) == 1 and not any(self.initial.inputs.strides)
-        return self._first if alike else self._single(i)
+        inputs = self.initial.inputs
+        one_serves_all = len(self.initial.par) == len(inputs.constant) == 1 and not any(inputs.strides)
+        return self._first if one_serves_all else self._single(i)
 
     @cached_property
     def _first(self) -> Stepper:

@@ -391,7 +391,7 @@ def test_models_without_states_or_inputs(tmp_path: Path, version: int, prescribe
 def test_beams_beyond_their_theory_are_told(tmp_path: Path, version: int, kind: str) -> None:
     """A warning from 1 % on; beyond the limit a step of Co-Simulation is discarded, and Model Exchange is ended."""
     blade = sf.Beam("blade", sf.Joint("root", "fixed"), 1.0, 1.0, EI_z=1.0, bend_y=2)
-    told: dict[float, list[str]] = {}
+    remarks: dict[float, list[str]] = {}
     ends: dict[float, float] = {}
     for g in (0.2, 0.5, 60.0):
         system = sf.System("limp", (blade,), gravity=(0, -g, 0))
@@ -409,7 +409,7 @@ def test_beams_beyond_their_theory_are_told(tmp_path: Path, version: int, kind: 
             ends[g] = float(run["time"][-1])
         except FMICallException:
             ends[g] = math.nan
-        told[g] = [line for line in log if "second-order theory errs" in line]
-    assert not told[0.2] and ends[0.2] == pytest.approx(1.0)
-    assert len(told[0.5]) == 1 and "'blade'" in told[0.5][0] and ends[0.5] == pytest.approx(1.0)
-    assert told[60.0] and not ends[60.0] == pytest.approx(1.0)
+        remarks[g] = [line for line in log if "second-order theory errs" in line]
+    assert not remarks[0.2] and ends[0.2] == pytest.approx(1.0)
+    assert len(remarks[0.5]) == 1 and "'blade'" in remarks[0.5][0] and ends[0.5] == pytest.approx(1.0)
+    assert remarks[60.0] and not ends[60.0] == pytest.approx(1.0)

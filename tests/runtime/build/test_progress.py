@@ -24,9 +24,9 @@ def test_generating_and_compiling_are_logged_and_known_functions_are_silent(
     caplog.set_level(logging.INFO, logger="symofros")
     model.mass_matrix(model.neutral())
     label = f"{model.record.name}: mass_matrix"
-    told = caplog.messages
-    assert told[:2] == [f"{label}: generating", f"{label}: compiling"]
-    assert told[2].startswith(f"{label}: done after ") and len(told) == 3
+    messages = caplog.messages
+    assert messages[:2] == [f"{label}: generating", f"{label}: compiling"]
+    assert messages[2].startswith(f"{label}: done after ") and len(messages) == 3
     caplog.clear()
     again = sf.compile(random_tree(31))
     again.mass_matrix(again.neutral())

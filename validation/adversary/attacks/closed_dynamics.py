@@ -188,7 +188,7 @@ def judge(scene: Scene) -> Verdict:
             for k in range(nc)
         ]
         bound = [sum(abs(inverse[i, j]) * terms[j] for j in range(nv + nc)) for i in range(nv)]
-        if scene["form"] == "multipliers":  # It corrects the accelerations of the tree: theirs bound its rounding.
+        if scene["form"] == "multipliers":  # It corrects the accelerations of the tree, which bound its rounding.
             bound = [bound[i] + sum(abs(free[i, j]) * terms[j] for j in range(nv)) for i in range(nv)]
         shares = [float(abs(exact[i] - a[i]) / bound[i]) if bound[i] else 0.0 for i in range(nv)]
     claim = f"{scene['form']}: rank {int(rank)} of {nc}"

@@ -82,11 +82,11 @@ def judge(scene: Scene) -> Verdict:
     at = sf.inverse_kinematics(model, {"tool": target}, scene["guess"], rest=rest, par=par)
     if not at.converged or at.notes:
         return refused(f"not converged: an error of {at.error:.3g}")
-    theirs = pinocchio.build(Subject("arm", system(scene), ("tool",)))
-    if isinstance(theirs, Unsupported):
-        return undecided(theirs.reason)
+    engine = pinocchio.build(Subject("arm", system(scene), ("tool",)))
+    if isinstance(engine, Unsupported):
+        return undecided(engine.reason)
     q, none = at.q[np.newaxis], np.zeros((1, 6))
-    pose = theirs.frame_pose(States(q, none, none, np.zeros((1, 0)), none, none))[0, 0]
+    pose = engine.frame_pose(States(q, none, none, np.zeros((1, 0)), none, none))[0, 0]
     claim = f"converged, with an error of {at.error:.3g}"
     reach = 2.2 * scene["L"]
     verdicts = [

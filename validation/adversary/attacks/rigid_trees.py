@@ -63,9 +63,9 @@ def system(scene: Scene) -> sf.System:
 def judge(scene: Scene) -> Verdict:
     """Our accelerations, by either way, put into Pinocchio's Newton-Euler."""
     stated = system(scene)
-    theirs = pinocchio.build(Subject("tree", stated))
-    if isinstance(theirs, Unsupported):
-        return undecided(theirs.reason)
+    engine = pinocchio.build(Subject("tree", stated))
+    if isinstance(engine, Unsupported):
+        return undecided(engine.reason)
     options = sf.Options(("forward_dynamics",), backend="interpreter", forward_dynamics=scene["way"])
     model, assembly = sf.compile(stated, options), assemble(stated)
     states = sample(assembly, model.nu, _STATES, scene["seed"], first=1)
@@ -79,8 +79,8 @@ def judge(scene: Scene) -> Verdict:
     a = model.forward_dynamics(q, v, states.u)
     if not np.all(np.isfinite(a)):
         return refused("not a number: M has no factors in doubles")
-    left = theirs.inverse_dynamics(_with(states, a))
-    M = theirs.mass_matrix(states)
+    left = engine.inverse_dynamics(_with(states, a))
+    M = engine.mass_matrix(states)
     root = np.sqrt(np.einsum("nii->ni", M))
     # Forces of row i are at most sqrt(M_ii) times the root of the masses times their largest acceleration.
     total = sum(one["mass"] for one in scene["bodies"])

@@ -138,6 +138,7 @@ def read_motion(path: str | Path, model: Model) -> PlayedMotion:
     except TooLargeError as error:
         what, rule = f"trajectory: '{file.name}' is too large", f"at most {MAX_NUMBERS} numbers are shown"
         raise SymofrosError(Problem(what, str(error)[:200], rule, "save fewer states")) from None
+    # NotImplementedError: a compression or an encoding that the reader of Parquet files does not know.
     except (OSError, ValueError, csv.Error, NotImplementedError, MemoryError) as error:
         fault = Problem(
             f"trajectory: '{file.name}' is not a {file.suffix} file",
