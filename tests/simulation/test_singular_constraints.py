@@ -60,6 +60,8 @@ def test_a_disc_that_falls_flat_in_a_batch_is_no_good_run() -> None:
 @example(tilt=0.5, spin=0.01, turn=0.0, way=0)
 @example(tilt=1.2, spin=0.1, turn=0.0, way=3)
 @example(tilt=0.5, spin=0.0, turn=1.0, way=0)
+@example(tilt=0.5, spin=0.0, turn=1.5, way=5)
+@example(tilt=0.25, spin=0.25, turn=0.0, way=1)
 @given(
     tilt=st.floats(0.15, 1.4), spin=st.floats(-3.0, 3.0), turn=st.floats(-2.0, 2.0), way=st.integers(0, len(WAYS) - 1)
 )

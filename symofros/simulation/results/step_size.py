@@ -21,7 +21,7 @@ _MOMENT, _SHORTEST = 1e-3, 1e-60
 EXPLODED = 1e6
 # Records, about, among which the fastest is looked for.
 _SPEEDS = 200
-# Records, about, among which energy is looked at first.
+# Records, about, whose power is looked at first.
 _FEW = 32
 # Change of energy, over the largest kinetic energy, that is worth a note; work that explains a change, over it.
 _NOTED_CHANGE, _NOTED_WORK = 0.05, 0.1
@@ -144,7 +144,8 @@ def energy_note(stepper: Stepper, settings: Settings, states: Sequence[Array]) -
     """
     few = [x[:: max(1, len(x) // _FEW)] for x in states]
     with np.errstate(all="ignore"):  # What overflows is left out.
-        energies = _energies(stepper, few)
+        # Among all records: a change may last for some steps only. A batch of them takes hardly longer than a few.
+        energies = _energies(stepper, states)
         if energies is None:
             return ""
         kinetic, energy = energies
@@ -208,9 +209,12 @@ def _energies(stepper: Stepper, states: Sequence[Array]) -> tuple[Array, Array] 
 
 
 def _power(stepper: Stepper, step: float, states: Sequence[Array]) -> Array:
-    """Rate of the energy along the motion (n), by central differences: the power of all but conservative forces."""
+    """Power of all but conservative forces (n): the rate of the energy along the motion, by central differences.
+
+    Without what the forces of constraints have taken or supplied where G v = b is violated: that is an error, no work.
+    """
     model, par, (t, q, v, u) = stepper.model, stepper.par, states
-    a = model.forward_dynamics(q, v, u, par=par, t=t)
+    a, lam = model.forward_dynamics(q, v, u, par=par, t=t, multipliers=True)
     # A fast motion changes its speeds within less than a step that does not follow it.
     pace = _norms(v).max() / np.maximum(_norms(a), 1e-300)
     moment = _MOMENT * step * np.clip(pace / step, _SHORTEST, 1.0)
@@ -220,4 +224,6 @@ def _power(stepper: Stepper, step: float, states: Sequence[Array]) -> Array:
         kinetic = model.kinetic_energy(q_s, v_s, u=u, par=par)
         ends.append(kinetic + model.potential_energy(q_s, u=u, par=par, t=t + s))
     rate: Array = (ends[0] - ends[1]) / (2.0 * moment)
+    if model.nc:
+        rate = rate - np.einsum("ij,ij->i", lam, model.constraint_rate(q, v, u=u, par=par, t=t))
     return rate
