@@ -8,16 +8,28 @@ from collections.abc import Sequence
 
 from validation.check import ModelResult
 from validation.comparison.errors import Comparison
+from validation.cross_check.baseline import Regression
 
 # What XML 1.0 has no way to write; messages may quote anything.
 _ILLEGAL = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
-def to_junit(models: Sequence[ModelResult], seconds: float) -> str:
-    """One suite a model, one case a comparison."""
+def to_junit(models: Sequence[ModelResult], seconds: float, regressions: Sequence[Regression] = ()) -> str:
+    """One suite a model, one case a comparison; a suite of what is worse than in a stored run."""
     root = ElementTree.Element("testsuites", name="symofros cross-check", time=f"{seconds:.1f}")
     for model in models:
         _suite(root, model)
+    if regressions:
+        count = str(len(regressions))
+        suite = ElementTree.SubElement(root, "testsuite", name="baseline", tests=count, failures=count)
+        for worse in regressions:
+            cell = {
+                "classname": f"baseline.{worse.model}",
+                "name": " ".join(filter(None, (worse.quantity, worse.engine))),
+            }
+            ElementTree.SubElement(
+                ElementTree.SubElement(suite, "testcase", cell), "failure", message=f"{worse.kind}: {worse.text}"
+            )
     ElementTree.indent(root)
     text = ElementTree.tostring(root, encoding="unicode")
     return '<?xml version="1.0" encoding="utf-8"?>\n' + _ILLEGAL.sub("?", text) + "\n"

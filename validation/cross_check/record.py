@@ -10,6 +10,7 @@ from typing import Any
 from validation.adapters import ROUTES
 from validation.check import ModelResult, Settings
 from validation.comparison.errors import Comparison, Status
+from validation.cross_check.speed import Speed
 from validation.reporting.numbers import finite
 from validation.reporting.provenance import stamp
 from validation.reporting.record import Data
@@ -35,6 +36,7 @@ class Record:
         unfinished: Models that were asked for, but the run was interrupted before.
         states: Random states a model; seed: their seed.
         distributions: Counts of states by error.
+        speeds: Speeds of our functions, if they were asked for.
     """
 
     models: tuple[ModelResult, ...]
@@ -42,6 +44,7 @@ class Record:
     states: int
     seed: int
     distributions: Distributions
+    speeds: tuple[Speed, ...] = ()
 
     @property
     def ok(self) -> bool:
@@ -83,11 +86,16 @@ class Record:
             data["settings"]["states"],
             data["settings"]["seed"],
             data.get("distributions", {}),  # Reports of before they were kept have no such figure.
+            tuple(Speed(**row) for row in data.get("speeds", ())),
         )
 
 
 def as_data(
-    settings: Settings, models: Sequence[ModelResult], seconds: float, unfinished: Sequence[str]
+    settings: Settings,
+    models: Sequence[ModelResult],
+    seconds: float,
+    unfinished: Sequence[str],
+    speeds: Sequence[Speed] = (),
 ) -> dict[str, Any]:
     """Everything, for JSON; None where there is no number."""
     rows = [row for model in models for row in model.comparisons]
@@ -126,6 +134,7 @@ def as_data(
             for model in models
         ],
         "distributions": counts,
+        **({"speeds": [asdict(row) for row in speeds]} if speeds else {}),
     }
 
 

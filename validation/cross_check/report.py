@@ -4,24 +4,30 @@ from __future__ import annotations
 
 import contextlib
 import os
+from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+import symofros as sf
 from symofros.tools import write_atomically
 from validation.adapters import ROUTES, differences
 from validation.check import ModelResult, Settings
 from validation.contract.quantities import MOTION_ENERGY, QUANTITIES, ROUNDING, SMALL, SOLVE
+from validation.cross_check.baseline import Baseline, BaselineError, Regression, machine_of, slowest
 from validation.cross_check.figures import error_against_condition, error_distributions, errors_by_engine
 from validation.cross_check.junit import to_junit
 from validation.cross_check.record import Record, as_data
+from validation.cross_check.speed import Speed, YardstickError
+from validation.cross_check.speed import measure as measure_speed
 from validation.cross_check.tables import BRIEF, by_engine, by_model, failures, headline, unsupported, worst
-from validation.inputs.cases import named, standard_set
+from validation.inputs.cases import Case, named, standard_set
 from validation.inputs.sampling import DEFAULT_STATES
 from validation.reporting.command import Run, known
 from validation.reporting.figures import Figure
-from validation.reporting.numbers import digits
+from validation.reporting.numbers import counted, digits
 from validation.reporting.record import (
     Block,
     Bullets,
@@ -38,6 +44,8 @@ from validation.reporting.record import (
 )
 from validation.worker_pool import run as run_cases
 
+# Times that speeds are taken again where they seem lower than in a stored run.
+_AGAIN = 2
 # Up to so many models, each engine has a line of its own on a terminal.
 _DETAILED = 2
 
@@ -64,6 +72,23 @@ _ENERGY = (
 _NO_SAY = "These engines have no say on these models; nobody else's comparison is weakened."
 _FAILED: dict[str, Column] = {"model": "{0}", "against": "{1}", "what": lambda row: Cell(row[2], False)}
 _UNSUPPORTED: dict[str, Column] = {"engine": "{1}", "models": "{0}", "reason": "{2}"}
+_SPEED = (
+    "Times of our functions in batches of 4096 states, as multiples of the time that a fixed program takes for as many "
+    "rows in the same run: what `--baseline` compares. The noise is the range between the quartiles of 25 turns."
+)
+_SPEEDS: dict[str, Column] = {
+    "model": "{model}",
+    "function": "{function}",
+    "#yardsticks": "{ratio:.3g}",
+    "#noise": "{noise:.1%}",
+    "#ns a state": "{nanoseconds:.3g}",
+}
+_REGRESSIONS: dict[str, Column] = {
+    "model": "{model}",
+    "engine": "{engine}",
+    "what": "{quantity}",
+    "change": lambda row: Cell(f"{row['kind']}: {row['text']}", False),
+}
 _DRIFT: dict[str, Column] = {
     "model": "{model}",
     "#drift at the full step": lambda row: digits(row.extra["drift_coarse"]),
@@ -92,10 +117,15 @@ def measure(
     ] = None,
     junit: Annotated[Path | None, typer.Option(help="Also write a JUnit file.")] = None,
     workers: Annotated[int, typer.Option(min=1, help="Models checked at the same time.")] = WORKERS,
+    speed: Annotated[bool, typer.Option("--speed", help="Also time our functions, against a fixed program.")] = False,
+    baseline: Annotated[
+        Path | None, typer.Option(help="A stored check.json: fail where this run is less accurate or slower.")
+    ] = None,
 ) -> Data:
     """Compare our C of each MODEL with every engine that can represent it."""
     known(engine, ROUTES, "--engine", "engine")
     settings = Settings(states, seed, tuple(engine) if engine else None)
+    stored = _baseline(baseline, settings)
     try:
         cases = named(models, floating_base) if models else standard_set()
     except (LookupError, FileNotFoundError) as error:
@@ -110,11 +140,59 @@ def measure(
     with contextlib.suppress(KeyboardInterrupt):  # What was finished is reported.
         run_cases(cases, settings, workers, done)
     finished = [results[case.label] for case in cases if case.label in results]
+    unfinished = [case.label for case in cases if case.label not in results]
+    compiled = [case for case in cases if case.label in results and results[case.label].sizes]
+    wanted = (speed or (stored is not None and bool(stored.record.speeds))) and not unfinished
+    speeds = _speeds(run, compiled, stored) if wanted else []
+    data = as_data(settings, finished, run.seconds, unfinished, speeds)
+    regressions: list[Regression] = []
+    if stored is not None:
+        regressions, notes = stored.judge(Record.of(data), machine_of(data))
+        origin = {"file": stored.name, "revision": stored.revision, "date": stored.date, "notes": notes}
+        data |= {"ok": data["ok"] and not regressions, "baseline": origin}
+        data["baseline"]["regressions"] = [asdict(worse) for worse in regressions]
     if junit is not None:
         junit.parent.mkdir(parents=True, exist_ok=True)
-        write_atomically(junit, to_junit(finished, run.seconds))
-    unfinished = [case.label for case in cases if case.label not in results]
-    return as_data(settings, finished, run.seconds, unfinished)
+        write_atomically(junit, to_junit(finished, run.seconds, regressions))
+    return data
+
+
+def _baseline(path: Path | None, settings: Settings) -> Baseline | None:
+    """The stored run, before anything is computed in vain."""
+    if path is None:
+        return None
+    try:
+        stored = Baseline.read(path)
+        stored.require(settings.states, settings.seed)
+    except BaselineError as error:
+        raise typer.BadParameter(str(error), param_hint="--baseline") from None
+    return stored
+
+
+def _speeds(run: Run, cases: Sequence[Case], stored: Baseline | None) -> list[Speed]:
+    """Speeds, one model after the other; what looks slower than in the stored run is timed again, and its best kept."""
+    before = {} if stored is None else {(row.model, row.function): row for row in stored.record.speeds}
+    run.expect(len(cases), "timing")
+    speeds: list[Speed] = []
+    for case in cases:
+        try:
+            subject = case.load()
+            timed = measure_speed(subject)
+            for _ in range(_AGAIN):
+                if not any(_is_slower(before.get((row.model, row.function)), row) for row in timed):
+                    break
+                timed = [
+                    min(pair, key=lambda row: row.ratio) for pair in zip(timed, measure_speed(subject), strict=True)
+                ]
+            speeds += timed
+        except (YardstickError, sf.SymofrosError) as error:
+            run.say(f"{case.label}: not timed: {error}", bad=True)
+        run.advance(case.label)
+    return speeds
+
+
+def _is_slower(stored: Speed | None, fresh: Speed) -> bool:
+    return stored is not None and fresh.ratio > slowest(stored, fresh)
 
 
 def compose(data: Data) -> Report:
@@ -125,28 +203,47 @@ def compose(data: Data) -> Report:
     conditions = tuple(filter(None, (error_against_condition(record),)))
     drifts = Table.of((row for row in record.compared if row.quantity == "energy_drift"), _DRIFT)
     alone = (Fold(f"Against {name} alone", (by_engine(record, engines=(name,)),), page_only=True) for name in engines)
+    regressions = data.get("baseline", {}).get("regressions", ())
     sections = [
         Section("What disagrees or failed", (Table.of(failures(record), _FAILED),)),
+        _against_baseline(data),
         Section("How close", (Figure(_CLOSE, drawings),), page_only=True),
         Section("Model by model", (_BY_MODEL, by_model(record), *alone)),
         Section("Forward dynamics and the condition of M", (Figure(_CONDITION, conditions),), page_only=True),
         Section("Energy along a free motion", (_ENERGY, drifts), page_only=True),
+        Section("How fast", (_SPEED, Table.of(record.speeds, _SPEEDS)), page_only=True),
         Section("What an engine could not represent", (_NO_SAY, Table.of(unsupported(record), _UNSUPPORTED))),
         _method(),
         Section("Models", tuple(map(_model, record.models)), page_only=True),
     ]
     return Report(
         "Cross-check of the generated code",
-        headline(record),
-        record.ok,
+        headline(record) + (f" {counted(len(regressions), 'cell')} worse than the baseline." if regressions else ""),
+        record.ok and not regressions,
         (f"{record.states} states a model, seed {record.seed}.",),
         tuple(section for section in sections if section.shows),
         tuple(_facts(record, engines)),
         (errors_by_engine(record),) if engines else (),
-        tuple(_digest(record)),
+        (*_digest(record), *_against_baseline(data).blocks),
         record.unfinished,
         record.refused,
     )
+
+
+def _against_baseline(data: Data) -> Section:
+    """What is worse than in the stored run; empty without one."""
+    stored = data.get("baseline")
+    if stored is None:
+        return Section("Against the baseline", ())
+    revision = f", revision {stored['revision'][:12]}" if stored["revision"] else ""
+    verdict = (
+        "nothing is worse" if not stored["regressions"] else f"{counted(len(stored['regressions']), 'cell')} worse"
+    )
+    said = f"Against {stored['file']} ({stored['date']}{revision}): {verdict}."
+    blocks: list[Block] = [Text(said, "bad" if stored["regressions"] else "plain")]
+    blocks += [Table.of(stored["regressions"], _REGRESSIONS)] if stored["regressions"] else []
+    blocks += [Bullets(tuple(stored["notes"]))] if stored["notes"] else []
+    return Section("Against the baseline", tuple(blocks), ok=not stored["regressions"])
 
 
 def _facts(record: Record, engines: list[str]) -> list[Fact]:
