@@ -99,6 +99,7 @@ HARNESS = table("""
 # ... and what builds on it: any of the above, and these others.
 STUDIES = table("""
     oracle:
+    engines:
     cross_check:
     campaigns:
     diagrams:

@@ -1,0 +1,245 @@
+"""What a joint's coordinates and speeds mean: the placement that coordinates give, the rates that speeds make of them.
+
+Nothing else of a joint is stated: partial velocities and their rates follow by differences in many digits (`truth`).
+A new chart is a row of CHARTS; its formulas take coordinates that are slightly off the manifold, too (quaternions of
+any length).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from validation.engines.arithmetic import (
+    CONTEXT,
+    Exact,
+    exact,
+    eye,
+    quaternion_rotation,
+    rotation,
+    unit,
+    zeros,
+)
+from validation.engines.interface import Array, Joint
+
+Pose = tuple[Exact, Exact]
+Draw = np.random.Generator
+
+
+@dataclass(frozen=True)
+class Chart:
+    """Coordinates and speeds of one joint.
+
+    Attributes:
+        text: What they are, for people.
+        nq: Number of coordinates.
+        nv: Number of speeds.
+        pose: Joint, coordinates (nq) -> rotation R (3, 3) and position p (3) of the frame after the joint, in the
+            frame before.
+        rates: Joint, coordinates (nq) -> N (nq, nv) with q' = N v.
+        sample: Joint, generator -> random coordinates (nq).
+    """
+
+    text: str
+    nq: int
+    nv: int
+    pose: Callable[[Joint, Exact], Pose]
+    rates: Callable[[Joint, Exact], Exact]
+    sample: Callable[[Joint, Draw], Array]
+
+
+def _angle(q: Any) -> tuple[Any, Any]:
+    return CONTEXT.cos(q), CONTEXT.sin(q)
+
+
+def _turn(axis: Exact, q: Any) -> Exact:
+    return rotation(axis, *_angle(q))
+
+
+def _same(joint: Joint, q: Exact) -> Exact:
+    return eye(len(q))
+
+
+def _revolute(joint: Joint, q: Exact) -> Pose:
+    return _turn(unit(joint.axis), q[0]), zeros(3)
+
+
+def _cos_sin(joint: Joint, q: Exact) -> Pose:
+    norm = CONTEXT.sqrt(q @ q)
+    return rotation(unit(joint.axis), q[0] / norm, q[1] / norm), zeros(3)
+
+
+def _prismatic(joint: Joint, q: Exact) -> Pose:
+    return eye(3), q[0] * unit(joint.axis)
+
+
+def _helical(joint: Joint, q: Exact) -> Pose:
+    axis = unit(joint.axis)
+    return _turn(axis, q[0]), exact(joint.pitch) * q[0] * axis
+
+
+def _universal(joint: Joint, q: Exact) -> Pose:
+    return _turn(unit(joint.axis), q[0]) @ _turn(unit(joint.second), q[1]), zeros(3)
+
+
+def _euler(joint: Joint, q: Exact) -> Pose:
+    R = eye(3)
+    for letter, angle in zip(joint.sequence, q, strict=True):
+        R = R @ _turn(exact(np.eye(3)["XYZ".index(letter)]), angle)
+    return R, zeros(3)
+
+
+def _translation(joint: Joint, q: Exact) -> Pose:
+    return eye(3), q
+
+
+def _wxyz(joint: Joint, q: Exact) -> Pose:
+    return quaternion_rotation(*q), zeros(3)
+
+
+def _wxyz_rates(joint: Joint, q: Exact) -> Exact:
+    """Q' = q (0, w) / 2 with w along the axes of the frame after the joint."""
+    w, x, y, z = q
+    return np.array([[-x, -y, -z], [w, -z, y], [z, w, -x], [-y, x, w]], dtype=object) / 2
+
+
+def _wxyz_rates_before(joint: Joint, q: Exact) -> Exact:
+    """Q' = (0, w) q / 2 with w along the axes of the frame before the joint."""
+    w, x, y, z = q
+    return np.array([[-x, -y, -z], [w, z, -y], [-z, w, x], [y, -x, w]], dtype=object) / 2
+
+
+def _last(q: Exact) -> Exact:
+    """Scalar last -> scalar first."""
+    return np.roll(q, 1)
+
+
+def _xyzw(joint: Joint, q: Exact) -> Pose:
+    return _wxyz(joint, _last(q))
+
+
+def _xyzw_rates(joint: Joint, q: Exact) -> Exact:
+    return np.roll(_wxyz_rates(joint, _last(q)), -1, axis=0)
+
+
+def _blocks(linear: Exact, angular: Exact) -> Exact:
+    """N (7, 6) of position and quaternion."""
+    N = zeros(3 + len(angular), 6)
+    N[:3, :3], N[3:, 3:] = linear, angular
+    return N
+
+
+def _free_xyzw(joint: Joint, q: Exact) -> Pose:
+    return _xyzw(joint, q[3:])[0], q[:3]
+
+
+def _free_wxyz(joint: Joint, q: Exact) -> Pose:
+    return _wxyz(joint, q[3:])[0], q[:3]
+
+
+def _free_body_rates(joint: Joint, q: Exact) -> Exact:
+    return _blocks(_xyzw(joint, q[3:])[0], _xyzw_rates(joint, q[3:]))
+
+
+def _free_mixed_rates(joint: Joint, q: Exact) -> Exact:
+    return _blocks(eye(3), _wxyz_rates(joint, q[3:]))
+
+
+def _planar_pose(joint: Joint, q: Exact) -> Pose:
+    R, _ = _cos_sin(Joint("revolute"), q[2:])
+    return R, np.array([q[0], q[1], CONTEXT.mpf(0)], dtype=object)
+
+
+def _cos_sin_rates(joint: Joint, q: Exact) -> Exact:
+    return np.array([[-q[1]], [q[0]]], dtype=object)
+
+
+def _planar_rates(joint: Joint, q: Exact) -> Exact:
+    c, s = q[2], q[3]
+    zero = CONTEXT.mpf(0)
+    return np.array([[c, -s, zero], [s, c, zero], [zero, zero, -s], [zero, zero, c]], dtype=object)
+
+
+def _ellipsoid(joint: Joint, q: Exact) -> Pose:
+    """A point that runs on an ellipsoid, with R = Rx(q0) Ry(q1) Rz(q2)."""
+    R, _ = _euler(Joint("euler", sequence="XYZ"), q)
+    return R, exact(joint.radii) * R[:, 2]
+
+
+def _line(nq: int, size: float) -> Callable[[Joint, Draw], Array]:
+    return lambda joint, draw: draw.uniform(-size, size, nq)
+
+
+def _direction(draw: Draw, n: int) -> Array:
+    q = draw.normal(size=n)
+    return np.asarray(q / np.linalg.norm(q))
+
+
+def _circle(joint: Joint, draw: Draw) -> Array:
+    angle = draw.uniform(-math.pi, math.pi)
+    return np.array([math.cos(angle), math.sin(angle)])
+
+
+def _sphere(joint: Joint, draw: Draw) -> Array:
+    return _direction(draw, 4)
+
+
+def _free_sample(joint: Joint, draw: Draw) -> Array:
+    return np.concatenate([draw.uniform(-1, 1, 3), _direction(draw, 4)])
+
+
+def _planar_sample(joint: Joint, draw: Draw) -> Array:
+    return np.concatenate([draw.uniform(-1, 1, 2), _circle(joint, draw)])
+
+
+CHARTS: dict[str, Chart] = {
+    "angle": Chart("angle; its rate", 1, 1, _revolute, _same, _line(1, 2.5)),
+    "cos sin": Chart("cosine and sine of the angle; rate of the angle", 2, 1, _cos_sin, _cos_sin_rates, _circle),
+    "length": Chart("displacement; its rate", 1, 1, _prismatic, _same, _line(1, 1.0)),
+    "screw angle": Chart("angle; its rate", 1, 1, _helical, _same, _line(1, 2.5)),
+    "two angles": Chart("angles; their rates", 2, 2, _universal, _same, _line(2, 1.2)),
+    "three angles": Chart("angles of successive rotations; their rates", 3, 3, _euler, _same, _line(3, 1.2)),
+    "three lengths": Chart("displacements; their rates", 3, 3, _translation, _same, _line(3, 1.0)),
+    "quaternion wxyz, body speeds": Chart(
+        "quaternion, scalar first; angular velocity in the axes after the joint", 4, 3, _wxyz, _wxyz_rates, _sphere
+    ),
+    "quaternion wxyz, parent speeds": Chart(
+        "quaternion, scalar first; angular velocity in the axes before the joint", 4, 3, _wxyz, _wxyz_rates_before,
+        _sphere
+    ),
+    "quaternion xyzw, body speeds": Chart(
+        "quaternion, scalar last; angular velocity in the axes after the joint", 4, 3, _xyzw, _xyzw_rates, _sphere
+    ),
+    "free xyzw, body speeds": Chart(
+        "position, quaternion with scalar last; linear and angular velocity in the axes after the joint",
+        7, 6, _free_xyzw, _free_body_rates, _free_sample,
+    ),
+    "free wxyz, linear before and angular after": Chart(
+        "position, quaternion with scalar first; linear velocity in the axes before, angular in those after the joint",
+        7, 6, _free_wxyz, _free_mixed_rates, _free_sample,
+    ),
+    "planar cos sin, body speeds": Chart(
+        "x, y, cosine and sine; velocity in the axes after the joint", 4, 3, _planar_pose, _planar_rates, _planar_sample
+    ),
+    "ellipsoid angles": Chart(
+        "angles about x, y, z in succession; their rates", 3, 3, _ellipsoid, _same, _line(3, 1.2)
+    ),
+}  # fmt: off
+
+# Kinds of elementary joints -> the chart that states their geometry most plainly.
+GEOMETRIES: dict[str, str] = {
+    "revolute": "angle",
+    "prismatic": "length",
+    "helical": "screw angle",
+    "universal": "two angles",
+    "euler": "three angles",
+    "translation": "three lengths",
+    "ball": "quaternion wxyz, body speeds",
+    "free": "free wxyz, linear before and angular after",
+    "planar": "planar cos sin, body speeds",
+    "ellipsoid": "ellipsoid angles",
+}

@@ -1,0 +1,267 @@
+"""The contract of an engine's plug-in: what is asked of it, and what it says of itself.
+
+An engine is asked in its own conventions, about trees of rigid links that are stated neutrally (`Tree`). It says how it
+keeps a tree's joints (`Slot`: a chart of `charts.CHARTS`, and where coordinates and speeds stand in its q and v); the
+truth is
+then worked out in the same coordinates and speeds. A plug-in is an object with the members of `EnginePlugin`, offered
+under
+the entry-point group `symofros.engines`:
+
+    [project.entry-points."symofros.engines"]
+    mine = "my_package.plugin:PLUGIN"
+
+Frames of a tree: a link's frame stands where its last joint leaves it. Vectors are tuples, rotations tuples of rows;
+R of a placement turns components of the placed frame into those of the frame it is placed in.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from importlib.metadata import entry_points
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Vector = tuple[float, float, float]
+Rows = tuple[Vector, Vector, Vector]
+
+
+def rows(matrix: Array) -> Rows:
+    """A matrix (3, 3) as tuples."""
+    a, b, c = (tuple(row) for row in np.asarray(matrix, dtype=float).tolist())
+    return (a, b, c)
+
+
+def vector(values: Array) -> Vector:
+    """A vector (3) as a tuple."""
+    x, y, z = np.asarray(values, dtype=float).tolist()
+    return (x, y, z)
+
+
+GROUP = "symofros.engines"
+ORIGIN: Vector = (0.0, 0.0, 0.0)
+IDENTITY: Rows = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+@dataclass(frozen=True)
+class Unsupported:
+    """An engine can't do what it is asked, and says so. Returned, never raised.
+
+    Attributes:
+        reason: The engine's words, or ours where it offers nothing of the kind.
+        offered: Whether the engine offers such a thing at all: False for a function or a kind that it doesn't have.
+    """
+
+    reason: str
+    offered: bool = True
+
+
+class Difference(NamedTuple):
+    """One convention of an engine that a reader must know."""
+
+    what: str
+    convention: str
+
+
+@dataclass(frozen=True)
+class Joint:
+    """One elementary joint; a link may hang on several in series.
+
+    Attributes:
+        kind: Key of `charts.GEOMETRIES`, such as "revolute".
+        R: Rotation (3, 3) of the frame before its motion, in the frame that it is placed in.
+        p: Position (3) of the same [m].
+        axis: Direction of its motion in its own frame, of unit length.
+        second: Direction of its second motion ("universal").
+        pitch: Advance for a radian [m/rad] ("helical").
+        radii: Half axes (3) [m] ("ellipsoid").
+        sequence: Axes of successive rotations ("euler"), as "ZYX".
+        form: Native form that is asked for where an engine has several, such as "unbounded"; "" for the plainest.
+        armature: Inertia added to the diagonal of the mass matrix, for each speed; () for none.
+        mimics: Name of the link whose (one and only) joint it follows: q = ratio q_followed + offset; "" for none.
+        ratio: See `mimics`.
+        offset: See `mimics`.
+    """
+
+    kind: str
+    R: Rows = IDENTITY
+    p: Vector = ORIGIN
+    axis: Vector = (0.0, 0.0, 1.0)
+    second: Vector = (0.0, 1.0, 0.0)
+    pitch: float = 0.0
+    radii: Vector = (0.0, 0.0, 0.0)
+    sequence: str = ""
+    form: str = ""
+    armature: tuple[float, ...] = ()
+    mimics: str = ""
+    ratio: float = 1.0
+    offset: float = 0.0
+
+
+@dataclass(frozen=True)
+class Link:
+    """A rigid body and the joints it hangs on.
+
+    Attributes:
+        name: Name of the link.
+        parent: Index of the link it hangs on, smaller than its own; -1 for the world.
+        joints: Joints in series, the first placed in the parent's frame. A joint of kind "fixed" places only.
+        mass: Mass [kg].
+        com: Mass centre (3) in the link's frame [m].
+        inertia: Inertia (3, 3) about the mass centre, along the link's axes [kg m^2].
+    """
+
+    name: str
+    parent: int
+    joints: tuple[Joint, ...]
+    mass: float = 1.0
+    com: Vector = ORIGIN
+    inertia: Rows = IDENTITY
+
+
+@dataclass(frozen=True)
+class Tree:
+    """A mechanism as it is stated to all engines.
+
+    Attributes:
+        name: Name for tables.
+        links: Links, each after its parent.
+        gravity: Acceleration of gravity (3) in the world [m/s^2].
+    """
+
+    name: str
+    links: tuple[Link, ...]
+    gravity: Vector = (0.0, 0.0, -9.81)
+
+
+@dataclass(frozen=True)
+class Slot:
+    """How an engine keeps one joint.
+
+    Attributes:
+        chart: Key of `charts.CHARTS`: what its coordinates and speeds mean.
+        q: Places (nq of the chart) in the engine's q.
+        v: Places (nv of the chart) in the engine's v. A joint that mimics another names the other's places.
+    """
+
+    chart: str
+    q: tuple[int, ...]
+    v: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class State:
+    """What a function is evaluated at, in the engine's own coordinates and speeds.
+
+    Attributes:
+        q: Coordinates (nq).
+        v: Speeds (nv).
+        a: Rates of the speeds (nv).
+        tau: Forces (nv), of the powers tau^T v.
+        v2: Further speeds (nv): a displacement to integrate by.
+        q2: Further coordinates (nq): those to take a difference to.
+    """
+
+    q: Array
+    v: Array
+    a: Array
+    tau: Array
+    v2: Array
+    q2: Array
+
+
+class EngineModel(Protocol):
+    """One tree in one engine."""
+
+    @property
+    def nq(self) -> int:
+        """Length of its q."""
+
+    @property
+    def nv(self) -> int:
+        """Length of its v."""
+
+    @property
+    def slots(self) -> tuple[tuple[Slot, ...], ...]:
+        """For each link of the tree, in its order, the slots of its joints, without those of kind "fixed"."""
+
+    def call(self, function: str, state: State) -> Array | Unsupported:
+        """A function of the plug-in's `functions`, by name, in the conventions stated there for its result.
+
+        What is linear in speeds is so in the engine's own; derivatives are along its own speeds: the k-th column is
+        the rate
+        along q' = N(q) e_k. Bodies are the tree's links in their order.
+        """
+
+    def script(self, function: str, state: State) -> str:
+        """Python that imports the engine and NumPy only, and leaves the call's result in `value`; "" for none."""
+
+
+class EnginePlugin(Protocol):
+    """One engine.
+
+    Attributes:
+        name: Name in tables.
+        package: Name of its distribution, for its version.
+        extra: What to install: `pip install EXTRA`.
+        conventions: What a reader must know of its conventions.
+        kinds: Names of `kinds.KINDS` that it has of its own -> what it calls them.
+        functions: Names of `functions.FUNCTIONS` that it offers -> what it calls them. A second way to the same is
+            named after a colon: "inverse_dynamics:mj_rne".
+        formats: Formats of files that its own parser reads, of "urdf", "mjcf", "sdf".
+    """
+
+    @property
+    def name(self) -> str: ...  # noqa: D102
+    @property
+    def package(self) -> str: ...  # noqa: D102
+    @property
+    def extra(self) -> str: ...  # noqa: D102
+    @property
+    def conventions(self) -> tuple[Difference, ...]: ...  # noqa: D102
+    @property
+    def kinds(self) -> Mapping[str, str]: ...  # noqa: D102
+    @property
+    def functions(self) -> Mapping[str, str]: ...  # noqa: D102
+    @property
+    def formats(self) -> tuple[str, ...]: ...  # noqa: D102
+
+    def version(self) -> str:
+        """Version of the engine; "" where it is not installed."""
+
+    def build(self, tree: Tree) -> EngineModel | Unsupported:
+        """The tree by the engine's API."""
+
+    def read(self, tree: Tree, form: str, text: str) -> EngineModel | Unsupported:
+        """A file by the engine's own parser; its `text` states the tree, with joints and links of the links' names."""
+
+
+@dataclass
+class Registry:
+    """The plug-ins of this installation.
+
+    Attributes:
+        plugins: Name -> plug-in.
+        failures: Entry points that did not load -> why.
+    """
+
+    plugins: dict[str, EnginePlugin] = field(default_factory=dict)
+    failures: dict[str, str] = field(default_factory=dict)
+
+
+def installed(own: Mapping[str, EnginePlugin]) -> Registry:
+    """Our plug-ins and those of other packages.
+
+    Args:
+        own: Plug-ins that come with this package.
+    """
+    registry = Registry(dict(own))
+    for point in entry_points(group=GROUP):
+        try:
+            registry.plugins[point.name] = point.load()
+        except Exception as error:  # A stranger's package may fail in any way; the others go on.
+            registry.failures[point.name] = f"{type(error).__name__}: {error}"
+    return registry

@@ -1,0 +1,8 @@
+"""One file an engine, each with its PLUGIN; none imports its engine before a model is built."""
+
+from __future__ import annotations
+
+from validation.engines.interface import EnginePlugin
+from validation.engines.plugins import mujoco, pinocchio
+
+OWN: dict[str, EnginePlugin] = {module.PLUGIN.name: module.PLUGIN for module in (pinocchio, mujoco)}

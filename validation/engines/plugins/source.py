@@ -1,0 +1,157 @@
+"""Plug-ins that state an engine's calls as Python text: what answers in the matrix is what a red cell's script runs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, version
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from validation.engines.interface import Array, Difference, EngineModel, Slot, State, Tree, Unsupported
+
+_INPUTS = ("q", "v", "a", "tau", "v2", "q2")
+
+
+class Way(NamedTuple):
+    """How an engine does a function.
+
+    Attributes:
+        native: Name that the engine gives it.
+        code: Statements that leave the result in `value`; they may use what the source defines, and the parts of the
+            state by their names (`interface.State`).
+    """
+
+    native: str
+    code: str
+
+
+@dataclass(frozen=True)
+class Source:
+    """Text that builds a tree's model.
+
+    Attributes:
+        lines: Statements, imports first.
+        slots: See `EngineModel`.
+        nq: Length of the engine's q.
+        nv: Length of the engine's v.
+    """
+
+    lines: tuple[str, ...]
+    slots: tuple[tuple[Slot, ...], ...]
+    nq: int
+    nv: int
+
+
+class SourceModel:
+    """A model that text has built.
+
+    Args:
+        source: The text.
+        ways: Functions by name.
+    """
+
+    def __init__(self, source: Source, ways: Mapping[str, Way]) -> None:
+        self._source, self._ways = source, ways
+        self.slots, self.nq, self.nv = source.slots, source.nq, source.nv
+        self._names: dict[str, Any] = {}
+        exec("\n".join(source.lines), self._names)  # Our own text, of numbers and the engine's names.
+
+    def call(self, function: str, state: State) -> Array | Unsupported:
+        """A function in the engine's conventions (`EngineModel`)."""
+        if function not in self._ways:
+            return Unsupported(f"no {function}", offered=False)
+        names = dict(self._names)
+        names.update({name: getattr(state, name).copy() for name in _INPUTS})
+        try:
+            exec(self._ways[function].code, names)
+        except Exception as error:  # The engine refuses, in its own words.
+            return Unsupported(f"{type(error).__name__}: {error}".strip())
+        return np.array(names["value"], dtype=float)
+
+    def script(self, function: str, state: State) -> str:
+        """The text that the call runs, with the state that it needs (`EngineModel`)."""
+        code = self._ways[function].code
+        used = [name for name in _INPUTS if name in _words(code)]
+        stated = [f"{name} = np.array({getattr(state, name).tolist()!r})" for name in used]
+        return "\n".join([*self._source.lines, *stated, code])
+
+
+def _words(code: str) -> set[str]:
+    return set("".join(letter if letter.isalnum() or letter == "_" else " " for letter in code).split())
+
+
+@dataclass(frozen=True)
+class SourcePlugin:
+    """A plug-in made of text (`interface.EnginePlugin`).
+
+    Attributes:
+        write: Tree -> text that builds it.
+        ways: Functions by name.
+        write_reading: Tree, format, file's text -> text that has the engine read the file.
+    """
+
+    name: str
+    package: str
+    extra: str
+    conventions: tuple[Difference, ...]
+    kinds: Mapping[str, str]
+    ways: Mapping[str, Way]
+    write: Callable[[Tree], Source | Unsupported]
+    formats: tuple[str, ...] = ()
+    write_reading: Callable[[Tree, str, str], Source | Unsupported] | None = None
+
+    @property
+    def functions(self) -> Mapping[str, str]:
+        """Names of functions -> what the engine calls them."""
+        return {name: way.native for name, way in self.ways.items()}
+
+    def version(self) -> str:
+        """Version of the engine; "" where it is not installed."""
+        try:
+            return version(self.package)
+        except PackageNotFoundError:
+            return ""
+
+    def build(self, tree: Tree) -> EngineModel | Unsupported:
+        """The tree by the engine's API."""
+        return self._made(self.write(tree))
+
+    def read(self, tree: Tree, form: str, text: str) -> EngineModel | Unsupported:
+        """A file by the engine's own parser."""
+        if self.write_reading is None or form not in self.formats:
+            return Unsupported(f"reads no {form}", offered=False)
+        return self._made(self.write_reading(tree, form, text))
+
+    def _made(self, source: Source | Unsupported) -> EngineModel | Unsupported:
+        if isinstance(source, Unsupported):
+            return source
+        try:
+            return SourceModel(source, self.ways)
+        except Exception as error:  # The engine refuses, in its own words.
+            return Unsupported(f"{type(error).__name__}: {error}".strip())
+
+
+class Series(NamedTuple):
+    """A link's joints with the fixed ones folded into placements.
+
+    Attributes:
+        steps: Placement (R, p) and moving joint, in order.
+        end: Placement of the link's frame after the last.
+    """
+
+    steps: tuple[tuple[Array, Array, Any], ...]
+    end: tuple[Array, Array]
+
+
+def series(joints: tuple[Any, ...]) -> Series:
+    """Fold fixed joints into the placements of the moving ones."""
+    steps = []
+    R, p = np.eye(3), np.zeros(3)
+    for joint in joints:
+        p, R = p + R @ np.array(joint.p), R @ np.array(joint.R)
+        if joint.kind != "fixed":
+            steps.append((R, p, joint))
+            R, p = np.eye(3), np.zeros(3)
+    return Series(tuple(steps), (R, p))

@@ -1,0 +1,118 @@
+"""From an engine's answer and the truth to a verdict."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from validation.engines.functions import FUNCTIONS
+from validation.engines.interface import Array, EngineModel, Link, State, Tree, Unsupported, Vector, rows, vector
+from validation.engines.truth import Point, Truth, digits
+
+Verdict = Literal["right", "imprecise", "wrong", "refuses", "crashes", "not offered"]
+
+# An answer may be off by what BACKWARD roundings of each of its inputs make of it, and by FORWARD of its largest entry:
+# good recursions lose some tens of roundings, engines that form 1e3 products in series some hundreds.
+BACKWARD = 2000.0
+FORWARD = 1e-12
+# An answer that is off by more than this part of its largest entry is no matter of rounding.
+GROSS = 1e-6
+_PERTURBATIONS = 2
+_ROUNDING = 2.0**-53
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One function of one engine on one tree.
+
+    Attributes:
+        engine: Name of the plug-in.
+        model: Name of the tree.
+        function: Name of the function.
+        verdict: The verdict.
+        error: Largest deviation from the truth, as part of its largest entry; 0 without an answer.
+        tolerance: What rounding explains, likewise.
+        words: What the engine says, or what breaks.
+    """
+
+    engine: str
+    model: str
+    function: str
+    verdict: Verdict
+    error: float = 0.0
+    tolerance: float = 0.0
+    words: str = ""
+
+
+@dataclass(frozen=True)
+class Expected:
+    """The truth of one function at one state.
+
+    Attributes:
+        value: Its value.
+        allowed: Deviation that rounding explains.
+    """
+
+    value: Array
+    allowed: float
+
+
+def expected(function: str, tree: Tree, model: EngineModel, state: State) -> Expected:
+    """The truth, and how far roundings of the inputs move it."""
+    truth_of = FUNCTIONS[function.partition(":")[0]].truth
+    exact_value = truth_of(Truth(tree, model), Point.of(state))
+    value = digits(exact_value)
+    moved = 0.0
+    for seed in range(_PERTURBATIONS):
+        draw = np.random.default_rng(seed)
+        other = truth_of(Truth(_perturbed_tree(tree, draw), model), Point.of(_perturbed_state(state, draw)))
+        moved = max(moved, float(np.max(np.abs(digits(other - exact_value)), initial=0.0)))
+    return Expected(value, BACKWARD * moved + FORWARD * largest(value))
+
+
+def largest(values: Array) -> float:
+    """The largest magnitude."""
+    return float(np.max(np.abs(values), initial=0.0))
+
+
+def _perturbed_state(state: State, draw: np.random.Generator) -> State:
+    parts = (state.q, state.v, state.a, state.tau, state.v2, state.q2)
+    return State(*(_rounded(part, draw) for part in parts))
+
+
+def _rounded(values: Array, draw: np.random.Generator) -> Array:
+    """Values that are off by a rounding, zeros by that of the largest beside them."""
+    scale = np.where(values == 0.0, largest(values), values)
+    return np.asarray(values + scale * draw.choice([-_ROUNDING, _ROUNDING], values.shape) * 2.0)
+
+
+def _perturbed_tree(tree: Tree, draw: np.random.Generator) -> Tree:
+    return replace(tree, links=tuple(_perturbed_link(link, draw) for link in tree.links))
+
+
+def _perturbed_link(link: Link, draw: np.random.Generator) -> Link:
+    def near(values: Vector) -> Vector:
+        return vector(_rounded(np.asarray(values), draw))
+
+    inertia = _rounded(np.asarray(link.inertia), draw)
+    inertia = (inertia + inertia.T) / 2.0
+    joints = tuple(replace(joint, p=near(joint.p)) for joint in link.joints)
+    mass = float(_rounded(np.array([link.mass]), draw)[0])
+    return replace(link, mass=mass, com=near(link.com), inertia=rows(inertia), joints=joints)
+
+
+def judge(engine: str, tree: Tree, function: str, answer: Array | Unsupported, want: Expected) -> Cell:
+    """The verdict on an answer."""
+    if isinstance(answer, Unsupported):
+        return Cell(engine, tree.name, function, "refuses" if answer.offered else "not offered", words=answer.reason)
+    if answer.shape != want.value.shape:
+        return Cell(engine, tree.name, function, "wrong", words=f"shape {answer.shape}, not {want.value.shape}")
+    if not np.all(np.isfinite(answer)):
+        return Cell(engine, tree.name, function, "wrong", words="not finite")
+    deviation, scale = largest(answer - want.value), largest(want.value) or 1.0
+    verdict: Verdict = "right"
+    if deviation > want.allowed:
+        verdict = "wrong" if deviation > GROSS * scale else "imprecise"
+    return Cell(engine, tree.name, function, verdict, deviation / scale, want.allowed / scale)
