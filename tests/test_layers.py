@@ -101,6 +101,7 @@ STUDIES = table("""
     oracle:
     engines:
     cross_check:
+    ci:          cross_check
     campaigns:
     diagrams:
     accuracy:

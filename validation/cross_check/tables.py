@@ -116,10 +116,11 @@ def worst(rows: Iterable[Comparison]) -> Comparison | None:
 
 def failures(record: Record) -> list[tuple[str, str, str]]:
     """Model, engine and what disagrees or failed, with its numbers."""
-    return [(row.model, row.engine, _failure(row)) for row in record.rows("disagree", "failed")]
+    return [(row.model, row.engine, failure(row)) for row in record.rows("disagree", "failed")]
 
 
-def _failure(row: Comparison) -> str:
+def failure(row: Comparison) -> str:
+    """What disagrees or failed, with its numbers."""
     if row.status == "failed":
         return f"{row.quantity}: {row.note}"
     error = "not a number" if row.error is None else f"error {digits(row.error)}"

@@ -1,0 +1,1 @@
+"""The harness in continuous integration: a plug-in for pytest."""

@@ -1,0 +1,195 @@
+"""Cross-checks as tests: one for each model and engine, one for each model's share of a stored run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from validation.adapters import ROUTES
+from validation.check import ModelResult, Settings
+from validation.comparison.errors import Comparison
+from validation.cross_check.baseline import Baseline, BaselineError, Regression, machine_of
+from validation.cross_check.record import Record, as_data
+from validation.cross_check.speed import Speed, measure
+from validation.cross_check.tables import failure
+from validation.inputs.cases import Case, named, standard_set
+from validation.reporting.numbers import digits
+from validation.worker_pool import run_case
+
+# Models of the smoke tier, where none is named: each kind of mechanism once, all of them small.
+SMOKE = ("double_pendulum", "heavy_top", "cart_pole", "four_bar", "rolling_disc", "flexible_pendulum")
+
+
+@dataclass(frozen=True)
+class Tier:
+    """Size of a tier.
+
+    Attributes:
+        states: Random states a model.
+        models: Names of models where none is named; empty for the standard set.
+    """
+
+    states: int
+    models: tuple[str, ...] = ()
+
+
+TIERS = {"smoke": Tier(20, SMOKE), "standard": Tier(200), "full": Tier(1000)}
+
+
+class CrossCheckFailure(Exception):
+    """Cells that disagree, are worse than before, or were not compared at all; the message lists them."""
+
+
+@cache
+def _result(case: Case, settings: Settings) -> ModelResult:
+    return run_case(case, settings)
+
+
+@cache
+def _speeds(case: Case) -> tuple[Speed, ...]:
+    return tuple(measure(case.load()))
+
+
+class CrossCheck(pytest.Item):
+    """One model by one engine: every quantity that both have.
+
+    Args:
+        case: The model.
+        settings: States, seed, the one engine.
+        tier: Name of the tier.
+        named: Others that pytest sets.
+    """
+
+    def __init__(self, *, case: Case, settings: Settings, tier: str, **named: Any) -> None:
+        super().__init__(**named)
+        self.case, self.settings = case, settings
+        self.add_marker("symofros")
+        self.add_marker(f"symofros_{tier}")
+
+    def runtest(self) -> None:
+        """Check, and fail with the cells that disagree."""
+        result = _result(self.case, self.settings)
+        wrong = [row for row in result.comparisons if row.status in ("disagree", "failed") and row.engine != "any"]
+        if wrong:
+            raise CrossCheckFailure("\n".join(map(_stated, wrong)))
+        (engine,) = self.settings.engines or ("",)
+        compared = [row for row in result.comparisons if row.engine == engine and row.status == "agree"]
+        if not compared:
+            reasons = dict.fromkeys(row.note for row in result.comparisons if row.engine == engine and row.note)
+            pytest.skip("; ".join(reasons) or f"{engine} has nothing to compare on {self.case.label}")
+        self.user_properties += [(row.quantity, digits(row.error)) for row in compared]
+
+    def repr_failure(self, excinfo: Any, style: Any = None) -> Any:
+        """The cells alone; another exception with its traceback."""
+        if isinstance(excinfo.value, CrossCheckFailure):
+            return str(excinfo.value)
+        return super().repr_failure(excinfo, style)
+
+    def reportinfo(self) -> tuple[Path, int | None, str]:
+        """Where it stands in reports."""
+        return self.case.path or Path(self.case.label), None, f"symofros::{self.name}"
+
+
+class BaselineCheck(CrossCheck):
+    """One model held to a stored run."""
+
+    def __init__(self, *, stored: Baseline, **named: Any) -> None:
+        super().__init__(**named)
+        self.stored = stored
+
+    def runtest(self) -> None:
+        """Check by all engines of the stored run, and fail with the cells that are worse."""
+        result = _result(self.case, self.settings)
+        speeds = _speeds(self.case) if self.stored.record.speeds and result.sizes else ()
+        data = as_data(self.settings, [result], 0.0, (), speeds)
+        regressions, notes = self.stored.judge(Record.of(data), machine_of(data))
+        mine = [worse for worse in regressions if worse.model == self.case.label]
+        if mine:
+            raise CrossCheckFailure("\n".join(map(_worse, mine)))
+        if any(note.startswith(f"{self.case.label}:") for note in notes):
+            pytest.skip("; ".join(notes))
+
+
+class Confirmation(CrossCheck):
+    """One model by all engines: agreement with nobody would confirm nothing."""
+
+    def runtest(self) -> None:
+        """Fail where no independent engine had anything to compare."""
+        asked = [name for name in self.settings.engines or () if ROUTES[name].independent]
+        rows = [
+            row for name in asked for row in _result(self.case, replace(self.settings, engines=(name,))).comparisons
+        ]
+        if not any(ROUTES[row.engine].independent for row in rows if row.engine in ROUTES and row.status == "agree"):
+            reasons = dict.fromkeys(f"{row.engine}: {row.note}" for row in rows if row.note and row.engine != "any")
+            raise CrossCheckFailure("\n".join(["no independent engine confirms this model", *reasons]))
+
+
+class CrossChecks(pytest.Collector):
+    """The parent of all cross-checks, the first part of their names."""
+
+    def collect(self) -> list[pytest.Item]:
+        """The tests come from `cross_checks`; pytest asks no collector that is not of a file."""
+        return []
+
+
+def cross_checks(session: Any, config: Any) -> Iterator[pytest.Item]:
+    """The tests that the options ask for.
+
+    Raises:
+        UsageError: An option is of no use; the message says why.
+    """
+    tier = config.getoption("--symofros-tier")
+    engines = config.getoption("--symofros-engine") or list(ROUTES)
+    for engine in engines:
+        if engine not in ROUTES:
+            raise pytest.UsageError(f"--symofros-engine {engine}: no such engine; there are {', '.join(ROUTES)}")
+    models = config.getoption("--symofros-model") or TIERS[tier].models
+    try:
+        cases = named(list(models), config.getoption("--symofros-floating-base")) if models else standard_set()
+    except (LookupError, FileNotFoundError) as error:
+        raise pytest.UsageError(f"--symofros-model: {error.args[0]}") from None
+    states = TIERS[tier].states
+    stored = _stored(config.getoption("--symofros-baseline"))
+    parent = CrossChecks.from_parent(session, name="symofros", nodeid="symofros")
+
+    def test(kind: type[CrossCheck], case: Case, suffix: str, settings: Settings, **more: Any) -> pytest.Item:
+        name = f"{case.label}[{suffix}]"
+        made: pytest.Item = kind.from_parent(parent, name=name, case=case, settings=settings, tier=tier, **more)
+        return made
+
+    for case in cases:
+        for engine in engines:
+            yield test(CrossCheck, case, engine, Settings(states, 0, (engine,)))
+        yield test(Confirmation, case, "confirmed", Settings(states, 0, tuple(engines)))
+        if stored is not None:
+            settings = Settings(stored.record.states, stored.record.seed, tuple(_engines(stored)))
+            yield test(BaselineCheck, case, "baseline", settings, stored=stored)
+
+
+def _stored(path: str | None) -> Baseline | None:
+    if path is None:
+        return None
+    try:
+        return Baseline.read(Path(path))
+    except BaselineError as error:
+        raise pytest.UsageError(f"--symofros-baseline: {error}") from None
+
+
+def _engines(stored: Baseline) -> list[str]:
+    """The engines that the stored run compared with."""
+    compared = {row.engine for row in stored.record.compared}
+    return [name for name in ROUTES if name in compared]
+
+
+def _stated(row: Comparison) -> str:
+    return f"{row.model}, by {row.engine}: {failure(row)}"
+
+
+def _worse(worse: Regression) -> str:
+    by = f" by {worse.engine}" if worse.engine else ""
+    return f"{worse.model}, {worse.quantity}{by}: {worse.kind}: {worse.text}"

@@ -1,0 +1,54 @@
+"""The plug-in that pytest loads where this package is installed: options, and nothing heavy until one is given.
+
+pytest --symofros-model robot.urdf                       # your robot by every engine that can represent it
+pytest --symofros-model robot.urdf --symofros-engine mujoco --symofros-tier smoke
+pytest --symofros-model robot.urdf --symofros-baseline stored/check.json
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+TIERS = ("smoke", "standard", "full")
+
+
+def pytest_addoption(parser: Any) -> None:
+    """The options."""
+    group = parser.getgroup("symofros", "cross-checks of multibody models and engines (symofros)")
+    group.addoption(
+        "--symofros-model",
+        action="append",
+        metavar="MODEL",
+        help="check this model: a URDF, MJCF or YAML file, or a name of the standard set; repeatable",
+    )
+    group.addoption(
+        "--symofros-engine",
+        action="append",
+        metavar="ENGINE",
+        help="only by this engine; repeatable. Without models: the standard set, as large as the tier",
+    )
+    group.addoption("--symofros-tier", choices=TIERS, default="standard", help="how much is checked (standard)")
+    group.addoption("--symofros-floating-base", action="store_true", help="put a free joint under the root of URDFs")
+    group.addoption(
+        "--symofros-baseline",
+        metavar="FILE",
+        help="a check.json of before: fail where a cell is less accurate, or slower if it holds speeds",
+    )
+
+
+def pytest_configure(config: Any) -> None:
+    """Markers of the tiers: `-m "not symofros"` leaves all of these tests out."""
+    config.addinivalue_line("markers", "symofros: a cross-check by SYMOFROS")
+    for tier in TIERS:
+        config.addinivalue_line("markers", f"symofros_{tier}: a cross-check that is part of the {tier} tier")
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(session: Any, config: Any, items: list[Any]) -> None:
+    """Add the cross-checks that are asked for; -k and -m choose among them as among other tests."""
+    if config.getoption("--symofros-model") or config.getoption("--symofros-engine"):
+        from validation.ci.items import cross_checks
+
+        items += cross_checks(session, config)
