@@ -1,0 +1,87 @@
+"""The templates of docs/ci run as they stand: their steps, by a shell, in a project of somebody else's."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from ruamel.yaml import YAML
+
+from tests.validation.ci.test_plugin import ROOT, cases
+from tests.validation.subjects import URDF
+
+
+def template(name: str) -> dict:
+    return YAML(typ="safe").load((ROOT / "docs/ci" / name).read_text())
+
+
+def github() -> tuple[dict[str, str], list[str]]:
+    """Environment and commands of the steps, whatever their conditions."""
+    stated = template("github.yml")
+    (job,) = stated["jobs"].values()
+    return stated["env"], [step["run"] for step in job["steps"] if "run" in step]
+
+
+def gitlab() -> tuple[dict[str, str], list[str]]:
+    (job,) = template("gitlab-ci.yml").values()
+    return job["variables"], [*job["before_script"], *job["script"]]
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Path:
+    """A robot, its stored run, and a `python` that need not install what is here."""
+    (tmp_path / "robot.urdf").write_text(URDF)
+    (tmp_path / "bin").mkdir()
+    python = tmp_path / "bin/python"
+    plugin = "-p validation.ci.plugin" if not _installed() else ""
+    python.write_text(
+        f"""#!/bin/sh
+case "$2" in
+    pip) echo "$@" >> installed ;;
+    pytest) shift 2; exec {sys.executable} -m pytest {plugin} -p no:cacheprovider "$@" ;;
+    *) exec {sys.executable} "$@" ;;
+esac
+"""
+    )
+    python.chmod(0o755)
+    return tmp_path
+
+
+def _installed() -> bool:
+    from importlib.metadata import entry_points
+
+    return any(point.name == "symofros" for point in entry_points(group="pytest11"))
+
+
+def run(project: Path, command: str, stated: dict[str, str]) -> subprocess.CompletedProcess[str]:
+    given = {name: value for name, value in stated.items() if "$" not in value}
+    paths = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH", "")]))
+    path = f"{project / 'bin'}:{os.environ['PATH']}"
+    environment = os.environ | given | {"PATH": path, "PYTHONPATH": paths}
+    return subprocess.run(
+        ["bash", "-e", "-c", command], cwd=project, env=environment, capture_output=True, text=True, timeout=300
+    )
+
+
+@pytest.mark.parametrize("server", [github, pytest.param(gitlab, marks=pytest.mark.slow(1))])
+def test_the_steps_of_a_template_pass_and_catch_a_regression(project: Path, server) -> None:
+    environment, commands = server()
+    install, check, compare = commands
+    assert run(project, install, environment).returncode == 0
+    assert "symofros[validation]" in (project / "installed").read_text()
+    done = run(project, check, environment)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "robot[confirmed]" in cases(project / "results/junit.xml")
+    made = run(project, 'python -m validation check "$MODEL" --states 200 --report stored', environment)
+    assert made.returncode == 0, made.stdout + made.stderr
+    data = json.loads((project / "stored/check.json").read_text())
+    (project / "symofros-baseline.json").write_text(json.dumps(data))
+    assert run(project, compare, environment).returncode == 0
+    for row in data["comparisons"]:
+        row["engine"] = "engine of before" if row["engine"] == "mujoco" else row["engine"]
+    (project / "symofros-baseline.json").write_text(json.dumps(data))
+    done = run(project, compare, environment)
+    assert done.returncode == 1 and "worse than the baseline" in done.stdout
+    assert any("engine of before" in name for name in cases(project / "results/baseline.xml"))
