@@ -149,6 +149,18 @@ def _free_mixed_rates(joint: Joint, q: Exact) -> Exact:
     return _blocks(eye(3), _wxyz_rates(joint, q[3:]))
 
 
+def _xyzw_rates_before(joint: Joint, q: Exact) -> Exact:
+    return np.roll(_wxyz_rates_before(joint, _last(q)), -1, axis=0)
+
+
+def _free_world_rates(joint: Joint, q: Exact) -> Exact:
+    return _blocks(eye(3), _xyzw_rates_before(joint, q[3:]))
+
+
+def _free_world_rates_angular_first(joint: Joint, q: Exact) -> Exact:
+    return np.roll(_free_world_rates(joint, q), 3, axis=1)
+
+
 def _planar_pose(joint: Joint, q: Exact) -> Pose:
     R, _ = _cos_sin(Joint("revolute"), q[2:])
     return R, np.array([q[0], q[1], CONTEXT.mpf(0)], dtype=object)
@@ -221,6 +233,14 @@ CHARTS: dict[str, Chart] = {
     "free wxyz, linear before and angular after": Chart(
         "position, quaternion with scalar first; linear velocity in the axes before, angular in those after the joint",
         7, 6, _free_wxyz, _free_mixed_rates, _free_sample,
+    ),
+    "free xyzw, linear and angular before": Chart(
+        "position, quaternion with scalar last; linear and angular velocity in the axes before the joint",
+        7, 6, _free_xyzw, _free_world_rates, _free_sample,
+    ),
+    "free xyzw, angular and linear before": Chart(
+        "position, quaternion with scalar last; angular and linear velocity in the axes before the joint",
+        7, 6, _free_xyzw, _free_world_rates_angular_first, _free_sample,
     ),
     "planar cos sin, body speeds": Chart(
         "x, y, cosine and sine; velocity in the axes after the joint", 4, 3, _planar_pose, _planar_rates, _planar_sample

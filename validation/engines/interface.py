@@ -211,6 +211,7 @@ class EnginePlugin(Protocol):
         kinds: Names of `kinds.KINDS` that it has of its own -> what it calls them.
         functions: Names of `functions.FUNCTIONS` that it offers -> what it calls them. A second way to the same is
             named after a colon: "inverse_dynamics:mj_rne".
+        gravity: The one acceleration of gravity (3) that it knows; () where a tree may state any.
         formats: Formats of files that its own parser reads, of "urdf", "mjcf", "sdf".
     """
 
@@ -226,6 +227,8 @@ class EnginePlugin(Protocol):
     def kinds(self) -> Mapping[str, str]: ...  # noqa: D102
     @property
     def functions(self) -> Mapping[str, str]: ...  # noqa: D102
+    @property
+    def gravity(self) -> tuple[float, ...]: ...  # noqa: D102
     @property
     def formats(self) -> tuple[str, ...]: ...  # noqa: D102
 

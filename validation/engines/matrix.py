@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
+
+import numpy as np
 
 from validation.engines.functions import FUNCTIONS
-from validation.engines.interface import EnginePlugin, Tree, Unsupported
+from validation.engines.interface import EnginePlugin, Tree, Unsupported, vector
 from validation.engines.truth import random_state
 from validation.engines.verdicts import Cell, expected, judge
 
@@ -14,6 +17,8 @@ SEED = 20
 
 def cells(plugin: EnginePlugin, tree: Tree, functions: Iterable[str] = ()) -> Iterator[Cell]:
     """All cells of one engine on one tree."""
+    if plugin.gravity:
+        tree = replace(tree, gravity=vector(np.array(plugin.gravity)))
     model = plugin.build(tree)
     chosen = list(functions) or list(FUNCTIONS) + [name for name in plugin.functions if name not in FUNCTIONS]
     for function in chosen:

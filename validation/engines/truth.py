@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from validation.engines.arithmetic import Exact, cross, exact, eye, rate, solve, stack, zeros
+from validation.engines.arithmetic import Exact, cross, exact, eye, rate, skew, solve, stack, zeros
 from validation.engines.charts import CHARTS
 from validation.engines.interface import Array, EngineModel, State, Tree
 from validation.engines.kinematics import Inertia, Kinematics
@@ -112,6 +112,25 @@ class Truth:
             self.gravity_vector @ (inertia.mass * p + R @ inertia.first)
             for inertia, (R, p) in zip(self.inertias, self.kinematics.poses(q), strict=True)
         )
+
+    def centre(self, q: Exact) -> Exact:
+        """The mass centre of all links (3)."""
+        poses = self.kinematics.poses(q)
+        first = sum(i.mass * p + R @ i.first for i, (R, p) in zip(self.inertias, poses, strict=True))
+        return first / sum(inertia.mass for inertia in self.inertias)
+
+    def centroidal(self, q: Exact) -> Exact:
+        """The map (6, nv) from speeds to momentum about the mass centre, along world axes: linear, then angular."""
+        centre, total = self.centre(q), zeros(6, self.nv)
+        jacobians = self.kinematics.jacobians(q)
+        for inertia, (R, p), J in zip(self.inertias, self.kinematics.poses(q), jacobians, strict=True):
+            momentum = inertia.turned(R).matrix() @ J
+            total = total + np.concatenate([momentum[:3], momentum[3:] + skew(p - centre) @ momentum[:3]])
+        return total
+
+    def centre_jacobian(self, q: Exact) -> Exact:
+        """The Jacobian of the mass centre (3, nv)."""
+        return self.centroidal(q)[:3] / sum(inertia.mass for inertia in self.inertias)
 
     def along_speeds(self, function: Callable[[Exact], Exact], v: Exact) -> Exact:
         """Derivatives of a function by each speed, along a new last axis."""

@@ -3,6 +3,6 @@
 from __future__ import annotations
 
 from validation.engines.interface import EnginePlugin
-from validation.engines.plugins import mujoco, pinocchio
+from validation.engines.plugins import dynibo, idyntree, mujoco, pinocchio
 
-OWN: dict[str, EnginePlugin] = {module.PLUGIN.name: module.PLUGIN for module in (pinocchio, mujoco)}
+OWN: dict[str, EnginePlugin] = {module.PLUGIN.name: module.PLUGIN for module in (pinocchio, mujoco, dynibo, idyntree)}

@@ -99,6 +99,7 @@ class SourcePlugin:
     kinds: Mapping[str, str]
     ways: Mapping[str, Way]
     write: Callable[[Tree], Source | Unsupported]
+    gravity: tuple[float, ...] = ()
     formats: tuple[str, ...] = ()
     write_reading: Callable[[Tree, str, str], Source | Unsupported] | None = None
 
@@ -125,6 +126,8 @@ class SourcePlugin:
         return self._made(self.write_reading(tree, form, text))
 
     def _made(self, source: Source | Unsupported) -> EngineModel | Unsupported:
+        if not self.version():
+            return Unsupported(f"{self.name} is not installed: pip install '{self.extra}'", offered=False)
         if isinstance(source, Unsupported):
             return source
         try:

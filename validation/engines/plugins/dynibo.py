@@ -1,0 +1,98 @@
+"""dynibo: recursive algorithms in Rust, from URDF."""
+
+from __future__ import annotations
+
+from validation.engines.interface import Difference, Tree, Unsupported
+from validation.engines.plugins.source import Source, SourcePlugin, Way
+from validation.engines.plugins.urdf import KINDS, breadth_first, describe, slots_of
+
+_SETUP = '''import numpy as np
+import tempfile
+from dynibo import Robot, FloatingRobot, BaseState, Pose, Twist
+URDF = """{text}"""
+with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
+    file.write(URDF)
+    file.flush()
+    robot = {robot}.from_urdf(file.name)
+links = [robot.link_id(name) for name in {links}]
+'''
+_FIXED = "def args(q, *rates): return (q, *rates)"
+_FLOATING = """def args(q, *rates):
+    twists = [Twist(tuple(x[:3]), tuple(x[3:6])) for x in (*rates, np.zeros(6), np.zeros(6))]
+    base = BaseState(Pose(tuple(q[:3]), tuple(q[3:7])), twists[0], twists[1])
+    return (base, q[7:], *(x[6:] for x in rates))"""
+
+_LINEAR_FIRST = "np.roll({}.reshape(-1, 6).T, 3, axis=0)"
+_TWISTS = "value = [[*t.linear, *t.angular] for t in (robot.{}(*args({}), k) for k in links)]"
+WAYS = {
+    "mass_matrix": Way("mass_matrix", "value = robot.mass_matrix(*args(q)).reshape(len(v), len(v)).T"),
+    "gravity": Way("gravity", "value = robot.gravity(*args(q))"),
+    "coriolis_forces": Way("velocity_product_forces", "value = robot.velocity_product_forces(*args(q, v))"),
+    "inverse_dynamics": Way("inverse_dynamics", "value = robot.inverse_dynamics(*args(q, v, a))"),
+    "forward_dynamics": Way("forward_dynamics", "value = robot.forward_dynamics(*args(q, v), tau)"),
+    "link_jacobians": Way(
+        "jacobian", f"value = [{_LINEAR_FIRST.format('robot.jacobian(*args(q), k)')} for k in links]"
+    ),
+    "link_jacobian_rates": Way(
+        "jacobian_derivative",
+        f"value = [{_LINEAR_FIRST.format('robot.jacobian_derivative(*args(q, v), k)')} for k in links]",
+    ),
+    "link_poses": Way(
+        "forward_kinematics",
+        """value = []
+for k in links:
+    pose = robot.forward_kinematics(*args(q), k)
+    x, y, z, w = pose.rotation_xyzw
+    K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    value.append([*pose.translation, *(np.eye(3) + 2 * w * K + 2 * K @ K).flat])""",
+    ),
+    "link_velocities": Way("forward_velocity_kinematics", _TWISTS.format("forward_velocity_kinematics", "q, v")),
+    "link_accelerations": Way(
+        "forward_acceleration_kinematics", _TWISTS.format("forward_acceleration_kinematics", "q, v, a")
+    ),
+}
+_BASE = "free xyzw, angular and linear before"
+
+
+def write(tree: Tree) -> Source | Unsupported:
+    """The tree through dynibo's reader of URDF."""
+    described = describe(tree)
+    return described if isinstance(described, Unsupported) else write_reading(tree, "urdf", described.text)
+
+
+def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
+    """A file through dynibo's reader."""
+    described = describe(tree)
+    if isinstance(described, Unsupported):
+        return described
+    count, floating = len(described.moving), described.floating
+    setup = _SETUP.format(text=text, robot="FloatingRobot" if floating else "Robot", links=list(described.links))
+    return Source(
+        (setup, _FLOATING if floating else _FIXED),
+        slots_of(tree, described, breadth_first(tree, described), _BASE),
+        nq=count + 7 * floating,
+        nv=count + 6 * floating,
+    )
+
+
+PLUGIN = SourcePlugin(
+    name="dynibo",
+    package="dynibo",
+    extra="symofros[engine-dynibo]",
+    conventions=(
+        Difference("order of joints", "breadth first, siblings as the file states them"),
+        Difference(
+            "floating base", "apart from q: pose with the quaternion's scalar last; angular, then linear, in the world"
+        ),
+        Difference("spatial vectors", "angular, then linear, along the world's axes at the link's origin"),
+        Difference("matrices", "flat, by columns"),
+        Difference("armature", "none: URDF has none"),
+        Difference("gravity", "9.80665 m/s^2 downwards along z, fixed"),
+    ),
+    kinds=KINDS | {"free": "FloatingRobot"},
+    ways=WAYS,
+    write=write,
+    gravity=(0.0, 0.0, -9.80665),
+    formats=("urdf",),
+    write_reading=write_reading,
+)

@@ -1,0 +1,183 @@
+"""iDynTree: floating-base dynamics, from URDF."""
+
+from __future__ import annotations
+
+from validation.engines.interface import Difference, Tree, Unsupported
+from validation.engines.plugins.source import Source, SourcePlugin, Way
+from validation.engines.plugins.urdf import KINDS, describe, slots_of
+
+_SETUP = '''import numpy as np
+import idyntree.bindings as iDynTree
+URDF = """{text}"""
+loader = iDynTree.ModelLoader()
+options = loader.parsingOptions()
+options.addSensorFramesAsAdditionalFrames = False
+loader.setParsingOptions(options)
+assert loader.loadReducedModelFromString(URDF, {joints})
+robot = iDynTree.KinDynComputations()
+assert robot.loadRobotModel(loader.model())
+robot.setFrameVelocityRepresentation(iDynTree.MIXED_REPRESENTATION)
+robot.setFloatingBase("{root}")
+links, g = {links}, np.array({gravity})
+'''
+
+_FIXED = """cut, n = 6, 6 + robot.getNrOfDegreesOfFreedom()
+def state(q, v): robot.setRobotState(np.eye(4), q, np.zeros(6), v, g)
+def rates(a): return iDynTree.Vector6.FromPython(np.zeros(6)), iDynTree.VectorDynSize.FromPython(a)"""
+_FLOATING = """cut, n = 0, 6 + robot.getNrOfDegreesOfFreedom()
+def state(q, v):
+    x, y, z, w = q[3:7]
+    K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    pose = np.eye(4)
+    pose[:3, 3], pose[:3, :3] = q[:3], np.eye(3) + 2 * w * K + 2 * K @ K
+    robot.setRobotState(pose, q[7:], v[:6], v[6:], g)
+def rates(a): return iDynTree.Vector6.FromPython(a[:6]), iDynTree.VectorDynSize.FromPython(a[6:])"""
+
+WAYS = {
+    "mass_matrix": Way(
+        "getFreeFloatingMassMatrix",
+        """state(q, v)
+M = iDynTree.MatrixDynSize()
+assert robot.getFreeFloatingMassMatrix(M)
+value = M.toNumPy()[cut:, cut:]""",
+    ),
+    "coriolis_forces": Way(
+        "getCoriolisAndMassMatrices",
+        """state(q, v)
+C, M, M_rate = (iDynTree.MatrixDynSize(n, n) for _ in range(3))
+assert robot.getCoriolisAndMassMatrices(C, M, M_rate)
+value = C.toNumPy()[cut:, cut:] @ v""",
+    ),
+    "bias": Way(
+        "generalizedBiasForces",
+        """state(q, v)
+value = np.zeros(n)
+assert robot.generalizedBiasForces(value)
+value = value[cut:]""",
+    ),
+    "gravity": Way(
+        "generalizedGravityForces",
+        """state(q, v)
+value = np.zeros(n)
+assert robot.generalizedGravityForces(value)
+value = value[cut:]""",
+    ),
+    "inverse_dynamics": Way(
+        "inverseDynamics",
+        """state(q, v)
+none = iDynTree.LinkWrenches(robot.model())
+none.zero()
+forces = iDynTree.FreeFloatingGeneralizedTorques(robot.model())
+assert robot.inverseDynamics(*rates(a), none, forces)
+value = np.concatenate([forces.baseWrench().asVector().toNumPy(), forces.jointTorques().toNumPy()])[cut:]""",
+    ),
+    "link_poses": Way(
+        "getWorldTransform",
+        """state(q, v)
+value = []
+for name in links:
+    H = robot.getWorldTransform(name).asHomogeneousTransform().toNumPy()
+    value.append(np.concatenate([H[:3, 3], H[:3, :3].reshape(9)]))""",
+    ),
+    "link_jacobians": Way(
+        "getFrameFreeFloatingJacobian",
+        """state(q, v)
+J, value = iDynTree.MatrixDynSize(6, n), []
+for name in links:
+    assert robot.getFrameFreeFloatingJacobian(name, J)
+    value.append(J.toNumPy()[:, cut:].copy())""",
+    ),
+    "link_velocities": Way(
+        "getFrameVel",
+        """state(q, v)
+value = [robot.getFrameVel(name).toNumPy() for name in links]""",
+    ),
+    "link_accelerations": Way(
+        "getFrameAcc",
+        """state(q, v)
+value = [robot.getFrameAcc(name, *rates(a)).toNumPy() for name in links]""",
+    ),
+    "link_velocity_products": Way(
+        "getFrameBiasAcc",
+        """state(q, v)
+value = [robot.getFrameBiasAcc(name).toNumPy() for name in links]""",
+    ),
+    "mass_centre": Way(
+        "getCenterOfMassPosition",
+        """state(q, v)
+value = robot.getCenterOfMassPosition().toNumPy()""",
+    ),
+    "mass_centre_jacobian": Way(
+        "getCenterOfMassJacobian",
+        """state(q, v)
+J = iDynTree.MatrixDynSize(3, n)
+assert robot.getCenterOfMassJacobian(J)
+value = J.toNumPy()[:, cut:]""",
+    ),
+    "mass_centre_velocity_products": Way(
+        "getCenterOfMassBiasAcc",
+        """state(q, v)
+value = robot.getCenterOfMassBiasAcc().toNumPy()""",
+    ),
+    "centroidal_momentum": Way(
+        "getCentroidalTotalMomentum",
+        """state(q, v)
+value = robot.getCentroidalTotalMomentum().asVector().toNumPy()""",
+    ),
+    "centroidal_matrix": Way(
+        "getCentroidalTotalMomentumJacobian",
+        """state(q, v)
+J = iDynTree.MatrixDynSize(6, n)
+assert robot.getCentroidalTotalMomentumJacobian(J)
+value = J.toNumPy()[:, cut:]""",
+    ),
+}
+_BASE = "free xyzw, linear and angular before"
+
+
+def write(tree: Tree) -> Source | Unsupported:
+    """The tree through iDynTree's reader of URDF."""
+    described = describe(tree)
+    return described if isinstance(described, Unsupported) else write_reading(tree, "urdf", described.text)
+
+
+def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
+    """A file through iDynTree's reader."""
+    described = describe(tree)
+    if isinstance(described, Unsupported):
+        return described
+    count, floating = len(described.moving), described.floating
+    setup = _SETUP.format(
+        text=text,
+        joints=list(described.moving),
+        root=described.links[0] if floating else "world",
+        links=list(described.links),
+        gravity=list(tree.gravity),
+    )
+    return Source(
+        (setup, _FLOATING if floating else _FIXED),
+        slots_of(tree, described, described.moving, _BASE),
+        nq=count + 7 * floating,
+        nv=count + 6 * floating,
+    )
+
+
+PLUGIN = SourcePlugin(
+    name="idyntree",
+    package="idyntree",
+    extra="symofros[engine-idyntree]",
+    conventions=(
+        Difference("order of joints", "as asked for when the model is loaded"),
+        Difference(
+            "floating base", "always there: pose apart from q; linear and angular in the world (mixed representation)"
+        ),
+        Difference("spatial vectors", "linear, then angular"),
+        Difference("armature", "not in the dynamics"),
+        Difference("gravity", "an argument of the state"),
+    ),
+    kinds=KINDS | {"free": "floating base"},
+    ways=WAYS,
+    write=write,
+    formats=("urdf",),
+    write_reading=write_reading,
+)
