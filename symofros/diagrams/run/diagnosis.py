@@ -13,7 +13,7 @@ from symofros.diagrams.run.loop import Loop
 from symofros.runtime.beams import BeamBending, bending_notes, largest_bending
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.results.outcome import Kind, Outcome
-from symofros.simulation.results.step_size import remedy, step_size_note, unresolved_mode
+from symofros.simulation.results.step_size import examine_steps, remedy, step_size_note
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.resolution import Mode
 from symofros.simulation.stepping.status import Status
@@ -109,7 +109,8 @@ def _unresolved_mode(ended: Ended, part: int, failed: bool) -> Mode | None:
         return None
     states = (t, q[:, place.q], v[:, place.v], u)
     steps = ((settings.t_end if failed else ended.t) - settings.t0) / settings.dt
-    return unresolved_mode(ended.loop.parts[part], settings, (states[1][0], states[2][0]), states, max(1, round(steps)))
+    start, stepper = (states[1][0], states[2][0]), ended.loop.parts[part]
+    return examine_steps(stepper, settings, start, states, max(1, round(steps))).worst
 
 
 def _held_fault(ended: Ended) -> str:

@@ -18,5 +18,6 @@
 #include "beams.c"
 #include "dense_output.c"
 #include "events.c"
+#include "diagnostic.c"
 #include "run.c"
 #include "external_rhs.c"

@@ -74,6 +74,7 @@ SYM_EXPORT int32_t sym_run_start(sym_run *r) {
     r->slope_valid = 0;
     r->steps = r->rejected = r->evaluations = r->jacobians = 0;
     r->n_records = r->n_event_records = r->next_grid = 0;
+    r->n_diagnostic = 0, r->diagnostic_stride = 1;
     r->rank_max = -1, r->rank_min = s->nc + 1;
     r->previous_error = 1.0;
     r->lost_energy = r->kinetic_energy = 0.0;
@@ -88,6 +89,7 @@ SYM_EXPORT int32_t sym_run_start(sym_run *r) {
     if (status != 0) return status;
     status = sym_first_slope(r, w.k);
     if (status != 0) return status;
+    sym_keep_diagnostic_state(r, 0);
     if (s->n_events > 0) {
         status = sym_event_values(r, r->event_values);
         if (status != 0) return status;
@@ -162,6 +164,7 @@ static int32_t sym_accept_step(sym_run *r, sym_workspace *w, double h, double t1
         status = sym_record(r);
         if (status != 0) return status;
     }
+    sym_keep_diagnostic_state(r, r->t >= r->t_end || stopped);
     if (r->realtime_scale > 0.0) sym_wait_for_clock(r);
     return beyond != 0 ? beyond : stopped ? SYM_TERMINAL_EVENT : 0;
 }

@@ -12,7 +12,7 @@ from symofros.runtime.calls.kernel import Array
 from symofros.runtime.manifold import retract
 from symofros.runtime.model import Model
 from symofros.simulation.results.input_faults import input_fault
-from symofros.simulation.results.step_size import step_size_note, unresolved_mode
+from symofros.simulation.results.step_size import examine_run
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.batch_stepper import InitialStates
 from symofros.simulation.stepping.resolution import Mode
@@ -36,19 +36,21 @@ class BatchExamination:
     settings: Settings
     initial: InitialStates
 
-    def step_size(self, i: int, states: tuple[Array, ...], steps: int) -> tuple[Mode, str] | None:
-        """The mode that run i resolves worst, and the note on it.
+    def step_size(
+        self, i: int, states: tuple[Array, ...], steps: int, *, ended_well: bool, failed: bool
+    ) -> tuple[Mode | None, tuple[str, ...]]:
+        """The mode that run i resolves worst, and notes on its steps.
 
         Args:
             i: Number of the run.
-            states: Its samples and its last state: t (n), q, v, u.
+            states: Samples of the run and its last state: t (n), q, v, u.
             steps: Number of steps.
+            ended_well: Whether the run came to its end.
+            failed: Whether it diverged.
         """
-        if self.settings.adaptive:
-            return None
-        stepper, start = self._stepper(i), (_row(self.initial.q, i), _row(self.initial.v, i))
-        mode = unresolved_mode(stepper, self.settings, start, states, steps)
-        return (mode, step_size_note(mode, stepper, self.settings, states)) if mode else None
+        start = _row(self.initial.q, i), _row(self.initial.v, i)
+        how = {"ended_well": ended_well, "failed": failed}
+        return examine_run(self._stepper(i), self.settings, start, states, steps, **how)
 
     def input_fault(self, i: int, t: float, q: Array, v: Array) -> str:
         """The input of run i that is not finite about its last state, in words; "" where there is none."""

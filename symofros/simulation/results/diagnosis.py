@@ -13,9 +13,10 @@ from symofros.runtime.beams import bending_notes, largest_bending
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.analysis.postures import nearest_to_singular
 from symofros.simulation.results.constraint_faults import jump, lost_energy, violation
+from symofros.simulation.results.energy_balance import EXPLODED
 from symofros.simulation.results.input_faults import input_failure, input_fault
 from symofros.simulation.results.outcome import Kind, Outcome
-from symofros.simulation.results.step_size import EXPLODED, energy_note, remedy, step_size_note, unresolved_mode
+from symofros.simulation.results.step_size import examine_run, remedy
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.loops import Recorded
 from symofros.simulation.stepping.status import Status
@@ -34,20 +35,21 @@ def diagnose(
     Args:
         stepper: Stepper at its last state.
         recorded: Record of the run.
-        states: All that it recorded: t (n), q, v, u.
+        states: All that it recorded: t (n), q, v, u. Ends of steps serve instead where these are more.
         settings: Settings of the run.
         start: Initial q, v.
     """
     status, interrupted = recorded.status, recorded.interrupted
     t, q, v = stepper.state
+    if settings.every != 1 and not stepper.method.family.multistep:
+        kept = stepper.diagnostic_states()
+        states = kept if len(kept[0]) > 1 else states
     run, notes = stepper.run, _notes(stepper, states, status)
     fault = input_fault(stepper) if status < 0 else ""
     failed = status in (Status.DIVERGED, Status.BEYOND_THEORY) and not fault
-    mode = unresolved_mode(stepper, settings, start, states, _steps_meant(settings) if failed else int(run.steps))
-    if mode is not None:
-        notes = (*notes, step_size_note(mode, stepper, settings, () if failed else states))
-    if status >= 0 and (mode is None or not mode.amplified) and (changed := energy_note(stepper, settings, states)):
-        notes = (*notes, changed)
+    steps = _steps_meant(settings) if failed else int(run.steps)
+    mode, remarks = examine_run(stepper, settings, start, states, steps, ended_well=status >= 0, failed=failed)
+    notes = (*notes, *remarks)
 
     def outcome(kind: Kind, reason: str, advice: str = "") -> Outcome:
         return Outcome(kind, t, reason, advice, notes)

@@ -125,13 +125,11 @@ class Trajectories:
         t, notes = float(self.t_last[index]), bending_notes(bendings)
         if self.status[index] < 0:
             reason = self._input_fault(index) or reason
-        seen = self._step_size(index)
-        if seen is not None:
-            mode, note = seen
-            notes = (*notes, note)
-            if self.status[index] in _EXPLODED and mode.amplified:
-                reason, advice = f"the step is past the limit of stability of '{self.method}'", "see the note"
-                return Outcome("diverged", t, reason, advice, notes)
+        mode, remarks = self._step_size(index)
+        notes = (*notes, *remarks)
+        if self.status[index] in _EXPLODED and mode is not None and mode.amplified:
+            reason, advice = f"the step is past the limit of stability of '{self.method}'", "see the note"
+            return Outcome("diverged", t, reason, advice, notes)
         if self.status[index] == Status.BEYOND_THEORY:
             worst = largest_bending(bendings)
             assert worst is not None
@@ -146,10 +144,10 @@ class Trajectories:
         last = float(self.t_last[index]), self.q_last[index], self.v_last[index]
         return self.examination.input_fault(self._number(index), *last) if self.examination else ""
 
-    def _step_size(self, index: Index) -> tuple[Mode, str] | None:
-        """The mode that the steps of one run resolve worst, and the note on it."""
+    def _step_size(self, index: Index) -> tuple[Mode | None, tuple[str, ...]]:
+        """The mode that the steps of one run resolve worst, and notes on its steps."""
         if self.examination is None or not self.steps[index]:
-            return None
+            return None, ()
         reached = self._reached(index)
         t, q, v = self.t[reached], self.q[index][reached], self.v[index][reached]
         u = self.u[index][reached]
@@ -162,8 +160,9 @@ class Trajectories:
             u = np.vstack([u, u[-1:] if len(u) else np.zeros((1, u.shape[1]))])
         settings = self.examination.settings
         meant = max(1, round((settings.t_end - settings.t0) / settings.dt)) if settings.dt > 0.0 else 1
-        steps = meant if self.status[index] in _EXPLODED else int(self.steps[index])
-        return self.examination.step_size(self._number(index), (t, q, v, u), steps)
+        failed, ended_well = self.status[index] in _EXPLODED, bool(self.status[index] >= 0)
+        steps, states = meant if failed else int(self.steps[index]), (t, q, v, u)
+        return self.examination.step_size(self._number(index), states, steps, ended_well=ended_well, failed=failed)
 
     def _reached(self, index: Index) -> npt.NDArray[np.bool_]:
         """Which samples one run reached (m)."""
@@ -218,8 +217,8 @@ class Trajectories:
         good = np.argwhere(self.ok)
         for row in good[:: max(1, -(-len(good) // _EXAMINED))]:
             index = tuple(map(int, row))
-            seen = self._step_size(index)
-            if seen is not None:
-                lines.append(f"  steps, first seen in {list(index)}: {seen[1]}")
+            _, notes = self._step_size(index)
+            if notes:
+                lines.append(f"  steps, first seen in {list(index)}: {notes[0]}")
                 break
         return "\n".join(lines)

@@ -31,6 +31,19 @@ _LARGEST = 300.0
 
 
 @dataclass(frozen=True)
+class Resolution:
+    """How well fixed steps resolve the modes of a motion.
+
+    Attributes:
+        worst: Mode that is resolved worst, if the steps err by it.
+        evident: Whether the steps are that short that no mode of the states examined needed a look.
+    """
+
+    worst: Mode | None = None
+    evident: bool = True
+
+
+@dataclass(frozen=True)
 class Mode:
     """The mode of a motion that a run of fixed steps resolves worst.
 
@@ -60,10 +73,10 @@ def states_to_examine(steps: int, stages: int, nv: int) -> int:
     return int(min(max(_SHARE * steps * stages / each, 2), _STATES))
 
 
-def worst_mode(
+def resolution(
     stepper: Stepper, h: float, steps: int, states: Sequence[tuple[float, Array, Array]], speeds: Sequence[float]
-) -> Mode | None:
-    """The mode that a run resolves worst, if it errs beyond TOLERANCE.
+) -> Resolution:
+    """How well a run resolves the modes about some of its states; one is named where they err beyond TOLERANCE.
 
     Args:
         stepper: Stepper of the run, within `preserved`.
@@ -73,17 +86,19 @@ def worst_mode(
         speeds: Largest norm of the speeds in the motion about each state.
     """
     if max(speeds) == 0.0:  # Rest is kept exactly.
-        return None
+        return Resolution()
     method, part = stepper.method, max(1, steps // len(states))
-    total, worst = 0.0, None
+    total, worst, evident = 0.0, None, True
     for (t, q, v), speed in zip(states, speeds, strict=True):
         spectrum = stepper.spectrum(t, q, v, h, min(2 * stepper.model.nv, _DIRECTIONS))
         if spectrum is None:
+            evident = False
             continue
         basis, matrix, motion = spectrum
         resolved = _resolved_radius(method.name, part)
         if _radius(matrix) <= resolved:
             continue
+        evident = False
         modes = [(z, share) for z, share in _modes(basis, matrix, motion, h * speed) if abs(z) > resolved]
         judged = (_judged(method, z, share, h, part, t) for z, share in modes)
         here = max(judged, key=lambda mode: mode.error, default=None)
@@ -91,8 +106,8 @@ def worst_mode(
             total += here.error
             worst = here if worst is None or here.error > worst.error else worst
         if worst is not None and total > TOLERANCE:  # What follows may be no motion any more.
-            return replace(worst, error=total)
-    return None
+            return Resolution(replace(worst, error=total), evident)
+    return Resolution(None, evident)
 
 
 def _judged(method: Method, z: complex, share: float, h: float, steps: int, t: float) -> Mode:

@@ -25,6 +25,8 @@ from symofros.simulation.stepping.tableaus import Tableau
 
 # Events recorded between two calls that take them.
 _EVENT_ROWS = 64
+# Ends of steps kept for the diagnosis of a run.
+_DIAGNOSTIC_ROWS = 512
 _INPUT_CALLBACK = "int32_t(void *, double, const double *, const double *, double *)"
 
 
@@ -200,6 +202,9 @@ class Stepper:
         self._event_records = memory.table(run, "event_", run.event_capacity, t=1, q=model.nq, v=model.nv)
         self._event_index = np.zeros(run.event_capacity, dtype=np.int32)
         run.event_index = memory.shared(self._event_index)
+        run.diagnostic_capacity = _DIAGNOSTIC_ROWS
+        sizes = {"t": 1, "q": model.nq, "v": model.nv, "u": model.nu}
+        self._diagnostic_states = memory.table(run, "diagnostic_", _DIAGNOSTIC_ROWS, **sizes)
         return int(self.native.sym_run_start(run))
 
     def advance(self, steps: int) -> int:
@@ -215,6 +220,12 @@ class Stepper:
         n = int(self.run.n_records)
         self.run.n_records = 0
         t, q, v, u = (array[:n].copy() for array in self._records)
+        return [t[:, 0], q, v, u]
+
+    def diagnostic_states(self) -> list[Array]:
+        """Ends of steps, as many apart as they are thinned, and the last: t (n), q (n, nq), v (n, nv), u (n, nu)."""
+        n = int(self.run.n_diagnostic)
+        t, q, v, u = (array[:n] for array in self._diagnostic_states)
         return [t[:, 0], q, v, u]
 
     def take_events(self) -> list[tuple[int, float, Array, Array]]:

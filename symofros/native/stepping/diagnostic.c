@@ -1,0 +1,41 @@
+/* Ends of steps kept for the diagnosis of a run, whatever it records: docs/theory/simulation.md, section 8. */
+
+/* Row <- the present state, with the inputs there. Those of a function of the caller's are the ones it gave last. */
+static void sym_store_diagnostic_state(sym_run *r, int64_t row) {
+    sym_system *s = r->system;
+    if (s->callback == NULL && (s->n_signals > 0 || s->law.function != NULL)) {
+        sym_load_state(r);
+        (void)sym_evaluate_inputs(s); /* fails by a callback only */
+    }
+    r->diagnostic_t[row] = r->t;
+    memcpy(r->diagnostic_q + row * s->nq, r->q, (size_t)s->nq * sizeof(double));
+    memcpy(r->diagnostic_v + row * s->nv, r->v, (size_t)s->nv * sizeof(double));
+    memcpy(r->diagnostic_u + row * s->nu, s->u, (size_t)s->nu * sizeof(double));
+}
+
+static void sym_move_row(double *table, int64_t to, int64_t from, int32_t width) {
+    memcpy(table + to * width, table + from * width, (size_t)width * sizeof(double));
+}
+
+/* Every other state stays, and half as many of the following steps are kept. */
+static void sym_thin_diagnostic_states(sym_run *r) {
+    const sym_system *s = r->system;
+    int64_t i;
+    r->n_diagnostic = (r->n_diagnostic + 1) / 2;
+    for (i = 1; i < r->n_diagnostic; ++i) {
+        sym_move_row(r->diagnostic_t, i, 2 * i, 1);
+        sym_move_row(r->diagnostic_q, i, 2 * i, s->nq);
+        sym_move_row(r->diagnostic_v, i, 2 * i, s->nv);
+        sym_move_row(r->diagnostic_u, i, 2 * i, s->nu);
+    }
+    r->diagnostic_stride *= 2;
+}
+
+/* Keep the present state, the end of step number r->steps, if it is one of those kept or the last one. */
+static void sym_keep_diagnostic_state(sym_run *r, int32_t last) {
+    if (r->diagnostic_capacity < 2) return;
+    if (r->steps % r->diagnostic_stride != 0 && !last) return;
+    if (r->n_diagnostic == r->diagnostic_capacity) sym_thin_diagnostic_states(r);
+    if (r->steps % r->diagnostic_stride != 0 && !last) return;
+    sym_store_diagnostic_state(r, r->n_diagnostic++);
+}

@@ -1,0 +1,85 @@
+"""Parts of a run, repeated with half the step or a record at each step (docs/theory/simulation.md, section 8)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from symofros.errors import SymofrosError
+from symofros.runtime.calls.kernel import Array
+from symofros.simulation.settings import Settings
+from symofros.simulation.stepping.loops import run_own
+from symofros.simulation.stepping.resolution import TOLERANCE
+from symofros.simulation.stepping.stepper import Stepper
+
+# Steps of a run that is repeated as a whole; a call takes as long as some hundred steps of a small model.
+_STEPS = 256
+
+
+def repeated(
+    stepper: Stepper, settings: Settings, start: tuple[float, Array, Array], t_end: float, dt: float, every: int = 1
+) -> tuple[int, list[Array]] | None:
+    """Status and states of a part of a run, made once more; None where a function of the user's gives the inputs.
+
+    Args:
+        stepper: Stepper of the run.
+        settings: Settings of the run.
+        start: First t, q, v.
+        t_end: End [s].
+        dt: Step [s]; of adaptive methods the first one, 0: found anew.
+        every: Number of steps between records.
+    """
+    if stepper.inputs.callback is not None or stepper.method.family.multistep:
+        return None
+    t, q, v = start
+    part = replace(settings, t0=t, t_end=t_end, dt=dt, every=every, grid=np.zeros(0), max_steps=None, realtime=0.0)
+    again = Stepper(stepper.model, stepper.method, stepper.inputs, (), stepper.par)
+    part.apply(again)
+    recorded = run_own(again, q, v, part, lambda _: None)
+    return recorded.status, recorded.arrays()
+
+
+def halved_step_note(
+    stepper: Stepper, settings: Settings, start: tuple[Array, Array], states: Sequence[Array], steps: int
+) -> str:
+    """What half the step makes of a short run with fixed steps (17), in words; nothing where it is nearly the same.
+
+    Args:
+        stepper: Stepper of the run.
+        settings: Settings of the run.
+        start: Initial q, v.
+        states: States of the run: t (n), q, v, u; compared are all where these are its steps, else the last ones.
+        steps: Number of steps.
+    """
+    if settings.adaptive or not 1 <= steps <= _STEPS or not stepper.model.nv:
+        return ""
+    t, v = states[0], states[2]
+    again = repeated(stepper, settings, (settings.t0, *start), float(t[-1]), 0.5 * settings.dt, every=2)
+    if again is None:
+        return ""
+    status, (_, q_half, v_half, u_half) = again
+    h = settings.dt
+    if status < 0:
+        return (
+            f"steps of {h:.4g} s do not show the motion: with half of that it does not come to this end; a smaller dt"
+        )
+    if len(v_half) != len(v):
+        v, q_half, v_half, u_half = v[-1:], q_half[-1:], v_half[-1:], u_half[-1:]
+    with np.errstate(all="ignore"):
+        change = float(_sizes(stepper, q_half, u_half, v - v_half).max())
+        largest = float(_sizes(stepper, q_half, u_half, v_half).max())
+    if not change > TOLERANCE * largest:
+        return ""
+    share = f"{100.0 * change / largest:.2g} % of the largest speed" if change < largest else "more than all of them"
+    return f"steps of {h:.4g} s do not determine the motion: half of that changes speeds by {share}; a smaller dt"
+
+
+def _sizes(stepper: Stepper, q: Array, u: Array, v: Array) -> Array:
+    """Size of speeds (n) in the norm of the kinetic energy; of all alike where the model has no mass matrix."""
+    try:
+        M = stepper.model.mass_matrix(q, u=u, par=stepper.par)
+    except SymofrosError:  # Options.functions left it out.
+        return np.asarray(np.linalg.norm(v, axis=1))
+    return np.asarray(np.sqrt(np.maximum(np.einsum("ni,nij,nj->n", v, M, v), 0.0)))

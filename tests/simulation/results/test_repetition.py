@@ -1,0 +1,81 @@
+"""Short runs are repeated with half the step; of sparse records the intervals in which energy changes."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+import scipy.linalg
+
+import symofros as sf
+
+
+@cache
+def two_masses() -> sf.Model:
+    """Two masses in a row on springs and dampers; all of them are parameters."""
+    names = ("m1", "m2", "k1", "k2", "c1", "c2")
+
+    def mass(i: int, *parent: str) -> sf.RigidBody:
+        elements = (sf.Spring(sf.formula(f"k{i}")), sf.Damper(sf.formula(f"c{i}")))
+        joint = sf.Joint(f"x{i}", "prismatic", *parent, axis=(1, 0, 0), elements=elements)
+        return sf.RigidBody(f"mass{i}", joint, sf.Inertia(sf.formula(f"m{i}")))
+
+    parameters = tuple(sf.Parameter(name, 1.0) for name in names)
+    return sf.compile(sf.System("two_masses", (mass(1), mass(2, "mass1")), parameters, gravity=(0, 0, 0)))
+
+
+def exact_state(par: tuple[float, ...], q: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
+    """State after t from rest, and the matrix of twice its energy."""
+    m1, m2, k1, k2, c1, c2 = par
+    M, K, C = np.array([[m1 + m2, m2], [m2, m2]]), np.diag([k1, k2]), np.diag([c1, c2])
+    A = np.block([[np.zeros((2, 2)), np.eye(2)], [-np.linalg.solve(M, K), -np.linalg.solve(M, C)]])
+    return scipy.linalg.expm(A * t) @ np.concatenate([q, np.zeros(2)]), scipy.linalg.block_diag(K, M)
+
+
+@pytest.mark.parametrize("method", ["generalized_alpha", "rodas4", "semi_implicit_euler", "rk4"])
+def test_short_runs_that_err_by_a_third_bear_a_note(method: str) -> None:
+    """Whatever the ratio of masses, the stiffness, the damping and the step."""
+    rng, wrong = np.random.default_rng(0), 0
+    for _ in range(60):
+        mass, stiffness, damping, h = 10.0 ** rng.integers([-4, -4, -2, -2], [5, 5, 3, 1])
+        par = (1.0, mass, 1.0, stiffness, damping, damping * np.sqrt(mass * stiffness))
+        steps, q = int(rng.integers(3, 80)), rng.uniform(-1.0, 1.0, 2)
+        run = sf.simulate(two_masses(), q, t_end=steps * h, method=method, dt=h, adaptive=False, par=par)
+        end, energy = exact_state(par, q, steps * h)
+        if not run.outcome.ok:
+            continue
+        error = np.concatenate([run.q[-1], run.v[-1]]) - end
+        with np.errstate(over="ignore", invalid="ignore"):  # Of an explosion.
+            wrong_state = not error @ energy @ error <= 0.1 * (q @ energy[:2, :2] @ q)
+        if wrong_state:
+            wrong += 1
+            assert run.outcome.notes, (par, h, steps)
+    assert wrong
+
+
+def test_energy_is_judged_whatever_is_recorded() -> None:
+    """Implicit Euler damps an oscillator that has no damper."""
+    par, stepping = (1.0, 1.0, 10.0, 10.0, 0.0, 0.0), {"method": "implicit_euler", "dt": 0.01}
+    for output in (None, 20.0, [0.0, 13.0, 40.0]):
+        run = sf.simulate(two_masses(), [1.0, 0.0], t_end=40.0, par=par, output=output, **stepping)
+        assert any("energy changes" in note for note in run.outcome.notes), output
+
+
+def test_a_contact_between_two_records_takes_energy_without_a_note() -> None:
+    stop = sf.Stop(1e4, damping=40.0, lower=0.0)
+    ball = sf.RigidBody("ball", sf.Joint("z", "prismatic", axis=(0, 0, 1), elements=(stop,)), sf.Inertia(1.0))
+    model = sf.compile(sf.System("ball", [ball]))
+    run = sf.simulate(model, [1.0], t_end=1.2, method="rk4", dt=1e-4, output=[0.0, 0.4, 0.8, 1.2])
+    assert run.energy[-1] < 0.9 * run.energy[0] and not run.outcome.notes
+    many = sf.simulate_batch(model, [[1.0], [1.1]], t_end=1.2, method="rk4", dt=1e-4, output=[0.0, 0.4, 0.8, 1.2])
+    assert not many.outcome(0).notes and not many.outcome(1).notes
+
+
+def test_batches_say_which_energy_no_force_takes() -> None:
+    par = (1.0, 1.0, 10.0, 10.0, 0.0, 0.0)
+    many = sf.simulate_batch(
+        two_masses(), [[1.0, 0.0], [0.0, 0.1]], t_end=40.0, method="semi_implicit_euler", dt=0.1, par=par, output=4.0
+    )
+    alone = sf.simulate(two_masses(), [1.0, 0.0], t_end=40.0, method="semi_implicit_euler", dt=0.1, par=par, output=4.0)
+    assert bool(many.outcome(0).notes) == bool(alone.outcome.notes) is True
