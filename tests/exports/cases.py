@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import atexit
+import hashlib
 import shutil
 import subprocess
 import tempfile
@@ -26,6 +28,8 @@ MODELS = tuple(STARTS)
 # In every run beams with inputs and a loop; an arm of nine joints, which compiles as long as both, with --slow.
 SAMPLED = sampled(MODELS, ("planar_robot", "four_bar"))
 STRICT = ("-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror")
+# Without the second half of the optimiser's time; what an export compiles by itself has `compiling.FLAGS`.
+BUILD = (*STRICT, "-O1")
 
 
 def system_of(name: str) -> sf.System:
@@ -90,6 +94,36 @@ def run(*command: str | Path, cwd: Path) -> str:
     done = subprocess.run([str(word) for word in command], cwd=cwd, capture_output=True, text=True)
     assert done.returncode == 0, f"{' '.join(map(str, command))}\n{done.stdout[-2000:]}\n{done.stderr[-4000:]}"
     return done.stdout
+
+
+@cache
+def _objects() -> Path:
+    folder = Path(tempfile.mkdtemp(prefix="symofros-objects-"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return folder
+
+
+def build(folder: Path, program: str, *files: str, include: Path | None = None) -> Path:
+    """A program of C sources in a folder, strictly compiled; those that other tests have compiled are not again.
+
+    Args:
+        folder: Where sources and headers lie.
+        program: Path of the program, from there.
+        files: Names of the sources; all by default.
+        include: Folder of further headers.
+    """
+    headers = [*folder.glob("*.h"), *(include.glob("*.h") if include else ())]
+    objects = []
+    for name in files or sources(folder):
+        # Sources that come with every export know no header of a model.
+        seen = [header for header in headers if header.name.startswith("symofros_") or not name.startswith("symofros_")]
+        text = b"\0".join(path.read_bytes() for path in (folder / name, *sorted(seen)))
+        kept = _objects() / f"{hashlib.sha256(text).hexdigest()}.o"
+        if not kept.exists():
+            run("gcc", *BUILD, "-I.", *([f"-I{include}"] if include else []), "-c", name, "-o", kept, cwd=folder)
+        objects.append(kept)
+    run("gcc", *objects, "-lm", "-o", program, cwd=folder)
+    return folder / program
 
 
 def sources(folder: Path) -> list[str]:

@@ -11,12 +11,11 @@ import pytest
 
 import symofros as sf
 from symofros import blocks
-from symofros.runtime.build.toolchain import find_toolchain
 from tests.diagrams.parts import After, Ball, Counter, Hold, Lag, Number, Spoken, Wave, arm
 from tests.diagrams.run.test_runs import First, Given
+from tests.exports.cases import build
 
 MODELS = Path(__file__).parents[2] / "reference_models"
-STRICT = ("-std=c99", "-O1", "-Wall", "-Wextra", "-Wpedantic", "-Werror")
 
 
 def pendulum() -> sf.Diagram:
@@ -93,24 +92,13 @@ CASES: dict[str, tuple[Any, list[str]]] = {
 }
 
 
-def built(folder: Path) -> Path:
-    """The program of an exported folder."""
-    toolchain = find_toolchain(None)
-    assert toolchain is not None
-    sources = [str(path) for path in sorted(folder.glob("*.c"))]
-    command = [*toolchain.command, *STRICT, *sources, "-o", str(folder / "program"), "-lm"]
-    done = subprocess.run(command, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    return folder / "program"
-
-
 @pytest.mark.parametrize("case", CASES)
 def test_the_program_tells_what_python_tells(case: str, tmp_path: Path) -> None:
     make, outputs = CASES[case]
     diagram = make()
     exported = sf.export(diagram, "c", tmp_path / "c", outputs=outputs)
     assert exported.target == "c"
-    program = built(exported.folder)
+    program = build(exported.folder, "program")
     check = subprocess.run([program, "--check"], capture_output=True, text=True)
     assert check.returncode == 0, check.stdout
     done = subprocess.run([program, "1.1", "0.05"], capture_output=True, text=True)
@@ -135,7 +123,7 @@ def test_the_check_of_a_program_can_fail(tmp_path: Path) -> None:
     text = instants.read_text()
     assert "50.0" in text
     instants.write_text(text.replace("50.0", "51.0", 1))
-    assert subprocess.run([built(exported.folder), "--check"], capture_output=True).returncode == 1
+    assert subprocess.run([build(exported.folder, "program"), "--check"], capture_output=True).returncode == 1
 
 
 def test_what_is_no_program() -> None:
@@ -155,9 +143,5 @@ def test_names_that_c_does_not_take(tmp_path: Path) -> None:
     diagram = sf.Diagram("for")
     diagram.add(Number(name="while", value=1.0))
     diagram.add(Lag(name="double"), x="while")
-    assert (
-        subprocess.run(
-            [built(sf.export(diagram, "c", tmp_path / "c", outputs=["double"]).folder), "--check"], capture_output=True
-        ).returncode
-        == 0
-    )
+    exported = sf.export(diagram, "c", tmp_path / "c", outputs=["double"])
+    assert subprocess.run([build(exported.folder, "program"), "--check"], capture_output=True).returncode == 0

@@ -15,7 +15,7 @@ from functools import cache
 from types import NoneType, UnionType
 from typing import Any, ClassVar, Literal, Self, Union, get_args, get_origin, get_type_hints
 
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
 from symofros.description.values import IDENTITY, Rotation, Value
 from symofros.description.yaml.fields import (
@@ -78,6 +78,9 @@ def _default(value: Any) -> Any:
 
 class NounEntry(PartEntry):
     """An entry that becomes a dataclass of the description."""
+
+    # Descriptions come from the dataclass: pydantic need not read this file's text for them.
+    model_config = ConfigDict(use_attribute_docstrings=False)
 
     noun: ClassVar[Any]
     checked: ClassVar[bool] = False

@@ -22,7 +22,8 @@ MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 class Entry(BaseModel):
     """A mapping of the file. Strict: no unknown keys, and a text is not taken for a number."""
 
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, use_attribute_docstrings=True)
+    # Validators are built when a file is first read, each once: not with every class that contains another.
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, use_attribute_docstrings=True, defer_build=True)
 
 
 class PartEntry(Entry, ABC):

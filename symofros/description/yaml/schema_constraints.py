@@ -63,6 +63,8 @@ class ClosureEntry(Entry):
 class _AtAnchor(NounEntry):
     """A condition of one frame, whose body and frame stand beside its other entries."""
 
+    model_config = ConfigDict(use_attribute_docstrings=True)
+
     body: Name
     frame: Name | None = None
     """The body frame if not given."""

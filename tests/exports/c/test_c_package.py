@@ -17,6 +17,7 @@ from tests.exports.cases import (
     STARTS,
     STEP,
     STRICT,
+    build,
     need,
     relative,
     run,
@@ -54,7 +55,7 @@ def check(name: str, text: str, t_end: float = 0.2) -> None:
 
 def test_strict_c_moves_as_python_does(package: tuple[str, Path]) -> None:
     name, folder = package
-    run("gcc", *STRICT, "-O1", "-o", "../example", *sources(folder), "-lm", cwd=folder)
+    build(folder, "../example")
     check(name, run("../example", "0.2", str(STEP[name]), "--fast", cwd=folder))
 
 
@@ -65,7 +66,7 @@ def four_bar(tmp_path: Path) -> Path:
 
 
 def test_the_pace_is_kept(four_bar: Path) -> None:
-    run("gcc", *STRICT, "-O2", "-o", "example", *sources(four_bar), "-lm", cwd=four_bar)
+    build(four_bar, "example")
     began = time.perf_counter()
     text = run("./example", "0.2", "0.01", cwd=four_bar)
     assert time.perf_counter() - began >= 0.2
@@ -77,7 +78,7 @@ def test_a_wrong_selftest_fails(four_bar: Path) -> None:
     text = (four_bar / "four_bar.c").read_text()
     at = text.index(" - ", text.index("static void four_bar_bias"))
     (four_bar / "four_bar.c").write_text(text[:at] + " + " + text[at + 3 :])
-    run("gcc", "-std=c99", "-O1", "-o", "example", *sources(four_bar), "-lm", cwd=four_bar)
+    build(four_bar, "example")
     done = subprocess.run(["./example", "0", "--fast"], cwd=four_bar, capture_output=True, text=True)
     assert done.returncode == 1
     assert last_state(done.stdout)["selftest"][0] > 1e-3
@@ -86,7 +87,7 @@ def test_a_wrong_selftest_fails(four_bar: Path) -> None:
 def test_nothing_is_written_to_between_calls(four_bar: Path) -> None:
     """No globals: neither data nor zeroed memory in any part but the example."""
     for source in sources(four_bar):
-        run("gcc", "-std=c99", "-O2", "-c", source, "-o", f"{source}.o", cwd=four_bar)
+        run("gcc", "-std=c99", "-O0", "-c", source, "-o", f"{source}.o", cwd=four_bar)
         lines = [line.split() for line in run("size", "-A", f"{source}.o", cwd=four_bar).splitlines()]
         # .data.rel.ro holds pointers that the loader fills in and then protects.
         written = {words[0]: int(words[1]) for words in lines if words and words[0] in (".data", ".bss")}
@@ -158,7 +159,7 @@ DRIVEN = sf.RigidBody("b", sf.Joint("j", "revolute", prescribed=True), sf.Inerti
 )
 def test_models_without_inputs_or_states(tmp_path: Path, name: str, body: sf.RigidBody) -> None:
     sf.export(sf.System(name, (body,)), "c", tmp_path)
-    flags = (*STRICT, "-O1", "-g", *sanitizers("gcc", "undefined,address"))
+    flags = (*STRICT, "-O0", "-g", *sanitizers("gcc", "undefined,address"))
     run("gcc", *flags, "-o", "example", *sources(tmp_path), "-lm", cwd=tmp_path)
     assert "selftest" in run("./example", "0.01", "--fast", cwd=tmp_path)
 
@@ -167,6 +168,6 @@ def test_models_without_inputs_or_states(tmp_path: Path, name: str, body: sf.Rig
 def test_other_methods(tmp_path: Path, method: str) -> None:
     """The four-bar, by every kind of loop; adaptive ones within their bound."""
     sf.export(system_of("four_bar"), "c", tmp_path, start=STARTS["four_bar"], method=method, frames=[])
-    run("gcc", *STRICT, "-O1", "-o", "example", *sources(tmp_path), "-lm", cwd=tmp_path)
+    build(tmp_path, "example")
     found = last_state(run("./example", "0.2", "0.001", "--fast", cwd=tmp_path))
     assert relative(found["q"], trajectory("four_bar", 0.2).q[-1]) < (1e-2 if "euler" in method else 1e-5)

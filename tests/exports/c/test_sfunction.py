@@ -8,11 +8,15 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from tests.exports.cases import MODELS, STARTS, STEP, STRICT, first_state, relative, run, system_of, trajectory
+from tests.exports.cases import MODELS, STARTS, STEP, build, first_state, relative, run, system_of, trajectory
 from tests.models import sampled
 
 HEADERS = Path(__file__).parent / "simulink"
 SAME = 1e-12
+
+
+def compiled(folder: Path, name: str) -> None:
+    build(folder, "../block", "symoSFunction.c", f"{name}.c", f"{name}_plant.c", "symofros_stepper.c", include=HEADERS)
 
 
 @pytest.fixture(scope="module", params=sampled(MODELS, ("four_bar",)))
@@ -20,21 +24,7 @@ def block(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     name = request.param
     folder = tmp_path_factory.mktemp("block") / name
     sf.export(system_of(name), "sfunction", folder, start=STARTS[name])
-    run(
-        "gcc",
-        *STRICT,
-        "-O1",
-        f"-I{HEADERS}",
-        "-I.",
-        "-o",
-        "../block",
-        "symoSFunction.c",
-        f"{name}.c",
-        f"{name}_plant.c",
-        "symofros_stepper.c",
-        "-lm",
-        cwd=folder,
-    )
+    compiled(folder, name)
     return name, folder.parent
 
 
@@ -82,30 +72,16 @@ def test_functions(block: tuple[str, Path]) -> None:
 def test_parameters_of_the_model(tmp_path: Path) -> None:
     """In their order, for every function; none are the defaults."""
     system = system_of("four_bar")
-    folder = tmp_path / "block"
+    folder = tmp_path / "four_bar"
     sf.export(system, "sfunction", folder, start=STARTS["four_bar"])
-    run(
-        "gcc",
-        *STRICT,
-        "-O1",
-        f"-I{HEADERS}",
-        "-I.",
-        "-o",
-        "../run",
-        "symoSFunction.c",
-        "four_bar.c",
-        "four_bar_plant.c",
-        "symofros_stepper.c",
-        "-lm",
-        cwd=folder,
-    )
+    compiled(folder, "four_bar")
     model = sf.compile(system)
     q, v = first_state(model, "four_bar")
     words = [repr(float(x)) for x in (*q, *v)]
 
     def energies(*parameters: float) -> list[float]:
         stated = f"BLOCK_PARAMETERS={' '.join(map(repr, parameters))}"
-        found = ports(run("env", stated, "./run", "four_bar", "energy", "0", "1", *words, cwd=tmp_path))
+        found = ports(run("env", stated, "./block", "four_bar", "energy", "0", "1", *words, cwd=tmp_path))
         return [float(port[0]) for port in found]
 
     other = {name: 1.5 * value + 0.1 * i for i, (name, value) in enumerate(model.parameters.items())}
