@@ -10,16 +10,18 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from decimal import Decimal
 from typing import Any
 
 import numpy as np
 
 from validation.engines.arithmetic import (
-    CONTEXT,
+    cos_sin,
     Exact,
     exact,
     eye,
     quaternion_rotation,
+    root,
     rotation,
     unit,
     zeros,
@@ -52,12 +54,8 @@ class Chart:
     sample: Callable[[Joint, Draw], Array]
 
 
-def _angle(q: Any) -> tuple[Any, Any]:
-    return CONTEXT.cos(q), CONTEXT.sin(q)
-
-
 def _turn(axis: Exact, q: Any) -> Exact:
-    return rotation(axis, *_angle(q))
+    return rotation(axis, *cos_sin(q))
 
 
 def _same(joint: Joint, q: Exact) -> Exact:
@@ -69,7 +67,7 @@ def _revolute(joint: Joint, q: Exact) -> Pose:
 
 
 def _cos_sin(joint: Joint, q: Exact) -> Pose:
-    norm = CONTEXT.sqrt(q @ q)
+    norm = root(q @ q)
     return rotation(unit(joint.axis), q[0] / norm, q[1] / norm), zeros(3)
 
 
@@ -163,7 +161,7 @@ def _free_world_rates_angular_first(joint: Joint, q: Exact) -> Exact:
 
 def _planar_pose(joint: Joint, q: Exact) -> Pose:
     R, _ = _cos_sin(Joint("revolute"), q[2:])
-    return R, np.array([q[0], q[1], CONTEXT.mpf(0)], dtype=object)
+    return R, np.array([q[0], q[1], Decimal(0)], dtype=object)
 
 
 def _cos_sin_rates(joint: Joint, q: Exact) -> Exact:
@@ -172,7 +170,7 @@ def _cos_sin_rates(joint: Joint, q: Exact) -> Exact:
 
 def _planar_rates(joint: Joint, q: Exact) -> Exact:
     c, s = q[2], q[3]
-    zero = CONTEXT.mpf(0)
+    zero = Decimal(0)
     return np.array([[c, -s, zero], [s, c, zero], [zero, zero, -s], [zero, zero, c]], dtype=object)
 
 

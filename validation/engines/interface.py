@@ -213,6 +213,7 @@ class EnginePlugin(Protocol):
             named after a colon: "inverse_dynamics:mj_rne".
         gravity: The one acceleration of gravity (3) that it knows; () where a tree may state any.
         formats: Formats of files that its own parser reads, of "urdf", "mjcf", "sdf".
+        slacks: Functions that it documents as approximate -> error to grant, as part of the largest entry.
     """
 
     @property
@@ -231,6 +232,8 @@ class EnginePlugin(Protocol):
     def gravity(self) -> tuple[float, ...]: ...  # noqa: D102
     @property
     def formats(self) -> tuple[str, ...]: ...  # noqa: D102
+    @property
+    def slacks(self) -> Mapping[str, float]: ...  # noqa: D102
 
     def version(self) -> str:
         """Version of the engine; "" where it is not installed."""

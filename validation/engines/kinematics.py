@@ -11,6 +11,9 @@ from validation.engines.charts import CHARTS, Pose
 from validation.engines.interface import EngineModel, Joint, Link, Slot, Tree
 
 
+_REMEMBERED = 1000
+
+
 class Kinematics:
     """Kinematics of a tree in an engine's coordinates and speeds.
 
@@ -22,6 +25,10 @@ class Kinematics:
     def __init__(self, tree: Tree, model: EngineModel) -> None:
         self.tree, self.slots = tree, model.slots
         self.nq, self.nv = model.nq, model.nv
+        self._placements = [[(exact(joint.R), exact(joint.p)) for joint in link.joints] for link in tree.links]
+        # Differences ask for the same joint at the same coordinates again and again.
+        self._frames: dict[tuple[object, ...], list[tuple[Exact, Exact, Exact]]] = {}
+        self._motions: dict[tuple[object, ...], tuple[Exact, Exact, list[tuple[Exact, Exact]]]] = {}
 
     def joints(self, index: int) -> Iterator[tuple[Joint, Slot | None]]:
         """Joints of a link with their slots; those of kind "fixed" have none."""
@@ -60,40 +67,52 @@ class Kinematics:
         return np.array([J for _, _, J in self._links(q)], dtype=object)
 
     def _links(self, q: Exact, with_jacobians: bool = True) -> list[tuple[Exact, Exact, Exact]]:
+        """R, p and Jacobian of each link; what depends on them must not be changed in place."""
+        key = (tuple(q), with_jacobians)
+        if key not in self._frames:
+            if len(self._frames) >= _REMEMBERED:
+                self._frames.clear()
+            self._frames[key] = self._walk(q, with_jacobians)
+        return self._frames[key]
+
+    def _walk(self, q: Exact, with_jacobians: bool) -> list[tuple[Exact, Exact, Exact]]:
         frames: list[tuple[Exact, Exact, Exact]] = []
         for index, link in enumerate(self.tree.links):
-            start = (eye(3), zeros(3), zeros(6, self.nv))
+            start = (eye(3), zeros(3), zeros(6, self.nv if with_jacobians else 0))
             R, p, J = frames[link.parent] if link.parent >= 0 else start
-            for joint, slot in self.joints(index):
-                R, p, J = _moved(R, p, J, exact(joint.R), exact(joint.p))
+            for number, (joint, slot) in enumerate(self.joints(index)):
+                R, p, J = _moved(R, p, J, *self._placements[index][number])
                 if slot is not None:
-                    R_step, p_step = self._pose(joint, slot, q)
+                    R_step, p_step, columns = self._motion(joint, slot, q)
                     R_before = R
                     R, p, J = _moved(R, p, J, R_step, p_step)
                     if with_jacobians:
-                        self._add_columns(J, joint, slot, q, R_before, R_step)
+                        for place, (linear, spin) in zip(slot.v, columns, strict=True):
+                            J[:3, place] = J[:3, place] + R_before @ linear
+                            J[3:, place] = J[3:, place] + R_before @ spin
             frames.append((R, p, J))
         return frames
 
-    def _pose(self, joint: Joint, slot: Slot, q: Exact) -> Pose:
-        return CHARTS[slot.chart].pose(joint, _own(joint, q[list(slot.q)]))
-
-    def _add_columns(self, J: Exact, joint: Joint, slot: Slot, q: Exact, R_before: Exact, R_step: Exact) -> None:
+    def _motion(self, joint: Joint, slot: Slot, q: Exact) -> tuple[Exact, Exact, list[tuple[Exact, Exact]]]:
+        """Placement after a joint, in the frame before it, and its rates by each speed: linear, angular."""
         own = _own(joint, q[list(slot.q)])
-        chart = CHARTS[slot.chart]
-        N = chart.rates(joint, own)
+        key = (id(joint), tuple(own))
+        if key not in self._motions:
+            if len(self._motions) >= _REMEMBERED:
+                self._motions.clear()
+            chart = CHARTS[slot.chart]
+            N = chart.rates(joint, own)
+            ratio = exact(joint.ratio)[()] if joint.mimics else 1
 
-        def flat(coordinates: Exact) -> Exact:
-            R, p = chart.pose(joint, coordinates)
-            return np.concatenate([p, R.reshape(9)])
+            def flat(coordinates: Exact) -> Exact:
+                R, p = chart.pose(joint, coordinates)
+                return np.concatenate([p, R.reshape(9)])
 
-        for k, place in enumerate(slot.v):
-            column = rate(flat, own, N[:, k])
-            if joint.mimics:
-                column = exact(joint.ratio) * column
-            spin = vee(column[3:].reshape(3, 3) @ R_step.T)
-            J[:3, place] = J[:3, place] + R_before @ column[:3]
-            J[3:, place] = J[3:, place] + R_before @ spin
+            R, p = chart.pose(joint, own)
+            rates = [ratio * rate(flat, own, N[:, k]) for k in range(chart.nv)]
+            columns = [(column[:3], vee(column[3:].reshape(3, 3) @ R.T)) for column in rates]
+            self._motions[key] = (R, p, columns)
+        return self._motions[key]
 
 
 def _own(joint: Joint, q: Exact) -> Exact:

@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from validation.engines.arithmetic import Exact, cross, exact, eye, rate, skew, solve, stack, zeros
-from validation.engines.charts import CHARTS
+from validation.engines.arithmetic import Exact, cross, exact, eye, many_digits, rate, solve, stack, zeros
+from validation.engines.charts import CHARTS, Pose
 from validation.engines.interface import Array, EngineModel, State, Tree
 from validation.engines.kinematics import Inertia, Kinematics
 
@@ -68,12 +68,14 @@ class Truth:
         turning = self.kinematics.along(self.kinematics.jacobians, q, v)
         return J, J @ v, J @ a + turning @ v
 
-    def forces(self, q: Exact, v: Exact, a: Exact, inertias: list[Inertia]) -> Exact:
-        """M a + h (nv) without armature, of links that have the given inertias."""
-        J, velocity, acceleration = self.motions(q, v, a)
+    def forces(self, motions: tuple[Exact, Exact, Exact], poses: list[Pose], inertias: list[Inertia | None]) -> Exact:
+        """M a + h (nv) without armature, of links that have the given inertias; None for none."""
+        J, velocity, acceleration = motions
         total = zeros(self.nv)
-        for k, (R, _) in enumerate(self.kinematics.poses(q)):
-            inertia = inertias[k].turned(R)
+        for k, stated in enumerate(inertias):
+            if stated is None:
+                continue
+            inertia = stated.turned(poses[k][0])
             w, alpha = velocity[k, 3:], acceleration[k, 3:]
             falling = acceleration[k, :3] - self.gravity_vector
             force = inertia.mass * falling + cross(alpha, inertia.first) + cross(w, cross(w, inertia.first))
@@ -84,7 +86,7 @@ class Truth:
 
     def ID(self, q: Exact, v: Exact, a: Exact) -> Exact:
         """M a + h (nv)."""
-        return self.forces(q, v, a, self.inertias) + self.armature * a
+        return self.forces(self.motions(q, v, a), self.kinematics.poses(q), list(self.inertias)) + self.armature * a
 
     def h(self, q: Exact, v: Exact) -> Exact:
         """Coriolis, centrifugal and gravity forces (nv)."""
@@ -113,24 +115,10 @@ class Truth:
             for inertia, (R, p) in zip(self.inertias, self.kinematics.poses(q), strict=True)
         )
 
-    def centre(self, q: Exact) -> Exact:
-        """The mass centre of all links (3)."""
-        poses = self.kinematics.poses(q)
-        first = sum(i.mass * p + R @ i.first for i, (R, p) in zip(self.inertias, poses, strict=True))
-        return first / sum(inertia.mass for inertia in self.inertias)
-
-    def centroidal(self, q: Exact) -> Exact:
-        """The map (6, nv) from speeds to momentum about the mass centre, along world axes: linear, then angular."""
-        centre, total = self.centre(q), zeros(6, self.nv)
-        jacobians = self.kinematics.jacobians(q)
-        for inertia, (R, p), J in zip(self.inertias, self.kinematics.poses(q), jacobians, strict=True):
-            momentum = inertia.turned(R).matrix() @ J
-            total = total + np.concatenate([momentum[:3], momentum[3:] + skew(p - centre) @ momentum[:3]])
-        return total
-
-    def centre_jacobian(self, q: Exact) -> Exact:
-        """The Jacobian of the mass centre (3, nv)."""
-        return self.centroidal(q)[:3] / sum(inertia.mass for inertia in self.inertias)
+    def value(self, function: Callable[[Truth, Point], Exact], point: Point) -> Exact:
+        """A function of the tree, in many digits."""
+        with many_digits():
+            return function(self, point)
 
     def along_speeds(self, function: Callable[[Exact], Exact], v: Exact) -> Exact:
         """Derivatives of a function by each speed, along a new last axis."""

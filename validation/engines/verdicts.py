@@ -59,17 +59,17 @@ class Expected:
     allowed: float
 
 
-def expected(function: str, tree: Tree, model: EngineModel, state: State) -> Expected:
-    """The truth, and how far roundings of the inputs move it."""
+def expected(function: str, tree: Tree, model: EngineModel, state: State, slack: float = 0.0) -> Expected:
+    """The truth, and how far roundings of the inputs move it; `slack` is what the engine documents to be off."""
     truth_of = FUNCTIONS[function.partition(":")[0]].truth
-    exact_value = truth_of(Truth(tree, model), Point.of(state))
+    exact_value = Truth(tree, model).value(truth_of, Point.of(state))
     value = digits(exact_value)
     moved = 0.0
     for seed in range(_PERTURBATIONS):
         draw = np.random.default_rng(seed)
-        other = truth_of(Truth(_perturbed_tree(tree, draw), model), Point.of(_perturbed_state(state, draw)))
+        other = Truth(_perturbed_tree(tree, draw), model).value(truth_of, Point.of(_perturbed_state(state, draw)))
         moved = max(moved, float(np.max(np.abs(digits(other - exact_value)), initial=0.0)))
-    return Expected(value, BACKWARD * moved + FORWARD * largest(value))
+    return Expected(value, BACKWARD * moved + max(FORWARD, slack) * largest(value))
 
 
 def largest(values: Array) -> float:

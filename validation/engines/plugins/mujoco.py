@@ -121,28 +121,90 @@ def write(tree: Tree) -> Source | Unsupported:
         f"m = mj.MjModel.from_xml_string('''{xml}''')",
         "d = mj.MjData(m)",
     ]
-    return Source(tuple(lines), slots, nq, nv)
+    names = [link.name for link in tree.links]
+    optional = {"bs": (f"bs = [m.body(name).id for name in {names!r}]",)}
+    return Source(tuple(lines), slots, nq, nv, optional)
 
 
-_SET = "d.qpos[:], d.qvel[:] = q, v\n"
+_Q = "d.qpos[:] = q\nmj.mj_forward(m, d)\n"
+_QV = "d.qpos[:], d.qvel[:] = q, v\nmj.mj_forward(m, d)\n"
+_QVA = f"{_QV}d.qacc[:] = a\n"
+_SQUARE = "value = np.zeros((m.nv, m.nv))\n"
+_TWISTS = "value = np.zeros((len(bs), 6))\nfor k, b in enumerate(bs):\n    "
+_JACOBIANS = "value = np.zeros((len(bs), 6, m.nv))\nfor k, b in enumerate(bs):\n    "
+_INVERSE_FD = f"{_QVA}{_SQUARE}mj.mjd_inverseFD(m, d, 1e-6, False, "
+_TRANSITION = (
+    "m.opt.timestep = 1.0\nm.opt.integrator = mj.mjtIntegrator.mjINT_EULER\n"
+    f"d.qfrc_applied[:] = tau\n{_QV}A = np.zeros((2 * m.nv, 2 * m.nv))\n"
+    "mj.mjd_transitionFD(m, d, 1e-6, True, A, None, None, None)\n"
+)
+# Differences with steps of 1e-6: one-sided ones are off by the step times the second derivative.
+_ONE_SIDED, _CENTRED = 1e-4, 1e-6
+
 WAYS = {
-    "mass_matrix": Way(
-        "mj_fullM", "d.qpos[:] = q\nmj.mj_forward(m, d)\nvalue = np.zeros((m.nv, m.nv))\nmj.mj_fullM(m, d, value)"
+    "mass_matrix": Way("mj_fullM", f"{_Q}{_SQUARE}mj.mj_fullM(m, d, value)"),
+    "mass_matrix:mj_mulM": Way(
+        "mj_mulM", f"{_Q}{_SQUARE}for row, unit in zip(value, np.eye(m.nv)):\n    mj.mj_mulM(m, d, row, unit)"
     ),
-    "bias": Way("qfrc_bias", f"{_SET}mj.mj_forward(m, d)\nvalue = d.qfrc_bias"),
-    "inverse_dynamics": Way("mj_inverse", f"{_SET}d.qacc[:] = a\nmj.mj_inverse(m, d)\nvalue = d.qfrc_inverse"),
-    "inverse_dynamics:mj_rne": Way(
-        "mj_rne",
-        f"{_SET}d.qacc[:] = a\nmj.mj_forward(m, d)\nd.qacc[:] = a\nvalue = np.zeros(m.nv)\nmj.mj_rne(m, d, 1, value)",
+    "mass_matrix:mjd_inverseFD": Way(
+        "mjd_inverseFD", f"{_INVERSE_FD}None, None, value, None, None, None, None)", _ONE_SIDED
     ),
-    "forward_dynamics": Way("mj_forward", f"{_SET}d.qfrc_applied[:] = tau\nmj.mj_forward(m, d)\nvalue = d.qacc"),
-    "kinetic_energy": Way("mj_energyVel", f"{_SET}mj.mj_forward(m, d)\nmj.mj_energyVel(m, d)\nvalue = d.energy[1]"),
-    "potential_energy": Way(
-        "mj_energyPos", "d.qpos[:] = q\nmj.mj_forward(m, d)\nmj.mj_energyPos(m, d)\nvalue = d.energy[0]"
+    "mass_matrix_inverse": Way("mj_solveM", f"{_Q}{_SQUARE}mj.mj_solveM(m, d, value, np.eye(m.nv))"),
+    "bias": Way("qfrc_bias", f"{_QV}value = d.qfrc_bias"),
+    "inverse_dynamics": Way("mj_inverse", f"{_QVA}mj.mj_inverse(m, d)\nvalue = d.qfrc_inverse"),
+    "inverse_dynamics:mj_rne": Way("mj_rne", f"{_QVA}value = np.zeros(m.nv)\nmj.mj_rne(m, d, 1, value)"),
+    "forward_dynamics": Way("mj_forward", f"d.qfrc_applied[:] = tau\n{_QV}value = d.qacc"),
+    "kinetic_energy": Way("mj_energyVel", f"{_QV}mj.mj_energyVel(m, d)\nvalue = d.energy[1]"),
+    "potential_energy": Way("mj_energyPos", f"{_Q}mj.mj_energyPos(m, d)\nvalue = d.energy[0]"),
+    "link_poses": Way("xpos, xmat", f"{_Q}value = np.hstack([d.xpos[bs], d.xmat[bs]])"),
+    "com": Way("subtree_com", f"{_Q}value = d.subtree_com[0]"),
+    "com_jacobian": Way("mj_jacSubtreeCom", f"{_Q}value = np.zeros((3, m.nv))\nmj.mj_jacSubtreeCom(m, d, value, 0)"),
+    "jacobian_aligned": Way("mj_jacBody", f"{_Q}{_JACOBIANS}mj.mj_jacBody(m, d, value[k, :3], value[k, 3:], b)"),
+    "jacobian_rate_aligned": Way(
+        "mj_jacDot", f"{_QV}{_JACOBIANS}mj.mj_jacDot(m, d, value[k, :3], value[k, 3:], d.xpos[b], b)"
     ),
-    "mass_matrix_inverse": Way(
-        "mj_solveM",
-        "d.qpos[:] = q\nmj.mj_forward(m, d)\nvalue = np.zeros((m.nv, m.nv))\nmj.mj_solveM(m, d, value, np.eye(m.nv))",
+    "velocity_aligned": Way(
+        "mj_objectVelocity",
+        f"{_QV}{_TWISTS}mj.mj_objectVelocity(m, d, mj.mjtObj.mjOBJ_XBODY, b, value[k], 0)\nvalue = np.roll(value, 3, axis=1)",
+    ),
+    "velocity_local": Way(
+        "mj_objectVelocity",
+        f"{_QV}{_TWISTS}mj.mj_objectVelocity(m, d, mj.mjtObj.mjOBJ_XBODY, b, value[k], 1)\nvalue = np.roll(value, 3, axis=1)",
+    ),
+    "classical_acceleration": Way(
+        "mj_objectAcceleration",
+        f"{_QVA}mj.mj_rnePostConstraint(m, d)\n"
+        f"{_TWISTS}mj.mj_objectAcceleration(m, d, mj.mjtObj.mjOBJ_XBODY, b, value[k], 0)\n"
+        "value = np.roll(value, 3, axis=1) + np.r_[m.opt.gravity, np.zeros(3)]",
+    ),
+    "centroidal_matrix": Way(
+        "mj_jacSubtreeCom, mj_angmomMat",
+        f"{_Q}J = np.zeros((3, m.nv))\nmj.mj_jacSubtreeCom(m, d, J, 0)\n"
+        "A = np.zeros((3, m.nv))\nmj.mj_angmomMat(m, d, A, 0)\nvalue = np.vstack([m.body_subtreemass[0] * J, A])",
+    ),
+    "centroidal_momentum": Way(
+        "mj_subtreeVel",
+        f"{_QV}mj.mj_subtreeVel(m, d)\n"
+        "value = np.r_[m.body_subtreemass[0] * d.subtree_linvel[0], d.subtree_angmom[0]]",
+    ),
+    "inverse_dynamics_dq": Way(
+        "mjd_inverseFD", f"{_INVERSE_FD}value, None, None, None, None, None, None)\nvalue = value.T", _ONE_SIDED
+    ),
+    "inverse_dynamics_dv": Way(
+        "mjd_inverseFD", f"{_INVERSE_FD}None, value, None, None, None, None, None)\nvalue = value.T", _ONE_SIDED
+    ),
+    "inverse_dynamics_dv:qDeriv": Way(
+        "mj_implicit",
+        "m.opt.integrator = mj.mjtIntegrator.mjINT_IMPLICIT\n"
+        f"{_QV}mj.mj_implicit(m, d)\n{_SQUARE}for i in range(m.nv):\n"
+        "    row = slice(m.D_rowadr[i], m.D_rowadr[i] + m.D_rownnz[i])\n    value[i, m.D_colind[row]] = -d.qDeriv[row]",
+    ),
+    "forward_dynamics_dq": Way("mjd_transitionFD", f"{_TRANSITION}value = A[m.nv:, :m.nv]", _CENTRED),
+    "forward_dynamics_dv": Way("mjd_transitionFD", f"{_TRANSITION}value = A[m.nv:, m.nv:] - np.eye(m.nv)", _CENTRED),
+    "integrate": Way("mj_integratePos", "value = q\nmj.mj_integratePos(m, value, v2, 1.0)"),
+    "difference": Way(
+        "mj_differentiatePos",
+        "q1, value = q.copy(), np.zeros(m.nv)\nmj.mj_integratePos(m, q1, v2, 1.0)\nmj.mj_differentiatePos(m, value, 1.0, q, q1)",
     ),
 }
 

@@ -64,6 +64,8 @@ def write(tree: Tree) -> Source | Unsupported:
     ids = {link.name: k for k, link in enumerate(tree.links)}
     nq = nv = 0
     armature: list[float] = []
+    frames: list[str] = []
+    joints: list[str] = []
     for k, link in enumerate(tree.links):
         parent, R0, p0 = places[link.parent] if link.parent >= 0 else ("0", np.eye(3), np.zeros(3))
         steps, (R_end, p_end) = series(link.joints)
@@ -102,23 +104,142 @@ def write(tree: Tree) -> Source | Unsupported:
         name, R, p = places[-1]
         inertia = f"pin.Inertia({link.mass!r}, {_array(link.com)}, {_array(link.inertia)})"
         lines.append(f"m.appendBodyToJoint({name}, {inertia}, {_placement(R, p)})")
-        lines.append(f"m.addFrame(pin.Frame('f{k}', {name}, 0, {_placement(R, p)}, pin.FrameType.OP_FRAME))")
+        frame = f"pin.Frame('f{k}', {name}, 0, {_placement(R, p)}, pin.FrameType.OP_FRAME)"
+        frames.append(f"fs.append(m.addFrame({frame}))")
+        joints.append(name if not np.any(p) and np.array_equal(R, np.eye(3)) else "")
     if any(armature):
         lines.append(f"m.armature = {_array(armature)}")
     lines.append("d = m.createData()")
-    return Source(tuple(lines), tuple(slots), nq, nv)
+    optional = {"fs": ("fs = []", *frames, "d = m.createData()")}
+    if all(joints) and len(set(joints)) == len(joints):
+        optional["js"] = (f"js = [{', '.join(joints)}]",)
+    return Source(tuple(lines), tuple(slots), nq, nv, optional)
 
+
+_FRAMES = {"local": "pin.LOCAL", "aligned": "pin.LOCAL_WORLD_ALIGNED", "world": "pin.WORLD"}
+_FK = "pin.forwardKinematics(m, d, q, v, a)\npin.updateFramePlacements(m, d)\n"
+_FK_D = "pin.computeForwardKinematicsDerivatives(m, d, q, v, a)\npin.updateFramePlacements(m, d)\n"
+_CENTROIDAL = "value = pin.computeCentroidalDynamicsDerivatives(m, d, q, v, a)"
 
 WAYS = {
     "mass_matrix": Way("crba", "value = pin.crba(m, d, q)"),
+    "mass_matrix:crba WORLD": Way("crba in WORLD", "value = pin.crba(m, d, q, pin.Convention.WORLD)"),
+    "mass_matrix:computeRNEADerivatives": Way(
+        "computeRNEADerivatives", "value = pin.computeRNEADerivatives(m, d, q, v, a)[2]"
+    ),
+    "mass_matrix:computeAllTerms": Way("computeAllTerms", "pin.computeAllTerms(m, d, q, v)\nvalue = d.M"),
+    "mass_matrix_inverse": Way("computeMinverse", "value = pin.computeMinverse(m, d, q)"),
+    "mass_matrix_inverse:computeABADerivatives": Way(
+        "computeABADerivatives", "value = pin.computeABADerivatives(m, d, q, v, tau)[2]"
+    ),
     "bias": Way("nonLinearEffects", "value = pin.nonLinearEffects(m, d, q, v)"),
     "gravity": Way("computeGeneralizedGravity", "value = pin.computeGeneralizedGravity(m, d, q)"),
+    "coriolis_forces": Way("computeCoriolisMatrix", "value = pin.computeCoriolisMatrix(m, d, q, v) @ v"),
+    "coriolis_symmetry": Way(
+        "computeCoriolisMatrix", "C = pin.computeCoriolisMatrix(m, d, q, v)\nvalue = C + C.T"
+    ),
     "inverse_dynamics": Way("rnea", "value = pin.rnea(m, d, q, v, a)"),
     "forward_dynamics": Way("aba", "value = pin.aba(m, d, q, v, tau)"),
+    "forward_dynamics:aba LOCAL": Way("aba in LOCAL", "value = pin.aba(m, d, q, v, tau, pin.Convention.LOCAL)"),
     "kinetic_energy": Way("computeKineticEnergy", "value = pin.computeKineticEnergy(m, d, q, v)"),
     "potential_energy": Way("computePotentialEnergy", "value = pin.computePotentialEnergy(m, d, q)"),
-    "mass_matrix_inverse": Way("computeMinverse", "value = pin.computeMinverse(m, d, q)"),
+    "link_poses": Way(
+        "framesForwardKinematics",
+        "pin.framesForwardKinematics(m, d, q)\n"
+        "value = np.array([np.r_[d.oMf[f].translation, d.oMf[f].rotation.ravel()] for f in fs])",
+    ),
+    "com": Way("centerOfMass", "value = pin.centerOfMass(m, d, q)"),
+    "com_jacobian": Way("jacobianCenterOfMass", "value = pin.jacobianCenterOfMass(m, d, q)"),
+    "com_velocity_dq": Way(
+        "getCenterOfMassVelocityDerivatives",
+        "pin.computeAllTerms(m, d, q, v)\nvalue = pin.getCenterOfMassVelocityDerivatives(m, d)",
+    ),
+    "classical_acceleration": Way(
+        "getFrameClassicalAcceleration",
+        f"{_FK}value = np.array([pin.getFrameClassicalAcceleration(m, d, f, pin.LOCAL_WORLD_ALIGNED).vector for f in fs])",
+    ),
+    "centroidal_matrix": Way("ccrba", "value = pin.ccrba(m, d, q, v)"),
+    "centroidal_matrix_rate": Way("dccrba", "value = pin.dccrba(m, d, q, v)"),
+    "centroidal_momentum": Way("computeCentroidalMomentum", "value = pin.computeCentroidalMomentum(m, d, q, v).vector"),
+    "centroidal_momentum_rate": Way(
+        "computeCentroidalMomentumTimeVariation",
+        "value = pin.computeCentroidalMomentumTimeVariation(m, d, q, v, a).vector",
+    ),
+    "centroidal_momentum_dq": Way("computeCentroidalDynamicsDerivatives", f"{_CENTROIDAL}[0]"),
+    "centroidal_momentum_rate_dq": Way("computeCentroidalDynamicsDerivatives", f"{_CENTROIDAL}[1]"),
+    "centroidal_momentum_rate_dv": Way("computeCentroidalDynamicsDerivatives", f"{_CENTROIDAL}[2]"),
+    "centroidal_matrix:computeCentroidalDynamicsDerivatives": Way(
+        "computeCentroidalDynamicsDerivatives", f"{_CENTROIDAL}[3]"
+    ),
+    "inverse_dynamics_dq": Way(
+        "computeRNEADerivatives", "value = pin.computeRNEADerivatives(m, d, q, v, a)[0]"
+    ),
+    "inverse_dynamics_dv": Way(
+        "computeRNEADerivatives", "value = pin.computeRNEADerivatives(m, d, q, v, a)[1]"
+    ),
+    "gravity_dq": Way(
+        "computeGeneralizedGravityDerivatives", "value = pin.computeGeneralizedGravityDerivatives(m, d, q)"
+    ),
+    "forward_dynamics_dq": Way(
+        "computeABADerivatives", "value = pin.computeABADerivatives(m, d, q, v, tau)[0]"
+    ),
+    "forward_dynamics_dv": Way(
+        "computeABADerivatives", "value = pin.computeABADerivatives(m, d, q, v, tau)[1]"
+    ),
+    "torque_regressor": Way(
+        "computeJointTorqueRegressor", "js\nvalue = pin.computeJointTorqueRegressor(m, d, q, v, a)"
+    ),
+    "kinetic_energy_regressor": Way(
+        "computeKineticEnergyRegressor", "js\nvalue = pin.computeKineticEnergyRegressor(m, d, q, v)"
+    ),
+    "potential_energy_regressor": Way(
+        "computePotentialEnergyRegressor", "js\nvalue = pin.computePotentialEnergyRegressor(m, d, q)"
+    ),
+    "integrate": Way("integrate", "value = pin.integrate(m, q, v2)"),
+    "interpolate": Way("interpolate", "value = pin.interpolate(m, q, pin.integrate(m, q, v2), 0.25)"),
+    "difference": Way("difference", "value = pin.difference(m, q, pin.integrate(m, q, v2))"),
+    "integrate_dq": Way("dIntegrate", "value = pin.dIntegrate(m, q, v2, pin.ARG0)"),
+    "integrate_dv": Way("dIntegrate", "value = pin.dIntegrate(m, q, v2, pin.ARG1)"),
+    "difference_dq": Way("dDifference", "value = pin.dDifference(m, q, pin.integrate(m, q, v2), pin.ARG0)"),
+    "difference_dq2": Way("dDifference", "value = pin.dDifference(m, q, pin.integrate(m, q, v2), pin.ARG1)"),
 }
+for _frame, _rf in _FRAMES.items():
+    WAYS |= {
+        f"jacobian_{_frame}": Way(
+            "getFrameJacobian",
+            "pin.computeJointJacobians(m, d, q)\npin.updateFramePlacements(m, d)\n"
+            f"value = np.array([pin.getFrameJacobian(m, d, f, {_rf}) for f in fs])",
+        ),
+        f"jacobian_rate_{_frame}": Way(
+            "getFrameJacobianTimeVariation",
+            "pin.computeJointJacobiansTimeVariation(m, d, q, v)\npin.updateFramePlacements(m, d)\n"
+            f"value = np.array([pin.getFrameJacobianTimeVariation(m, d, f, {_rf}) for f in fs])",
+        ),
+        f"jacobian_dq_{_frame}": Way(
+            "getJointKinematicHessian",
+            "pin.computeJointJacobians(m, d, q)\npin.computeJointKinematicHessians(m, d)\n"
+            f"value = np.array([pin.getJointKinematicHessian(m, d, j, {_rf}) for j in js])",
+        ),
+        f"velocity_{_frame}": Way(
+            "getFrameVelocity", f"{_FK}value = np.array([pin.getFrameVelocity(m, d, f, {_rf}).vector for f in fs])"
+        ),
+        f"acceleration_{_frame}": Way(
+            "getFrameAcceleration",
+            f"{_FK}value = np.array([pin.getFrameAcceleration(m, d, f, {_rf}).vector for f in fs])",
+        ),
+        f"velocity_dq_{_frame}": Way(
+            "getFrameVelocityDerivatives",
+            f"{_FK_D}value = np.array([pin.getFrameVelocityDerivatives(m, d, f, {_rf})[0] for f in fs])",
+        ),
+        f"acceleration_dq_{_frame}": Way(
+            "getFrameAccelerationDerivatives",
+            f"{_FK_D}value = np.array([pin.getFrameAccelerationDerivatives(m, d, f, {_rf})[1] for f in fs])",
+        ),
+        f"acceleration_dv_{_frame}": Way(
+            "getFrameAccelerationDerivatives",
+            f"{_FK_D}value = np.array([pin.getFrameAccelerationDerivatives(m, d, f, {_rf})[2] for f in fs])",
+        ),
+    }
 
 PLUGIN = SourcePlugin(
     name="pinocchio",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any, NamedTuple
 
@@ -11,6 +11,7 @@ import numpy as np
 
 from validation.engines.interface import Array, Difference, EngineModel, Slot, State, Tree, Unsupported
 
+OPTIONAL = {"js"}
 _INPUTS = ("q", "v", "a", "tau", "v2", "q2")
 
 
@@ -21,10 +22,12 @@ class Way(NamedTuple):
         native: Name that the engine gives it.
         code: Statements that leave the result in `value`; they may use what the source defines, and the parts of the
             state by their names (`interface.State`).
+        slack: Error that the engine documents, as part of the largest entry.
     """
 
     native: str
     code: str
+    slack: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -33,6 +36,8 @@ class Source:
 
     Attributes:
         lines: Statements, imports first.
+        optional: Name -> statements that define it, which only functions need that use it; a function that uses a name of
+            OPTIONAL which is not among them is not offered for this tree.
         slots: See `EngineModel`.
         nq: Length of the engine's q.
         nv: Length of the engine's v.
@@ -42,6 +47,13 @@ class Source:
     slots: tuple[tuple[Slot, ...], ...]
     nq: int
     nv: int
+    optional: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    def text(self, code: str = "") -> tuple[str, ...]:
+        """The statements that some code needs; all without code."""
+        used = words(code)
+        chosen = [lines for name, lines in self.optional.items() if not code or name in used]
+        return (*self.lines, *(line for lines in chosen for line in lines))
 
 
 class SourceModel:
@@ -56,12 +68,15 @@ class SourceModel:
         self._source, self._ways = source, ways
         self.slots, self.nq, self.nv = source.slots, source.nq, source.nv
         self._names: dict[str, Any] = {}
-        exec("\n".join(source.lines), self._names)  # Our own text, of numbers and the engine's names.
+        exec("\n".join(source.text()), self._names)  # Our own text, of numbers and the engine's names.
 
     def call(self, function: str, state: State) -> Array | Unsupported:
         """A function in the engine's conventions (`EngineModel`)."""
         if function not in self._ways:
             return Unsupported(f"no {function}", offered=False)
+        lacking = OPTIONAL & words(self._ways[function].code) - set(self._source.optional)
+        if lacking:
+            return Unsupported("not for links without a joint of their own", offered=False)
         names = dict(self._names)
         names.update({name: getattr(state, name).copy() for name in _INPUTS})
         try:
@@ -73,12 +88,13 @@ class SourceModel:
     def script(self, function: str, state: State) -> str:
         """The text that the call runs, with the state that it needs (`EngineModel`)."""
         code = self._ways[function].code
-        used = [name for name in _INPUTS if name in _words(code)]
+        used = [name for name in _INPUTS if name in words(code)]
         stated = [f"{name} = np.array({getattr(state, name).tolist()!r})" for name in used]
-        return "\n".join([*self._source.lines, *stated, code])
+        return "\n".join([*self._source.text(code), *stated, code])
 
 
-def _words(code: str) -> set[str]:
+def words(code: str) -> set[str]:
+    """The names in some code."""
     return set("".join(letter if letter.isalnum() or letter == "_" else " " for letter in code).split())
 
 
@@ -107,6 +123,11 @@ class SourcePlugin:
     def functions(self) -> Mapping[str, str]:
         """Names of functions -> what the engine calls them."""
         return {name: way.native for name, way in self.ways.items()}
+
+    @property
+    def slacks(self) -> Mapping[str, float]:
+        """Functions that are approximate by their documentation."""
+        return {name: way.slack for name, way in self.ways.items() if way.slack}
 
     def version(self) -> str:
         """Version of the engine; "" where it is not installed."""
