@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 
 from validation.engines.arithmetic import (
-    cos_sin,
     Exact,
+    cos_sin,
     exact,
     eye,
     quaternion_rotation,

@@ -1,7 +1,8 @@
 """Truth of what follows from the dynamics: motions in three frames, centroidal quantities, derivatives, regressors.
 
-Names of frames as Pinocchio uses them: "local" is along the link's axes at its origin, "aligned" along the world's axes at the
-link's origin, "world" along the world's axes at the world's origin. Spatial vectors stack linear and angular parts.
+Names of frames as Pinocchio uses them: "local" is along the link's axes at its origin, "aligned" along the world's axes
+at the link's origin, "world" along the world's axes at the world's origin. Spatial vectors stack linear and angular
+parts.
 """
 
 from __future__ import annotations
@@ -176,7 +177,7 @@ def unit_inertias() -> list[Inertia]:
 
 
 def each_parameter(truth: Truth, function: Callable[[list[Inertia | None]], Exact]) -> Exact:
-    """Values of a function that is linear in inertias, for each inertial parameter of each link, along a new last axis."""
+    """Values of a function that is linear in inertias, for each parameter of each link, along a new last axis."""
     count = len(truth.inertias)
     columns = []
     for k in range(count):
@@ -264,7 +265,6 @@ def integrated_dv(truth: Truth, s: Point) -> Exact:
     """Derivatives (nv, nv) of integrate by its speeds, in the tangent at the result."""
     columns = truth.along_speeds(lambda v: integrated(truth, s.q, v), s.v2)
     return _to_tangent(truth, integrated(truth, s.q, s.v2), columns)
-
 
 
 def difference_dq(truth: Truth, s: Point) -> Exact:

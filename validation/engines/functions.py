@@ -8,7 +8,7 @@ import numpy as np
 
 from validation.engines import derived
 from validation.engines.arithmetic import Exact
-from validation.engines.derived import FRAMES, TruthOf
+from validation.engines.derived import FRAMES, Frame, TruthOf
 from validation.engines.truth import Point, Truth
 
 
@@ -99,26 +99,33 @@ FUNCTIONS: dict[str, Function] = {
     "integrate_dq": Function("derivative of integrate by q (nv, nv)", derived.integrated_dq),
     "integrate_dv": Function("derivative of integrate by v2 (nv, nv)", derived.integrated_dv),
 }
-for _frame in FRAMES:
-    FUNCTIONS |= {
-        f"jacobian_{_frame}": Function(
-            "Jacobians of the links (L, 6, nv)", lambda t, s, f=_frame: derived.jacobians(t, s.q, f)
+
+
+def _in_frame(frame: Frame) -> dict[str, Function]:
+    """Functions of links in one of three frames."""
+    return {
+        f"jacobian_{frame}": Function(
+            "Jacobians of the links (L, 6, nv)", lambda t, s: derived.jacobians(t, s.q, frame)
         ),
-        f"jacobian_rate_{_frame}": Function(
-            "their time derivatives (L, 6, nv)", lambda t, s, f=_frame: derived.jacobian_rates(t, s.q, s.v, f)
+        f"jacobian_rate_{frame}": Function(
+            "their time derivatives (L, 6, nv)", lambda t, s: derived.jacobian_rates(t, s.q, s.v, frame)
         ),
-        f"jacobian_dq_{_frame}": Function("their derivatives by q (L, 6, nv, nv)", derived.jacobian_dq(_frame)),
-        f"velocity_{_frame}": Function(
-            "spatial velocities of the links (L, 6)", lambda t, s, f=_frame: derived.velocities(t, s.q, s.v, f)
+        f"jacobian_dq_{frame}": Function("their derivatives by q (L, 6, nv, nv)", derived.jacobian_dq(frame)),
+        f"velocity_{frame}": Function(
+            "spatial velocities of the links (L, 6)", lambda t, s: derived.velocities(t, s.q, s.v, frame)
         ),
-        f"acceleration_{_frame}": Function(
-            "spatial accelerations (L, 6)", lambda t, s, f=_frame: derived.accelerations(t, s.q, s.v, s.a, f)
+        f"acceleration_{frame}": Function(
+            "spatial accelerations (L, 6)", lambda t, s: derived.accelerations(t, s.q, s.v, s.a, frame)
         ),
-        f"velocity_dq_{_frame}": Function("derivative of the velocities by q (L, 6, nv)", derived.velocity_dq(_frame)),
-        f"acceleration_dq_{_frame}": Function(
-            "derivative of the accelerations by q (L, 6, nv)", derived.acceleration_dq(_frame)
+        f"velocity_dq_{frame}": Function("derivative of the velocities by q (L, 6, nv)", derived.velocity_dq(frame)),
+        f"acceleration_dq_{frame}": Function(
+            "derivative of the accelerations by q (L, 6, nv)", derived.acceleration_dq(frame)
         ),
-        f"acceleration_dv_{_frame}": Function(
-            "derivative of the accelerations by v (L, 6, nv)", derived.acceleration_dv(_frame)
+        f"acceleration_dv_{frame}": Function(
+            "derivative of the accelerations by v (L, 6, nv)", derived.acceleration_dv(frame)
         ),
     }
+
+
+for _frame in FRAMES:
+    FUNCTIONS |= _in_frame(_frame)

@@ -10,7 +10,6 @@ from validation.engines.arithmetic import Exact, exact, eye, rate, skew, stack, 
 from validation.engines.charts import CHARTS, Pose
 from validation.engines.interface import EngineModel, Joint, Link, Slot, Tree
 
-
 _REMEMBERED = 1000
 
 

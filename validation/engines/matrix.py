@@ -31,4 +31,5 @@ def cells(plugin: EnginePlugin, tree: Tree, functions: Iterable[str] = ()) -> It
         else:
             state = random_state(tree, model, SEED)
             answer = model.call(function, state)
-            yield judge(plugin.name, tree, function, answer, expected(function, tree, model, state, plugin.slacks.get(function, 0.0)))
+            want = expected(function, tree, model, state, plugin.slacks.get(function, 0.0))
+            yield judge(plugin.name, tree, function, answer, want)

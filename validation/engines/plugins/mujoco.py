@@ -165,11 +165,13 @@ WAYS = {
     ),
     "velocity_aligned": Way(
         "mj_objectVelocity",
-        f"{_QV}{_TWISTS}mj.mj_objectVelocity(m, d, mj.mjtObj.mjOBJ_XBODY, b, value[k], 0)\nvalue = np.roll(value, 3, axis=1)",
+        f"{_QV}{_TWISTS}mj.mj_objectVelocity(m, d, mj.mjtObj.mjOBJ_XBODY, b, value[k], 0)\n"
+        "value = np.roll(value, 3, axis=1)",
     ),
     "velocity_local": Way(
         "mj_objectVelocity",
-        f"{_QV}{_TWISTS}mj.mj_objectVelocity(m, d, mj.mjtObj.mjOBJ_XBODY, b, value[k], 1)\nvalue = np.roll(value, 3, axis=1)",
+        f"{_QV}{_TWISTS}mj.mj_objectVelocity(m, d, mj.mjtObj.mjOBJ_XBODY, b, value[k], 1)\n"
+        "value = np.roll(value, 3, axis=1)",
     ),
     "classical_acceleration": Way(
         "mj_objectAcceleration",
@@ -184,8 +186,7 @@ WAYS = {
     ),
     "centroidal_momentum": Way(
         "mj_subtreeVel",
-        f"{_QV}mj.mj_subtreeVel(m, d)\n"
-        "value = np.r_[m.body_subtreemass[0] * d.subtree_linvel[0], d.subtree_angmom[0]]",
+        f"{_QV}mj.mj_subtreeVel(m, d)\nvalue = np.r_[m.body_subtreemass[0] * d.subtree_linvel[0], d.subtree_angmom[0]]",
     ),
     "inverse_dynamics_dq": Way(
         "mjd_inverseFD", f"{_INVERSE_FD}value, None, None, None, None, None, None)\nvalue = value.T", _ONE_SIDED
@@ -204,7 +205,8 @@ WAYS = {
     "integrate": Way("mj_integratePos", "value = q\nmj.mj_integratePos(m, value, v2, 1.0)"),
     "difference": Way(
         "mj_differentiatePos",
-        "q1, value = q.copy(), np.zeros(m.nv)\nmj.mj_integratePos(m, q1, v2, 1.0)\nmj.mj_differentiatePos(m, value, 1.0, q, q1)",
+        "q1, value = q.copy(), np.zeros(m.nv)\nmj.mj_integratePos(m, q1, v2, 1.0)\n"
+        "mj.mj_differentiatePos(m, value, 1.0, q, q1)",
     ),
 }
 

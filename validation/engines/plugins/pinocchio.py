@@ -135,9 +135,7 @@ WAYS = {
     "bias": Way("nonLinearEffects", "value = pin.nonLinearEffects(m, d, q, v)"),
     "gravity": Way("computeGeneralizedGravity", "value = pin.computeGeneralizedGravity(m, d, q)"),
     "coriolis_forces": Way("computeCoriolisMatrix", "value = pin.computeCoriolisMatrix(m, d, q, v) @ v"),
-    "coriolis_symmetry": Way(
-        "computeCoriolisMatrix", "C = pin.computeCoriolisMatrix(m, d, q, v)\nvalue = C + C.T"
-    ),
+    "coriolis_symmetry": Way("computeCoriolisMatrix", "C = pin.computeCoriolisMatrix(m, d, q, v)\nvalue = C + C.T"),
     "inverse_dynamics": Way("rnea", "value = pin.rnea(m, d, q, v, a)"),
     "forward_dynamics": Way("aba", "value = pin.aba(m, d, q, v, tau)"),
     "forward_dynamics:aba LOCAL": Way("aba in LOCAL", "value = pin.aba(m, d, q, v, tau, pin.Convention.LOCAL)"),
@@ -156,7 +154,8 @@ WAYS = {
     ),
     "classical_acceleration": Way(
         "getFrameClassicalAcceleration",
-        f"{_FK}value = np.array([pin.getFrameClassicalAcceleration(m, d, f, pin.LOCAL_WORLD_ALIGNED).vector for f in fs])",
+        f"{_FK}value = np.array("
+        "[pin.getFrameClassicalAcceleration(m, d, f, pin.LOCAL_WORLD_ALIGNED).vector for f in fs])",
     ),
     "centroidal_matrix": Way("ccrba", "value = pin.ccrba(m, d, q, v)"),
     "centroidal_matrix_rate": Way("dccrba", "value = pin.dccrba(m, d, q, v)"),
@@ -171,21 +170,13 @@ WAYS = {
     "centroidal_matrix:computeCentroidalDynamicsDerivatives": Way(
         "computeCentroidalDynamicsDerivatives", f"{_CENTROIDAL}[3]"
     ),
-    "inverse_dynamics_dq": Way(
-        "computeRNEADerivatives", "value = pin.computeRNEADerivatives(m, d, q, v, a)[0]"
-    ),
-    "inverse_dynamics_dv": Way(
-        "computeRNEADerivatives", "value = pin.computeRNEADerivatives(m, d, q, v, a)[1]"
-    ),
+    "inverse_dynamics_dq": Way("computeRNEADerivatives", "value = pin.computeRNEADerivatives(m, d, q, v, a)[0]"),
+    "inverse_dynamics_dv": Way("computeRNEADerivatives", "value = pin.computeRNEADerivatives(m, d, q, v, a)[1]"),
     "gravity_dq": Way(
         "computeGeneralizedGravityDerivatives", "value = pin.computeGeneralizedGravityDerivatives(m, d, q)"
     ),
-    "forward_dynamics_dq": Way(
-        "computeABADerivatives", "value = pin.computeABADerivatives(m, d, q, v, tau)[0]"
-    ),
-    "forward_dynamics_dv": Way(
-        "computeABADerivatives", "value = pin.computeABADerivatives(m, d, q, v, tau)[1]"
-    ),
+    "forward_dynamics_dq": Way("computeABADerivatives", "value = pin.computeABADerivatives(m, d, q, v, tau)[0]"),
+    "forward_dynamics_dv": Way("computeABADerivatives", "value = pin.computeABADerivatives(m, d, q, v, tau)[1]"),
     "torque_regressor": Way(
         "computeJointTorqueRegressor", "js\nvalue = pin.computeJointTorqueRegressor(m, d, q, v, a)"
     ),

@@ -36,7 +36,8 @@ class Source:
 
     Attributes:
         lines: Statements, imports first.
-        optional: Name -> statements that define it, which only functions need that use it; a function that uses a name of
+        optional: Name -> statements that define it, which only functions need that use it. A function that uses a
+            name of
             OPTIONAL which is not among them is not offered for this tree.
         slots: See `EngineModel`.
         nq: Length of the engine's q.
