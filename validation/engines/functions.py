@@ -41,15 +41,22 @@ FUNCTIONS: dict[str, Function] = {
     "kinetic_energy": Function("T = v^T M v / 2", lambda t, s: t.T(s.q, s.v)),
     "potential_energy": Function("V = -sum m g^T p", lambda t, s: t.V(s.q)),
     "link_poses": Function("positions and rows of R (L, 12)", lambda t, s: t.kinematics.flat_poses(s.q)),
-    "com": Function("mass centre (3)", lambda t, s: derived.com(t, s.q)),
-    "com_jacobian": Function("its Jacobian (3, nv)", lambda t, s: derived.com_jacobian(t, s.q)),
-    "com_velocity_dq": Function(
+    "mass_centre": Function("mass centre (3)", lambda t, s: derived.com(t, s.q)),
+    "mass_centre_jacobian": Function("its Jacobian (3, nv)", lambda t, s: derived.com_jacobian(t, s.q)),
+    "mass_centre_velocity_dq": Function(
         "derivative of its velocity by q (3, nv)",
         lambda t, s: t.kinematics.tangent(lambda q: derived.com_jacobian(t, q) @ s.v, s.q),
     ),
-    "classical_acceleration": Function(
+    "link_accelerations": Function(
         "acceleration of the links' origins and angular accelerations, along world axes (L, 6)",
         lambda t, s: derived.classical(t, s.q, s.v, s.a),
+    ),
+    "link_velocity_products": Function(
+        "link_accelerations at a = 0 (L, 6)", lambda t, s: derived.classical(t, s.q, s.v, 0 * s.a)
+    ),
+    "mass_centre_velocity_products": Function(
+        "acceleration of the mass centre at a = 0 (3)",
+        lambda t, s: t.kinematics.along(lambda q: derived.com_jacobian(t, q), s.q, s.v) @ s.v,
     ),
     "centroidal_matrix": Function(
         "A (6, nv): momentum about the mass centre is A v", lambda t, s: derived.centroidal_matrix(t, s.q)
@@ -101,19 +108,21 @@ FUNCTIONS: dict[str, Function] = {
 }
 
 
+ALIGNED = ("link_jacobians", "link_jacobian_rates", "link_velocities")
+
+
 def _in_frame(frame: Frame) -> dict[str, Function]:
     """Functions of links in one of three frames."""
+    names = ALIGNED if frame == "aligned" else (f"jacobian_{frame}", f"jacobian_rate_{frame}", f"velocity_{frame}")
     return {
-        f"jacobian_{frame}": Function(
-            "Jacobians of the links (L, 6, nv)", lambda t, s: derived.jacobians(t, s.q, frame)
-        ),
-        f"jacobian_rate_{frame}": Function(
+        names[0]: Function("Jacobians of the links (L, 6, nv)", lambda t, s: derived.jacobians(t, s.q, frame)),
+        names[1]: Function(
             "their time derivatives (L, 6, nv)", lambda t, s: derived.jacobian_rates(t, s.q, s.v, frame)
         ),
-        f"jacobian_dq_{frame}": Function("their derivatives by q (L, 6, nv, nv)", derived.jacobian_dq(frame)),
-        f"velocity_{frame}": Function(
+        names[2]: Function(
             "spatial velocities of the links (L, 6)", lambda t, s: derived.velocities(t, s.q, s.v, frame)
         ),
+        f"jacobian_dq_{frame}": Function("their derivatives by q (L, 6, nv, nv)", derived.jacobian_dq(frame)),
         f"acceleration_{frame}": Function(
             "spatial accelerations (L, 6)", lambda t, s: derived.accelerations(t, s.q, s.v, s.a, frame)
         ),

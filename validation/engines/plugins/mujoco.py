@@ -157,13 +157,15 @@ WAYS = {
     "kinetic_energy": Way("mj_energyVel", f"{_QV}mj.mj_energyVel(m, d)\nvalue = d.energy[1]"),
     "potential_energy": Way("mj_energyPos", f"{_Q}mj.mj_energyPos(m, d)\nvalue = d.energy[0]"),
     "link_poses": Way("xpos, xmat", f"{_Q}value = np.hstack([d.xpos[bs], d.xmat[bs]])"),
-    "com": Way("subtree_com", f"{_Q}value = d.subtree_com[0]"),
-    "com_jacobian": Way("mj_jacSubtreeCom", f"{_Q}value = np.zeros((3, m.nv))\nmj.mj_jacSubtreeCom(m, d, value, 0)"),
-    "jacobian_aligned": Way("mj_jacBody", f"{_Q}{_JACOBIANS}mj.mj_jacBody(m, d, value[k, :3], value[k, 3:], b)"),
-    "jacobian_rate_aligned": Way(
+    "mass_centre": Way("subtree_com", f"{_Q}value = d.subtree_com[0]"),
+    "mass_centre_jacobian": Way(
+        "mj_jacSubtreeCom", f"{_Q}value = np.zeros((3, m.nv))\nmj.mj_jacSubtreeCom(m, d, value, 0)"
+    ),
+    "link_jacobians": Way("mj_jacBody", f"{_Q}{_JACOBIANS}mj.mj_jacBody(m, d, value[k, :3], value[k, 3:], b)"),
+    "link_jacobian_rates": Way(
         "mj_jacDot", f"{_QV}{_JACOBIANS}mj.mj_jacDot(m, d, value[k, :3], value[k, 3:], d.xpos[b], b)"
     ),
-    "velocity_aligned": Way(
+    "link_velocities": Way(
         "mj_objectVelocity",
         f"{_QV}{_TWISTS}mj.mj_objectVelocity(m, d, mj.mjtObj.mjOBJ_XBODY, b, value[k], 0)\n"
         "value = np.roll(value, 3, axis=1)",
@@ -173,7 +175,7 @@ WAYS = {
         f"{_QV}{_TWISTS}mj.mj_objectVelocity(m, d, mj.mjtObj.mjOBJ_XBODY, b, value[k], 1)\n"
         "value = np.roll(value, 3, axis=1)",
     ),
-    "classical_acceleration": Way(
+    "link_accelerations": Way(
         "mj_objectAcceleration",
         f"{_QVA}mj.mj_rnePostConstraint(m, d)\n"
         f"{_TWISTS}mj.mj_objectAcceleration(m, d, mj.mjtObj.mjOBJ_XBODY, b, value[k], 0)\n"

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from validation.engines.functions import ALIGNED
 from validation.engines.interface import Array, Difference, Joint, Slot, Tree, Unsupported
 from validation.engines.plugins.source import Source, SourcePlugin, Way, series
 
@@ -146,13 +147,13 @@ WAYS = {
         "pin.framesForwardKinematics(m, d, q)\n"
         "value = np.array([np.r_[d.oMf[f].translation, d.oMf[f].rotation.ravel()] for f in fs])",
     ),
-    "com": Way("centerOfMass", "value = pin.centerOfMass(m, d, q)"),
-    "com_jacobian": Way("jacobianCenterOfMass", "value = pin.jacobianCenterOfMass(m, d, q)"),
-    "com_velocity_dq": Way(
+    "mass_centre": Way("centerOfMass", "value = pin.centerOfMass(m, d, q)"),
+    "mass_centre_jacobian": Way("jacobianCenterOfMass", "value = pin.jacobianCenterOfMass(m, d, q)"),
+    "mass_centre_velocity_dq": Way(
         "getCenterOfMassVelocityDerivatives",
         "pin.computeAllTerms(m, d, q, v)\nvalue = pin.getCenterOfMassVelocityDerivatives(m, d)",
     ),
-    "classical_acceleration": Way(
+    "link_accelerations": Way(
         "getFrameClassicalAcceleration",
         f"{_FK}value = np.array("
         "[pin.getFrameClassicalAcceleration(m, d, f, pin.LOCAL_WORLD_ALIGNED).vector for f in fs])",
@@ -195,13 +196,14 @@ WAYS = {
     "difference_dq2": Way("dDifference", "value = pin.dDifference(m, q, pin.integrate(m, q, v2), pin.ARG1)"),
 }
 for _frame, _rf in _FRAMES.items():
+    _names = ALIGNED if _frame == "aligned" else (f"jacobian_{_frame}", f"jacobian_rate_{_frame}", f"velocity_{_frame}")
     WAYS |= {
-        f"jacobian_{_frame}": Way(
+        _names[0]: Way(
             "getFrameJacobian",
             "pin.computeJointJacobians(m, d, q)\npin.updateFramePlacements(m, d)\n"
             f"value = np.array([pin.getFrameJacobian(m, d, f, {_rf}) for f in fs])",
         ),
-        f"jacobian_rate_{_frame}": Way(
+        _names[1]: Way(
             "getFrameJacobianTimeVariation",
             "pin.computeJointJacobiansTimeVariation(m, d, q, v)\npin.updateFramePlacements(m, d)\n"
             f"value = np.array([pin.getFrameJacobianTimeVariation(m, d, f, {_rf}) for f in fs])",
@@ -211,7 +213,7 @@ for _frame, _rf in _FRAMES.items():
             "pin.computeJointJacobians(m, d, q)\npin.computeJointKinematicHessians(m, d)\n"
             f"value = np.array([pin.getJointKinematicHessian(m, d, j, {_rf}) for j in js])",
         ),
-        f"velocity_{_frame}": Way(
+        _names[2]: Way(
             "getFrameVelocity", f"{_FK}value = np.array([pin.getFrameVelocity(m, d, f, {_rf}).vector for f in fs])"
         ),
         f"acceleration_{_frame}": Way(
