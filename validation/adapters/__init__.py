@@ -85,6 +85,7 @@ ROUTES: dict[str, Route] = {
     "mujoco-urdf": Route("validation.adapters.mujoco.urdf", "mujoco", reads="urdf"),
     "mujoco-mjcf": Route("validation.adapters.mujoco.mjcf", "mujoco", reads="mjcf"),
     "lagrangian": Route("validation.adapters.lagrangian.engine", "casadi", beams=True),
+    "exudyn-beams": Route("validation.adapters.exudyn.mapped", "exudyn", beams=True),
     "interpreted": Route("validation.adapters.interpreted", independent=False),
     "description": Route("validation.adapters.description", independent=False),
 }

@@ -86,18 +86,22 @@ def quaternion_matrix(quaternion: Array) -> Array:
 
 
 def matrix_quaternion(R: Array) -> Array:
-    """The unit quaternion of a rotation matrix (3, 3) -> (4,).
+    """The unit quaternions of rotation matrices (..., 3, 3) -> (..., 4).
 
     The largest of the four components is taken from the diagonal, so that no digits cancel (Shepperd 1978).
     """
-    trace = float(np.trace(R))
-    squares = np.array([*(1.0 + 2.0 * np.diag(R) - trace), 1.0 + trace])
-    k = int(np.argmax(squares))
-    w_row = np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
-    quaternion = np.append(w_row, squares[3]) if k == 3 else np.append(R[k] + R[:, k], w_row[k])
-    if k != 3:
-        quaternion[k] = squares[k]
-    return np.asarray(quaternion / np.linalg.norm(quaternion))
+    trace = np.trace(R, axis1=-2, axis2=-1)[..., None]
+    diagonal = np.diagonal(R, axis1=-2, axis2=-1)
+    # 4 q q^T, of which the row of the largest component is taken.
+    products = np.empty((*R.shape[:-2], 4, 4))
+    products[..., :3, :3] = R + R.swapaxes(-1, -2)
+    products[..., [0, 1, 2], [0, 1, 2]] = 1.0 + 2.0 * diagonal - trace
+    products[..., 3, 3] = 1.0 + trace[..., 0]
+    spin = np.stack([R[..., 2, 1] - R[..., 1, 2], R[..., 0, 2] - R[..., 2, 0], R[..., 1, 0] - R[..., 0, 1]], axis=-1)
+    products[..., 3, :3] = products[..., :3, 3] = spin
+    largest = np.argmax(np.diagonal(products, axis1=-2, axis2=-1), axis=-1)
+    row = np.take_along_axis(products, largest[..., None, None], -2)[..., 0, :]
+    return np.asarray(row / np.linalg.norm(row, axis=-1, keepdims=True))
 
 
 def quaternion_product(a: Array, b: Array) -> Array:

@@ -88,5 +88,8 @@ def assembled(container: Any, system: Any) -> ExudynSystem:
     # What has no inertia in some direction is no obstacle: nothing is solved for here.
     settings.timeIntegration.generalizedAlpha.computeInitialAccelerations = False
     solver: Any = exudyn.MainSolverImplicitSecondOrder()
+    # Its advice on large systems is about solving them.
+    exudyn.config.suppressWarnings = True
     solver.InitializeSolver(system, settings)
+    exudyn.config.suppressWarnings = False
     return ExudynSystem(container, system, solver)

@@ -1,0 +1,124 @@
+"""Finite elements of Exudyn's along one of our beams (github.com/jgerstm/EXUDYN), as functions of nodal coordinates.
+
+Cables (ObjectANCFCable: cubic in positions and slopes) carry mass and weight. Geometrically exact elements
+(ObjectBeamGeometricallyExact: a rotation at each node, inertia lumped there, curvature from relative rotations) carry
+what turns, in one system, and strain, in another. What cables resist by their own stiffness is left out: they have one
+stiffness for both planes and none against twist.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import exudyn
+import numpy as np
+from exudyn import itemInterface as items
+
+from validation.adapters.exudyn.system import ExudynSystem, assembled
+from validation.mechanics.elastic import POINTS, ElasticBeam
+from validation.mechanics.geometry import Array
+from validation.mechanics.quadrature import gauss_stations
+
+_NO_TURN = (1.0, 0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """A beam's mesh.
+
+    Attributes:
+        x: Stations of the nodes (K,), from 0 to the beam's length [m].
+        M: Mass matrix of the cables, for positions and slopes of node after node (6 K, 6 K); it is constant.
+        weight: Forces of the weight on the same coordinates (6 K,).
+        turning: Elements with the sections' rotary inertia; None where they have none.
+        strained: Elements with the sections' stiffness.
+    """
+
+    x: Array
+    M: Array
+    weight: Array
+    turning: ExudynSystem | None
+    strained: ExudynSystem
+
+
+def stations(beam: ElasticBeam, elements: int) -> Array:
+    """Nodes (K,) of so many equal elements on each interval on which shape functions are smooth."""
+    ends = [np.linspace(a, b, elements + 1)[:-1] for a, b in pairwise(beam.knots)]
+    return np.concatenate([*ends, [beam.length]])
+
+
+def mesh(beam: ElasticBeam, elements: int, gravity: Array) -> Mesh:
+    """Exudyn's elements of a beam.
+
+    Args:
+        beam: The beam.
+        elements: Number of elements on each interval between the beam's knots.
+        gravity: Acceleration of gravity in the world (3,) [m/s^2].
+    """
+    x = stations(beam, elements)
+    cables = _cables(beam, x, gravity)
+    none = np.zeros(6 * len(x))
+    M, weight = cables.at(none, none)
+    inertia = [_averages(beam, name, x) for name in ("rhoJ", "rhoI_y", "rhoI_z")]
+    if not beam.beam.rotary_inertia:
+        inertia[1:] = [0.0 * inertia[0]] * 2
+    stiffness = [_averages(beam, name, x) for name in ("GJ", "EI_y", "EI_z")]
+    still = [0.0 * values for values in stiffness]
+    turning = _rotating(x, inertia, still) if np.any(inertia) else None
+    return Mesh(x, M, weight, turning, _rotating(x, still, stiffness))
+
+
+def rotation_coordinates(quaternions: Array) -> Array:
+    """Coordinates (7 K,) of nodes that keep their places and have the quaternions (w, x, y, z) (K, 4)."""
+    coordinates = np.zeros((len(quaternions), 7))
+    coordinates[:, 3:] = quaternions - _NO_TURN
+    return coordinates.ravel()
+
+
+def _averages(beam: ElasticBeam, name: str, x: Array) -> Array:
+    """Averages (K - 1,) of a property of the section over each element."""
+    if not np.any(np.diff(beam.section(name, x))):
+        return beam.section(name, x[:-1])
+    return np.array([_average(beam, name, a, b) for a, b in pairwise(x.tolist())])
+
+
+def _average(beam: ElasticBeam, name: str, a: float, b: float) -> float:
+    inner, weights = gauss_stations((a, b), POINTS)
+    return float(weights @ beam.section(name, inner) / (b - a))
+
+
+def _cables(beam: ElasticBeam, x: Array, gravity: Array) -> ExudynSystem:
+    container = exudyn.SystemContainer()
+    system: Any = container.AddSystem()
+    nodes = [system.AddNode(items.NodePointSlope1(referenceCoordinates=[at, 0, 0, 1, 0, 0])) for at in x]
+    for k, rhoA in enumerate(_averages(beam, "rhoA", x)):
+        cable = items.ObjectANCFCable(
+            length=x[k + 1] - x[k],
+            massPerLength=rhoA,
+            bendingStiffness=0.0,
+            axialStiffness=0.0,
+            nodeNumbers=nodes[k : k + 2],
+        )
+        marker = system.AddMarker(items.MarkerBodyMass(bodyNumber=system.AddObject(cable)))
+        system.AddLoad(items.LoadMassProportional(markerNumber=marker, loadVector=list(gravity)))
+    return assembled(container, system)
+
+
+def _rotating(x: Array, inertia: Sequence[Array], stiffness: Sequence[Array]) -> ExudynSystem:
+    """Geometrically exact elements with moments of inertia per length and stiffnesses about the section's axes."""
+    container = exudyn.SystemContainer()
+    system: Any = container.AddSystem()
+    nodes = [system.AddNode(items.NodeRigidBodyEP(referenceCoordinates=[at, 0, 0, *_NO_TURN])) for at in x]
+    for k in range(len(x) - 1):
+        section: Any = exudyn.BeamSection()
+        section.massPerLength = 0.0
+        section.inertia = np.diag([values[k] for values in inertia])
+        section.stiffnessMatrix = np.diag([0.0] * 3 + [values[k] for values in stiffness])
+        element = items.ObjectBeamGeometricallyExact(
+            nodeNumbers=nodes[k : k + 2], length=x[k + 1] - x[k], sectionData=section
+        )
+        system.AddObject(element)
+    return assembled(container, system)
