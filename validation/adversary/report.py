@@ -154,6 +154,7 @@ def compose(data: Data) -> Report:
             Fact(f"{seconds / 3600:.1f} h", "CPU time"),
         ),
         unfinished=tuple(data["unfinished"]),
+        missed=tuple(f"{find['attack']}: {find['said']}" for find in finds),
     )
 
 

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from html import escape
+from typing import Any
 
 import numpy as np
+from matplotlib.colors import to_rgb
 
 from validation.adapters import ROUTES
-from validation.comparison.errors import BIN_EDGES, BINS_PER_DECADE, HIGHEST_DECADE, LOWEST_DECADE
-from validation.contract.quantities import MOTION_ENERGY, QUANTITIES, SOLVE, Quantity
+from validation.comparison.errors import BIN_EDGES, HIGHEST_DECADE, LOWEST_DECADE
+from validation.contract.quantities import MOTION_ENERGY, QUANTITIES, SOLVE
 from validation.cross_check.record import Distributions, Record
-from validation.reporting.axes import Axis, line, shown, svg, text
-from validation.reporting.figures import SHAPES, Chart, Curve, Drawing, Mark
+from validation.reporting.charts import BAD, SERIES, power
+from validation.reporting.figures import Chart, Curve, Drawing, Mark
 
-WIDTH = 760
-_LEFT, _EXACT, _RIGHT, _TOP, _BOTTOM = 225, 46, 30, 8, 28
-_ROW = 42
+TITLE = "Distribution of relative errors for each quantity and engine"
 EPS = 2.0**-52
 
 
@@ -27,7 +26,7 @@ def engine_label(engine: str) -> str:
 
 
 def error_distributions(distributions: Distributions) -> Drawing | None:
-    """How many states err by how much: a row a quantity, a curve an engine, a bar where the tolerance is.
+    """How many states err by how much: a row a quantity, an outline an engine, a bar where the tolerance is.
 
     All models together. Exact agreement has a place of its own left of the axis.
     """
@@ -35,66 +34,38 @@ def error_distributions(distributions: Distributions) -> Drawing | None:
     engines = [name for name in ROUTES if any(name in group for group in rows.values())]
     if not rows:
         return None
-    highest = max(_highest_decade(quantity, counts) for quantity, group in rows.items() for counts in group.values())
-    x = Axis(LOWEST_DECADE + 1, max(highest, -8), _LEFT + _EXACT, WIDTH - _RIGHT, log=True)
-    bottom = _TOP + _ROW * len(rows)
-    parts = []
-    for decade in range(LOWEST_DECADE + 2, int(x.high) + 1, 2):
-        at = x.at(10.0**decade)
-        parts += [
-            line("grid", at, at, _TOP, bottom),
-            text(at, bottom + 17, shown(10.0**decade, True), "middle", "tick"),
-        ]
-    for k, (quantity, group) in enumerate(rows.items()):
-        base = _TOP + _ROW * (k + 1)
-        parts.append(text(_LEFT - 10, base - 10, quantity.name.replace("_", " "), "end", "row"))
-        parts.append(line("axis", _LEFT, WIDTH - _RIGHT, base, base))
-        parts += [_outline(engine, group[engine], x, base) for engine in engines if engine in group]
-        at = x.at(quantity.tolerance)
-        parts.append(line("bound", at, at, base, base - _ROW + 4))
-    parts.append(text(_LEFT + _EXACT / 2 - 5, bottom + 17, "exact", "middle", "tick"))
-    legend = [
-        (f'<rect class="bar {_color(name)}" x="6" width="12" height="12"/>', engine_label(name)) for name in engines
-    ]
-    legend.append((line("bound", 12, 12, 0, 12), "tolerance"))
-    title = "Distribution of relative errors for each quantity and engine"
-    said = "relative error of a state [1]; height: share of states [1]"
-    return Drawing(title, tuple(legend), svg(WIDTH, bottom + _BOTTOM, title, parts), said)
+
+    def paint(axes: Any) -> None:
+        for k, (quantity, group) in enumerate(rows.items()):
+            for n, engine in enumerate(engines):
+                if sum(group.get(engine, ())):
+                    share = 2.0 * n / len(engines) + LOWEST_DECADE - 2.5
+                    _outline(axes, group[engine], share, 1.8 / len(engines), -k, SERIES[list(ROUTES).index(engine)])
+            at = math.log10(quantity.tolerance)
+            axes.plot([at, at], [-k, 0.85 - k], color=BAD, linewidth=2.2, label="" if k else "tolerance")
+        for engine in engines:
+            axes.plot([], [], "s", color=SERIES[list(ROUTES).index(engine)], markersize=8, label=engine_label(engine))
+        axes.set_yticks([-k for k in range(len(rows))], [quantity.name.replace("_", " ") for quantity in rows])
+        ticks = range(LOWEST_DECADE + 2, HIGHEST_DECADE, 2)
+        axes.set_xticks([LOWEST_DECADE - 1.5, *ticks], ["exact", *(power(10.0**decade) for decade in ticks)])
+        axes.set_xlim(LOWEST_DECADE - 2.6, max(math.log10(quantity.tolerance) for quantity in rows) + 1.5)
+
+    x = "relative error of a state  [1]; height: share of states  [1]"
+    return Drawing(TITLE, x, "", paint, size=(640.0, 34.0 * len(rows)))
 
 
-def _color(engine: str) -> str:
-    return f"e{list(ROUTES).index(engine)}"
-
-
-def _highest_decade(quantity: Quantity, counts: Sequence[int]) -> int:
-    filled = max((k for k, count in enumerate(counts) if count), default=0)
-    reached = LOWEST_DECADE + math.ceil(filled / BINS_PER_DECADE)
-    return min(max(reached, math.ceil(math.log10(quantity.tolerance)) + 1), HIGHEST_DECADE)
-
-
-def _outline(engine: str, counts: Sequence[int], x: Axis, base: float) -> str:
-    """The share of states in each bin as a stepped outline, scaled so that the fullest bin fills the row."""
-    total = sum(counts)
-    if not total:
-        return ""
-    fullest = max(max(counts[1:]), 1)
-    height = _ROW - 10
-    filled = [k for k, count in enumerate(counts[1:-1]) if count] or [0]
-    points = []
-    for k in range(filled[0], filled[-1] + 1):
-        y = base - height * counts[k + 1] / fullest
-        points += [f"{max(x.at(edge), x.start):.1f},{y:.1f}" for edge in BIN_EDGES[k : k + 2]]
-    feet = [f"{point.partition(',')[0]},{base}" for point in (points[0], points[-1])]
-    exact = counts[0] / total
-    width = (_EXACT - 10) / len(ROUTES)
-    bar = (
-        f'<rect class="bar {_color(engine)}" x="{_LEFT + list(ROUTES).index(engine) * width:.1f}" '
-        f'y="{base - height * exact:.1f}" width="{width:.1f}" height="{height * exact:.1f}">'
-        f"<title>{escape(engine)}: {exact:.0%} exact</title></rect>"
-    )
-    title = f"<title>{escape(engine)}: {total} states</title>"
-    outline = " ".join((feet[0], *points, feet[1]))
-    return f'{bar}<polygon class="area {_color(engine)}" points="{outline}">{title}</polygon>'
+def _outline(axes: Any, counts: Sequence[int], left: float, width: float, base: float, color: str) -> None:
+    """The share of states in each bin, the fullest as high as the row; the share that is exact as a bar at the left."""
+    between = np.array(counts[1:-1])
+    filled = np.flatnonzero(between)
+    if len(filled):
+        inside = slice(filled[0], filled[-1] + 1)
+        edges = np.log10(BIN_EDGES)[filled[0] : filled[-1] + 2]
+        heights = base + 0.75 * between[inside] / max(counts[1:])
+        axes.stairs(
+            heights, edges, baseline=base, fill=True, facecolor=(*to_rgb(color), 0.12), edgecolor=color, linewidth=1.3
+        )
+    axes.bar(left, 0.75 * counts[0] / sum(counts), width, base, align="edge", color=color)
 
 
 def error_against_condition(record: Record) -> Chart | None:
@@ -110,8 +81,7 @@ def error_against_condition(record: Record) -> Chart | None:
     for k, engine in enumerate(ROUTES):
         own = [row for row in rows if row.engine == engine]
         x, y = [row.extra["condition"] for row in own], [row.error or 0.0 for row in own]
-        hints = tuple(f"{row.model}: {row.error:.1e}" for row in own)
-        curves += [Curve(engine_label(engine), x, y, k, "points", k % SHAPES, hints)] if own else []
+        curves += [Curve(engine_label(engine), x, y, k, "points")] if own else []
     span = np.array([1.0, max(row.extra["condition"] for row in rows)])
     curves.append(Curve("cond(M) · 2.2e-16", span, EPS * span, 4, "dashed"))
     return Chart(

@@ -22,7 +22,7 @@ from validation.cross_check.junit import to_junit
 from validation.cross_check.record import Record, as_data
 from validation.cross_check.speed import Speed, YardstickError
 from validation.cross_check.speed import measure as measure_speed
-from validation.cross_check.tables import BRIEF, by_engine, by_model, failures, headline, unsupported, worst
+from validation.cross_check.tables import BRIEF, by_engine, by_model, failures, headline, opinions, unsupported, worst
 from validation.inputs.cases import Case, named, standard_set
 from validation.inputs.sampling import DEFAULT_STATES
 from validation.reporting.command import Run, known
@@ -49,6 +49,10 @@ _AGAIN = 2
 # Up to so many models, each engine has a line of its own on a terminal.
 _DETAILED = 2
 
+_DECISION = (
+    "**Which engine is wrong.** One that disagrees where all others agree with our C is the suspect itself; where "
+    "several disagree, our C is."
+)
 _CLOSE = (
     "Each row is a quantity, each curve an engine that our C is compared with, over all states of all models. What "
     "lies left of the red bar agrees: see how far left the curves stay, near the rounding of a double (2.2e-16). "
@@ -227,6 +231,8 @@ def compose(data: Data) -> Report:
         (*_digest(record), *_against_baseline(data).blocks),
         record.unfinished,
         record.refused,
+        (_DECISION, opinions(record)) if engines else (),
+        tuple(f"{model}, {engine}: {text}" for model, engine, text in failures(record)),
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
 from validation.adapters import ROUTES
 from validation.check import ModelResult
@@ -61,6 +62,42 @@ def by_engine(record: Record, columns: Columns = COLUMNS, engines: Sequence[str]
     """One line for each engine of each model that it has something to say of."""
     lines = [(m, name, [row for row in m.comparisons if row.engine == name]) for m in record.models for name in engines]
     return _table([line for line in lines if line[2]], "engine", columns)
+
+
+def opinions(record: Record) -> Table:
+    """One line an engine: whether it agrees, and if not, whether it is alone in that."""
+    against: dict[tuple[str, str], set[str]] = {}
+    for row in record.rows("disagree"):
+        against.setdefault((row.model, row.quantity), set()).add(row.engine)
+
+    def line(engine: str) -> dict[str, Any]:
+        rows = [row for row in record.compared if row.engine == engine]
+        disagreeing = [row for row in rows if row.status == "disagree"]
+        alone = sum(against[row.model, row.quantity] == {engine} for row in disagreeing)
+        nearest = worst(rows)
+        used = nearest.error / nearest.tolerance if nearest and nearest.error is not None else math.nan
+        return {
+            "engine": engine,
+            "opinion": "independent" if ROUTES[engine].independent else "our own",
+            "models": len({row.model for row in rows}),
+            "comparisons": len(rows),
+            "disagree": len(disagreeing),
+            "alone": alone,
+            "used": f"{used:.2g}",
+            "where": f"{nearest.quantity.replace('_', ' ')} of {nearest.model}" if nearest else "",
+            "verdict": "agrees" if not disagreeing else "suspect" if 2 * alone > len(disagreeing) else "against our C",
+        }
+
+    names = ("models", "comparisons", "disagree", "alone")
+    columns: dict[str, Column] = {
+        "engine": "{engine}",
+        "opinion": "{opinion}",
+        **{f"#{name}": f"{{{name}}}" for name in names},
+        "#largest error / tolerance": "{used}",
+        "of": "{where}",
+        "verdict": lambda row: Cell(row["verdict"], not row["disagree"]),
+    }
+    return Table.of((line(name) for name in ROUTES if any(row.engine == name for row in record.compared)), columns)
 
 
 Line = tuple[ModelResult, str, Sequence[Comparison]]

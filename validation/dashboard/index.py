@@ -17,6 +17,10 @@ BEGIN, END = "<!-- reports/summary.md begins -->", "<!-- reports/summary.md ends
 _VERDICTS = {"good": True, "missed": False, "measured": None, "absent": None}
 
 
+# Reports whose decisions the index shows, in this order.
+_DECIDING = ("pareto", "check")
+
+
 class QuoteError(ValueError):
     """A file has no place for the summary."""
 
@@ -43,7 +47,16 @@ def index(entries: Mapping[str, Entry]) -> Report:
     ok = all(entry.verdict != "missed" for entry in entries.values())
     table = summary_table(entries, linked=True)
     sections = tuple(_section(name, entry) for name, entry in entries.items())
-    return Report("What the harness found", headline(entries), ok, (table,), sections)
+    reports = {name: entry.report for name, entry in entries.items() if entry.report}
+    return Report(
+        "What the harness found",
+        headline(entries),
+        ok,
+        (table,),
+        sections,
+        decisions=tuple(block for name in _DECIDING if name in reports for block in reports[name].decisions),
+        missed=tuple(f"[{name}](#{name}): {line}" for name, report in reports.items() for line in report.shortfalls),
+    )
 
 
 def headline(entries: Mapping[str, Entry]) -> str:

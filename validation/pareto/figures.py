@@ -1,90 +1,146 @@
-"""Points -> charts of error against time."""
+"""Points -> work-precision figures: the front with its runs named beside it, and methods on their best models."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import pairwise
-from string import ascii_lowercase
+from typing import Any
 
-from validation.pareto.front import charted, front, usable
+import numpy as np
+
+from validation.pareto.front import charted, front, seconds_at
 from validation.pareto.problem import OURS, BenchmarkProblem, Point
 from validation.pareto.race import Result
-from validation.reporting.figures import SHAPES, Chart, Curve, Figure, Kind, Mark, Tag
+from validation.reporting.charts import BAD, INK, LINE, SOFT, logarithmic, style
+from validation.reporting.figures import Curve, Drawing, Figure
 
 TIME = "time of the processor  [s]"
-# Colours of ours, which are cold, and of the others, in the order in which they appear.
-_OURS, _OTHERS = (0, 2, 6, 8, 10, 4), (1, 11, 7, 9, 3)
-_FRONT = 5
+# Series of a figure: each has a colour and a mark that no other has.
+MOST = 8
+_COLORS = (0, 1, 5, 6, 11, 8, 9, 7)
+# Decades above the largest target error, and factor beyond the slowest run of interest, that are shown.
+_ABOVE, _BEYOND = 30.0, 4.0
+# Share of the axes' height that a name in the margin takes.
+_LINE = 0.047
 
 
-def letters(count: int) -> list[str]:
-    """a, b, ... z, a1, b1, ..."""
-    return [ascii_lowercase[i % 26] + (str(i // 26) if i >= 26 else "") for i in range(count)]
+def method(point: Point) -> str:
+    """The series of a run: a method of ours, or an engine with whatever of its methods is best."""
+    return point.method if point.who == OURS else point.who
 
 
-def figure(problem: BenchmarkProblem, result: Result, caption: str) -> Figure:
-    """Everything that ran, by model; and the methods on the model that matters."""
+def figure(problem: BenchmarkProblem, result: Result) -> Figure:
+    """All runs with the front; and each method on the model with which it is fastest at the smallest target error."""
     points = charted(problem, result.points)
-    return Figure(caption, (models_chart(problem, result), _methods_chart(problem, result, points)))
+    names = tuple(dict.fromkeys([*map(method, front(points)), *ranking(problem, points)]))
+    hidden = f" Not drawn: {', '.join(names[MOST:])}; the table of methods has them." if names[MOST:] else ""
+    caption = (
+        "Down is more accurate, left is faster. First: the front, which no run beats in both, and what its runs are, "
+        "from the fastest to the most accurate; runs that are beaten are grey (crosses: other engines). Second: each "
+        f"method on its best model.{hidden}"
+    )
+    return Figure(caption, (front_drawing(problem, result), _methods_drawing(problem, result, points, names[:MOST])))
 
 
-def models_chart(problem: BenchmarkProblem, result: Result) -> Chart:
-    """Every run, a colour and shape a model, and the front with the letters of its runs."""
+def ranking(problem: BenchmarkProblem, points: Sequence[Point]) -> list[str]:
+    """Methods, the fastest at the smallest target error first; those that miss it by their least error."""
+    groups = grouped(points, method)
+    error = min((target.error for target in problem.targets), default=0.0)
+    return sorted(groups, key=lambda name: (seconds_at(groups[name], error), min(p.error for p in groups[name])))
+
+
+def grouped(points: Sequence[Point], name: Callable[[Point], Any]) -> dict[Any, list[Point]]:
+    """Points by a name."""
+    groups: dict[Any, list[Point]] = {}
+    for p in points:
+        groups.setdefault(name(p), []).append(p)
+    return groups
+
+
+def front_drawing(problem: BenchmarkProblem, result: Result) -> Drawing:
+    """Every run, grey but for those of the front, which are named in the margin."""
     points = charted(problem, result.points)
     best = front(points)
-    stairs = [(b.seconds, a.error) for a, b in pairwise(best)] + [(p.seconds, p.error) for p in best]
-    stairs.sort(key=lambda at: (at[0], -at[1]))
-    line = Curve("front", [x for x, _ in stairs], [y for _, y in stairs], _FRONT)
-    tags = tuple(Tag(name, p.seconds, p.error) for name, p in zip(letters(len(best)), best, strict=True))
-    title = f"{problem.title}: every run, and the front"
-    curves = (*_series(points, lambda p: p.model, "points"), line)
-    return Chart(title, TIME, problem.axis, curves, _marks(result, points), log="xy", tags=tags)
+    names = list(dict.fromkeys(map(method, best)))[:MOST]
+
+    def paint(axes: Any) -> None:
+        _frame(axes, problem, points)
+        for ours, mark in ((True, "o"), (False, "x")):
+            beaten = [p for p in points if p not in best and (p.who == OURS) is ours]
+            axes.plot(*_xy(beaten), mark, color=SOFT, alpha=0.3, markersize=4, markeredgewidth=1)
+        stairs = [(b.seconds, a.error) for a, b in pairwise(best)] + [(p.seconds, p.error) for p in best]
+        axes.plot(*zip(*sorted(stairs, key=lambda at: (at[0], -at[1])), strict=True), color=SOFT, linewidth=1)
+        for k, name in enumerate(names):
+            axes.plot(*_xy([p for p in best if method(p) == name]), **_style(name, k, "points"), zorder=3)
+        runs = [(p.seconds, p.error, f"{p.model}, {p.setting}", LINE) for p in best]
+        _margin(
+            axes, runs + [(1.0, value, f"floor of our beams, {name}", BAD) for name, value in result.floors.items()]
+        )
+
+    return Drawing(f"{problem.title}: the front and its runs", TIME, problem.axis, paint, size=(310.0, 330.0))
 
 
-def _methods_chart(problem: BenchmarkProblem, result: Result, points: list[Point]) -> Chart:
-    curves = _series(_finest(points), lambda p: p.method, "joined")
-    title = "methods: each on its best model"
-    return Chart(title, TIME, problem.axis, curves, _marks(result, points), log="xy")
+def _methods_drawing(problem: BenchmarkProblem, result: Result, points: list[Point], names: Sequence[str]) -> Drawing:
+    groups = grouped(points, method)
+    error = min((target.error for target in problem.targets), default=0.0)
+
+    def paint(axes: Any) -> None:
+        _frame(axes, problem, points)
+        for k, name in enumerate(names):
+            series = grouped(groups[name], lambda p: p.series).values()
+            best = min(series, key=lambda some: (seconds_at(some, error), min(p.error for p in some)))
+            axes.plot(*_xy(sorted(best, key=lambda p: p.seconds)), **_style(name, k, "joined"))
+        _margin(axes, [(1.0, value, f"floor, {name}", BAD) for name, value in result.floors.items()])
+
+    return Drawing("methods, each on its best model", TIME, problem.axis, paint, size=(310.0, 330.0))
 
 
-def _finest(points: list[Point]) -> list[Point]:
-    """The series of each method of each side that reaches the smallest error."""
-    best: dict[tuple[str, str], Point] = {}
-    for point in points:
-        key = point.who, point.method
-        if key not in best or point.error < best[key].error:
-            best[key] = point
-    chosen = {point.series for point in best.values()}
-    return [p for p in points if p.series in chosen]
+def _style(name: str, k: int, kind: Any) -> dict[str, Any]:
+    return style(Curve(name, (), (), _COLORS[k], kind, k - _COLORS[k])) | {"markersize": 7 if kind == "points" else 5}
 
 
-def _series(points: list[Point], name: Callable[[Point], str], kind: Kind) -> tuple[Curve, ...]:
-    """A curve a side and name; no two have both colour and shape alike."""
-    groups: dict[tuple[bool, str], list[Point]] = {}
-    for p in points:
-        label = name(p) if p.who == OURS else f"{p.who}, {name(p)}"
-        groups.setdefault((p.who != OURS, label), []).append(p)
-    curves, count = [], {False: 0, True: 0}
-    for (other, label), members in sorted(groups.items(), key=lambda item: item[0][0]):
-        palette, n = _OTHERS if other else _OURS, count[other]
-        count[other] += 1
-        chosen = sorted(members, key=lambda p: p.seconds)
-        x, y = [p.seconds for p in chosen], [p.error for p in chosen]
-        color, shape = palette[n % len(palette)], n // len(palette) % SHAPES
-        curves.append(Curve(label, x, y, color, kind, shape, tuple(p.name for p in chosen)))
-    return tuple(curves)
+def _xy(points: Sequence[Point]) -> tuple[list[float], list[float]]:
+    return [p.seconds for p in points], [p.error for p in points]
 
 
-def _marks(result: Result, points: list[Point]) -> tuple[Mark, ...]:
-    """Floors of our beams, under the lowest who goes on; and what the references can tell."""
-    least = min(result.floors.values(), default=0.0)
-    below = dict.fromkeys(p.who for p in usable(result.points) if p.who != OURS and p.error < least)
-    tool = f"; below it use {' or '.join(below)}" if below else ""
-    marks = [
-        Mark(f"floor of our beams, {name}{tool if value == least else ''}", value)
-        for name, value in result.floors.items()
-    ]
-    apart = all(not 0.7 < value / result.agreement < 1.4 for value in result.floors.values() if result.agreement)
-    if result.agreement and apart and min((p.error for p in points), default=1.0) < 10 * result.agreement:
-        marks.append(Mark("the references agree to this", result.agreement))
-    return tuple(marks)
+def _frame(axes: Any, problem: BenchmarkProblem, points: Sequence[Point]) -> None:
+    """Logarithmic axes over what matters: from the front to somewhat beyond the target errors and their times."""
+    best, targets = front(points), problem.targets
+    top = _ABOVE * max((target.error for target in targets), default=1.0)
+    slowest = [seconds_at((p for p in points if p.who == target.engine), target.error) for target in targets]
+    right = max([best[-1].seconds, *filter(np.isfinite, slowest)]) * _BEYOND
+    for name, low, high in (("x", best[0].seconds / 2, right), ("y", best[-1].error / 2, max(top, 2 * best[0].error))):
+        getattr(axes, f"set_{name}scale")("log")
+        getattr(axes, f"set_{name}lim")(low, high)
+        logarithmic(getattr(axes, f"{name}axis"))
+
+
+def _margin(axes: Any, rows: Sequence[tuple[float, float, str, str]]) -> None:
+    """Names at the right of the axes, each joined to its point, none over another.
+
+    Args:
+        axes: The axes.
+        rows: Abscissa, ordinate, name, colour of the line that joins them; a limit goes across, to its abscissa 1.
+    """
+    rows = sorted(rows, key=lambda row: -row[1])
+    low, high = np.log10(axes.get_ylim())
+    places = [(np.log10(row[1]) - low) / (high - low) for row in rows]
+    for k in range(1, len(places)):
+        places[k] = min(places[k], places[k - 1] - _LINE)
+    for k in range(len(places)):
+        places[k] = max(places[k], (len(places) - 1 - k) * _LINE)
+    for (x, y, name, color), place in zip(rows, places, strict=True):
+        limit = color == BAD
+        if limit:
+            axes.axhline(y, color=BAD, linewidth=1.2, linestyle=(0, (6, 2)), zorder=1.5)
+        axes.annotate(
+            name,
+            (x, y),
+            (1.03, place),
+            axes.get_yaxis_transform() if limit else "data",
+            "axes fraction",
+            {"arrowstyle": "-", "color": color, "linewidth": 0.8, "shrinkA": 1, "relpos": (0.0, 0.5), "shrinkB": 2},
+            color=BAD if limit else INK,
+            va="center",
+            fontsize=9.5,
+        )

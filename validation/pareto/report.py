@@ -10,9 +10,9 @@ import typer
 
 from validation.pareto import verdicts
 from validation.pareto.catalogue import PROBLEMS
-from validation.pareto.figures import figure, letters, models_chart
-from validation.pareto.front import charted, front
-from validation.pareto.problem import BenchmarkProblem
+from validation.pareto.figures import figure, front_drawing, grouped
+from validation.pareto.front import charted, front, seconds_at, usable
+from validation.pareto.problem import OURS, BenchmarkProblem, Point
 from validation.pareto.race import Result, race
 from validation.reporting.command import Done, Quick, Run, known
 from validation.reporting.numbers import counted, duration, short, times
@@ -29,6 +29,11 @@ INTRO = (
     "Accelerations in single precision are a series of their own on the rigid arm: the generated code has floats for "
     "batches alone, so a motion by itself pays for all lanes of a vector and uses one; what batches gain is in the "
     "report on timing.",
+)
+
+DECISION = (
+    "**Which method, on which model.** The fastest run that keeps an error; time of the processor for the stepping "
+    "alone. The next best loses by so much time."
 )
 
 
@@ -87,9 +92,18 @@ def problem_data(problem: BenchmarkProblem, result: Result, date: str) -> dict[s
     }
 
 
-# Of a target: its problem, by name and as stated, and the verdict on it.
+_DECISIONS: dict[str, Column] = {
+    "scene": lambda row: f"[{row[1].title}]({row[0]})",
+    "#error at most": lambda row: row[2].error,
+    "method": lambda row: _method(row[2].best),
+    "model": lambda row: row[2].best.model,
+    "step or tolerance": lambda row: row[2].best.setting,
+    "#time": lambda row: duration(row[2].best.seconds),
+    "next best method loses by": lambda row: _loses(row[2].best, row[2].rival, _method(row[2].rival)),
+    "other side loses by": lambda row: _loses(row[2].best, row[2].other, row[2].other.who if row[2].other else ""),
+}
 _TARGETS: dict[str, Column] = {
-    "problem": lambda row: f"[{row[1].title}](#{row[0]})",
+    "scene": lambda row: f"[{row[1].title}](#{row[0]})",
     "#at error": lambda row: row[1].shown(row[2].target.error),
     "against": lambda row: row[2].target.engine,
     "#ours": lambda row: duration(row[2].seconds),
@@ -104,60 +118,77 @@ def compose(data: Data) -> Report:
     """The report of its JSON."""
     results = {name: (PROBLEMS[name], restored(Result, problem)) for name, problem in data["problems"].items()}
     failures, unfinished = failure_texts(data["failures"]), tuple(data["unfinished"])
-    targets = [target for problem in data["problems"].values() for target in problem["targets"]]
-    met, problems = sum(target["ok"] for target in targets), counted(len(results), "problem")
+    judged = [(name, *one, v) for name, one in results.items() for v in verdicts.verdicts(one[0], one[1].points)]
+    met, problems = sum(row[3].ok for row in judged), counted(len(results), "problem")
     runs = sum(len(result.points) for _, result in results.values())
     doubted = [name for name, (problem, result) in results.items() if not result.agreement <= problem.trust]
-    said = f"{met} of {counted(len(targets), 'target')} met, in {problems}"
+    said = f"{met} of {counted(len(judged), 'target')} met, in {problems}"
     said += " (quick variant: few contestants, so its ratios mean little)" if data["quick"] else ""
     said += f"; references disagree on {', '.join(doubted)}" if doubted else ""
     said += f"; {counted(len(failures), 'problem')} could not be done" if failures else ""
     said += f"; interrupted before {', '.join(unfinished)}" if unfinished else ""
-    most = max((t["found"] for t in targets if isinstance(t["found"], float)), default=0.0)
-    judged = ((name, problem, verdicts.verdicts(problem, result.points)) for name, (problem, result) in results.items())
-    table = Table.of(((name, problem, v) for name, problem, group in judged for v in group), _TARGETS)
+    most = max((v.ratio for *_, v in judged if math.isfinite(v.ratio)), default=0.0)
+    targets = Table.of(((name, problem, v) for name, problem, _, v in judged), _TARGETS)
+    chosen = ((name, *one, choice) for name, one in results.items() for choice in verdicts.choices(*one))
     return Report(
         "Speed against accuracy",
         f"{said}.",
         bool(data["ok"]),
         (*INTRO, *failures),
         (
-            Section("Which to use when", (verdicts.overall(results), table), "which"),
             *(_section(name, *results[name], problem, data["quick"]) for name, problem in data["problems"].items()),
+            Section("Targets", (targets,), "targets"),
         ),
         (
-            Fact(f"{met} of {len(targets)}", "targets are met", met == len(targets)),
+            Fact(f"{met} of {len(judged)}", "targets are met", met == len(judged)),
             Fact(str(runs), f"ways through {problems}"),
             Fact(times(most), "an engine's best time over ours, at equal error, where it is most"),
         ),
-        tuple(models_chart(*first) for first in list(results.values())[:1]),
-        (table, *failures),
+        tuple(front_drawing(*first) for first in list(results.values())[:1]),
+        (targets, *failures),
         unfinished,
+        decisions=(
+            DECISION,
+            Table.of(((f"pareto.html#{name}", problem, choice) for name, problem, _, choice in chosen), _DECISIONS),
+        ),
+        missed=tuple(
+            f"{problem.title} at {problem.shown(v.target.error)}: {v.winner}; asked is {short(v.target.ratio)} times "
+            f"{v.target.engine}'s speed"
+            for _, problem, _, v in judged
+            if not v.ok
+        ),
     )
 
 
+def _method(point: Point | None) -> str:
+    return "" if point is None else point.method if point.who == OURS else f"{point.who}: {point.method}"
+
+
+def _loses(best: Point, other: Point | None, name: str) -> str:
+    if other is None:
+        return "no other"
+    ratio = other.seconds / best.seconds
+    return f"{times(ratio) if ratio >= 2.0 else f'{100 * (ratio - 1):.0f} %'} {name}"
+
+
 def _section(name: str, problem: BenchmarkProblem, result: Result, data: Data, quick: bool) -> Section:
-    best = front(charted(problem, result.points))
-    rows = [(letter, point) for letter, point in zip(letters(len(best)), best, strict=True)]
     runs: dict[str, Column] = {
-        "run": lambda row: row[0],
-        **{name: _field(name) for name in ("who", "model", "method")},
-        "step or tolerance": _field("setting"),
-        "#error": lambda row: problem.shown(row[1].error),
-        "#time": lambda row: duration(row[1].seconds),
+        "method": _method,
+        "model": "{model}",
+        "step or tolerance": "{setting}",
+        "#error": lambda point: problem.shown(point.error),
+        "#time": lambda point: duration(point.seconds),
     }
     agree = f"They agree to {problem.shown(result.agreement)}; asked for is {problem.shown(problem.trust)}."
     command = f"python -m validation pareto --problem {name}{' --quick' if quick else ''}"
+    best = front(charted(problem, result.points))
     ended = Bullets(tuple(verdicts.refused(result)))
-    advice = f"{verdicts.below_the_floor(problem, result)} {verdicts.methods(problem, result)}".strip()
-    of_verdict = {title: column for title, column in _TARGETS.items() if title != "problem"}
-    judged = Table.of(((name, problem, v) for v in verdicts.verdicts(problem, result.points)), of_verdict)
     blocks = (
         f"{problem.setting} **Error:** {problem.measure}.",
-        figure(problem, result, verdicts.see(problem, result)),
-        judged,
-        Text(f"**Which when.** {advice}", "advice"),
-        Table.of(rows, runs),
+        figure(problem, result),
+        "Least time of each method, whatever its model and step, at errors asked for:",
+        _methods(problem, result),
+        Fold(f"The {len(best)} runs of the front", (Table.of(best, runs),)),
         f"**Tuned:** {problem.tuned}",
         Text(f"**References:** {result.references}. {agree}", "plain" if result.agreement <= problem.trust else "bad"),
         Fold(f"{len(result.points)} runs; those that did not come to their end", (ended,), page_only=True),
@@ -166,9 +197,26 @@ def _section(name: str, problem: BenchmarkProblem, result: Result, data: Data, q
     return Section(problem.title, blocks, name, bool(data["ok"]))
 
 
-def _field(name: str) -> Column:
-    """A field of the point of a row."""
-    return lambda row: str(getattr(row[1], name))
+def _methods(problem: BenchmarkProblem, result: Result) -> Table:
+    """A line a method: its times at the target errors, its least error, and the model and step that reach it."""
+    groups = grouped(usable(result.points), _method)
+    errors = sorted({target.error for target in problem.targets}, reverse=True)
+    least = {name: min(points, key=lambda p: p.error) for name, points in groups.items()}
+    order = sorted(
+        groups, key=lambda name: ([seconds_at(groups[name], e) for e in reversed(errors)], least[name].error)
+    )
+
+    def at(error: float) -> Column:
+        return lambda name: duration(seconds_at(groups[name], error)).replace("no time", "-")
+
+    columns: dict[str, Column] = {
+        "method": str,
+        **{f"#{problem.shown(error)}": at(error) for error in errors},
+        "#least error": lambda name: problem.shown(least[name].error),
+        "by": lambda name: f"{least[name].model}, {least[name].setting}",
+        "#in": lambda name: duration(least[name].seconds),
+    }
+    return Table.of(order, columns)
 
 
 TOPIC = Topic("pareto", "Accuracy against time", "Which model is the cheapest that is good enough?", compose, measure)

@@ -1,14 +1,14 @@
-"""What follows from the points, in words: who wins where, and which to use when."""
+"""What follows from the points: whether targets are met, and which run to take at which error."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 
-from validation.pareto.front import charted, front, ratio, seconds_at, usable
+from validation.pareto.front import ratio, seconds_at, usable
 from validation.pareto.problem import OURS, BenchmarkProblem, Point, Target
-from validation.pareto.race import Result, engines
-from validation.reporting.numbers import duration
+from validation.pareto.race import Result
 
 
 @dataclass(frozen=True)
@@ -51,71 +51,42 @@ def verdicts(problem: BenchmarkProblem, points: tuple[Point, ...]) -> list[Verdi
     return judged
 
 
-def below_the_floor(problem: BenchmarkProblem, result: Result) -> str:
-    """Who serves those who want less than our model's own error."""
-    if not result.floors:
-        return ""
-    least = min(result.floors.values())
-    finer = [p for p in usable(result.points) if p.who != OURS and p.error < least]
-    floors = ", ".join(f"{problem.shown(value)} ({name})" for name, value in result.floors.items())
-    said = f"Our beam model leaves {floors}, whatever its functions and method (a step's error may hide some of it)"
-    if not finer:
-        return f"{said}; no run here goes below it."
-    first = min(finer, key=lambda p: p.seconds)
-    return (
-        f"{said}; below {problem.shown(least)} {first.who} is the tool: {first.model}, {first.method}, "
-        f"{first.setting} reach {problem.shown(first.error)} in {duration(first.seconds)}."
-    )
+@dataclass(frozen=True)
+class Choice:
+    """The fastest run that keeps an error, and those it leaves behind.
+
+    Attributes:
+        error: Error to keep, for people.
+        best: The run.
+        rival: Fastest run of another method; None where no other keeps the error.
+        other: Fastest run of another side: an engine, or ours.
+    """
+
+    error: str
+    best: Point
+    rival: Point | None
+    other: Point | None
 
 
-def methods(problem: BenchmarkProblem, result: Result) -> str:
-    """Which of our methods is first at the errors that matter."""
-    mine = [p for p in usable(result.points) if p.who == OURS]
-    if not mine:
-        return "No run of ours came to its end."
-    parts = []
-    # References can't tell what is below their disagreement.
-    least = max(min(p.error for p in mine), result.agreement)
-    for error in sorted({target.error for target in problem.targets if target.error >= least} | {least}, reverse=True):
-        by: dict[str, float] = {}
-        for p in mine:
-            by[p.method] = min(by.get(p.method, math.inf), seconds_at((o for o in mine if o.method == p.method), error))
-        first, *rest = sorted((s, m) for m, s in by.items() if math.isfinite(s))
-        second = f", then {rest[0][1]} ({duration(rest[0][0])})" if rest else ""
-        parts.append(f"at {problem.shown(error)} {first[1]} ({duration(first[0])}){second}")
-    return "Of our methods the fastest are " + "; ".join(parts) + "."
+def choices(problem: BenchmarkProblem, result: Result) -> list[Choice]:
+    """What to take at each target error, and below the floors of our beams, which no step of ours passes for sure."""
+    chosen = []
+    for error in sorted({target.error for target in problem.targets}, reverse=True):
+        chosen += _choice(problem.shown(error), (p for p in usable(result.points) if p.error <= error))
+    if result.floors:
+        least = min(result.floors.values())
+        finer = (p for p in usable(result.points) if p.who != OURS and p.error < least)
+        chosen += _choice(f"< {problem.shown(least)} (floor)", finer)
+    return chosen
 
 
-def overall(results: dict[str, tuple[BenchmarkProblem, Result]]) -> str:
-    """What holds across problems: whose the front is, and our first method at the smallest error asked for."""
-    firsts: dict[str, list[str]] = {}
-    for problem, result in results.values():
-        if not problem.targets:
-            continue
-        error = min(target.error for target in problem.targets)
-        mine = [p for p in usable(result.points) if p.who == OURS]
-        by = {p.method: seconds_at((o for o in mine if o.method == p.method), error) for p in mine}
-        if by and math.isfinite(min(by.values())):
-            firsts.setdefault(min(by, key=lambda m: by[m]), []).append(problem.title)
-    said = [f"{method} on {', '.join(where)}" for method, where in firsts.items()]
-    floors = [problem.title for problem, result in results.values() if result.floors]
-    where = ", ".join(floors)
-    beams = (
-        f" Below the floors of our beams, on {where}, the tool is a nonlinear finite element: Exudyn." if where else ""
-    )
-    return f"At the smallest error asked for, the first of our methods is {'; '.join(said) or 'none'}.{beams}"
-
-
-def see(problem: BenchmarkProblem, result: Result) -> str:
-    """The sentence under a figure."""
-    others = " and ".join(engines(result.points)) or "nobody else"
-    best = front(charted(problem, result.points))
-    mine, total = sum(p.who == OURS for p in best), len(best)
-    return (
-        f"Down is more accurate, left is faster. {mine} of the {total} runs on the green front are ours. Cold "
-        f"colours are ours, warm ones those of {others}. Letters name the runs of the front in the table "
-        "below. At the right, each method on the model with which it comes closest."
-    )
+def _choice(error: str, points: Iterable[Point]) -> list[Choice]:
+    runs = sorted(points, key=lambda p: p.seconds)
+    if not runs:
+        return []
+    best = runs[0]
+    rival = next((p for p in runs if (p.who, p.method) != (best.who, best.method)), None)
+    return [Choice(error, best, rival, next((p for p in runs if p.who != best.who), None))]
 
 
 def refused(result: Result) -> list[str]:

@@ -1,125 +1,166 @@
-"""Chart -> drawing: SVG without a library, so that a report stays small and follows dark mode."""
+"""The one style of figures: charts and drawings -> SVG by Matplotlib, in the page's colours, light and dark."""
 
 from __future__ import annotations
 
-import math
+import io
+import re
+import textwrap
+from collections import Counter
 from html import escape
+from typing import Any
+from zlib import crc32
 
 import numpy as np
+from matplotlib import rc_context
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
-from validation.mechanics.geometry import Array
-from validation.reporting.axes import Axis, grid, line, point, svg, text
-from validation.reporting.figures import Chart, Curve, Drawing
+from validation.reporting.figures import SHAPES, Chart, Curve, Drawing
 from validation.reporting.numbers import short
 
-WIDTH, HEIGHT = 620, 376
-_LEFT, _RIGHT, _TOP, _BOTTOM = 70, 20, 12, 28
-# Points of a polyline; more are not seen.
-_MOST_POINTS = 600
-# Styles of the lines of limits.
-_LIMITS = 3
+# Names in the style sheet -> colours on light and on dark paper.
+INK, SOFT, LINE, PAPER, GOOD, BAD = "#1c2024", "#5c6670", "#dfe3e6", "#fcfcfb", "#1a7f4b", "#c0362c"
+SERIES = tuple(
+    "#2563b8 #d9730d #5aa0e6 #e39a45 #7a8691 #2f9e6e #8a5cc7 #b0508a #12908e #8c5a2b #5b6fae #c2342d".split()
+)
+_DARK_SERIES = "#6ea8ff #ff9d45 #9cc9ff #ffc98f #98a4ae #5fd0a0 #b794f0 #e08abf #4fd0ce #d0a070 #a3b4ea #ff8a80".split()
+PALETTE = {
+    "ink": (INK, "#e6e9eb"),
+    "soft": (SOFT, "#9aa5ae"),
+    "line": (LINE, "#343a40"),
+    "paper": (PAPER, "#15181b"),
+    "good": (GOOD, "#4cc38a"),
+    "bad": (BAD, "#ff7a6e"),
+    **{f"e{k}": pair for k, pair in enumerate(zip(SERIES, _DARK_SERIES, strict=True))},
+}
+MARKS = "osD^vPX*"
+_DASHES = {"dashed": (4, 2.5), "dotted": (1.2, 2)}
+_LIMITS = ((6, 2), (2, 2), (8, 2, 2, 2))
+_RC = {
+    "svg.fonttype": "none",
+    "font.size": 11,
+    "font.family": "DejaVu Sans",
+    "text.color": INK,
+    "axes.labelcolor": INK,
+    "axes.edgecolor": SOFT,
+    "axes.titlesize": 11,
+    "axes.titlelocation": "left",
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.axisbelow": True,
+    "axes.grid": True,
+    "grid.color": LINE,
+    "xtick.color": SOFT,
+    "ytick.color": SOFT,
+    "xtick.major.size": 0,
+    "ytick.major.size": 0,
+    "lines.linewidth": 1.6,
+    "lines.markersize": 5,
+    "legend.frameon": False,
+    "legend.handlelength": 2.2,
+}
+# Pixels of the page for a unit of a picture: two pictures stand beside each other, and letters are of one size in all.
+_SCALE = 1.05
+# Points of Matplotlib are units of the picture; widths of letters are of this font.
+_LETTER = 6.4
 
 
-def draw(chart: Chart) -> Drawing:
-    """The chart with its legend."""
-    x, y = _axes(chart)
-    parts = grid(x, y)
-    parts += [_limit(chart, k, x, y) for k in range(len(chart.marks))]
-    parts += [_curve(curve, chart, x, y) for curve in chart.curves]
-    parts += [text(x.at(tag.x) - 5, y.at(tag.y) + 14, escape(tag.label), "end", "tag") for tag in chart.tags]
-    legend = [(_sample(curve), curve.label) for curve in chart.curves]
-    legend += [
-        (line(f"limit l{k % _LIMITS}", 0, 24, 6, 6), f"{mark.label}: {short(float(format(mark.at, '.3g')))}")
-        for k, mark in enumerate(chart.marks)
-    ]
-    return Drawing(chart.title, tuple(legend), svg(WIDTH, HEIGHT, chart.title, parts), chart.x, chart.y)
+def draw(item: Chart | Drawing) -> str:
+    """The picture with its legend as an SVG element, titled and described."""
+    width, height = item.size if isinstance(item, Drawing) else (430.0, 270.0)
+    with rc_context(_RC | {"svg.hashsalt": item.title}):
+        figure = Figure(figsize=(width / 72, height / 72))
+        axes = figure.add_axes((0, 0, 1, 1))
+        axes.set_title(item.y)
+        axes.set_xlabel(item.x)
+        if isinstance(item, Drawing):
+            item.paint(axes)
+        else:
+            _curves(item, axes)
+        names = _legend(axes, width, height, item.note if isinstance(item, Drawing) else "")
+        text = io.StringIO()
+        figure.savefig(
+            text, format="svg", bbox_inches="tight", pad_inches=0.05, metadata={"Date": None}, transparent=True
+        )
+    return _inlined(text.getvalue(), item.title, f"{item.y} against {item.x}. {'; '.join(names)}.")
 
 
-def _axes(chart: Chart) -> tuple[Axis, Axis]:
-    seen = [_seen(curve, chart) for curve in chart.curves]
-    x = _axis([points[0] for points in seen], chart, "x", _LEFT, WIDTH - _RIGHT)
-    y = _axis([points[1] for points in seen], chart, "y", HEIGHT - _BOTTOM, _TOP)
-    return _equal(x, y) if chart.equal else (x, y)
+def logarithmic(axis: Any) -> None:
+    """Decades of an axis, as powers of ten where they are far from one."""
+    low, high = sorted(axis.get_view_interval())
+    axis.set_major_locator(LogLocator(subs=(1.0,) if high > 60 * low else (1.0, 2.0, 5.0), numticks=8))
+    axis.set_minor_locator(NullLocator())
+    axis.set_major_formatter(FuncFormatter(lambda value, _: power(value)))
 
 
-def _seen(curve: Curve, chart: Chart) -> tuple[Array, Array]:
-    """The points that can be drawn; a gap is NaN in y."""
-    x, y = np.asarray(curve.x, float), np.asarray(curve.y, float)
-    y = np.where(np.isfinite(y), y, np.nan)
-    if "y" in chart.log:
-        y = np.where(y > 0.0, y, np.nan)
+def power(value: float) -> str:
+    """A value of a logarithmic axis."""
+    if 1e-2 <= value < 1e4:
+        return f"{value:g}"
+    mantissa, _, exponent = f"{value:.0e}".partition("e")
+    raised = str(int(exponent)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+    return f"10{raised}" if mantissa == "1" else f"{mantissa}·10{raised}"
+
+
+def style(curve: Curve) -> dict[str, Any]:
+    """Colour, line and mark of a curve."""
+    dashes = _DASHES.get(curve.kind, ())
+    return {
+        "label": curve.label,
+        "color": SERIES[curve.color % len(SERIES)],
+        "linestyle": "none" if curve.kind == "points" else (0, dashes) if dashes else "-",
+        "marker": MARKS[(curve.color + curve.shape) % SHAPES] if curve.kind in ("points", "joined") else "",
+        "markeredgecolor": PAPER,
+        "markeredgewidth": 0.5,
+    }
+
+
+def _curves(chart: Chart, axes: Any) -> None:
+    for curve in chart.curves:
+        axes.plot(curve.x, np.where(np.isfinite(curve.y), curve.y, np.nan), **style(curve))
+    for k, mark in enumerate(chart.marks):
+        line = axes.axhline if mark.axis == "y" else axes.axvline
+        said = f"{mark.label}: {short(float(format(mark.at, '.3g')))}"
+        line(mark.at, color=BAD, linewidth=1.3, linestyle=(0, _LIMITS[k % 3]), label=said, zorder=1.5)
+    for name in chart.log:
+        getattr(axes, f"set_{name}scale")("log", nonpositive="mask")
+        logarithmic(getattr(axes, f"{name}axis"))
     if chart.range_y is not None:
-        y = np.where((y >= chart.range_y[0]) & (y <= chart.range_y[1]), y, np.nan)
-    return x, y
+        axes.set_ylim(chart.range_y)
+    if chart.equal:
+        axes.set_aspect("equal", adjustable="datalim")
 
 
-def _axis(values: list[Array], chart: Chart, name: str, start: float, end: float) -> Axis:
-    log = name in chart.log
-    drawn = np.concatenate([*values, [mark.at for mark in chart.marks if mark.axis == name]])
-    drawn = drawn[np.isfinite(drawn)]
-    low, high = (float(drawn.min()), float(drawn.max())) if len(drawn) else (1.0, 10.0)
-    if name == "y" and chart.range_y is not None:
-        low, high = chart.range_y
-    if log:
-        low, high = math.log10(low), math.log10(high)
-    if name == "y" and chart.range_y is None:
-        low, high = (math.floor(low), math.ceil(high)) if log else _widened(low, high)
-    if high - low < 1e-12:
-        low, high = low - 1.0, high + 1.0
-    return Axis(low, high, start, end, log)
+def _legend(axes: Any, width: float, height: float, note: str) -> list[str]:
+    """Below the axes, in as many columns as fit: nothing of it lies on a point or is cut."""
+    handles, names = axes.get_legend_handles_labels()
+    lines = [textwrap.fill(name, int(width / _LETTER)) for name in names]
+    longest = max((len(line) for name in lines for line in name.split("\n")), default=0)
+    columns = max(1, min(4, int(width / (longest * _LETTER + 38))))
+    if names:
+        place = {"loc": "upper left", "bbox_to_anchor": (-0.02, -38 / height)}
+        axes.legend(
+            handles, lines, ncols=columns, fontsize=10, title=note, alignment="left", title_fontsize=10, **place
+        )
+    return [*names, note] if note else list(names)
 
 
-def _widened(low: float, high: float) -> tuple[float, float]:
-    margin = 0.04 * (high - low)
-    return low if low == 0.0 else low - margin, high + margin
-
-
-def _equal(x: Axis, y: Axis) -> tuple[Axis, Axis]:
-    """Both axes with as many pixels a unit: the one that has more shows more."""
-    scales = [abs(axis.end - axis.start) / (axis.high - axis.low) for axis in (x, y)]
-    widened = []
-    for axis, scale in zip((x, y), scales, strict=True):
-        margin = 0.5 * (scale / min(scales) - 1.0) * (axis.high - axis.low)
-        widened.append(axis._replace(low=axis.low - margin, high=axis.high + margin))
-    return widened[0], widened[1]
-
-
-def _curve(curve: Curve, chart: Chart, x: Axis, y: Axis) -> str:
-    xs, ys = _seen(curve, chart)
-    if curve.kind not in ("points", "joined") and len(xs) > _MOST_POINTS:
-        chosen = np.linspace(0, len(xs) - 1, _MOST_POINTS).astype(int)
-        xs, ys = xs[chosen], ys[chosen]
-    points = [None if math.isnan(b) else (x.at(a), y.at(b)) for a, b in zip(xs.tolist(), ys.tolist(), strict=True)]
-    parts: list[str] = []
-    if curve.kind != "points":
-        runs: list[list[str]] = [[]]
-        for p in points:
-            if p is None:
-                runs.append([])
-            else:
-                runs[-1].append(f"{p[0]:.1f},{p[1]:.1f}")
-        style = f"plot {curve.kind} e{curve.color} s{curve.shape}"
-        parts += [f'<polyline class="{style}" points="{" ".join(run)}"/>' for run in runs if run]
-    if curve.kind in ("points", "joined"):
-        size = 4.0 if curve.kind == "points" else 3.2
-        hints = curve.hints or ("",) * len(points)
-        parts += [point(f"e{curve.color}", *p, curve.shape, size, h) for p, h in zip(points, hints, strict=True) if p]
-    return "".join(parts)
-
-
-def _limit(chart: Chart, k: int, x: Axis, y: Axis) -> str:
-    mark = chart.marks[k]
-    kind = f"limit l{k % _LIMITS}"
-    if mark.axis == "y":
-        return line(kind, x.start, x.end, y.at(mark.at), y.at(mark.at))
-    return line(kind, x.at(mark.at), x.at(mark.at), y.start, y.end)
-
-
-def _sample(curve: Curve) -> str:
-    """The curve in the legend, 24 by 12."""
-    parts = []
-    if curve.kind != "points":
-        parts.append(line(f"plot {curve.kind} e{curve.color} s{curve.shape}", 0, 24, 6, 6))
-    if curve.kind in ("points", "joined"):
-        parts.append(point(f"e{curve.color}", 12, 6, curve.shape, 4.0))
-    return "".join(parts)
+def _inlined(text: str, title: str, description: str) -> str:
+    """The element without what the page has itself: head, fonts, colours, names of groups."""
+    box = text.partition('viewBox="')[2].partition('"')[0]
+    body = text.partition("</metadata>")[2]
+    body = body.replace("xlink:href", "href").replace("font-family: 'DejaVu Sans'; ", "")
+    unused = r'<style.*?</style>|<!--.*?-->| id="[a-z0-9_.]*_\d+"| transform="rotate\(-0 [^)]*\)"|\n\s*'
+    body = re.sub(unused, "", body, flags=re.S)
+    body = re.sub(r"<[^>]*>", lambda tag: re.sub(r"(\.\d)\d+", r"\1", tag[0]), body)
+    for name, (light, _) in PALETTE.items():
+        body = body.replace(light, f"var(--{name})")
+    # What is drawn often is styled once: a map has hundreds of numbers.
+    often = {f"m{crc32(one.encode()):x}": one for one, n in Counter(re.findall('style="(.*?)"', body)).items() if n > 3}
+    for name, one in often.items():
+        body = body.replace(f'style="{one}"', f'class="{name}"')
+    rules = " ".join(f".{name} {{ {one} }}" for name, one in often.items())
+    body = re.sub(r"<g>(<text[^>]*>[^<]*</text>)</g>|<g/>", r"\1", f"<style>{rules}</style>{body}")
+    width = float(box.split()[2])
+    head = f'<svg role="img" viewBox="{box}" style="width: {_SCALE * width:.0f}px">'
+    return f"{head}<title>{escape(title)}</title><desc>{escape(description)}</desc>{body}"

@@ -1,8 +1,8 @@
-"""Figures as data: curves over a pair of axes, drawn by `charts`, and drawings of other kinds."""
+"""Figures as data: curves over a pair of axes, and pictures of other kinds; `charts` draws them."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
@@ -15,8 +15,8 @@ from validation.reporting.plain import as_array
 Values = Annotated[Array | Sequence[float], PlainValidator(as_array)]
 Kind = Literal["line", "dashed", "dotted", "points", "joined"]
 Logarithmic = Literal["", "x", "y", "xy"]
-# Colours of the page, and shapes of points: a pair of the two tells more series apart than colours alone.
-COLORS, SHAPES = 12, 4
+# Colours of series, and marks of points: eight series have both of their own.
+COLORS, SHAPES = 12, 8
 
 
 @dataclass(frozen=True)
@@ -27,10 +27,9 @@ class Curve:
         label: Name in the legend.
         x: Abscissae (n).
         y: Ordinates (n); what is not finite, or not positive on a logarithmic axis, leaves a gap.
-        color: Index of a colour of the page.
+        color: Index of a colour of series.
         kind: Style; "joined" is points on a line.
-        shape: Index of the shape of points: disc, square, diamond, triangle.
-        hints: Text shown when the pointer rests on a point (n), or nothing.
+        shape: Index of the mark of points, counted from that of the colour.
     """
 
     label: str
@@ -39,7 +38,6 @@ class Curve:
     color: int = 0
     kind: Kind = "line"
     shape: int = 0
-    hints: tuple[str, ...] = ()
 
 
 def curves(
@@ -68,15 +66,6 @@ class Mark:
 
 
 @dataclass(frozen=True)
-class Tag:
-    """A short name beside a point."""
-
-    label: str
-    x: float
-    y: float
-
-
-@dataclass(frozen=True)
 class Chart:
     """Curves over one pair of axes.
 
@@ -87,7 +76,6 @@ class Chart:
         marks: Limits and thresholds.
         log: Names of the logarithmic axes.
         range_y: Part of the ordinate that is shown; None for all.
-        tags: Names of points, in the figure's words.
         equal: Whether a unit is as long on both axes, as on a map.
     """
 
@@ -98,28 +86,27 @@ class Chart:
     marks: tuple[Mark, ...] = ()
     log: Logarithmic = ""
     range_y: tuple[float, float] | None = None
-    tags: tuple[Tag, ...] = ()
     equal: bool = False
 
 
 @dataclass(frozen=True)
 class Drawing:
-    """A picture that is drawn already.
+    """A picture that is no set of curves.
 
     Attributes:
-        title: What it shows.
-        legend: Pairs of a sample, as SVG of 24 by 12 units, and its name.
-        svg: The picture as an SVG element.
-        x: Name and unit of the abscissa, written below; y: of the ordinate, written above.
-        note: Further line of the legend.
+        title: Title of the figure.
+        x: Name and unit of the abscissa; y: of the ordinate.
+        paint: Draws it into Matplotlib's axes; labelled artists make the legend.
+        note: Line above the legend.
+        size: Width and height of the axes [px].
     """
 
     title: str
-    legend: tuple[tuple[str, str], ...]
-    svg: str
     x: str
-    y: str = ""
+    y: str
+    paint: Callable[[Any], None]
     note: str = ""
+    size: tuple[float, float] = (430.0, 270.0)
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from html import escape
 from importlib.resources import files
 
-from validation.reporting.charts import draw
+from validation.reporting.charts import PALETTE, draw
 from validation.reporting.figures import Chart, Drawing, Figure
 from validation.reporting.provenance import Provenance
 from validation.reporting.record import Block, Bullets, Cell, Fact, Fold, Report, Section, Table, Text
@@ -28,6 +28,8 @@ _PAGE = """<!doctype html>
 """
 # Tones of verdicts in the style sheet.
 _TONE = {True: "good", False: "bad", None: "soft"}
+# Where a table is too wide, and from which width on [px]: on any page, or on a phone.
+_PAGES = ("wide", 1052.0), ("phone", 360.0)
 # Tables of more columns are set closer.
 _MANY_COLUMNS = 11
 
@@ -45,6 +47,8 @@ def page(report: Report, provenance: Provenance | None = None, closing: str = ""
     parts = [
         f"<h1>{escape(report.title)}</h1>",
         f'<p class="verdict {_TONE[report.ok]}">{prose(report.summary)}</p>',
+        *map(block, report.decisions),
+        block(Text("**Missed:**", "bad")) + block(Bullets(report.shortfalls)) if report.shortfalls else "",
         facts(report.facts),
         *map(block, report.blocks),
         contents(links) if listed and len(links) > 1 else "",
@@ -54,6 +58,8 @@ def page(report: Report, provenance: Provenance | None = None, closing: str = ""
         parts += ["<h2>Versions and machine</h2>", table(Table(("what", "value"), provenance.rows))]
     parts.append(block(Text(closing, "soft")) if closing else "")
     style = files("validation.reporting").joinpath("style.css").read_text(encoding="utf-8")
+    light, dark = (" ".join(f"--{name}: {pair[k]};" for name, pair in PALETTE.items()) for k in (0, 1))
+    style = f":root {{ {light} }}\n@media (prefers-color-scheme: dark) {{ :root {{ {dark} }} }}\n{style}"
     body = "\n".join(filter(None, parts))
     return _PAGE.format(title=escape(report.title), style=style, body=body)
 
@@ -119,27 +125,35 @@ def block(item: Block, figure_name: str = "") -> str:
 
 
 def chart(item: Chart | Drawing) -> str:
-    """A picture under its title and legend; the ordinate is named above it, the abscissa below."""
-    drawing = item if isinstance(item, Drawing) else draw(item)
-    samples = [
-        f'<span><svg class="sample" viewBox="0 0 24 12">{sample}</svg>{escape(name)}</span>'
-        for sample, name in drawing.legend
-    ]
-    lines = ("y", drawing.y), ("x", drawing.x), ("soft", drawing.note)
-    y, x, note = (f'<p class="{kind}">{escape(text)}</p>' if text else "" for kind, text in lines)
-    title, legend = f"<h4>{escape(drawing.title)}</h4>", f'<div class="legend">{"".join(samples)}</div>'
-    return f'<div class="chart">{title}{legend}{note}{y}{drawing.svg}{x}</div>'
+    """A picture under its title."""
+    return f'<div class="chart"><h3>{escape(item.title)}</h3><div class="scroll" tabindex="0">{draw(item)}</div></div>'
 
 
 def table(item: Table) -> str:
     """A table that scrolls by itself where it is wider than the page."""
     numeric = [name.startswith("#") for name in item.head]
-    dense = " class=dense" if len(item.head) > _MANY_COLUMNS else ""
+    many = len(item.head) > _MANY_COLUMNS
     names = [(Cell(name.removeprefix("#")), "th") for name in item.head]
     rows = [names, *([(one if isinstance(one, Cell) else Cell(one), "td") for one in row] for row in item.rows)]
     lines = ["".join(cell(*one, n) for one, n in zip(row, numeric, strict=True)) for row in rows]
     body = "\n".join(f"<tr>{line}</tr>" for line in lines)
-    return f'<div class="scroll"><table{dense}>\n{body}\n</table></div>'
+    width = sum(_width(column, n, many) for column, n in zip(zip(*rows, strict=True), numeric, strict=True))
+    cue = next(
+        (
+            f'<p class="cue {kind}">Wider than the page: scroll it sideways.</p>'
+            for kind, page in _PAGES
+            if width > page
+        ),
+        "",
+    )
+    return f'{cue}<div class="scroll" tabindex="0"><table{" class=dense" if many else ""}>\n{body}\n</table></div>'
+
+
+def _width(column: Sequence[tuple[Cell, str]], is_number: bool, dense: bool) -> float:
+    """About how wide a column is [px]: numbers stay on a line, other texts break between words."""
+    words = (word for one, tag in column for word in (one.text.split() if tag == "th" or not is_number else [one.text]))
+    letter, padding = (6.4, 6.0) if dense else (7.2, 16.0)
+    return padding + letter * max(3, *map(len, words))
 
 
 def cell(item: Cell, tag: str, is_number: bool) -> str:

@@ -9,7 +9,9 @@ from validation.reporting.record import Block, Bullets, Cell, Fold, Report, Tabl
 
 def page(report: Report, provenance: Provenance, closing: str) -> str:
     """The summary of a report."""
-    parts = [f"# {report.title}", f"**{report.summary}**"]
+    parts = [f"# {report.title}", f"**{report.summary}**", *map(block, report.decisions)]
+    if report.shortfalls:
+        parts += ["**Missed:**", block(Bullets(report.shortfalls))]
     if report.facts:
         parts.append(block(Bullets(tuple(f"{fact.value} {fact.label}" for fact in report.facts))))
     parts += map(block, report.blocks)

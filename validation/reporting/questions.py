@@ -115,7 +115,13 @@ def judged(draft: Report, data: Data, findings: Mapping[str, Sequence[Finding]],
         facts=(*draft.facts, Fact(str(len(rows)), f"{number}s, {kept}", ok)),
         digest=(Table.of(lines, {part: f"{{{part}}}", **_BOUNDS}), *reasons),
         unfinished=unfinished,
+        missed=tuple(_missed(name, finding) for name, finding in rows if not finding.ok),
     )
+
+
+def _missed(name: str, finding: Finding) -> str:
+    bounds = " to ".join(filter(None, (short(finding.low), short(finding.high))))
+    return f"{name}: {finding.quantity} is {short(finding.value)}, asked for is {bounds}"
 
 
 def findings_fold(findings: Sequence[Finding], noun: str, more: str = "", *blocks: Block) -> Fold:

@@ -162,6 +162,8 @@ class Report:
         digest: Blocks that a terminal shows; by default the tables and lists of the summary.
         unfinished: Names of parts that an interrupt cut.
         refused: Inputs that could not be read, where nothing else is wrong.
+        decisions: What readers decide by, first on the page and on the index of reports.
+        missed: What is missed, a line each, with its numbers.
     """
 
     title: str
@@ -174,11 +176,18 @@ class Report:
     digest: tuple[Block, ...] = ()
     unfinished: tuple[str, ...] = ()
     refused: tuple[str, ...] = ()
+    decisions: tuple[Block, ...] = ()
+    missed: tuple[str, ...] = ()
 
     @property
     def verdict(self) -> str:
         """The verdict in a word."""
         return {True: "good", False: "missed", None: "measured"}[self.ok]
+
+    @property
+    def shortfalls(self) -> tuple[str, ...]:
+        """What is missed: as stated, or the key numbers that miss something."""
+        return self.missed or tuple(f"{fact.value} {fact.label}" for fact in self.facts if fact.ok is False)
 
     @property
     def brief(self) -> tuple[Block, ...]:

@@ -152,6 +152,12 @@ def compose(data: Data) -> Report:
         tuple(_ratios(best, name) for name in _TELLING if name in functions),
         (targets_table(record),),
         tuple(data.get("unfinished", ())),
+        missed=tuple(
+            f"{TIMED_MODELS[v.target.model].title}, {FUNCTIONS[v.target.function]}, against {v.target.peer}: "
+            f"{v.ratio:.2f} times its speed, asked is {v.target.least:g}"
+            for v in measured
+            if not v.met
+        ),
     )
 
 
@@ -171,7 +177,7 @@ def _ratios(rows: Sequence[Entry], function: str) -> Chart:
     curves = []
     for k, peer in enumerate(dict.fromkeys(row.peer for row in chosen)):
         x, y = zip(*sorted((row.nv, row.ratio) for row in chosen if row.peer == peer), strict=True)
-        curves.append(Curve(peer, x, y, k, "points", k % 4))
+        curves.append(Curve(peer, x, y, k, "points"))
     return Chart(
         f"{FUNCTIONS[function]}: their time over ours, a point a model",
         "speeds of the model  [1]",

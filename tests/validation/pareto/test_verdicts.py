@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 
 import pytest
 
 from validation.pareto import verdicts
 from validation.pareto.catalogue import PROBLEMS
-from validation.pareto.figures import figure, letters
-from validation.pareto.front import charted, front
+from validation.pareto.figures import MOST, figure
 from validation.pareto.problem import OURS, BenchmarkProblem, Point, Target
 from validation.pareto.race import Result
 from validation.reporting.charts import draw
-from validation.reporting.figures import Chart
 from validation.reporting.numbers import duration
 
 PROBLEM = replace(PROBLEMS["spin_up"], targets=(Target("Exudyn", 1e-2, 200.0),))
@@ -46,28 +45,32 @@ def test_who_alone_keeps_an_error_wins() -> None:
     assert verdict.winner == "Exudyn alone" and not verdict.ok
 
 
-def test_below_the_floor_the_engine_is_the_tool() -> None:
-    assert "below 0.2 % Exudyn is the tool: 8 elements" in verdicts.below_the_floor(PROBLEM, result(1e-4, 1e-1))
-    assert "no run here goes below" in verdicts.below_the_floor(PROBLEM, result(1e-4, 1e-1, best=3e-3))
+def test_the_fastest_run_that_keeps_an_error_is_chosen_and_below_the_floor_an_engine() -> None:
+    kept, finer = verdicts.choices(PROBLEM, result(1e-4, 1e-1))
+    assert (kept.best.method, kept.best.setting, kept.best.seconds) == ("rk4", "20 ms", 1e-4)
+    assert kept.rival == kept.other and kept.other is not None and kept.other.seconds == 1e-1
+    assert finer.best.model == "8 elements" and finer.rival is None and finer.error == "< 0.2 % (floor)"
+    assert len(verdicts.choices(PROBLEM, result(1e-4, 1e-1, best=3e-3))) == 1, "no run goes below the floor"
 
 
 def test_runs_that_did_not_come_to_their_end_are_named() -> None:
     assert any("lost" in said for said in verdicts.refused(result(1e-4, 1e-1)))
 
 
-def test_the_front_is_tagged_and_the_floor_drawn() -> None:
+def test_the_front_is_named_beside_the_figure_and_what_is_far_off_does_not_stretch_it() -> None:
     found = result(1e-4, 1e-1)
     far_off = Point(OURS, "none", "euler", "1 s", 1e3, 1e-9)
-    drawn = figure(PROBLEM, replace(found, points=(far_off, *found.points)), "see")
-    every, methods = drawn.charts
-    assert isinstance(every, Chart) and isinstance(methods, Chart)
-    best = front(charted(PROBLEM, (far_off, *found.points)))
-    assert [(t.label, t.y) for t in every.tags] == [(letters(k + 1)[k], p.error) for k, p in enumerate(best)]
-    assert [tag.label for tag in every.tags] == letters(2) and every.log == "xy"
-    legend = [name for _, name in draw(every).legend]
-    assert "floor of our beams, first order; below it use Exudyn: 0.002" in legend and 'class="tag"' in draw(every).svg
-    assert all("[s]" in chart.x and "[1]" in chart.y for chart in (every, methods))
-    assert letters(28)[25:] == ["z", "a1", "b1"]
+    every, methods = (draw(one) for one in figure(PROBLEM, replace(found, points=(far_off, *found.points))).charts)
+    for name in ("3 modes, 20 ms", "8 elements, 1 ms", "floor of our beams, first order", "Exudyn", "rk4"):
+        assert f">{name}</text>" in every, name
+    assert "4 elements, 5 ms" not in every and ">euler<" not in methods and ">10⁻⁷<" not in every
+
+
+def test_at_most_eight_methods_are_drawn_and_the_others_are_named() -> None:
+    points = tuple(Point(OURS, "1 mode", f"method{k}", "1 ms", 5e-3, 1e-3 * (k + 1)) for k in range(10))
+    drawn = figure(PROBLEM, replace(result(1e-4, 1e-1), points=points))
+    assert len(re.findall(">method[0-9]</text>", draw(drawn.charts[1]))) == MOST
+    assert "Not drawn: method8, method9;" in drawn.caption
 
 
 @pytest.mark.parametrize(

@@ -1,39 +1,80 @@
-"""Charts place points by their values; what can not be drawn leaves a gap."""
+"""Charts place points by their values; what can not be drawn leaves a gap; nothing is cut."""
 
 from __future__ import annotations
 
 import re
+import xml.etree.ElementTree
 
 import numpy as np
 import pytest
 
 from validation.reporting import charts, html
-from validation.reporting.figures import Chart, Curve, Mark
+from validation.reporting.figures import SHAPES, Chart, Curve, Drawing, Mark
+
+LONG = "what a long name says, " * 4
+Y = np.array([1.0, 2.0, 3.0])
+
+
+def line(svg: str) -> str:
+    """The path of the only curve, in the colour of the first series; its sample in the legend is not clipped."""
+    (path,) = re.findall(r'<path d="([^"]*)" clip-path="[^"]*" style="[^"]*var\(--e0\)', svg)
+    return path
 
 
 def points(svg: str) -> list[tuple[float, float]]:
-    (text,) = re.findall(r'points="([^"]*)"', svg)
-    return [(float(x), float(y)) for x, y in (pair.split(",") for pair in text.split())]
+    return [(float(x), float(y)) for x, y in re.findall(r"([\d.]+) ([\d.]+)", line(svg))]
 
 
 def test_a_chart_places_points_by_their_values() -> None:
     x = np.array([1.0, 10.0, 100.0])
-    chart = Chart("t", "x  [1]", "y  [1]", (Curve("c", x, x**2),), (Mark("limit", 1e2),), log="xy")
-    (x0, y0), (x1, y1), (x2, y2) = points(charts.draw(chart).svg)
+    svg = charts.draw(Chart("t", "x  [1]", "y  [1]", (Curve("c", x, x**2),), (Mark("limit", 1e2),), log="xy"))
+    (x0, y0), (x1, y1), (x2, y2) = points(svg)
     assert x1 - x0 == pytest.approx(x2 - x1, abs=0.2) and y0 - y1 == pytest.approx(y1 - y2, abs=0.2)
-    (mark,) = re.findall(r'class="limit l0"[^>]*y1="([\d.]+)"', charts.draw(chart).svg)
-    assert float(mark) == pytest.approx(y1, abs=0.2)
+    (mark,) = re.findall(r'<path d="M [\d.]+ ([\d.]+) [^"]*" clip-path="[^"]*" style="[^"]*var\(--bad\)', svg)
+    assert float(mark) == pytest.approx(y1, abs=0.2) and "limit: 100" in svg
 
 
 @pytest.mark.parametrize("gap", [np.nan, np.inf, -1.0])
 def test_what_can_not_be_drawn_leaves_a_gap(gap: float) -> None:
     y = np.array([1.0, 2.0, gap, 2.0, 1.0])
     chart = Chart("t", "x", "y", (Curve("a < b", np.arange(5.0), y),), log="y")
-    drawn, page = charts.draw(chart).svg, html.chart(chart)
-    assert drawn.count("<polyline") == 2 and "nan" not in drawn and "a &lt; b" in page
+    drawn, page = charts.draw(chart), html.chart(chart)
+    assert line(drawn).count("M") == 2 and "nan" not in drawn and "a &lt; b" in page
 
 
-def test_a_range_cuts_curves() -> None:
+def test_a_range_bounds_the_ordinate() -> None:
     x = np.linspace(0.0, 10.0, 11)
-    shown = points(charts.draw(Chart("t", "x", "y", (Curve("c", x, x),), range_y=(0.0, 5.0))).svg)
-    assert len(shown) == 6
+    svg = charts.draw(Chart("t", "x", "y", (Curve("c", x, x),), range_y=(0.0, 4.5)))
+    assert ">4</text>" in svg and ">5</text>" not in svg
+
+
+def test_eight_series_have_a_mark_and_a_colour_each() -> None:
+    styles = [charts.style(Curve("c", Y, Y, k, "joined")) for k in range(SHAPES)]
+    assert len({one["color"] for one in styles}) == len({one["marker"] for one in styles}) == SHAPES
+
+
+def test_a_picture_is_sound_and_says_what_it_shows() -> None:
+    svg = charts.draw(Chart("t < u", "x  [m]", "y  [s]", (Curve("a", Y, 0.0125 * Y),), log="x"))
+    root = xml.etree.ElementTree.fromstring(svg)
+    assert root.get("role") == "img" and [root[k].text for k in (0, 1)] == ["t < u", "y  [s] against x  [m]. a."]
+    assert "0.0125" in svg or "0.015" in svg, "numbers on axes keep their digits"
+    identifiers = re.findall(' id="([^"]*)"', svg)
+    assert len(set(identifiers)) == len(identifiers) and not re.search("#[0-9a-f]{6}", svg)
+
+
+def test_no_letter_is_cut() -> None:
+    svg = charts.draw(Chart("t", "x", "y", (Curve(LONG, Y, Y), Curve("b", Y, Y, 1)), (Mark("limit", 2.0),)))
+    width, height = map(float, re.findall(r'viewBox="0 0 ([\d.]+) ([\d.]+)"', svg)[0])
+    placed = re.findall(r'<text[^>]* x="([\d.]+)" y="([\d.]+)"[^>]*>([^<]*)', svg)
+    assert all(0 <= float(x) + 6 * len(text) * (len(text) > 30) <= width for x, _, text in placed)
+    assert all(0 <= float(y) <= height for _, y, _ in placed) and "limit: 2" in svg
+
+
+def test_the_same_data_is_the_same_picture() -> None:
+    chart = Chart("t", "x", "y", (Curve("a", Y, Y, 0, "joined"),))
+    assert charts.draw(chart) == charts.draw(chart)
+
+
+def test_drawings_have_the_same_style() -> None:
+    svg = charts.draw(Drawing("t", "x", "y", lambda axes: axes.plot(Y, Y, color=charts.SERIES[0], label="a"), "note"))
+    assert len(points(svg)) == 3 and ">note</text>" in svg

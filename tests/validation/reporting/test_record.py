@@ -9,20 +9,17 @@ import numpy as np
 import pytest
 
 from validation.reporting import html, markdown
-from validation.reporting.charts import draw
 from validation.reporting.command import Run
-from validation.reporting.figures import Chart, Curve, Figure, Mark, Tag
+from validation.reporting.figures import Chart, Curve, Figure, Mark
 from validation.reporting.findings import Finding
 from validation.reporting.numbers import counted
 from validation.reporting.plain import plain, restored
 from validation.reporting.provenance import Provenance
 from validation.reporting.questions import findings_fold
-from validation.reporting.record import Bullets, Cell, Fold, Report, Section, Table, Text, Topic
+from validation.reporting.record import Bullets, Cell, Fact, Fold, Report, Section, Table, Text, Topic
 
 LIMIT = Mark("limit", 2.0, "x")
-CHART = Chart(
-    "t < u", "x  [m]", "y  [s]", (Curve("a", np.array([1.0, np.nan]), np.ones(2), 3),), (LIMIT,), tags=(Tag("p", 1, 1),)
-)
+CHART = Chart("t < u", "x  [m]", "y  [s]", (Curve("a", np.array([1.0, np.nan]), np.ones(2), 3),), (LIMIT,))
 FINDINGS = (Finding("gap [m]", 2.0, 1.0, reason="asked"), Finding("rate", 1.0, np.inf, 0.5))
 SECTION = Section(
     "How | wide?",
@@ -72,7 +69,7 @@ def test_texts_can_not_break_the_page(text: str) -> None:
 
 def test_a_chart_survives_its_json() -> None:
     again = restored(Chart, json.loads(json.dumps(plain(CHART), allow_nan=False)))
-    assert (again.title, again.marks, again.tags) == (CHART.title, (LIMIT,), (Tag("p", 1, 1),))
+    assert (again.title, again.marks) == (CHART.title, (LIMIT,))
     assert again.curves[0].color == 3 and np.isnan(again.curves[0].x[1])
 
 
@@ -82,10 +79,16 @@ def test_a_finding_survives_its_json() -> None:
     assert np.isnan(lost.value) and not lost.ok
 
 
-def test_names_of_limits_stand_beside_the_chart() -> None:
-    """Within it they would lie on points."""
-    drawing = draw(CHART)
-    assert "limit" in [name.partition(":")[0] for _, name in drawing.legend] and ">limit" not in drawing.svg
+def test_what_readers_decide_by_and_what_is_missed_come_first() -> None:
+    report = Report("T", "s", False, ("Text.",), decisions=("Take this.",), facts=(Fact("1", "bound", False),))
+    for text in (html.page(report), markdown.page(report, NOWHERE, "")):
+        assert text.index("Take this.") < text.index("1 bound") < text.index("Text.")
+
+
+@pytest.mark.parametrize(("columns", "cue"), [(2, ""), (9, "phone"), (40, "wide")])
+def test_a_table_wider_than_the_page_says_so(columns: int, cue: str) -> None:
+    drawn = html.table(Table(("#n",) * columns, (("1.0e-10",) * columns,)))
+    assert re.findall('class="cue ([a-z]*)"', drawn) == ([cue] if cue else [])
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from validation.reporting.charts import draw
 from validation.reporting.command import Run
 from validation.reporting.findings import Finding
 from validation.stability import heatmap
@@ -58,26 +59,20 @@ class TestMaps:
             [[0.1, 0.1, 0.1], [0.1, 0.1, 5.0], [0.1, math.nan, 7.0]],
             limits=(Limit("one", np.array([1.0, 100.0]), np.array([10.0, 10.0])),),
         )
-        drawing = heatmap.draw(found, grid, grid, "a < b [m]")
-        svg = drawing.svg
-        cells: Counter[str] = Counter()
-        for kind, boxes in re.findall(r'<path class="([a-z-]+)"[^>]* d="([^"]*)"', svg):
-            cells[kind] += boxes.count("M")
-        assert cells == {"good-cell": 6, "bad-cell": 2, "ended": 1}
+        svg = draw(heatmap.draw(found, grid, grid, "a < b [m]"))
+        kinds = [[heatmap.cell(one, found.bound)[0] for one in row] for row in found.cells]
+        assert Counter(kind for row in kinds for kind in row) == {"good": 6, "bad": 2, "ended": 1}
         # The edge: below the two bad columns, left of the middle and of the right one.
-        assert svg.count('class="edge"') == 4 and drawing.note.endswith("a < b [m]")
-        assert [name for _, name in drawing.legend] == [
-            "at most 1",
-            "more",
-            "ended before (×)",
-            "edge as measured",
-            "one",
-        ]
-        (points,) = re.findall(r'class="form f0" points="([^"]*)"', svg)
-        heights = {float(pair.split(",")[1]) for pair in points.split()}
+        columns = rows = heatmap.borders(found.x, grid)
+        assert len(heatmap.edge(found.good, columns, rows)) == 4 and columns == pytest.approx(10 ** np.arange(-0.5, 3))
+        for name in ("numbers: decade of the a &lt; b [m]", "at most 1", "more", "ended before (×)", "one"):
+            assert f">{name}</text>" in svg, name
         # The closed form at 10 runs through the middle row.
-        (middle,) = {round(h, 1) for h in heights}
-        assert middle == pytest.approx((heatmap.HEIGHT - 28 + 12) / 2, abs=0.2)
+        ((start, end),) = re.findall(
+            r'd="M [\d.]+ ([\d.]+) L [\d.]+ ([\d.]+) " clip-path="[^"]*" style="[^"]*--good', svg
+        )
+        (top, bottom) = re.findall(r'<path d="M [\d.]+ ([\d.]+) L [\d.]+ [\d.]+ L [\d.]+ ([\d.]+)', svg)[1]
+        assert start == end and float(start) == pytest.approx((float(top) + float(bottom)) / 2, abs=0.2)
 
 
 def test_decades() -> None:
