@@ -19,13 +19,13 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable
-from functools import cache, cached_property
+from functools import cache, cached_property, partial
 from pathlib import Path
 
 from symofros.base.options import Options
 from symofros.description.beam import Beam
 from symofros.description.system import System
-from symofros.errors import CompileError, CompilerMissingWarning, InconsistentModelWarning
+from symofros.errors import CompileError, CompilerMissingWarning, DescriptionError, InconsistentModelWarning, Problem
 from symofros.expr.program import Program
 from symofros.generator.beams import beams_at
 from symofros.generator.codegen.model import model_source
@@ -112,6 +112,12 @@ class Compilation:
     """
 
     def __init__(self, system: System, options: Options | None = None) -> None:
+        if not isinstance(system, System):
+            remedy = (
+                f"sf.compile(sf.load({str(system)!r:.60}))" if isinstance(system, str | Path) else "build a sf.System"
+            )
+            stated = f"{type(system).__name__} {system!r:.60}"
+            raise DescriptionError(Problem("there is no system to compile", stated, "a system is a sf.System", remedy))
         self.system, self.options = system, options or Options()
         self._further: tuple[Request, ...] = ()
 
@@ -173,6 +179,7 @@ class Compilation:
             formulas=units.formulas,
             beams=beams_at(self.tree),
             parameter_check=RunTimeCheck(self.system, self.record.par_names).problems,
+            origin=partial(compile_system, self.system, self.options),
         )
 
     def library(self, precision: Precision = "double") -> tuple[Path, str]:

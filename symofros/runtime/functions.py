@@ -8,7 +8,6 @@ from typing import Any, Self
 
 import numpy as np
 import numpy.typing as npt
-from numpy.typing import ArrayLike as ArrayLike
 
 from symofros.base.arrays import real_array
 from symofros.base.functions import FRAME_FUNCTIONS, FUNCTIONS, INPUTS, MODEL_FUNCTIONS, generated_with
@@ -16,26 +15,16 @@ from symofros.errors import ParameterError, Problem, ShapeError, SymofrosError, 
 from symofros.runtime.beams import ElasticBeam
 from symofros.runtime.calls.kernel import Array, BatchOptions, Kernel, Numbers, Precision, Unit
 from symofros.runtime.calls.layout import by_columns, flat, states
+from symofros.runtime.names import Names as Names
+from symofros.runtime.names import stacked
 from symofros.runtime.record import ModelRecord
 
 Key = tuple[str, str]
+# Numbers of a model: in the order of its names, or by name; what is not named keeps its default.
+ArrayLike = npt.ArrayLike | Mapping[str, npt.ArrayLike]
 ParameterCheck = Callable[[Array], Sequence[Problem]]
 # Largest array of parameters that is remembered as checked.
 _KEPT_BYTES = 1 << 16
-
-
-@dataclass(frozen=True)
-class Names:
-    """Names of coordinates, speeds, inputs, run-time parameters, frames, constraints, joints, prescribed speeds."""
-
-    q: tuple[str, ...]
-    v: tuple[str, ...]
-    u: tuple[str, ...]
-    par: tuple[str, ...]
-    frames: tuple[str, ...]
-    constraints: tuple[str, ...]
-    joints: tuple[str, ...]
-    prescribed: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -64,6 +53,7 @@ class Functions:
         threads: Number of threads that share a large batch.
         precision: Precision of what functions take and return.
         parameter_check: Problems of sets of run-time parameters (n, npar); None where nothing is known of them.
+        origin: Makes the model again, for copies in other processes; None where it has no description.
     """
 
     def __init__(
@@ -77,6 +67,7 @@ class Functions:
         threads: int = 1,
         precision: Precision = "double",
         parameter_check: ParameterCheck | None = None,
+        origin: Callable[[], Functions] | None = None,
     ) -> None:
         self.record = record
         self._threads = threads
@@ -84,21 +75,13 @@ class Functions:
         self._build = build
         self._parameter_check, self._last_checked = parameter_check, b""
         self._build_formulas = formulas
+        self._origin = origin
         self._beams_at = beams
         self._par = np.array(record.par_default if par is None else par, dtype=np.float64)
         self._par.flags.writeable = False
         self._kernels: dict[Key, Kernel] = {key: kernel for unit in units for key, kernel in unit.kernels.items()}
         self._prepared: dict[Key, Array] = {}
-        self.names = Names(
-            record.q_names,
-            record.v_names,
-            record.u_names,
-            record.par_names,
-            record.frame_names,
-            record.constraint_names,
-            record.joint_names,
-            record.prescribed_names,
-        )
+        self.names = Names.of(record)
 
     def __repr__(self) -> str:
         """Name and sizes."""
@@ -217,6 +200,7 @@ class Functions:
             threads or self._threads,
             precision or self._precision,
             self._parameter_check,
+            self._origin,
         )
         other._kernels = self._kernels  # Shared, so that what either compiles serves both.
         return other
@@ -340,7 +324,8 @@ class Functions:
         try:
             return np.broadcast_shapes(*shapes)
         except ValueError:
-            shown = ", ".join(f"{group} {np.shape(x)}" for group, x in given.items() if x is not None)
+            stated = {group: self.by_name(group, x) for group, x in given.items() if x is not None}
+            shown = ", ".join(f"{group} {np.shape(x)}" for group, x in stated.items())
             raise ShapeError(
                 Problem(
                     f"{name}: batch dimensions do not broadcast",
@@ -366,7 +351,9 @@ class Functions:
         return self._kernels[name, frame]
 
     def _array(self, group: str, values: ArrayLike, size: int, dtype: npt.DTypeLike = np.float64) -> Numbers:
-        array = real_array(values, dtype)
+        array = None if isinstance(values, Mapping) else real_array(values, dtype)
+        if isinstance(values, Mapping):
+            array = np.asarray(self.by_name(group, values), dtype=dtype)
         if array is None:
             raise ShapeError(
                 Problem(
@@ -388,6 +375,19 @@ class Functions:
                 )
             )
         return array
+
+    def by_name(self, group: str, values: ArrayLike) -> npt.ArrayLike:
+        """An argument as an array: values that are given by name stacked (..., size), others as they are.
+
+        Args:
+            group: Name of the argument: q, v, a, u, par, lam.
+            values: An array, or name -> number or array (...); what is not named keeps its default.
+
+        Raises:
+            UnknownNameError: There is no such name.
+            ShapeError: A value is not a number.
+        """
+        return stacked(self.record, self._par, group, values) if isinstance(values, Mapping) else values
 
     def _hint(self, group: str) -> str:
         names: dict[str, Any] = {"q": self.names.q, "v": self.names.v, "a": self.names.v, "u": self.names.u}

@@ -6,27 +6,29 @@ from collections.abc import Sequence
 from typing import Literal, overload
 
 import numpy as np
+import numpy.typing as npt
 
 from symofros.base.arrays import numeric
 from symofros.runtime import linear, manifold
 from symofros.runtime.calls.bound import Bound, Layout, bind, bind_batch
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constraint_functions import ConstraintFunctions
+from symofros.runtime.copy_functions import CopyFunctions
 from symofros.runtime.frame_functions import FrameFunctions
 from symofros.runtime.functions import ArrayLike as ArrayLike
 from symofros.runtime.functions import Key as Key
 from symofros.runtime.linear import FrameDerivatives as FrameDerivatives
 from symofros.runtime.linear import Output as Output
 from symofros.runtime.linear import StateMatrices as StateMatrices
-from symofros.runtime.parameter_functions import ParameterFunctions
 from symofros.runtime.reaction_functions import ReactionFunctions
 
 
-class Model(ConstraintFunctions, FrameFunctions, ParameterFunctions, ReactionFunctions):
+class Model(ConstraintFunctions, CopyFunctions, FrameFunctions, ReactionFunctions):
     """The equations of one mechanism, ready to be evaluated.
 
     Every function takes float64 arrays with any leading batch dimensions, broadcasts them, and returns new arrays
-    (float32 after `with_precision("single")`). Results lie in memory as inputs do: with the batch as their fast axis if
+    (float32 after `with_precision("single")`). Values may be given by name, too: `{"shoulder": 0.1}` for q, with the
+    others at their defaults; so they may wherever states, inputs or parameters are asked for. Results lie in memory as inputs do: with the batch as their fast axis if
     that is so in all inputs (`np.asfortranarray(q)`, `Q.T`), which is the fastest; else row by row.
     `par=` overrides the run-time parameters (..., npar), judged as the description's own (`with_parameter_checks`);
     `t=` gives the time (...,) to models that depend on it; `u=` matters where a motion is prescribed, because its
@@ -128,7 +130,7 @@ class Model(ConstraintFunctions, FrameFunctions, ParameterFunctions, ReactionFun
         *,
         par: ArrayLike | None = None,
         t: ArrayLike = 0.0,
-        gains: ArrayLike | None = None,
+        gains: npt.ArrayLike | None = None,
         multipliers: Literal[False] = False,
     ) -> Array: ...
     @overload
@@ -140,7 +142,7 @@ class Model(ConstraintFunctions, FrameFunctions, ParameterFunctions, ReactionFun
         *,
         par: ArrayLike | None = None,
         t: ArrayLike = 0.0,
-        gains: ArrayLike | None = None,
+        gains: npt.ArrayLike | None = None,
         multipliers: Literal[True],
     ) -> tuple[Array, Array]: ...
     def forward_dynamics(
@@ -151,7 +153,7 @@ class Model(ConstraintFunctions, FrameFunctions, ParameterFunctions, ReactionFun
         *,
         par: ArrayLike | None = None,
         t: ArrayLike = 0.0,
-        gains: ArrayLike | None = None,
+        gains: npt.ArrayLike | None = None,
         multipliers: bool = False,
     ) -> Array | tuple[Array, Array]:
         """Accelerations v' (..., nv) that the forces produce, constraints kept.
@@ -177,7 +179,7 @@ class Model(ConstraintFunctions, FrameFunctions, ParameterFunctions, ReactionFun
         *,
         par: ArrayLike | None = None,
         t: ArrayLike = 0.0,
-        gains: ArrayLike | None = None,
+        gains: npt.ArrayLike | None = None,
     ) -> tuple[Array, Array, Array]:
         """Accelerations v' (..., nv), multipliers (..., nc) and the rank of G (...,).
 
@@ -192,7 +194,7 @@ class Model(ConstraintFunctions, FrameFunctions, ParameterFunctions, ReactionFun
         lam, rank = constrained
         return a, lam, rank
 
-    def _gains(self, gains: ArrayLike | None) -> ArrayLike:
+    def _gains(self, gains: npt.ArrayLike | None) -> ArrayLike:
         if gains is None:
             return np.zeros(2 * self.nc)
         given = numeric("gains", gains)
@@ -325,7 +327,7 @@ class Model(ConstraintFunctions, FrameFunctions, ParameterFunctions, ReactionFun
             a = self.forward_dynamics(q, v, u, par=par, t=t)
             return self.frame_derivatives(frame, q, v, a, u=u, par=par)
 
-        speeds = np.asarray(v, dtype=np.float64)
+        speeds = np.asarray(self.by_name("v", v), dtype=np.float64)
         matrices = linear.linearize(self.record.segments, slopes, speeds, outputs or (), frame_derivatives)
         return matrices[:2] if outputs is None else matrices
 

@@ -7,9 +7,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any, ClassVar, Literal, Protocol, TypeVar
 
+from numpy.typing import ArrayLike
+
 from symofros.errors import Problem, UnknownNameError, did_you_mean
 from symofros.runtime.beams import BEAM_LIMIT
-from symofros.runtime.model import ArrayLike
 
 Stabilisation = Literal["projection", "baumgarte", "none"]
 STABILISATIONS = ("projection", "baumgarte", "none")

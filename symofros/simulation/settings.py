@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from symofros.base.arrays import numeric, real_array
 from symofros.errors import AssemblyError, Problem, ShapeError, SymofrosError, UnknownNameError, did_you_mean
@@ -30,7 +31,7 @@ def vector(model: Model, name: str, values: ArrayLike, size: int) -> Array:
     Raises:
         ShapeError: It is something else.
     """
-    array = real_array(values)
+    array = real_array(model.by_name(name, values))
     if array is None or array.shape != (size,) or not np.all(np.isfinite(array)):
         fault = f"{type(values).__name__} {values!r:.60}"
         if array is not None:
@@ -229,7 +230,7 @@ def check_start(model: Model, settings: Settings, q: Array, v: Array, u: Array, 
             )
 
 
-def _grid(output: float | ArrayLike | None, t0: float, t_end: float) -> Array:
+def _grid(output: float | npt.ArrayLike | None, t0: float, t_end: float) -> Array:
     if output is None:
         return np.zeros(0)
     times = numeric("output", output)
@@ -251,7 +252,7 @@ def _grid(output: float | ArrayLike | None, t0: float, t_end: float) -> Array:
     return times
 
 
-def _gains(model: Model, stabilisation: str, gains: ArrayLike | None, step: float) -> Array:
+def _gains(model: Model, stabilisation: str, gains: npt.ArrayLike | None, step: float) -> Array:
     if stabilisation != "baumgarte" or not model.nc:
         return np.zeros(2 * model.nc)
     if gains is None:

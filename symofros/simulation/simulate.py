@@ -37,14 +37,15 @@ def simulate(
 
     Args:
         model: Compiled with backend "c".
-        q0: First configuration (nq), on the constraints (see `assemble`); the neutral one by default.
-        v0: First speeds (nv); rest by default.
+        q0: First configuration (nq), or values by name, on the constraints (see `assemble`); the neutral one by
+            default.
+        v0: First speeds (nv), or values by name; rest by default.
         t_end: End time [s].
         u: Inputs: an array (nu), a Signal of all, a mapping from input names to numbers, formulas (of coordinates,
             speeds, parameters and t, compiled to C) and Signals, or a function (t, q, v) -> (nu), called from the loop
             and hence slow; after a run of fixed steps, but not in real time, it is called about a few states again.
             Those not given are zero, but for the rates of a prescribed motion that is a formula of t.
-        par: Run-time parameters (npar); the model's own by default.
+        par: Run-time parameters (npar), or values by name; the model's own by default.
         events: Name -> formula or Event.
         options: Options of stepping, stabilisation and recording; those of `SimulationOptions()` by default.
         progress: Show a progress bar; or a function that is called with the time reached [s], now and then.

@@ -139,7 +139,7 @@ def _check_batch(settings: Settings, options: SimulationOptions) -> None:
 
 
 def _rows(model: Model, name: str, values: ArrayLike, size: int) -> Array:
-    array = real_array(values)
+    array = real_array(model.by_name(name, values))
     if array is None or array.ndim == 0 or array.shape[-1] != size:
         raise ShapeError(
             Problem(

@@ -6,8 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from numpy.typing import ArrayLike
+
 from symofros.runtime.beams import BEAM_LIMIT
-from symofros.runtime.model import ArrayLike, Model
+from symofros.runtime.model import Model
 from symofros.simulation.options import SimulationOptions, Stabilisation, with_changes
 from symofros.simulation.settings import Settings
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from symofros.base.arrays import numeric
 from symofros.errors import ActuationError, Problem, ShapeError, UnknownNameError, did_you_mean
@@ -68,7 +69,7 @@ def actuator_efforts(
     actuators: Collection[str] | None = None,
     *,
     u: ArrayLike | None = None,
-    sizes: ArrayLike | None = None,
+    sizes: npt.ArrayLike | None = None,
     par: ArrayLike | None = None,
     t: ArrayLike = 0.0,
     beam_limit: float = BEAM_LIMIT,
@@ -103,10 +104,11 @@ def actuator_efforts(
     """
     model = model.with_precision("double")
     names = _names(model, actuators)
-    accelerations = _vector("a", a, model.nv)
+    accelerations = _vector("a", model.by_name("a", a), model.nv)
     weights = np.ones(len(names)) if sizes is None else _vector("sizes", sizes, len(names))
     stated = [model.names.u.index(name) for name in names if name in model.names.u]
-    others = np.array(model.record.u_default if u is None else _vector("u", u, model.nu), dtype=np.float64)
+    inputs = model.record.u_default if u is None else model.by_name("u", u)
+    others = np.array(_vector("u", inputs, model.nu), dtype=np.float64)
     others[..., stated] = 0.0
     M, h, Q = model.dynamics(q, v, others, par=par, t=t)
     B = _columns(model, names, (q, v, others), Q, par, t)
@@ -152,7 +154,7 @@ def _names(model: Model, actuators: Collection[str] | None) -> tuple[str, ...]:
     return tuple(dict.fromkeys(actuators))
 
 
-def _vector(name: str, values: ArrayLike, size: int) -> Array:
+def _vector(name: str, values: npt.ArrayLike, size: int) -> Array:
     array = numeric(name, values)
     if array.ndim == 0 or array.shape[-1] != size:
         raise ShapeError(
@@ -254,8 +256,8 @@ def _bendings(model: Model, q: ArrayLike, par: ArrayLike | None, batch: tuple[in
     """Bending of each beam in the state of the batch where it is largest."""
     if not model.beams():
         return ()
-    values = model.parameter_values if par is None else np.asarray(par, dtype=np.float64)
-    configurations = np.broadcast_to(np.asarray(q, dtype=np.float64), (*batch, model.nq))
+    values = model.parameter_values if par is None else np.asarray(model.by_name("par", par), dtype=np.float64)
+    configurations = np.broadcast_to(np.asarray(model.by_name("q", q), dtype=np.float64), (*batch, model.nq))
     parameters = np.broadcast_to(values, (*batch, model.npar))
     states = [bendings_at(model, configurations[index], parameters[index]) for index in np.ndindex(batch)]
     return tuple(max(beam, key=lambda bending: bending.error) for beam in zip(*states, strict=True))

@@ -67,8 +67,8 @@ def assemble(
     """
     free = free_speeds(model, held)
     model = model.with_precision("double")
-    q = model.neutral() if q is None else numeric("q", q)
-    wished = np.zeros(model.nv) if v is None else numeric("v", v)
+    q = model.neutral() if q is None else numeric("q", model.by_name("q", q))
+    wished = np.zeros(model.nv) if v is None else numeric("v", model.by_name("v", v))
 
     def residual(at: Array) -> Array:
         return model.constraint(at, u=u, par=par, t=t)

@@ -25,7 +25,7 @@ def consistent_jacobian(
         return np.zeros((0, model.nv))
     q, v, a, u = state
     G = model.constraint_jacobian(q, u=u, par=par, t=t)
-    speeds, size = np.asarray(v, dtype=np.float64), np.abs(G)
+    speeds, size = np.asarray(model.by_name("v", v), dtype=np.float64), np.abs(G)
     weights = np.array([residual_weights(one, model.record.measures) for one in G.reshape(-1, model.nc, model.nv)])
     phi = model.constraint(q, u=u, par=par, t=t)
     rate = model.constraint_rate(q, v, u=u, par=par, t=t)

@@ -84,9 +84,9 @@ def equilibrium(
     model = model.with_precision("double")
     free = free_speeds(model, held)
     nv, nc = model.nv, model.nc
-    q = model.neutral() if q is None else numeric("q", q)
-    v = np.zeros(nv) if v is None else numeric("v", v)
-    u = numeric("u", model.record.u_default if u is None else u)
+    q = model.neutral() if q is None else numeric("q", model.by_name("q", q))
+    v = np.zeros(nv) if v is None else numeric("v", model.by_name("v", v))
+    u = numeric("u", model.record.u_default if u is None else model.by_name("u", u))
     lam, still = np.zeros(nc), np.zeros(nv)
 
     def residual(at: Array, lam: Array) -> tuple[Array, float]:

@@ -6,6 +6,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
+import numpy.typing as npt
 
 from symofros.errors import AssemblyError, Problem, SymofrosError
 from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
@@ -172,10 +173,10 @@ def _reach_near(task: Task, q: Array, rest: Array, free: Indices, tolerance: flo
 def joint_motion(
     model: Model,
     frame: str,
-    positions: ArrayLike,
-    velocities: ArrayLike,
-    accelerations: ArrayLike,
-    rotations: ArrayLike | None = None,
+    positions: npt.ArrayLike,
+    velocities: npt.ArrayLike,
+    accelerations: npt.ArrayLike,
+    rotations: npt.ArrayLike | None = None,
     *,
     q: ArrayLike | None = None,
     par: ArrayLike | None = None,
@@ -265,7 +266,7 @@ def _within(model: Model, q: Array, free: Indices) -> Array:
 def _configuration(model: Model, name: str, values: ArrayLike) -> Array:
     """A configuration (nq) on the manifold."""
     remedy = f"give one number for each of {', '.join(model.names.q[:8])}" + (", …" if model.nq > 8 else "")
-    q = finite_array(f"inverse kinematics: {name}", values, (model.nq,), remedy)
+    q = finite_array(f"inverse kinematics: {name}", model.by_name("q", values), (model.nq,), remedy)
     with np.errstate(all="ignore"):
         on_manifold = model.integrate(q, np.zeros(model.nv))
     return finite_array(f"inverse kinematics: {name}", on_manifold, (model.nq,), "give quaternions that are not zero")

@@ -63,7 +63,7 @@ def modes(
     Raises:
         BeamTheoryError: A beam is bent beyond the limit.
     """
-    bendings = bendings_at(model, numeric("q", q), par)
+    bendings = bendings_at(model, numeric("q", model.by_name("q", q)), par)
     refuse_beyond(model, bendings, beam_limit, "the state of the modes")
     linear_model = state_space(model, q, v, u, par=par, t=t)
     s, X = np.linalg.eig(linear_model.A)

@@ -59,8 +59,8 @@ def state_space(
         UnknownNameError: No such output or frame.
     """
     model = model.with_precision("double")
-    v = np.zeros(model.nv) if v is None else np.asarray(v, dtype=np.float64)
-    u = np.asarray(model.record.u_default if u is None else u, dtype=np.float64)
+    v = np.zeros(model.nv) if v is None else np.asarray(model.by_name("v", v), dtype=np.float64)
+    u = np.asarray(model.record.u_default if u is None else model.by_name("u", u), dtype=np.float64)
     A, B, C, D = model.linearize(q, v, u, outputs=outputs, par=par, t=t)
     S = _allowed(model, q, v, u, par, t) if model.nc else np.eye(2 * model.nv)
     return StateSpace(S.T @ A @ S, S.T @ B, C @ S, D, S)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from symofros.base.arrays import real_array
 from symofros.errors import Problem, ShapeError, SymofrosError
@@ -29,8 +30,8 @@ class Target:
         rotation: R_WF (3, 3); None if it does not matter. Rounded to seven digits, it stands for the nearest rotation.
     """
 
-    position: ArrayLike | None = None
-    rotation: ArrayLike | None = None
+    position: npt.ArrayLike | None = None
+    rotation: npt.ArrayLike | None = None
 
 
 class Task:
@@ -92,7 +93,7 @@ def rotation_vector(R: Array) -> Array:
     return np.asarray(angle * column / np.linalg.norm(column))
 
 
-def finite_array(what: str, values: ArrayLike, shape: tuple[int | str, ...], remedy: str) -> Array:
+def finite_array(what: str, values: npt.ArrayLike, shape: tuple[int | str, ...], remedy: str) -> Array:
     """The values as an array of finite numbers.
 
     Args:

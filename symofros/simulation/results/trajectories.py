@@ -57,7 +57,7 @@ _EXPLODED = (Status.DIVERGED, Status.BEYOND_THEORY)
 _EXAMINED = 8
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Trajectories:
     """States over time of many runs of one model, whose batch dimensions are written (...).
 
@@ -199,6 +199,13 @@ class Trajectories:
     def __iter__(self) -> Iterator[Trajectory]:
         """Run after run."""
         return (self[index] for index in np.ndindex(self.shape))
+
+    def __repr__(self) -> str:
+        """Model, method, sizes, and how the runs ended."""
+        counts = zip(*np.unique(self.kinds, return_counts=True), strict=True)
+        ends = ", ".join(f"{count} {kind}" for kind, count in counts)
+        name = self.model.record.name
+        return f"<Trajectories of '{name}' by {self.method}: {self.shape} runs, {len(self.t)} samples; {ends}>"
 
     def __str__(self) -> str:
         """How many ended how, the first that went wrong, in how many beams bend much, and the steps of some."""

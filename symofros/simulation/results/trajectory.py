@@ -9,6 +9,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from symofros.base.html import html_table
+from symofros.errors import Problem, UnknownNameError, did_you_mean
 from symofros.runtime.beams import BeamBending
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
@@ -77,7 +79,7 @@ class Frames(Mapping[str, tuple[Array, Array]]):
         return len(self._trajectory.model.names.frames)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Trajectory:
     """States over time, of one run.
 
@@ -146,7 +148,11 @@ class Trajectory:
         return Frames(self)
 
     def __getitem__(self, name: str) -> Array:
-        """A coordinate, speed ("d" and the coordinate's name, or its own) or input by name (n)."""
+        """A coordinate, speed ("d" and the coordinate's name, or its own) or input by name (n).
+
+        Raises:
+            UnknownNameError: There is none of that name.
+        """
         names = self.model.names
         if name in names.q:
             return self.q[:, names.q.index(name)]
@@ -155,7 +161,28 @@ class Trajectory:
         for candidate in (name, name.removeprefix("d")):
             if candidate in names.v:
                 return self.v[:, names.v.index(candidate)]
-        raise KeyError(name)
+        known = tuple(self.columns())
+        listed = ", ".join(known[:12]) + (", …" if len(known) > 12 else "")
+        raise UnknownNameError(
+            Problem(
+                f"trajectory of '{self.model.record.name}': no '{str(name)[:80]}'",
+                listed,
+                "names are of coordinates, speeds and inputs",
+                did_you_mean(str(name)[:80], known) or "see trajectory.columns(); frames are in trajectory.frames",
+            )
+        )
+
+    def __repr__(self) -> str:
+        """Model, method, sizes and outcome; the numbers are in its attributes."""
+        name, method = self.model.record.name, self.statistics.method
+        span = f"t = {self.t[0]:.6g} … {self.t[-1]:.6g} s" if len(self.t) else "no records"
+        return f"<Trajectory of '{name}' by {method}: {len(self)} records, {span}; {self.outcome}>"
+
+    def _repr_html_(self) -> str:
+        """The same for notebooks, with the range of each column."""
+        columns = self.columns() if len(self) else {}
+        rows = [(name, f"{values.min():.6g} … {values.max():.6g}") for name, values in columns.items()]
+        return html_table(repr(self).strip("<>"), ("name", "range"), rows)
 
     def columns(self) -> dict[str, Array]:
         """Time, coordinates, speeds and inputs by name (n); a speed that shares its coordinate's name bears a d."""

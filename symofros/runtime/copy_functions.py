@@ -1,0 +1,63 @@
+"""Models in other processes and in notebooks: the compiled code is shared, or found in the cache."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Self
+
+from symofros.base.html import html_table
+from symofros.errors import Problem, SymofrosError
+from symofros.runtime.calls.kernel import Array, Precision
+from symofros.runtime.parameter_functions import ParameterFunctions
+
+
+class CopyFunctions(ParameterFunctions):
+    """Copies of a model, and how notebooks show it."""
+
+    def __copy__(self) -> Self:
+        """The same model."""
+        return self._like()
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
+        """The same model: nothing of it can be changed."""
+        return self._like()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle by the description, so that another process compiles it, or finds it in the cache.
+
+        Raises:
+            SymofrosError: The model came without its description.
+        """
+        if self._origin is None:
+            raise SymofrosError(
+                Problem(
+                    f"model '{self.record.name}': it can't be pickled",
+                    "a model without its description, as that of a compiled diagram",
+                    "a model is pickled by its description",
+                    "pickle the description, and compile it there",
+                )
+            )
+        return _restored, (self._origin, self._par, self._threads, self._precision, self._parameter_check is not None)
+
+    def _repr_html_(self) -> str:
+        """Sizes and names, for notebooks."""
+        names = self.names
+        parameters = [f"{name} = {value:g}" for name, value in self.parameters.items()]
+        stated = {
+            "coordinates": names.q,
+            "speeds": names.v,
+            "inputs": names.u,
+            "parameters": parameters,
+            "frames": names.frames,
+            "constraints": names.constraints,
+        }
+        rows = [(what, len(listed), ", ".join(listed)) for what, listed in stated.items() if listed]
+        return html_table(f"Model '{self.record.name}'", ("", "number", "names"), rows)
+
+
+def _restored(
+    origin: Callable[[], CopyFunctions], par: Array, threads: int, precision: Precision, checks: bool
+) -> CopyFunctions:
+    """A model that was pickled: compiled from its description, with the values that it had."""
+    model = origin()._like(par, threads, precision)
+    return model if checks else model.with_parameter_checks(False)
