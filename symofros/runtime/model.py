@@ -27,9 +27,10 @@ class Model(ConstraintFunctions, CopyFunctions, FrameFunctions, ReactionFunction
     """The equations of one mechanism, ready to be evaluated.
 
     Every function takes float64 arrays with any leading batch dimensions, broadcasts them, and returns new arrays
-    (float32 after `with_precision("single")`). Values may be given by name, too: `{"shoulder": 0.1}` for q, with the
-    others at their defaults; so they may wherever states, inputs or parameters are asked for. Results lie in memory as inputs do: with the batch as their fast axis if
+    (float32 after `with_precision("single")`). Results lie in memory as inputs do: with the batch as their fast axis if
     that is so in all inputs (`np.asfortranarray(q)`, `Q.T`), which is the fastest; else row by row.
+    Values may be given by name, too: `{"shoulder": 0.1}` for q, with the others at their defaults; so they may wherever
+    states, inputs or parameters are asked for.
     `par=` overrides the run-time parameters (..., npar), judged as the description's own (`with_parameter_checks`);
     `t=` gives the time (...,) to models that depend on it; `u=` matters where a motion is prescribed, because its
     coordinates, speeds and their rates are inputs.
