@@ -173,8 +173,8 @@ class State:
     q2: Array
 
 
-class EngineModel(Protocol):
-    """One tree in one engine."""
+class HasLayout(Protocol):
+    """How an engine keeps the joints of a tree."""
 
     @property
     def nq(self) -> int:
@@ -187,6 +187,10 @@ class EngineModel(Protocol):
     @property
     def slots(self) -> tuple[tuple[Slot, ...], ...]:
         """For each link of the tree, in its order, the slots of its joints, without those of kind "fixed"."""
+
+
+class EngineModel(HasLayout, Protocol):
+    """One tree in one engine."""
 
     def call(self, function: str, state: State) -> Array | Unsupported:
         """A function of the plug-in's `functions`, by name, in the conventions stated there for its result.

@@ -56,6 +56,7 @@ _OBLIQUE: Vector = (2 / 3, -1 / 3, 2 / 3)
 _X: Vector = (1.0, 0.0, 0.0)
 _Y: Vector = (0.0, 1.0, 0.0)
 _Z: Vector = (0.0, 0.0, 1.0)
+_ACROSS: Rows = ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
 
 KINDS: dict[str, Kind] = {
     "revolute x": Kind((Joint("revolute", axis=_X),)),
@@ -75,6 +76,25 @@ KINDS: dict[str, Kind] = {
     "planar": Kind((Joint("planar"),)),
     "free": Kind((Joint("free"),), grounded=True),
     "ellipsoid": Kind((Joint("ellipsoid", radii=(0.3, 0.2, 0.4)),)),
+    "ellipsoid of revolution": Kind((Joint("ellipsoid", radii=(0.3, 0.3, 0.3)),)),
+    "free between links": Kind((Joint("free"),)),
+    "cylindrical": Kind((Joint("prismatic", axis=_Z), Joint("revolute", axis=_Z))),
+    "three hinges": Kind((Joint("revolute", axis=_X), Joint("revolute", axis=_Y), Joint("revolute", axis=_Z))),
+    "two slides and a hinge": Kind(
+        (Joint("prismatic", axis=_X), Joint("prismatic", axis=_Y), Joint("revolute", axis=_Z))
+    ),
+    "slide and ball": Kind((Joint("prismatic", axis=_X), Joint("ball"))),
+    "translation and euler zyx": Kind((Joint("translation"), Joint("euler", sequence="ZYX"))),
+    "offset hinges": Kind(
+        (Joint("revolute", axis=_X), Joint("revolute", axis=_OBLIQUE, R=_ACROSS, p=(0.25, 0.5, -0.125)))
+    ),
+    "euler xyz": Kind((Joint("euler", sequence="XYZ"),)),
+    "revolute with armature": Kind((Joint("revolute", axis=_Y, armature=(0.75,)),)),
+    "ball with armature": Kind((Joint("ball", armature=(0.75, 0.75, 0.75)),)),
+    "free with armature": Kind((Joint("free", armature=(0.75,) * 6),), grounded=True),
+    "mimic revolute": Kind((Joint("revolute", axis=_Y, mimics="a", ratio=1.5, offset=0.25),)),
+    "mimic oblique": Kind((Joint("revolute", axis=_OBLIQUE, mimics="a", ratio=-0.5, offset=0.25),)),
+    "mimic prismatic": Kind((Joint("prismatic", axis=_Y, mimics="a", ratio=0.5, offset=0.25),)),
 }
 
 

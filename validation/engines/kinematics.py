@@ -8,7 +8,7 @@ import numpy as np
 
 from validation.engines.arithmetic import Exact, exact, eye, rate, skew, stack, vee, zeros
 from validation.engines.charts import CHARTS, Pose
-from validation.engines.interface import EngineModel, Joint, Link, Slot, Tree
+from validation.engines.interface import HasLayout, Joint, Link, Slot, Tree
 
 _REMEMBERED = 1000
 
@@ -21,7 +21,7 @@ class Kinematics:
         model: Says how the engine keeps its joints.
     """
 
-    def __init__(self, tree: Tree, model: EngineModel) -> None:
+    def __init__(self, tree: Tree, model: HasLayout) -> None:
         self.tree, self.slots = tree, model.slots
         self.nq, self.nv = model.nq, model.nv
         self._placements = [[(exact(joint.R), exact(joint.p)) for joint in link.joints] for link in tree.links]

@@ -1,35 +1,105 @@
-"""Cells of the matrix: engines, trees and functions."""
+"""Cells of the matrix: engines, trees and functions, each answer judged by the truth."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from validation.engines.functions import FUNCTIONS
-from validation.engines.interface import EnginePlugin, Tree, Unsupported, vector
-from validation.engines.truth import random_state
-from validation.engines.verdicts import Cell, expected, judge
+from validation.engines.interface import EnginePlugin, State, Tree, Unsupported, vector
+from validation.engines.verdicts import Cell, Expected, Verdict, expected, judge
+from validation.engines.workers import Answer, Crashed, Job, Worker, answered
 
 SEED = 20
 
 
-def cells(plugin: EnginePlugin, tree: Tree, functions: Iterable[str] = ()) -> Iterator[Cell]:
-    """All cells of one engine on one tree."""
-    if plugin.gravity:
-        tree = replace(tree, gravity=vector(np.array(plugin.gravity)))
-    model = plugin.build(tree)
-    chosen = list(functions) or list(FUNCTIONS) + [name for name in plugin.functions if name not in FUNCTIONS]
-    for function in chosen:
-        if function not in plugin.functions:
-            yield Cell(plugin.name, tree.name, function, "not offered")
-        elif isinstance(model, Unsupported):
-            yield Cell(
-                plugin.name, tree.name, function, "refuses" if model.offered else "not offered", words=model.reason
-            )
-        else:
-            state = random_state(tree, model, SEED)
-            answer = model.call(function, state)
-            want = expected(function, tree, model, state, plugin.slacks.get(function, 0.0))
-            yield judge(plugin.name, tree, function, answer, want)
+@dataclass(frozen=True)
+class Judged:
+    """A cell and what it rests on.
+
+    Attributes:
+        cell: The cell.
+        answer: What the engine answered.
+        want: The truth; None where there was no answer.
+        tree: The tree, with the engine's gravity.
+    """
+
+    cell: Cell
+    answer: Answer
+    want: Expected | None
+    tree: Tree
+
+
+class Truths:
+    """Truths that were worked out already: engines that keep joints alike share them."""
+
+    def __init__(self) -> None:
+        self._known: dict[tuple[object, ...], Expected] = {}
+
+    def of(self, function: str, tree: Tree, answer: Answer, slack: float) -> Expected:
+        """The truth that an answer is judged by."""
+        assert answer.layout is not None and answer.state is not None
+        name = function.partition(":")[0]
+        key = (name, tree, answer.layout, _bytes(answer.state), slack)
+        if key not in self._known:
+            self._known[key] = expected(name, tree, answer.layout, answer.state, slack)
+        return self._known[key]
+
+
+def _bytes(state: State) -> bytes:
+    return b"|".join(np.asarray(part).tobytes() for part in vars(state).values())
+
+
+def names(plugins: Mapping[str, EnginePlugin]) -> list[str]:
+    """Names of all functions, with the second ways of engines after each."""
+    ways = dict.fromkeys(way for plugin in plugins.values() for way in plugin.functions if way not in FUNCTIONS)
+    return [name for first in FUNCTIONS for name in (first, *(way for way in ways if way.partition(":")[0] == first))]
+
+
+def suited(tree: Tree, plugin: EnginePlugin) -> Tree:
+    """The tree with the gravity that an engine knows."""
+    return replace(tree, gravity=vector(np.array(plugin.gravity))) if plugin.gravity else tree
+
+
+def judged(
+    plugin: EnginePlugin,
+    job: Job,
+    truths: Truths,
+    worker: Worker | None = None,
+) -> Iterator[Judged]:
+    """The functions of a job, those that the engine does not offer left out.
+
+    Args:
+        plugin: The engine.
+        job: What is asked; the tree is to suit the engine.
+        truths: Truths that are known.
+        worker: Process that the engine runs in; None for this one.
+    """
+    offered = replace(job, functions=tuple(name for name in job.functions if name in plugin.functions))
+    for answer in worker.ask(offered) if worker else answered(offered):
+        cell, want = _judge(plugin, job.tree, answer, truths)
+        yield Judged(cell, answer, want, job.tree)
+
+
+def _judge(plugin: EnginePlugin, tree: Tree, answer: Answer, truths: Truths) -> tuple[Cell, Expected | None]:
+    value = answer.value
+    if isinstance(value, Crashed):
+        return Cell(plugin.name, tree.name, answer.function, "crashes", words=value.reason), None
+    if isinstance(value, Unsupported):
+        verdict: Verdict = "refuses" if value.offered else "not offered"
+        return Cell(plugin.name, tree.name, answer.function, verdict, words=value.reason), None
+    try:
+        want = truths.of(answer.function, tree, answer, plugin.slacks.get(answer.function, 0.0))
+    except ZeroDivisionError:
+        return Cell(plugin.name, tree.name, answer.function, "not offered", words="the truth is singular"), None
+    return judge(plugin.name, tree, answer.function, value, want), want
+
+
+def cells(plugin: EnginePlugin, tree: Tree, functions: Sequence[str] = ()) -> Iterator[Cell]:
+    """Cells of one engine on one tree, in this process: of the given functions, or of all that it offers."""
+    chosen = tuple(functions) or tuple(plugin.functions)
+    job = Job(plugin.name, suited(tree, plugin), chosen, SEED)
+    for one in judged(plugin, job, Truths()):
+        yield one.cell

@@ -14,7 +14,7 @@ import numpy as np
 
 from validation.engines.arithmetic import Exact, cross, exact, eye, many_digits, rate, solve, stack, zeros
 from validation.engines.charts import CHARTS, Pose
-from validation.engines.interface import Array, EngineModel, State, Tree
+from validation.engines.interface import Array, HasLayout, State, Tree
 from validation.engines.kinematics import Inertia, Kinematics
 
 
@@ -42,7 +42,7 @@ class Truth:
         model: Says how an engine keeps its joints.
     """
 
-    def __init__(self, tree: Tree, model: EngineModel) -> None:
+    def __init__(self, tree: Tree, model: HasLayout) -> None:
         self.tree, self.kinematics = tree, Kinematics(tree, model)
         self.nv = model.nv
         self.gravity_vector = exact(tree.gravity)
@@ -126,7 +126,7 @@ class Truth:
         return stack([rate(function, v, unit[k]) for k in range(self.nv)])
 
 
-def random_state(tree: Tree, model: EngineModel, seed: int) -> State:
+def random_state(tree: Tree, model: HasLayout, seed: int) -> State:
     """A random state on the manifold of an engine's coordinates, of sizes about one."""
     draw = np.random.default_rng(seed)
     kinematics = Kinematics(tree, model)

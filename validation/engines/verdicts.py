@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 
 from validation.engines.functions import FUNCTIONS
-from validation.engines.interface import Array, EngineModel, Link, State, Tree, Unsupported, Vector, rows, vector
+from validation.engines.interface import Array, HasLayout, Link, State, Tree, Unsupported, Vector, rows, vector
 from validation.engines.truth import Point, Truth, digits
 
 Verdict = Literal["right", "imprecise", "wrong", "refuses", "crashes", "not offered"]
@@ -19,7 +19,7 @@ BACKWARD = 2000.0
 FORWARD = 1e-12
 # An answer that is off by more than this part of its largest entry is no matter of rounding.
 GROSS = 1e-6
-_PERTURBATIONS = 2
+_PERTURBATIONS = 1
 _ROUNDING = 2.0**-53
 
 
@@ -59,7 +59,7 @@ class Expected:
     allowed: float
 
 
-def expected(function: str, tree: Tree, model: EngineModel, state: State, slack: float = 0.0) -> Expected:
+def expected(function: str, tree: Tree, model: HasLayout, state: State, slack: float = 0.0) -> Expected:
     """The truth, and how far roundings of the inputs move it; `slack` is what the engine documents to be off."""
     truth_of = FUNCTIONS[function.partition(":")[0]].truth
     exact_value = Truth(tree, model).value(truth_of, Point.of(state))

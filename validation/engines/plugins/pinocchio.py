@@ -14,7 +14,7 @@ from validation.engines.plugins.source import Source, SourcePlugin, Way, series
 # them.
 _MODELS: dict[tuple[str, str], tuple[str, str, int, int]] = {
     ("revolute", ""): ("RevoluteUnaligned({axis})", "angle", 1, 1),
-    ("revolute", "unbounded"): ("RevoluteUnboundedUnaligned({axis})", "cos sin", 2, 1),
+    ("revolute", "unbounded"): ("", "cos sin", 2, 1),
     ("prismatic", ""): ("PrismaticUnaligned({axis})", "length", 1, 1),
     ("helical", ""): ("HelicalUnaligned({axis}, {pitch!r})", "screw angle", 1, 1),
     ("universal", ""): ("Universal({axis}, {second})", "two angles", 2, 2),
@@ -50,6 +50,8 @@ def _model(joint: Joint) -> str | Unsupported:
         return Unsupported(f"no joint model for {joint.kind} {joint.form or joint.sequence}", offered=False)
     letter = next((name for name, unit in zip("XYZ", np.eye(3), strict=True) if tuple(unit) == joint.axis), "")
     text = _ALIGNED[key] if letter and key in _ALIGNED else _MODELS[key][0]
+    if not text:
+        return Unsupported("in Python, JointModelRevoluteUnboundedUnaligned takes no axis", offered=False)
     axis, second = _array(joint.axis), _array(joint.second)
     radii = ", ".join(map(repr, joint.radii))
     return "pin.JointModel" + text.format(letter=letter, axis=axis, second=second, radii=radii, pitch=joint.pitch)
@@ -79,7 +81,11 @@ def write(tree: Tree) -> Source | Unsupported:
             _, chart, coordinates, speeds = _MODELS[joint.kind, joint.form]
             if joint.mimics:
                 followed = ids[joint.mimics]
-                model = f"pin.JointModelMimic({model}, m.joints[j{followed}], {joint.ratio!r}, {joint.offset!r})"
+                lines += [
+                    f"s{k} = {model}",
+                    f"s{k}.setIndexes(j{followed}, m.idx_qs[j{followed}], m.idx_vs[j{followed}])",
+                ]
+                model = f"pin.JointModelMimic(s{k}, {joint.ratio!r}, {joint.offset!r})"
                 own.append(Slot(chart, slots[followed][0].q, slots[followed][0].v))
             else:
                 own.append(Slot(chart, tuple(range(nq, nq + coordinates)), tuple(range(nv, nv + speeds))))

@@ -1,0 +1,195 @@
+"""Engines in processes of their own: one that crashes or hangs is an answer, too."""
+
+from __future__ import annotations
+
+import contextlib
+import multiprocessing
+import signal
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from multiprocessing.connection import Connection
+from typing import Any
+
+from validation.engines.interface import Array, EngineModel, Slot, State, Tree, Unsupported, installed
+from validation.engines.plugins import OWN
+from validation.engines.truth import random_state
+
+# Time for one answer; the first includes the import of the engine and of what it needs.
+LIMIT = 60.0
+
+
+@dataclass(frozen=True)
+class Crashed:
+    """An engine took its process with it, or gave no answer in time.
+
+    Attributes:
+        reason: Signal, exit code or limit.
+    """
+
+    reason: str
+
+
+@dataclass(frozen=True)
+class Layout:
+    """How a model in another process keeps its joints (`interface.EngineModel`).
+
+    Attributes:
+        nq: Length of its q.
+        nv: Length of its v.
+        slots: Slots of the links' joints.
+    """
+
+    nq: int
+    nv: int
+    slots: tuple[tuple[Slot, ...], ...]
+
+
+@dataclass(frozen=True)
+class Job:
+    """Functions of one tree in one engine.
+
+    Attributes:
+        engine: Name of the plug-in.
+        tree: The tree.
+        functions: Names of functions.
+        seed: Seed of a random state.
+        state: The state, in place of a random one.
+        form: Format of a file that the engine reads; "" to build the tree by its API.
+        text: The file.
+    """
+
+    engine: str
+    tree: Tree
+    functions: tuple[str, ...]
+    seed: int = 0
+    state: State | None = None
+    form: str = ""
+    text: str = ""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What came of a function.
+
+    Attributes:
+        function: Its name.
+        value: The result.
+        layout: Layout of the model; None where there is no model.
+        state: The state that it was evaluated at.
+        script: Text that does the same, for a value only.
+    """
+
+    function: str
+    value: Array | Unsupported | Crashed
+    layout: Layout | None = None
+    state: State | None = None
+    script: str = ""
+
+
+def made(job: Job) -> EngineModel | Unsupported:
+    """The model of a job."""
+    plugin = installed(OWN).plugins[job.engine]
+    return plugin.read(job.tree, job.form, job.text) if job.form else plugin.build(job.tree)
+
+
+def answered(job: Job) -> Iterator[Answer]:
+    """Do a job in this process."""
+    model = made(job)
+    if isinstance(model, Unsupported):
+        yield from (Answer(function, model) for function in job.functions)
+        return
+    layout = Layout(model.nq, model.nv, model.slots)
+    state = job.state or random_state(job.tree, model, job.seed)
+    for function in job.functions:
+        value = model.call(function, state)
+        script = "" if isinstance(value, Unsupported) else model.script(function, state)
+        yield Answer(function, value, layout, state, script)
+
+
+def serve(pipe: Connection) -> None:
+    """Do jobs as they come; what can't be sent back is no answer."""
+    while True:
+        try:
+            job = pipe.recv()
+        except EOFError:
+            return
+        try:
+            for answer in answered(job):
+                pipe.send(answer)
+        except Exception as error:  # Our own fault, or a plug-in's: told, not hidden.
+            pipe.send(Unsupported(f"{type(error).__name__}: {error}"))
+        pipe.send(None)
+
+
+class Worker:
+    """A process that engines run in, started anew after a crash.
+
+    Args:
+        limit: Seconds for one answer.
+    """
+
+    def __init__(self, limit: float = LIMIT) -> None:
+        self._limit = limit
+        self._process: Any = None
+        self._pipe: Connection | None = None
+
+    def __enter__(self) -> Worker:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End the process."""
+        if self._process is not None:
+            self._process.kill()
+            self._process.join()
+        if self._pipe is not None:
+            self._pipe.close()
+        self._process = self._pipe = None
+
+    def ask(self, job: Job) -> Iterator[Answer]:
+        """An answer for each function of a job, in order."""
+        remaining = list(job.functions)
+        while remaining:
+            done = 0
+            for answer in self._once(replace(job, functions=tuple(remaining))):
+                yield answer
+                done += 1
+            remaining = remaining[done:]
+
+    def _once(self, job: Job) -> Iterator[Answer]:
+        pipe = self._started()
+        pipe.send(job)
+        for function in job.functions:
+            message: Any = None
+            reason = f"no answer in {self._limit:g} s"
+            if pipe.poll(self._limit):
+                with contextlib.suppress(EOFError, ConnectionResetError):
+                    message = pipe.recv()
+            if message is None:
+                if not pipe.closed and self._process.is_alive():
+                    self._process.join(0.2)
+                code = self._process.exitcode
+                self.close()
+                yield Answer(function, Crashed(reason if code is None else _exit_reason(code)))
+                return
+            if isinstance(message, Unsupported):
+                self.close()
+                raise RuntimeError(f"{job.engine}, {function}: {message.reason}")
+            yield message
+        if pipe.poll(self._limit):
+            pipe.recv()
+
+    def _started(self) -> Connection:
+        if self._pipe is None:
+            context = multiprocessing.get_context("spawn")
+            self._pipe, other = context.Pipe()
+            self._process = context.Process(target=serve, args=(other,), daemon=True)
+            self._process.start()
+            other.close()
+        return self._pipe
+
+
+def _exit_reason(code: int) -> str:
+    return f"killed by {signal.Signals(-code).name}" if code < 0 else f"exit code {code}"
