@@ -79,6 +79,7 @@ class Route:
 ROUTES: dict[str, Route] = {
     "pinocchio": Route("validation.adapters.pinocchio.tree", "pinocchio"),
     "mujoco": Route("validation.adapters.mujoco.tree", "mujoco"),
+    "exudyn": Route("validation.adapters.exudyn.tree", "exudyn"),
     "pinocchio-loops": Route("validation.adapters.pinocchio.loops", "pinocchio", loops=True),
     "exudyn-loops": Route("validation.adapters.exudyn.loops", "exudyn", loops=True),
     "pinocchio-urdf": Route("validation.adapters.pinocchio.urdf", "pinocchio", reads="urdf"),

@@ -55,6 +55,13 @@ def about_axis(axis: Array, angle: float) -> Array:
     return np.asarray(np.eye(3) + math.sin(angle) * K + (1.0 - math.cos(angle)) * (K @ K))
 
 
+def along_z(axis: Array) -> Array:
+    """A rotation that takes z to a unit axis (3, 3)."""
+    Q, _ = np.linalg.qr(np.column_stack([axis, np.eye(3)[np.argsort(np.abs(axis))[:2]].T]))
+    z = Q[:, 0] * np.sign(Q[:, 0] @ axis)
+    return np.column_stack([Q[:, 1], np.cross(z, Q[:, 1]), z])
+
+
 def rotation_matrix(kind: str, values: Array) -> Array:
     """R_AB of a rotation as a description states it.
 

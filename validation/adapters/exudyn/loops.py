@@ -27,7 +27,7 @@ from validation.contract.conventions import xyzw_to_wxyz
 from validation.contract.interface import States, Subject, Unsupported
 from validation.mechanics.absolute import Moving, bodies, joint_accelerations, work_rows
 from validation.mechanics.assembly import BASE, Assembly, FrameSite, Mover, assemble
-from validation.mechanics.geometry import Array, Placement, matrix_quaternion
+from validation.mechanics.geometry import Array, Placement, along_z, matrix_quaternion
 from validation.mechanics.joint_kinds import PartKind
 
 NAME = "exudyn-loops"
@@ -210,16 +210,9 @@ def _joint(system: Any, mover: Mover, parent: Any, body: Any) -> None:
     blocked = {"revolute": [1, 1, 1, 1, 1, 0], "prismatic": [1, 1, 0, 1, 1, 1], "ball": [1, 1, 1, 0, 0, 0]}
     if mover.kind == "free":
         return
-    turned = Placement(_with_third(mover.axis), np.zeros(3))
+    turned = Placement(along_z(mover.axis), np.zeros(3))
     markers = [_marker(system, parent, mover.X_AP @ turned), _marker(system, body, turned)]
     _generic(system, markers, blocked[mover.kind])
-
-
-def _with_third(axis: Array) -> Array:
-    """A rotation that takes z to the axis."""
-    Q, _ = np.linalg.qr(np.column_stack([axis, np.eye(3)[np.argsort(np.abs(axis))[:2]].T]))
-    z = Q[:, 0] * np.sign(Q[:, 0] @ axis)
-    return np.column_stack([Q[:, 1], np.cross(z, Q[:, 1]), z])
 
 
 def _marker(system: Any, carrier: Any, X: Placement) -> Any:

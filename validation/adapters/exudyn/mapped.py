@@ -33,7 +33,8 @@ NAME = "exudyn-beams"
 MESHES = 5
 # Powers of the element length by which meshes err: (6), cubic elements of a uniform section; (7), all else.
 CUBIC, LINEAR = (4, 6, 8, 10), (2, 4, 6, 8)
-MOST_STATES = 100
+# States in one call, with beams and without.
+MOST_STATES, MOST_RIGID_STATES = 100, 300
 # Quantities that meshes enter.
 MESHED = ("mass_matrix", "bias", "gravity", "kinetic_energy", "inverse_dynamics", "forward_dynamics", "multipliers")
 # Tolerance of these, relative to the largest entry: of extrapolation, and of the spins of second order that our rotary
@@ -109,8 +110,8 @@ class MappedEngine:
     first_motion: int
     capabilities: frozenset[str]
     accuracy: Mapping[str, float]
-    most_states: int = MOST_STATES
-    name: str = NAME
+    most_states: int
+    name: str
     version: str = VERSION
     _kept: dict[tuple[bytes, ...], Terms] = field(default_factory=dict)
 
@@ -219,7 +220,17 @@ def _turning(one: Elements, system: ExudynSystem, x: Array, root: Carried, state
 
 
 def build(subject: Subject) -> MappedEngine | Unsupported:
-    """Exudyn's bodies and elements of a description."""
+    """Exudyn's bodies and elements of a description with beams."""
+    return engine(subject, NAME)
+
+
+def engine(subject: Subject, name: str) -> MappedEngine | Unsupported:
+    """Exudyn's bodies and elements of a description.
+
+    Args:
+        subject: Subject, with or without beams.
+        name: Name of the engine in tables.
+    """
     system = subject.system
     assembly = assemble(system)
     obstacle = _obstacle(system, assembly)
@@ -241,8 +252,10 @@ def build(subject: Subject) -> MappedEngine | Unsupported:
         armatures,
         tuple(assembly.frames[name] for name in subject.frames),
         len(system.inputs) + assembly.motors,
-        _offered(system),
+        offered(system),
         dict.fromkeys(MESHED, SECOND_ORDER_SPINS if _turns_sections(elements) else EXTRAPOLATED) if elements else {},
+        MOST_STATES if elements else MOST_RIGID_STATES,
+        name,
     )
 
 
@@ -269,6 +282,6 @@ def _obstacle(system: sf.System, assembly: Assembly) -> Unsupported | None:
     return None
 
 
-def _offered(system: sf.System) -> frozenset[str]:
+def offered(system: sf.System) -> frozenset[str]:
     """All but the rates of Jacobians, which Exudyn does not have, and the energy of what it was not given."""
     return TREE_QUANTITIES - {"frame_jacobian_rate"} - ({"potential_energy"} if stores_energy(system) else set())
