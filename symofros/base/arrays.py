@@ -1,4 +1,4 @@
-"""Arrays of numbers: what counts as one, norms of rows."""
+"""What counts as an array of numbers."""
 
 from __future__ import annotations
 
@@ -51,12 +51,3 @@ def numeric(what: str, values: ArrayLike) -> npt.NDArray[np.float64]:
             )
         )
     return np.array(array)
-
-
-def row_norms(rows: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """Norm of each row, without overflow."""
-    size = max(float(rows.max(initial=0.0)), -float(rows.min(initial=0.0)))
-    if size == 0.0:
-        return np.zeros(len(rows))
-    norms: npt.NDArray[np.float64] = size * np.sqrt(np.einsum("ij,ij->i", rows / size, rows / size))
-    return norms

@@ -1,13 +1,54 @@
-/* Linear systems of any rank: Gaussian elimination with complete pivoting. */
+/* Linear systems of any rank: equations of motion above conditions, by Gaussian elimination with complete pivoting. */
 
-/* Relative to the largest pivot: smaller ones count as zero, and the system as of lower rank. */
+/* Relative to the largest pivot of the scaled system: smaller ones count as zero, and the system as of lower rank. */
 #define SYM_PIVOT_TOLERANCE 1e-13
+/* Share of the largest entry of a column in all conditions below which an entry is rounding of the sum that it is. */
+#define SYM_ENTRY_ROUNDING 1e-12
 
-/* Factors A (n x n, row by row) in place; p and c become the permutations of rows and columns. Returns the rank. */
-static int32_t sym_eliminate(int32_t n, double *A, int32_t *p, int32_t *c) {
+/* A power of two near 1/sqrt(x), and 1 for x = 0: scaling by it does not round. */
+static double sym_inverse_root(double x) {
+    int exponent;
+    if (!(x > 0.0)) return 1.0;
+    (void)frexp(x, &exponent);
+    return ldexp(1.0, -exponent / 2);
+}
+
+/* Whether condition i, a row of A, is rounding alone, such as what a planar loop says of the direction across its plane. */
+static int32_t sym_condition_is_void(int32_t nv, int32_t n, const double *A, int32_t i) {
+    int32_t j, k;
+    for (j = 0; j < nv; ++j) {
+        double largest = 0.0;
+        for (k = nv; k < n; ++k) largest = fabs(A[(size_t)k * n + j]) > largest ? fabs(A[(size_t)k * n + j]) : largest;
+        if (fabs(A[(size_t)i * n + j]) > SYM_ENTRY_ROUNDING * largest) return 0;
+    }
+    return 1;
+}
+
+/* scale (n): each speed in units of its own inertia, each condition by its own size in these units, or 0 where it is void
+ * (docs/theory/simulation.md, section 3). */
+static void sym_natural_scale(int32_t nv, int32_t n, const double *A, double *scale) {
+    int32_t i, j;
+    for (j = 0; j < nv; ++j) scale[j] = sym_inverse_root(fabs(A[(size_t)j * n + j]));
+    for (i = nv; i < n; ++i) {
+        double size = 0.0;
+        for (j = 0; j < nv; ++j) {
+            const double entry = fabs(A[(size_t)i * n + j]) * scale[j];
+            size = entry > size ? entry : size;
+        }
+        scale[i] = sym_condition_is_void(nv, n, A, i) ? 0.0 : sym_inverse_root(size * size);
+    }
+}
+
+/* Factors A (n x n, row by row; nv equations of motion, then conditions with their multipliers) in place, scaled; p and c
+ * become the permutations of rows and columns. Returns the rank. */
+static int32_t sym_eliminate(int32_t nv, int32_t n, double *A, double *scale, int32_t *p, int32_t *c) {
     int32_t i, j, k, rank = 0;
     double largest = 0.0;
-    for (i = 0; i < n; ++i) p[i] = c[i] = i;
+    sym_natural_scale(nv, n, A, scale);
+    for (i = 0; i < n; ++i) {
+        for (j = 0; j < n; ++j) A[(size_t)i * n + j] *= scale[i] * scale[j];
+        p[i] = c[i] = i;
+    }
     for (k = 0; k < n; ++k) {
         int32_t row = k, column = k;
         double best = -1.0;
@@ -43,11 +84,11 @@ static int32_t sym_eliminate(int32_t n, double *A, int32_t *p, int32_t *c) {
 }
 
 /* x with A x = b, zero in the components that the rank leaves free; work: n doubles. */
-static void sym_solve(int32_t n, int32_t rank, const double *A, const int32_t *p, const int32_t *c, const double *b,
-                      double *x, double *work) {
+static void sym_solve(int32_t n, int32_t rank, const double *A, const double *scale, const int32_t *p, const int32_t *c,
+                      const double *b, double *x, double *work) {
     int32_t i, j;
     for (i = 0; i < rank; ++i) {
-        double s = b[p[i]];
+        double s = scale[p[i]] * b[p[i]];
         for (j = 0; j < i; ++j) s -= A[(size_t)i * n + j] * work[j];
         work[i] = s;
     }
@@ -56,5 +97,5 @@ static void sym_solve(int32_t n, int32_t rank, const double *A, const int32_t *p
         for (j = i + 1; j < rank; ++j) s -= A[(size_t)i * n + j] * work[j];
         work[i] = s / A[(size_t)i * n + i];
     }
-    for (i = 0; i < n; ++i) x[c[i]] = i < rank ? work[i] : 0.0;
+    for (i = 0; i < n; ++i) x[c[i]] = i < rank ? scale[c[i]] * work[i] : 0.0;
 }

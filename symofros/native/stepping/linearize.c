@@ -64,6 +64,7 @@ static void sym_configuration_rate_derivative(sym_instance *instance, const doub
 
 typedef struct sym_differentiate_workspace { /* n = nv + nc */
     double *matrix;                     /* (n, n) */
+    double *scale;                      /* (n) */
     double *right, *solution, *scratch; /* (n) */
     double *theta;                      /* (nv) */
 } sym_differentiate_workspace;
@@ -72,7 +73,8 @@ static sym_differentiate_workspace sym_allocate_differentiate_workspace(const sy
                                                                         sym_arena *arena) {
     const size_t nv = (size_t)instance->model->nv, n = nv + (size_t)instance->model->nc;
     sym_differentiate_workspace w;
-    w.matrix = sym_allocate(arena, n * n), w.right = sym_allocate(arena, n), w.solution = sym_allocate(arena, n);
+    w.matrix = sym_allocate(arena, n * n), w.scale = sym_allocate(arena, n);
+    w.right = sym_allocate(arena, n), w.solution = sym_allocate(arena, n);
     w.scratch = sym_allocate(arena, n), w.theta = sym_allocate(arena, nv);
     return w;
 }
@@ -118,9 +120,9 @@ SYM_EXPORT int32_t sym_instance_differentiate(sym_instance *instance, const doub
         }
         w.right[nv + i] -= 2.0 * alpha * by_rate + (s->on_speeds[i] ? 0.0 : beta * beta * by_phi);
     }
-    rank = sym_eliminate(n, w.matrix, pivots, pivots + n);
+    rank = sym_eliminate(nv, n, w.matrix, w.scale, pivots, pivots + n);
     if (rank < nv) return SYM_SINGULAR;
-    sym_solve(n, rank, w.matrix, pivots, pivots + n, w.right, w.solution, w.scratch);
+    sym_solve(n, rank, w.matrix, w.scale, pivots, pivots + n, w.right, w.solution, w.scratch);
     memcpy(rates + s->nq, w.solution, (size_t)nv * sizeof *rates);
     memcpy(lam, w.solution + nv, (size_t)nc * sizeof *lam);
     return 0;

@@ -65,7 +65,7 @@ static int32_t sym_rosenbrock_matrix(sym_run *r, double g, sym_implicit_workspac
         for (j = 0; j < nc; ++j) w->matrix[(size_t)i * n + nv + j] = -G[(size_t)j * nv + i];
     for (i = nv; i < n; ++i)
         for (j = nv; j < n; ++j) w->matrix[(size_t)i * n + j] = 0.0;
-    return sym_eliminate(n, w->matrix, r->pivots, r->pivots + n);
+    return sym_eliminate(nv, n, w->matrix, w->scale, r->pivots, r->pivots + n);
 }
 
 /* U = (U_1, U_2) with (g - J) U = right = (r_1, r_2), J the Jacobian of f: U_1 by (5), then U_2 = (g - T) U_1 - r_1. */
@@ -81,7 +81,7 @@ static void sym_rosenbrock_solve(sym_run *r, double g, int32_t rank, sym_implici
         for (j = 0; j < nv; ++j) w->right[i] += X[j] * right[nv + j];
         w->right[i] /= g * g;
     }
-    sym_solve(n, rank, w->matrix, r->pivots, r->pivots + n, w->right, w->solution, w->scratch);
+    sym_solve(n, rank, w->matrix, w->scale, r->pivots, r->pivots + n, w->right, w->solution, w->scratch);
     for (i = 0; i < nv; ++i) U[i] = w->solution[i], U[nv + i] = g * w->solution[i] - right[i];
     sym_chart_rate_jacobian(s, r->v, w->solution, -1.0, U + nv);
 }

@@ -42,7 +42,7 @@ static int32_t sym_modified_newton(sym_run *r, sym_workspace *memory, const sym_
             rank = e->factor(r, memory, e->h);
             if (rank < r->system->nv) return rank < 0 ? rank : SYM_SINGULAR;
         }
-        sym_solve(e->n, rank, w.matrix, r->pivots, r->pivots + e->n, w.right, w.solution, w.scratch);
+        sym_solve(e->n, rank, w.matrix, w.scale, r->pivots, r->pivots + e->n, w.right, w.solution, w.scratch);
         if (!sym_all_finite(e->n, w.solution)) return SYM_DIVERGED;
         for (i = 0; i < e->n; ++i) x[i] += w.solution[i];
         if (e->size(r, e->h, w.solution) <= e->rounding(r, memory, e->h)) return 0;
@@ -63,7 +63,7 @@ static int32_t sym_damped_newton(sym_run *r, sym_workspace *memory, const sym_st
         if (status != 0) return status;
         rank = e->factor(r, memory, e->h);
         if (rank < r->system->nv) return rank < 0 ? rank : SYM_SINGULAR;
-        sym_solve(e->n, rank, w.matrix, r->pivots, r->pivots + e->n, w.right, w.correction, w.scratch);
+        sym_solve(e->n, rank, w.matrix, w.scale, r->pivots, r->pivots + e->n, w.right, w.correction, w.scratch);
         if (!sym_all_finite(e->n, w.correction)) return SYM_DIVERGED;
         size = e->size(r, e->h, w.correction);
         if (size <= e->rounding(r, memory, e->h)) {
@@ -73,7 +73,7 @@ static int32_t sym_damped_newton(sym_run *r, sym_workspace *memory, const sym_st
         for (halvings = 0; halvings < MAX_HALVINGS; ++halvings, share *= 0.5) {
             for (i = 0; i < e->n; ++i) w.tried[i] = x[i] + share * w.correction[i];
             if (e->residual(r, memory, e->h, w.tried) != 0) continue;
-            sym_solve(e->n, rank, w.matrix, r->pivots, r->pivots + e->n, w.right, w.solution, w.scratch);
+            sym_solve(e->n, rank, w.matrix, w.scale, r->pivots, r->pivots + e->n, w.right, w.solution, w.scratch);
             if (e->size(r, e->h, w.solution) <= (1.0 - 0.25 * share) * size) break;
         }
         if (halvings == MAX_HALVINGS) return SYM_NO_CONVERGENCE;
@@ -149,7 +149,7 @@ static int32_t sym_alpha_factor(sym_run *r, sym_workspace *memory, double h) {
         }
         for (j = 0; j < nc; ++j) w.matrix[(size_t)(nv + i) * n + nv + j] = 0.0;
     }
-    return sym_eliminate(n, w.matrix, r->pivots, r->pivots + n);
+    return sym_eliminate(nv, n, w.matrix, w.scale, r->pivots, r->pivots + n);
 }
 
 /* The change of speeds. */
@@ -294,7 +294,7 @@ static int32_t sym_variational_factor(sym_run *r, sym_workspace *memory, double 
     status = sym_evaluate_jacobian(r);
     if (status != 0) return status;
     for (i = 0; i < nv * nv; ++i) w.matrix[i] = M[i] / h + 0.5 * R_v[i] + 0.25 * h * R_q[i];
-    return sym_eliminate(nv, w.matrix, r->pivots, r->pivots + nv);
+    return sym_eliminate(nv, nv, w.matrix, w.scale, r->pivots, r->pivots + nv);
 }
 
 static double sym_variational_size(const sym_run *r, double h, const double *correction) {
@@ -342,8 +342,8 @@ static int32_t sym_variational_step(sym_run *r, sym_workspace *memory, double h)
     *s->t = r->t + h;
     sym_evaluate(&s->momentum); /* for M at the end of the step */
     memcpy(w.matrix, s->momentum.out[2], (size_t)nv * nv * sizeof(double));
-    rank = sym_eliminate(nv, w.matrix, r->pivots, r->pivots + nv);
+    rank = sym_eliminate(nv, nv, w.matrix, w.scale, r->pivots, r->pivots + nv);
     if (rank < nv) return SYM_SINGULAR;
-    sym_solve(nv, rank, w.matrix, r->pivots, r->pivots + nv, end, y1 + nv, w.scratch);
+    sym_solve(nv, rank, w.matrix, w.scale, r->pivots, r->pivots + nv, end, y1 + nv, w.scratch);
     return 0;
 }

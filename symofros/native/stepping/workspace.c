@@ -2,6 +2,7 @@
 
 typedef struct sym_implicit_workspace { /* n = nv + nc; empty for explicit methods */
     double *matrix;                      /* (n, n) Newton's or a Rosenbrock step's, then its factors */
+    double *scale;                       /* (n) of the factors */
     double *right, *solution, *scratch;  /* (n) */
     double *correction, *tried;          /* (n) of damped Newton iteration */
     double *unknowns;                    /* (2 n) of the equations of a step, and their guess */
@@ -30,7 +31,8 @@ static sym_workspace sym_allocate_workspace(const sym_run *r, sym_arena *arena) 
     memset(&w.implicit, 0, sizeof w.implicit);
     if (r->method > SYM_METHOD_SEMI_IMPLICIT) {
         sym_implicit_workspace *implicit = &w.implicit;
-        implicit->matrix = sym_allocate(arena, n * n), implicit->right = sym_allocate(arena, n);
+        implicit->matrix = sym_allocate(arena, n * n), implicit->scale = sym_allocate(arena, n);
+        implicit->right = sym_allocate(arena, n);
         implicit->solution = sym_allocate(arena, n), implicit->scratch = sym_allocate(arena, n);
         implicit->correction = sym_allocate(arena, n), implicit->tried = sym_allocate(arena, n);
         implicit->unknowns = sym_allocate(arena, 2 * n);

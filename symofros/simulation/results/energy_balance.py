@@ -7,7 +7,6 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from symofros.base.arrays import row_norms
 from symofros.errors import SymofrosError
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.manifold import retract
@@ -127,7 +126,7 @@ def _power(stepper: Stepper, step: float, states: Sequence[Array]) -> Array:
     model, par, (t, q, v, u) = stepper.model, stepper.par, states
     a, lam = model.forward_dynamics(q, v, u, par=par, t=t, multipliers=True)
     # A fast motion changes its speeds within less than a step that does not follow it.
-    pace = row_norms(v).max() / np.maximum(row_norms(a), 1e-300)
+    pace = _norms(v).max() / np.maximum(_norms(a), 1e-300)
     moment = _MOMENT * step * np.clip(pace / step, _SHORTEST, 1.0)
     ends = []
     for s in (moment, -moment):
@@ -138,3 +137,12 @@ def _power(stepper: Stepper, step: float, states: Sequence[Array]) -> Array:
     if model.nc:
         rate = rate - np.einsum("ij,ij->i", lam, model.constraint_rate(q, v, u=u, par=par, t=t))
     return rate
+
+
+def _norms(rows: Array) -> Array:
+    """Norm of each row, without overflow."""
+    size = max(float(rows.max(initial=0.0)), -float(rows.min(initial=0.0)))
+    if size == 0.0:
+        return np.zeros(len(rows))
+    norms: Array = size * np.sqrt(np.einsum("ij,ij->i", rows / size, rows / size))
+    return norms

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from symofros.errors import SymofrosError
 from symofros.runtime.calls.kernel import Array
+from symofros.simulation.results.energy_norm import energy_norms
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.loops import run_own
 from symofros.simulation.stepping.resolution import TOLERANCE
@@ -68,18 +68,9 @@ def halved_step_note(
     if len(v_half) != len(v):
         v, q_half, v_half, u_half = v[-1:], q_half[-1:], v_half[-1:], u_half[-1:]
     with np.errstate(all="ignore"):
-        change = float(_sizes(stepper, q_half, u_half, v - v_half).max())
-        largest = float(_sizes(stepper, q_half, u_half, v_half).max())
+        change = float(energy_norms(stepper, q_half, u_half, v - v_half).max())
+        largest = float(energy_norms(stepper, q_half, u_half, v_half).max())
     if not change > TOLERANCE * largest:
         return ""
     share = f"{100.0 * change / largest:.2g} % of the largest speed" if change < largest else "more than all of them"
     return f"steps of {h:.4g} s do not determine the motion: half of that changes speeds by {share}; a smaller dt"
-
-
-def _sizes(stepper: Stepper, q: Array, u: Array, v: Array) -> Array:
-    """Size of speeds (n) in the norm of the kinetic energy; of all alike where the model has no mass matrix."""
-    try:
-        M = stepper.model.mass_matrix(q, u=u, par=stepper.par)
-    except SymofrosError:  # Options.functions left it out.
-        return np.asarray(np.linalg.norm(v, axis=1))
-    return np.asarray(np.sqrt(np.maximum(np.einsum("ni,nij,nj->n", v, M, v), 0.0)))

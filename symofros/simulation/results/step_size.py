@@ -7,9 +7,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from symofros.base.arrays import row_norms
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.results.energy_balance import EXPLODED, energy_note, energy_that_appeared
+from symofros.simulation.results.energy_norm import energy_norms, metrics
 from symofros.simulation.results.repetition import halved_step_note
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.resolution import Mode, Resolution, largest_stable_step, resolution, states_to_examine
@@ -66,16 +66,20 @@ def examine_steps(
         return Resolution()
     if settings.realtime and stepper.system.callback != stepper.ffi.NULL:
         return Resolution()  # What the function serves may be hardware: it is not called beside the run.
-    t, q, v, _ = states
+    t, q, v, u = states
     good = _finite_rows(q, v)
     wanted = states_to_examine(steps, stepper.method.tableau.stages, stepper.model.nv)
     later = sorted({good * k // (wanted - 1) - 1 for k in range(1, wanted)}) if good else []
     examined = [(settings.t0, *start), *((float(t[i]), q[i], v[i]) for i in later)]
     stride = max(1, good // _SPEEDS)
-    norms = row_norms(np.concatenate([start[1][np.newaxis], v[:good:stride]]))
+    q_all, v_all = (np.concatenate([x[np.newaxis], y[:good:stride]]) for x, y in zip(start, (q, v), strict=True))
+    u_all = np.concatenate([u[:1], u[:good:stride]])
+    norms = energy_norms(stepper, q_all, u_all, v_all)
+    places = np.stack([where for _, where, _ in examined])
+    metric = metrics(stepper, places, u_all[:1])
     speeds = [_speed_of_motion(norms, i // stride + 2) for i in (0, *later)]
     with stepper.preserved(), np.errstate(all="ignore"):  # States that have exploded overflow.
-        return resolution(stepper, settings.dt, steps, examined, speeds)
+        return resolution(stepper, settings.dt, steps, examined, speeds, metric)
 
 
 def _speed_of_motion(norms: Array, at: int) -> float:

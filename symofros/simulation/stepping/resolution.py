@@ -74,7 +74,12 @@ def states_to_examine(steps: int, stages: int, nv: int) -> int:
 
 
 def resolution(
-    stepper: Stepper, h: float, steps: int, states: Sequence[tuple[float, Array, Array]], speeds: Sequence[float]
+    stepper: Stepper,
+    h: float,
+    steps: int,
+    states: Sequence[tuple[float, Array, Array]],
+    speeds: Sequence[float],
+    metric: Array,
 ) -> Resolution:
     """How well a run resolves the modes about some of its states; one is named where they err beyond TOLERANCE.
 
@@ -83,13 +88,14 @@ def resolution(
         h: Step [s].
         steps: Number of steps.
         states: States of the run (t, q, v); each stands for an equal part of the run.
-        speeds: Largest norm of the speeds in the motion about each state.
+        speeds: Largest speed of the motion about each state, in its metric.
+        metric: Mass matrix at each state (number of states, nv, nv).
     """
     if max(speeds) == 0.0:  # Rest is kept exactly.
         return Resolution()
     method, part = stepper.method, max(1, steps // len(states))
     total, worst, evident = 0.0, None, True
-    for (t, q, v), speed in zip(states, speeds, strict=True):
+    for (t, q, v), speed, M in zip(states, speeds, metric, strict=True):
         spectrum = stepper.spectrum(t, q, v, h, min(2 * stepper.model.nv, _DIRECTIONS))
         if spectrum is None:
             evident = False
@@ -99,7 +105,7 @@ def resolution(
         if _radius(matrix) <= resolved:
             continue
         evident = False
-        modes = [(z, share) for z, share in _modes(basis, matrix, motion, h * speed) if abs(z) > resolved]
+        modes = [(z, share) for z, share in _modes(basis, matrix, motion, h * speed, M) if abs(z) > resolved]
         judged = (_judged(method, z, share, h, part, t) for z, share in modes)
         here = max(judged, key=lambda mode: mode.error, default=None)
         if here is not None:
@@ -154,14 +160,15 @@ def _radius(matrix: Array) -> float:
     return float(scale * np.vdot(power, power) ** 0.03125)
 
 
-def _modes(basis: Array, matrix: Array, motion: Array, travel: float) -> list[tuple[complex, float]]:
+def _modes(basis: Array, matrix: Array, motion: Array, travel: float, M: Array) -> list[tuple[complex, float]]:
     """Modes of the subspace: h times the rate, and the share in the motion's speed.
 
     Args:
         basis: Orthonormal changes (m, 2 nv).
         matrix: Derivative (m, m).
         motion: Components of the motion of one step (m).
-        travel: Step times the largest speed of the run.
+        travel: Step times the largest speed of the run, in the metric.
+        M: Metric of displacements and speeds (nv, nv).
     """
     if not np.all(np.isfinite(matrix)):
         return []
@@ -170,7 +177,9 @@ def _modes(basis: Array, matrix: Array, motion: Array, travel: float) -> list[tu
         content = np.linalg.solve(vectors, motion)
     except np.linalg.LinAlgError:  # Two modes are one.
         content = np.linalg.lstsq(vectors, motion.astype(complex), rcond=None)[0]
-    displacements = np.linalg.norm(basis[:, : basis.shape[1] // 2].T @ vectors, axis=0)
+    directions = basis[:, : basis.shape[1] // 2].T @ vectors
+    squares = np.einsum("im,ij,jm->m", directions.conj(), M, directions).real
+    displacements = np.sqrt(np.maximum(squares, 0.0))
     sizes = np.abs(content) * displacements * np.where(rates.imag != 0.0, 2.0, 1.0)
     shares = sizes / np.maximum(np.maximum(sizes, travel), 1e-300)
     return [(complex(z), float(share)) for z, share in zip(rates, shares, strict=True) if z.imag >= 0.0]

@@ -19,6 +19,9 @@ DIGITS = 50
 # Rounding errors in units of the bound by the condition of each component: six digits are left to the growth of errors
 # in elimination; what drops a condition, or forgets a light body, loses all sixteen.
 ROUNDINGS = 1e6 * float(np.finfo(float).eps)
+# Of those roundings, the share that entries of G bear: each is a sum of arms of the mechanism's size, rounded to a
+# hundred units of the last digit, and the arms may cancel: a wheel at its dead centre has 1e-17 L instead of 0.
+ENTRIES = 1e-4
 # Smallest over largest singular value of G, in units of the mechanism, above which no row repeats another.
 INDEPENDENT = 1e-3
 Form = Literal["multipliers", "null_space"]
@@ -171,18 +174,19 @@ def judge(scene: Scene) -> Verdict:
         exact = inverse * mpmath.matrix(b)
         # Terms of each row, as large as cancellation may have left them unseen.
         root = [mpmath.sqrt(M[i, i]) for i in range(nv)]
+        arms = [ENTRIES * (1.0 if name in _LENGTHS else scene["L"]) for name in model.names.v]
         # Gravity, turned into a direction that it does not act along, leaves rounding there.
         weight = 9.81 * math.sqrt(scene["m1"] + scene["m2"] + scene["m3"])
         momentum = sum(r * abs(x) for r, x in zip(root, map(mpmath.mpf, map(float, v)), strict=True))
         terms = [
             root[i] * sum(root[j] * abs(exact[j]) for j in range(nv))
             + abs(b[i])
-            + sum(abs(G[k, i] * exact[nv + k]) for k in range(nc))
+            + sum((abs(G[k, i]) + arms[i]) * abs(exact[nv + k]) for k in range(nc))
             + root[i] * (momentum * scene["speed"] + weight)
             for i in range(nv)
         ]
         terms += [
-            sum(abs(G[k, j] * exact[j]) for j in range(nv))
+            sum((abs(G[k, j]) + arms[j]) * abs(exact[j]) for j in range(nv))
             + abs(b[nv + k])
             + sum(abs(G[k, j] * v[j]) for j in range(nv)) * scene["speed"]
             for k in range(nc)

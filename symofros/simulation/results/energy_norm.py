@@ -1,0 +1,27 @@
+"""Sizes of speeds in the norm of the kinetic energy, in which metres and radians a second have one unit."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from symofros.errors import SymofrosError
+from symofros.runtime.calls.kernel import Array
+from symofros.simulation.stepping.stepper import Stepper
+
+
+def metrics(stepper: Stepper, q: Array, u: Array) -> Array:
+    """Mass matrices (n, nv, nv) at configurations (n, nq); units where the model has no mass matrix."""
+    try:
+        M: Array = stepper.model.mass_matrix(q, u=u, par=stepper.par)
+    except SymofrosError:  # Options.functions left it out.
+        M = np.broadcast_to(np.eye(stepper.model.nv), (len(q), stepper.model.nv, stepper.model.nv))
+    return M
+
+
+def energy_norms(stepper: Stepper, q: Array, u: Array, v: Array) -> Array:
+    """The root of v^T M v for each row of speeds (n, nv), without overflow."""
+    sizes = np.abs(v).max(axis=1, initial=0.0)
+    unit = v / np.where(sizes > 0.0, sizes, 1.0)[:, np.newaxis]
+    squares = np.einsum("ni,nij,nj->n", unit, metrics(stepper, q, u), unit)
+    norms: Array = sizes * np.sqrt(np.maximum(squares, 0.0))
+    return norms
