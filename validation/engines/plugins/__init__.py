@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from validation.engines.interface import EnginePlugin
-from validation.engines.plugins import dynibo, idyntree, mujoco, pinocchio
+from validation.engines.plugins import adam, dynibo, frax, idyntree, mujoco, pinocchio, roboticstoolbox
 
-OWN: dict[str, EnginePlugin] = {module.PLUGIN.name: module.PLUGIN for module in (pinocchio, mujoco, dynibo, idyntree)}
+OWN: dict[str, EnginePlugin] = {
+    module.PLUGIN.name: module.PLUGIN for module in (pinocchio, mujoco, adam, dynibo, frax, idyntree, roboticstoolbox)
+}

@@ -42,12 +42,14 @@ class Source:
         slots: See `EngineModel`.
         nq: Length of the engine's q.
         nv: Length of the engine's v.
+        lacks: Functions that the engine doesn't offer for this tree.
     """
 
     lines: tuple[str, ...]
     slots: tuple[tuple[Slot, ...], ...]
     nq: int
     nv: int
+    lacks: tuple[str, ...] = ()
     optional: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     def text(self, code: str = "") -> tuple[str, ...]:
@@ -73,7 +75,7 @@ class SourceModel:
 
     def call(self, function: str, state: State) -> Array | Unsupported:
         """A function in the engine's conventions (`EngineModel`)."""
-        if function not in self._ways:
+        if function not in self._ways or function in self._source.lacks:
             return Unsupported(f"no {function}", offered=False)
         lacking = OPTIONAL & words(self._ways[function].code) - set(self._source.optional)
         if lacking:

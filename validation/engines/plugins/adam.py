@@ -1,0 +1,109 @@
+"""adam: floating-base dynamics by CasADi's expressions, from URDF."""
+
+from __future__ import annotations
+
+from validation.engines.interface import Difference, Tree, Unsupported
+from validation.engines.plugins.source import Source, SourcePlugin, Way
+from validation.engines.plugins.urdf import KINDS, describe, slots_of
+
+_SETUP = '''import casadi as ca
+import numpy as np
+from adam.casadi import KinDynComputations
+URDF = """{text}"""
+robot = KinDynComputations(URDF, {joints}, gravity=np.array({gravity} + [0, 0, 0]))
+links = {links}
+cut = {cut}
+def place(q):
+    H = np.eye(4)
+    if cut == 0:
+        x, y, z, w = q[3:7]
+        K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+        H[:3, 3], H[:3, :3] = q[:3], np.eye(3) + 2 * w * K + 2 * K @ K
+    return H, q[7 - 7 * (cut > 0):]
+def move(v): return (v[:6], v[6:]) if cut == 0 else (np.zeros(6), v)
+'''
+
+
+def _term(method: str, inputs: str, rows: str = "[cut:]") -> str:
+    return f"value = np.array(robot.{method}()({inputs})).squeeze(-1){rows}"
+
+
+WAYS = {
+    "mass_matrix": Way("mass_matrix", "value = np.array(robot.mass_matrix_fun()(*place(q)))[cut:, cut:]"),
+    "bias": Way("bias_force", _term("bias_force_fun", "*place(q), *move(v)")),
+    "gravity": Way("gravity_term", _term("gravity_term_fun", "*place(q)")),
+    "coriolis_forces": Way("coriolis_term", _term("coriolis_term_fun", "*place(q), *move(v)")),
+    "forward_dynamics": Way(
+        "aba", "value = np.array(ca.evalf(robot.aba(*place(q), *move(v), tau[6:], {links[0]: tau[:6]}))).squeeze(-1)"
+    ),
+    "link_poses": Way(
+        "forward_kinematics",
+        """value = []
+for name in links:
+    H = np.array(robot.forward_kinematics_fun(name)(*place(q)))
+    value.append([*H[:3, 3], *H[:3, :3].flat])""",
+    ),
+    "link_jacobians": Way(
+        "jacobian", "value = np.array([robot.jacobian_fun(name)(*place(q)) for name in links])[:, :, cut:]"
+    ),
+    "link_jacobian_rates": Way(
+        "jacobian_dot",
+        "value = np.array([robot.jacobian_dot_fun(name)(*place(q), *move(v)) for name in links])[:, :, cut:]",
+    ),
+    "link_velocity_products": Way(
+        "jacobian_dot",
+        "value = [np.array(robot.jacobian_dot_fun(name)(*place(q), *move(v)))[:, cut:] @ v for name in links]",
+    ),
+    "mass_centre": Way("CoM_position", _term("CoM_position_fun", "*place(q)", "")),
+    "mass_centre_jacobian": Way("CoM_jacobian", "value = np.array(robot.CoM_jacobian_fun()(*place(q)))[:, cut:]"),
+    "centroidal_matrix": Way(
+        "centroidal_momentum_matrix", "value = np.array(robot.centroidal_momentum_matrix_fun()(*place(q)))[:, cut:]"
+    ),
+}
+_BASE = "free xyzw, linear and angular before"
+
+
+def write(tree: Tree) -> Source | Unsupported:
+    """The tree through adam's reader of URDF."""
+    described = describe(tree)
+    return described if isinstance(described, Unsupported) else write_reading(tree, "urdf", described.text)
+
+
+def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
+    """A file through adam's reader."""
+    described = describe(tree)
+    if isinstance(described, Unsupported):
+        return described
+    count, floating = len(described.moving), described.floating
+    setup = _SETUP.format(
+        text=text,
+        joints=list(described.moving),
+        links=list(described.links),
+        gravity=list(tree.gravity),
+        cut=0 if floating else 6,
+    )
+    slots = slots_of(tree, described, described.moving, _BASE)
+    # Its forward dynamics let the base float.
+    lacks = () if floating else ("forward_dynamics",)
+    return Source((setup,), slots, nq=count + 7 * floating, nv=count + 6 * floating, lacks=lacks)
+
+
+PLUGIN = SourcePlugin(
+    name="adam",
+    package="adam-robotics",
+    extra="symofros[engine-adam]",
+    conventions=(
+        Difference("order of joints", "as asked for when the model is made"),
+        Difference(
+            "floating base", "always there: pose apart from q; linear and angular in the world (mixed representation)"
+        ),
+        Difference("spatial vectors", "linear, then angular"),
+        Difference("armature", "none"),
+        Difference("gravity", "9.80665 m/s^2 downwards along z unless an argument says otherwise"),
+    ),
+    kinds=KINDS | {"free": "floating base"},
+    ways=WAYS,
+    write=write,
+    formats=("urdf",),
+    write_reading=write_reading,
+)

@@ -1,0 +1,81 @@
+"""frax: manipulators and humanoids in JAX, from URDF."""
+
+from __future__ import annotations
+
+from validation.engines.interface import Difference, Tree, Unsupported
+from validation.engines.plugins.source import Source, SourcePlugin, Way
+from validation.engines.plugins.urdf import KINDS, describe, slots_of
+
+_SETUP = '''import os
+import numpy as np
+import tempfile
+os.environ["JAX_ENABLE_X64"] = "1"
+os.environ["FRAX_SUPPRESS_WARNINGS"] = "1"
+import jax
+jax.config.update("jax_enable_x64", True)
+from frax import Robot
+URDF = """{text}"""
+with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
+    file.write(URDF)
+    file.flush()
+    robot = Robot(file.name, joint_ordering={joints}, floating_base={base})
+'''
+
+
+_STANDING = (
+    '<link name="world"><inertial><mass value="1"/>'
+    '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>'
+)
+
+WAYS = {
+    "mass_matrix": Way("mass_matrix", "value = robot.mass_matrix(q)"),
+    "mass_matrix:crba": Way("crba", "value = robot.crba(q)"),
+    "mass_matrix_inverse": Way("mass_matrix_inverse", "value = robot.mass_matrix_inverse(robot.mass_matrix(q))"),
+    "bias": Way("nonlinear_bias", "value = robot.nonlinear_bias(q, v)"),
+    "gravity": Way("gravity_vector", "value = robot.gravity_vector(q)"),
+    "coriolis_forces": Way("centrifugal_coriolis_vector", "value = robot.centrifugal_coriolis_vector(q, v)"),
+    "inverse_dynamics": Way("rnea", "value = robot.rnea(q, v, a, np.array([0, 0, 9.81, 0, 0, 0]), None)"),
+    "forward_dynamics": Way("forward_dynamics", "value = robot.forward_dynamics(q, v, tau, None)"),
+    "mass_centre": Way("center_of_mass", "value = robot.center_of_mass(q)"),
+    "mass_centre_jacobian": Way("center_of_mass_jacobian", "value = robot.center_of_mass_jacobian(q)"),
+}
+
+
+def write(tree: Tree) -> Source | Unsupported:
+    """The tree through frax's reader of URDF."""
+    described = describe(tree)
+    return described if isinstance(described, Unsupported) else write_reading(tree, "urdf", described.text)
+
+
+def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
+    """A file through frax's reader."""
+    described = describe(tree)
+    if isinstance(described, Unsupported):
+        return described
+    # A link without inertia breaks its reader, even one that stands still.
+    text = text.replace('<link name="world"/>', _STANDING)
+    count, floating = len(described.moving), described.floating
+    setup = _SETUP.format(text=text, joints=list(described.moving), base="'quaternion'" if floating else None)
+    slots = slots_of(tree, described, described.moving, "free wxyz, linear before and angular after")
+    return Source((setup,), slots, nq=count + 7 * floating, nv=count + 6 * floating)
+
+
+PLUGIN = SourcePlugin(
+    name="frax",
+    package="frax",
+    extra="symofros[engine-frax]",
+    conventions=(
+        Difference("order of joints", "as asked for, otherwise breadth first"),
+        Difference("quaternion", "scalar first"),
+        Difference("floating base", "linear velocity in the world, angular in the body, as MuJoCo has it"),
+        Difference("armature", "none"),
+        Difference("gravity", "9.81 m/s^2 downwards along z, fixed"),
+        Difference("precision", "single unless JAX is told otherwise"),
+    ),
+    kinds=KINDS | {"free": "floating_base='quaternion'"},
+    ways=WAYS,
+    write=write,
+    gravity=(0.0, 0.0, -9.81),
+    formats=("urdf",),
+    write_reading=write_reading,
+)

@@ -1,0 +1,118 @@
+"""Robotics Toolbox for Python: robots as elementary transforms, Newton and Euler's recursion by spatial vectors."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from validation.engines.interface import Array, Difference, Slot, Tree, Unsupported, Vector
+from validation.engines.plugins.source import Source, SourcePlugin, Way
+
+_LETTERS = {(1.0, 0.0, 0.0): "x", (0.0, 1.0, 0.0): "y", (0.0, 0.0, 1.0): "z"}
+WAYS = {
+    "mass_matrix": Way("inertia", "value = robot.inertia(q)"),
+    # On a robot of its own: the call takes the links from the robot.
+    "coriolis_forces": Way("coriolis", "value = make().coriolis(q, v) @ v"),
+    "gravity": Way("gravload", "value = robot.gravload(q)"),
+    "inverse_dynamics": Way("rne", "value = robot.rne(q, v, a)"),
+    "bias": Way("rne", "value = robot.rne(q, v, np.zeros(len(v)))"),
+    "forward_dynamics": Way("accel", "value = robot.accel(q, v, tau)"),
+    "link_poses": Way(
+        "fkine",
+        """T = [robot.fkine(q, end=name).A for name in links]
+value = [[*X[:3, 3], *(X[:3, :3] @ np.transpose(A)).flat] for X, (A, _) in zip(T, links.values())]""",
+    ),
+    "link_jacobians": Way(
+        "jacob0",
+        """value = np.zeros((len(links), 6, robot.n))
+for J, (name, (_, path)) in zip(value, links.items()):
+    J[:, path] = robot.jacob0(q, end=name)""",
+    ),
+}
+
+
+def _turned(axis: Vector) -> Array:
+    """A rotation whose third column is the axis; the identity for axes that elementary transforms have."""
+    if axis in _LETTERS:
+        return np.eye(3)
+    w = np.array(axis)
+    u = np.cross(w, np.eye(3)[int(np.argmin(np.abs(w)))])
+    u /= np.linalg.norm(u)
+    return np.stack([u, np.cross(w, u), w], axis=1)
+
+
+def write(tree: Tree) -> Source | Unsupported:
+    """Text that builds a tree; where an axis is oblique, the link's frame is turned so that it is z."""
+    lines: list[str] = []
+    # For each link: variable, joints on its path, turn of its frame.
+    ends: list[str] = []
+    paths: list[list[int]] = []
+    slots: list[tuple[Slot, ...]] = []
+    turns: list[Array] = []
+    count = 0
+    for k, link in enumerate(tree.links):
+        own: list[Slot] = []
+        before, turn = ("None", np.eye(3)) if link.parent < 0 else (ends[link.parent], turns[link.parent])
+        for place, joint in enumerate(link.joints):
+            last = place == len(link.joints) - 1
+            title = link.name if last else f"{link.name}_{place}"
+            T = np.eye(4)
+            T[:3, :3], T[:3, 3] = turn.T @ joint.R, turn.T @ joint.p
+            turn = np.eye(3)
+            moves = motor = ""
+            if joint.kind != "fixed":
+                if joint.kind not in ("revolute", "prismatic") or joint.form or joint.mimics:
+                    return Unsupported(f"no elementary transform for {joint.kind} {joint.form}".strip(), offered=False)
+                turn = _turned(joint.axis)
+                T[:3, :3] = T[:3, :3] @ turn
+                moves = (
+                    f", ET.{'R' if joint.kind == 'revolute' else 't'}{_LETTERS.get(joint.axis, 'z')}(jindex={count})"
+                )
+                own.append(Slot("angle" if joint.kind == "revolute" else "length", (count,), (count,)))
+                count += 1
+                if any(joint.armature):
+                    motor = f", Jm={joint.armature[0]!r}, G=1"
+            inertia = ""
+            if last:
+                com, moments = (turn.T @ link.com).tolist(), (turn.T @ link.inertia @ turn).tolist()
+                inertia = f", m={link.mass!r}, r={com!r}, I=np.array({moments!r})"
+            name = f"l{k}_{place}"
+            steps = f"ET.SE3(np.array({T.tolist()!r})){moves}"
+            lines.append(f"{name} = Link(ETS([{steps}]), name={title!r}, parent={before}{inertia}{motor})")
+            before = name
+        paths.append([*([] if link.parent < 0 else paths[link.parent]), *(slot.v[0] for slot in own)])
+        slots.append(tuple(own))
+        ends.append(before)
+        turns.append(turn)
+    every = ", ".join(line.split(" =")[0] for line in lines)
+    made = ["def make():", *(f"    {line}" for line in lines)]
+    made.append(f"    return Robot([{every}], gravity={list(tree.gravity)!r})")
+    setup = ["import numpy as np", "from roboticstoolbox import ET, ETS, Link, Robot", *made, "robot = make()"]
+    # Turn of each link's frame, and the joints that move it.
+    pairs = zip(tree.links, turns, paths, strict=True)
+    setup.append(
+        f"links = {{{', '.join(f'{link.name!r}: ({turn.tolist()!r}, {path})' for link, turn, path in pairs)}}}"
+    )
+    return Source(tuple(setup), tuple(slots), nq=count, nv=count)
+
+
+PLUGIN = SourcePlugin(
+    name="roboticstoolbox",
+    package="roboticstoolbox-python",
+    extra="symofros[engine-roboticstoolbox]",
+    conventions=(
+        Difference("axes", "x, y, z of the joint's frame; others by turning the frame"),
+        Difference("Jacobians", "columns of the path to the link only"),
+        Difference("coriolis", "a matrix C with C v = h - g"),
+        Difference("armature", "motor inertia Jm, times G^2"),
+        Difference("gravity", "acceleration of gravity, as its name says (since 1.0; before, its negative)"),
+        Difference("floating base", "none"),
+    ),
+    kinds={
+        "revolute x": "ET.Rx",
+        "revolute y": "ET.Ry",
+        "revolute z": "ET.Rz",
+        "prismatic": "ET.tx",
+    },
+    ways=WAYS,
+    write=write,
+)
