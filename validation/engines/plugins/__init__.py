@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from validation.engines.interface import EnginePlugin
-from validation.engines.plugins import adam, dynibo, frax, idyntree, mujoco, pinocchio, roboticstoolbox
+from validation.engines.plugins import adam, dynibo, frax, idyntree, mujoco, pinocchio, pykdl, roboticstoolbox
 
 OWN: dict[str, EnginePlugin] = {
-    module.PLUGIN.name: module.PLUGIN for module in (pinocchio, mujoco, adam, dynibo, frax, idyntree, roboticstoolbox)
+    module.PLUGIN.name: module.PLUGIN
+    for module in (pinocchio, mujoco, adam, dynibo, frax, idyntree, pykdl, roboticstoolbox)
 }

@@ -49,8 +49,8 @@ class Source:
     slots: tuple[tuple[Slot, ...], ...]
     nq: int
     nv: int
-    lacks: tuple[str, ...] = ()
     optional: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    lacks: tuple[str, ...] = ()
 
     def text(self, code: str = "") -> tuple[str, ...]:
         """The statements that some code needs; all without code."""
@@ -109,6 +109,7 @@ class SourcePlugin:
         write: Tree -> text that builds it.
         ways: Functions by name.
         write_reading: Tree, format, file's text -> text that has the engine read the file.
+        find: Version of an engine that is no Python distribution.
     """
 
     name: str
@@ -121,6 +122,7 @@ class SourcePlugin:
     gravity: tuple[float, ...] = ()
     formats: tuple[str, ...] = ()
     write_reading: Callable[[Tree, str, str], Source | Unsupported] | None = None
+    find: Callable[[], str] | None = None
 
     @property
     def functions(self) -> Mapping[str, str]:
@@ -134,6 +136,8 @@ class SourcePlugin:
 
     def version(self) -> str:
         """Version of the engine; "" where it is not installed."""
+        if self.find is not None:
+            return self.find()
         try:
             return version(self.package)
         except PackageNotFoundError:
