@@ -12,16 +12,17 @@ from reference_models import MODELS
 from reference_models.rigid.chain import chain
 from symofros.compiler import Compilation
 from symofros.generator.passes.count import count_program
+from tests.models import sampled
 
 FUNCTIONS = ("mass_matrix", "bias")
 
 
-@pytest.mark.parametrize("links", [7, 22, 52])
+@pytest.mark.parametrize("links", sampled((7, 22, 52), [7]))
 def test_description_to_c_text(benchmark: BenchmarkFixture, links: int) -> None:
     benchmark.extra_info["bytes"] = len(benchmark(_text, chain(links)))
 
 
-@pytest.mark.parametrize("model", ["mss", "flexible_arm", "flexible_mss"])
+@pytest.mark.parametrize("model", sampled(("mss", "flexible_arm", "flexible_mss"), ["mss"]))
 def test_reference_model_to_c_text(benchmark: BenchmarkFixture, model: str) -> None:
     benchmark.extra_info["bytes"] = len(benchmark.pedantic(_text, args=(MODELS[model],), rounds=3))
 
@@ -30,7 +31,7 @@ def _text(system: sf.System) -> str:
     return Compilation(system, sf.Options(functions=FUNCTIONS)).source()
 
 
-@pytest.mark.parametrize("model", ["chain7", "chain22", "mss", "flexible_arm"])
+@pytest.mark.parametrize("model", sampled(("chain7", "chain22", "mss", "flexible_arm"), ["chain7"]))
 def test_c_compilation(
     benchmark: BenchmarkFixture, model: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -45,7 +46,11 @@ def test_c_compilation(
 
 
 @pytest.mark.parametrize(
-    "model", ["rx90", "chain7", "chain22", "chain52", "mss", "planar_robot", "flexible_arm", "flexible_mss"]
+    "model",
+    sampled(
+        ("rx90", "chain7", "chain22", "chain52", "mss", "planar_robot", "flexible_arm", "flexible_mss"),
+        ("rx90", "planar_robot"),
+    ),
 )
 def test_operation_counts(benchmark: BenchmarkFixture, model: str) -> None:
     system = chain(52) if model == "chain52" else MODELS[model]

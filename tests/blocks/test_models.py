@@ -70,7 +70,7 @@ def through(name: str, block: Block, **inputs: np.ndarray) -> dict[str, np.ndarr
     return dict(run(block, inputs, models={"m": (MODELS[name], {})}, compare=1e-10))
 
 
-# Rigid; flexible with friction and rotors; closed; on a floating base; with general joints.
+# Flexible with friction and rotors; closed; with general joints.
 SMALL = ("planar_robot", "four_bar", "joint_zoo")
 pytestmark = pytest.mark.parametrize("name", sampled(tuple(CASES), SMALL))
 

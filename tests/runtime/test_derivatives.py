@@ -52,7 +52,7 @@ def sixth(function: Callable[[float], np.ndarray], step: float) -> np.ndarray:
 @pytest.mark.parametrize(
     ("robot", "backend"),
     [
-        ("ur5", "c"),
+        pytest.param("ur5", "c", marks=pytest.mark.slow),
         ("panda", "c"),
         pytest.param("talos", "interpreter", marks=pytest.mark.slow),
         pytest.param("talos", "c", marks=pytest.mark.slow(minutes=3)),

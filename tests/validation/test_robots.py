@@ -2,12 +2,13 @@
 
 import pytest
 
+from tests.models import sampled
 from validation.check import Settings
 from validation.inputs.cases import robot_case
 from validation.worker_pool import run_case
 
 
-@pytest.mark.parametrize("label", ["ur5", "kinova", "solo12"])
+@pytest.mark.parametrize("label", sampled(("ur5", "kinova", "solo12"), ["ur5"]))
 def test_robot(label: str) -> None:
     result = run_case(robot_case(label), Settings(states=20))
     assert result.ok, [row for row in result.comparisons if not row.ok]

@@ -11,6 +11,7 @@ from symofros.expr.ops import OPS
 
 # Measured: 0.767 over 250,000 angles of all kinds below.
 ULPS = 0.8
+COUNT = 1500
 Array = np.ndarray
 
 
@@ -23,17 +24,17 @@ def near_multiples(offset: float) -> Array:
 
 
 def random(seed: int, low: float, high: float) -> Array:
-    return np.random.default_rng(seed).uniform(low, high, 4000)
+    return np.random.default_rng(seed).uniform(low, high, COUNT)
 
 
 def tiny() -> Array:
     rng = np.random.default_rng(3)
-    return np.ldexp(rng.uniform(0.5, 1.0, 4000), rng.integers(-1074, 1, 4000))
+    return np.ldexp(rng.uniform(0.5, 1.0, COUNT), rng.integers(-1074, 1, COUNT))
 
 
 def far() -> Array:
     rng = np.random.default_rng(4)
-    return np.ldexp(rng.uniform(0.5, 1.0, 2000), rng.integers(15, 1025, 2000))
+    return np.ldexp(rng.uniform(0.5, 1.0, COUNT), rng.integers(15, 1025, COUNT))
 
 
 ANGLES = {

@@ -11,6 +11,7 @@ import symofros as sf
 from reference_models.rigid.random_tree import MORE_KINDS, random_tree
 from symofros.description.forces import Connection, Damper, Friction, Load, Potential, Spring, Stop, VirtualPower
 from tests.identities.test_dynamics import DIFFERENCE, STEP
+from tests.models import sampled
 
 SOLID = sf.Inertia(2.0, (0.1, 0, 0), (1, 1, 1))
 
@@ -72,7 +73,7 @@ def test_virtual_power_acts_on_the_speeds_it_names(rng: np.random.Generator) -> 
     np.testing.assert_allclose(m.generalized_force(q, q, []), 7 * (q[1] - q[0]) * np.array([1, -1]))
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", sampled(range(6), (0, 3)))
 @pytest.mark.parametrize("at", ["body", "tip", "center_of_mass"])
 @pytest.mark.parametrize("axes", ["body", "world"])
 def test_loads_are_jacobian_times_wrench(seed: int, at: str, axes: str, rng: np.random.Generator) -> None:
@@ -97,7 +98,7 @@ def test_loads_are_jacobian_times_wrench(seed: int, at: str, axes: str, rng: np.
     np.testing.assert_allclose(got, expected, atol=1e-12)
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", sampled(range(6), (1, 2)))
 def test_conservative_forces_conserve_energy(seed: int, rng: np.random.Generator) -> None:
     """Springs, stops, connections and potentials, all at once: d(T + V)/dt is the power of the inputs alone."""
     stated = random_tree(400 + seed, kinds=MORE_KINDS)
@@ -146,7 +147,7 @@ def test_a_damped_connection_takes_energy_out(rng: np.random.Generator) -> None:
             assert v @ (m.generalized_force(q, v, u) - plain.generalized_force(q, v, u)) <= 1e-12
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", sampled(range(6), (1, 2)))
 def test_prescribed_motion_is_a_partition_of_the_free_model(seed: int, rng: np.random.Generator) -> None:
     """Free speeds f and driven speeds d: M_ff v_f' + (h_f + M_fd v_d') is what the driven model has."""
     stated = random_tree(600 + seed, kinds=MORE_KINDS)

@@ -36,8 +36,8 @@ REPRESENTED = (
     "grasp",
 )
 REDUNDANT = ("parallelogram", "bricard")
-# In the plane, with a slide, with conditions that repeat each other, in space with conditions that do not.
-SMALL = ("four_bar", "slider_crank", "parallelogram", "stewart")
+# With a slide, with conditions that repeat each other; in space, closures of every kind below.
+SMALL = ("slider_crank", "parallelogram")
 # What was asked for; most are compared to 1e-9. Where the condition allows no better, this still holds.
 LARGEST_ERROR = 1e-8
 PINOCCHIO = Settings(states=40, engines=("pinocchio-loops",))
@@ -61,7 +61,7 @@ def test_pinocchios_constrained_dynamics(name: str) -> None:
             assert row.error is not None and row.error < LARGEST_ERROR
 
 
-@pytest.mark.parametrize("name", sampled((*REPRESENTED, "delta"), SMALL[:3]))
+@pytest.mark.parametrize("name", sampled((*REPRESENTED, "delta"), SMALL))
 def test_exudyns_joints(name: str) -> None:
     """Every body with Euler parameters of its own: nothing is shared with a tree but what the bodies are.
 
@@ -152,7 +152,7 @@ def test_no_posture_to_compare_at() -> None:
 
 @pytest.mark.parametrize(
     "rotations",
-    sampled(((), ("x", "y"), ("y", "z"), ("x", "z"), ("x", "y", "z")), ((), ("x", "y"))),
+    sampled(((), ("x", "y"), ("y", "z"), ("x", "z"), ("x", "y", "z")), [("x", "y")]),
 )
 @pytest.mark.parametrize("settings", [PINOCCHIO, EXUDYN], ids=["pinocchio", "exudyn"])
 def test_every_kind_of_closure(rotations: tuple[Any, ...], settings: Settings) -> None:

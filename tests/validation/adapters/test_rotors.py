@@ -9,6 +9,7 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from reference_models.rigid.random_tree import random_tree
+from tests.models import sampled
 from tests.validation.subjects import subject_of
 from validation.adapters import rotors
 from validation.check import Settings, check
@@ -33,7 +34,7 @@ def with_rotors(seed: int) -> sf.System:
     return tree.with_bodies(*(replace(body, joint=replace(body.joint, rotors=driven)) for body, driven in pairs))
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", sampled(range(4), [0]))
 def test_engines_agree_on_rotors(seed: int) -> None:
     found = verdicts(with_rotors(seed))
     for engine in FEW.engines:

@@ -60,7 +60,7 @@ def lines_around(text: str, edit: Edit) -> tuple[str, str]:
     return "", ""
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(cases())
 def test_an_edit_of_text_is_the_edit_of_its_data_and_of_nothing_else(case: tuple[str, Edit]) -> None:
     text, edit = case

@@ -47,7 +47,7 @@ def beam(name: str, joint: sf.Joint, **more: Any) -> sf.Beam:
     "name",
     sampled(
         ("planar_robot", "spinning_beam", "flexible_pendulum", "free_boom", "flexible_slider_crank"),
-        ("spinning_beam", "flexible_pendulum", "flexible_slider_crank"),
+        ("spinning_beam", "flexible_slider_crank"),
     ),
 )
 def test_reference_models_agree(name: str) -> None:
@@ -71,9 +71,7 @@ def test_every_kind_of_joint_agrees_with_pinocchio() -> None:
         assert errors.max() <= quantity.tolerance, name
 
 
-@pytest.mark.parametrize(
-    "kind", sampled(("free", "ball", "universal", "cylindrical", "planar", "screw"), ("free", "universal", "screw"))
-)
+@pytest.mark.parametrize("kind", sampled(("free", "ball", "universal", "cylindrical", "planar", "screw"), ["free"]))
 def test_a_beam_on_every_kind_of_joint(kind: str) -> None:
     joint = sf.Joint("j", kind, position=(0.1, 0.2, 0.3), axis=(1, 2, 2), pitch=0.2)  # type: ignore[arg-type]
     load = sf.RigidBody("load", sf.Joint("elbow", "revolute", "b", "tip", axis=(0, 1, 0)), UNIT)
@@ -82,7 +80,7 @@ def test_a_beam_on_every_kind_of_joint(kind: str) -> None:
 
 @pytest.mark.parametrize(
     "family",
-    sampled(("spline", "polynomial", "legendre", "clamped_free", "hermite"), ("spline", "legendre", "clamped_free")),
+    sampled(("spline", "polynomial", "legendre", "clamped_free", "hermite"), ["spline"]),
 )
 def test_every_family_in_three_directions(family: str) -> None:
     joint = sf.Joint("j", "revolute", axis=(1, 2, 2))
@@ -90,7 +88,9 @@ def test_every_family_in_three_directions(family: str) -> None:
     checked(sf.System(family, [beam("b", joint, family=family, **counts)]))
 
 
-@pytest.mark.parametrize("case", ["user's own", "planar formulas", "planar samples"])
+@pytest.mark.parametrize(
+    "case", sampled(("user's own", "planar formulas", "planar samples"), ("user's own", "planar samples"))
+)
 def test_functions_of_the_user_agree_to_rounding(case: str) -> None:
     """Interpolation of formulas and splines through samples cost no digits, of stiffness neither."""
     result = checked(CASES[case].system)

@@ -62,7 +62,7 @@ def interpreted(given: Task, name: str) -> Array:
     return np.concatenate([part.reshape(len(q), -1) for part in parts], axis=1)
 
 
-@pytest.mark.parametrize("label", sampled(("planar3R", "ur5", "talos"), ("planar3R", "ur5")))
+@pytest.mark.parametrize("label", sampled(("planar3R", "ur5", "talos"), ["planar3R"]))
 @pytest.mark.parametrize("name", FUNCTIONS[:6])
 def test_casadis_recursions_agree_with_the_interpreter(label: str, name: str) -> None:
     given = task(label, 12)
