@@ -70,11 +70,13 @@ def through(name: str, block: Block, **inputs: np.ndarray) -> dict[str, np.ndarr
     return dict(run(block, inputs, models={"m": (MODELS[name], {})}, compare=1e-10))
 
 
-# Flexible with friction and rotors; closed; with general joints.
-SMALL = ("planar_robot", "four_bar", "joint_zoo")
-pytestmark = pytest.mark.parametrize("name", sampled(tuple(CASES), SMALL))
+# Closed; with general joints. Flexible, with friction and rotors: where forces are asked for.
+SMALL = ("four_bar", "joint_zoo")
+everywhere = pytest.mark.parametrize("name", sampled(tuple(CASES), SMALL))
+also_flexible = pytest.mark.parametrize("name", sampled(tuple(CASES), (*SMALL, "planar_robot")))
 
 
+@everywhere
 def test_direct_kinematics(name: str) -> None:
     (q, v, a), m, at = states(name), model(name), frame(name)
     found = through(name, ForwardKinematics(name="b", model="m", frame=at), q=q, v=v, a=a)
@@ -85,6 +87,7 @@ def test_direct_kinematics(name: str) -> None:
     np.testing.assert_allclose(found["acceleration"], m.frame_acceleration(at, q, v, a), **CLOSE)
 
 
+@everywhere
 def test_all_extremities_at_once(name: str) -> None:
     (q, v, a), m = states(name), model(name)
     frames = [item for item in m.names.frames if item != "world"]
@@ -94,6 +97,7 @@ def test_all_extremities_at_once(name: str) -> None:
         np.testing.assert_allclose(found["velocity"][:, i], m.frame_velocity(at, q, v), **CLOSE)
 
 
+@everywhere
 def test_jacobians_and_their_rates(name: str) -> None:
     (q, v, _), m, at = states(name), model(name), frame(name)
     found = through(name, Jacobian(name="b", model="m", frame=at), q=q, v=v)
@@ -102,6 +106,7 @@ def test_jacobians_and_their_rates(name: str) -> None:
     np.testing.assert_array_equal(np.concatenate([found["translation"], found["rotation"]], axis=1), found["J"])
 
 
+@everywhere
 def test_frame_transforms(name: str) -> None:
     (q, _, _), m, at = states(name), model(name), frame(name)
     u = np.arange(6.0 * COUNT).reshape(COUNT, 6)
@@ -112,6 +117,7 @@ def test_frame_transforms(name: str) -> None:
     np.testing.assert_allclose(found["y"], np.hstack([f, n]), **CLOSE)
 
 
+@also_flexible
 def test_inverse_dynamics_and_compensations(name: str) -> None:
     (q, v, a), m = states(name), model(name)
     rubs = friction(name, q, v)
@@ -139,6 +145,7 @@ def friction(name: str, q: np.ndarray, v: np.ndarray) -> np.ndarray:
     return only.generalized_force(q, v, np.zeros(only.nu)) * [item in has_friction for item in only.names.v]
 
 
+@everywhere
 def test_computed_torque_makes_the_error_decay(name: str) -> None:
     (q, v, a), m = states(name), model(name)
     desired = m.integrate(q, 0.1 * a)
@@ -150,6 +157,7 @@ def test_computed_torque_makes_the_error_decay(name: str) -> None:
     np.testing.assert_allclose(found["tau"], tau, rtol=1e-9, atol=1e-10 * np.abs(tau).max())
 
 
+@everywhere
 def test_cartesian_control(name: str) -> None:
     (q, v, _), m, at = states(name), model(name), frame(name)
     rng = np.random.default_rng(1)
@@ -181,6 +189,7 @@ def test_cartesian_control(name: str) -> None:
     np.testing.assert_allclose(A[regular], wanted[regular], rtol=1e-6, atol=1e-6)
 
 
+@everywhere
 def test_inverse_kinematics(name: str) -> None:
     m, at = model(name), frame(name)
     q0 = states(name)[0][0]

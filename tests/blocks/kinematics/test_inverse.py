@@ -15,6 +15,7 @@ from symofros.blocks import CartesianTrajectory, Constant, InverseKinematics, Jo
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.program.variants import with_functions
 from tests.blocks.support import refused
+from tests.models import sampled
 
 PERIOD = 0.01
 
@@ -49,7 +50,7 @@ def arm_diagram(period: float | None, **fields: Any) -> tuple[Diagram, sf.Model,
     return diagram, model, q0
 
 
-@pytest.mark.parametrize("period", [PERIOD, None], ids=["sampled", "continuous"])
+@pytest.mark.parametrize("period", sampled((PERIOD, None), [PERIOD]), ids=["sampled", "continuous"])
 def test_an_arm_follows_a_pose(period: float | None) -> None:
     diagram, model, q0 = arm_diagram(period)
     found = run_both(diagram, 1.0)

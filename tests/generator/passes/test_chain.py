@@ -166,7 +166,7 @@ def test_what_other_functions_read_does_not_split_sums() -> None:
         ("chain22", "dynamics"),
         pytest.param("grasp", "residual_derivatives", marks=pytest.mark.slow),
         pytest.param("mss", "inverse_dynamics_derivatives", marks=pytest.mark.slow),
-        ("spdm", "forward_dynamics_derivatives"),
+        pytest.param("spdm", "forward_dynamics_derivatives", marks=pytest.mark.slow),
     ],
 )
 def test_vectors_say_what_scalars_say(name: str, function: str) -> None:

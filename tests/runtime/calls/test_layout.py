@@ -76,10 +76,11 @@ def test_layouts_may_differ(layouts: tuple[str, str]) -> None:
 @pytest.mark.parametrize("function", ["mass_matrix", "forward_dynamics_derivatives"])
 def test_results_follow_the_inputs(function: str, n: int) -> None:
     """By vectors, in a loop, and where a solver finishes the function."""
-    q, v, u = given("chain7", n)
+    q, v, u = given("friction_arm", n)
     arguments = (q,) if function == "mass_matrix" else (q, v, u)
     by_rows, in_columns = (
-        getattr(model(), function)(*(laid(x) for x in arguments)) for laid in (np.ascontiguousarray, np.asfortranarray)
+        getattr(model("friction_arm"), function)(*(laid(x) for x in arguments))
+        for laid in (np.ascontiguousarray, np.asfortranarray)
     )
     for rows, found in zip(np.atleast_1d(by_rows), np.atleast_1d(in_columns), strict=True):
         assert np.array_equal(rows, found)

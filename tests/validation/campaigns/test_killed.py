@@ -34,18 +34,18 @@ FEW = SMALL | {"states": 80, "batch": 10}
 PATIENCE = 600.0  # [s], for a campaign that hangs.
 
 
-def start(folder: Path, plan: dict[str, object] = SMALL) -> subprocess.Popen[bytes]:
+def start(folder: Path, plan: dict[str, object] = SMALL, workers: int = WORKERS) -> subprocess.Popen[bytes]:
     """A client of its own, in a process group of its own."""
     options = ["--states", str(plan["states"]), "--batch", str(plan["batch"]), "--seed", str(plan["seed"])]
     if "engines" in plan:
         options += ["--engines", ",".join(plan["engines"])]  # type: ignore[arg-type]
     models = ",".join(plan["models"])  # type: ignore[arg-type]
-    command = ["run", "-o", str(folder), "--models", models, *options, "--workers", str(WORKERS)]
+    command = ["run", "-o", str(folder), "--models", models, *options, "--workers", str(workers)]
     return launched(command)
 
 
-def resume(folder: Path) -> subprocess.Popen[bytes]:
-    return launched(["resume", str(folder), "--workers", str(WORKERS)])
+def resume(folder: Path, workers: int = WORKERS) -> subprocess.Popen[bytes]:
+    return launched(["resume", str(folder), "--workers", str(workers)])
 
 
 def launched(command: list[str]) -> subprocess.Popen[bytes]:
@@ -131,14 +131,14 @@ def test_a_killed_client_costs_what_its_workers_were_at(tmp_path: Path) -> None:
 
 
 def test_an_interrupt_ends_in_words_and_is_resumed(tmp_path: Path) -> None:
-    client = start(tmp_path / "c", FEW)
+    client = start(tmp_path / "c", FEW, workers=1)
     wait_for(client, lambda: sum(events(tmp_path / "c", "done").values()) >= 3)
     os.killpg(client.pid, signal.SIGINT)  # As Ctrl-C: client and workers get it.
     _, complained = client.communicate(timeout=PATIENCE)
     assert client.returncode == 130
     assert f"campaign resume {tmp_path / 'c'}" in complained.decode() and "Traceback" not in complained.decode()
     finished = set(events(tmp_path / "c", "done"))
-    ended_well(resume(tmp_path / "c"))
+    ended_well(resume(tmp_path / "c", workers=1))
     assert all(events(tmp_path / "c", "begun")[batch] == 1 for batch in finished)
     assert result(tmp_path / "c").equals(uninterrupted(FEW))
 

@@ -74,20 +74,19 @@ def test_simulate_with_inputs_on_prismatic_and_revolute_joints(client: TestClien
     assert x["unit"] == "m" and x["values"][-1] == pytest.approx(1 + 2 / 6)  # x = t + (4/2) t^3/6.
 
 
-@pytest.mark.parametrize(
-    ("options", "says"),
-    [
+def test_what_can_not_be_simulated_says_why(client: TestClient) -> None:
+    """One after the other, by the same worker."""
+    refused: list[tuple[dict[str, Any], str]] = [
         ({"method": "rk99"}, "no method 'rk99'"),
         ({"t_end": "soon"}, "t_end is not a number"),
         ({"q0": {"q9": 1}}, "no coordinate 'q9'"),
         ({"q0": {"q1": None}}, "q1 is not a number"),
         ({"inputs": {"nothing": 1}}, "nothing"),
         ({"dt": -1}, "not positive"),
-    ],
-)
-def test_what_can_not_be_simulated_says_why(client: TestClient, options: dict[str, Any], says: str) -> None:
-    job = finished(client, "simulate", **options)
-    assert job["state"] == "failed" and says in job["error"]["object"] and job["error"]["remedy"]
+    ]
+    for options, says in refused:
+        job = finished(client, "simulate", **options)
+        assert job["state"] == "failed" and says in job["error"]["object"] and job["error"]["remedy"], options
 
 
 def test_a_faulty_document_is_told_not_compiled(client: TestClient) -> None:
