@@ -105,6 +105,16 @@ def save(system: System, path: str | os.PathLike[str]) -> None:
     write_atomically(file, write_yaml(system))
 
 
+# Formats that people have and we do not read -> how they become one that we do.
+_CONVERSIONS = {
+    ".xacro": "expand it before: `xacro robot.xacro > robot.urdf` (pip install xacro, or ROS)",
+    ".sdf": "give the URDF or MJCF that it was made of; `gz sdf` converts URDF to SDF, not back",
+    ".world": "give the URDF or MJCF of one of its models",
+    ".usd": "export it as URDF or MJCF (Isaac Sim's exporters, or mujoco's USD converter)",
+    ".mjb": "give the XML that the binary was compiled from",
+}
+
+
 def _refuse_suffix(file: Path, known: tuple[str, ...], verb: str) -> None:
     if file.suffix.lower() not in known:
         raise DescriptionError(
@@ -112,7 +122,7 @@ def _refuse_suffix(file: Path, known: tuple[str, ...], verb: str) -> None:
                 f"'{file}' can't be {verb}: unknown format",
                 file.suffix or "no suffix",
                 f"the suffix is one of {', '.join(known)}",
-                did_you_mean(file.suffix.lower(), known),
+                _CONVERSIONS.get(file.suffix.lower()) or did_you_mean(file.suffix.lower(), known),
             )
         )
 

@@ -14,6 +14,7 @@ from rich.tree import Tree
 import symofros as sf
 from symofros.base.atomic import write_atomically
 from symofros.base.functions import FRAME_FUNCTIONS, MODEL_FUNCTIONS
+from symofros.commands.details import details, frames_line, tables
 from symofros.commands.shared import AsJson, FilePath, Floating, ModelPath, Network, load, out, refuse
 from symofros.compiler import Compilation
 from symofros.diagrams.files import command as diagrams
@@ -38,18 +39,18 @@ def info(model: FilePath, floating_base: Floating = False, network: Network = Fa
     counts = {" of ".join(filter(None, key)): count for key, count in count_program(compilation.program).items()}
     names = tree.coordinates
     sizes = {"nq": len(names.q), "nv": len(names.v), "nu": len(names.u), "npar": len(names.par)}
+    told = details(tree)
     if as_json:
         operations = {name: vars_of(count) for name, count in counts.items()}
-        frames = [frame.name for frame in tree.frames]
-        print(
-            json.dumps(
-                {"name": system.name, **sizes, "frames": frames, "operations": operations, "notes": list(system.notes)},
-                indent=1,
-            )
-        )
+        stated = {"name": system.name, **sizes, **told, "operations": operations, "notes": list(system.notes)}
+        print(json.dumps(stated, indent=1))
         return
     out.print(_draw(tree))
     out.print(", ".join(f"{key} {value}" for key, value in sizes.items()), markup=False)
+    if told["frames"]:
+        out.print(frames_line(told), markup=False, highlight=False, soft_wrap=True)
+    for shown in tables(told):
+        out.print(shown)
     table = Table("function", "mul", "add", "div", "call", "total", title="Operations per call")
     for name, count in counts.items():
         table.add_row(name, *map(str, (count.mul, count.add, count.div, count.call, count.total)))

@@ -50,7 +50,7 @@ def simulate(
         list[str],
         typer.Option(
             "--set",
-            help="NAME=NUMBER: a first coordinate or speed (dNAME); of a diagram "
+            help="NAME=NUMBER: a first coordinate or speed (dNAME), or a run-time parameter; of a diagram "
             "BLOCK.FIELD=NUMBER or NUMBER,NUMBER: a run-time parameter.",
         ),
     ] = [],  # noqa: B006
@@ -148,8 +148,11 @@ def _simulated(
     progress: bool,
 ) -> sf.Trajectory:
     """The run of one model."""
+    stated = {name: number(name, text) for name, text in assignments(given, "--set").items()}
     compiled = compile_system(system)
-    q, v = _first_state(compiled, assignments(given, "--set"))
+    parameters = {name: value for name, value in stated.items() if _is_parameter(compiled, name)}
+    compiled = compiled.with_parameters(**parameters)
+    q, v = _first_state(compiled, {name: value for name, value in stated.items() if name not in parameters})
     return sf.simulate(
         compiled,
         q,
@@ -163,11 +166,15 @@ def _simulated(
     )
 
 
-def _first_state(model: sf.Model, given: dict[str, str]) -> tuple[Array, Array]:
+def _is_parameter(model: sf.Model, name: str) -> bool:
+    """Whether a name is that of a run-time parameter; one of a coordinate or a speed comes first."""
+    return name in model.names.par and name not in (*model.names.q, *model.names.v)
+
+
+def _first_state(model: sf.Model, given: dict[str, float]) -> tuple[Array, Array]:
     """The neutral state, with what --set gives; closed where the model has loops."""
     q, v = model.neutral(), np.zeros(model.nv)
-    for name, text in given.items():
-        value = number(name, text)
+    for name, value in given.items():
         if name in model.names.q:
             q[model.names.q.index(name)] = value
         elif name.removeprefix("d") in model.names.v:
@@ -175,8 +182,9 @@ def _first_state(model: sf.Model, given: dict[str, str]) -> tuple[Array, Array]:
         elif name in model.names.v:
             v[model.names.v.index(name)] = value
         else:
-            known = (*model.names.q, *(f"d{speed}" for speed in model.names.v))
-            err.print(f"--set: no coordinate or speed '{name}'\n  remedy: {did_you_mean(name, known)}", markup=False)
+            known = (*model.names.q, *(f"d{speed}" for speed in model.names.v), *model.names.par)
+            missing = f"--set: no coordinate, speed or run-time parameter '{name}'"
+            err.print(f"{missing}\n  remedy: {did_you_mean(name, known)}", markup=False)
             raise typer.Exit(BAD_INPUT)
     if not model.nc:
         return q, v

@@ -62,7 +62,7 @@ def test_a_run_that_fails_ends_with_1() -> None:
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--set", "q9=1"], "no coordinate or speed 'q9'"),
+        (["--set", "q9=1"], "no coordinate, speed or run-time parameter 'q9'"),
         (["--set", "q1"], "NAME=VALUE"),
         (["--set", "q1=fast"], "is not a number"),
         (["--input", "q1=__class__"], "formula"),

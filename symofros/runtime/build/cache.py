@@ -18,6 +18,7 @@ from pathlib import Path
 
 from symofros.base.atomic import write_atomically
 from symofros.errors import CompileError, Problem
+from symofros.runtime.build.cache_size import keep_within_limit, note_use
 
 # What compilations and writings that were killed leave behind; nothing else in the folder is ever removed.
 _LEFTOVER = re.compile(r"\.[0-9a-f]{8}-\w{8}|\.[0-9a-f]{32}\.(digest|known|fastest)-\w{8}")
@@ -72,7 +73,9 @@ def _refused(folder: Path, state: str) -> CompileError:
 
 
 def create_cache_folder(folder: Path) -> None:
-    """Create the folder, and what is missing above it, for this user alone; remove old leftovers.
+    """Create the folder, and what is missing above it, for this user alone; remove what is too old.
+
+    That is leftovers, and models that were used longest ago where the folder is over its limit.
 
     Raises:
         OSError: It can't be created.
@@ -81,6 +84,7 @@ def create_cache_folder(folder: Path) -> None:
         if not level.is_dir():
             level.mkdir(mode=0o700, exist_ok=True)  # Of concurrent processes, one is the first.
     _remove_leftovers(folder)
+    keep_within_limit(folder)
 
 
 def unusable(folder: Path, error: OSError) -> CompileError:
@@ -119,7 +123,10 @@ def is_intact(library: Path) -> bool:
             return False
         stated = _statement_of(library).read_text(encoding="utf-8")
         # The size shows a truncated file before it is read.
-        return stated.startswith(f"{status.st_size} ") and stated == _statement(library.read_bytes())
+        intact = stated.startswith(f"{status.st_size} ") and stated == _statement(library.read_bytes())
+        if intact:
+            note_use(_statement_of(library))
+        return intact
     except (OSError, UnicodeDecodeError):
         return False
 

@@ -1,0 +1,79 @@
+"""What `symofros info` tells of a model beside its tree: masses, coordinates with their limits, parameters, frames."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from rich.table import Table
+
+from symofros.description.beam import Beam
+from symofros.mechanics.topology.numbers import Numbers
+from symofros.mechanics.topology.tree import SpanningTree
+
+# Frames of a model that are named; the rest are counted.
+_FRAMES = 20
+
+
+def details(tree: SpanningTree) -> dict[str, Any]:
+    """The same as plain data, for JSON: numbers at the parameters' defaults; None where there is none."""
+    system, numbers = tree.system, Numbers(tree.system)
+    bodies = []
+    for body in system.bodies:
+        stated: dict[str, Any] = {
+            "name": body.name,
+            "kind": "beam" if isinstance(body, Beam) else "rigid",
+            "mass": None,
+        }
+        inertia = None if isinstance(body, Beam) else body.inertia
+        if isinstance(body, Beam):
+            stated["mass"] = _finite(numbers.value(body.length) * numbers.value(body.rhoA))
+        elif inertia is not None:
+            stated["mass"] = _finite(numbers.value(inertia.mass))
+            stated["center_of_mass"] = [_finite(x) for x in numbers.values(inertia.center_of_mass)]
+        bodies.append(stated)
+    limits = {body.joint.name: body.joint.limits for body in system.bodies if body.joint is not None}
+    coordinates = []
+    for name in tree.coordinates.q:
+        bound = limits.get(name)
+        coordinates.append(
+            {"name": name, "lower": bound.lower if bound else None, "upper": bound.upper if bound else None}
+        )
+    parameters = [
+        {"name": item.name, "value": item.value, "unit": item.unit, "constant": item.constant}
+        for item in system.parameters
+    ]
+    frames = [frame.name for frame in tree.frames]
+    return {"bodies": bodies, "coordinates": coordinates, "parameters": parameters, "frames": frames}
+
+
+def tables(told: dict[str, Any]) -> list[Table]:
+    """Tables for a terminal, without those that would be empty."""
+    masses = Table("body", "mass [kg]", "center of mass [m]", title="Bodies")
+    for body in told["bodies"]:
+        if body["mass"] is not None:
+            center = ", ".join(map(_number, body.get("center_of_mass", ())))
+            masses.add_row(body["name"], _number(body["mass"]), center or "(beam)")
+    bounds = Table("coordinate", "lower", "upper", title="Limits [rad, m]")
+    for item in told["coordinates"]:
+        if item["lower"] is not None or item["upper"] is not None:
+            bounds.add_row(item["name"], _number(item["lower"]), _number(item["upper"]))
+    parameters = Table("parameter", "value", "unit", "", title="Parameters")
+    for item in told["parameters"]:
+        parameters.add_row(item["name"], _number(item["value"]), item["unit"], "constant" if item["constant"] else "")
+    return [table for table in (masses, bounds, parameters) if table.row_count]
+
+
+def frames_line(told: dict[str, Any]) -> str:
+    """The first frames by name, and how many there are."""
+    names = told["frames"]
+    rest = f", … ({len(names)} in all; --json lists them)" if len(names) > _FRAMES else ""
+    return f"frames: {', '.join(names[:_FRAMES])}{rest}"
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None
+
+
+def _number(value: float | None) -> str:
+    return "" if value is None else f"{value:.6g}"

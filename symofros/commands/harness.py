@@ -1,0 +1,51 @@
+"""symofros check, symofros validation: the harness, from anywhere.
+
+It runs in an interpreter of its own: a file `validation.py` in the folder of the call would take its package's place.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+import typer
+
+import symofros as sf
+from symofros.commands.shared import BAD_INPUT, err
+
+# Packages of the extra that every command of the harness needs.
+_NEEDED = ("scipy", "pinocchio", "mujoco")
+
+
+def check(context: typer.Context) -> None:
+    """Cross-check models against independent engines; `symofros check --help` for its options."""
+    raise typer.Exit(_run(["check", *context.args]))
+
+
+def validation(context: typer.Context) -> None:
+    """The harness: check, accuracy, timing, ...; `symofros validation --help` lists its commands."""
+    raise typer.Exit(_run(context.args))
+
+
+def _run(arguments: list[str]) -> int:
+    """The harness with these arguments; its exit code."""
+    missing = [name for name in _NEEDED if find_spec(name) is None]
+    if missing:
+        err.print(
+            f"the harness needs packages that are not installed: {', '.join(missing)}\n"
+            "  remedy: pip install 'symofros[validation]'",
+            markup=False,
+            highlight=False,
+            soft_wrap=True,
+        )
+        return BAD_INPUT
+    root = Path(sf.__file__).parents[1]
+    start = f"import sys; sys.path.insert(0, {str(root)!r}); from validation.__main__ import app; "
+    start += "app(prog_name='symofros validation')"
+    try:
+        # -P: the folder of the call is not searched for modules.
+        return subprocess.run([sys.executable, "-P", "-c", start, *arguments]).returncode
+    except KeyboardInterrupt:  # The harness has had it, too, and said so.
+        return 130

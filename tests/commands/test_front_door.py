@@ -1,0 +1,85 @@
+"""The first commands that a newcomer types."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner, Result
+
+import symofros as sf
+from symofros.__main__ import app
+from symofros.commands import harness
+
+ROOT = Path(sf.__file__).parents[1]
+CART_POLE = ROOT / "reference_models/rigid/cart_pole.yaml"
+
+
+def invoke(*arguments: object) -> Result:
+    return CliRunner().invoke(app, [*map(str, arguments)])
+
+
+def test_the_version_is_told() -> None:
+    result = invoke("--version")
+    assert result.exit_code == 0 and result.output == f"symofros {sf.__version__}\n"
+
+
+def test_help_of_simulate_states_seconds() -> None:
+    assert "Where to end [s]" in " ".join(invoke("simulate", "--help").output.split())
+
+
+def test_info_tells_masses_limits_parameters_and_frames(tmp_path: Path) -> None:
+    data = json.loads(invoke("info", CART_POLE, "--json").output)
+    assert {item["name"]: item["value"] for item in data["parameters"]}["m_cart"] > 0.0
+    assert data["bodies"][0]["mass"] > 0.0 and "tip" in data["frames"]
+    shown = invoke("info", CART_POLE).output
+    assert "Parameters" in shown and "m_cart" in shown and "frames: " in shown
+    arm = ROOT / "validation/corpus/arm.urdf"
+    limits = {item["name"]: item for item in json.loads(invoke("info", arm, "--json").output)["coordinates"]}
+    assert any(item["lower"] is not None for item in limits.values())
+
+
+def test_run_time_parameters_are_set_from_the_shell() -> None:
+    common = "simulate", CART_POLE, "0.05", "--json", "--set", "q=0.5"
+    light, heavy = (json.loads(invoke(*common, "--set", f"m_cart={m}").output)["last"] for m in (1, 100))
+    assert abs(heavy["x"]) < 0.1 * abs(light["x"])
+
+
+def test_a_name_that_is_not_there_and_a_mass_below_zero_are_refused() -> None:
+    result = invoke("simulate", CART_POLE, "--set", "m_crt=5")
+    assert result.exit_code == 2 and "did you mean 'm_cart'" in result.output
+    result = invoke("simulate", CART_POLE, "--set", "m_cart=-5")
+    assert result.exit_code == 2 and "m_cart" in result.output
+
+
+@pytest.mark.parametrize(
+    ("suffix", "remedy"), [(".xacro", "xacro robot.xacro"), (".sdf", "URDF or MJCF"), (".usd", "export")]
+)
+def test_formats_that_are_not_read_say_how_to_convert(suffix: str, remedy: str, tmp_path: Path) -> None:
+    path = tmp_path / f"robot{suffix}"
+    path.write_text("<robot/>")
+    result = invoke("info", path)
+    assert result.exit_code == 2 and remedy in result.output
+
+
+def test_the_harness_starts_from_any_folder(tmp_path: Path) -> None:
+    """A file of the user's with the name of its package does not take its place."""
+    (tmp_path / "validation.py").write_text("raise SystemExit('not the harness')\n")
+    command = [
+        sys.executable,
+        "-c",
+        f"import sys; sys.path.insert(0, {str(ROOT)!r}); from symofros.__main__ import app; app()",
+    ]
+    for arguments, expected in ((["check", "--help"], "Compare our C"), (["validation", "--help"], "timing")):
+        done = subprocess.run([*command, *arguments], cwd=tmp_path, capture_output=True, text=True, timeout=120)
+        assert done.returncode == 0 and expected in done.stdout, done.stdout + done.stderr
+    done = subprocess.run([*command, "check", "nobody"], cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 2 and not (tmp_path / "reports").exists()
+
+
+def test_without_its_packages_the_harness_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(harness, "_NEEDED", ("scipy", "a_package_that_nobody_has"))
+    result = invoke("check", "pendulum")
+    assert result.exit_code == 2
+    assert "a_package_that_nobody_has" in result.output and "pip install 'symofros[validation]'" in result.output
