@@ -1,25 +1,39 @@
-"""Parts of a run, repeated with half the step or a record at each step (docs/theory/simulation.md, section 8)."""
+"""Runs and parts of them, repeated: with half the step, a record at each, tighter bounds.
+
+docs/theory/simulation.md, section 8.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from symofros.runtime.calls.kernel import Array
-from symofros.simulation.results.energy_norm import energy_norms
+from symofros.simulation.results.energy_norm import energy_norms, metrics
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.loops import run_own
 from symofros.simulation.stepping.resolution import TOLERANCE
+from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
 
 # Steps of a run that is repeated as a whole; a call takes as long as some hundred steps of a small model.
 _STEPS = 256
+# Share of the largest speed that the absolute tolerance may allow as the error of a step; displacements over it that
+# are a motion and not rest; share of the largest speed that is asked for instead; most steps that this may take.
+_ALLOWED, _MOTION, _TIGHT, _MOST = 0.1, 100.0, 1e-3, 8192
 
 
 def repeated(
-    stepper: Stepper, settings: Settings, start: tuple[float, Array, Array], t_end: float, dt: float, every: int = 1
+    stepper: Stepper,
+    settings: Settings,
+    start: tuple[float, Array, Array],
+    t_end: float,
+    dt: float,
+    every: int = 1,
+    max_steps: int | None = None,
 ) -> tuple[int, list[Array]] | None:
     """Status and states of a part of a run, made once more; None where a function of the user's gives the inputs.
 
@@ -30,11 +44,12 @@ def repeated(
         t_end: End [s].
         dt: Step [s]; of adaptive methods the first one, 0: found anew.
         every: Number of steps between records.
+        max_steps: Number of steps after which it ends; None: no bound.
     """
     if stepper.inputs.callback is not None or stepper.method.family.multistep:
         return None
     t, q, v = start
-    part = replace(settings, t0=t, t_end=t_end, dt=dt, every=every, grid=np.zeros(0), max_steps=None, realtime=0.0)
+    part = replace(settings, t0=t, t_end=t_end, dt=dt, every=every, grid=np.zeros(0), max_steps=max_steps, realtime=0.0)
     again = Stepper(stepper.model, stepper.method, stepper.inputs, (), stepper.par)
     part.apply(again)
     recorded = run_own(again, q, v, part, lambda _: None)
@@ -74,3 +89,38 @@ def halved_step_note(
         return ""
     share = f"{100.0 * change / largest:.2g} % of the largest speed" if change < largest else "more than all of them"
     return f"steps of {h:.4g} s do not determine the motion: half of that changes speeds by {share}; a smaller dt"
+
+
+def tolerance_note(
+    stepper: Stepper, settings: Settings, start: tuple[Array, Array], states: Sequence[Array], steps: int
+) -> str:
+    """What an absolute tolerance that exceeds the speeds makes of a motion, in words; nothing where it does no harm.
+
+    Args:
+        stepper: Stepper of the run.
+        settings: Settings of the run.
+        start: Initial q, v.
+        states: States of the run: t (n), q, v, u.
+        steps: Number of steps.
+    """
+    if not settings.adaptive or not stepper.model.nv or stepper.method.family.multistep or steps < 1:
+        return ""
+    t, q, v, u = states
+    moved, largest = float(np.abs(q - start[0]).max()), float(energy_norms(stepper, q, u, v).max())
+    inertia = math.sqrt(float(np.trace(metrics(stepper, q[-1:], u[-1:])[0])))  # of a unit of each speed
+    if not (settings.atol * inertia > _ALLOWED * largest > 0.0 and moved > _MOTION * settings.atol):
+        return ""
+    tighter = replace(settings, atol=_TIGHT * largest / inertia)
+    again = repeated(stepper, tighter, (settings.t0, *start), float(t[-1]), 0.0, max_steps=_MOST)
+    if again is None:
+        return ""
+    status, (_, q_tight, v_tight, u_tight) = again
+    exact = energy_norms(stepper, q_tight, u_tight, v_tight).max()
+    change = energy_norms(stepper, q_tight[-1:], u_tight[-1:], v[-1:] - v_tight[-1:])[0]
+    if status == Status.FINISHED and not change > TOLERANCE * exact:
+        return ""
+    fastest = float(np.abs(v).max())
+    return (
+        f"atol = {settings.atol:.3g} bounds no error of speeds that reach {fastest:.3g} only: they differ from those of"
+        f" a tighter bound; atol below {1e-3 * fastest:.1g}"
+    )

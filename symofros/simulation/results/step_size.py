@@ -10,7 +10,7 @@ import numpy as np
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.results.energy_balance import EXPLODED, energy_note, energy_that_appeared
 from symofros.simulation.results.energy_norm import energy_norms, metrics
-from symofros.simulation.results.repetition import halved_step_note
+from symofros.simulation.results.repetition import halved_step_note, tolerance_note
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.resolution import Mode, Resolution, largest_stable_step, resolution, states_to_examine
 from symofros.simulation.stepping.stepper import Stepper
@@ -45,6 +45,8 @@ def examine_run(
     notes = [step_size_note(mode, stepper, settings, () if failed else states)] if mode else []
     if ended_well and not resolution.evident and mode is None:
         notes.append(halved_step_note(stepper, settings, start, states, steps))
+    if ended_well:
+        notes.append(tolerance_note(stepper, settings, start, states, steps))
     if ended_well and (mode is None or not mode.amplified) and not (mode is None and any(notes)):
         notes.append(energy_note(stepper, settings, states, steps))
     return mode, tuple(note for note in notes if note)

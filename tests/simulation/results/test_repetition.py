@@ -79,3 +79,19 @@ def test_batches_say_which_energy_no_force_takes() -> None:
     )
     alone = sf.simulate(two_masses(), [1.0, 0.0], t_end=40.0, method="semi_implicit_euler", dt=0.1, par=par, output=4.0)
     assert bool(many.outcome(0).notes) == bool(alone.outcome.notes) is True
+
+
+@pytest.mark.parametrize("method", ["dopri5", "rodas4", "dop853"])
+def test_an_absolute_tolerance_beyond_the_speeds_is_noted_where_it_harms(method: str) -> None:
+    """Slow oscillators of some millimetres move by nanometres a second."""
+    par, t_end, wrong = (1.0, 1.0, 1e-10, 1e-8, 0.0, 0.0), 60e5, 0
+    for atol in (1e-10, 1e-7, 1e-6, 1e-4, 1e-3):
+        run = sf.simulate(two_masses(), [3e-3, 0.0], t_end=t_end, method=method, atol=atol, par=par)
+        end, energy = exact_state(par, np.array([3e-3, 0.0]), t_end)
+        error = np.concatenate([run.q[-1], run.v[-1]]) - end
+        if error @ energy @ error > 0.1 * 9e-6 * par[2]:
+            wrong += 1
+            assert run.outcome.notes, atol
+        elif atol == 1e-10:
+            assert not run.outcome.notes
+    assert wrong
