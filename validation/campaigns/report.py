@@ -25,8 +25,8 @@ _UNSUPPORTED: dict[str, Column] = {
 }
 _RANGES: dict[str, Column] = {
     "result": "{0}",
-    "#smallest": lambda row: _end(row[1]["min"]),
-    "#largest": lambda row: _end(row[1]["max"]),
+    "#smallest": "{1[min]:.6g}",
+    "#largest": "{1[max]:.6g}",
 }
 
 
@@ -92,10 +92,6 @@ def _share(row: Data) -> float:
 
 def _error(row: Data) -> str:
     return "NaN" if row["error"] is None else f"{row['error']:.1e}"
-
-
-def _end(value: float | None) -> str:
-    return "-" if value is None else f"{value:.6g}"
 
 
 def _swept(data: Data) -> Report:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from symofros.tools import write_atomically
 from validation.dashboard.gather import Entry
+from validation.dashboard.history import history
 from validation.reporting import html, markdown
 from validation.reporting.figures import Figure
 from validation.reporting.record import Block, Bullets, Cell, Column, Report, Section, Table, Text
@@ -17,6 +19,7 @@ BEGIN, END = "<!-- reports/summary.md begins -->", "<!-- reports/summary.md ends
 _VERDICTS = {"good": True, "missed": False, "measured": None, "absent": None}
 
 
+_TREND = "The first number of each report in the summaries of the last commits that changed one; red: missed something."
 # Reports whose decisions the index shows, in this order.
 _DECIDING = ("pareto", "check")
 
@@ -35,6 +38,9 @@ def write_index(entries: Mapping[str, Entry], folder: Path, date: str) -> Path:
         OSError: The folder can't be written to.
     """
     report = index(entries)
+    trend = history(folder / "summary.md", tuple(entries))
+    if trend is not None:
+        report = replace(report, sections=(Section("Over commits", (_TREND, trend), "history"), *report.sections))
     closing = f"Gathered {date} by `python -m validation dashboard`; `--regenerate` writes the reports anew before."
     write_atomically(folder / "index.html", html.page(report, closing=closing, listed=False))
     said = [f"**{report.summary}** (gathered {date})", markdown.table(summary_table(entries)), origins(entries)]

@@ -177,7 +177,7 @@ def _section(name: str, problem: BenchmarkProblem, result: Result, data: Data, q
         "model": "{model}",
         "step or tolerance": "{setting}",
         "#error": lambda point: problem.shown(point.error),
-        "#time": lambda point: duration(point.seconds),
+        "#time": "{seconds:time}",
     }
     agree = f"They agree to {problem.shown(result.agreement)}; asked for is {problem.shown(problem.trust)}."
     command = f"python -m validation pareto --problem {name}{' --quick' if quick else ''}"

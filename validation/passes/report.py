@@ -81,7 +81,7 @@ def _section(label: str, rows: Sequence[Data]) -> Section:
         "#more operations": more("operations", "+.1%"),
         "#ns (min, median)": "{minimum:.0f}, {median:.0f}",
         "#more time": more("median", "+.0%"),
-        "#C text [KiB]": lambda row: f"{row['text'] / 1024:.0f}",
+        "#C text [KiB]": "{text:9.765625e-4*.0f}",
         "#made and compiled [s]": "{compilation:.2f}",
     }
     return Section(f"{label}, {base['nv']} degrees of freedom", (Table.of(rows, columns),))

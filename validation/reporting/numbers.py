@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import string
 from collections.abc import Mapping
 from typing import Any
 
@@ -47,6 +48,31 @@ def duration(seconds: float) -> str:
         if seconds >= size:
             return f"{seconds / size:.3g} {unit}"
     return f"{seconds / 1e-6:.3g} µs"
+
+
+def compact(x: float) -> str:
+    """Three digits or more."""
+    return f"{x:.1f}" if x < 100 else f"{x:.0f}"
+
+
+class Form(string.Formatter):
+    """Formats of columns: Python's, "time", "short", "times" and "compact" as above, and scaled ones, "1e3*.2f".
+
+    What is missing is "-"; several numbers are listed.
+    """
+
+    NAMED = {"time": duration, "short": short, "times": times, "compact": compact}
+
+    def format_field(self, value: Any, format_spec: str) -> str:
+        """One field."""
+        if value is None:
+            return "-"
+        if isinstance(value, list | tuple):
+            return ", ".join(self.format_field(one, format_spec) for one in value)
+        if format_spec in self.NAMED:
+            return self.NAMED[format_spec](value)
+        factor, star, spec = format_spec.rpartition("*")
+        return format(float(factor) * value, spec) if star else format(value, spec)
 
 
 def named(values: Mapping[str, object], separator: str) -> str:

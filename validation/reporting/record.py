@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from validation.reporting.figures import Chart, Drawing, Figure
+from validation.reporting.numbers import Form
 
 Tone = Literal["plain", "soft", "bad", "advice"]
 
@@ -39,7 +40,8 @@ class Cell:
     hint: str = ""
 
 
-# What stands in a column: a format such as "{error:.1e}", or a function of the row.
+_FORM = Form()
+# What stands in a column: a format such as "{error:.1e}" (see `Form`), or a function of the row.
 Column = str | Callable[[Any], str | Cell]
 
 
@@ -63,8 +65,8 @@ class Table:
             if callable(column):
                 return column(row)
             if isinstance(row, tuple):
-                return column.format(*row)
-            return column.format_map(row if isinstance(row, Mapping) else vars(row))
+                return _FORM.vformat(column, row, {})
+            return _FORM.vformat(column, (), row if isinstance(row, Mapping) else vars(row))
 
         lines = tuple(tuple(cell(row, column) for column in columns.values()) for row in rows)
         return cls(tuple(columns), lines)

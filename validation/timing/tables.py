@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from validation.reporting.figures import Chart, Curve, Figure
+from validation.reporting.numbers import compact
 from validation.reporting.record import Block, Cell, Column, Section, Table
 from validation.timing.growth import Growth, growth
 from validation.timing.models import FUNCTIONS, TIMED_MODELS
@@ -31,25 +32,6 @@ def sections(record: Record) -> list[Section]:
         _skipped(record),
     ]
     return [section for section in made if section.shows]
-
-
-def _short(x: float) -> str:
-    return f"{x:.1f}" if x < 100 else f"{x:.0f}"
-
-
-def _formatted(name: str, form: str) -> Column:
-    """A number of a row, or of a record, that may be missing."""
-
-    def cell(row: Any) -> str:
-        value = row[name] if isinstance(row, Mapping) else getattr(row, name)
-        return "-" if value is None else format(value, form)
-
-    return cell
-
-
-def _pair(name: str) -> Column:
-    """Minimum and median [ns], which may be missing."""
-    return lambda row: "-" if row[name] is None else ", ".join(map(_short, row[name]))
 
 
 _TARGETS_TEXT = (
@@ -78,21 +60,21 @@ def targets_table(record: Record) -> Table:
 _TIMES: dict[str, Column] = {
     "model": "{model}",
     "#nv": "{nv}",
-    "#ours": _pair("generated_time"),
-    "#batch, rows": _pair("batch"),
-    "#columns": _pair("columns"),
-    "#floats": _pair("single"),
-    "#Pinocchio, gcc": _pair("gcc"),
-    "#Pinocchio, best": _pair("pinocchio"),
-    **{f"#{name}": _pair(peer) for peer, name in _PEERS.items() if peer != "pinocchio"},
+    "#ours": "{generated_time:compact}",
+    "#batch, rows": "{batch:compact}",
+    "#columns": "{columns:compact}",
+    "#floats": "{single:compact}",
+    "#Pinocchio, gcc": "{gcc:compact}",
+    "#Pinocchio, best": "{pinocchio:compact}",
+    **{f"#{name}": f"{{{peer}:compact}}" for peer, name in _PEERS.items() if peer != "pinocchio"},
 }
 _RATIOS: dict[str, Column] = {
     "model": "{model}",
     "#nv": "{nv}",
-    "#Pinocchio": _formatted("pinocchio ratio", ".2f"),
-    "#batch by rows": _formatted("batch_ratio", ".1f"),
-    "#batch by columns": _formatted("columns_ratio", ".1f"),
-    **{f"#{name}": _formatted(f"{peer} ratio", ".2f") for peer, name in _PEERS.items() if peer != "pinocchio"},
+    "#Pinocchio": "{pinocchio ratio:.2f}",
+    "#batch by rows": "{batch_ratio:.1f}",
+    "#batch by columns": "{columns_ratio:.1f}",
+    **{f"#{name}": f"{{{peer} ratio:.2f}}" for peer, name in _PEERS.items() if peer != "pinocchio"},
 }
 _NOTES = {
     "dynamics": "Ours is M + h + Q, in one function. Pinocchio's is crba, then nonLinearEffects; MuJoCo's shares its "
@@ -160,9 +142,9 @@ _MAKING = {
     **_COST,
     "#generation [s]": "{generation:.3f}",
     "#compilation [s]": "{compilation:.2f}",
-    "#C text [kB]": lambda cost: f"{cost.text / 1e3:.1f}",
-    "#machine code [kB]": lambda cost: f"{cost.code / 1e3:.1f}",
-    "#constants [kB]": lambda cost: f"{cost.constants / 1e3:.1f}",
+    "#C text [kB]": "{text:1e-3*.1f}",
+    "#machine code [kB]": "{code:1e-3*.1f}",
+    "#constants [kB]": "{constants:1e-3*.1f}",
 }
 
 
@@ -191,8 +173,8 @@ def _limits(record: Record) -> Section:
     columns: dict[str, Column] = {
         **_COST,
         **{f"#{title}": _operations(title.rstrip("s")) for title in ("mul", "add", "div", "calls")},
-        "#time [ns]": lambda cost: _short(cost.time),
-        "#limit [ns]": lambda cost: _short(1e9 * cost.total / flops),
+        "#time [ns]": "{time:compact}",
+        "#limit [ns]": lambda cost: compact(1e9 * cost.total / flops),
         "#distance": distance,
         "#of batches": distance_of_batches,
         "#memory [B]": "{memory}",

@@ -4,6 +4,7 @@ import json
 import re
 import subprocess
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from typer.testing import CliRunner
@@ -93,7 +94,8 @@ def test_reports_are_written_one_by_one_and_an_interrupt_keeps_the_finished(
             raise KeyboardInterrupt
         return subprocess.CompletedProcess(command, 0 if len(ran) == 1 else 7, None, "lines\nthe reason")
 
-    monkeypatch.setattr(regenerate.subprocess, "run", fake)
+    instead = SimpleNamespace(run=fake, DEVNULL=subprocess.DEVNULL, PIPE=subprocess.PIPE)
+    monkeypatch.setattr(regenerate, "subprocess", instead)
     result = CliRunner().invoke(app, ["dashboard", "--report", str(tmp_path), "--readme", "none", "--regenerate"])
     assert result.exit_code == 130
     assert ran == [["--output", str(tmp_path)], *([name, "--output", str(tmp_path)] for name in ("oracle", "mutation"))]

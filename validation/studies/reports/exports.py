@@ -40,7 +40,7 @@ def compose(data: Data) -> Report:
     overheads, latencies = data["overheads"], data["latencies"]
     calls = f"{data['calls']:,}".replace(",", " ")
     costs = Table.of(
-        overheads.items(), {"from": lambda row: row[0], **{f"#{name} [us]": _cost(name) for name in overheads["C"]}}
+        overheads.items(), {"from": "{0}", **{f"#{name} [us]": f"{{1[{name}]:1e-3*.2f}}" for name in overheads["C"]}}
     )
     # Bin i ends at 2^(i + 1) ns.
     used = [i for i in range(len(latencies[0]["bins"])) if any(row["bins"][i] for row in latencies)]
@@ -72,11 +72,6 @@ def compose(data: Data) -> Report:
             Fact(f"{max(row['high'] for row in latencies) / 1e3:.2g} µs", f"99.9 % of {calls} calls in C are below"),
         ),
     )
-
-
-def _cost(name: str) -> Column:
-    """Nanoseconds of one kind of call as microseconds; a kind that an environment does not have is left out."""
-    return lambda row: "-" if row[1][name] is None else f"{row[1][name] / 1e3:.2f}"
 
 
 TOPIC = Topic("exports", "Speed", "What does a call cost, from where?", compose, measure)

@@ -32,19 +32,15 @@ _SEE = (
 _EDGES = np.logspace(-1, 5, 73)
 
 
-def _microseconds(name: str) -> Column:
-    return lambda row: f"{1e6 * row[name]:.1f}"
-
-
 _COLUMNS: dict[str, Column] = {
     "diagram": "{what}",
     "thread": lambda row: _thread(row["first"]),
-    "#least": _microseconds("minimum"),
-    "#median": _microseconds("median"),
-    "#99.9 %": _microseconds("p999"),
-    "#worst": _microseconds("maximum"),
+    "#least": "{minimum:1e6*.1f}",
+    "#median": "{median:1e6*.1f}",
+    "#99.9 %": "{p999:1e6*.1f}",
+    "#worst": "{maximum:1e6*.1f}",
     "#missed": "{missed} of {instants}",
-    "#busy": _microseconds("busy"),
+    "#busy": "{busy:1e6*.1f}",
 }
 
 

@@ -29,7 +29,7 @@ _COLUMNS: dict[str, Column] = {
     "#threads": "{threads}",
     "#error [rad]": "{error:.1e}",
     "#steps": "{steps}",
-    "#ns a step (min, median)": "{nanoseconds[0]:.0f}, {nanoseconds[1]:.0f}",
+    "#ns a step (min, median)": "{nanoseconds:.0f}",
     "#million steps a second and core": lambda row: f"{1e3 / row['nanoseconds'][0]:.2f}",
     "#MuJoCo's time over it": "**{ratio:.1f}**",
 }

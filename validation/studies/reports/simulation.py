@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import asdict
 from typing import Annotated
 
 import typer
 
 from validation.reporting.command import Run, known
-from validation.reporting.numbers import counted, times
+from validation.reporting.numbers import Form, counted, times
 from validation.reporting.record import Cell, Column, Data, Fact, Report, Section, Table, Topic
 from validation.studies import simulation
 
@@ -76,13 +75,9 @@ def compose(data: Data) -> Report:
     )
 
 
-def _milliseconds(row: Data) -> str:
-    return ", ".join(f"{1e3 * x:.3g}" for x in row["seconds"])
-
-
-def _of_other(cell: Callable[[Data], str]) -> Column:
+def _of_other(column: str) -> Column:
     """A column that is empty where there is no other engine."""
-    return lambda row: cell(row) if row["engine_run"] else ""
+    return lambda row: Form().vformat(column, (), row) if row["engine_run"] else ""
 
 
 _RACES: dict[str, Column] = {
@@ -91,12 +86,12 @@ _RACES: dict[str, Column] = {
     "error of": "{measure}",
     "ours": "{generated[how]}",
     "#error": "{generated[error]:.1e}",
-    "#ms (min, median)": lambda row: _milliseconds(row["generated"]),
+    "#ms (min, median)": "{generated[seconds]:1e3*.3g}",
     "#times real time": "**{real_time:.0f}**",
-    "other": _of_other("{engine}: {engine_run[how]}".format_map),
-    "#its error": _of_other("{engine_run[error]:.1e}".format_map),
-    "#its ms": _of_other(lambda row: _milliseconds(row["engine_run"])),
-    "#ratio": _of_other("**{ratio:.1f}**".format_map),
+    "other": _of_other("{engine}: {engine_run[how]}"),
+    "#its error": _of_other("{engine_run[error]:.1e}"),
+    "#its ms": _of_other("{engine_run[seconds]:1e3*.3g}"),
+    "#ratio": _of_other("**{ratio:.1f}**"),
 }
 _BENCHMARKS: dict[str, Column] = {
     "benchmark": "{name}",
@@ -105,6 +100,6 @@ _BENCHMARKS: dict[str, Column] = {
     "error of": "{measure}",
     "#error": lambda row: Cell(f"{row['error']:.1e}", row["error"] <= row["threshold"]),
     "#threshold": "{threshold:.0e}",
-    "#ms": lambda row: f"{1e3 * row['seconds']:.3g}",
+    "#ms": "{seconds:1e3*.3g}",
 }
 TOPIC = Topic("simulation", "Speed", "How fast are motions at equal accuracy?", compose, measure)

@@ -1,0 +1,35 @@
+"""Trends come from the summaries of earlier commits."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+from validation.dashboard.history import history
+from validation.reporting.record import Cell
+
+WHO = ("-c", "user.name=a", "-c", "user.email=a@b")
+
+
+def commit(folder: Path, timing: str, verdict: str) -> None:
+    text = (
+        f"| report | what it found | verdict | made (UTC) |\n|---|---|---|---|\n| timing | {timing} | {verdict} | - |\n"
+    )
+    (folder / "summary.md").write_text(text, encoding="utf-8")
+    for words in (["init", "-q"], ["add", "."], [*WHO, "commit", "-qm", "x"]):
+        subprocess.run(["git", "-C", str(folder), *words], check=True)
+
+
+def test_a_line_says_what_became_of_a_report_over_commits(tmp_path: Path) -> None:
+    commit(tmp_path, "10 000 races", "good")
+    assert history(tmp_path / "summary.md", ("timing",)) is None, "one commit is no trend"
+    commit(tmp_path, "24 of 26 targets are met", "missed")
+    trend = history(tmp_path / "summary.md", ("timing", "check"))
+    assert trend is not None and len(trend.head) == 3
+    assert trend.rows[0] == ("timing", Cell("10 000", hint="10 000 races", ok=True), trend.rows[0][2])
+    assert trend.rows[0][2] == Cell("24 of 26", False, hint="24 of 26 targets are met")
+    assert trend.rows[1] == ("check", "-", "-")
+
+
+def test_without_a_repository_there_is_no_trend(tmp_path: Path) -> None:
+    assert history(tmp_path / "summary.md", ("timing",)) is None
