@@ -23,6 +23,8 @@ from validation.engines.arithmetic import (
     quaternion_rotation,
     root,
     rotation,
+    skew,
+    solve,
     unit,
     zeros,
 )
@@ -180,6 +182,76 @@ def _ellipsoid(joint: Joint, q: Exact) -> Pose:
     return R, exact(joint.radii) * R[:, 2]
 
 
+def _rotation_vector(joint: Joint, q: Exact) -> Pose:
+    angle = root(q @ q)
+    return (_turn(q / angle, angle), zeros(3)) if angle else (eye(3), zeros(3))
+
+
+def _rotation_vector_rates(before: int) -> Callable[[Joint, Exact], Exact]:
+    """Columns of 1 + [q]/2 + (1/|q|^2 - (1 + cos)/(2 |q| sin)) [q]^2 for axes after; with -[q]/2, for those before."""
+
+    def rates(joint: Joint, q: Exact) -> Exact:
+        angle, turned = root(q @ q), skew(q)
+        if not angle:
+            return eye(3)
+        c, s = cos_sin(angle)
+        return eye(3) - before * turned / 2 + (1 / angle**2 - (1 + c) / (2 * angle * s)) * (turned @ turned)
+
+    return rates
+
+
+def _roll_pitch_yaw(joint: Joint, q: Exact) -> Pose:
+    return _euler(Joint("euler", sequence="ZYX"), q[::-1])
+
+
+def _roll_pitch_yaw_rates(joint: Joint, q: Exact) -> Exact:
+    """The inverse of the map from rates of roll, pitch, yaw to the angular velocity in the axes before."""
+    z = eye(3)[2]
+    yaw = _turn(z, q[2])
+    return solve(np.stack([yaw @ _turn(eye(3)[1], q[1])[:, 0], yaw[:, 1], z], axis=1), eye(3))
+
+
+def _free_vector(joint: Joint, q: Exact) -> Pose:
+    return _rotation_vector(joint, q[:3])[0], q[3:]
+
+
+def _free_roll_pitch_yaw(joint: Joint, q: Exact) -> Pose:
+    return _roll_pitch_yaw(joint, q[:3])[0], q[3:]
+
+
+def _free_quaternion_first(joint: Joint, q: Exact) -> Pose:
+    return _wxyz(joint, q[:4])[0], q[4:]
+
+
+def _turning_first(rates: Callable[[Joint, Exact], Exact], size: int) -> Callable[[Joint, Exact], Exact]:
+    """Rates of a free joint whose first coordinates are a rotation's; linear velocity along the axes before."""
+
+    def together(joint: Joint, q: Exact) -> Exact:
+        N = zeros(size + 3, 6)
+        N[:size, :3], N[size:, 3:] = rates(joint, q[:size]), eye(3)
+        return N
+
+    return together
+
+
+def _along_parent(rates: Callable[[Joint, Exact], Exact]) -> Callable[[Joint, Exact], Exact]:
+    """Rates of a free joint whose speeds are along the axes of the link before, not of the joint's frame in it."""
+
+    def turned(joint: Joint, q: Exact) -> Exact:
+        N, R = rates(joint, q), exact(joint.R)
+        return np.concatenate([N[:, :3] @ R.T, N[:, 3:] @ R.T], axis=1)
+
+    return turned
+
+
+def _planar_angle(joint: Joint, q: Exact) -> Pose:
+    return _turn(eye(3)[2], q[2]), np.array([q[0], q[1], Decimal(0)], dtype=object)
+
+
+def _quaternion_first_sample(joint: Joint, draw: Draw) -> Array:
+    return np.concatenate([_direction(draw, 4), draw.uniform(-1, 1, 3)])
+
+
 def _line(nq: int, size: float) -> Callable[[Joint, Draw], Array]:
     return lambda joint, draw: draw.uniform(-size, size, nq)
 
@@ -242,6 +314,27 @@ CHARTS: dict[str, Chart] = {
     ),
     "planar cos sin, body speeds": Chart(
         "x, y, cosine and sine; velocity in the axes after the joint", 4, 3, _planar_pose, _planar_rates, _planar_sample
+    ),
+    "planar angle": Chart("x, y, angle; their rates", 3, 3, _planar_angle, _same, _line(3, 1.2)),
+    "rotation vector, body speeds": Chart(
+        "rotation vector; angular velocity in the axes after the joint",
+        3, 3, _rotation_vector, _rotation_vector_rates(-1), _line(3, 1.2),
+    ),
+    "roll pitch yaw, parent speeds": Chart(
+        "R = Rz(yaw) Ry(pitch) Rx(roll); angular velocity in the axes before the joint",
+        3, 3, _roll_pitch_yaw, _roll_pitch_yaw_rates, _line(3, 1.2),
+    ),
+    "free rotation vector, angular and linear along the parent's axes": Chart(
+        "rotation vector, position; angular and linear velocity in the axes of the link before",
+        6, 6, _free_vector, _along_parent(_turning_first(_rotation_vector_rates(1), 3)), _line(6, 1.2),
+    ),
+    "free roll pitch yaw, angular and linear before": Chart(
+        "roll, pitch, yaw, position; angular and linear velocity in the axes before the joint",
+        6, 6, _free_roll_pitch_yaw, _turning_first(_roll_pitch_yaw_rates, 3), _line(6, 1.2),
+    ),
+    "free quaternion first, angular and linear before": Chart(
+        "quaternion with scalar first, position; angular and linear velocity in the axes before the joint",
+        7, 6, _free_quaternion_first, _turning_first(_wxyz_rates_before, 4), _quaternion_first_sample,
     ),
     "ellipsoid angles": Chart(
         "angles about x, y, z in succession; their rates", 3, 3, _ellipsoid, _same, _line(3, 1.2)

@@ -3,9 +3,18 @@
 from __future__ import annotations
 
 from validation.engines.interface import EnginePlugin
-from validation.engines.plugins import adam, dynibo, frax, idyntree, mujoco, pinocchio, pykdl, roboticstoolbox
+from validation.engines.plugins import (
+    adam,
+    dart,
+    drake,
+    dynibo,
+    frax,
+    idyntree,
+    mujoco,
+    pinocchio,
+    pykdl,
+    roboticstoolbox,
+)
 
-OWN: dict[str, EnginePlugin] = {
-    module.PLUGIN.name: module.PLUGIN
-    for module in (pinocchio, mujoco, adam, dynibo, frax, idyntree, pykdl, roboticstoolbox)
-}
+_MODULES = (pinocchio, mujoco, adam, dart, drake, dynibo, frax, idyntree, pykdl, roboticstoolbox)
+OWN: dict[str, EnginePlugin] = {module.PLUGIN.name: module.PLUGIN for module in _MODULES}

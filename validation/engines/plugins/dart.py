@@ -1,0 +1,199 @@
+"""DART: skeletons by its API."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from validation.engines.interface import Array, Difference, Joint, Slot, Tree, Unsupported
+from validation.engines.plugins.source import Source, SourcePlugin, Way, series
+
+
+class _Native(NamedTuple):
+    """A joint of DART: name in its API, chart, coordinates, statements on the joint `j`."""
+
+    name: str
+    chart: str
+    count: int
+    settings: str = ""
+
+
+# Screws advance by the pitch in a whole turn.
+_JOINTS = {
+    "revolute": _Native("RevoluteJoint", "angle", 1, "j.setAxis({axis})"),
+    "prismatic": _Native("PrismaticJoint", "length", 1, "j.setAxis({axis})"),
+    "helical": _Native("ScrewJoint", "screw angle", 1, "j.setAxis({axis}); j.setPitch({turn!r})"),
+    "universal": _Native("UniversalJoint", "two angles", 2, "j.setAxis1({axis}); j.setAxis2({second})"),
+    "euler": _Native("EulerJoint", "three angles", 3),
+    "ball": _Native("BallJoint", "rotation vector, body speeds", 3),
+    "translation": _Native("TranslationalJoint", "three lengths", 3),
+    "planar": _Native("PlanarJoint", "planar angle", 3, "j.setXYPlane()"),
+    "free": _Native("FreeJoint", "free rotation vector, angular and linear along the parent's axes", 6),
+}
+
+_HELPERS = """def iso(R, p):
+    X = dart.math.Isometry3()
+    X.set_rotation(np.array(R))
+    X.set_translation(np.array(p))
+    return X
+def state(q, v=None, a=None):
+    s.setPositions(q)
+    s.setVelocities(np.zeros(len(q)) if v is None else v)
+    s.setAccelerations(np.zeros(len(q)) if a is None else a)
+W = dy.Frame.World()"""
+
+
+def _linear_first(call: str, state: str) -> str:
+    return f"state({state})\nvalue = [np.roll({call}, 3, axis=0) for b in links]"
+
+
+WAYS = {
+    "mass_matrix": Way("getMassMatrix", "state(q)\nvalue = s.getMassMatrix()"),
+    "mass_matrix_inverse": Way("getInvMassMatrix", "state(q)\nvalue = s.getInvMassMatrix()"),
+    "bias": Way("getCoriolisAndGravityForces", "state(q, v)\nvalue = s.getCoriolisAndGravityForces()"),
+    "coriolis_forces": Way("getCoriolisForces", "state(q, v)\nvalue = s.getCoriolisForces()"),
+    "gravity": Way("getGravityForces", "state(q)\nvalue = s.getGravityForces()"),
+    "inverse_dynamics": Way(
+        "computeInverseDynamics", "state(q, v, a)\ns.computeInverseDynamics()\nvalue = s.getForces()"
+    ),
+    "forward_dynamics": Way(
+        "computeForwardDynamics",
+        "state(q, v)\ns.setForces(tau)\ns.computeForwardDynamics()\nvalue = s.getAccelerations()",
+    ),
+    "kinetic_energy": Way("computeKineticEnergy", "state(q, v)\nvalue = s.computeKineticEnergy()"),
+    "potential_energy": Way("computePotentialEnergy", "state(q)\nvalue = s.computePotentialEnergy()"),
+    "link_poses": Way(
+        "getTransform",
+        "state(q)\nX = [b.getTransform() for b in links]\nvalue = [[*x.translation(), *x.rotation().flat] for x in X]",
+    ),
+    "link_velocities": Way(
+        "getLinearVelocity", "state(q, v)\nvalue = [[*b.getLinearVelocity(), *b.getAngularVelocity()] for b in links]"
+    ),
+    "velocity_local": Way("getSpatialVelocity", _linear_first("b.getSpatialVelocity()", "q, v")),
+    "acceleration_local": Way("getSpatialAcceleration", _linear_first("b.getSpatialAcceleration()", "q, v, a")),
+    "link_accelerations": Way(
+        "getLinearAcceleration",
+        "state(q, v, a)\nvalue = [[*b.getLinearAcceleration(), *b.getAngularAcceleration()] for b in links]",
+    ),
+    "link_jacobians": Way("getJacobian, World", _linear_first("s.getJacobian(b, W)", "q")),
+    "jacobian_local": Way("getJacobian", _linear_first("s.getJacobian(b)", "q")),
+    "link_jacobian_rates": Way(
+        "getJacobianClassicDeriv, World", _linear_first("s.getJacobianClassicDeriv(b, W)", "q, v")
+    ),
+    # Rates of spatial vectors, in the body's axes: those of the Jacobian at the world's origin, transformed.
+    "jacobian_rate_world": Way(
+        "getJacobianSpatialDeriv",
+        """state(q, v)
+value = []
+for b in links:
+    R, p = b.getTransform().rotation(), b.getTransform().translation()
+    J = s.getJacobianSpatialDeriv(b)
+    value.append([*(R @ J[3:] + np.cross(p, (R @ J[:3]).T).T), *(R @ J[:3])])""",
+    ),
+    "mass_centre": Way("getCOM", "state(q)\nvalue = s.getCOM()"),
+    "mass_centre_jacobian": Way("getCOMLinearJacobian", "state(q)\nvalue = s.getCOMLinearJacobian()"),
+    "mass_centre_velocity_products": Way(
+        "getCOMLinearJacobianDeriv", "state(q, v)\nvalue = s.getCOMLinearJacobianDeriv() @ v"
+    ),
+    "mass_centre_velocity_products:getCOMLinearAcceleration": Way(
+        "getCOMLinearAcceleration", "state(q, v)\nvalue = s.getCOMLinearAcceleration()"
+    ),
+    "integrate": Way("integratePositions", "state(q, v2)\ns.integratePositions(1.0)\nvalue = s.getPositions()"),
+    "difference": Way(
+        "getPositionDifferences",
+        "state(q, v2)\ns.integratePositions(1.0)\nvalue = s.getPositionDifferences(s.getPositions(), q)",
+    ),
+}
+
+
+def _array(values: object) -> str:
+    return repr(np.asarray(values, dtype=float).tolist())
+
+
+def _placement(R: Array, p: Array) -> str:
+    return f"iso({_array(R)}, {_array(p)})"
+
+
+def _native(joint: Joint) -> _Native | None:
+    if joint.form or joint.mimics or any(joint.armature) or (joint.kind == "euler" and joint.sequence != "XYZ"):
+        return None
+    return _JOINTS.get(joint.kind)
+
+
+def write(tree: Tree) -> Source | Unsupported:
+    """Text that builds a skeleton; links without a joint hang on weld joints."""
+    lines = ["import numpy as np", "import dartpy as dart", "dy = dart.dynamics", _HELPERS, "s = dy.Skeleton('tree')"]
+    lines.append(f"s.setGravity({list(tree.gravity)!r})")
+    slots: list[tuple[Slot, ...]] = []
+    count = 0
+    for k, link in enumerate(tree.links):
+        steps, (R_end, p_end) = series(link.joints)
+        if len(steps) > 1:
+            return Unsupported("a body hangs on one joint", offered=False)
+        R, p, native = R_end, p_end, _Native("WeldJoint", "", 0)
+        if steps:
+            R, p, joint = steps[0]
+            known = _native(joint)
+            if known is None:
+                words = f"{joint.kind} {joint.form or joint.sequence}".strip()
+                extra = " that mimics" if joint.mimics else " with armature" if any(joint.armature) else ""
+                return Unsupported(f"no joint for {words}{extra}", offered=False)
+            native = known
+            if joint.kind == "free" and not np.array_equal(R, joint.R):
+                return Unsupported("speeds of free joints are along the axes of the link before", offered=False)
+        parent = "None" if link.parent < 0 else f"b{link.parent}"
+        lines.append(f"j, b{k} = s.create{native.name}AndBodyNodePair({parent})")
+        if native.settings:
+            axis, second = _array(joint.axis), _array(joint.second)
+            lines.append(native.settings.format(axis=axis, second=second, turn=2 * math.pi * joint.pitch))
+        lines.append(f"j.setTransformFromParentBodyNode({_placement(R, p)})")
+        if steps and (np.any(p_end) or not np.array_equal(R_end, np.eye(3))):
+            lines.append(f"j.setTransformFromChildBodyNode({_placement(R_end.T, -R_end.T @ p_end)})")
+        lines.append(f"b{k}.setInertia(dy.Inertia({link.mass!r}, {_array(link.com)}, {_array(link.inertia)}))")
+        places = tuple(range(count, count + native.count))
+        slots.append((Slot(native.chart, places, places),) if steps else ())
+        count += native.count
+    lines.append(f"links = [{', '.join(f'b{k}' for k in range(len(tree.links)))}]")
+    return Source(tuple(lines), tuple(slots), nq=count, nv=count)
+
+
+PLUGIN = SourcePlugin(
+    name="dart",
+    package="dartpy",
+    extra="symofros[engine-dart]",
+    conventions=(
+        Difference("ball joint", "rotation vector; angular velocity in the body"),
+        Difference(
+            "free joint", "rotation vector, position; angular and linear velocity along the axes of the link before"
+        ),
+        Difference("planar joint", "x, y, angle; their rates"),
+        Difference("screw", "pitch for a whole turn"),
+        Difference(
+            "getJacobianSpatialDeriv", "rate of a spatial vector, in the body's axes: the body's turning is not in it"
+        ),
+        Difference("spatial vectors", "angular, then linear, in the body's axes unless a frame is named"),
+        Difference("Euler angles", "x, y, z; the order can be set in C++, its Python type is not bound"),
+        Difference("armature", "none"),
+    ),
+    kinds={
+        "revolute x": "RevoluteJoint",
+        "revolute y": "RevoluteJoint",
+        "revolute z": "RevoluteJoint",
+        "revolute oblique": "RevoluteJoint",
+        "prismatic": "PrismaticJoint",
+        "prismatic oblique": "PrismaticJoint",
+        "helical": "ScrewJoint",
+        "helical oblique": "ScrewJoint",
+        "universal": "UniversalJoint",
+        "euler xyz": "EulerJoint",
+        "ball": "BallJoint",
+        "translation": "TranslationalJoint",
+        "planar": "PlanarJoint",
+        "free": "FreeJoint",
+        "free between links": "FreeJoint",
+    },
+    ways=WAYS,
+    write=write,
+)

@@ -1,0 +1,277 @@
+"""Drake: MultibodyPlant by its API."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from validation.engines.interface import Array, Difference, Joint, Slot, Tree, Unsupported
+from validation.engines.plugins.source import Source, SourcePlugin, Way, series
+
+
+class _Native(NamedTuple):
+    """A joint of Drake: class with arguments, chart, coordinates, speeds."""
+
+    call: str
+    chart: str
+    nq: int
+    nv: int
+
+
+_JOINTS = {
+    ("revolute", ""): _Native("RevoluteJoint({frames}, {axis})", "angle", 1, 1),
+    ("prismatic", ""): _Native("PrismaticJoint({frames}, {axis})", "length", 1, 1),
+    # Screws advance by the pitch in a whole turn.
+    ("helical", ""): _Native("ScrewJoint({frames}, {axis}, {turn!r}, 0)", "screw angle", 1, 1),
+    ("universal", ""): _Native("UniversalJoint({frames})", "two angles", 2, 2),
+    ("ball", ""): _Native("BallRpyJoint({frames})", "roll pitch yaw, parent speeds", 3, 3),
+    ("planar", ""): _Native("PlanarJoint({frames}, [0, 0, 0])", "planar angle", 3, 3),
+    ("free", ""): _Native(
+        "QuaternionFloatingJoint({frames})", "free quaternion first, angular and linear before", 7, 6
+    ),
+    ("free", "roll pitch yaw"): _Native(
+        "RpyFloatingJoint({frames})", "free roll pitch yaw, angular and linear before", 6, 6
+    ),
+}
+
+_SETUP = """import numpy as np
+from pydrake.math import RigidTransform, RotationMatrix
+from pydrake.multibody import tree
+from pydrake.multibody.plant import MultibodyPlant
+p = MultibodyPlant(0.0)
+def X(R, r): return RigidTransform(RotationMatrix(np.array(R)), r)
+def inertia(mass, com, I):
+    I = np.array(I)
+    about = tree.RotationalInertia(*I.diagonal(), I[0, 1], I[0, 2], I[1, 2])
+    return tree.SpatialInertia.MakeFromCentralInertia(mass, com, about)
+def frame(name, body, R, r): return p.AddFrame(tree.FixedOffsetFrame(name, body, X(R, r)))"""
+_END = """c = p.CreateDefaultContext()
+W = p.world_frame()
+def state(q, v=None):
+    p.SetPositions(c, q)
+    p.SetVelocities(c, np.zeros(p.num_velocities()) if v is None else v)
+def forces():
+    applied = tree.MultibodyForces(p)
+    p.CalcForceElementsContribution(c, applied)
+    return applied
+def jacobian(b, about, speeds=tree.JacobianWrtVariable.kV):
+    return np.roll(p.CalcJacobianSpatialVelocity(c, speeds, b.body_frame(), [0, 0, 0], W, about), 3, axis=0)"""
+
+_ZERO = "tree.MultibodyForces(p)"
+WAYS = {
+    "mass_matrix": Way("CalcMassMatrix", "state(q)\nvalue = p.CalcMassMatrix(c)"),
+    "mass_matrix:CalcMassMatrixViaInverseDynamics": Way(
+        "CalcMassMatrixViaInverseDynamics", "state(q)\nvalue = p.CalcMassMatrixViaInverseDynamics(c)"
+    ),
+    "coriolis_forces": Way("CalcBiasTerm", "state(q, v)\nvalue = p.CalcBiasTerm(c)"),
+    "gravity": Way("CalcGravityGeneralizedForces", "state(q)\nvalue = -p.CalcGravityGeneralizedForces(c)"),
+    "inverse_dynamics": Way("CalcInverseDynamics", "state(q, v)\nvalue = p.CalcInverseDynamics(c, a, forces())"),
+    "bias": Way("CalcInverseDynamics", "state(q, v)\nvalue = p.CalcInverseDynamics(c, 0 * v, forces())"),
+    "forward_dynamics": Way(
+        "EvalTimeDerivatives",
+        "state(q, v)\np.get_applied_generalized_force_input_port().FixValue(c, tau)\n"
+        "value = p.EvalTimeDerivatives(c).CopyToVector()[len(q):]",
+    ),
+    "kinetic_energy": Way("CalcKineticEnergy", "state(q, v)\nvalue = p.CalcKineticEnergy(c)"),
+    "potential_energy": Way("CalcPotentialEnergy", "state(q)\nvalue = p.CalcPotentialEnergy(c)"),
+    "link_poses": Way(
+        "EvalBodyPoseInWorld",
+        "state(q)\nposes = [p.EvalBodyPoseInWorld(c, b) for b in links]\n"
+        "value = [[*x.translation(), *x.rotation().matrix().flat] for x in poses]",
+    ),
+    "link_velocities": Way(
+        "EvalBodySpatialVelocityInWorld",
+        "state(q, v)\ntwists = [p.EvalBodySpatialVelocityInWorld(c, b) for b in links]\n"
+        "value = [[*t.translational(), *t.rotational()] for t in twists]",
+    ),
+    "link_accelerations": Way(
+        "CalcSpatialAccelerationsFromVdot",
+        "state(q, v)\nall_ = p.CalcSpatialAccelerationsFromVdot(c, a)\n"
+        "value = [[*all_[b.index()].translational(), *all_[b.index()].rotational()] for b in links]",
+    ),
+    "link_velocity_products": Way(
+        "CalcBiasSpatialAcceleration",
+        """state(q, v)
+kV = tree.JacobianWrtVariable.kV
+products = [p.CalcBiasSpatialAcceleration(c, kV, b.body_frame(), [0, 0, 0], W, W) for b in links]
+value = [[*x.translational(), *x.rotational()] for x in products]""",
+    ),
+    "link_jacobians": Way("CalcJacobianSpatialVelocity", "state(q)\nvalue = [jacobian(b, W) for b in links]"),
+    "jacobian_local": Way(
+        "CalcJacobianSpatialVelocity", "state(q)\nvalue = [jacobian(b, b.body_frame()) for b in links]"
+    ),
+    "mass_centre": Way("CalcCenterOfMassPositionInWorld", "state(q)\nvalue = p.CalcCenterOfMassPositionInWorld(c)"),
+    "mass_centre_jacobian": Way(
+        "CalcJacobianCenterOfMassTranslationalVelocity",
+        "state(q)\nvalue = p.CalcJacobianCenterOfMassTranslationalVelocity(c, tree.JacobianWrtVariable.kV, W, W)",
+    ),
+    "mass_centre_velocity_products": Way(
+        "CalcBiasCenterOfMassTranslationalAcceleration",
+        "state(q, v)\nvalue = p.CalcBiasCenterOfMassTranslationalAcceleration(c, tree.JacobianWrtVariable.kV, W, W)",
+    ),
+    "centroidal_momentum": Way(
+        "CalcSpatialMomentumInWorldAboutPoint",
+        "state(q, v)\nL = p.CalcSpatialMomentumInWorldAboutPoint(c, p.CalcCenterOfMassPositionInWorld(c))\n"
+        "value = [*L.translational(), *L.rotational()]",
+    ),
+}
+
+
+def _gradient(result: str, seeds: str) -> str:
+    """Derivatives by Drake's automatic differentiation."""
+    return f"""from pydrake.autodiffutils import AutoDiffXd, ExtractGradient, InitializeAutoDiff
+ad = p.ToAutoDiffXd()
+d = ad.CreateDefaultContext()
+state(q, v)
+N = p.MakeVelocityToQDotMap(c).toarray()
+{seeds}
+ad.SetPositions(d, q_)
+ad.SetVelocities(d, v_)
+{result}
+value = ExtractGradient(out)"""
+
+
+_BY_Q = "q_ = InitializeAutoDiff(q, N).flatten()\nv_ = InitializeAutoDiff(v, np.zeros((len(v), len(v)))).flatten()"
+_BY_V = "q_ = InitializeAutoDiff(q, 0 * N).flatten()\nv_ = InitializeAutoDiff(v, np.eye(len(v))).flatten()"
+_INVERSE = """from pydrake.multibody.tree import MultibodyForces_
+applied = MultibodyForces_[AutoDiffXd](ad)
+ad.CalcForceElementsContribution(d, applied)
+out = ad.CalcInverseDynamics(d, InitializeAutoDiff(a, np.zeros((len(v), len(v)))).flatten(), applied)"""
+_FORWARD = """port = ad.get_applied_generalized_force_input_port()
+port.FixValue(d, InitializeAutoDiff(tau, np.zeros((len(v), len(v)))).flatten())
+out = ad.EvalTimeDerivatives(d).CopyToVector()[len(q):]"""
+WAYS |= {
+    "inverse_dynamics_dq": Way("CalcInverseDynamics, AutoDiffXd", _gradient(_INVERSE, _BY_Q)),
+    "inverse_dynamics_dv": Way("CalcInverseDynamics, AutoDiffXd", _gradient(_INVERSE, _BY_V)),
+    "forward_dynamics_dq": Way("EvalTimeDerivatives, AutoDiffXd", _gradient(_FORWARD, _BY_Q)),
+    "forward_dynamics_dv": Way("EvalTimeDerivatives, AutoDiffXd", _gradient(_FORWARD, _BY_V)),
+    "gravity_dq": Way(
+        "CalcGravityGeneralizedForces, AutoDiffXd",
+        _gradient("out = -ad.CalcGravityGeneralizedForces(d)", _BY_Q),
+    ),
+}
+
+
+def _array(values: object) -> str:
+    return repr(np.asarray(values, dtype=float).tolist())
+
+
+def _native(joint: Joint) -> _Native | None:
+    if joint.mimics:
+        return None
+    if joint.kind == "universal" and (joint.axis, joint.second) != ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)):
+        return None
+    return _JOINTS.get((joint.kind, joint.form))
+
+
+def _frame(name: str, body: str, R: Array, p: Array) -> str:
+    return f"frame({name!r}, {body}, {_array(R)}, {_array(p)})"
+
+
+def write(tree: Tree) -> Source | Unsupported:
+    """Text that builds a plant; links without a joint are welded."""
+    lines = _SETUP.split("\n")
+    lines.append(f"p.mutable_gravity_field().set_gravity_vector({list(tree.gravity)!r})")
+    chosen: list[list[_Native]] = []
+    joints: list[list[str]] = []
+    for k, link in enumerate(tree.links):
+        lines.append(
+            f"b{k} = p.AddRigidBody({link.name!r}, inertia({link.mass!r}, {list(link.com)!r}, {link.inertia!r}))"
+        )
+        steps, (R_end, p_end) = series(link.joints)
+        if len(steps) > 1:
+            return Unsupported("a body hangs on one joint", offered=False)
+        parent = "p.world_body()" if link.parent < 0 else f"b{link.parent}"
+        if not steps:
+            ends = f"{_frame(f'P{k}', parent, R_end, p_end)}, b{k}.body_frame()"
+            lines.append(f"p.AddJoint(tree.WeldJoint('j{k}', {ends}, RigidTransform()))")
+            chosen.append([])
+            joints.append([])
+            continue
+        R, p, joint = steps[0]
+        native = _native(joint)
+        if native is None:
+            extra = " that mimics" if joint.mimics else ""
+            return Unsupported(f"no joint for {joint.kind} {joint.form}".strip() + extra, offered=False)
+        if any(joint.armature) and joint.kind not in ("revolute", "prismatic"):
+            return Unsupported("rotors drive joints of one coordinate", offered=False)
+        after = f"b{k}.body_frame()"
+        if np.any(p_end) or not np.array_equal(R_end, np.eye(3)):
+            after = _frame(f"C{k}", f"b{k}", R_end.T, -R_end.T @ p_end)
+        frames = f"'j{k}', {_frame(f'P{k}', parent, R, p)}, {after}"
+        call = native.call.format(frames=frames, axis=_array(joint.axis), turn=2 * math.pi * joint.pitch)
+        lines.append(f"j{k} = p.AddJoint(tree.{call})")
+        if any(joint.armature):
+            lines.append(f"motor = p.AddJointActuator('m{k}', j{k})")
+            lines.append(f"motor.set_default_rotor_inertia({joint.armature[0]!r}); motor.set_default_gear_ratio(1.0)")
+        chosen.append([native])
+        joints.append([f"j{k}"])
+    lines.append("p.Finalize()")
+    lines += [*_END.split("\n"), f"links = [{', '.join(f'b{k}' for k in range(len(tree.links)))}]"]
+    slots, nq, nv = _slots(tree, chosen)
+    return Source(tuple(lines), slots, nq=nq, nv=nv)
+
+
+def _slots(tree: Tree, chosen: list[list[_Native]]) -> tuple[tuple[tuple[Slot, ...], ...], int, int]:
+    """Slots in the order of Drake's numbering of mobilized bodies: depth first."""
+    slots: dict[int, tuple[Slot, ...]] = {}
+    nq = nv = 0
+    for k in _depth_first(tree):
+        own = []
+        for native in chosen[k]:
+            own.append(Slot(native.chart, tuple(range(nq, nq + native.nq)), tuple(range(nv, nv + native.nv))))
+            nq, nv = nq + native.nq, nv + native.nv
+        slots[k] = tuple(own)
+    return tuple(slots[k] for k in range(len(tree.links))), nq, nv
+
+
+def _depth_first(tree: Tree) -> list[int]:
+    order: list[int] = []
+
+    def visit(parent: int) -> None:
+        for k, link in enumerate(tree.links):
+            if link.parent == parent:
+                order.append(k)
+                visit(k)
+
+    visit(-1)
+    return order
+
+
+PLUGIN = SourcePlugin(
+    name="drake",
+    package="drake",
+    extra="symofros[engine-drake]",
+    conventions=(
+        Difference("quaternion", "scalar first, before the position"),
+        Difference("floating joints", "angular, then linear velocity, along the axes of the parent's frame"),
+        Difference("ball joint", "roll, pitch, yaw with R = Rz Ry Rx; angular velocity along the axes before"),
+        Difference("planar joint", "x, y, angle; their rates"),
+        Difference("universal joint", "about x, then y; rates of the angles"),
+        Difference("screw", "pitch for a whole turn"),
+        Difference("gravity forces", "as applied: the negative of g"),
+        Difference("armature", "of actuators, times gear ratio squared"),
+        Difference("bodies", "whose inertia no body can have are refused"),
+    ),
+    kinds={
+        "revolute x": "RevoluteJoint",
+        "revolute y": "RevoluteJoint",
+        "revolute z": "RevoluteJoint",
+        "revolute oblique": "RevoluteJoint",
+        "revolute with armature": "RevoluteJoint with JointActuator",
+        "prismatic": "PrismaticJoint",
+        "prismatic oblique": "PrismaticJoint",
+        "helical": "ScrewJoint",
+        "helical oblique": "ScrewJoint",
+        "universal": "UniversalJoint",
+        "ball": "BallRpyJoint",
+        "planar": "PlanarJoint",
+        "free": "QuaternionFloatingJoint",
+        "free between links": "QuaternionFloatingJoint",
+        "free by roll, pitch, yaw": "RpyFloatingJoint",
+    },
+    ways=WAYS,
+    write=write,
+)
