@@ -12,9 +12,10 @@ from validation.engines.plugins import (
     idyntree,
     mujoco,
     pinocchio,
+    pybullet,
     pykdl,
     roboticstoolbox,
 )
 
-_MODULES = (pinocchio, mujoco, adam, dart, drake, dynibo, frax, idyntree, pykdl, roboticstoolbox)
+_MODULES = (pinocchio, mujoco, adam, dart, drake, dynibo, frax, idyntree, pybullet, pykdl, roboticstoolbox)
 OWN: dict[str, EnginePlugin] = {module.PLUGIN.name: module.PLUGIN for module in _MODULES}

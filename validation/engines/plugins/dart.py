@@ -12,11 +12,11 @@ from validation.engines.plugins.source import Source, SourcePlugin, Way, series
 
 
 class _Native(NamedTuple):
-    """A joint of DART: name in its API, chart, coordinates, statements on the joint `j`."""
+    """A joint of DART: name in its API, chart, number of coordinates, statements on the joint `j`."""
 
     name: str
     chart: str
-    count: int
+    size: int
     settings: str = ""
 
 
@@ -152,9 +152,9 @@ def write(tree: Tree) -> Source | Unsupported:
         if steps and (np.any(p_end) or not np.array_equal(R_end, np.eye(3))):
             lines.append(f"j.setTransformFromChildBodyNode({_placement(R_end.T, -R_end.T @ p_end)})")
         lines.append(f"b{k}.setInertia(dy.Inertia({link.mass!r}, {_array(link.com)}, {_array(link.inertia)}))")
-        places = tuple(range(count, count + native.count))
+        places = tuple(range(count, count + native.size))
         slots.append((Slot(native.chart, places, places),) if steps else ())
-        count += native.count
+        count += native.size
     lines.append(f"links = [{', '.join(f'b{k}' for k in range(len(tree.links)))}]")
     return Source(tuple(lines), tuple(slots), nq=count, nv=count)
 

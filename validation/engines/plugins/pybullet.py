@@ -1,0 +1,95 @@
+"""PyBullet: articulated bodies of Bullet, from URDF."""
+
+from __future__ import annotations
+
+from validation.engines.interface import Difference, Tree, Unsupported
+from validation.engines.plugins.source import Source, SourcePlugin, Way
+from validation.engines.plugins.urdf import KINDS, describe, slots_of
+
+_SETUP = '''import tempfile
+import numpy as np
+import pybullet as p
+URDF = """{text}"""
+if not p.isConnected():
+    p.connect(p.DIRECT)
+p.setGravity(*{gravity})
+with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
+    file.write(URDF)
+    file.flush()
+    flags = p.URDF_USE_INERTIA_FROM_FILE | p.URDF_MAINTAIN_LINK_ORDER
+    robot = p.loadURDF(file.name, useFixedBase=True, flags=flags)
+named = {{p.getJointInfo(robot, k)[12].decode(): k for k in range(p.getNumJoints(robot))}}
+links = [named[name] for name in {links}]
+moving = [k for k in range(p.getNumJoints(robot)) if p.getJointInfo(robot, k)[2] != p.JOINT_FIXED]
+def centre(k):
+    com, rotation = p.getDynamicsInfo(robot, k)[3:5]
+    return np.array(com), np.reshape(p.getMatrixFromQuaternion(rotation), (3, 3))
+def states(q, v):
+    for k, position, speed in zip(moving, q, v):
+        p.resetJointState(robot, k, position, speed)
+    return [p.getLinkState(robot, k, computeLinkVelocity=1, computeForwardKinematics=1) for k in links]
+'''
+WAYS = {
+    "mass_matrix": Way("calculateMassMatrix", "value = p.calculateMassMatrix(robot, q.tolist())"),
+    "inverse_dynamics": Way(
+        "calculateInverseDynamics", "value = p.calculateInverseDynamics(robot, q.tolist(), v.tolist(), a.tolist())"
+    ),
+    "bias": Way(
+        "calculateInverseDynamics", "value = p.calculateInverseDynamics(robot, q.tolist(), v.tolist(), [0.0] * len(v))"
+    ),
+    "gravity": Way(
+        "calculateInverseDynamics", "value = p.calculateInverseDynamics(robot, q.tolist(), *[[0.0] * len(q)] * 2)"
+    ),
+    "link_poses": Way(
+        "getLinkState", "value = [[*s[4], *p.getMatrixFromQuaternion(s[5])] for s in states(q, np.zeros(len(q)))]"
+    ),
+    "link_velocities": Way(
+        "getLinkState",
+        "value = [[*(np.array(s[6]) + np.cross(s[7], np.array(s[4]) - s[0])), *s[7]] for s in states(q, v)]",
+    ),
+    # Points are stated from the mass centre, along the principal axes.
+    "link_jacobians": Way(
+        "calculateJacobian",
+        """value, zero = [], [0.0] * len(q)
+for k in links:
+    com, R = centre(k)
+    value.append(np.concatenate(p.calculateJacobian(robot, k, (-R.T @ com).tolist(), q.tolist(), zero, zero)))""",
+    ),
+}
+
+
+def write(tree: Tree) -> Source | Unsupported:
+    """The tree through PyBullet's reader of URDF."""
+    described = describe(tree)
+    return described if isinstance(described, Unsupported) else write_reading(tree, "urdf", described.text)
+
+
+def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
+    """A file through PyBullet's reader."""
+    described = describe(tree)
+    if isinstance(described, Unsupported):
+        return described
+    if described.floating:
+        return Unsupported("coordinates of floating bases are not documented", offered=False)
+    setup = _SETUP.format(text=text, gravity=list(tree.gravity), links=list(described.links))
+    count = len(described.moving)
+    return Source((setup,), slots_of(tree, described, described.moving), nq=count, nv=count)
+
+
+PLUGIN = SourcePlugin(
+    name="pybullet",
+    package="pybullet",
+    extra="symofros[engine-pybullet]",
+    conventions=(
+        Difference("order of joints", "of the file's links, with URDF_MAINTAIN_LINK_ORDER"),
+        Difference("inertias", "made up from shapes unless URDF_USE_INERTIA_FROM_FILE is given"),
+        Difference("velocities of links, points of Jacobians", "of and from the mass centre"),
+        Difference("files", "cached by name"),
+        Difference("armature", "none"),
+    ),
+    kinds=KINDS,
+    ways=WAYS,
+    write=write,
+    formats=("urdf",),
+    write_reading=write_reading,
+)
