@@ -95,6 +95,11 @@ class ModelResult:
         """Whether nothing disagrees or failed."""
         return all(comparison.ok for comparison in self.comparisons)
 
+    @property
+    def compared(self) -> list[Comparison]:
+        """The comparisons with a verdict on numbers."""
+        return [row for row in self.comparisons if row.status in ("agree", "disagree")]
+
 
 @dataclass(frozen=True)
 class _Bench:

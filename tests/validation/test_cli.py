@@ -117,3 +117,45 @@ def test_no_word_is_the_standard_set(monkeypatch: pytest.MonkeyPatch, tmp_path: 
     )
     CliRunner().invoke(app, ["--report", str(tmp_path)])
     assert {"ur5", "talos"} < set(asked)
+
+
+def unasked(*arguments: str) -> Result:
+    return CliRunner().invoke(app, ["check", "--states", "10", *arguments])
+
+
+def test_a_check_of_some_models_writes_no_report_unasked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    result = unasked("pendulum", "--engine", "pinocchio")
+    assert result.exit_code == 0 and "--report FOLDER" in result.stdout
+    assert not (tmp_path / "reports").exists()
+
+
+def test_a_run_cut_short_leaves_the_whole_report(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = "pendulum", "cart_pole", "--engine", "pinocchio", "--report", str(tmp_path)
+    assert unasked(*asked).exit_code == 0
+    whole = (tmp_path / "check.json").read_bytes()
+
+    def interrupted(cases: Any, settings: Any, workers: int, done: Any) -> None:
+        done(failed(cases[0].label, "check", "x"))
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("validation.cross_check.report.run_cases", interrupted)
+    result = unasked(*asked)
+    assert result.exit_code == 130 and "stays that of a whole run" in result.stdout
+    assert (tmp_path / "check.json").read_bytes() == whole
+    assert unasked(*asked[:-1], str(tmp_path / "other")).exit_code == 130
+    assert (tmp_path / "other" / "check.json").exists()
+
+
+def test_progress_is_told_in_lines_where_there_is_no_terminal() -> None:
+    result = unasked("pendulum", "cart_pole", "--engine", "pinocchio", "--workers", "2")
+    lines = result.stderr.splitlines()
+    assert "cross-checking" in lines[0] and "2 in all" in lines[0]
+    assert sum("agree, " in line for line in lines) == 2 and "[2/2]" in lines[-1]
+
+
+def test_a_narrow_terminal_gets_one_line_a_model(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("validation.reporting.terminal.PLAIN_WIDTH", 80)
+    shown = unasked("pendulum", "cart_pole", "heavy_top", "--engine", "pinocchio").stdout
+    assert all(len(line) <= 80 for line in shown.splitlines()) and "…" not in shown
+    assert "Worst comparison of each model" in " ".join(shown.split())

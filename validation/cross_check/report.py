@@ -22,7 +22,17 @@ from validation.cross_check.junit import to_junit
 from validation.cross_check.record import Record, as_data
 from validation.cross_check.speed import Speed, YardstickError
 from validation.cross_check.speed import measure as measure_speed
-from validation.cross_check.tables import BRIEF, by_engine, by_model, failures, headline, opinions, unsupported, worst
+from validation.cross_check.tables import (
+    BRIEF,
+    by_engine,
+    by_model,
+    failures,
+    headline,
+    opinions,
+    unsupported,
+    worst,
+    worst_by_model,
+)
 from validation.inputs.cases import Case, named, standard_set
 from validation.inputs.sampling import DEFAULT_STATES
 from validation.reporting.command import Run, known
@@ -134,17 +144,23 @@ def measure(
         cases = named(models, floating_base) if models else standard_set()
     except (LookupError, FileNotFoundError) as error:
         raise typer.BadParameter(str(error.args[0]), param_hint="MODEL") from None
-    run.expect(len(cases), "cross-checking")
+    first = ", ".join(case.label for case in sorted(cases, key=lambda case: -case.weight)[:workers])
+    run.expect(len(cases), f"cross-checking {first}")
     results: dict[str, ModelResult] = {}
 
     def done(result: ModelResult) -> None:
         results[result.label] = result
-        run.advance(f"{result.label}: {'agrees' if result.ok else 'DISAGREES'}")
+        count = len(result.compared)
+        run.advance(
+            f"{result.label}: {f'{count} agree' if result.ok else 'DISAGREES'}, {sum(result.seconds.values()):.1f} s"
+        )
 
     with contextlib.suppress(KeyboardInterrupt):  # What was finished is reported.
         run_cases(cases, settings, workers, done)
     finished = [results[case.label] for case in cases if case.label in results]
     unfinished = [case.label for case in cases if case.label not in results]
+    # The report of the standard set is not replaced by one of some models or engines, unless that is asked for.
+    run.writes = run.asked or not (models or engine)
     compiled = [case for case in cases if case.label in results and results[case.label].sizes]
     wanted = (speed or (stored is not None and bool(stored.record.speeds))) and not unfinished
     speeds = _speeds(run, compiled, stored) if wanted else []
@@ -229,6 +245,7 @@ def compose(data: Data) -> Report:
         tuple(_facts(record, engines)),
         (errors_by_engine(record),) if engines else (),
         (*_digest(record), *_against_baseline(data).blocks),
+        (*_narrow(record), *_against_baseline(data).blocks),
         record.unfinished,
         record.refused,
         (_DECISION, opinions(record)) if engines else (),
@@ -310,6 +327,16 @@ def _model(model: ModelResult) -> Fold:
     blocks.append(Text(", ".join(f"{stage} {seconds:.2f} s" for stage, seconds in model.seconds.items()), "soft"))
     sizes = ", ".join(f"{name} {number}" for name, number in model.sizes.items())
     return Fold(f"{model.label} {sizes} {model.hash}".strip(), tuple(blocks))
+
+
+def _narrow(record: Record) -> list[Block]:
+    """A short line a model for terminals that have no room for every quantity."""
+    return [
+        "Worst comparison of each model: error relative to the largest entry, of its tolerance",
+        worst_by_model(record),
+        *(Text(f"{model}, {engine}: {text}", "bad") for model, engine, text in failures(record)),
+        f"{counted(len(unsupported(record)), 'reason')} why an engine had no say: in the report, or a wider terminal",
+    ]
 
 
 def _digest(record: Record) -> list[Block]:

@@ -58,6 +58,26 @@ def by_model(record: Record, columns: Columns = COLUMNS) -> Table:
     return _table(lines, "#engines", columns)
 
 
+def worst_by_model(record: Record) -> Table:
+    """One line a model: the comparison that is nearest to its tolerance."""
+
+    def line(model: ModelResult) -> tuple[str | Cell, ...]:
+        row = worst(model.comparisons)
+        engines = {one.engine for one in model.compared} - {"symofros"}
+        status = _status(model.comparisons)
+        return (
+            model.label,
+            str(len(engines)),
+            "" if row is None else Cell(digits(row.error, 1), row.ok),
+            "" if row is None else digits(row.tolerance, 1),
+            "" if row is None else f"{row.quantity.replace('_', ' ')}, {row.engine}",
+            Cell(status, False if status in ("failed", "disagree") else None),
+        )
+
+    head = ("model", "#engines", "#error", "#of", "in", "verdict")
+    return Table(head, tuple(line(model) for model in record.models))
+
+
 def by_engine(record: Record, columns: Columns = COLUMNS, engines: Sequence[str] = (*ROUTES, *_OURS)) -> Table:
     """One line for each engine of each model that it has something to say of."""
     lines = [(m, name, [row for row in m.comparisons if row.engine == name]) for m in record.models for name in engines]

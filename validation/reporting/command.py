@@ -13,7 +13,7 @@ from typing import Annotated, Any
 
 import typer
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 import symofros as sf
 from symofros.tools import write_atomically
@@ -33,7 +33,8 @@ class Exit(IntEnum):
     INTERRUPTED = 130
 
 
-Output = Annotated[Path, typer.Option("--output", "-o", "--report", help="Folder of the report's files.")]
+_FOLDER = typer.Option("--output", "-o", "--report", help=f"Folder of the report's files; {REPORTS} by default.")
+Output = Annotated[Path, _FOLDER]
 AsJson = Annotated[bool, typer.Option("--json", help="Print the result as JSON, nothing else.")]
 Quick = Annotated[bool, typer.Option("--quick", help="A short way to the same questions: fewer points and runs.")]
 
@@ -65,8 +66,15 @@ class Done:
 
 
 def progress_bar(console: Console) -> Progress:
-    """A bar for eyes: a file or a pipe gets nothing."""
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    """A bar for eyes, with names and what is left; a file or a pipe gets lines (`Run.advance`)."""
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(bar_width=16),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
+    )
     return Progress(*columns, console=console, transient=True, disable=not console.is_terminal)
 
 
@@ -75,23 +83,39 @@ class Run:
 
     Args:
         topic: The report that is made.
+        folder: Folder of its files, if one was asked for.
+
+    Attributes:
         folder: Folder of its files; a part of a report may choose another.
+        asked: Whether the folder was asked for.
+        writes: Whether files are written: what measures part of a report only, unasked, leaves the whole one.
     """
 
-    def __init__(self, topic: Topic, folder: Path = REPORTS) -> None:
-        self.topic, self.folder = topic, folder
+    def __init__(self, topic: Topic, folder: Path | None = None) -> None:
+        self.topic, self.folder, self.asked, self.writes = topic, folder or REPORTS, folder is not None, True
         self.start = time.perf_counter()
+        self._done, self._total = 0, 0
         self._console = Console(stderr=True)
         self.bar = progress_bar(self._console)
         self._task = self.bar.add_task(topic.name, total=None)
 
     def expect(self, total: int, doing: str | None = None) -> None:
         """So many steps are to be done."""
+        self._done, self._total = 0, total
         self.bar.reset(self._task, total=total, description=doing or self.topic.name)
+        if self.bar.disable:
+            self._tell(f"{doing or self.topic.name}: {total} in all")
 
     def advance(self, doing: str | None = None, steps: int = 1) -> None:
         """Steps are done; `doing` says what comes next, or came out."""
+        self._done += steps
         self.bar.update(self._task, advance=steps, description=doing)
+        if self.bar.disable and doing is not None:
+            self._tell(f"[{self._done}/{self._total}] {doing}")
+
+    def _tell(self, text: str) -> None:
+        """A line of progress where no bar can be drawn, with the time since the start."""
+        self._console.print(f"{self.seconds:7.1f} s  {text}", markup=False, highlight=False, soft_wrap=True)
 
     def reached(self, number: int) -> None:
         """So many steps are done in all."""
@@ -165,12 +189,12 @@ def code(report: Report) -> Exit:
     return Exit.MISSED if report.ok is False else Exit.GOOD
 
 
-def execute(topic: Topic, folder: Path, as_json: bool, **options: Any) -> None:
+def execute(topic: Topic, folder: Path | None, as_json: bool, **options: Any) -> None:
     """Measure, write, print, exit.
 
     Args:
         topic: The report.
-        folder: Folder of the files.
+        folder: Folder of the files, if one was asked for.
         as_json: Whether data is printed, and nothing else.
         options: Options of what measures.
     """
@@ -181,13 +205,33 @@ def execute(topic: Topic, folder: Path, as_json: bool, **options: Any) -> None:
     except KeyboardInterrupt:
         run.say(f"{topic.name}: interrupted, nothing is written", bad=True)
         raise typer.Exit(Exit.INTERRUPTED) from None
-    report = write(topic, data, run.folder)
+    text = json.dumps(data, allow_nan=False)
+    report = topic.compose(json.loads(text))
+    kept = _keeps_whole(run, report)
+    if run.writes and not kept:
+        write(topic, data, run.folder)
     if as_json:
         typer.echo(json.dumps({name: data[name] for name in topic.printed or data}, allow_nan=False))
     else:
         terminal.show(report)
-        typer.echo(f"Report: {run.folder / topic.name}.html")
+        if kept:
+            typer.echo(f"{run.folder / topic.name}.html stays that of a whole run; --report FOLDER writes this one")
+        elif run.writes:
+            typer.echo(f"Report: {run.folder / topic.name}.html")
+        else:
+            typer.echo("--report FOLDER writes the whole report")
     raise typer.Exit(code(report))
+
+
+def _keeps_whole(run: Run, report: Report) -> bool:
+    """Whether a run that was cut short leaves a whole one of the same name as it is."""
+    if not (run.writes and report.unfinished):
+        return False
+    try:
+        stored = json.loads((run.folder / f"{run.topic.name}.json").read_text(encoding="utf-8"))
+        return not run.topic.compose(stored).unfinished
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):  # None there, or none that can be read.
+        return False
 
 
 def add_command(app: typer.Typer, topic: Topic) -> None:
@@ -198,7 +242,7 @@ def add_command(app: typer.Typer, topic: Topic) -> None:
     own = list(inspect.signature(topic.measure, eval_str=True).parameters.values())[1:]
     options = [
         *(parameter.replace(kind=keyword) for parameter in own),
-        inspect.Parameter("folder", keyword, default=REPORTS, annotation=Output),
+        inspect.Parameter("folder", keyword, default=None, annotation=Annotated[Path | None, _FOLDER]),
         inspect.Parameter("as_json", keyword, default=False, annotation=AsJson),
     ]
 
