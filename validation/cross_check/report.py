@@ -331,11 +331,12 @@ def _model(model: ModelResult) -> Fold:
 
 def _narrow(record: Record) -> list[Block]:
     """A short line a model for terminals that have no room for every quantity."""
+    refusals = counted(len(unsupported(record)), "reason")
     return [
         "Worst comparison of each model: error relative to the largest entry, of its tolerance",
         worst_by_model(record),
         *(Text(f"{model}, {engine}: {text}", "bad") for model, engine, text in failures(record)),
-        f"{counted(len(unsupported(record)), 'reason')} why an engine had no say: in the report, or a wider terminal",
+        *([f"{refusals} why an engine had no say: in the report, or a wider terminal"] if unsupported(record) else []),
     ]
 
 
