@@ -10,6 +10,7 @@ import pytest
 import symofros as sf
 from reference_models.rigid.random_tree import random_tree
 from symofros.description.forces import Rotor
+from tests.models import sampled
 
 RATIO, AXIAL, TRANSVERSE, MASS = 37.0, 3e-4, 2e-4, 0.6
 # Ratios squared multiply the rotor's inertia; rounding is relative to the largest entry.
@@ -24,7 +25,7 @@ def interpreted(system: sf.System) -> sf.Model:
     return sf.compile(system, sf.Options(backend="interpreter"))
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", sampled(range(6), (0, 3)))
 @pytest.mark.parametrize("carrier_choice", ["parent", "own link", "elsewhere"])
 def test_rotor_equals_a_geared_body(seed: int, carrier_choice: str, rng: np.random.Generator) -> None:
     """Speeds of the explicit model are G v; then M = G^T M' G and h = G^T h' (G is constant)."""
