@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from validation.engines.interface import Difference, Tree, Unsupported
 from validation.engines.plugins.source import Source, SourcePlugin, Way
 from validation.engines.plugins.urdf import KINDS, describe, slots_of
@@ -21,14 +23,12 @@ with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
 named = {{p.getJointInfo(robot, k)[12].decode(): k for k in range(p.getNumJoints(robot))}}
 links = [named[name] for name in {links}]
 moving = [k for k in range(p.getNumJoints(robot)) if p.getJointInfo(robot, k)[2] != p.JOINT_FIXED]
-def centre(k):
-    com, rotation = p.getDynamicsInfo(robot, k)[3:5]
-    return np.array(com), np.reshape(p.getMatrixFromQuaternion(rotation), (3, 3))
 def states(q, v):
     for k, position, speed in zip(moving, q, v):
         p.resetJointState(robot, k, position, speed)
     return [p.getLinkState(robot, k, computeLinkVelocity=1, computeForwardKinematics=1) for k in links]
 '''
+_MASSLESS = '<inertial><mass value="0"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial>'
 WAYS = {
     "mass_matrix": Way("calculateMassMatrix", "value = p.calculateMassMatrix(robot, q.tolist())"),
     "inverse_dynamics": Way(
@@ -47,13 +47,11 @@ WAYS = {
         "getLinkState",
         "value = [[*(np.array(s[6]) + np.cross(s[7], np.array(s[4]) - s[0])), *s[7]] for s in states(q, v)]",
     ),
-    # Points are stated from the mass centre, along the principal axes.
+    # Points are stated from the link's origin, along the principal axes of its inertia.
     "link_jacobians": Way(
         "calculateJacobian",
-        """value, zero = [], [0.0] * len(q)
-for k in links:
-    com, R = centre(k)
-    value.append(np.concatenate(p.calculateJacobian(robot, k, (-R.T @ com).tolist(), q.tolist(), zero, zero)))""",
+        "zero = [0.0] * len(q)\n"
+        "value = [np.concatenate(p.calculateJacobian(robot, k, [0, 0, 0], q.tolist(), zero, zero)) for k in links]",
     ),
 }
 
@@ -61,7 +59,10 @@ for k in links:
 def write(tree: Tree) -> Source | Unsupported:
     """The tree through PyBullet's reader of URDF."""
     described = describe(tree)
-    return described if isinstance(described, Unsupported) else write_reading(tree, "urdf", described.text)
+    if isinstance(described, Unsupported):
+        return described
+    text = re.sub(r'<link name="([^"]*)"/>', rf'<link name="\1">{_MASSLESS}</link>', described.text)
+    return write_reading(tree, "urdf", text)
 
 
 def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
@@ -83,7 +84,9 @@ PLUGIN = SourcePlugin(
     conventions=(
         Difference("order of joints", "of the file's links, with URDF_MAINTAIN_LINK_ORDER"),
         Difference("inertias", "made up from shapes unless URDF_USE_INERTIA_FROM_FILE is given"),
-        Difference("velocities of links, points of Jacobians", "of and from the mass centre"),
+        Difference("velocities of links", "of the mass centre"),
+        Difference("points of Jacobians", "from the link's origin, along the principal axes of its inertia"),
+        Difference("links without <inertial>", "get a mass of 1 kg and moments of 1 kg m^2, with a warning"),
         Difference("files", "cached by name"),
         Difference("armature", "none"),
     ),

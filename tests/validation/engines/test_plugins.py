@@ -1,0 +1,51 @@
+"""Plug-ins of engines that are extras: right where their engines are, skipped where those are not installed."""
+
+from __future__ import annotations
+
+import pytest
+
+from validation.engines.interface import Joint, Link, Tree, Unsupported
+from validation.engines.kinds import tree_of
+from validation.engines.matrix import cells
+from validation.engines.plugins import OWN
+
+EXTRAS = ("adam", "dart", "drake", "dynibo", "frax", "idyntree", "pybullet", "pykdl", "roboticstoolbox")
+
+
+def _installed(engine: str) -> None:
+    if not OWN[engine].version():
+        pytest.skip(f"{engine} is not installed: {OWN[engine].extra}")
+
+
+@pytest.mark.parametrize("engine", EXTRAS)
+def test_an_engine_is_right_about_hinges_between_oblique_links(engine: str) -> None:
+    _installed(engine)
+    found = cells(OWN[engine], tree_of("revolute x"), ("mass_matrix", "bias", "gravity", "link_poses"))
+    verdicts = {cell.verdict for cell in found}
+    # PyBullet keeps poses in single precision.
+    assert verdicts <= {"right", "imprecise"}
+    assert engine == "pybullet" or verdicts == {"right"}
+
+
+@pytest.mark.parametrize("engine", ("dart", "drake"))
+@pytest.mark.parametrize("kind", ("ball", "planar", "helical oblique", "free", "universal"))
+def test_joints_of_several_coordinates_mean_what_their_charts_say(engine: str, kind: str) -> None:
+    _installed(engine)
+    functions = ("mass_matrix", "inverse_dynamics", "link_velocities", "link_poses")
+    assert {cell.verdict for cell in cells(OWN[engine], tree_of(kind), functions)} == {"right"}
+
+
+@pytest.mark.parametrize("engine", ("adam", "dynibo", "frax", "idyntree"))
+def test_floating_bases_mean_what_their_charts_say(engine: str) -> None:
+    _installed(engine)
+    functions = ("mass_matrix", "gravity", "coriolis_forces")
+    assert {cell.verdict for cell in cells(OWN[engine], tree_of("free"), functions)} == {"right"}
+
+
+@pytest.mark.parametrize("engine", EXTRAS)
+def test_an_engine_refuses_in_words_what_it_has_no_joint_for(engine: str) -> None:
+    tree = Tree("ellipsoid", (Link("a", -1, (Joint("ellipsoid", radii=(0.3, 0.2, 0.4)),)),))
+    answer = OWN[engine].build(tree)
+    assert isinstance(answer, Unsupported)
+    assert not answer.offered
+    assert answer.reason
