@@ -111,7 +111,9 @@ STUDIES = table("""
     studies:     accuracy oracle stability timing
     pareto:      stability studies timing
     adversary:   accuracy
+    mutation:
     dashboard:   adversary cross_check campaigns diagrams accuracy timing passes stability studies pareto
+                 mutation
 """)
 # The oracle answers for itself: of the harness it knows how joints come apart, nothing else.
 MAY_USE = HARNESS | {name: others | set(HARNESS) for name, others in STUDIES.items()} | {"oracle": {"mechanics"}}

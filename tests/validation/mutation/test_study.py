@@ -1,0 +1,122 @@
+"""A study tells what a judge sees, keeps what it knows, and leaves the copy of the tree as it was."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from validation.mutation import overlay as overlays
+from validation.mutation.fault import SIGN, SourceFault
+from validation.mutation.overlay import Overlay
+from validation.mutation.report import as_data, compose
+from validation.mutation.store import Store
+from validation.mutation.study import CHECK, OUTPUTS, TESTS, Study
+from validation.mutation.tests_judge import chosen
+
+ROOT = Path(__file__).parents[3]
+JUDGE = """
+import os, time
+from symofros.sum import total
+def ask(**given):
+    if given.get("hang"): time.sleep(60)
+    if given.get("crash"): os.abort()
+    return {"total": total(2, 1), **given}
+"""
+
+
+@pytest.fixture
+def overlay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
+    """A tree of one module and one judge."""
+    root = tmp_path / "root"
+    (root / "symofros").mkdir(parents=True)
+    (root / "symofros" / "sum.py").write_text("def total(a, b):\n    return a - -b\n")
+    (root / "judge.py").write_text(JUDGE)
+    server = root / "validation" / "mutation" / "server.py"
+    server.parent.mkdir(parents=True)
+    text = (ROOT / "validation" / "mutation" / "server.py").read_text()
+    server.write_text(text.replace(text[text.index("PRELOADED = (") : text.index("MEMORY")], "PRELOADED = ()\n"))
+    monkeypatch.setattr(overlays, "COPIED", ("symofros", "validation", "judge.py"))
+    monkeypatch.setattr(overlays, "_fix_identity", lambda tree: None)
+    made = Overlay(root, tmp_path / "work")
+    yield made
+    made.close()
+
+
+FAULT = SourceFault("symofros/sum.py", 2, SIGN, 32, "-b", "b")
+
+
+def test_a_fault_is_there_while_it_is_planted_and_only_then(overlay: Overlay) -> None:
+    def total() -> Any:
+        return overlay.ask("judge", "ask", 20.0)["answer"]["total"]
+
+    assert total() == 3
+    with overlay.planted(FAULT):
+        assert total() == 1
+    assert total() == 3
+    assert not (overlay.tree.parent / "root" / "symofros" / "__pycache__").exists()
+
+
+def test_a_crash_and_a_hang_are_answers(overlay: Overlay) -> None:
+    assert overlay.ask("judge", "ask", 20.0, crash=True)["fate"] == "crashed"
+    assert overlay.ask("judge", "ask", 0.5, hang=True)["fate"] == "timed out"
+    assert overlay.ask("judge", "no_such", 20.0)["answer"]["status"] == "raised"
+
+
+def test_the_fault_of_a_killed_study_is_taken_out_by_the_next(overlay: Overlay, tmp_path: Path) -> None:
+    sound = (overlay.tree / FAULT.module).read_text()
+    planted = overlay.planted(FAULT)
+    planted.__enter__()  # And never left, as where the process is killed.
+    assert (overlay.tree / FAULT.module).read_text() != sound
+    other = Overlay(tmp_path / "root", tmp_path / "work")
+    other.close()
+    assert (overlay.tree / FAULT.module).read_text() == sound
+
+
+def test_answers_outlive_the_process_but_not_the_text_that_they_are_about(tmp_path: Path) -> None:
+    (tmp_path / "m.py").write_text("a = 1\n")
+    store = Store(tmp_path / "answers.jsonl", tmp_path)
+    store.put("m.py:1", CHECK, {"fate": "answered"}, "m.py")
+    with store.path.open("a") as stream:
+        stream.write('{"id": "m.py:1", "sta')  # Killed while it wrote.
+    assert Store(store.path, tmp_path).get("m.py:1", CHECK) == {"fate": "answered"}
+    (tmp_path / "m.py").write_text("a = 2\n")
+    assert Store(store.path, tmp_path).get("m.py:1", CHECK) is None
+
+
+def test_scores_count_faults_that_change_a_result(tmp_path: Path) -> None:
+    (tmp_path / "m.py").write_text("a\n")
+    store = Store(tmp_path / "answers.jsonl", tmp_path)
+    passed, failed = {"status": "passed"}, {"status": "failed", "test": "t"}
+    answers = {  # check, tests, outputs
+        "seen by check": ({"status": "disagreed"}, None, None),
+        "seen by tests": (passed, failed, {"status": "changed"}),
+        "survived": (passed, passed, {"status": "changed"}),
+        "nothing changed": (passed, passed, {"status": "same bits"}),
+        "open": (passed, None, {"status": "changed"}),
+    }
+    faults = []
+    for line, given in enumerate(answers.values()):
+        fault = SourceFault("m.py", line, SIGN, 0, "a", "b")
+        faults.append(fault)
+        for stage, answer in zip((CHECK, TESTS, OUTPUTS), given, strict=True):
+            if answer is not None:
+                store.put(fault.id, stage, {"fate": "answered", "answer": answer, "seconds": 1.0}, "m.py")
+    study = Study(tuple(faults), store, None, tmp_path, print)  # type: ignore[arg-type]
+    data = json.loads(json.dumps(as_data(study)))
+    assert data["scores"] == {"matter": 3, "check": 1 / 3, "tests": 0.5, "tests_asked": 2, "both": 2 / 3}
+    report = compose(data)
+    assert not data["ok"] and "What survived" in {section.title for section in report.sections}
+
+
+@pytest.mark.parametrize(
+    ("module", "first"),
+    [
+        ("symofros/mechanics/beams/fields.py", "tests/mechanics/beams/test_fields.py"),
+        ("symofros/native/stepping/events.c", "tests/simulation/stepping/"),
+    ],
+)
+def test_the_tests_of_a_module_begin_with_its_mirror(module: str, first: str) -> None:
+    assert chosen(ROOT, module)[0].startswith(first)

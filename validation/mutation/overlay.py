@@ -1,0 +1,163 @@
+"""A copy of the tree that faults are planted in, and the process beside it that judges them."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from validation.mutation.fault import SourceFault
+
+# What tests read, beside the packages.
+COPIED = ("symofros", "validation", "reference_models", "tests", "docs", "reports", "README.md", "pyproject.toml")
+_COPIED_IF_THERE = ("CHANGELOG.md", "CONTRIBUTING.md", "LICENSE")
+# Models whose text a fault changes are compiled once and judged once: no optimisation pays.
+_COMPILER = '#!/bin/sh\nexec cc "$@" -O0\n'
+
+
+class Overlay:
+    """A folder with a copy of the tree, a compiler, a cache, and a server of tasks.
+
+    Compiled models are found by their C text, so that those of the sound package serve every fault that leaves the text
+    as it is, and none that changes it.
+
+    Args:
+        root: Folder of the repository.
+        folder: Folder that gets the copy.
+        cache: Folder of models that are compiled already; None: none are.
+    """
+
+    def __init__(self, root: Path, folder: Path, cache: Path | None = None) -> None:
+        self._stamp = 2_000_000_000  # Seconds: a time of its own for each planted file, which no bytecode is of.
+        self.tree, self.cache, self.log = folder / "tree", folder / "cache", folder / "log"
+        self._compiler = folder / "cc"
+        folder.mkdir(parents=True, exist_ok=True)
+        if not self.tree.exists():
+            _copy_tree(root, self.tree)
+            _fix_identity(self.tree)
+        self._backup = folder / "planted.json"  # Of the file that holds a fault, if the process is killed meanwhile.
+        self._restore()
+        self.cache.mkdir(mode=0o700, exist_ok=True)
+        if cache is not None and not any(self.cache.iterdir()):
+            _link_cache(cache, self.cache)
+        self._compiler.write_text(_COMPILER)
+        self._compiler.chmod(0o755)
+        self._server = self._start()
+
+    def _start(self) -> subprocess.Popen[str]:
+        environment = {
+            **os.environ,
+            "PYTHONPATH": str(self.tree),
+            "SYMOFROS_CACHE": str(self.cache),
+            "CC": str(self._compiler),
+            "OMP_NUM_THREADS": "1",
+            "PYTHONHASHSEED": "0",
+        }
+        server = self.tree / "validation" / "mutation" / "server.py"
+        return subprocess.Popen(
+            [sys.executable, str(server)],
+            cwd=self.tree,
+            env=environment,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+            start_new_session=True,  # Ctrl-C is this process's; it ends the server.
+        )
+
+    def ask(self, module: str, function: str, limit: float, /, **arguments: Any) -> dict[str, Any]:
+        """Call a function in a child of the server, with whatever fault is planted.
+
+        Args:
+            module: Module of the function.
+            function: Name of the function; it returns JSON.
+            limit: Time after which the child is ended [s].
+            arguments: Arguments of the function.
+
+        Returns:
+            "fate": "answered", "crashed" or "timed out"; "answer", "code", "seconds".
+        """
+        task = {"module": module, "function": function, "limit": limit, "log": str(self.log), "arguments": arguments}
+        assert self._server.stdin is not None and self._server.stdout is not None
+        self._server.stdin.write(json.dumps(task) + "\n")
+        self._server.stdin.flush()
+        line = self._server.stdout.readline()
+        if not line:
+            self._server = self._start()
+            return {"fate": "crashed", "code": None, "answer": None, "seconds": 0.0}
+        answer: dict[str, Any] = json.loads(line)
+        return answer
+
+    @contextmanager
+    def planted(self, fault: SourceFault) -> Iterator[None]:
+        """The fault is in the copy, and afterwards gone."""
+        path = self.tree / fault.module
+        sound, modified = path.read_text(encoding="utf-8"), path.stat().st_mtime_ns
+        self._backup.write_text(json.dumps({"module": fault.module, "text": sound, "modified": modified}))
+        try:
+            self._write(path, fault.planted(sound))
+            yield
+        finally:
+            self._restore()
+
+    def _restore(self) -> None:
+        """Take out the fault, if there is one."""
+        if self._backup.exists():
+            backup = json.loads(self._backup.read_text(encoding="utf-8"))
+            path = self.tree / backup["module"]
+            self._write(path, backup["text"])
+            os.utime(path, ns=(backup["modified"], backup["modified"]))
+            self._backup.unlink()
+
+    def _write(self, path: Path, text: str) -> None:
+        path.write_text(text, encoding="utf-8")
+        self._stamp += 1
+        os.utime(path, (self._stamp, self._stamp))
+        for bytecode in (path.parent / "__pycache__").glob(f"{path.stem}.*.pyc"):
+            bytecode.unlink()
+
+    def close(self) -> None:
+        """End the server."""
+        if self._server.stdin is not None:
+            self._server.stdin.close()
+        self._server.terminate()
+        self._server.wait()
+
+
+def _copy_tree(root: Path, tree: Path) -> None:
+    """Copies, not links: a fault must never reach the files of the repository."""
+    tree.mkdir(parents=True)
+    for name in (*COPIED, *(name for name in _COPIED_IF_THERE if (root / name).exists())):
+        source = root / name
+        if source.is_dir():
+            shutil.copytree(source, tree / name, symlinks=True)
+        else:
+            shutil.copy2(source, tree / name)
+
+
+def _fix_identity(tree: Path) -> None:
+    """Generated text is remembered by the digest of the package; what can't change it is left out of the digest here.
+
+    The generator may not import these folders (tests/test_layers.py), so that their faults never reach its text.
+    """
+    path = tree / "symofros" / "runtime" / "build" / "identity.py"
+    text = path.read_text(encoding="utf-8")
+    every = "if path.suffix in _SUFFIXES)"
+    folders = ("simulation", "stepping", "diagrams", "exports", "studio", "blocks", "commands")
+    assert every in text
+    path.write_text(text.replace(every, f"{every[:-1]} and not {set(folders)!r} & set(path.parts))"), encoding="utf-8")
+
+
+def _link_cache(cache: Path, folder: Path) -> None:
+    """Compiled models are only ever replaced, not written to, so that links are safe."""
+    for path in cache.iterdir():
+        if path.is_file() and not path.name.startswith("."):
+            try:
+                os.link(path, folder / path.name)
+            except OSError:
+                shutil.copy2(path, folder / path.name)

@@ -1,0 +1,175 @@
+"""Faults in the source before two judges, `check` and the tests, one fault at a time."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+from validation.mutation.fault import SourceFault
+from validation.mutation.overlay import Overlay
+from validation.mutation.sampling import drawn
+from validation.mutation.store import Store
+from validation.mutation.tests_judge import HUNG, chosen
+
+CHECK, OUTPUTS, TESTS, SOUND = "check", "outputs", "tests", "sound"
+# Fates of a fault. "stillborn": the C compiler refuses it, so that nobody could use it.
+STILLBORN, CAUGHT, UNCHANGED, SURVIVED, OPEN = "stillborn", "caught", "no result changed", "survived", "open"
+CHECK_LIMIT, OUTPUTS_LIMIT, TESTS_LIMIT, SOUND_LIMIT = 120.0, 240.0, 240.0, 2400.0
+TESTS_BUDGET = 10.0  # CPU time after which no further test of a fault begins [s].
+_CHECK_JUDGE, _TESTS_JUDGE = "validation.mutation.check_judge", "validation.mutation.tests_judge"
+_OUTPUTS = "validation.mutation.outputs"
+
+Report = Callable[[str], None]
+Answer = dict[str, Any]
+
+
+@dataclass
+class Study:
+    """The faults of one draw, and what is known of them.
+
+    Attributes:
+        faults: The faults.
+        store: Answers.
+        overlay: The copy that they are planted in.
+        folder: Folder of copy, answers, outputs of the sound package.
+        report: Told what was done.
+        failing: Tests that fail without a fault.
+    """
+
+    faults: tuple[SourceFault, ...]
+    store: Store
+    overlay: Overlay
+    folder: Path
+    report: Report
+    failing: set[str] = field(default_factory=set)
+
+    @classmethod
+    def begun(cls, root: Path, folder: Path, count: int, seed: int, cache: Path | None, report: Report) -> Study:
+        """A new study, or that which is in the folder: the copy of the tree there is the one that it goes on with."""
+        overlay = Overlay(root, folder, cache)
+        faults = tuple(islice(drawn(overlay.tree, seed), count))
+        return cls(faults, Store(folder / "answers.jsonl", overlay.tree), overlay, folder, report)
+
+    def run(self, seconds: float) -> None:
+        """Ask the judges about every fault that they have not answered yet.
+
+        First `check`; what it does not see is compared with the sound package's outputs, and goes to the tests, faults
+        that change an output before the others. Then the tests are asked about what `check` sees, for a score of their
+        own.
+
+        Args:
+            seconds: Time after which no further fault is begun [s].
+
+        Raises:
+            RuntimeError: The sound package does not pass.
+        """
+        end = time.monotonic() + seconds
+        self._require_sound()
+        for stage, ask, faults in (
+            (CHECK, self._check, lambda: self.faults),
+            (OUTPUTS, self._compare, lambda: self._alive()),
+            (TESTS, self._test, lambda: self._alive(changed=True)),
+            (TESTS, self._test, lambda: self._alive()),
+            (TESTS, self._test, lambda: self.faults),
+        ):
+            for fault in faults():
+                if time.monotonic() > end:
+                    return
+                self._asked(fault, stage, ask)
+                self.report(f"{stage}: {fault.module}")
+
+    def _alive(self, changed: bool = False) -> list[SourceFault]:
+        """Faults that `check` does not see; or of these those that change an output of the battery."""
+        alive = [fault for fault in self.faults if not seen_by_check(self.store.get(fault.id, CHECK))]
+        return [fault for fault in alive if not (changed and unchanged(self.store.get(fault.id, OUTPUTS)))]
+
+    def _asked(self, fault: SourceFault, stage: str, ask: Callable[[SourceFault], Answer]) -> Answer:
+        """The answer of a judge, which is kept."""
+        answer = self.store.get(fault.id, stage)
+        if answer is not None:
+            return answer
+        with self.overlay.planted(fault):
+            answer = ask(fault)
+        if stage == TESTS and seen_by_tests(answer) and self._fails_without(answer):
+            return self._asked(fault, stage, ask)
+        self.store.put(fault.id, stage, answer, fault.module)
+        return answer
+
+    def _fails_without(self, answer: Answer) -> bool:
+        """Whether the test that failed fails on the sound package, too: it is left out from then on."""
+        test = (answer["answer"] or {}).get("test", "")
+        if "::" not in test:
+            return False
+        if self.store.get(test, SOUND) is None:
+            asked = {"files": [test], "deselected": [], "budget": TESTS_BUDGET}
+            self.store.put(test, SOUND, self.overlay.ask(_TESTS_JUDGE, "judge", TESTS_LIMIT, **asked))
+        if not seen_by_tests(self.store.get(test, SOUND)):
+            return False
+        self.failing.add(test)
+        return True
+
+    def _require_sound(self) -> None:
+        """Without a fault, `check` passes, and outputs are the same when they are computed again."""
+        for module in ("symofros/mechanics/beams/fields.py", "symofros/generator/units.py"):
+            answer = self.overlay.ask(_CHECK_JUDGE, "judge", SOUND_LIMIT, module=module)
+            if (answer["answer"] or {}).get("status") != "passed":
+                raise RuntimeError(f"check does not pass without a fault: {answer}; see {self.overlay.log}")
+        path = self.folder / "outputs.npz"
+        if not path.exists():
+            self.overlay.ask(_OUTPUTS, "record", SOUND_LIMIT, path=str(path))
+            answer = self.overlay.ask(_OUTPUTS, "compare", SOUND_LIMIT, path=str(path))
+            if (answer["answer"] or {}).get("status") != "same bits":
+                path.unlink(missing_ok=True)
+                raise RuntimeError(f"the sound package differs from itself: {answer}; see {self.overlay.log}")
+
+    def _check(self, fault: SourceFault) -> Answer:
+        return self.overlay.ask(_CHECK_JUDGE, "judge", CHECK_LIMIT, module=fault.module)
+
+    def _compare(self, fault: SourceFault) -> Answer:
+        return self.overlay.ask(_OUTPUTS, "compare", OUTPUTS_LIMIT, path=str(self.folder / "outputs.npz"))
+
+    def _test(self, fault: SourceFault) -> Answer:
+        files = chosen(self.overlay.tree, fault.module)
+        asked = {"files": files, "deselected": sorted(self.failing), "budget": TESTS_BUDGET}
+        return self.overlay.ask(_TESTS_JUDGE, "judge", TESTS_LIMIT, **asked)
+
+    def fate(self, fault: SourceFault) -> str:
+        """What became of a fault, as far as it is known."""
+        check, tests = self.store.get(fault.id, CHECK), self.store.get(fault.id, TESTS)
+        outputs = self.store.get(fault.id, OUTPUTS)
+        if stillborn(fault, check) or stillborn(fault, outputs):
+            return STILLBORN
+        if seen_by_check(check) or seen_by_tests(tests):
+            return CAUGHT
+        if check is None or tests is None or outputs is None:
+            return OPEN
+        return UNCHANGED if unchanged(outputs) else SURVIVED
+
+
+def stillborn(fault: SourceFault, answer: Answer | None) -> bool:
+    """Whether a fault in C is none that compiles."""
+    reason = str(((answer or {}).get("answer") or {}).get("reason", ""))
+    return not fault.module.endswith(".py") and "CompileError" in reason
+
+
+def unchanged(answer: Answer | None) -> bool:
+    """Whether the outputs are those of the sound package, but for rounding."""
+    return ((answer or {}).get("answer") or {}).get("status") in ("same bits", "other text", "rounding")
+
+
+def seen_by_check(answer: Answer | None) -> bool:
+    """Whether `check` said so, or could not go on."""
+    return answer is not None and (answer["answer"] or {}).get("status") != "passed"
+
+
+def seen_by_tests(answer: Answer | None) -> bool:
+    """Whether a test failed, or could not go on; a run that takes too long as a whole has seen nothing."""
+    if answer is None:
+        return False
+    if answer["fate"] == "answered":
+        return bool(answer["answer"].get("status") != "passed")
+    return bool(answer["fate"] == "crashed" or answer.get("code") == HUNG)

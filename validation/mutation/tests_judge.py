@@ -1,0 +1,147 @@
+"""The tests as a judge of faults: those of the module, the likeliest first, until one fails.
+
+Which tests belong to a module is read off the tests: the file that mirrors it, files that import it, files of the
+folder that mirrors its own.
+"""
+
+from __future__ import annotations
+
+import ast
+import os
+import signal
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+# Folders of tests, and files, of what the study plants faults in.
+FOLDERS = (
+    "description expr mechanics generator identities runtime simulation native diagrams reference"
+    " test_derived_once.py test_end_to_end.py"
+).split()
+LIMIT = 60  # Of one test [s]: one that takes longer with a fault than this hangs.
+HUNG = 77
+# The tests of C lie with what calls it.
+_MIRRORS = {
+    "symofros/native/model": (
+        "tests/mechanics/dynamics/constraints",
+        "tests/generator/codegen",
+        "tests/native",
+        "tests/mechanics/dynamics/forward",
+    ),
+    "symofros/native/stepping": ("tests/simulation/stepping", "tests/simulation", "tests/native"),
+    "symofros/native/diagrams": ("tests/diagrams/run", "tests/diagrams/program"),
+}
+# What watches the whole of the mechanics, of motions.
+_GENERAL = {
+    "symofros/mechanics": ("tests/identities/test_dynamics.py", "tests/identities/test_frames.py"),
+    "symofros/expr": ("tests/identities/test_dynamics.py", "tests/generator/codegen/test_c_equals_interpreter.py"),
+    "symofros/generator": ("tests/generator/codegen/test_c_equals_interpreter.py",),
+    "symofros/simulation": ("tests/simulation/test_simulate.py", "tests/simulation/stepping/test_orders.py"),
+    "symofros/native": ("tests/simulation/test_simulate.py", "tests/runtime/test_project.py"),
+    "symofros/description": ("tests/description/test_entries.py", "tests/description/test_joint_kinds.py"),
+}
+
+
+class _Listener:
+    """What fails, and what hangs."""
+
+    def __init__(self) -> None:
+        self.failed: list[str] = []
+        self.budget = float("inf")
+
+    def pytest_runtest_logstart(self, nodeid: str) -> None:
+        signal.signal(signal.SIGALRM, lambda *_: os._exit(HUNG))
+        signal.alarm(LIMIT)
+
+    def pytest_runtest_logreport(self, report: Any) -> None:
+        if report.failed:
+            self.failed.append(report.nodeid)
+
+    def pytest_collectreport(self, report: Any) -> None:
+        if report.failed:
+            self.failed.append(report.nodeid)
+
+    def pytest_runtest_teardown(self, item: Any) -> None:
+        if _spent() > self.budget:
+            item.session.shouldstop = "out of time"
+
+
+def _run(files: list[str], options: list[str], listener: _Listener) -> int:
+    stated = ["-q", "-n0", "-p", "no:cacheprovider", "-o", "addopts=", "--benchmark-disable", "--tb=short"]
+    return int(pytest.main([*stated, *options, *files], plugins=[listener]))
+
+
+def _spent() -> float:
+    """CPU time of this process and of those that it has waited for [s]: other work of the machine does not count."""
+    times = os.times()
+    return times.user + times.system + times.children_user + times.children_system
+
+
+def judge(files: list[str], deselected: list[str], budget: float) -> dict[str, Any]:
+    """Run tests until the first one fails.
+
+    Args:
+        files: Files of tests, in the order in which they run.
+        deselected: Tests that fail without a fault, in a copy of the tree.
+        budget: CPU time after which no further test begins [s].
+    """
+    listener = _Listener()
+    listener.budget = budget
+    options = ["-x", *(f"--deselect={name}" for name in deselected)]
+    code = _run(files, options, listener)
+    if listener.failed:
+        return {"status": "failed", "test": listener.failed[0]}
+    if code in (0, 5) or _spent() > budget:
+        return {"status": "passed", "files": len(files), "whole": _spent() <= budget}
+    return {"status": "failed", "test": f"pytest ends with code {code}"}
+
+
+@cache
+def _imports(file: Path) -> frozenset[str]:
+    """Paths of what a file of tests imports, as `symofros.mechanics.beams.fields` is stated."""
+    names: set[str] = set()
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module is not None:
+            names |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
+    return frozenset(name.replace(".", "/") for name in names)
+
+
+def test_files(root: Path) -> list[str]:
+    """The files of tests that are asked, by their paths from the repository's folder."""
+    places = [root / "tests" / name for name in FOLDERS]
+    files = {path for place in places for path in ([place] if place.suffix else place.rglob("test_*.py"))}
+    return sorted(path.relative_to(root).as_posix() for path in files)
+
+
+def chosen(root: Path, module: str) -> list[str]:
+    """The tests of a module, the likeliest to see a fault first.
+
+    Args:
+        root: Folder of the repository.
+        module: Path of the module.
+    """
+    path = Path(module)
+    mirror = Path("tests", *path.parts[1:-1]).as_posix()
+    mirrors = _MIRRORS.get(path.parent.as_posix(), (mirror,))
+    general = _GENERAL["/".join(path.parts[:2])]
+    ranked = []
+    for file in test_files(root):
+        folder = file.rpartition("/")[0]
+        if file == f"{mirror}/test_{path.stem}.py":
+            rank = 0
+        elif module.removesuffix(".py") in _imports(root / file):
+            rank = 1
+        elif folder in mirrors:
+            rank = 2 + mirrors.index(folder)
+        elif file in general:
+            rank = 8
+        elif any(file.startswith(f"{place}/") for place in mirrors):
+            rank = 9
+        else:
+            continue
+        ranked.append((rank, (root / file).stat().st_size, file))
+    return [file for *_, file in sorted(ranked)]
