@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 
 import symofros as sf
 from validation.adapters import ROUTES, compiled, has_beams
+from validation.comparison.elements import judge_elements
 from validation.comparison.errors import Comparison, Scales, compute, judge, scaled_errors, typical_scales
 from validation.comparison.loops import of_unique_multipliers
 from validation.comparison.motion import MOTIONS, FreeMotion, fall, judge_drift, smoothness_obstacle
@@ -196,6 +197,8 @@ def _comparisons(bench: _Bench) -> Iterator[Comparison]:
         for order in omitted_orders(bench.subject.system)[:1]:
             models = bench.variants.as_described, bench.variants.untruncated
             yield judge_order(bench.label, order, bench.assembly, *models, bench.variants.states)
+        for one in bench.engines:
+            yield from judge_elements(one, bench.assembly, bench.variants)
 
 
 def _unsampled_motion(system: sf.System, assembly: Assembly) -> str:

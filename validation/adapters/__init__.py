@@ -17,7 +17,7 @@ from validation.contract.conventions import Difference
 from validation.contract.interface import EngineFactory, Format, Subject
 
 # Which of our models of a description an engine is compared with; see `comparison.variants`.
-Variant = Literal["as_described", "verbatim", "untruncated"]
+Variant = Literal["as_described", "verbatim", "untruncated", "without_rotary"]
 
 
 @dataclass(frozen=True)
@@ -41,6 +41,7 @@ class Route:
         reads: Format of the files that the engine reads by itself; it has nothing to say of other models.
         independent: Whether it shares no equations with us, so that its agreement is evidence.
         beams: Whether it is asked for systems with beams only, and keeps all of their terms.
+        rotary: Whether the sections of its beams have the rotary inertia of our theory; else it is compared without.
         loops: Whether it closes loops by itself; it is asked for systems with constraints only, at states that satisfy
             them.
     """
@@ -50,11 +51,14 @@ class Route:
     reads: Format = ""
     independent: bool = True
     beams: bool = False
+    rotary: bool = True
     loops: bool = False
 
     @property
     def variant(self) -> Variant:
         """Our model that the engine is compared with."""
+        if self.beams and not self.rotary:
+            return "without_rotary"
         return "untruncated" if self.beams else "verbatim" if self.reads else "as_described"
 
     def applies_to(self, subject: Subject) -> bool:
@@ -86,7 +90,7 @@ ROUTES: dict[str, Route] = {
     "mujoco-urdf": Route("validation.adapters.mujoco.urdf", "mujoco", reads="urdf"),
     "mujoco-mjcf": Route("validation.adapters.mujoco.mjcf", "mujoco", reads="mjcf"),
     "lagrangian": Route("validation.adapters.lagrangian.engine", "casadi", beams=True),
-    "exudyn-beams": Route("validation.adapters.exudyn.mapped", "exudyn", beams=True),
+    "exudyn-beams": Route("validation.adapters.exudyn.mapped", "exudyn", beams=True, rotary=False),
     "interpreted": Route("validation.adapters.interpreted", independent=False),
     "description": Route("validation.adapters.description", independent=False),
 }

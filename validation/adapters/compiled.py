@@ -156,6 +156,13 @@ def untruncated(system: sf.System) -> sf.System:
     return replace(system, bodies=tuple(bodies))
 
 
+def without_rotary(system: sf.System) -> sf.System:
+    """The untruncated system, the sections of its beams without rotary inertia but that of twist."""
+    whole = untruncated(system).bodies
+    bodies = [replace(body, rotary_inertia=False) if isinstance(body, sf.Beam) else body for body in whole]
+    return replace(system, bodies=tuple(bodies))
+
+
 def build_weightless(subject: Subject) -> sf.Model | None:
     """The potential energy of everything but the weight; None where nothing else has any.
 

@@ -53,7 +53,7 @@ def judge_order(
     """
     few = states[:STATES]
     sizes = _sizes(untruncated, few)
-    at = {eps: _differences(ours, untruncated, _scaled(assembly, few, eps), sizes) for eps in (COARSE, FINE)}
+    at = {eps: _differences(ours, untruncated, scaled(assembly, few, eps), sizes) for eps in (COARSE, FINE)}
     if not all(math.isfinite(value) for differences in at.values() for value in differences.values()):
         return Comparison(label, "symofros", NAME, "disagree", len(few), note="not a finite number in some state")
     powers = {
@@ -80,8 +80,14 @@ def judge_order(
     )
 
 
-def _scaled(assembly: Assembly, states: States, eps: float) -> States:
-    """The states with elastic coordinates and speeds times eps."""
+def scaled(assembly: Assembly, states: States, eps: float) -> States:
+    """The states with elastic coordinates and speeds times a factor.
+
+    Args:
+        assembly: The model as numbers.
+        states: The states.
+        eps: The factor.
+    """
     q, v = states.q.copy(), states.v.copy()
     for mover in assembly.movers:
         if mover.kind == "elastic":

@@ -42,7 +42,8 @@ class ModelVariants:
         """The states that the engine of a route is asked at, with the forces of the variant it is compared with."""
         if route.loops:
             return self.assembled
-        return self._untruncated_states if route.variant == "untruncated" else self.states
+        # Rotary inertia makes no forces of Q.
+        return self._untruncated_states if route.beams else self.states
 
     @cached_property
     def assembled(self) -> States:
@@ -61,6 +62,13 @@ class ModelVariants:
         system = compiled.untruncated(self.subject.system)
         same = system == self.subject.system
         return self.as_described if same else compiled.build(replace(self.subject, system=system))
+
+    @cached_property
+    def without_rotary(self) -> SymofrosEngine:
+        """The untruncated model without rotary inertia, for engines whose sections turn exactly."""
+        system = compiled.without_rotary(self.subject.system)
+        same = system == compiled.untruncated(self.subject.system)
+        return self.untruncated if same else compiled.build(replace(self.subject, system=system))
 
     @cached_property
     def _untruncated_states(self) -> States:

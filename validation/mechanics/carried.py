@@ -118,7 +118,7 @@ def bodies(assembly: Assembly, beams: Mapping[str, ElasticBeam], states: AllSpee
 
 def proximal(frames: list[Carried], mover: Mover, states: AllSpeeds) -> Carried:
     """The frame that a mover moves in (K = 1): its joint's, or the root of its beam."""
-    parent = _ground(states) if mover.parent == BASE else frames[mover.parent]
+    parent = ground(states) if mover.parent == BASE else frames[mover.parent]
     return fixed(parent, states, mover.X_AP)
 
 
@@ -163,7 +163,8 @@ def arrow(root: Carried, states: AllSpeeds, own: slice, curve: Curve) -> tuple[A
     return value, J, turned
 
 
-def _ground(states: AllSpeeds) -> Carried:
+def ground(states: AllSpeeds) -> Carried:
+    """The world's frame (K = 1)."""
     count, n = states.v.shape
     still, none = np.zeros((count, 1, 3)), np.zeros((count, 1, 3, n))
     return Carried(still, np.broadcast_to(np.eye(3), (count, 1, 3, 3)), none, none, still, still)

@@ -2,8 +2,8 @@
 
 Cables (ObjectANCFCable: cubic in positions and slopes) carry mass and weight. Geometrically exact elements
 (ObjectBeamGeometricallyExact: a rotation at each node, inertia lumped there, curvature from relative rotations) carry
-what turns, in one system, and strain, in another. What cables resist by their own stiffness is left out: they have one
-stiffness for both planes and none against twist.
+what turns, in one system, and strain, in another. Cables that bend are a further system, where a beam bends in one
+plane: they have one stiffness for both planes and none against twist.
 """
 
 from __future__ import annotations
@@ -35,6 +35,7 @@ class Mesh:
         weight: Forces of the weight on the same coordinates (6 K,).
         turning: Elements with the sections' rotary inertia; None where they have none.
         strained: Elements with the sections' stiffness.
+        bent: Cables with the stiffness of the only plane that the beam bends in; None where there are two, or twist.
     """
 
     x: Array
@@ -42,6 +43,7 @@ class Mesh:
     weight: Array
     turning: ExudynSystem | None
     strained: ExudynSystem
+    bent: ExudynSystem | None
 
 
 def stations(beam: ElasticBeam, elements: int) -> Array:
@@ -59,7 +61,7 @@ def mesh(beam: ElasticBeam, elements: int, gravity: Array) -> Mesh:
         gravity: Acceleration of gravity in the world (3,) [m/s^2].
     """
     x = stations(beam, elements)
-    cables = _cables(beam, x, gravity)
+    cables = _cables(beam, x, 0.0 * x, gravity)
     none = np.zeros(6 * len(x))
     M, weight = cables.at(none, none)
     inertia = [_averages(beam, name, x) for name in ("rhoJ", "rhoI_y", "rhoI_z")]
@@ -68,14 +70,10 @@ def mesh(beam: ElasticBeam, elements: int, gravity: Array) -> Mesh:
     stiffness = [_averages(beam, name, x) for name in ("GJ", "EI_y", "EI_z")]
     still = [0.0 * values for values in stiffness]
     turning = _rotating(x, inertia, still) if np.any(inertia) else None
-    return Mesh(x, M, weight, turning, _rotating(x, still, stiffness))
-
-
-def rotation_coordinates(quaternions: Array) -> Array:
-    """Coordinates (7 K,) of nodes that keep their places and have the quaternions (w, x, y, z) (K, 4)."""
-    coordinates = np.zeros((len(quaternions), 7))
-    coordinates[:, 3:] = quaternions - _NO_TURN
-    return coordinates.ravel()
+    planes = [stiffness[k] for k, count in ((2, beam.beam.bend_y), (1, beam.beam.bend_z)) if count]
+    planar = len(planes) == 1 and not beam.beam.twist
+    bent = _cables(beam, x, planes[0], np.zeros(3)) if planar else None
+    return Mesh(x, M, weight, turning, _rotating(x, still, stiffness), bent)
 
 
 def _averages(beam: ElasticBeam, name: str, x: Array) -> Array:
@@ -90,7 +88,7 @@ def _average(beam: ElasticBeam, name: str, a: float, b: float) -> float:
     return float(weights @ beam.section(name, inner) / (b - a))
 
 
-def _cables(beam: ElasticBeam, x: Array, gravity: Array) -> ExudynSystem:
+def _cables(beam: ElasticBeam, x: Array, EI: Array, gravity: Array) -> ExudynSystem:
     container = exudyn.SystemContainer()
     system: Any = container.AddSystem()
     nodes = [system.AddNode(items.NodePointSlope1(referenceCoordinates=[at, 0, 0, 1, 0, 0])) for at in x]
@@ -98,7 +96,7 @@ def _cables(beam: ElasticBeam, x: Array, gravity: Array) -> ExudynSystem:
         cable = items.ObjectANCFCable(
             length=x[k + 1] - x[k],
             massPerLength=rhoA,
-            bendingStiffness=0.0,
+            bendingStiffness=EI[k],
             axialStiffness=0.0,
             nodeNumbers=nodes[k : k + 2],
         )
