@@ -5,7 +5,7 @@ docs/theory/constraints.md, section 10. The numbers are those of native/model/ro
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 # Units of rows: what a formula states, in a unit of its own; a length; an angle.
@@ -27,6 +27,18 @@ class Measures(NamedTuple):
     group: tuple[int, ...] = ()
     unit: tuple[int, ...] = ()
     speed: tuple[int, ...] = ()
+
+    def of_rows(self, rows: Sequence[int]) -> Measures:
+        """Measures of some rows, in order."""
+        first: dict[int, int] = {}
+        for i, row in enumerate(rows):
+            first.setdefault(self.group[row], i)
+        group = tuple(first[self.group[row]] for row in rows)
+        return Measures(group, tuple(self.unit[row] for row in rows), self.speed)
+
+    def of_speeds(self, speeds: Iterable[int]) -> Measures:
+        """Measures of the columns of some speeds, in order."""
+        return self._replace(speed=tuple(self.speed[k] for k in speeds))
 
     @classmethod
     def joined(cls, parts: Iterable[tuple[int, int, Measures]], rows: int, speeds: int) -> Measures:

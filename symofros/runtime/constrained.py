@@ -128,14 +128,22 @@ def free_motions(eliminated: Eliminated, nv: int) -> tuple[Array, npt.NDArray[np
     return Z, free
 
 
+def null_space(G: Array, measures: Measures) -> Array:
+    """Orthonormal basis (nv, free) of the motions with G Z = 0, the rank of G judged by natural sizes."""
+    nv = G.shape[1]
+    Z, _ = free_motions(eliminate(G, measures, np.ones(nv)), nv)
+    return np.asarray(np.linalg.qr(Z)[0], dtype=np.float64)
+
+
 def pseudo_inverse(G: Array, measures: Measures) -> Array:
-    """The pseudo-inverse of G, its rank judged by natural sizes; rows of unlike sizes are brought to one."""
+    """The pseudo-inverse of G, its rank judged by natural sizes; rows of unlike sizes count alike, void ones not."""
     if not G.size:
         return np.zeros(G.T.shape)
-    largest = np.abs(G).max(axis=1, initial=0.0)
+    void = (np.abs(G) <= RANK * natural_sizes(G, measures)).all(axis=1)
+    largest = np.where(void, 0.0, np.abs(G).max(axis=1, initial=0.0))
     positive = largest[largest > 0.0]
     unlike = len(positive) > 0 and float(positive.max()) > UNLIKE * float(positive.min())
-    scale = 1.0 / np.where(largest > 0.0, largest, 1.0) if unlike else np.ones(len(G))
+    scale = np.where(void, 0.0, 1.0 / np.where(void, 1.0, largest) if unlike else 1.0)
     rank = eliminate(G, measures, np.ones(G.shape[1])).rank
     U, s, Vt = np.linalg.svd(scale[:, None] * G, full_matrices=False)
     return np.asarray((Vt[:rank].T / s[:rank]) @ U[:, :rank].T * scale, dtype=np.float64)

@@ -127,7 +127,7 @@ def _inverse(model: Model, G: Array, free: Indices) -> Array:
             )
         )
     measures = model.record.measures
-    return pseudo_inverse(G, measures._replace(speed=tuple(measures.speed[k] for k in free)))
+    return pseudo_inverse(G, measures.of_speeds(free))
 
 
 def free_speeds(model: Model, held: Collection[str]) -> Indices:

@@ -8,10 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from symofros.base.measures import ANGLE, LENGTH, Measures
 from symofros.errors import AssemblyError, Problem, SymofrosError
 from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
 from symofros.runtime.calls.kernel import Array
-from symofros.runtime.constrained import LARGEST_STEP, RANK
+from symofros.runtime.constrained import LARGEST_STEP, pseudo_inverse
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.assembly import Indices, free_speeds
 from symofros.simulation.analysis.beam_theory import bendings_at
@@ -147,7 +148,7 @@ def _polished(task: Task, q: Array, free: Indices) -> Array:
     error, J = task.error(q), task.jacobian(q)
     movable = _movable(task.model, q, J.T @ error, free)
     step = np.zeros(task.model.nv)
-    step[movable] = np.linalg.pinv(J[:, movable], rcond=RANK) @ error
+    step[movable] = pseudo_inverse(J[:, movable], task.measures.of_speeds(movable)) @ error
     tried = _within(task.model, task.model.integrate(q, step), free)
     return tried if np.linalg.norm(task.error(tried)) < np.linalg.norm(error) else q
 
@@ -218,6 +219,8 @@ def joint_motion(
     )
     rows = 3 if R is None else 6
     motion: list[tuple[Array, Array, Array]] = []
+    units = (LENGTH, LENGTH, LENGTH, ANGLE, ANGLE, ANGLE)
+    measures = Measures((0, 0, 0, 3, 3, 3)[:rows], units[:rows], model.record.measures.speed)
     for i in range(len(p)):
         at = inverse_kinematics(
             model, {frame: Target(p[i], None if R is None else R[i])}, q, par=par, tolerance=tolerance
@@ -233,7 +236,7 @@ def joint_motion(
             )
         q = at.q
         J = model.frame_jacobian(frame, q, par=par)[:rows]
-        inverse = np.linalg.pinv(J, rcond=RANK)
+        inverse = pseudo_inverse(J, measures)
         v = inverse @ V[i]
         rate = model.frame_jacobian_rate(frame, q, v, par=par)[:rows]
         motion.append((q, v, inverse @ (A[i] - rate @ v)))

@@ -12,7 +12,7 @@ import numpy as np
 
 from symofros.base.rotations import screw_displacement
 from symofros.runtime.calls.kernel import Array
-from symofros.runtime.constrained import LARGEST_STEP, RANK
+from symofros.runtime.constrained import LARGEST_STEP, null_space, pseudo_inverse
 from symofros.runtime.model import Model
 from symofros.simulation.analysis.assembly import Indices
 from symofros.simulation.analysis.targets import Task
@@ -130,10 +130,9 @@ class NearestPosture:
         J = self.task.jacobian(q)[:, kept]
         Z = np.zeros((self.model.nv, 0))
         if kept.size:
-            _, s, Vt = np.linalg.svd(J) if J.size else (None, np.zeros(0), np.eye(kept.size))
-            rank = int(np.count_nonzero(s > RANK * max(s.max(initial=0.0), 1e-300)))
-            Z = np.zeros((self.model.nv, kept.size - rank))
-            Z[kept] = Vt[rank:].T
+            motions = null_space(J, self.task.measures.of_speeds(kept))
+            Z = np.zeros((self.model.nv, motions.shape[1]))
+            Z[kept] = motions
         return Z
 
     def _directions(self, q: Array, steepest: Array, blocked: Indices, small: bool) -> list[tuple[Array, Indices]]:
@@ -167,7 +166,8 @@ class NearestPosture:
     def _curvature(self, q: Array, Z: Array) -> Array:
         """Second derivative of d^2/2 - lam e along the null space (n, n), by central differences of its gradient."""
         J = self.task.jacobian(q)
-        lam = np.linalg.lstsq(J[:, self.free].T, -pull(self.model, q, self.rest)[self.free], rcond=RANK)[0]
+        inverse = pseudo_inverse(J[:, self.free], self.task.measures.of_speeds(self.free))
+        lam = -inverse.T @ pull(self.model, q, self.rest)[self.free]
 
         def gradient(at: Array) -> Array:
             return -pull(self.model, at, self.rest) - self.task.jacobian(at).T @ lam

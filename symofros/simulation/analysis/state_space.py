@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from symofros.runtime.calls.kernel import Array
-from symofros.runtime.constrained import RANK
+from symofros.runtime.constrained import null_space, pseudo_inverse
 from symofros.runtime.model import ArrayLike, Model, Output
 
 
@@ -70,7 +70,9 @@ def _allowed(model: Model, q: ArrayLike, v: Array, u: Array, par: ArrayLike | No
     """A basis of the solutions of P dq = 0, (d(G v - b)/dq) dq + G dv = 0 (eq. 5)."""
     rate_by_q = model.constraint_rate_derivative(q, v, u=u, par=par, t=t)
     G = model.constraint_jacobian(q, u=u, par=par, t=t)
-    P = G[[name not in model.record.speed_conditions for name in model.names.constraints]]
-    _, sizes, Vt = np.linalg.svd(np.block([[P, np.zeros_like(P)], [rate_by_q, G]]))
-    basis: Array = Vt[int(np.sum(sizes > RANK * sizes.max(initial=0.0))) :].T
-    return basis
+    measures, names = model.record.measures, model.names.constraints
+    on_positions = [i for i, name in enumerate(names) if name not in model.record.speed_conditions]
+    changes, speeds = null_space(G[on_positions], measures.of_rows(on_positions)), null_space(G, measures)
+    followed = -pseudo_inverse(G, measures) @ rate_by_q @ changes
+    basis = np.block([[changes, np.zeros((model.nv, speeds.shape[1]))], [followed, speeds]])
+    return np.asarray(np.linalg.qr(basis)[0], dtype=np.float64)

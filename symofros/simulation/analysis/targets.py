@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arrays import real_array
+from symofros.base.measures import ANGLE, LENGTH, Measures
 from symofros.errors import Problem, ShapeError, SymofrosError
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
@@ -53,6 +54,20 @@ class Task:
         self.wanted = {frame: _checked(frame, target) for frame, target in targets.items()}
         self.inputs: dict[str, Any] = {"u": u, "par": par}
         self.coordinates = [i for i, n in enumerate(model.names.constraints) if n not in model.record.speed_conditions]
+
+    @property
+    def measures(self) -> Measures:
+        """Measures of the rows and columns of `jacobian`."""
+        group: list[int] = []
+        unit: list[int] = []
+        for position, rotation in self.wanted.values():
+            for wanted, of in ((position, LENGTH), (rotation, ANGLE)):
+                if wanted is not None:
+                    group += [len(group)] * 3
+                    unit += [of] * 3
+        of_constraints = self.model.record.measures.of_rows(self.coordinates)
+        group += [len(unit) + first for first in of_constraints.group]
+        return Measures(tuple(group), (*unit, *of_constraints.unit), of_constraints.speed)
 
     def error(self, q: Array) -> Array:
         """What is missing: positions [m], rotation vectors [rad] in world axes, residuals of constraints."""

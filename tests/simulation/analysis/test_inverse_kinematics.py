@@ -96,3 +96,20 @@ def test_a_path_that_leaves_the_reach() -> None:
     p = np.array([m.frame_pose(tip("rx90"), np.full(6, 0.3))[0], [9.0, 0, 0]])
     with pytest.raises(sf.AssemblyError, match="at sample 1"):
         sf.joint_motion(m, tip("rx90"), p, np.zeros((2, 3)), np.zeros((2, 3)), q=np.full(6, 0.3))
+
+
+@pytest.mark.parametrize("L", [1e-6, 1e-3, 1.0, 1e3])
+def test_a_motion_of_position_and_rotation_is_followed_by_arms_of_any_size(L: float) -> None:
+    """Velocities in micrometres a second beside radians a second; the speeds were off by 1.6 rad/s."""
+    bodies: list[sf.RigidBody] = []
+    for i, axis in enumerate([(0, 0, 1), (0, 1, 0), (0, 1, 0), (1, 0, 0), (0, 1, 0), (1, 0, 0)]):
+        joint = sf.Joint(f"q{i}", "revolute", *((f"b{i - 1}", "e") if i else ()), axis=axis)
+        end = sf.Frame("e", (L * (0.5 if i < 3 else 0.1), 0.0, 0.1 * L))
+        bodies.append(sf.RigidBody(f"b{i}", joint, sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)), (end,)))
+    arm = sf.compile(sf.System("arm", bodies), sf.Options(backend="interpreter"))
+    q, v = np.array([0.3, -0.5, 0.8, 0.4, 0.6, 0.2]), np.array([1.0, 2.0, -1.0, 0.5, 0.3, 0.7])
+    p, R = arm.frame_pose("b5.e", q)
+    V, A = arm.frame_velocity("b5.e", q, v), arm.frame_acceleration("b5.e", q, v, np.zeros(6))
+    _, speeds, rates = sf.joint_motion(arm, "b5.e", [p], [V], [A], [R], q=q)
+    np.testing.assert_allclose(speeds[0], v, atol=1e-9)
+    np.testing.assert_allclose(rates[0], 0.0, atol=1e-9)

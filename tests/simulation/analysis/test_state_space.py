@@ -119,3 +119,29 @@ def test_unknown_outputs() -> None:
         m.linearize([0, 0], [0, 0], np.zeros(m.nu), outputs=[("frame_pos", "tip")])
     with pytest.raises(sf.UnknownNameError, match="no frame 'nowhere'"):
         m.linearize([0, 0], [0, 0], np.zeros(m.nu), outputs=[("frame_pose", "nowhere")])
+
+
+@pytest.mark.parametrize("L", [1e-8, 1e-3, 1.0, 1e3])
+def test_a_loop_and_a_shaft_of_any_sizes_have_the_same_freedoms(L: float) -> None:
+    """Conditions on angles beside those of a loop of micrometres, which a rank by the largest of all would drop."""
+
+    def bar(name: str, joint: sf.Joint, length: float) -> sf.RigidBody:
+        return sf.RigidBody(
+            name, joint, sf.Inertia(1.0, (length / 2, 0, 0), (1e-3, 1e-3, 1e-3)), (sf.Frame("e", (length, 0, 0)),)
+        )
+
+    axis = (0, -1, 0)
+    bodies = (
+        bar("crank", sf.Joint("q1", "revolute", axis=axis), 0.5 * L),
+        bar("coupler", sf.Joint("q2", "revolute", "crank", "e", axis=axis), L),
+        bar("rocker", sf.Joint("q3", "revolute", position=(L, 0, 0), axis=axis), L),
+        bar("shaft", sf.Joint("q4", "revolute", axis=axis), 1.0),
+    )
+    ties = (
+        sf.Closure("loop", ("rocker", "e"), ("coupler", "e"), ("x", "y", "z")),
+        sf.Nonholonomic("gear", {"dq4": 1.0, "dq1": 2.0}),
+    )
+    m = sf.compile(sf.System("loop", bodies, constraints=ties))
+    at = sf.assemble(m, [1.2, -0.9, 1.4, -2.4], held=("q1",))
+    linear = sf.state_space(m, at.q)
+    assert linear.A.shape == (3, 3)  # Angles of crank and shaft, one speed.
