@@ -24,18 +24,25 @@ class Judged:
         answer: What the engine answered.
         want: The truth; None where there was no answer.
         tree: The tree, with the engine's gravity.
+        form: Format of the file that the engine read; "" where it was built by its API.
     """
 
     cell: Cell
     answer: Answer
     want: Expected | None
     tree: Tree
+    form: str = ""
 
 
 class Truths:
-    """Truths that were worked out already: engines that keep joints alike share them."""
+    """Truths that were worked out already: engines that keep joints alike share them.
 
-    def __init__(self) -> None:
+    Args:
+        perturbations: See `verdicts.expected`.
+    """
+
+    def __init__(self, perturbations: int = 1) -> None:
+        self._perturbations = perturbations
         self._known: dict[tuple[object, ...], Expected] = {}
 
     def of(self, function: str, tree: Tree, answer: Answer, slack: float) -> Expected:
@@ -44,7 +51,7 @@ class Truths:
         name = function.partition(":")[0]
         key = (name, tree, answer.layout, _bytes(answer.state), slack)
         if key not in self._known:
-            self._known[key] = expected(name, tree, answer.layout, answer.state, slack)
+            self._known[key] = expected(name, tree, answer.layout, answer.state, slack, self._perturbations)
         return self._known[key]
 
 
@@ -80,7 +87,7 @@ def judged(
     offered = replace(job, functions=tuple(name for name in job.functions if name in plugin.functions))
     for answer in worker.ask(offered) if worker else answered(offered):
         cell, want = _judge(plugin, job.tree, answer, truths)
-        yield Judged(cell, answer, want, job.tree)
+        yield Judged(cell, answer, want, job.tree, job.form)
 
 
 def _judge(plugin: EnginePlugin, tree: Tree, answer: Answer, truths: Truths) -> tuple[Cell, Expected | None]:

@@ -19,7 +19,8 @@ BACKWARD = 2000.0
 FORWARD = 1e-12
 # An answer that is off by more than this part of its largest entry is no matter of rounding.
 GROSS = 1e-6
-_PERTURBATIONS = 1
+# What differences leave of zeros (`arithmetic`).
+_NOTHING = 1e-30
 _ROUNDING = 2.0**-53
 
 
@@ -59,16 +60,28 @@ class Expected:
     allowed: float
 
 
-def expected(function: str, tree: Tree, model: HasLayout, state: State, slack: float = 0.0) -> Expected:
-    """The truth, and how far roundings of the inputs move it; `slack` is what the engine documents to be off."""
+def expected(
+    function: str, tree: Tree, model: HasLayout, state: State, slack: float = 0.0, perturbations: int = 1
+) -> Expected:
+    """The truth, and how far roundings of the inputs move it.
+
+    Args:
+        function: Name of the function.
+        tree: The tree.
+        model: Says how the engine keeps its joints.
+        state: Where it is evaluated.
+        slack: What the engine documents to be off, as part of the largest entry.
+        perturbations: Number of perturbed inputs; without any, gross faults alone are seen.
+    """
     truth_of = FUNCTIONS[function.partition(":")[0]].truth
     exact_value = Truth(tree, model).value(truth_of, Point.of(state))
     value = digits(exact_value)
     moved = 0.0
-    for seed in range(_PERTURBATIONS):
+    for seed in range(perturbations):
         draw = np.random.default_rng(seed)
         other = Truth(_perturbed_tree(tree, draw), model).value(truth_of, Point.of(_perturbed_state(state, draw)))
         moved = max(moved, float(np.max(np.abs(digits(other - exact_value)), initial=0.0)))
+    value[np.abs(value) < _NOTHING] = 0.0
     return Expected(value, BACKWARD * moved + max(FORWARD, slack) * largest(value))
 
 

@@ -7,10 +7,12 @@ import multiprocessing
 import signal
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cache
 from multiprocessing.connection import Connection
 from typing import Any
 
-from validation.engines.interface import Array, EngineModel, Slot, State, Tree, Unsupported, installed
+from validation.engines.interface import Array, EngineModel, Registry, State, Tree, Unsupported, installed
+from validation.engines.pieces import Layout, Pieces, assembled
 from validation.engines.plugins import OWN
 from validation.engines.truth import random_state
 
@@ -30,21 +32,6 @@ class Crashed:
 
 
 @dataclass(frozen=True)
-class Layout:
-    """How a model in another process keeps its joints (`interface.EngineModel`).
-
-    Attributes:
-        nq: Length of its q.
-        nv: Length of its v.
-        slots: Slots of the links' joints.
-    """
-
-    nq: int
-    nv: int
-    slots: tuple[tuple[Slot, ...], ...]
-
-
-@dataclass(frozen=True)
 class Job:
     """Functions of one tree in one engine.
 
@@ -53,7 +40,7 @@ class Job:
         tree: The tree.
         functions: Names of functions.
         seed: Seed of a random state.
-        state: The state, in place of a random one.
+        pieces: The state joint by joint, in place of a random one.
         form: Format of a file that the engine reads; "" to build the tree by its API.
         text: The file.
     """
@@ -62,7 +49,7 @@ class Job:
     tree: Tree
     functions: tuple[str, ...]
     seed: int = 0
-    state: State | None = None
+    pieces: Pieces = ()
     form: str = ""
     text: str = ""
 
@@ -86,9 +73,15 @@ class Answer:
     script: str = ""
 
 
+@cache
+def registry() -> Registry:
+    """The plug-ins, looked up once a process: that reads the metadata of all packages."""
+    return installed(OWN)
+
+
 def made(job: Job) -> EngineModel | Unsupported:
     """The model of a job."""
-    plugin = installed(OWN).plugins[job.engine]
+    plugin = registry().plugins[job.engine]
     return plugin.read(job.tree, job.form, job.text) if job.form else plugin.build(job.tree)
 
 
@@ -99,7 +92,10 @@ def answered(job: Job) -> Iterator[Answer]:
         yield from (Answer(function, model) for function in job.functions)
         return
     layout = Layout(model.nq, model.nv, model.slots)
-    state = job.state or random_state(job.tree, model, job.seed)
+    state = assembled(layout, job.pieces) if job.pieces else random_state(job.tree, model, job.seed)
+    if isinstance(state, Unsupported):
+        yield from (Answer(function, state) for function in job.functions)
+        return
     for function in job.functions:
         value = model.call(function, state)
         script = "" if isinstance(value, Unsupported) else model.script(function, state)

@@ -34,6 +34,10 @@ _ALIGNED = {
 
 
 def _array(values: Any) -> str:
+    if np.array_equal(values, np.eye(3)):
+        return "np.eye(3)"
+    if not np.any(values):
+        return f"np.zeros({np.shape(values)[0]})"
     return f"np.array({np.asarray(values, dtype=float).tolist()!r})"
 
 
@@ -116,11 +120,10 @@ def write(tree: Tree) -> Source | Unsupported:
         joints.append(name if not np.any(p) and np.array_equal(R, np.eye(3)) else "")
     if any(armature):
         lines.append(f"m.armature = {_array(armature)}")
-    lines.append("d = m.createData()")
-    optional = {"fs": ("fs = []", *frames, "d = m.createData()")}
+    optional = {"fs": ("fs = []", *frames)}
     if all(joints) and len(set(joints)) == len(joints):
         optional["js"] = (f"js = [{', '.join(joints)}]",)
-    return Source(tuple(lines), tuple(slots), nq, nv, optional)
+    return Source(tuple(lines), tuple(slots), nq, nv, optional, ("d = m.createData()",))
 
 
 _FRAMES = {"local": "pin.LOCAL", "aligned": "pin.LOCAL_WORLD_ALIGNED", "world": "pin.WORLD"}

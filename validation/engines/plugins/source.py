@@ -43,6 +43,7 @@ class Source:
         nq: Length of the engine's q.
         nv: Length of the engine's v.
         lacks: Functions that the engine doesn't offer for this tree.
+        closing: Statements after all of these.
     """
 
     lines: tuple[str, ...]
@@ -51,12 +52,13 @@ class Source:
     nv: int
     optional: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     lacks: tuple[str, ...] = ()
+    closing: tuple[str, ...] = ()
 
     def text(self, code: str = "") -> tuple[str, ...]:
         """The statements that some code needs; all without code."""
         used = words(code)
         chosen = [lines for name, lines in self.optional.items() if not code or name in used]
-        return (*self.lines, *(line for lines in chosen for line in lines))
+        return (*self.lines, *(line for lines in chosen for line in lines), *self.closing)
 
 
 class SourceModel:

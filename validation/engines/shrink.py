@@ -1,0 +1,207 @@
+"""The smallest case that still shows a fault: links dropped, placements undone, numbers zeroed and rounded."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, fields, is_dataclass, replace
+from typing import Any
+
+from validation.engines.interface import IDENTITY, ORIGIN, Joint, Link, Tree
+from validation.engines.pieces import Piece, Pieces
+
+_MOST = 120
+_PRINCIPAL = ((2.0, 0.0, 0.0), (0.0, 3.0, 0.0), (0.0, 0.0, 4.0))
+
+
+@dataclass(frozen=True)
+class Case:
+    """A tree and a state.
+
+    Attributes:
+        tree: The tree.
+        pieces: The state.
+    """
+
+    tree: Tree
+    pieces: Pieces
+
+
+def smallest(case: Case, shows: Callable[[Case], bool], most: int = _MOST) -> Case:
+    """A case that shows a fault, of which no simpler neighbour does.
+
+    Args:
+        case: Case to begin with.
+        shows: Whether a case shows the fault.
+        most: Bound on the number of cases that are tried.
+    """
+    tried: set[Case] = set()
+    place, moved = 0, False
+    while len(tried) < most:
+        for number, candidate in enumerate(_simpler(case)):
+            if number < place or candidate in tried or size(candidate) >= size(case):
+                continue
+            tried.add(candidate)
+            if shows(candidate):
+                # What came before was refused for the larger case: it comes again when the rest is through.
+                case, place, moved = candidate, number, True
+                break
+        else:
+            if not moved:
+                return case
+            place, moved = 0, False
+    return case
+
+
+def size(value: Any) -> int:
+    """What a reader has to take in: zeros nothing, whole numbers little, others by their digits, links most."""
+    if isinstance(value, float):
+        return 0 if value == 0.0 else 1 if value == round(value) else len(repr(abs(value)))
+    if isinstance(value, tuple):
+        return sum(map(size, value))
+    if is_dataclass(value):
+        own = 100 if isinstance(value, Link) else 50 if isinstance(value, Joint) else 0
+        return own + sum(size(getattr(value, item.name)) for item in fields(value))
+    return 0
+
+
+def _simpler(case: Case) -> Iterator[Case]:
+    yield from _without_links(case)
+    yield from _all_at_once(case)
+    yield from _without_joints(case)
+    for tree in _plainer_trees(case.tree):
+        yield replace(case, tree=tree)
+    for k, pieces in enumerate(case.pieces):
+        for number, piece in enumerate(pieces):
+            for simpler in _plainer_pieces(piece):
+                yield replace(case, pieces=_with(case.pieces, k, _with(pieces, number, simpler)))
+
+
+def _all_at_once(case: Case) -> Iterator[Case]:
+    """Placements, inertias and vectors of the state plain in all links together."""
+    links = case.tree.links
+    unplaced = tuple(
+        replace(link, joints=tuple(replace(joint, R=IDENTITY, p=ORIGIN) for joint in link.joints)) for link in links
+    )
+    plain = tuple(replace(link, com=ORIGIN, inertia=IDENTITY, mass=1.0) for link in links)
+    for chosen in (unplaced, plain):
+        yield replace(case, tree=replace(case.tree, links=chosen))
+    for names in (("v2", "tau"), ("a",), ("v",)):
+        yield replace(case, pieces=tuple(tuple(_zeroed(piece, names) for piece in own) for own in case.pieces))
+    yield replace(case, pieces=tuple(tuple(replace(piece, q2=piece.q) for piece in own) for own in case.pieces))
+
+
+def _zeroed(piece: Piece, names: Sequence[str]) -> Piece:
+    return _changed(piece, **{name: (0.0,) * len(piece.v) for name in names})
+
+
+def _changed(piece: Piece, **vectors: tuple[float, ...]) -> Piece:
+    return replace(piece, **vectors)  # type: ignore[arg-type]
+
+
+def _with(items: Any, place: int, item: Any) -> Any:
+    """A tuple with another item at a place."""
+    return (*items[:place], item, *items[place + 1 :])
+
+
+def _without_links(case: Case) -> Iterator[Case]:
+    links = case.tree.links
+    followed = {joint.mimics for link in links for joint in link.joints}
+    for gone in reversed(range(len(links))):
+        if len(links) == 1 or links[gone].name in followed:
+            continue
+        heir = links[gone].parent
+        kept = []
+        for link in links[:gone] + links[gone + 1 :]:
+            parent = heir if link.parent == gone else link.parent
+            kept.append(replace(link, parent=parent - 1 if parent > gone else parent))
+        pieces = case.pieces[:gone] + case.pieces[gone + 1 :]
+        if any(pieces):
+            yield Case(replace(case.tree, links=tuple(kept)), pieces)
+
+
+def _without_joints(case: Case) -> Iterator[Case]:
+    for k, link in enumerate(case.tree.links):
+        moving = [number for number, joint in enumerate(link.joints) if joint.kind != "fixed"]
+        for place, number in enumerate(moving):
+            if len(moving) > 1 and not any(
+                joint.mimics == link.name for own in case.tree.links for joint in own.joints
+            ):
+                joints = link.joints[:number] + link.joints[number + 1 :]
+                pieces = case.pieces[k][:place] + case.pieces[k][place + 1 :]
+                tree = replace(case.tree, links=_with(case.tree.links, k, replace(link, joints=joints)))
+                yield Case(tree, _with(case.pieces, k, pieces))
+
+
+def _plainer_trees(tree: Tree) -> Iterator[Tree]:
+    yield replace(tree, gravity=ORIGIN)
+    for k, link in enumerate(tree.links):
+        for simpler in _plainer_links(link):
+            yield replace(tree, links=_with(tree.links, k, simpler))
+
+
+def _plainer_links(link: Link) -> Iterator[Link]:
+    for number, joint in enumerate(link.joints):
+        for simpler in _plainer_joints(joint):
+            yield replace(link, joints=_with(link.joints, number, simpler))
+    yield replace(link, com=ORIGIN, inertia=IDENTITY, mass=1.0)
+    for com in (ORIGIN, (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (1.0, 2.0, 3.0)):
+        yield replace(link, com=com)
+    for inertia in (IDENTITY, _PRINCIPAL):
+        yield replace(link, inertia=inertia)
+    yield replace(link, mass=1.0)
+    yield replace(link, mass=_rounded(link.mass))
+
+
+def _plainer_joints(joint: Joint) -> Iterator[Joint]:
+    yield replace(joint, R=IDENTITY, p=ORIGIN)
+    yield replace(joint, R=IDENTITY)
+    for p in (ORIGIN, (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)):
+        yield replace(joint, p=p)
+    if joint.mimics:
+        yield replace(joint, offset=0.0)
+        yield replace(joint, ratio=2.0)
+    if joint.kind == "helical":
+        yield replace(joint, pitch=1.0)
+    if any(joint.radii):
+        yield replace(joint, radii=(1.0, 2.0, 3.0))
+    if joint.armature:
+        yield replace(joint, armature=(1.0,) * len(joint.armature))
+
+
+def _plainer_pieces(piece: Piece) -> Iterator[Piece]:
+    for name in ("v2", "q2", "tau", "a", "v"):
+        values = getattr(piece, name)
+        if name == "q2":
+            yield replace(piece, q2=piece.q)
+        else:
+            yield _zeroed(piece, (name,))
+            for k, value in enumerate(values):
+                for simpler in dict.fromkeys((0.0, 1.0, _rounded(value))):
+                    yield _changed(piece, **{name: _with(values, k, simpler)})
+    for q in _plainer_coordinates(piece.chart, piece.q):
+        yield replace(piece, q=q)
+
+
+def _plainer_coordinates(chart: str, q: tuple[float, ...]) -> Iterator[tuple[float, ...]]:
+    """Simpler coordinates on the manifold of a chart: those of unit length stay so."""
+    start = (
+        len(q) - 4
+        if "quaternion" in chart or chart.startswith("free")
+        else len(q) - 2
+        if "cos sin" in chart
+        else len(q)
+    )
+    for k in range(start):
+        for simpler in dict.fromkeys((0.0, 1.0, _rounded(q[k]))):
+            yield _with(q, k, simpler)
+    units: Sequence[tuple[float, ...]] = ()
+    if len(q) - start == 4:
+        units = ((0, 0, 0, 1), (1, 0, 0, 0), (0, 1, 0, 0), (0.6, 0.8, 0, 0), (0.5, 0.5, 0.5, 0.5), (0.1, 0.5, 0.5, 0.7))
+    elif len(q) - start == 2:
+        units = ((1, 0), (0, 1), (0.6, 0.8))
+    for unit in units:
+        yield (*q[:start], *map(float, unit))
+
+
+def _rounded(value: float) -> float:
+    return float(round(value)) or round(value, 1)

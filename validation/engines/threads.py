@@ -1,0 +1,41 @@
+"""Public threads that know a fault: searched for by hand, one row a fault."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+NONE = "none found"
+
+
+class Thread(NamedTuple):
+    """A thread on a fault.
+
+    Attributes:
+        engine: Name of the engine.
+        models: Pattern of the trees' names.
+        functions: Pattern of the functions' names.
+        url: The thread.
+    """
+
+    engine: str
+    models: str
+    functions: str
+    url: str
+
+
+_PINOCCHIO = "https://github.com/stack-of-tasks/pinocchio/issues/"
+THREADS = (
+    # Shows it for JointModelSphericalZYX in a composite.
+    Thread(
+        "pinocchio", "euler|universal|ellipsoid|three hinges|offset|translation and", "coriolis", f"{_PINOCCHIO}2053"
+    ),
+)
+
+
+def thread(engine: str, model: str, function: str) -> str:
+    """The thread that knows a fault, or that none was found."""
+    for row in THREADS:
+        if row.engine == engine and re.search(row.models, model) and re.search(row.functions, function):
+            return row.url
+    return NONE
