@@ -296,6 +296,10 @@ CHARTS: dict[str, Chart] = {
     "quaternion xyzw, body speeds": Chart(
         "quaternion, scalar last; angular velocity in the axes after the joint", 4, 3, _xyzw, _xyzw_rates, _sphere
     ),
+    "quaternion xyzw, parent speeds": Chart(
+        "quaternion, scalar last; angular velocity in the axes before the joint",
+        4, 3, _xyzw, _xyzw_rates_before, _sphere,
+    ),
     "free xyzw, body speeds": Chart(
         "position, quaternion with scalar last; linear and angular velocity in the axes after the joint",
         7, 6, _free_xyzw, _free_body_rates, _free_sample,

@@ -11,11 +11,12 @@ from validation.engines.plugins import (
     frax,
     idyntree,
     mujoco,
+    newton,
     pinocchio,
     pybullet,
     pykdl,
     roboticstoolbox,
 )
 
-_MODULES = (pinocchio, mujoco, adam, dart, drake, dynibo, frax, idyntree, pybullet, pykdl, roboticstoolbox)
+_MODULES = (pinocchio, mujoco, adam, dart, drake, dynibo, frax, idyntree, newton, pybullet, pykdl, roboticstoolbox)
 OWN: dict[str, EnginePlugin] = {module.PLUGIN.name: module.PLUGIN for module in _MODULES}

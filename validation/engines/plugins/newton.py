@@ -1,0 +1,206 @@
+"""Newton: articulations of Warp on the CPU, by its API."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from validation.engines.interface import Array, Difference, Joint, Link, Slot, Tree, Unsupported
+from validation.engines.plugins.source import Source, SourcePlugin, Way, series
+
+# Everything is in single precision: some hundred of its roundings.
+_SINGLE = 2e-5
+
+_SETUP = """import numpy as np
+import warp as wp
+wp.config.quiet = True
+import newton
+b = newton.ModelBuilder(gravity={gravity})
+def X(p, x, y, z, w): return wp.transform(p, wp.quat(x, y, z, w))
+def axis(direction, armature=0.0):
+    return newton.ModelBuilder.JointDofConfig(axis=direction, armature=armature, target_ke=0, target_kd=0)"""
+_END = """b.add_articulation(joints)
+m = b.finalize(device="cpu")
+def state(q, v=None):
+    s = m.state()
+    s.joint_q.assign(np.array(q, dtype=np.float32))
+    s.joint_qd.assign(np.zeros(m.joint_dof_count, np.float32) if v is None else np.array(v, dtype=np.float32))
+    newton.eval_fk(m, s.joint_q, s.joint_qd, s)
+    return s
+def rotation(x, y, z, w):
+    K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + 2 * w * K + 2 * K @ K
+def centres(s): return [rotation(*x[3:]) @ c for x, c in zip(s.body_q.numpy(), m.body_com.numpy())]
+def passive(name, q, v=None):
+    out = wp.zeros(m.joint_dof_count, dtype=float, device="cpu")
+    newton.eval_inverse_dynamics_passive(m, state(q, v), **{name: out})
+    return out"""
+
+WAYS = {
+    "mass_matrix": Way("eval_mass_matrix", "value = newton.eval_mass_matrix(m, state(q)).numpy()[0]", _SINGLE),
+    "gravity": Way("eval_inverse_dynamics_passive", "value = passive('gravity_force', q).numpy()", _SINGLE),
+    "coriolis_forces": Way("eval_inverse_dynamics_passive", "value = passive('coriolis_force', q, v).numpy()", _SINGLE),
+    "inverse_dynamics": Way(
+        "eval_inverse_dynamics_force",
+        """s, out = state(q, v), wp.zeros(m.joint_dof_count, dtype=float, device="cpu")
+newton.eval_inverse_dynamics_force(
+    m, s, mass_matrix=newton.eval_mass_matrix(m, s), joint_qdd=wp.array(a, dtype=float, device="cpu"), joint_f=out,
+    coriolis_force=passive('coriolis_force', q, v), gravity_force=passive('gravity_force', q))
+value = out.numpy()""",
+        _SINGLE,
+    ),
+    "link_poses": Way(
+        "eval_fk", "value = [[*x[:3], *rotation(*x[3:]).flat] for x in state(q).body_q.numpy()]", _SINGLE
+    ),
+    "link_velocities": Way(
+        "eval_fk",
+        "s = state(q, v)\n"
+        "value = [[*(x[:3] - np.cross(x[3:], r)), *x[3:]] for x, r in zip(s.body_qd.numpy(), centres(s))]",
+        _SINGLE,
+    ),
+    # Of the mass centres.
+    "link_jacobians": Way(
+        "eval_jacobian",
+        """s = state(q)
+J = newton.eval_jacobian(m, s).numpy()[0].reshape(-1, 6, len(v))
+value = [np.concatenate([j[:3] - np.cross(j[3:].T, r).T, j[3:]]) for j, r in zip(J, centres(s))]""",
+        _SINGLE,
+    ),
+}
+
+
+def _array(values: object) -> str:
+    return repr(np.asarray(values, dtype=float).tolist())
+
+
+def _quaternion(R: Array) -> Array:
+    """Quaternion (x, y, z, w) of a rotation."""
+    w = np.sqrt(max(0.0, 1.0 + np.trace(R))) / 2.0
+    if w > 0.1:
+        vector = np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]]) / (4.0 * w)
+        return np.array([*vector, w])
+    values, vectors = np.linalg.eigh(R + R.T)
+    axis = vectors[:, int(np.argmax(values))]
+    angle = np.arctan2(axis @ np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]]), np.trace(R) - 1.0)
+    return np.array([*(axis * np.sin(angle / 2.0)), np.cos(angle / 2.0)])
+
+
+def _placement(R: Array, p: Array) -> str:
+    numbers = ", ".join(repr(float(x)) for x in _quaternion(R))
+    return f"X({_array(p)}, {numbers})"
+
+
+def _axes(joint: Joint) -> tuple[list[str], list[str], str] | None:
+    """Linear and angular axes of a joint with six or fewer, and its chart."""
+    armature = f", {joint.armature[0]!r}" if any(joint.armature) else ""
+    unit = [_array(row) for row in np.eye(3)]
+    match joint.kind:
+        case "revolute":
+            return [], [f"axis({_array(joint.axis)}{armature})"], "angle"
+        case "prismatic":
+            return [f"axis({_array(joint.axis)}{armature})"], [], "length"
+        case "universal":
+            return [], [f"axis({_array(joint.axis)})", f"axis({_array(joint.second)})"], "two angles"
+        case "euler":
+            return [], [f"axis({unit['XYZ'.index(letter)]})" for letter in joint.sequence], "three angles"
+        case "translation":
+            return [f"axis({row})" for row in unit], [], "three lengths"
+        case "planar":
+            return [f"axis({unit[0]})", f"axis({unit[1]})"], [f"axis({unit[2]})"], "planar angle"
+    return None
+
+
+def _call(link: Link, steps: tuple[tuple[Array, Array, Joint], ...]) -> tuple[str, list[tuple[str, int, int]]] | str:
+    """The joint of a link as a call, and chart, coordinates, speeds of each part; a reason where there is none."""
+    if not steps:
+        return "b.add_joint_fixed({ends})", []
+    _, _, joint = steps[0]
+    if any(one.form or one.mimics for _, _, one in steps):
+        return "no such form of a joint"
+    if len(steps) == 1 and joint.kind == "ball":
+        armature = joint.armature[0] if joint.armature else 0.0
+        return f"b.add_joint_ball({{ends}}, armature={armature!r})", [("quaternion xyzw, parent speeds", 4, 3)]
+    linear: list[str] = []
+    angular: list[str] = []
+    parts: list[tuple[str, int, int]] = []
+    for number, (R, p, one) in enumerate(steps):
+        found = _axes(one)
+        if found is None:
+            return f"no joint for {one.kind}"
+        if number and (np.any(p) or not np.array_equal(R, np.eye(3)) or (found[0] and angular)):
+            return "axes of one joint share a frame, linear before angular"
+        linear, angular = linear + found[0], angular + found[1]
+        parts.append((found[2], len(found[0]) + len(found[1]), len(found[0]) + len(found[1])))
+    if len(steps) == 1 and joint.kind in ("revolute", "prismatic"):
+        armature = joint.armature[0] if joint.armature else 0.0
+        about = f"axis={_array(joint.axis)}, armature={armature!r}"
+        return f"b.add_joint_{joint.kind}({{ends}}, {about})", parts
+    return f"b.add_joint_d6({{ends}}, linear_axes=[{', '.join(linear)}], angular_axes=[{', '.join(angular)}])", parts
+
+
+def write(tree: Tree) -> Source | Unsupported:
+    """Text that builds an articulation."""
+    lines = _SETUP.format(gravity=list(tree.gravity)).split("\n")
+    slots: list[tuple[Slot, ...]] = []
+    nq = nv = 0
+    for k, link in enumerate(tree.links):
+        body = f"mass={link.mass!r}, com={list(link.com)!r}, inertia=wp.mat33({_array(link.inertia)})"
+        lines.append(f"b{k} = b.add_link({body}, lock_inertia=True)")
+    lines.append("joints = []")
+    for k, link in enumerate(tree.links):
+        steps, (R_end, p_end) = series(link.joints)
+        made: Any = _call(link, steps)
+        if isinstance(made, str):
+            return Unsupported(made, offered=False)
+        call, parts = made
+        R, p = (steps[0][0], steps[0][1]) if steps else (R_end, p_end)
+        parent = "-1" if link.parent < 0 else f"b{link.parent}"
+        ends = f"{parent}, b{k}, parent_xform={_placement(R, p)}"
+        if steps:
+            ends += f", child_xform={_placement(R_end.T, -R_end.T @ p_end)}"
+        lines.append(f"joints.append({call.format(ends=ends)})")
+        own = []
+        for chart, coordinates, speeds in parts:
+            own.append(Slot(chart, tuple(range(nq, nq + coordinates)), tuple(range(nv, nv + speeds))))
+            nq, nv = nq + coordinates, nv + speeds
+        slots.append(tuple(own))
+    return Source((*lines, *_END.split("\n")), tuple(slots), nq=nq, nv=nv)
+
+
+PLUGIN = SourcePlugin(
+    name="newton",
+    package="newton",
+    extra="symofros[engine-newton]",
+    conventions=(
+        Difference("precision", "single"),
+        Difference("quaternion", "scalar last"),
+        Difference("ball joint", "angular velocity along the axes before the joint"),
+        Difference("twists and Jacobians of links", "linear velocity of the mass centre, then angular, in the world"),
+        Difference("armature", "an argument of the joint; 0.01 unless stated"),
+        Difference(
+            "free joint", "linear velocity of the mass centre: a speed that depends on the body; not asked here"
+        ),
+    ),
+    kinds={
+        "revolute x": "add_joint_revolute",
+        "revolute y": "add_joint_revolute",
+        "revolute z": "add_joint_revolute",
+        "revolute oblique": "add_joint_revolute",
+        "revolute with armature": "add_joint_revolute",
+        "prismatic": "add_joint_prismatic",
+        "prismatic oblique": "add_joint_prismatic",
+        "ball": "add_joint_ball",
+        "universal": "add_joint_d6",
+        "planar": "add_joint_d6",
+        "translation": "add_joint_d6",
+        "euler xyz": "add_joint_d6",
+        "euler zyx": "add_joint_d6",
+        "cylindrical": "add_joint_d6",
+        "three hinges": "add_joint_d6",
+        "two slides and a hinge": "add_joint_d6",
+        "translation and euler zyx": "add_joint_d6",
+    },
+    ways=WAYS,
+    write=write,
+)
