@@ -60,7 +60,7 @@ _AGAIN = 2
 _DETAILED = 2
 
 _DECISION = (
-    "**Which engine is wrong.** One that disagrees where all others agree with our C is the suspect itself; where "
+    "**Which engine is wrong:** {}. One that disagrees where all others agree with our C is the suspect itself; where "
     "several disagree, our C is."
 )
 _CLOSE = (
@@ -248,7 +248,7 @@ def compose(data: Data) -> Report:
         (*_narrow(record), *_against_baseline(data).blocks),
         record.unfinished,
         record.refused,
-        (_DECISION, opinions(record)) if engines else (),
+        _decisions(record) if engines else (),
         tuple(f"{model}, {engine}: {text}" for model, engine, text in failures(record)),
     )
 
@@ -267,6 +267,13 @@ def _against_baseline(data: Data) -> Section:
     blocks += [Table.of(stored["regressions"], _REGRESSIONS)] if stored["regressions"] else []
     blocks += [Bullets(tuple(stored["notes"]))] if stored["notes"] else []
     return Section("Against the baseline", tuple(blocks), ok=not stored["regressions"])
+
+
+def _decisions(record: Record) -> tuple[Block, ...]:
+    table = opinions(record)
+    verdicts = {str(row[0]): row[-1] for row in table.rows}
+    wrong = [f"{name} ({v.text})" for name, v in verdicts.items() if isinstance(v, Cell) and v.ok is False]
+    return _DECISION.format(", ".join(wrong) or f"none of {len(table.rows)} disagrees"), table
 
 
 def _facts(record: Record, engines: list[str]) -> list[Fact]:

@@ -85,15 +85,27 @@ def by_engine(record: Record, columns: Columns = COLUMNS, engines: Sequence[str]
 
 
 def opinions(record: Record) -> Table:
-    """One line an engine: whether it agrees, and if not, whether it is alone in that."""
-    against: dict[tuple[str, str], set[str]] = {}
-    for row in record.rows("disagree"):
-        against.setdefault((row.model, row.quantity), set()).add(row.engine)
+    """One line an engine: whether it agrees, and if not, whether it is alone in that, against other engines."""
+    against, witnesses = (
+        {
+            (row.model, row.quantity, row.engine)
+            for row in rows
+            if row.engine in ROUTES and ROUTES[row.engine].independent
+        }
+        for rows in (record.rows("disagree"), record.rows("agree"))
+    )
+
+    def is_alone(row: Comparison) -> bool:
+        place = row.model, row.quantity
+        others = [name for name in ROUTES if name != row.engine]
+        return any((*place, name) in witnesses for name in others) and all(
+            (*place, name) not in against for name in others
+        )
 
     def line(engine: str) -> dict[str, Any]:
         rows = [row for row in record.compared if row.engine == engine]
         disagreeing = [row for row in rows if row.status == "disagree"]
-        alone = sum(against[row.model, row.quantity] == {engine} for row in disagreeing)
+        alone = sum(map(is_alone, disagreeing))
         nearest = worst(rows)
         used = nearest.error / nearest.tolerance if nearest and nearest.error is not None else math.nan
         return {

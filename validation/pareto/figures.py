@@ -11,7 +11,7 @@ import numpy as np
 from validation.pareto.front import charted, front, seconds_at
 from validation.pareto.problem import OURS, BenchmarkProblem, Point
 from validation.pareto.race import Result
-from validation.reporting.charts import BAD, INK, LINE, SOFT, logarithmic, style
+from validation.reporting.charts import BAD, INK, LINE, SERIES, SOFT, logarithmic, style
 from validation.reporting.figures import Curve, Drawing, Figure
 
 TIME = "time of the processor  [s]"
@@ -72,7 +72,8 @@ def front_drawing(problem: BenchmarkProblem, result: Result) -> Drawing:
         axes.plot(*zip(*sorted(stairs, key=lambda at: (at[0], -at[1])), strict=True), color=SOFT, linewidth=1)
         for k, name in enumerate(names):
             axes.plot(*_xy([p for p in best if method(p) == name]), **_style(name, k, "points"), zorder=3)
-        runs = [(p.seconds, p.error, f"{p.model}, {p.setting}", LINE) for p in best]
+        colors = {name: SERIES[_COLORS[k]] for k, name in enumerate(names)}
+        runs = [(p.seconds, p.error, f"{p.model}, {p.setting}", colors.get(method(p), LINE)) for p in best]
         _margin(
             axes, runs + [(1.0, value, f"floor of our beams, {name}", BAD) for name, value in result.floors.items()]
         )
@@ -139,7 +140,7 @@ def _margin(axes: Any, rows: Sequence[tuple[float, float, str, str]]) -> None:
             (1.03, place),
             axes.get_yaxis_transform() if limit else "data",
             "axes fraction",
-            {"arrowstyle": "-", "color": color, "linewidth": 0.8, "shrinkA": 1, "relpos": (0.0, 0.5), "shrinkB": 2},
+            {"arrowstyle": "-", "color": color, "linewidth": 0.6, "shrinkA": 1, "relpos": (0.0, 0.5), "shrinkB": 2},
             color=BAD if limit else INK,
             va="center",
             fontsize=9.5,

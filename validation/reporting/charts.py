@@ -62,7 +62,7 @@ _RC = {
 # Pixels of the page for a unit of a picture: two pictures stand beside each other, and letters are of one size in all.
 _SCALE = 1.05
 # Points of Matplotlib are units of the picture; widths of letters are of this font.
-_LETTER = 6.4
+_LETTER = 5.8
 
 
 def draw(item: Chart | Drawing) -> str:

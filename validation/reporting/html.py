@@ -22,7 +22,9 @@ _PAGE = """<!doctype html>
 {style}</style>
 </head>
 <body>
+<main>
 {body}
+</main>
 </body>
 </html>
 """
@@ -47,7 +49,7 @@ def page(report: Report, provenance: Provenance | None = None, closing: str = ""
     parts = [
         f"<h1>{escape(report.title)}</h1>",
         f'<p class="verdict {_TONE[report.ok]}">{prose(report.summary)}</p>',
-        *map(block, report.decisions),
+        *(f'<div class="decisions">{block(one)}</div>' for one in report.decisions),
         block(Text("**Missed:**", "bad")) + block(Bullets(report.shortfalls)) if report.shortfalls else "",
         facts(report.facts),
         *map(block, report.blocks),

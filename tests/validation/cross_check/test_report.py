@@ -153,3 +153,15 @@ def test_only_unreadable_models_are_bad_input(good: ModelResult) -> None:
 def test_every_engine_has_a_name_in_the_legend(good: ModelResult) -> None:
     page = to_html(as_data(SETTINGS, [good], 1.0, ()))
     assert ">interpreted (our own)</text>" in page and ">tolerance</text>" in page
+
+
+def test_an_engine_that_disagrees_alone_is_the_suspect_and_where_several_do_our_c_is(good: ModelResult) -> None:
+    def decision(*wrong: str) -> str:
+        data = json.loads(json.dumps(as_data(SETTINGS, [good], 1.0, ())))
+        for row in data["comparisons"]:
+            row["ok"] = not (row["engine"] in wrong and row["quantity"] == "mass_matrix")
+        return str(compose(data).decisions[0])
+
+    assert "none of" in decision()
+    assert "wrong:** mujoco (suspect)." in decision("mujoco")
+    assert "pinocchio (against our C), mujoco (against our C)" in decision("pinocchio", "mujoco")
