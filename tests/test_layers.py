@@ -100,6 +100,7 @@ HARNESS = table("""
 STUDIES = table("""
     oracle:
     engines:
+    truth_data:  engines
     cross_check:
     ci:          cross_check
     campaigns:

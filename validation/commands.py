@@ -8,6 +8,7 @@ from validation.campaigns import command as campaign
 from validation.dashboard import command as dashboard
 from validation.dashboard.catalogue import TOPICS
 from validation.reporting.command import add_command
+from validation.truth_data import command as truth
 
 app = typer.Typer()
 for topic in TOPICS.values():
@@ -15,3 +16,4 @@ for topic in TOPICS.values():
         add_command(app, topic)
 campaign.register(app)
 dashboard.register(app)
+truth.register(app)

@@ -1,0 +1,19 @@
+"""Reads symofros-truth: `python read.py FOLDER` prints each value of each model; nothing but Python is needed."""
+
+import json
+import sys
+from pathlib import Path
+
+
+def values(folder):
+    """(model, state, function, shape, numbers) of all values."""
+    for file in sorted(Path(folder, "values").glob("*.json")):
+        data = json.loads(file.read_text())
+        for index, state in enumerate(data["states"]):
+            for function, value in state["values"].items():
+                yield data["model"], index, function, value["shape"], [float(text) for text in value["digits"]]
+
+
+if __name__ == "__main__":
+    for model, state, function, shape, numbers in values(sys.argv[1]):
+        print(model, state, function, "x".join(map(str, shape)) or "1", *(f"{x:.17g}" for x in numbers))

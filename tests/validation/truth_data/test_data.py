@@ -1,0 +1,141 @@
+"""symofros-truth: the files are what the truth gives, and readers that know nothing of us read them."""
+
+import hashlib
+import json
+import shutil
+import subprocess
+import sys
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import numpy as np
+import pyarrow.parquet
+import pytest
+from typer.testing import CliRunner
+
+import symofros as sf
+from validation.__main__ import app
+from validation.truth_data.catalogue import FUNCTIONS, models
+from validation.truth_data.command import FOLDER, changes
+from validation.truth_data.dataset import write
+
+MODELS = {model.name: model for model in models()}
+
+
+def stored(name: str) -> Any:
+    return json.loads((FOLDER / name).read_text())
+
+
+def numbers(value: dict[str, Any]) -> np.ndarray:
+    return np.array([float(text) for text in value["digits"]]).reshape(value["shape"])
+
+
+@pytest.mark.parametrize("name", ["two_hinges", *(pytest.param(n, marks=pytest.mark.slow(1)) for n in [*MODELS][1:])])
+def test_the_files_are_what_the_truth_gives(name: str, tmp_path: Path) -> None:
+    write(tmp_path, [MODELS[name]])
+    assert changes(FOLDER, tmp_path) == []
+
+
+def test_the_manifest_states_every_file(tmp_path: Path) -> None:
+    manifest = stored("manifest.json")
+    assert set(manifest["models"]) == set(MODELS) and set(manifest["functions"]) == set(FUNCTIONS)
+    for name, told in manifest["files"].items():
+        content = (FOLDER / name).read_bytes()
+        assert (len(content), hashlib.sha256(content).hexdigest()) == (told["bytes"], told["sha256"]), name
+    listed = {*manifest["files"], "manifest.json"}
+    there = {str(path.relative_to(FOLDER)) for path in FOLDER.rglob("*") if path.is_file()}
+    assert {name for name in there - listed if "readers" not in name and name != "README.md"} == set()
+
+
+def test_the_files_keep_the_schema() -> None:
+    schema = stored("schema.json")
+    for path in [*FOLDER.glob("models/*.json"), *FOLDER.glob("values/*.json")]:
+        jsonschema.validate(json.loads(path.read_text()), schema)
+    broken = stored("values/two_hinges.json")
+    broken["states"][0]["values"]["bias"]["digits"][0] = "1.0"
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate(broken, schema)
+
+
+def test_values_carry_thirty_digits() -> None:
+    """M M^-1 = 1 in fractions of the texts, to as many digits as cond(M) leaves."""
+    for state in stored("values/two_hinges.json")["states"]:
+        M, inverse = (fractions(state["values"][name]) for name in ("mass_matrix", "mass_matrix_inverse"))
+        unit = [[sum(M[i][k] * inverse[k][j] for k in range(2)) for j in range(2)] for i in range(2)]
+        assert all(abs(unit[i][j] - (i == j)) < Fraction("1e-27") for i in range(2) for j in range(2))
+
+
+def fractions(value: dict[str, Any]) -> list[list[Fraction]]:
+    rows, columns = value["shape"]
+    return [[Fraction(value["digits"][i * columns + j]) for j in range(columns)] for i in range(rows)]
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_our_readers_of_each_format_give_the_same_equations(name: str) -> None:
+    values = stored(f"values/{name}.json")
+    for path in FOLDER.glob(f"models/{name}.*"):
+        if path.suffix == ".json":
+            continue
+        system = sf.load(path, floating_base=name == "floating" and path.suffix == ".urdf")
+        model = sf.compile(system, sf.Options(backend="interpreter"))
+        for state in values["states"]:
+            q, v, a = (np.array(state[key]) for key in ("q", "v", "a"))
+            M = numbers(state["values"]["mass_matrix"])
+            forces = numbers(state["values"]["inverse_dynamics"])
+            assert np.allclose(model.mass_matrix(q), M, rtol=0, atol=1e-13 * np.abs(M).max()), path.name
+            ours = model.inverse_dynamics(q, v, a)
+            assert np.allclose(ours, forces, rtol=0, atol=1e-12 * np.abs(forces).max()), path.name
+
+
+def test_the_table_and_the_texts_agree() -> None:
+    rows = pyarrow.parquet.read_table(FOLDER / "values.parquet").to_pylist()
+    by_key = {(row["model"], row["state"], row["function"]): row for row in rows}
+    for name in MODELS:
+        for index, state in enumerate(stored(f"values/{name}.json")["states"]):
+            for function, value in state["values"].items():
+                row = by_key.pop((name, index, function))
+                assert (row["shape"], row["digits"], row["q"]) == (value["shape"], value["digits"], state["q"])
+                assert row["value"] == [float(text) for text in value["digits"]]
+    assert by_key == {}
+
+
+def lines(output: str) -> list[list[str]]:
+    return [line.split() for line in output.splitlines()]
+
+
+@pytest.fixture(scope="module")
+def read_by_python() -> list[list[str]]:
+    command = [sys.executable, "-I", str(FOLDER / "readers/read.py"), str(FOLDER)]
+    return lines(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
+
+
+def test_the_reader_in_python_needs_nothing_of_ours(read_by_python: list[list[str]]) -> None:
+    model, state, function, shape, *values = read_by_python[0]
+    expected = stored(f"values/{model}.json")["states"][int(state)]["values"][function]
+    assert shape == "x".join(map(str, expected["shape"])) and [*map(float, values)] == [*map(float, expected["digits"])]
+    assert len(read_by_python) == len(MODELS) * 3 * len(FUNCTIONS)
+
+
+@pytest.mark.tools
+def test_the_reader_in_cpp_reads_the_same(read_by_python: list[list[str]], tmp_path: Path) -> None:
+    if not (compiler := shutil.which("g++") or shutil.which("clang++")):
+        pytest.skip("no compiler of C++")
+    has = subprocess.run(
+        [compiler, "-E", "-x", "c++", "-"], input="#include <nlohmann/json.hpp>", text=True, capture_output=True
+    )
+    if has.returncode:
+        pytest.skip("nlohmann/json is not installed (Debian: nlohmann-json3-dev)")
+    source, program = FOLDER / "readers/read.cpp", tmp_path / "read"
+    subprocess.run([compiler, "-std=c++17", str(source), "-o", str(program)], check=True)
+    assert lines(subprocess.run([program, FOLDER], capture_output=True, text=True, check=True).stdout) == read_by_python
+
+
+def test_the_command_says_what_would_change(tmp_path: Path) -> None:
+    shutil.copytree(FOLDER, tmp_path / "truth")
+    arguments = ["truth", "--check", "--model", "two_hinges", "--output", str(tmp_path / "truth")]
+    assert CliRunner().invoke(app, arguments).exit_code == 0
+    (tmp_path / "truth/models/two_hinges.urdf").write_text("<robot/>")
+    result = CliRunner().invoke(app, arguments)
+    assert result.exit_code == 1 and "would change: models/two_hinges.urdf" in result.output
