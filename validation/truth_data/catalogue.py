@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from validation.engines.interface import Joint, Link, Slot, Tree, Vector
+from validation.engines.interface import Joint, Link, Slot, Tree, Vector, rows
 from validation.engines.kinds import link, placed
-from validation.engines.workers import Layout
+from validation.engines.pieces import Layout
 
 # Kind of joint -> the chart that says what its coordinates and speeds are (`validation.engines.charts`).
 CHARTS = {
@@ -91,8 +91,8 @@ def _tree(name: str, seed: int, *joints: tuple[int, Joint], sizes: tuple[float, 
     for k, (parent, joint) in enumerate(joints):
         made = link(draw, f"link{k}", parent, joint if joint.kind == "free" else placed(draw, joint))
         scale = sizes[k] if sizes else 1.0
-        inertia = tuple(tuple(scale * x for x in row) for row in made.inertia)
-        links.append(replace(made, mass=scale * made.mass, inertia=(inertia[0], inertia[1], inertia[2])))
+        inertia = rows(scale * np.array(made.inertia))
+        links.append(replace(made, mass=scale * made.mass, inertia=inertia))
     return Tree(name, tuple(links))
 
 

@@ -20,7 +20,7 @@ _KINDS = {"helical": "screw"}
 def system(tree: Tree) -> sf.System:
     """The tree as our description."""
     names = [item.name for item in tree.links]
-    bodies = [_body(item, names[item.parent] if item.parent >= 0 else "world") for item in tree.links]
+    bodies = tuple(_body(item, names[item.parent] if item.parent >= 0 else "world") for item in tree.links)
     return sf.System(tree.name, bodies, gravity=tree.gravity)
 
 
@@ -71,7 +71,7 @@ def numbers(tree: Tree) -> dict[str, Any]:
 
 def _link(item: Link, slots: Any) -> dict[str, Any]:
     (joint,) = item.joints
-    stated = {
+    stated: dict[str, Any] = {
         "name": item.name,
         "parent": item.parent,
         "mass": item.mass,

@@ -2,10 +2,11 @@
 
 import json
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 
-def values(folder):
+def values(folder: str) -> Iterator[tuple[str, int, str, list[int], list[float]]]:
     """(model, state, function, shape, numbers) of all values."""
     for file in sorted(Path(folder, "values").glob("*.json")):
         data = json.loads(file.read_text())
