@@ -26,6 +26,8 @@ from validation.mechanics.geometry import Array, Placement, along_z
 from validation.mechanics.joint_kinds import PartKind
 
 NAME = "exudyn"
+# States in one call: Jacobians are read column by column.
+MOST_STATES = 300
 _TYPES: dict[PartKind, Any] = {"revolute": exudyn.JointType.RevoluteZ, "prismatic": exudyn.JointType.PrismaticZ}
 # Exudyn's own stub gives these no arguments.
 _Matrices: Any = exudyn.Matrix3DList
@@ -54,6 +56,7 @@ class KinematicTreeEngine:
         centers: Sensors of the places of mass centres.
         frames: Sensors of the subject's frames; the placement of one on the base.
         capabilities: Quantities that it offers for this system.
+        most_states: Largest number of states in one call.
     """
 
     system: ExudynSystem
@@ -61,6 +64,7 @@ class KinematicTreeEngine:
     centers: tuple[Any, ...]
     frames: tuple[Sensors | Placement, ...]
     capabilities: frozenset[str]
+    most_states: int = MOST_STATES
     name: str = NAME
     version: str = VERSION
 
