@@ -7,9 +7,9 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from symofros.errors import SymofrosError
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.manifold import retract
+from symofros.simulation.results.energy_norm import energies_of
 from symofros.simulation.results.repetition import repeated
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.stepper import Stepper
@@ -41,8 +41,8 @@ def energy_note(stepper: Stepper, settings: Settings, states: Sequence[Array], s
     few = [x[:: max(1, len(x) // _FEW)] for x in states]
     with np.errstate(all="ignore"):  # What overflows is left out.
         # Among all states: a change may last for some steps only. A batch of them takes hardly longer than a few.
-        energies = _energies(stepper, states)
-        if energies is None:
+        energies = energies_of(stepper, states)
+        if energies is None or len(states[0]) < 2:
             return ""
         kinetic, energy = energies
         cure = f"{'a smaller dt' if not settings.adaptive else 'tighter tolerances'}, or another method"
@@ -86,8 +86,8 @@ def _between(
 
 def energy_that_appeared(stepper: Stepper, settings: Settings, states: Sequence[Array]) -> str:
     """The change of energy that no force supplied, where the states show it: "... J appeared ...; ", or nothing."""
-    energies, t = _energies(stepper, states), states[0]
-    if energies is None:
+    energies, t = energies_of(stepper, states), states[0]
+    if energies is None or len(t) < 2:
         return ""
     (kinetic, energy), power = energies, _power(stepper, settings.dt, states)
     spans = np.diff(t)
@@ -104,18 +104,6 @@ def _first_energy(stepper: Stepper, states: Sequence[Array]) -> float:
     model, par, (t, q, v, u) = stepper.model, stepper.par, (x[:1] for x in states)
     gained = (states[0][1] - states[0][0]) * model.forward_dynamics(q, v, u, par=par, t=t)
     return max(float(model.kinetic_energy(q, speeds, u=u, par=par)[0]) for speeds in (v, gained))
-
-
-def _energies(stepper: Stepper, states: Sequence[Array]) -> tuple[Array, Array] | None:
-    """Kinetic and total energy (n) of records; None where motions are prescribed or the model has no energies."""
-    model, (t, q, v, u) = stepper.model, states
-    if model.record.driven or len(t) < 2 or not (np.isfinite(q).all() and np.isfinite(v).all()):
-        return None
-    try:
-        kinetic = model.kinetic_energy(q, v, u=u, par=stepper.par)
-        return kinetic, kinetic + model.potential_energy(q, u=u, par=stepper.par, t=t)
-    except SymofrosError:  # Options.functions left them out.
-        return None
 
 
 def _power(stepper: Stepper, step: float, states: Sequence[Array]) -> Array:

@@ -1,6 +1,8 @@
-"""Sizes of speeds in the norm of the kinetic energy, in which metres and radians a second have one unit."""
+"""Energies of states, and sizes of speeds in their norm, in which metres and radians a second have one unit."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -25,3 +27,15 @@ def energy_norms(stepper: Stepper, q: Array, u: Array, v: Array) -> Array:
     squares = np.einsum("ni,nij,nj->n", unit, metrics(stepper, q, u), unit)
     norms: Array = sizes * np.sqrt(np.maximum(squares, 0.0))
     return norms
+
+
+def energies_of(stepper: Stepper, states: Sequence[Array]) -> tuple[Array, Array] | None:
+    """Kinetic and total energy (n) of records; None where motions are prescribed or the model has no energies."""
+    model, (t, q, v, u) = stepper.model, states
+    if model.record.driven or not (np.isfinite(q).all() and np.isfinite(v).all()):
+        return None
+    try:
+        kinetic = model.kinetic_energy(q, v, u=u, par=stepper.par)
+        return kinetic, kinetic + model.potential_energy(q, u=u, par=stepper.par, t=t)
+    except SymofrosError:  # Options.functions left them out.
+        return None

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from symofros.runtime.calls.kernel import Array
-from symofros.simulation.results.energy_norm import energy_norms, metrics
+from symofros.simulation.results.energy_norm import energies_of, energy_norms, metrics
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.loops import run_own
 from symofros.simulation.stepping.resolution import TOLERANCE
@@ -21,6 +21,9 @@ from symofros.simulation.stepping.stepper import Stepper
 
 # Steps of a run that is repeated as a whole; a call takes as long as some hundred steps of a small model.
 _STEPS = 256
+# Differences of displacements and energies count by this share: they are relative to how they change in the run, while
+# coordinates and energies themselves may be larger.
+_POSITIONS = 3.0
 # Share of the largest speed that the absolute tolerance may allow as the error of a step; displacements over it that
 # are a motion and not rest; share of the largest speed that is asked for instead; most steps that this may take.
 _ALLOWED, _MOTION, _TIGHT, _MOST = 0.1, 100.0, 1e-3, 8192
@@ -70,25 +73,21 @@ def halved_step_note(
     """
     if settings.adaptive or not 1 <= steps <= _STEPS or not stepper.model.nv:
         return ""
-    t, v = states[0], states[2]
+    t, q, v, _ = states
     again = repeated(stepper, settings, (settings.t0, *start), float(t[-1]), 0.5 * settings.dt, every=2)
     if again is None:
         return ""
-    status, (_, q_half, v_half, u_half) = again
+    status, half = again
     h = settings.dt
     if status < 0:
         return (
             f"steps of {h:.4g} s do not show the motion: with half of that it does not come to this end; a smaller dt"
         )
-    if len(v_half) != len(v):
-        v, q_half, v_half, u_half = v[-1:], q_half[-1:], v_half[-1:], u_half[-1:]
-    with np.errstate(all="ignore"):
-        change = float(energy_norms(stepper, q_half, u_half, v - v_half).max())
-        largest = float(energy_norms(stepper, q_half, u_half, v_half).max())
-    if not change > TOLERANCE * largest:
+    change = _change(stepper, start[0], (t, q, v), half)
+    if not change > TOLERANCE:
         return ""
-    share = f"{100.0 * change / largest:.2g} % of the largest speed" if change < largest else "more than all of them"
-    return f"steps of {h:.4g} s do not determine the motion: half of that changes speeds by {share}; a smaller dt"
+    by = f"{100.0 * change:.2g} %" if change < 1.0 else "more than 100 %"
+    return f"steps of {h:.4g} s do not determine the motion: half of that changes it by {by}; a smaller dt"
 
 
 def tolerance_note(
@@ -114,13 +113,41 @@ def tolerance_note(
     again = repeated(stepper, tighter, (settings.t0, *start), float(t[-1]), 0.0, max_steps=_MOST)
     if again is None:
         return ""
-    status, (_, q_tight, v_tight, u_tight) = again
-    exact = energy_norms(stepper, q_tight, u_tight, v_tight).max()
-    change = energy_norms(stepper, q_tight[-1:], u_tight[-1:], v[-1:] - v_tight[-1:])[0]
-    if status == Status.FINISHED and not change > TOLERANCE * exact:
+    status, tight = again
+    if status == Status.FINISHED and not _change(stepper, start[0], (t[-1:], q[-1:], v[-1:]), tight) > TOLERANCE:
         return ""
     fastest = float(np.abs(v).max())
     return (
-        f"atol = {settings.atol:.3g} bounds no error of speeds that reach {fastest:.3g} only: they differ from those of"
-        f" a tighter bound; atol below {1e-3 * fastest:.1g}"
+        f"atol = {settings.atol:.3g} bounds no error of speeds that reach {fastest:.3g} only: a tighter bound leads"
+        f" elsewhere; atol below {1e-3 * fastest:.1g}"
     )
+
+
+def _change(stepper: Stepper, q0: Array, states: Sequence[Array], finer: Sequence[Array]) -> float:
+    """Largest difference of speeds, of displacements from q0 and of energies, relative to the largest of each (17).
+
+    Args:
+        stepper: Stepper of the run.
+        q0: Initial configuration (nq).
+        states: Times, configurations and speeds of the run; the last are compared where the finer run has other rows.
+        finer: Times, configurations, speeds and inputs of the finer run.
+    """
+    (_, q, v), (t, q_finer, v_finer, u) = states, finer
+    rows = slice(None) if len(v) == len(v_finer) else slice(-1, None)
+    with np.errstate(all="ignore"):  # What has exploded overflows.
+        displacements = stepper.model.difference(np.broadcast_to(q0, q_finer.shape), q_finer)
+        changes = stepper.model.difference(q_finer[rows], q[rows]), v[rows] - v_finer[rows]
+        moved, fastest = (float(energy_norms(stepper, q_finer, u, x).max()) for x in (displacements, v_finer))
+        apart, faster = (float(energy_norms(stepper, q_finer[rows], u[rows], x).max()) for x in changes)
+        change = [_share(faster, fastest), _share(apart, moved) / _POSITIONS]
+        energies = energies_of(stepper, (t, q_finer, v_finer, u))
+        others = energies_of(stepper, (t[rows], q[rows], v[rows], u[rows]))
+        if energies is not None and others is not None:
+            spread = max(float(energies[0].max()), float(np.ptp(energies[1])))
+            change.append(_share(float(np.abs(others[1] - energies[1][rows]).max()), spread) / _POSITIONS)
+    return max(change)
+
+
+def _share(part: float, whole: float) -> float:
+    """Part of a whole; none of nothing."""
+    return part / whole if whole > 0.0 else 0.0

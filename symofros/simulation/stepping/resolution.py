@@ -20,6 +20,8 @@ TOLERANCE = 0.1
 _DIRECTIONS = 24
 # States looked at, as far as their evaluations are below this share of the run's.
 _STATES, _SHARE = 4, 0.01
+# Share of that error below which steps are evidently short enough, however the motion amplifies it.
+_EVIDENT = 1e-3
 # Share of a mode that rounding alone excites.
 _ROUNDING = 1e-16
 # Powers of e by which a mode of the motion grows at the rate of one state; then this has become another.
@@ -102,9 +104,10 @@ def resolution(
             continue
         basis, matrix, motion = spectrum
         resolved = _resolved_radius(method.name, part)
-        if _radius(matrix) <= resolved:
+        radius = _radius(matrix)
+        evident = evident and radius <= _resolved_radius(method.name, part, _EVIDENT)
+        if radius <= resolved:
             continue
-        evident = False
         modes = [(z, share) for z, share in _modes(basis, matrix, motion, h * speed, M) if abs(z) > resolved]
         judged = (_judged(method, z, share, h, part, t) for z, share in modes)
         here = max(judged, key=lambda mode: mode.error, default=None)
@@ -186,10 +189,10 @@ def _modes(basis: Array, matrix: Array, motion: Array, travel: float, M: Array) 
 
 
 @cache
-def _resolved_radius(name: str, steps: int) -> float:
-    """The |z| below which each mode, whatever its direction, is resolved over so many steps."""
+def _resolved_radius(name: str, steps: int, share: float = 1.0) -> float:
+    """The |z| below which each mode, whatever its direction, is resolved over so many steps; to a share of that."""
     radii, errors = _step_errors(name)
-    resolved = errors * steps <= 0.5 * TOLERANCE / _STATES
+    resolved = errors * steps <= 0.5 * share * TOLERANCE / _STATES
     return float(radii[int(np.argmin(resolved))]) if not resolved.all() else float(radii[-1])
 
 

@@ -96,7 +96,7 @@ def judge(scene: Scene) -> Verdict:
         par=par,
         method="rodas4",
         rtol=1e-5,
-        atol=1e-7 * scene["L"],
+        atol=1e-5 * scene["L"] * max(scene["F"] / 3.0 + scene["w"] / 8.0, 1e-9),  # Of the deflection.
         output=times,
         max_steps=4000,
     )
