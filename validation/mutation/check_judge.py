@@ -13,14 +13,15 @@ from validation.adapters import ROUTES, compiled, interpreted
 from validation.check import Settings, check
 from validation.contract.interface import Subject
 
-CORPUS = Path(__file__).parents[1] / "corpus"
+_PLACES = {"battery.yaml": Path(__file__).parent, "arm.urdf": Path(__file__).parents[1] / "corpus"}
 STATES = 8
 # Compared by interpreted programs, which needs no compiler; in the order of cost: most faults show in the first ones.
 GENERAL = (
     "double_pendulum",
     "rolling_disc",  # Free joint, conditions on speeds.
     "friction_arm",
-    "gyroscope",  # A ball, torques.
+    "battery.yaml",  # Rotors, elements, parameters, turned frames, universal, cylindrical, ball, free.
+    "gyroscope",
     "four_bar",
     "flyball_governor",  # Parameters, springs.
     "joint_zoo",
@@ -53,8 +54,8 @@ def compiled_models(module: str) -> tuple[str, ...]:
 
 def subject(name: str) -> Subject:
     """A model of the battery."""
-    if name.endswith(".urdf"):
-        return Subject(name, sf.load(CORPUS / name))
+    if name in _PLACES:
+        return Subject(name, sf.load(_PLACES[name] / name))
     return Subject(name, reference_models.MODELS[name])
 
 

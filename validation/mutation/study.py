@@ -19,7 +19,7 @@ CHECK, OUTPUTS, TESTS, SOUND = "check", "outputs", "tests", "sound"
 # Fates of a fault. "stillborn": the C compiler refuses it, so that nobody could use it.
 STILLBORN, CAUGHT, UNCHANGED, SURVIVED, OPEN = "stillborn", "caught", "no result changed", "survived", "open"
 CHECK_LIMIT, OUTPUTS_LIMIT, TESTS_LIMIT, SOUND_LIMIT = 120.0, 240.0, 240.0, 2400.0
-TESTS_BUDGET = 10.0  # CPU time after which no further test of a fault begins [s].
+TESTS_BUDGET = 6.0  # CPU time after which no further test of a fault begins [s].
 _CHECK_JUDGE, _TESTS_JUDGE = "validation.mutation.check_judge", "validation.mutation.tests_judge"
 _OUTPUTS = "validation.mutation.outputs"
 
@@ -57,9 +57,8 @@ class Study:
     def run(self, seconds: float) -> None:
         """Ask the judges about every fault that they have not answered yet.
 
-        First `check`; what it does not see is compared with the sound package's outputs, and goes to the tests, faults
-        that change an output before the others. Then the tests are asked about what `check` sees, for a score of their
-        own.
+        First `check`; what it does not see goes to the tests, and what they don't see is compared with the sound
+        package's outputs. Then the tests are asked about what `check` sees, for a score of their own.
 
         Args:
             seconds: Time after which no further fault is begun [s].
@@ -71,9 +70,8 @@ class Study:
         self._require_sound()
         for stage, ask, faults in (
             (CHECK, self._check, lambda: self.faults),
-            (OUTPUTS, self._compare, lambda: self._alive()),
-            (TESTS, self._test, lambda: self._alive(changed=True)),
-            (TESTS, self._test, lambda: self._alive()),
+            (TESTS, self._test, lambda: self._unseen(CHECK)),
+            (OUTPUTS, self._compare, lambda: self._unseen(CHECK, TESTS)),
             (TESTS, self._test, lambda: self.faults),
         ):
             for fault in faults():
@@ -82,10 +80,10 @@ class Study:
                 self._asked(fault, stage, ask)
                 self.report(f"{stage}: {fault.module}")
 
-    def _alive(self, changed: bool = False) -> list[SourceFault]:
-        """Faults that `check` does not see; or of these those that change an output of the battery."""
-        alive = [fault for fault in self.faults if not seen_by_check(self.store.get(fault.id, CHECK))]
-        return [fault for fault in alive if not (changed and unchanged(self.store.get(fault.id, OUTPUTS)))]
+    def _unseen(self, *stages: str) -> list[SourceFault]:
+        """Faults that none of some judges has seen."""
+        seen = {CHECK: seen_by_check, TESTS: seen_by_tests}
+        return [f for f in self.faults if not any(seen[stage](self.store.get(f.id, stage)) for stage in stages)]
 
     def _asked(self, fault: SourceFault, stage: str, ask: Callable[[SourceFault], Answer]) -> Answer:
         """The answer of a judge, which is kept."""

@@ -22,6 +22,7 @@ FOLDERS = (
 ).split()
 LIMIT = 60  # Of one test [s]: one that takes longer with a fault than this hangs.
 HUNG = 77
+MOST = 8  # Files of tests a module: all of them are imported before the first one runs.
 # The tests of C lie with what calls it.
 _MIRRORS = {
     "symofros/native/model": (
@@ -144,4 +145,4 @@ def chosen(root: Path, module: str) -> list[str]:
         else:
             continue
         ranked.append((rank, (root / file).stat().st_size, file))
-    return [file for *_, file in sorted(ranked)]
+    return [file for *_, file in sorted(ranked)][:MOST]
