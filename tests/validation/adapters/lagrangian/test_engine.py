@@ -88,9 +88,7 @@ def test_every_family_in_three_directions(family: str) -> None:
     checked(sf.System(family, [beam("b", joint, family=family, **counts)]))
 
 
-@pytest.mark.parametrize(
-    "case", sampled(("user's own", "planar formulas", "planar samples"), ("user's own", "planar samples"))
-)
+@pytest.mark.parametrize("case", sampled(("user's own", "planar formulas", "planar samples"), ["user's own"]))
 def test_functions_of_the_user_agree_to_rounding(case: str) -> None:
     """Interpolation of formulas and splines through samples cost no digits, of stiffness neither."""
     result = checked(CASES[case].system)
@@ -194,7 +192,7 @@ def test_forces_that_it_is_not_given_are_not_compared() -> None:
     assert not [row for row in rows(checked(loaded), "generalized_force") if row.engine == "lagrangian"]
 
 
-@pytest.mark.parametrize("retain", ["all", "first_order"])
+@pytest.mark.parametrize("retain", sampled(("all", "first_order"), ["all"]))
 def test_moments_on_sections_are_compared(retain: Any) -> None:
     """At a station in the world's axes, and spread along the beam by a formula of the station."""
     loads = sf.BeamLoad(torque=(1, -2, 0.5), at=0.4, axes="world"), sf.BeamLoad(torque=("x", 1, "-x"))
