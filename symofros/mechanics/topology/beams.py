@@ -78,7 +78,11 @@ class _Section:
 
     def conditions(self) -> Iterator[Condition]:
         beam = self.beam
-        yield Condition((beam.length,), "positive", self._no_length)
+        yield Condition(
+            (beam.length,),
+            "positive",
+            partial(self._wrong_number, "length", "the length of a beam is positive", "give a positive length"),
+        )
         for label, needed, why in (
             ("rhoA", True, "a beam has mass all along"),
             ("EI_z", bool(beam.bend_y), "bending along y bends against EI_z"),
@@ -91,7 +95,11 @@ class _Section:
             rule = f"{label} is {'positive' if needed else 'not negative'}: {why}"
             sign: Sign = "positive" if needed else "not negative"
             yield Condition(self._margins(label), sign, partial(self._wrong_sign, label, rule))
-        yield Condition((beam.damping,), "not negative", self._negative_damping)
+        yield Condition(
+            (beam.damping,),
+            "not negative",
+            partial(self._wrong_number, "damping", "a retardation time is not negative", "give zero or more seconds"),
+        )
 
     def _margins(self, label: str) -> tuple[Value, ...]:
         """The property at stations; along a beam of no length, which is reported, at the root."""
@@ -101,14 +109,9 @@ class _Section:
         length = Term(self.beam.length).maximum(Term(0.0))
         return tuple(substituted(value, STATION, (Term(xi) * length).value) for xi in _STATIONS.tolist())
 
-    def _no_length(self, numbers: Numbers) -> Problem:
-        return Problem(
-            f"{self.what}: length {numbers.value(self.beam.length):g}",
-            f"'{self.beam.length}'",
-            "the length of a beam is positive",
-            "give a positive length",
-            self.where,
-        )
+    def _wrong_number(self, label: str, rule: str, remedy: str, numbers: Numbers) -> Problem:
+        stated = getattr(self.beam, label)
+        return Problem(f"{self.what}: {label} {numbers.value(stated):g}", f"'{stated}'", rule, remedy, self.where)
 
     def _wrong_sign(self, label: str, rule: str, numbers: Numbers) -> Problem:
         values, length = self._along(label, _STATIONS, numbers), numbers.value(self.beam.length)
@@ -118,15 +121,6 @@ class _Section:
             f"'{getattr(self.beam, label)}'",
             rule,
             "mend the value",
-            self.where,
-        )
-
-    def _negative_damping(self, numbers: Numbers) -> Problem:
-        return Problem(
-            f"{self.what}: damping {numbers.value(self.beam.damping):g}",
-            f"'{self.beam.damping}'",
-            "a retardation time is not negative",
-            "give zero or more seconds",
             self.where,
         )
 
