@@ -102,7 +102,7 @@ STUDIES = table("""
     engines:
     truth_data:  engines
     cross_check:
-    ci:          cross_check
+    ci:          cross_check engines
     campaigns:
     diagrams:
     accuracy:

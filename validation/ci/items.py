@@ -12,11 +12,13 @@ import pytest
 
 from validation.adapters import ROUTES
 from validation.check import ModelResult, Settings
+from validation.ci.engines import engine_checks
 from validation.comparison.errors import Comparison
 from validation.cross_check.baseline import Baseline, BaselineError, Regression, machine_of
 from validation.cross_check.record import Record, as_data
 from validation.cross_check.speed import Speed, measure
 from validation.cross_check.tables import failure
+from validation.engines.workers import registry
 from validation.inputs.cases import Case, named, standard_set
 from validation.reporting.numbers import digits
 from validation.worker_pool import run_case
@@ -144,18 +146,28 @@ def cross_checks(session: Any, config: Any) -> Iterator[pytest.Item]:
         UsageError: An option is of no use; the message says why.
     """
     tier = config.getoption("--symofros-tier")
-    engines = config.getoption("--symofros-engine") or list(ROUTES)
-    for engine in engines:
-        if engine not in ROUTES:
-            raise pytest.UsageError(f"--symofros-engine {engine}: no such engine; there are {', '.join(ROUTES)}")
-    models = config.getoption("--symofros-model") or TIERS[tier].models
+    named_models = config.getoption("--symofros-model")
+    asked = config.getoption("--symofros-engine") or list(ROUTES)
+    engines = [name for name in asked if name in ROUTES]
+    parent = CrossChecks.from_parent(session, name="symofros", nodeid="symofros")
+    for engine in asked:
+        if named_models and engine not in ROUTES:
+            raise pytest.UsageError(f"--symofros-engine {engine}: models are checked by {', '.join(ROUTES)}")
+        if engine not in ROUTES and engine not in registry().plugins:
+            known = ", ".join(dict.fromkeys([*ROUTES, *registry().plugins]))
+            why = "".join(f"; {name}: {reason}" for name, reason in registry().failures.items())
+            raise pytest.UsageError(f"--symofros-engine {engine}: no such engine; there are {known}{why}")
+        if not named_models and engine in registry().plugins:
+            yield from engine_checks(parent, engine, tier)
+    if not engines:
+        return
+    models = named_models or TIERS[tier].models
     try:
         cases = named(list(models), config.getoption("--symofros-floating-base")) if models else standard_set()
     except (LookupError, FileNotFoundError) as error:
         raise pytest.UsageError(f"--symofros-model: {error.args[0]}") from None
     states = TIERS[tier].states
     stored = _stored(config.getoption("--symofros-baseline"))
-    parent = CrossChecks.from_parent(session, name="symofros", nodeid="symofros")
 
     def test(kind: type[CrossCheck], case: Case, suffix: str, settings: Settings, **more: Any) -> pytest.Item:
         name = f"{case.label}[{suffix}]"
@@ -165,7 +177,8 @@ def cross_checks(session: Any, config: Any) -> Iterator[pytest.Item]:
     for case in cases:
         for engine in engines:
             yield test(CrossCheck, case, engine, Settings(states, 0, (engine,)))
-        yield test(Confirmation, case, "confirmed", Settings(states, 0, tuple(engines)))
+        if named_models or not config.getoption("--symofros-engine"):
+            yield test(Confirmation, case, "confirmed", Settings(states, 0, tuple(engines)))
         if stored is not None:
             settings = Settings(stored.record.states, stored.record.seed, tuple(_engines(stored)))
             yield test(BaselineCheck, case, "baseline", settings, stored=stored)

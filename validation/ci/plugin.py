@@ -27,7 +27,8 @@ def pytest_addoption(parser: Any) -> None:
         "--symofros-engine",
         action="append",
         metavar="ENGINE",
-        help="only by this engine; repeatable. Without models: the standard set, as large as the tier",
+        help="only by this engine; repeatable. Without models: the standard set, as large as the tier; an engine of "
+        "a plug-in (entry point symofros.engines) is held to the truth on each kind of joint that it has",
     )
     group.addoption("--symofros-tier", choices=TIERS, default="standard", help="how much is checked (standard)")
     group.addoption("--symofros-floating-base", action="store_true", help="put a free joint under the root of URDFs")
@@ -52,3 +53,11 @@ def pytest_collection_modifyitems(session: Any, config: Any, items: list[Any]) -
         from validation.ci.items import cross_checks
 
         items += cross_checks(session, config)
+
+
+def pytest_unconfigure(config: Any) -> None:
+    """End the processes that engines ran in."""
+    if config.getoption("--symofros-engine", None):
+        from validation.ci.engines import finish
+
+        finish()

@@ -1,0 +1,97 @@
+"""The engine matrix as tests: one for each kind of joint and function of an engine, judged by the truth."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from validation.engines.kinds import KINDS, tree_of
+from validation.engines.matrix import SEED, Truths, judged, suited
+from validation.engines.study import RED
+from validation.engines.verdicts import Cell
+from validation.engines.workers import Job, Worker, registry
+from validation.reporting.numbers import digits
+
+# Functions of the smoke tier: what everything else of an engine rests on.
+SMOKE = ("mass_matrix", "bias", "gravity", "inverse_dynamics", "forward_dynamics", "kinetic_energy", "link_poses")
+
+
+class EngineFailure(Exception):
+    """A cell that is red; the message says why."""
+
+
+@cache
+def _worker() -> Worker:
+    return Worker()
+
+
+@cache
+def _cells(engine: str, kind: str, functions: tuple[str, ...]) -> dict[str, Cell]:
+    """The cells of an engine on the tree of a kind, by function."""
+    plugin = registry().plugins[engine]
+    job = Job(engine, suited(tree_of(kind), plugin), functions, SEED)
+    return {one.cell.function: one.cell for one in judged(plugin, job, Truths(), _worker())}
+
+
+class EngineCheck(pytest.Item):
+    """One function of an engine on one kind of joint.
+
+    Args:
+        engine: Name of the plug-in.
+        kind: Name of the kind of joint.
+        function: Name of the function.
+        together: Functions that the engine is asked for at once.
+        tier: Name of the tier.
+        named: Others that pytest sets.
+    """
+
+    def __init__(
+        self, *, engine: str, kind: str, function: str, together: tuple[str, ...], tier: str, **named: Any
+    ) -> None:
+        super().__init__(**named)
+        self.engine, self.kind, self.wanted, self.together = engine, kind, function, together
+        self.add_marker("symofros")
+        self.add_marker(f"symofros_{tier}")
+
+    def runtest(self) -> None:
+        """Ask the engine, and fail if its answer is wrong, or none."""
+        cell = _cells(self.engine, self.kind, self.together)[self.wanted]
+        if cell.verdict in RED:
+            stated = cell.words if cell.verdict == "crashes" else f"error {digits(cell.error)}"
+            raise EngineFailure(
+                f"{self.engine}, {self.wanted} on {self.kind}: {cell.verdict}: {stated}, "
+                f"of the largest entry; rounding explains {digits(cell.tolerance)}"
+            )
+        if cell.verdict != "right":
+            pytest.skip(cell.words or cell.verdict)
+        self.user_properties.append(("error", digits(cell.error)))
+
+    def repr_failure(self, excinfo: Any, style: Any = None) -> Any:
+        """The cell alone; another exception with its traceback."""
+        return str(excinfo.value) if isinstance(excinfo.value, EngineFailure) else super().repr_failure(excinfo, style)
+
+    def reportinfo(self) -> tuple[Path, int | None, str]:
+        """Where it stands in reports."""
+        return Path(self.engine), None, f"symofros::{self.name}"
+
+
+def engine_checks(parent: Any, engine: str, tier: str) -> Iterator[pytest.Item]:
+    """Tests of an engine: of the kinds of joints that it names, or else all, and the functions that it offers."""
+    plugin = registry().plugins[engine]
+    functions = tuple(name for name in plugin.functions if tier != "smoke" or name in SMOKE)
+    for kind in KINDS:
+        if not plugin.kinds or kind in plugin.kinds:
+            for function in functions:
+                name = f"{engine}[{kind}-{function}]".replace(" ", "_")
+                made = {"engine": engine, "kind": kind, "function": function, "together": functions, "tier": tier}
+                yield EngineCheck.from_parent(parent, name=name, **made)
+
+
+def finish() -> None:
+    """End the process that engines ran in."""
+    if _worker.cache_info().currsize:
+        _worker().close()
