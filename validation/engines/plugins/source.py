@@ -86,6 +86,8 @@ class SourceModel:
         names.update({name: getattr(state, name).copy() for name in _INPUTS})
         try:
             exec(self._ways[function].code, names)
+        except (NameError, SyntaxError):  # A fault of our text is no word of the engine's.
+            raise
         except Exception as error:  # The engine refuses, in its own words.
             return Unsupported(f"{type(error).__name__}: {error}".strip())
         return np.array(names["value"], dtype=float)
@@ -162,6 +164,8 @@ class SourcePlugin:
             return source
         try:
             return SourceModel(source, self.ways)
+        except (NameError, SyntaxError):
+            raise
         except Exception as error:  # The engine refuses, in its own words.
             return Unsupported(f"{type(error).__name__}: {error}".strip())
 
