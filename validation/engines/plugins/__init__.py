@@ -10,6 +10,7 @@ from validation.engines.plugins import (
     dynibo,
     frax,
     idyntree,
+    mjx,
     mujoco,
     newton,
     pinocchio,
@@ -18,5 +19,5 @@ from validation.engines.plugins import (
     roboticstoolbox,
 )
 
-_MODULES = (pinocchio, mujoco, adam, dart, drake, dynibo, frax, idyntree, newton, pybullet, pykdl, roboticstoolbox)
+_MODULES = (pinocchio, mujoco, adam, dart, drake, dynibo, frax, idyntree, mjx, newton, pybullet, pykdl, roboticstoolbox)
 OWN: dict[str, EnginePlugin] = {module.PLUGIN.name: module.PLUGIN for module in _MODULES}
