@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from matplotlib.colors import to_rgb
 
 from validation.adapters import ROUTES
 from validation.comparison.errors import BIN_EDGES, HIGHEST_DECADE, LOWEST_DECADE
@@ -62,9 +61,7 @@ def _outline(axes: Any, counts: Sequence[int], left: float, width: float, base: 
         inside = slice(filled[0], filled[-1] + 1)
         edges = np.log10(BIN_EDGES)[filled[0] : filled[-1] + 2]
         heights = base + 0.75 * between[inside] / max(counts[1:])
-        axes.stairs(
-            heights, edges, baseline=base, fill=True, facecolor=(*to_rgb(color), 0.12), edgecolor=color, linewidth=1.3
-        )
+        axes.stairs(heights, edges, baseline=base, fill=True, facecolor=(color, 0.12), edgecolor=color, linewidth=1.3)
     axes.bar(left, 0.75 * counts[0] / sum(counts), width, base, align="edge", color=color)
 
 

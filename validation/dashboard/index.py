@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -60,9 +60,16 @@ def index(entries: Mapping[str, Entry]) -> Report:
         ok,
         (table,),
         sections,
-        decisions=tuple(block for name in _DECIDING if name in reports for block in reports[name].decisions),
+        decisions=_decisions([reports[name].decisions for name in _DECIDING if name in reports]),
         missed=tuple(f"[{name}](#{name}): {line}" for name, report in reports.items() for line in report.shortfalls),
     )
+
+
+def _decisions(groups: Sequence[tuple[Block, ...]]) -> tuple[Block, ...]:
+    """The first group, after the sentences of the others, which its table would hide; then their tables."""
+    others = [group for group in groups[1:] if group]
+    tables = (block for group in others for block in group[1:])
+    return (*(group[0] for group in others), *(groups[0] if groups else ()), *tables)
 
 
 def headline(entries: Mapping[str, Entry]) -> str:

@@ -7,13 +7,11 @@ import re
 import textwrap
 from collections import Counter
 from html import escape
+from importlib import import_module
 from typing import Any
 from zlib import crc32
 
 import numpy as np
-from matplotlib import rc_context
-from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from validation.reporting.figures import SHAPES, Chart, Curve, Drawing
 from validation.reporting.numbers import short
@@ -65,11 +63,24 @@ _SCALE = 1.05
 _LETTER = 5.8
 
 
+def library(name: str) -> Any:
+    """A module of Matplotlib, loaded when the first figure is drawn.
+
+    Raises:
+        ModuleNotFoundError: It is not installed; says what brings it.
+    """
+    try:
+        return import_module(name)
+    except ModuleNotFoundError:
+        needed = "figures are drawn by Matplotlib, which is not installed: pip install 'symofros[validation]'"
+        raise ModuleNotFoundError(needed) from None
+
+
 def draw(item: Chart | Drawing) -> str:
     """The picture with its legend as an SVG element, titled and described."""
     width, height = item.size if isinstance(item, Drawing) else (430.0, 270.0)
-    with rc_context(_RC | {"svg.hashsalt": item.title}):
-        figure = Figure(figsize=(width / 72, height / 72))
+    with library("matplotlib").rc_context(_RC | {"svg.hashsalt": item.title}):
+        figure = library("matplotlib.figure").Figure(figsize=(width / 72, height / 72))
         axes = figure.add_axes((0, 0, 1, 1))
         axes.set_title(item.y)
         axes.set_xlabel(item.x)
@@ -88,9 +99,10 @@ def draw(item: Chart | Drawing) -> str:
 def logarithmic(axis: Any) -> None:
     """Decades of an axis, as powers of ten where they are far from one."""
     low, high = sorted(axis.get_view_interval())
-    axis.set_major_locator(LogLocator(subs=(1.0,) if high > 60 * low else (1.0, 2.0, 5.0), numticks=8))
-    axis.set_minor_locator(NullLocator())
-    axis.set_major_formatter(FuncFormatter(lambda value, _: power(value)))
+    ticker = library("matplotlib.ticker")
+    axis.set_major_locator(ticker.LogLocator(subs=(1.0,) if high > 60 * low else (1.0, 2.0, 5.0), numticks=8))
+    axis.set_minor_locator(ticker.NullLocator())
+    axis.set_major_formatter(ticker.FuncFormatter(lambda value, _: power(value)))
 
 
 def power(value: float) -> str:

@@ -15,8 +15,8 @@ from validation.reporting.plain import as_array
 Values = Annotated[Array | Sequence[float], PlainValidator(as_array)]
 Kind = Literal["line", "dashed", "dotted", "points", "joined"]
 Logarithmic = Literal["", "x", "y", "xy"]
-# Colours of series, and marks of points: eight series have both of their own.
-COLORS, SHAPES = 12, 8
+# Marks of points: so many series have a colour and a mark of their own.
+SHAPES = 8
 
 
 @dataclass(frozen=True)

@@ -127,8 +127,12 @@ def block(item: Block, figure_name: str = "") -> str:
 
 
 def chart(item: Chart | Drawing) -> str:
-    """A picture under its title."""
-    return f'<div class="chart"><h3>{escape(item.title)}</h3><div class="scroll" tabindex="0">{draw(item)}</div></div>'
+    """A picture under its title, or what it would take to draw it."""
+    try:
+        picture = f'<div class="scroll" tabindex="0">{draw(item)}</div>'
+    except ModuleNotFoundError as error:
+        picture = block(Text(f"Not drawn: {error}.", "soft"))
+    return f'<div class="chart"><h3>{escape(item.title)}</h3>{picture}</div>'
 
 
 def table(item: Table) -> str:

@@ -6,12 +6,9 @@ import math
 from typing import Any
 
 import numpy as np
-from matplotlib.collections import LineCollection
-from matplotlib.patches import PathPatch
-from matplotlib.path import Path
 
 from validation.mechanics.geometry import Array
-from validation.reporting.charts import BAD, GOOD, INK, PAPER, SERIES, logarithmic
+from validation.reporting.charts import BAD, GOOD, INK, PAPER, SERIES, library, logarithmic
 from validation.reporting.figures import Drawing
 from validation.stability.study import FINISHED, Cell, Grid, Map
 
@@ -43,7 +40,8 @@ def draw(mapped: Map, x: Grid, y: Grid, quantity: str) -> Drawing:
         _scaled(axes, "x", mapped.x, x, columns)
         _scaled(axes, "y", mapped.y, y, rows)
         _cells(axes, mapped, columns, rows)
-        axes.add_collection(LineCollection(edge(mapped.good, columns, rows), colors=INK, linewidths=1.8))
+        lines = edge(mapped.good, columns, rows)
+        axes.add_collection(library("matplotlib.collections").LineCollection(lines, colors=INK, linewidths=1.8))
         for k, limit in enumerate(mapped.subject.limits):
             color = (GOOD, SERIES[6])[k % 2]
             axes.plot(limit.x, limit.y, color=color, linewidth=2, linestyle=(0, (5, 2.5)), label=limit.label)
@@ -100,8 +98,12 @@ def _cells(axes: Any, mapped: Map, columns: Array, rows: Array) -> None:
                     **place,
                 )
     for (kind, depth), boxes in areas.items():
-        path = Path.make_compound_path_from_polys(np.array(boxes))
-        axes.add_patch(PathPatch(path, facecolor=COLORS[kind], alpha=depth, edgecolor=PAPER, linewidth=0.3))
+        path = library("matplotlib.path").Path.make_compound_path_from_polys(np.array(boxes))
+        axes.add_patch(
+            library("matplotlib.patches").PathPatch(
+                path, facecolor=COLORS[kind], alpha=depth, edgecolor=PAPER, linewidth=0.3
+            )
+        )
     meaning = {
         "good": f"at most {mapped.bound:.3g}",
         "bad": "more",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 import xml.etree.ElementTree
 
 import numpy as np
@@ -78,3 +79,9 @@ def test_the_same_data_is_the_same_picture() -> None:
 def test_drawings_have_the_same_style() -> None:
     svg = charts.draw(Drawing("t", "x", "y", lambda axes: axes.plot(Y, Y, color=charts.SERIES[0], label="a"), "note"))
     assert len(points(svg)) == 3 and ">note</text>" in svg
+
+
+def test_without_the_library_a_page_says_so_in_place_of_its_figures(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    page = html.chart(Chart("t", "x", "y", (Curve("a", Y, Y),)))
+    assert "Not drawn: figures are drawn by Matplotlib, which is not installed: pip install" in page
