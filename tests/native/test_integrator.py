@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.integrate import RK45
 
 import symofros as sf
 
@@ -52,3 +53,29 @@ def test_generalized_alpha_keeps_conditions_on_speeds() -> None:
         assert np.abs(rate).max() < 1e-9
         errors.append(np.abs(model.difference(exact.q[-1], run.q[-1])).max())
     assert errors[1] < 1e-4 and 3.0 < errors[0] / errors[1] < 5.0, errors
+
+
+def test_the_next_step_is_chosen_from_the_errors_of_the_last_two() -> None:
+    """Equation (4) of docs/theory/simulation.md, with errors of SciPy's coefficients of the same method."""
+    joint = sf.Joint("x", "prismatic", axis=(1, 0, 0), effort=("-8*x^3",))
+    model = sf.compile(sf.System("hardening", [sf.RigidBody("mass", joint, sf.Inertia(2.0))]))
+    tolerance = 1e-7
+    run = sf.simulate(model, [2.0], [1.0], 3.0, method="dopri5", rtol=tolerance, atol=tolerance)
+    assert run.statistics.steps > 50
+
+    def slope(y: np.ndarray) -> np.ndarray:
+        return np.array([y[1], -4.0 * y[0] ** 3])
+
+    errors, steps = [], np.diff(run.t)
+    for y, y1, h in zip(*(np.hstack([run.q, run.v])[part] for part in (slice(-1), slice(1, None))), steps, strict=True):
+        k = np.zeros((7, 2))
+        for i, row in enumerate(RK45.A):
+            k[i] = slope(y + h * row[:i] @ k[:i])
+        k[5], k[6] = slope(y + h * RK45.A[5, :5] @ k[:5]), slope(y1)
+        bound = tolerance + tolerance * np.array([abs(y[0]), max(abs(y[1]), abs(y1[1]))])
+        errors.append(np.sqrt(np.mean((h * RK45.E @ k / bound) ** 2)))
+    now, before = np.array(errors[1:-2]), np.maximum(errors[:-3], 1e-4)
+    expected = 0.9 * now ** -(1 / 5 - 0.03) * before**0.04
+    # What was rejected between two accepted steps has its own say.
+    followed = np.isclose(steps[2:-1] / steps[1:-2], expected, rtol=1e-6)
+    assert np.sum(~followed) <= run.statistics.rejected < 5

@@ -28,6 +28,7 @@ from validation.mechanics.extrapolation import Refined
 from validation.mechanics.geometry import Array
 
 RATE, STRAIN, DAMPING, ROTARY = "mesh_rate", "strain_order", "strain_damping", "rotary_order"
+ROWS = frozenset({RATE, STRAIN, DAMPING, ROTARY})
 # States of these rows: each takes every mesh by itself.
 STATES = 10
 # By how much the rate of the finest meshes may stay below the stated one: half a power, where the next one is two

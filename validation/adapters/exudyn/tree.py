@@ -15,6 +15,7 @@ import exudyn
 import numpy as np
 from exudyn import itemInterface as items
 
+import symofros as sf
 from validation.adapters.exudyn import mapped
 from validation.adapters.exudyn.system import VERSION, ExudynSystem, assembled
 from validation.adapters.reach import armature, unrepresented
@@ -160,6 +161,9 @@ class KinematicTreeEngine:
 def build(subject: Subject) -> Engine | Unsupported:
     """Exudyn's tree of a rigid description; one of bodies, where a joint is not of its kinds."""
     system = subject.system
+    beam = next((body for body in system.bodies if isinstance(body, sf.Beam)), None)
+    if beam is not None:
+        return Unsupported(f"beam '{beam.name}': left to finite elements, exudyn-beams")
     assembly = assemble(system)
     obstacle = unrepresented(system, assembly, carried.KINDS)
     if obstacle is not None:
