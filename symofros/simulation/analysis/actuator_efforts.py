@@ -13,7 +13,7 @@ from symofros.base.arrays import numeric
 from symofros.errors import ActuationError, Problem, ShapeError, UnknownNameError, did_you_mean
 from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
 from symofros.runtime.calls.kernel import Array
-from symofros.runtime.constrained import eliminate, free_motions, pseudo_inverse
+from symofros.runtime.constrained import Eliminated, eliminate, free_motions, natural_sizes, pseudo_inverse
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.beam_theory import bendings_at, refuse_beyond
 from symofros.simulation.analysis.consistency import consistent_jacobian, place_in_batch
@@ -192,13 +192,13 @@ def _solve(
     if not all(np.all(np.isfinite(term)) for term in state):
         return np.full(len(names), np.nan), np.full(model.nc, np.nan), 0
     measures = model.record.measures
-    Z, free = (
-        free_motions(eliminate(G, measures, np.diag(M)), model.nv)
-        if model.nc
-        else (np.eye(model.nv), np.arange(model.nv))
-    )
+    Z, free, natural = np.eye(model.nv), np.arange(model.nv), np.zeros((model.nv, model.nv))
+    if model.nc:
+        eliminated = eliminate(G, measures, np.diag(M))
+        Z, free = free_motions(eliminated, model.nv)
+        natural = _sizes_of_motions(eliminated, natural_sizes(G, measures), free)
     r = M @ a + h - Q
-    A, noise = Z.T @ B * sizes, np.abs(Z.T) @ np.abs(B) * sizes
+    A, noise = Z.T @ B * sizes, (np.abs(Z) + natural).T @ np.abs(B) * sizes
     A[np.abs(A) <= ROUNDING * noise] = 0.0
     tau, rank = _least_norm(A, Z.T @ r)
     tau = sizes * tau
@@ -217,6 +217,14 @@ def _solve(
             )
         )
     return tau, pseudo_inverse(G, measures).T @ (r - B @ tau), len(names) - rank
+
+
+def _sizes_of_motions(eliminated: Eliminated, sizes: Array, free: npt.NDArray[np.intp]) -> Array:
+    """Natural size of each entry of Z (nv, free), by which what is left at a dead centre counts as rounding."""
+    natural = np.zeros((sizes.shape[1], len(free)))
+    for row, column in zip(eliminated.rows, eliminated.columns, strict=True):
+        natural[column] = sizes[row, free] / sizes[row, column]
+    return natural
 
 
 def _least_norm(A: Array, b: Array) -> tuple[Array, int]:

@@ -291,3 +291,42 @@ def test_c_is_what_the_interpreter_says() -> None:
         result = getattr(compiled, name)(q, v, a, u)
         np.testing.assert_allclose(result, wanted, rtol=0, atol=1e-13 * np.abs(wanted).max())
         np.testing.assert_allclose(getattr(compiled, name)(q[0], v[0], a[0], u[0]), wanted[0], atol=1e-11)
+
+
+def test_a_rotor_turned_about_another_axis_loads_the_joint_of_its_carrier() -> None:
+    """Its momentum n J dq along x: the joint supplies n J (ddq along x + W dq along y), the moment of a gyroscope."""
+    ratio, J, W = 5.0, 0.02, 3.0
+
+    def carried(*rotors: sf.Rotor) -> sf.Model:
+        solid = sf.Inertia(1.0, (0.1, 0.2, 0.3), (0.3, 0.4, 0.5))
+        bodies = [
+            sf.RigidBody("base", sf.Joint("turn", "revolute", axis=(0, 0, 1), prescribed=True), solid),
+            sf.RigidBody("arm", sf.Joint("q", "revolute", "base", axis=(1, 0, 0), rotors=rotors), solid),
+        ]
+        return sf.compile(sf.System("carried", bodies), INTERPRETED)
+
+    q, v, a, u = [0.3], [2.0], [1.7], [0.4, W, 0.0]
+    with_rotor, without = (m.joint_wrenches(q, v, a, u) for m in (carried(sf.Rotor(J, ratio)), carried()))
+    added = np.array([0, 0, 0, ratio * J * a[0], ratio * J * W * v[0], 0])
+    np.testing.assert_allclose(with_rotor[0] - without[0], added, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(with_rotor[1], without[1], rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("coordinate", [0, 1])
+def test_a_rotor_loads_the_drive_of_its_own_speed_alone(coordinate: int) -> None:
+    """Of a joint with two speeds, on a carrier at rest: ratio^2 J ddq."""
+    solid = sf.Inertia(1.0, (0.1, 0.2, 0.3), (0.3, 0.4, 0.5))
+
+    def driven(*rotors: sf.Rotor) -> sf.Model:
+        bodies = [
+            sf.RigidBody("base", sf.Joint("x", "prismatic", axis=(1, 0, 0)), solid),
+            sf.RigidBody("arm", sf.Joint("hook", "universal", "base", prescribed=True, rotors=rotors), solid),
+        ]
+        return sf.compile(sf.System("hook", bodies), INTERPRETED)
+
+    u = np.array([0.3, 2.0, 1.7, -0.4, 0.6, -0.9])
+    rotor = sf.Rotor(0.02, 5.0, (0, 1, 0), coordinate=coordinate)
+    with_rotor, without = (m.prescribed_efforts([0.1], [0.2], [0.3], u) for m in (driven(rotor), driven()))
+    added = np.zeros(2)
+    added[coordinate] = 25.0 * 0.02 * u[4 + coordinate]
+    np.testing.assert_allclose(with_rotor - without, added, rtol=0, atol=1e-12)

@@ -208,3 +208,63 @@ class TestRefused:
         m = sf.compile(slider_crank(), INTERPRETED)
         with pytest.raises(sf.UnknownNameError, match="no actuator 'q9'"):
             sf.actuator_efforts(m, posture(0.8)[0], np.zeros(3), np.zeros(3), ["q9"])
+
+
+def test_what_is_stated_of_the_actuators_does_not_count() -> None:
+    m = sf.compile(slider_crank(actuated=True), INTERPRETED)
+    q, _ = posture(0.8)
+    without = sf.actuator_efforts(m, q, np.zeros(3), np.zeros(3))
+    stated = sf.actuator_efforts(m, q, np.zeros(3), np.zeros(3), u=[5.0])
+    assert stated.efforts == pytest.approx(without.efforts, rel=1e-12)
+    assert stated.u == pytest.approx(without.efforts, rel=1e-12)
+
+
+def test_an_actuator_beside_a_stiff_spring_keeps_its_digits() -> None:
+    """The column of an effort is a difference of forces a billion times larger."""
+    joint = sf.Joint("q1", "revolute", axis=(0, 1, 0), actuated=True, elements=(sf.Spring(1e9),))
+    m = sf.compile(sf.System("stiff", [sf.RigidBody("arm", joint, sf.Inertia(1.0, (0.5, 0, 0)))]), INTERPRETED)
+    a = m.forward_dynamics([0.3], [0.1], [1.234e6])
+    assert sf.actuator_efforts(m, [0.3], [0.1], a).efforts == pytest.approx([1.234e6], rel=1e-8)
+
+
+def test_an_actuator_at_a_dead_centre_has_no_effort() -> None:
+    """The piston moves the crank by rounding alone there."""
+    m = sf.compile(slider_crank(), INTERPRETED)
+    q, _ = posture(np.pi)
+    a = m.forward_dynamics(q, np.zeros(3), [])
+    result = sf.actuator_efforts(m, q, np.zeros(3), a, ["q3"])
+    assert abs(result.efforts[0]) < 1e-6 and result.redundancy == 1
+
+
+def test_efforts_that_act_alike_are_redundant() -> None:
+    """Two forces along one line at the end of a double pendulum, which no row or column shows as alike."""
+    arm = sf.Inertia(1.0, (0.5, 0, 0), (0.1, 0.1, 0.1))
+    end, axis = sf.Frame("end", (1, 0, 0)), (0, 1, 0)
+    push = [
+        sf.Load((sf.formula(f"{k}*u_{n}"), 0, sf.formula(f"{k / 3}*u_{n}")), at="end")
+        for k, n in ((0.3, "f"), (0.7, "g"))
+    ]
+    bodies = [
+        sf.RigidBody("upper", sf.Joint("q1", "revolute", axis=axis), arm, [end]),
+        sf.RigidBody("lower", sf.Joint("q2", "revolute", "upper", "end", axis=axis), arm, [end], loads=push),
+    ]
+    m = sf.compile(sf.System("pushed", bodies, inputs=[sf.Input("u_f"), sf.Input("u_g")]), INTERPRETED)
+    q, v = np.array([0.37, 0.91]), np.array([0.3, -0.7])
+    a = m.forward_dynamics(q, v, [1.0, 2.0])
+    result = sf.actuator_efforts(m, q, v, a)
+    assert result.redundancy == 1
+    # 0.3 f + 0.7 g = 1.7, of least norm.
+    assert result.efforts == pytest.approx(1.7 / 0.58 * np.array([0.3, 0.7]), rel=1e-9)
+
+
+def test_prescribed_motions_are_no_actuators() -> None:
+    arm = sf.Inertia(1.0, (0.5, 0, 0), (0.1, 0.1, 0.1))
+    bodies = [
+        sf.RigidBody("base", sf.Joint("turn", "revolute", prescribed=True), arm),
+        sf.RigidBody("arm", sf.Joint("q", "revolute", "base", axis=(0, 1, 0), actuated=True), arm),
+    ]
+    m = sf.compile(sf.System("driven", bodies), INTERPRETED)
+    u = [1.5, 0.2, 0.4, -0.3]
+    a = m.forward_dynamics([0.3], [0.2], u)
+    result = sf.actuator_efforts(m, [0.3], [0.2], a, u=u)
+    assert result.actuators == ("q",) and result.efforts == pytest.approx([1.5], rel=1e-11)
