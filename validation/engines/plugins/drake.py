@@ -43,6 +43,7 @@ from pydrake.multibody.plant import MultibodyPlant
 p = MultibodyPlant(0.0)
 def X(R, r): return RigidTransform(RotationMatrix(np.array(R)), r)
 def inertia(mass, com, I):
+    if mass == 0 and not np.any(I): return tree.SpatialInertia.Zero()
     I = np.array(I)
     about = tree.RotationalInertia(*I.diagonal(), I[0, 1], I[0, 2], I[1, 2])
     return tree.SpatialInertia.MakeFromCentralInertia(mass, com, about)

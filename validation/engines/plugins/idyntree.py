@@ -17,7 +17,7 @@ assert loader.loadReducedModelFromString(URDF, {joints})
 robot = iDynTree.KinDynComputations()
 assert robot.loadRobotModel(loader.model())
 robot.setFrameVelocityRepresentation(iDynTree.MIXED_REPRESENTATION)
-robot.setFloatingBase("{root}")
+assert robot.setFloatingBase("{root}"), "the reader has dropped the link {root}"
 links, g = {links}, np.array({gravity})
 '''
 
