@@ -135,7 +135,7 @@ def chosen(root: Path, module: str) -> list[str]:
         if file == f"{mirror}/test_{path.stem}.py":
             rank = 0
         elif module.removesuffix(".py") in _imports(root / file):
-            rank = 1
+            rank = 1 if file.split("/")[1] == mirrors[0].split("/")[1] else 7
         elif folder in mirrors:
             rank = 2 + mirrors.index(folder)
         elif file in general:

@@ -71,3 +71,11 @@ def test_the_spectral_radius_is_that_of_the_integrator() -> None:
     model = oscillator()
     stepper = Stepper(model, METHODS["generalized_alpha"], plan_inputs(model, None), (), model.parameter_values)
     assert stepper.run.spectral_radius == SPECTRAL_RADIUS
+
+
+def test_beyond_the_limit_the_factor_of_semi_implicit_euler_is_that_of_the_growing_mode() -> None:
+    """Both factors are real there: the larger one is what the steps grow by."""
+    h_omega = 2.2
+    factor = METHODS["semi_implicit_euler"].amplification(1j * h_omega)
+    run = sf.simulate(oscillator(), [1.0], t_end=60.0, dt=1.0, par=[h_omega**2, 0.0], method="semi_implicit_euler")
+    assert factor == pytest.approx(run.q[-1, 0] / run.q[-2, 0], rel=1e-9) and abs(factor) > 2.0

@@ -1,0 +1,38 @@
+"""The loop in C from Python's side: what looks at other states leaves the run where it was."""
+
+from __future__ import annotations
+
+import numpy as np
+
+import symofros as sf
+from reference_models import MODELS
+from symofros.simulation.inputs import plan_inputs
+from symofros.simulation.options import SimulationOptions
+from symofros.simulation.settings import Settings
+from symofros.simulation.stepping.stepper import Stepper
+from tests.models import GUESSES
+
+
+def test_states_that_are_only_looked_at_leave_inputs_and_accelerations_of_the_run() -> None:
+    four_bar = sf.compile(MODELS["four_bar"])
+    start = sf.assemble(four_bar, GUESSES["four_bar"], [1.0, 0.0, 0.0])
+    settings = Settings.of(four_bar, SimulationOptions("generalized_alpha", dt=0.01), 1.0)
+    push = {name: lambda t, q, v: 1.0 + t + q[0] for name in four_bar.names.u}
+    inputs = plan_inputs(four_bar, push)
+    stepper = Stepper(four_bar, settings.method, inputs, (), four_bar.parameter_values)
+    settings.apply(stepper)
+    assert stepper.start(start.q, start.v, 4) >= 0
+
+    def held() -> np.ndarray:
+        system, memory = stepper.system, stepper.memory
+        sizes = ((system.u, four_bar.nu), (system.a, four_bar.nv), (system.lam, four_bar.nc), (system.rank, 1))
+        return np.concatenate([memory.view(pointer, size).copy() for pointer, size in sizes])
+
+    before = held()
+    rate = np.zeros(four_bar.nq + four_bar.nv)
+    with stepper.preserved():
+        other = np.concatenate([start.q + 0.1, 2.0 * start.v])
+        stepper.place(0.5, other)
+        stepper.slope(0.5, other, rate)
+        assert not np.array_equal(held(), before)
+    np.testing.assert_array_equal(held(), before)
