@@ -2,22 +2,39 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Mapping
 from functools import cache
 from importlib import import_module
+from types import ModuleType
 from typing import Any
 
 import typer
 from typer.core import TyperGroup
 
-from validation.cross_check import report as cross_check
-from validation.reporting.command import add_command
+BAD_INPUT = 2
+
+
+def imported(name: str) -> ModuleType:
+    """A module of the harness; where a package that it needs is not installed, that is said, and the program ends."""
+    try:
+        return import_module(name)
+    except ModuleNotFoundError as error:
+        missing = (error.name or "").partition(".")[0]
+        if missing in ("", "validation", "symofros"):
+            raise
+        print(
+            f"the harness needs the package '{missing}', which is not installed\n"
+            "  remedy: pip install 'symofros[validation]'",
+            file=sys.stderr,
+        )
+        raise SystemExit(BAD_INPUT) from None
 
 
 @cache
 def studies() -> Mapping[str, Any]:
     """The commands beside `check`, by name; this imports the studies and with them all engines."""
-    return typer.main.get_group(import_module("validation.commands").app).commands
+    return typer.main.get_group(imported("validation.commands").app).commands
 
 
 class Commands(TyperGroup):
@@ -38,7 +55,7 @@ class Commands(TyperGroup):
 
 
 app = typer.Typer(cls=Commands, add_completion=False, no_args_is_help=False, pretty_exceptions_enable=False)
-add_command(app, cross_check.TOPIC)
+imported("validation.reporting.command").add_command(app, imported("validation.cross_check.report").TOPIC)
 
 
 @app.callback()

@@ -7,16 +7,11 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from importlib.util import find_spec
 from pathlib import Path
 
 import typer
 
 import symofros as sf
-from symofros.commands.shared import BAD_INPUT, err
-
-# Packages of the extra that every command of the harness needs.
-_NEEDED = ("scipy", "pinocchio", "mujoco")
 
 
 def check(context: typer.Context) -> None:
@@ -31,16 +26,6 @@ def validation(context: typer.Context) -> None:
 
 def _run(arguments: list[str]) -> int:
     """The harness with these arguments; its exit code."""
-    missing = [name for name in _NEEDED if find_spec(name) is None]
-    if missing:
-        err.print(
-            f"the harness needs packages that are not installed: {', '.join(missing)}\n"
-            "  remedy: pip install 'symofros[validation]'",
-            markup=False,
-            highlight=False,
-            soft_wrap=True,
-        )
-        return BAD_INPUT
     root = Path(sf.__file__).parents[1]
     start = f"import sys; sys.path.insert(0, {str(root)!r}); from validation.__main__ import app; "
     start += "app(prog_name='symofros validation')"
