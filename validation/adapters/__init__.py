@@ -91,6 +91,7 @@ ROUTES: dict[str, Route] = {
     "mujoco-mjcf": Route("validation.adapters.mujoco.mjcf", "mujoco", reads="mjcf"),
     "lagrangian": Route("validation.adapters.lagrangian.engine", "casadi", beams=True),
     "exudyn-beams": Route("validation.adapters.exudyn.mapped", "exudyn", beams=True, rotary=False),
+    "exudyn-frf": Route("validation.adapters.exudyn.frf", "exudyn", beams=True),
     "interpreted": Route("validation.adapters.interpreted", independent=False),
     "description": Route("validation.adapters.description", independent=False),
 }

@@ -13,4 +13,5 @@ DIFFERENCES: tuple[Difference, ...] = (
     Difference("exudyn-beams", "coordinates of beams", "amplitudes of shape functions", "places, slopes and rotations"),
     Difference("exudyn-beams", "length of beams' axes", "held to second order", "free, without stiffness"),
     Difference("exudyn-beams", "rotary inertia", "spins to second order", "spins of exact turns"),
+    Difference("exudyn-frf", "foreshortening", "as described", "none: displacement is linear in the modes"),
 )

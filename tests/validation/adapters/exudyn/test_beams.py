@@ -12,6 +12,7 @@ import symofros as sf
 from tests.reference.beams import data
 from validation.adapters.exudyn import frf as exudyn_frf
 from validation.adapters.exudyn.ancf import Hub, Strip, princeton, spin_up, spinning_frequencies, static_tip
+from validation.check import Settings, check
 from validation.comparison.errors import compute, state_errors, typical_scales
 from validation.contract.interface import States, Subject, Unsupported
 from validation.contract.quantities import QUANTITIES
@@ -71,6 +72,15 @@ def test_floating_frame_term_by_term(changed: dict[str, Any]) -> None:
         quantity = QUANTITIES[name]
         errors = state_errors(quantity, compute(engine, quantity, states), expected, scales)
         assert errors.max() < quantity.tolerance, name
+
+
+def test_a_check_asks_the_floating_frame_and_finite_elements_of_the_same_beam() -> None:
+    result = check(floating(), Settings(states=20, engines=("exudyn-frf", "exudyn-beams")))
+    assert result.ok, [row for row in result.comparisons if not row.ok]
+    agreeing = {(row.engine, row.quantity) for row in result.comparisons if row.status == "agree"}
+    assert {(name, "bias") for name in ("exudyn-frf", "exudyn-beams")} <= agreeing
+    (row,) = (row for row in result.comparisons if row.quantity == "strain_order")
+    assert row.status == "agree"
 
 
 def test_foreshortening_and_first_order_show() -> None:
