@@ -52,7 +52,7 @@ class Kind:
     grounded: bool = False
 
 
-_OBLIQUE: Vector = (2 / 3, -1 / 3, 2 / 3)
+OBLIQUE: Vector = (2 / 3, -1 / 3, 2 / 3)
 _X: Vector = (1.0, 0.0, 0.0)
 _Y: Vector = (0.0, 1.0, 0.0)
 _Z: Vector = (0.0, 0.0, 1.0)
@@ -62,13 +62,13 @@ KINDS: dict[str, Kind] = {
     "revolute x": Kind((Joint("revolute", axis=_X),)),
     "revolute y": Kind((Joint("revolute", axis=_Y),)),
     "revolute z": Kind((Joint("revolute", axis=_Z),)),
-    "revolute oblique": Kind((Joint("revolute", axis=_OBLIQUE),)),
+    "revolute oblique": Kind((Joint("revolute", axis=OBLIQUE),)),
     "revolute unbounded": Kind((Joint("revolute", axis=_Y, form="unbounded"),)),
-    "revolute unbounded oblique": Kind((Joint("revolute", axis=_OBLIQUE, form="unbounded"),)),
+    "revolute unbounded oblique": Kind((Joint("revolute", axis=OBLIQUE, form="unbounded"),)),
     "prismatic": Kind((Joint("prismatic", axis=_X),)),
-    "prismatic oblique": Kind((Joint("prismatic", axis=_OBLIQUE),)),
+    "prismatic oblique": Kind((Joint("prismatic", axis=OBLIQUE),)),
     "helical": Kind((Joint("helical", axis=_Z, pitch=0.25),)),
-    "helical oblique": Kind((Joint("helical", axis=_OBLIQUE, pitch=0.25),)),
+    "helical oblique": Kind((Joint("helical", axis=OBLIQUE, pitch=0.25),)),
     "universal": Kind((Joint("universal", axis=_X, second=_Y),)),
     "ball": Kind((Joint("ball"),)),
     "euler zyx": Kind((Joint("euler", sequence="ZYX"),)),
@@ -86,14 +86,19 @@ KINDS: dict[str, Kind] = {
     "slide and ball": Kind((Joint("prismatic", axis=_X), Joint("ball"))),
     "translation and euler zyx": Kind((Joint("translation"), Joint("euler", sequence="ZYX"))),
     "offset hinges": Kind(
-        (Joint("revolute", axis=_X), Joint("revolute", axis=_OBLIQUE, R=_ACROSS, p=(0.25, 0.5, -0.125)))
+        (Joint("revolute", axis=_X), Joint("revolute", axis=OBLIQUE, R=_ACROSS, p=(0.25, 0.5, -0.125)))
     ),
     "euler xyz": Kind((Joint("euler", sequence="XYZ"),)),
     "revolute with armature": Kind((Joint("revolute", axis=_Y, armature=(0.75,)),)),
+    "revolute oblique with armature": Kind((Joint("revolute", axis=OBLIQUE, armature=(0.75,)),)),
+    "prismatic oblique with armature": Kind((Joint("prismatic", axis=OBLIQUE, armature=(0.75,)),)),
+    "helical oblique with armature": Kind((Joint("helical", axis=OBLIQUE, pitch=0.25, armature=(0.75,)),)),
+    "universal with armature": Kind((Joint("universal", axis=_X, second=_Y, armature=(0.75, 0.75)),)),
+    "planar with armature": Kind((Joint("planar", armature=(0.75,) * 3),)),
     "ball with armature": Kind((Joint("ball", armature=(0.75, 0.75, 0.75)),)),
     "free with armature": Kind((Joint("free", armature=(0.75,) * 6),), grounded=True),
     "mimic revolute": Kind((Joint("revolute", axis=_Y, mimics="a", ratio=1.5, offset=0.25),)),
-    "mimic oblique": Kind((Joint("revolute", axis=_OBLIQUE, mimics="a", ratio=-0.5, offset=0.25),)),
+    "mimic oblique": Kind((Joint("revolute", axis=OBLIQUE, mimics="a", ratio=-0.5, offset=0.25),)),
     "mimic prismatic": Kind((Joint("prismatic", axis=_Y, mimics="a", ratio=0.5, offset=0.25),)),
 }
 
@@ -105,8 +110,8 @@ def tree_of(name: str) -> Tree:
     joints = kind.joints if kind.grounded else (placed(draw, kind.joints[0]), *kind.joints[1:])
     if kind.grounded:
         return Tree(
-            name, (link(draw, "a", -1, *joints), link(draw, "b", 0, placed(draw, Joint("revolute", axis=_OBLIQUE))))
+            name, (link(draw, "a", -1, *joints), link(draw, "b", 0, placed(draw, Joint("revolute", axis=OBLIQUE))))
         )
     first = link(draw, "a", -1, placed(draw, Joint("revolute", axis=_X)))
-    last = link(draw, "c", 1, placed(draw, Joint("revolute", axis=_OBLIQUE)))
+    last = link(draw, "c", 1, placed(draw, Joint("revolute", axis=OBLIQUE)))
     return Tree(name, (first, link(draw, "b", 0, *joints), last))

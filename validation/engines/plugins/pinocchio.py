@@ -37,7 +37,7 @@ def _array(values: Any) -> str:
     if np.array_equal(values, np.eye(3)):
         return "np.eye(3)"
     if not np.any(values):
-        return f"np.zeros({np.shape(values)[0]})"
+        return f"np.zeros({np.shape(values) if np.ndim(values) > 1 else len(values)})"
     return f"np.array({np.asarray(values, dtype=float).tolist()!r})"
 
 
@@ -123,7 +123,7 @@ def write(tree: Tree) -> Source | Unsupported:
     optional = {"fs": ("fs = []", *frames)}
     if all(joints) and len(set(joints)) == len(joints):
         optional["js"] = (f"js = [{', '.join(joints)}]",)
-    return Source(tuple(lines), tuple(slots), nq, nv, optional, ("d = m.createData()",))
+    return Source(tuple(lines), tuple(slots), nq, nv, optional, closing=("d = m.createData()",))
 
 
 _FRAMES = {"local": "pin.LOCAL", "aligned": "pin.LOCAL_WORLD_ALIGNED", "world": "pin.WORLD"}
