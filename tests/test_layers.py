@@ -113,7 +113,7 @@ STUDIES = table("""
     pareto:      stability studies timing
     adversary:   accuracy
     mutation:
-    dashboard:   adversary cross_check campaigns diagrams accuracy timing passes stability studies pareto
+    dashboard:   adversary cross_check engines campaigns diagrams accuracy timing passes stability studies pareto
                  mutation
 """)
 # The oracle answers for itself: of the harness it knows how joints come apart, nothing else.

@@ -7,6 +7,7 @@ from validation.adversary import report as adversary
 from validation.campaigns import report as campaign
 from validation.cross_check import report as check
 from validation.diagrams import catalogue as diagrams
+from validation.engines import report as engines
 from validation.mutation import report as mutants
 from validation.pareto import report as pareto
 from validation.passes import report as passes
@@ -15,6 +16,6 @@ from validation.stability import report as stability
 from validation.studies.reports import exports, fuzz, mutation, oracle, realtime, rollouts, simulation
 from validation.timing import report as timing
 
-_CORRECTNESS = (check, oracle, mutation, mutants, fuzz, adversary, campaign, accuracy, diagrams, stability)
+_CORRECTNESS = (check, oracle, mutation, mutants, fuzz, adversary, engines, campaign, accuracy, diagrams, stability)
 _SPEED = (timing, simulation, rollouts, realtime, passes, exports, pareto)
 TOPICS: dict[str, Topic] = {module.TOPIC.name: module.TOPIC for module in (*_CORRECTNESS, *_SPEED)}

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from validation.engines.arithmetic import Exact, exact, eye, rate, skew, stack, vee, zeros
+from validation.engines.arithmetic import Exact, exact, eye, many_digits, orthonormal, rate, skew, stack, vee, zeros
 from validation.engines.charts import CHARTS, Pose
 from validation.engines.interface import HasLayout, Joint, Link, Slot, Tree
 
@@ -24,7 +24,10 @@ class Kinematics:
     def __init__(self, tree: Tree, model: HasLayout) -> None:
         self.tree, self.slots = tree, model.slots
         self.nq, self.nv = model.nq, model.nv
-        self._placements = [[(exact(joint.R), exact(joint.p)) for joint in link.joints] for link in tree.links]
+        with many_digits():
+            self._placements = [
+                [(orthonormal(joint.R), exact(joint.p)) for joint in link.joints] for link in tree.links
+            ]
         # Differences ask for the same joint at the same coordinates again and again.
         self._frames: dict[tuple[object, ...], list[tuple[Exact, Exact, Exact]]] = {}
         self._motions: dict[tuple[object, ...], tuple[Exact, Exact, list[tuple[Exact, Exact]]]] = {}

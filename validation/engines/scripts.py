@@ -58,13 +58,14 @@ class Proof:
 
 
 def shrunk(plugin: EnginePlugin, red: Judged, worker: Worker, truths: Truths) -> Judged:
-    """The smallest case that shows the fault of a red cell; of a crash, the case itself."""
+    """The smallest case that shows the fault of a red cell; of what is imprecise, and of a crash, the case itself."""
     answer = red.answer
-    if answer.layout is None or answer.state is None:
+    # What is a matter of digits is one of these very numbers.
+    if answer.layout is None or answer.state is None or red.cell.verdict != "wrong":
         return red
     best, final = red, red
     # A fault that is no matter of rounding is seen without asking how far roundings go.
-    quick = Truths(perturbations=0) if red.cell.verdict == "wrong" else truths
+    quick = Truths(perturbations=0)
     job = Job(plugin.name, red.tree, (answer.function,))
     if red.form:
         return red

@@ -10,6 +10,8 @@ from validation.engines.matrix import SEED, Judged, Truths, judged, suited
 from validation.engines.scripts import Proof, prove
 from validation.engines.workers import Job, Worker
 
+# Part of the functions that are red on either of two trees that must be red on both.
+_ALIKE = 0.5
 RED = ("wrong", "imprecise", "crashes")
 
 
@@ -36,21 +38,29 @@ def gathered(
     return cells
 
 
-def alike(cells: Sequence[Judged]) -> dict[tuple[str, str], list[Judged]]:
-    """Red cells that are taken for one fault: one function of one engine, on trees where the same functions are red.
+def alike(cells: Sequence[Judged]) -> list[list[Judged]]:
+    """Red cells that are taken for one fault: one function of an engine, on trees where the same functions are red.
 
     Returns:
-        Engine and function with the trees -> red cells, the first of which stands for the others.
+        Groups of red cells, the first of which stands for the others.
     """
-    signatures: dict[tuple[str, str], set[str]] = {}
     red = [one for one in cells if one.cell.verdict in RED]
+    functions: dict[tuple[str, str], set[str]] = {}
     for one in red:
-        signatures.setdefault((one.cell.engine, one.cell.model), set()).add(f"{one.cell.function} {one.cell.verdict}")
-    groups: dict[tuple[str, str], list[Judged]] = {}
+        functions.setdefault((one.cell.engine, one.cell.model), set()).add(one.cell.function)
+    groups: dict[tuple[str, str], list[list[Judged]]] = {}
     for one in red:
-        signature = " | ".join(sorted(signatures[one.cell.engine, one.cell.model]))
-        groups.setdefault((f"{one.cell.engine} {one.cell.function}", signature), []).append(one)
-    return groups
+        own = functions[one.cell.engine, one.cell.model]
+        known = groups.setdefault((one.cell.engine, one.cell.function), [])
+        for group in known:
+            theirs = functions[one.cell.engine, group[0].cell.model]
+            same_verdict = group[0].cell.verdict == one.cell.verdict
+            if same_verdict and len(own & theirs) >= _ALIKE * len(own | theirs):
+                group.append(one)
+                break
+        else:
+            known.append([one])
+    return [group for known in groups.values() for group in known]
 
 
 def proofs(
@@ -62,7 +72,7 @@ def proofs(
 ) -> list[tuple[Proof, tuple[str, ...]]]:
     """A proven script for each fault, with the names of all trees that show it."""
     results = []
-    for group in alike(cells).values():
+    for group in alike(cells):
         first = group[0]
         proof = prove(plugins[first.cell.engine], first, worker, Truths(), folder)
         results.append((proof, tuple(one.cell.model for one in group)))

@@ -179,6 +179,8 @@ class Worker:
             pipe.recv()
 
     def _started(self) -> Connection:
+        if self._process is not None and not self._process.is_alive():
+            self.close()
         if self._pipe is None:
             context = multiprocessing.get_context("spawn")
             self._pipe, other = context.Pipe()

@@ -10,7 +10,7 @@ from importlib.resources import files
 from validation.reporting.charts import PALETTE, draw
 from validation.reporting.figures import Chart, Drawing, Figure
 from validation.reporting.provenance import Provenance
-from validation.reporting.record import Block, Bullets, Cell, Fact, Fold, Report, Section, Table, Text
+from validation.reporting.record import Block, Bullets, Cell, Code, Fact, Fold, Report, Section, Table, Text
 
 _PAGE = """<!doctype html>
 <html lang="en">
@@ -111,6 +111,8 @@ def block(item: Block, figure_name: str = "") -> str:
             return f"<p>{prose(item)}</p>"
         case Text(text, tone):
             return f'<p class="{tone}">{prose(text)}</p>'
+        case Code(text):
+            return f"<pre>{escape(text)}</pre>"
         case Table():
             return table(item)
         case Bullets(items):

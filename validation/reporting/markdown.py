@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from validation.reporting.figures import Figure
 from validation.reporting.provenance import Provenance
-from validation.reporting.record import Block, Bullets, Cell, Fold, Report, Table, Text
+from validation.reporting.record import Block, Bullets, Cell, Code, Fold, Report, Table, Text
 
 
 def page(report: Report, provenance: Provenance, closing: str) -> str:
@@ -30,6 +30,8 @@ def block(item: Block) -> str:
             return item
         case Text(text, tone):
             return f"**{text}**" if tone == "bad" else text
+        case Code(text):
+            return f"```\n{text}\n```"
         case Table():
             return table(item)
         case Bullets(items):

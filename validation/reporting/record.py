@@ -24,6 +24,13 @@ class Text:
 
 
 @dataclass(frozen=True)
+class Code:
+    """Text of a program, or what one printed, as it stands."""
+
+    text: str
+
+
+@dataclass(frozen=True)
 class Cell:
     """A cell of a table.
 
@@ -101,7 +108,7 @@ class Fold:
     page_only: bool = False
 
 
-Block = str | Text | Table | Bullets | Figure | Fold
+Block = str | Text | Code | Table | Bullets | Figure | Fold
 
 
 @dataclass(frozen=True)

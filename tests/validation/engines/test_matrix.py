@@ -1,15 +1,133 @@
-"""Engines against the truth, on small trees."""
+"""Engines against the truth, on small trees; and whether the matrix can go red."""
 
 from __future__ import annotations
 
+import os
+import signal
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
 import pytest
 
-from validation.engines.kinds import tree_of
-from validation.engines.matrix import cells
+from validation.engines import scripts
+from validation.engines.hostile import trees
+from validation.engines.identities import held
+from validation.engines.interface import Array, Unsupported
+from validation.engines.kinds import KINDS, tree_of
+from validation.engines.matrix import SEED, Judged, Truths, cells, judged
 from validation.engines.plugins import OWN
+from validation.engines.study import alike
+from validation.engines.verdicts import judge
+from validation.engines.workers import Crashed, Job, Worker, answered
+
+SIMPLE = ("mass_matrix", "bias", "link_jacobians", "kinetic_energy")
 
 
 @pytest.mark.parametrize("engine", ["pinocchio", "mujoco"])
-def test_an_engine_is_right_about_a_ball_joint_between_oblique_links(engine: str) -> None:
-    verdicts = {cell.function: cell.verdict for cell in cells(OWN[engine], tree_of("ball"), ("mass_matrix", "bias"))}
-    assert verdicts == {"mass_matrix": "right", "bias": "right"}
+@pytest.mark.parametrize("kind", ["ball", "universal", "prismatic oblique", "free", "cylindrical", "three hinges"])
+def test_an_engine_is_right_about_a_joint_between_oblique_links(engine: str, kind: str) -> None:
+    verdicts = {cell.function: cell.verdict for cell in cells(OWN[engine], tree_of(kind), SIMPLE)}
+    assert verdicts == dict.fromkeys(SIMPLE, "right")
+
+
+@pytest.mark.parametrize("kind", [name for name in KINDS if name not in ("euler xyz", "revolute unbounded oblique")])
+def test_pinocchio_has_every_kind_of_joint_and_the_right_mass_matrix_of_it(kind: str) -> None:
+    (cell,) = cells(OWN["pinocchio"], tree_of(kind), ("mass_matrix",))
+    assert (cell.verdict, cell.words) == ("right", "")
+
+
+@pytest.mark.parametrize("name", ["fixed links amid", "hinges at one point", "gravity aside", "kilometres"])
+def test_engines_are_right_about_hostile_trees(name: str) -> None:
+    for engine in ("pinocchio", "mujoco"):
+        assert {cell.verdict for cell in cells(OWN[engine], trees()[name], SIMPLE)} == {"right"}
+
+
+def _judged(kind: str, *functions: str) -> list[Judged]:
+    plugin = OWN["pinocchio"]
+    return list(judged(plugin, Job(plugin.name, tree_of(kind), functions, SEED), Truths()))
+
+
+def _permuted(value: Array) -> Array:
+    return value[::-1]
+
+
+def _one_sign(value: Array) -> Array:
+    changed = value.copy()
+    changed[0, 1] = -changed[0, 1]
+    return changed
+
+
+def _one_scaled(value: Array) -> Array:
+    changed = value.copy()
+    changed[-1, -1] *= 1.0 + 1e-5
+    return changed
+
+
+@pytest.mark.parametrize("fault", [_permuted, _one_sign, _one_scaled])
+def test_a_planted_fault_in_an_answer_is_a_red_cell(fault: object) -> None:
+    (one,) = _judged("universal", "mass_matrix")
+    assert one.want is not None and callable(fault)
+    cell = judge("planted", one.tree, "mass_matrix", fault(np.asarray(one.answer.value)), one.want)
+    assert cell.verdict == "wrong" and cell.error > cell.tolerance
+
+
+def test_digits_lost_are_no_gross_fault() -> None:
+    (one,) = _judged("universal", "mass_matrix")
+    assert one.want is not None
+    near = np.asarray(one.answer.value) * (1.0 + 1e-8)
+    assert judge("planted", one.tree, "mass_matrix", near, one.want).verdict == "imprecise"
+    assert judge("planted", one.tree, "mass_matrix", Unsupported("no"), one.want).verdict == "refuses"
+
+
+def test_identities_hold_where_they_must_and_show_a_fault_that_is_one() -> None:
+    functions = ("mass_matrix", "bias", "inverse_dynamics", "coriolis_forces", "gravity")
+    broken = {
+        kind: {row.identity for row in held(_judged(kind, *functions)) if not row.ok} for kind in ("ball", "universal")
+    }
+    assert broken == {"ball": set(), "universal": {"C v + g = h"}}
+
+
+def test_the_script_of_a_red_cell_fails_by_its_assertion_and_a_right_one_does_not(tmp_path: Path) -> None:
+    red, right = _judged("universal", "coriolis_forces", "bias")
+    for one, failing in ((red, True), (right, False)):
+        path = tmp_path / "script.py"
+        path.write_text(scripts.text(OWN["pinocchio"], one, "none"), encoding="utf-8")
+        output, failed = scripts.fails(path)
+        assert failed is failing, output
+
+
+def test_an_engine_that_gives_no_answer_in_time_is_an_answer() -> None:
+    with Worker(limit=0.0) as worker:
+        answers = list(worker.ask(Job("pinocchio", tree_of("revolute x"), ("mass_matrix", "bias"), SEED)))
+    assert [answer.value for answer in answers] == [Crashed("no answer in 0 s")] * 2
+
+
+def test_a_process_that_died_is_started_anew() -> None:
+    with Worker() as worker:
+        job = Job("pinocchio", tree_of("revolute x"), ("mass_matrix", "bias"), SEED)
+        assert all(isinstance(answer.value, np.ndarray) for answer in worker.ask(job))
+        os.kill(worker._process.pid, signal.SIGKILL)
+        worker._process.join()
+        assert all(isinstance(answer.value, np.ndarray) for answer in worker.ask(job))
+
+
+def test_a_state_stays_what_it_is_when_it_is_taken_apart() -> None:
+    from validation.engines.pieces import taken
+
+    job = Job("pinocchio", tree_of("mimic revolute"), ("mass_matrix",), SEED)
+    (answer,) = answered(job)
+    assert answer.layout is not None and answer.state is not None
+    (again,) = answered(replace(job, pieces=taken(answer.layout, answer.state)))
+    np.testing.assert_array_equal(np.asarray(again.value), np.asarray(answer.value))
+
+
+def test_trees_that_show_the_same_functions_red_share_a_script() -> None:
+    reds = [
+        one
+        for kind in ("universal", "three hinges", "mimic revolute")
+        for one in _judged(kind, "coriolis_forces", "coriolis_symmetry")
+    ]
+    assert [[one.cell.model for one in group] for group in alike(reds)] == [
+        ["universal", "three hinges", "mimic revolute"]
+    ] * 2

@@ -1,0 +1,104 @@
+"""The truth against closed forms, Lagrange's equations and itself."""
+
+from __future__ import annotations
+
+import math
+from decimal import Decimal
+
+import mpmath
+import numpy as np
+import pytest
+
+from validation.engines import derived
+from validation.engines.arithmetic import cos_sin, exact, many_digits, rate, solve
+from validation.engines.charts import CHARTS
+from validation.engines.interface import Joint, Link, Slot, Tree
+from validation.engines.kinds import tree_of
+from validation.engines.pieces import Layout
+from validation.engines.shrink import Case, size, smallest
+from validation.engines.truth import Point, Truth, digits, random_state
+
+HINGES = Layout(3, 3, tuple((Slot("angle", (k,), (k,)),) for k in range(3)))
+
+
+def test_sine_and_cosine_have_all_digits() -> None:
+    with many_digits(), mpmath.workdps(140):
+        for angle in (Decimal("0.1"), Decimal(-2), Decimal("1e-9"), Decimal(40)):
+            cosine, sine = cos_sin(angle)
+            assert abs(mpmath.mpf(str(cosine)) - mpmath.cos(mpmath.mpf(str(angle)))) < mpmath.mpf(10) ** -115
+            assert abs(mpmath.mpf(str(sine)) - mpmath.sin(mpmath.mpf(str(angle)))) < mpmath.mpf(10) ** -115
+
+
+def test_differences_refuse_to_be_taken_in_few_digits() -> None:
+    with pytest.raises(ArithmeticError):
+        rate(lambda x: x * x, exact([1.0]), exact([1.0]))
+
+
+def test_a_double_pendulum_has_the_mass_matrix_of_textbooks() -> None:
+    hinge = Joint("revolute", axis=(0.0, 1.0, 0.0))
+    links = (
+        Link("a", -1, (hinge,), 2.0, (0.0, 0.0, -1.0), ((0.0,) * 3,) * 3),
+        Link(
+            "b",
+            0,
+            (Joint("revolute", p=(0.0, 0.0, -1.0), axis=(0.0, 1.0, 0.0)),),
+            3.0,
+            (0.0, 0.0, -0.5),
+            ((0.0,) * 3,) * 3,
+        ),
+    )
+    layout = Layout(2, 2, HINGES.slots[:2])
+    M = digits(Truth(Tree("double", links), layout).value(lambda t, s: t.M(exact([0.3, 0.7])), None))  # type: ignore[arg-type]
+    c = math.cos(0.7)
+    off = 3.0 * (0.25 + 0.5 * c)
+    np.testing.assert_allclose(M, [[2.0 + 3.0 * (1.25 + c), off], [off, 0.75]], rtol=1e-15)
+
+
+def test_forces_by_newton_and_euler_are_those_of_lagrange() -> None:
+    tree = tree_of("revolute y")
+    truth, point = Truth(tree, HINGES), Point.of(random_state(tree, HINGES, 1))
+
+    def lagrange(t: Truth, s: Point) -> object:
+        momentum_rate = rate(t.M, s.q, s.v) @ s.v
+        unit = np.array(exact(np.eye(3)))
+        lost = [rate(lambda q: t.T(q, s.v) - t.V(q), s.q, unit[k]) for k in range(3)]
+        return momentum_rate - np.array(lost)
+
+    difference = truth.value(lambda t, s: lagrange(t, s) - t.h(s.q, s.v), point)
+    assert np.max(np.abs(digits(difference))) < 1e-30
+
+
+@pytest.mark.parametrize("name", sorted(CHARTS))
+def test_coordinates_stay_on_their_manifold_along_the_rates(name: str) -> None:
+    chart = CHARTS[name]
+    joint = Joint(
+        "any", axis=(2 / 3, -1 / 3, 2 / 3), second=(0.0, 1.0, 0.0), pitch=0.3, radii=(1.0, 2.0, 3.0), sequence="ZYX"
+    )
+    q = chart.sample(joint, np.random.default_rng(1))
+    with many_digits():
+        R, p = chart.pose(joint, exact(q))
+        assert R.shape == (3, 3) and p.shape == (3,) and chart.rates(joint, exact(q)).shape == (chart.nq, chart.nv)
+        for k in range(chart.nv):
+            spin = rate(lambda x: chart.pose(joint, x)[0], exact(q), chart.rates(joint, exact(q))[:, k]) @ R.T
+            assert np.max(np.abs(digits(spin + spin.T))) < 1e-30
+
+
+def test_forward_and_inverse_dynamics_undo_each_other_to_all_digits() -> None:
+    tree = tree_of("revolute y")
+    truth, point = Truth(tree, HINGES), Point.of(random_state(tree, HINGES, 2))
+    again = truth.value(lambda t, s: t.FD(s.q, s.v, t.ID(s.q, s.v, s.a)) - s.a, point)
+    assert np.max(np.abs(digits(again))) < 1e-30
+    both = truth.value(
+        lambda t, s: derived.integrated_dv(t, s) - solve(derived.difference_dq2(t, s), exact(np.eye(3))), point
+    )
+    assert np.max(np.abs(digits(both))) < 1e-30
+
+
+def test_a_case_is_shrunk_to_what_shows_the_fault_and_no_further() -> None:
+    tree = tree_of("helical oblique")
+    case = Case(tree, ((), (), ()))
+    smaller = smallest(
+        case, lambda one: any(own.joints[0].kind == "helical" and own.mass > 0.5 for own in one.tree.links), most=60
+    )
+    kinds = [own.joints[0].kind for own in smaller.tree.links]
+    assert "helical" in kinds and size(smaller) < size(case) / 2
