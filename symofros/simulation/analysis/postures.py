@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +15,8 @@ from symofros.runtime.model import Model
 NEAR = 0.05
 # States that are looked at, spread over the run; more would cost more than short runs themselves.
 MOST = 1000
+# States farther apart than this [rad, m] have others looked at between them, so many at most.
+FAR, MOST_BETWEEN = 0.05, 16
 # Change of a row of G, relative to its size, while the configuration changes by MOST_CHANGE [rad, m], halved BISECTIONS
 # times: a smooth row changes by far less.
 TURN, MOST_CHANGE, BISECTIONS = 0.3, 0.02, 16
@@ -131,11 +134,28 @@ def nearest_to_singular(
     """
     if rank < 1 or len(t) < 2:
         return None
+    model = model.with_precision("double")
     chosen = np.unique(np.linspace(0, len(t) - 1, min(len(t), MOST)).astype(int))
-    G = model.with_precision("double").constraint_jacobian(q[chosen], u=u[chosen], par=par, t=t[chosen])
+    t, q, u = _between(model, t[chosen], q[chosen], u[chosen])
+    G = model.constraint_jacobian(q, u=u, par=par, t=t)
     squares = np.linalg.eigvalsh(G @ np.swapaxes(G, -1, -2))
     # Of the conditions that do not repeat others, the weakest.
     weakest = np.sqrt(np.maximum(squares[:, -rank], 0.0))
     at = int(np.argmin(weakest))
     share = float(weakest[at] / max(weakest.max(), 1e-300))
-    return (float(t[chosen[at]]), share) if share < NEAR else None
+    return (float(t[at]), share) if share < NEAR else None
+
+
+def _between(model: Model, t: Array, q: Array, u: Array) -> tuple[Array, Array, Array]:
+    """States with others between them where they are far apart: a long step leaps over a posture."""
+    changes = model.difference(q[:-1], q[1:])
+    if not np.isfinite(changes).all():
+        return t, q, u
+    far = float(np.abs(changes).max(initial=0.0)) / FAR
+    parts = int(min(max(1.0, math.ceil(far)), MOST_BETWEEN, max(1, MOST // len(t))))
+    shares = np.arange(parts) / parts
+    inner = model.integrate(
+        np.repeat(q[:-1], parts, axis=0), (shares[:, np.newaxis] * changes[:, np.newaxis]).reshape(-1, model.nv)
+    )
+    times = (t[:-1, np.newaxis] + shares * np.diff(t)[:, np.newaxis]).ravel()
+    return np.append(times, t[-1]), np.vstack([inner, q[-1:]]), np.vstack([np.repeat(u[:-1], parts, axis=0), u[-1:]])
