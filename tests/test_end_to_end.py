@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 import sys
@@ -17,6 +18,42 @@ def test_readme_example_runs() -> None:
     done = subprocess.run([sys.executable, "-c", first + "".join(more)], capture_output=True, text=True, cwd=ROOT)
     assert done.returncode == 0, done.stderr
     assert "(1000, 2, 2) (6, 2)" in done.stdout
+
+
+# Commands that serve pages, wait for the browser, or take minutes and have tests of their own.
+LEFT_OUT = (
+    "view ",
+    "edit ",
+    "advise ",
+    "check ",
+    "export robot.urdf --target fmu3",
+    "--target mex",
+    "square.yaml",
+    "--view",
+)
+
+
+def shell_commands() -> list[str]:
+    """The lines of the README that call symofros, and the copies that they need, without comments."""
+    blocks = re.findall(r"```sh\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+    lines = [line.partition("  #")[0].strip() for block in blocks for line in block.splitlines()]
+    return [line for line in lines if line.startswith(("symofros ", "cp "))]
+
+
+def test_shell_commands_of_the_readme_run(tmp_path: Path) -> None:
+    for folder in ("validation", "reference_models"):
+        (tmp_path / folder).symlink_to(ROOT / folder)
+    program = tmp_path / "bin/symofros"
+    program.parent.mkdir()
+    program.write_text(f'#!/bin/sh\nexec {sys.executable} -m symofros "$@"\n')
+    program.chmod(0o755)
+    paths = {"PATH": f"{program.parent}:{os.environ['PATH']}", "PYTHONPATH": str(ROOT)}
+    commands = [line for line in shell_commands() if not any(part in line for part in LEFT_OUT)]
+    assert len(commands) >= 6
+    for command in commands:
+        asked = {"shell": True, "capture_output": True, "text": True, "cwd": tmp_path, "timeout": 120}
+        done = subprocess.run(command, env=os.environ | paths, **asked)
+        assert done.returncode == 0, f"{command}\n{done.stdout}{done.stderr}"
 
 
 def test_readme_links_exist() -> None:
