@@ -380,11 +380,3 @@ def test_nothing_is_left_in_the_user_s_folder(tmp_path: Path, monkeypatch: pytes
     monkeypatch.chdir(tmp_path)
     assert "not a finite number" in faults(write(tmp_path, world(NOT_A_NUMBER)))
     assert [path.name for path in tmp_path.iterdir()] == ["model.xml"]
-
-
-def test_a_note_says_how_many_numbers_were_made_exact(tmp_path: Path) -> None:
-    """Two components of positions and none of the mass."""
-    body = """<worldbody><body name="a" pos="0.1 1e-13 -2e-13"><joint name="q" axis="0 0 1"/>
-      <inertial pos="0.1 0.2 0.3" mass="1" diaginertia="0.1 0.1 0.1"/></body></worldbody>"""
-    (note,) = (note for note in sf.load(write(tmp_path, body)).notes if "made exact" in note)
-    assert "2 of them" in note

@@ -156,7 +156,8 @@ def compose(data: Data) -> Report:
         "index, a frame or a transpose, a dropped term, the edge of a comparison, a constant, swapped arguments. The "
         "package with the fault is judged by `check` over a few small models, and by the tests of the module. **No "
         "result changed**: neither judge sees it, and the C text, the values of functions, motions and analyses of a "
-        "battery are those of the sound package but for rounding. **Open**: the tests were not asked yet. "
+        "battery are those of the sound package but for rounding. **Open**: the tests were not asked yet, "
+        "or their time was over before all had run. "
         f"{counted(len(rows) - total['planted'], 'fault')} that the C compiler refuses are left out. Of the tests "
         f"alone: {scores['tests']:.1%} of the {scores['tests_asked']} faults that they were asked about."
     )

@@ -145,7 +145,9 @@ class Study:
             return CAUGHT
         if check is None or tests is None or outputs is None:
             return OPEN
-        return UNCHANGED if unchanged(outputs) else SURVIVED
+        if unchanged(outputs):
+            return UNCHANGED
+        return SURVIVED if (tests["answer"] or {}).get("whole") else OPEN  # Whoever ran out of time has said nothing.
 
 
 def stillborn(fault: SourceFault, answer: Answer | None) -> bool:

@@ -126,13 +126,14 @@ def chosen(root: Path, module: str) -> list[str]:
         module: Path of the module.
     """
     path = Path(module)
-    mirror = Path("tests", *path.parts[1:-1]).as_posix()
+    folder_of_tests = Path("tests", *path.parts[1:-1])
+    mirror = (folder_of_tests if (root / folder_of_tests).is_dir() else folder_of_tests.parent).as_posix()
     mirrors = _MIRRORS.get(path.parent.as_posix(), (mirror,))
     general = _GENERAL["/".join(path.parts[:2])]
     ranked = []
     for file in test_files(root):
         folder = file.rpartition("/")[0]
-        if file == f"{mirror}/test_{path.stem}.py":
+        if file in (f"{mirror}/test_{path.stem}.py", f"{mirror}/test_{path.parent.name}.py"):
             rank = 0
         elif module.removesuffix(".py") in _imports(root / file):
             rank = 1 if file.split("/")[1] == mirrors[0].split("/")[1] else 7

@@ -89,13 +89,14 @@ def test_answers_outlive_the_process_but_not_the_text_that_they_are_about(tmp_pa
 def test_scores_count_faults_that_change_a_result(tmp_path: Path) -> None:
     (tmp_path / "m.py").write_text("a\n")
     store = Store(tmp_path / "answers.jsonl", tmp_path)
-    passed, failed = {"status": "passed"}, {"status": "failed", "test": "t"}
+    passed, failed = {"status": "passed", "whole": True}, {"status": "failed", "test": "t"}
     answers = {  # check, tests, outputs
         "seen by check": ({"status": "disagreed"}, None, None),
         "seen by tests": (passed, failed, {"status": "changed"}),
         "survived": (passed, passed, {"status": "changed"}),
         "nothing changed": (passed, passed, {"status": "same bits"}),
         "open": (passed, None, {"status": "changed"}),
+        "out of time": (passed, {"status": "passed", "whole": False}, {"status": "changed"}),
     }
     faults = []
     for line, given in enumerate(answers.values()):
