@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
 import symofros as sf
@@ -252,8 +252,7 @@ def _judged(
     bench: _Bench, one: Participant, quantity: Quantity, ours: Array, states: States, scales: Scales
 ) -> Comparison:
     errors, sizes = scaled_errors(quantity, ours, one.value(quantity, states), scales)
-    accuracy: Mapping[str, float] = getattr(one.engine, "accuracy", {})
-    quantity = replace(quantity, tolerance=max(quantity.tolerance, accuracy.get(quantity.name, 0.0)))
+    quantity = one.held(quantity)
     row = judge(bench.label, one.name, quantity, errors, sizes=sizes)
     condition = _condition(bench, one)
     if quantity.name in SOLVED and not row.ok and EPS * condition > quantity.tolerance:

@@ -54,6 +54,11 @@ class Participant:
         """Factor by which solving for v' amplifies rounding at the engine's states."""
         return worst_condition(self.model, self.states)
 
+    def held(self, quantity: Quantity) -> Quantity:
+        """A quantity with the tolerance that the engine is held to, where it is not exact."""
+        accuracy: Mapping[str, float] = getattr(self.engine, "accuracy", {})
+        return replace(quantity, tolerance=max(quantity.tolerance, accuracy.get(quantity.name, 0.0)))
+
     def value(self, quantity: Quantity, states: States) -> Array:
         """The engine's results for a quantity (N, ...), timed."""
         start = time.perf_counter()

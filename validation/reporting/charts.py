@@ -19,9 +19,12 @@ from validation.reporting.numbers import short
 # Names in the style sheet -> colours on light and on dark paper.
 INK, SOFT, LINE, PAPER, GOOD, BAD = "#1c2024", "#5c6670", "#dfe3e6", "#fcfcfb", "#1a7f4b", "#c0362c"
 SERIES = tuple(
-    "#2563b8 #d9730d #5aa0e6 #e39a45 #7a8691 #2f9e6e #8a5cc7 #b0508a #12908e #8c5a2b #5b6fae #c2342d".split()
+    "#2563b8 #d9730d #5aa0e6 #e39a45 #7a8691 #2f9e6e #8a5cc7 #b0508a #12908e #8c5a2b #5b6fae #c2342d "
+    "#6b7d2a #3d4a57".split()
 )
-_DARK_SERIES = "#6ea8ff #ff9d45 #9cc9ff #ffc98f #98a4ae #5fd0a0 #b794f0 #e08abf #4fd0ce #d0a070 #a3b4ea #ff8a80".split()
+_DARK_SERIES = (
+    "#6ea8ff #ff9d45 #9cc9ff #ffc98f #98a4ae #5fd0a0 #b794f0 #e08abf #4fd0ce #d0a070 #a3b4ea #ff8a80 #b9cc6a #c9d4de"
+).split()
 PALETTE = {
     "ink": (INK, "#e6e9eb"),
     "soft": (SOFT, "#9aa5ae"),

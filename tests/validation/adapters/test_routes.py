@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from validation.adapters import ROUTES, differences
+from validation.reporting.charts import SERIES
 
 PACKAGES = {route.package for route in ROUTES.values()} - {""}
 ROOT = Path(__file__).parents[3]
@@ -58,3 +59,7 @@ print(*sorted({{module.partition(".")[0] for module in sys.modules}}))
 """
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT)
     assert PACKAGES & set(run.stdout.split()) == {"pinocchio"}, run.stderr
+
+
+def test_every_engine_has_a_colour_of_its_own_in_figures() -> None:
+    assert len(set(SERIES)) >= len(ROUTES)
