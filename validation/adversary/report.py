@@ -147,7 +147,7 @@ def compose(data: Data) -> Report:
             *([Section("Finds", (listed,))] if finds else []),
             Section("Claims and routes", (Table.of(claims, columns),), page_only=True),
         ),
-        (
+        facts=(
             Fact(str(tried), "scenes"),
             Fact(str(sum(row["refused"] for row in rows)), "refused in words"),
             Fact(str(len(finds)), "answers called good that are not", not finds),

@@ -64,7 +64,7 @@ def _checked(data: Data) -> Report:
             Section("What an engine could not represent", unsupported, page_only=True),
             _effort(data),
         ),
-        (
+        facts=(
             Fact(_rate(data, "states"), f"states, {counted(spent['sessions'], 'session')}"),
             Fact(str(len(spent["repeated"])), f"of {counted(spent['executions'], 'execution')} of batches repeated"),
             Fact(f"{short(float(f'{100 * share:.2g}'))} %", "of its tolerance, the largest error", not wrong),
@@ -104,7 +104,7 @@ def _swept(data: Data) -> Report:
         bool(data["ok"]),
         (),
         (Section("Range of each result", (Table.of(data["ranges"].items(), _RANGES), *reasons)), _effort(data)),
-        (Fact(_rate(data, "points"), f"points, {counted(data['effort']['sessions'], 'session')}"),),
+        facts=(Fact(_rate(data, "points"), f"points, {counted(data['effort']['sessions'], 'session')}"),),
     )
 
 

@@ -259,14 +259,14 @@ def compose(data: Data) -> Report:
         record.ok and not regressions,
         (f"{record.states} states a model, seed {record.seed}.",),
         tuple(section for section in sections if section.shows),
-        tuple(_facts(record, engines)),
-        (errors_by_engine(record),) if engines else (),
-        (*_digest(record), *_against_baseline(data).blocks),
-        (*_narrow(record), *_against_baseline(data).blocks),
-        record.unfinished,
-        record.refused,
-        _decisions(record) if engines else (),
-        tuple(f"{model}, {engine}: {text}" for model, engine, text in failures(record)),
+        facts=tuple(_facts(record, engines)),
+        highlights=(errors_by_engine(record),) if engines else (),
+        digest=(*_digest(record), *_against_baseline(data).blocks),
+        narrow=(*_narrow(record), *_against_baseline(data).blocks),
+        unfinished=record.unfinished,
+        refused=record.refused,
+        decisions=_decisions(record) if engines else (),
+        missed=tuple(f"{model}, {engine}: {text}" for model, engine, text in failures(record)),
     )
 
 

@@ -174,7 +174,7 @@ def compose(data: Data) -> Report:
             *([Section("What survived", (Bullets(survivors),))] if survivors else []),
             *([Section("What changed no result", (Fold("All", (Bullets(unchanged),)),))] if unchanged else []),
         ),
-        (
+        facts=(
             Fact(str(total["planted"]), "single faults planted"),
             Fact(f"{scores['check']:.1%}", f"seen by check alone, of at least {CHECK_ALONE:.0%}"),
             Fact(f"{scores['both']:.1%}", f"seen by check or tests, of at least {BOTH:.0%}", scores["both"] >= BOTH),

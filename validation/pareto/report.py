@@ -139,14 +139,14 @@ def compose(data: Data) -> Report:
             *(_section(name, *results[name], problem, data["quick"]) for name, problem in data["problems"].items()),
             Section("Targets", (targets,), "targets"),
         ),
-        (
+        facts=(
             Fact(f"{met} of {len(judged)}", "targets are met", met == len(judged)),
             Fact(str(runs), f"ways through {problems}"),
             Fact(times(most), "an engine's best time over ours, at equal error, where it is most"),
         ),
-        tuple(front_drawing(*first) for first in list(results.values())[:1]),
-        (targets, *failures),
-        unfinished,
+        highlights=tuple(front_drawing(*first) for first in list(results.values())[:1]),
+        digest=(targets, *failures),
+        unfinished=unfinished,
         decisions=(
             DECISION,
             Table.of(((f"pareto.html#{name}", problem, choice) for name, problem, _, choice in chosen), _DECISIONS),

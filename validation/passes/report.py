@@ -63,7 +63,7 @@ def compose(data: Data) -> Report:
             *tables,
             Section("What was tried and left out", (_LEFT_OUT,)),
         ),
-        (Fact(times(gain), f"the time of {most['model']} without {most['without']}"),),
+        facts=(Fact(times(gain), f"the time of {most['model']} without {most['without']}"),),
         digest=tuple(block for section in tables for block in (f"{section.title}:", *section.blocks)),
     )
 

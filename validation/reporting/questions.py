@@ -74,8 +74,8 @@ def composing(title: str, theory: str, telling: Mapping[str, tuple[int, int]]) -
             None,
             (intro,),
             tuple(_section(name, study) for name, study in studies.items()),
-            (Fact(str(len(studies)), "questions answered"), *missed),
-            tuple(figures[name][i].charts[j] for name, (i, j) in telling.items() if figures.get(name)),
+            facts=(Fact(str(len(studies)), "questions answered"), *missed),
+            highlights=tuple(figures[name][i].charts[j] for name, (i, j) in telling.items() if figures.get(name)),
         )
         return judged(draft, data, {name: study.findings for name, study in studies.items()}, "study", "number")
 

@@ -6,7 +6,7 @@ Texts may hold `code`, **bold** and [links](#anchor), as in Markdown, and nothin
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from typing import Any, Literal
 
 from validation.reporting.figures import Chart, Drawing, Figure
@@ -181,6 +181,7 @@ class Report:
     ok: bool | None
     blocks: tuple[Block, ...]
     sections: tuple[Section, ...] = ()
+    _: KW_ONLY
     facts: tuple[Fact, ...] = ()
     highlights: tuple[Chart | Drawing, ...] = ()
     digest: tuple[Block, ...] = ()

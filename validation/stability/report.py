@@ -114,8 +114,8 @@ def compose(data: Data) -> Report:
         None,
         (INTRO,),
         tuple(_section(name, study, findings[name], data["quick"]) for name, study in studies.items()),
-        (Fact(str(len(studies)), "studies"), Fact(str(runs), "runs")),
-        tuple(_energies(studies["energy"])) if "energy" in studies else (),
+        facts=(Fact(str(len(studies)), "studies"), Fact(str(runs), "runs")),
+        highlights=tuple(_energies(studies["energy"])) if "energy" in studies else (),
     )
     return judged(draft, data, findings, "study", "claim")
 

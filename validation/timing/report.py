@@ -148,10 +148,10 @@ def compose(data: Data) -> Report:
         met == len(measured) and not record.failed if measured or record.failed else None,
         (*LIMITS, _conditions(record.machine)),
         (*sections(record), *flexible),
-        tuple(key),
-        tuple(_ratios(best, name) for name in _TELLING if name in functions),
-        (targets_table(record),),
-        tuple(data.get("unfinished", ())),
+        facts=tuple(key),
+        highlights=tuple(_ratios(best, name) for name in _TELLING if name in functions),
+        digest=(targets_table(record),),
+        unfinished=tuple(data.get("unfinished", ())),
         missed=tuple(
             f"{TIMED_MODELS[v.target.model].title}, {FUNCTIONS[v.target.function]}, against {v.target.peer}: "
             f"{v.ratio:.2f} times its speed, asked is {v.target.least:g}"

@@ -67,7 +67,7 @@ def compose(data: Data) -> Report:
             Section(f"Worst case of {calls} calls in C", worst),
             Section("Size of the C package", (sizes,)),
         ),
-        (
+        facts=(
             *(Fact(f"{time / 1e3:.2g} µs", f"a step of 1 ms from {where}") for where, time in steps.items()),
             Fact(f"{max(row['high'] for row in latencies) / 1e3:.2g} µs", f"99.9 % of {calls} calls in C are below"),
         ),

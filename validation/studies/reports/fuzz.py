@@ -78,7 +78,7 @@ def compose(data: Data) -> Report:
             Section("By kind of input", (Table.of(rows, _COLUMNS),)),
             *([Section("Faults", (listed,))] if faults else []),
         ),
-        (
+        facts=(
             Fact(str(refused), "refused with a description of their faults"),
             Fact(str(read), "read"),
             Fact(f"{slowest:.1f} s", f"the slowest, of at most {SLOWEST:g} s", slowest <= SLOWEST),

@@ -93,7 +93,7 @@ def compose(data: Data) -> Report:
             Section("By kind of fault", (by_kind,)),
             *([Section("What survived", (alive,))] if survivors else []),
         ),
-        (
+        facts=(
             Fact(str(data["planted"]), "single faults planted"),
             Fact(str(len(survivors)), "survived; none may", not survivors),
             Fact(str(silent + small), "change nothing, or less than a tolerance"),

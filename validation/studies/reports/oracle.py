@@ -66,7 +66,7 @@ def compose(data: Data) -> Report:
         ok,
         (),
         (Section("Digits that agree", (text, Table.of(rows, columns))),),
-        (Fact(f"{least:.0f}", f"digits agree at the least; {required:.0f} and more are asked for", ok),),
+        facts=(Fact(f"{least:.0f}", f"digits agree at the least; {required:.0f} and more are asked for", ok),),
     )
 
 

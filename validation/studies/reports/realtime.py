@@ -80,11 +80,11 @@ def compose(data: Data) -> Report:
         None,
         (_LIMITS,),
         (Section("How late instants begin", (said, Table.of(diagrams, _COLUMNS), figure)),),
-        tuple(
+        facts=tuple(
             Fact(f"{1e6 * row['median']:.0f} µs", f"median: {row['what']}; {row['missed']} of {row['instants']} missed")
             for row in best
         ),
-        figure.charts[-1:],
+        highlights=figure.charts[-1:],
     )
 
 

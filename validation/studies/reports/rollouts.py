@@ -67,7 +67,7 @@ def compose(data: Data) -> Report:
         None,
         (_LIMITS,),
         (Section("Time of a step", (table, f"{data['repeats']} repeats; load {data['load']:.1f}.")),),
-        (
+        facts=(
             Fact(f"{fastest['nanoseconds'][0]:.0f} ns", f"a step: {fastest['motion']}, {fastest['how']}"),
             Fact(times(best["ratio"]), f"mujoco.rollout's time over ours: {best['motion']}, {best['how']}"),
         ),

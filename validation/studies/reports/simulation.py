@@ -71,7 +71,7 @@ def compose(data: Data) -> Report:
         not missed if benchmarks else None,
         (f"{data['repeats']} repeats.",) if "repeats" in data else (),
         tuple(sections),
-        tuple(facts),
+        facts=tuple(facts),
     )
 
 
