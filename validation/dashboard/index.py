@@ -21,7 +21,7 @@ _VERDICTS = {"good": True, "missed": False, "measured": None, "absent": None}
 
 _TREND = "The first number of each report in the summaries of the last commits that changed one; red: missed something."
 # Reports whose decisions the index shows, in this order.
-_DECIDING = ("pareto", "check")
+_DECIDING = ("pareto", "check", "engines")
 
 
 class QuoteError(ValueError):

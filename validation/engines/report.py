@@ -103,7 +103,7 @@ def compose(data: Data) -> Report:
             Section("Conventions", (_conventions(data),), "conventions", page_only=True),
             *(_proof(proof) for proof in data["proofs"]),
         ),
-        (
+        facts=(
             Fact(str(tally["right"]), "cells right"),
             Fact(str(red), "red cells: wrong, imprecise, crashing"),
             Fact(str(len(data["proofs"])), "scripts that prove them", not unproven),
@@ -111,7 +111,14 @@ def compose(data: Data) -> Report:
             Fact(f"{len(data['identities']) - len(broken)} of {len(data['identities'])}", "identities that hold"),
         ),
         digest=(_overview(data),),
+        decisions=(_decision(cells),),
     )
+
+
+def _decision(cells: list[Row]) -> str:
+    red = Counter(cell["engine"] for cell in cells if cell["verdict"] in RED)
+    said = ", ".join(f"{engine} in {counted(number, 'cell')}" for engine, number in red.most_common()) or "none"
+    return f"**Which engine is wrong where:** {said}, each with a script: [the matrix](engines.html#overview)."
 
 
 def _overview(data: Data) -> Table:
