@@ -25,11 +25,17 @@ class Thread(NamedTuple):
 
 
 _PINOCCHIO = "https://github.com/stack-of-tasks/pinocchio/issues/"
+_ROBOTICSTOOLBOX = "https://github.com/petercorke/robotics-toolbox-python/issues/"
+_DART = "https://github.com/dartsim/dart/"
 THREADS = (
     # Shows it for JointModelSphericalZYX in a composite.
     Thread(
         "pinocchio", "euler|universal|ellipsoid|three hinges|offset|translation and", "coriolis", f"{_PINOCCHIO}2053"
     ),
+    # Closed, for masses of fixed links; placements of fixed links before a joint are still left out of the recursion.
+    Thread("roboticstoolbox", "fixed", "mass_matrix|gravity|bias|dynamics", f"{_ROBOTICSTOOLBOX}636"),
+    # Mended integration for placed free joints; differences were left as they were.
+    Thread("dart", "free", "difference", f"{_DART}pull/2298"),
 )
 
 

@@ -148,7 +148,8 @@ def write(tree: Tree) -> Source | Unsupported:
         if native.settings:
             axis, second = _array(joint.axis), _array(joint.second)
             lines.append(native.settings.format(axis=axis, second=second, turn=2 * math.pi * joint.pitch))
-        lines.append(f"j.setTransformFromParentBodyNode({_placement(R, p)})")
+        if np.any(p) or not np.array_equal(R, np.eye(3)):
+            lines.append(f"j.setTransformFromParentBodyNode({_placement(R, p)})")
         if steps and (np.any(p_end) or not np.array_equal(R_end, np.eye(3))):
             lines.append(f"j.setTransformFromChildBodyNode({_placement(R_end.T, -R_end.T @ p_end)})")
         lines.append(f"b{k}.setInertia(dy.Inertia({link.mass!r}, {_array(link.com)}, {_array(link.inertia)}))")
