@@ -79,7 +79,7 @@ def as_data(study: Study) -> dict[str, Any]:
                     "fate": study.fate(fault),
                     "seen_by_check": seen_by_check(check),
                     "seen_by_tests": None if answers[TESTS] is None else seen_by_tests(answers[TESTS]),
-                    "said": _said(answers),
+                    "said": _said(answers).replace(f"{study.folder}/tree/", ""),
                     "seconds": sum(answer["seconds"] for answer in answers.values() if answer is not None),
                 }
             )
@@ -100,7 +100,7 @@ def _said(answers: dict[str, Any]) -> str:
         said = answer["answer"]
         if said.get("status") != "passed":
             words = [said[key] for key in ("model", "reason", "test", "where") if said.get(key)]
-            return f"{stage}: {said['status']} {' '.join(map(str, words))}"[:200]
+            return f"{stage}: {said['status']} {' '.join(map(str, words))}"
     return ""
 
 
@@ -164,7 +164,8 @@ def compose(data: Data) -> Report:
     return Report(
         "Faults planted in the source",
         f"{counted(total['planted'], 'fault')} in {counted(len(modules), 'module')}: `check` alone sees "
-        f"{scores['check']:.1%} of those known to change a result, `check` and tests {scores['both']:.1%}.",
+        f"{scores['check']:.1%} of those known to change a result, `check` and tests {scores['both']:.1%}; "
+        f"{total['open']} open.",
         bool(data["ok"]),
         (text,),
         (
@@ -177,7 +178,11 @@ def compose(data: Data) -> Report:
         facts=(
             Fact(str(total["planted"]), "single faults planted"),
             Fact(f"{scores['check']:.1%}", f"seen by check alone, of at least {CHECK_ALONE:.0%}"),
-            Fact(f"{scores['both']:.1%}", f"seen by check or tests, of at least {BOTH:.0%}", scores["both"] >= BOTH),
+            Fact(
+                f"{scores['both']:.1%}",
+                f"seen by check or tests, of at least {BOTH:.0%}",
+                scores["both"] >= BOTH and not total["open"],
+            ),
             Fact(str(total["survived"]), "change a result and are seen by neither", not total["survived"]),
             Fact(f"{seconds:.1f} s", "a fault, all judges together"),
         ),

@@ -143,11 +143,9 @@ class Study:
             return STILLBORN
         if seen_by_check(check) or seen_by_tests(tests):
             return CAUGHT
-        if check is None or tests is None or outputs is None:
-            return OPEN
-        if unchanged(outputs):
-            return UNCHANGED
-        return SURVIVED if (tests["answer"] or {}).get("whole") else OPEN  # Whoever ran out of time has said nothing.
+        if check is None or tests is None or outputs is None or not (tests["answer"] or {}).get("whole"):
+            return OPEN  # Tests that ran out of time have said nothing.
+        return UNCHANGED if unchanged(outputs) else SURVIVED
 
 
 def stillborn(fault: SourceFault, answer: Answer | None) -> bool:

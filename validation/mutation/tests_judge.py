@@ -17,7 +17,7 @@ import pytest
 
 # Folders of tests, and files, of what the study plants faults in.
 FOLDERS = (
-    "description expr mechanics generator identities runtime simulation native diagrams reference"
+    "description expr mechanics generator identities runtime simulation native diagrams blocks reference"
     " test_derived_once.py test_end_to_end.py"
 ).split()
 LIMIT = 60  # Of one test [s]: one that takes longer with a fault than this hangs.
@@ -32,7 +32,7 @@ _MIRRORS = {
         "tests/mechanics/dynamics/forward",
     ),
     "symofros/native/stepping": ("tests/simulation/stepping", "tests/simulation", "tests/native"),
-    "symofros/native/diagrams": ("tests/diagrams/run", "tests/diagrams/program"),
+    "symofros/native/diagrams": ("tests/diagrams/run", "tests/blocks/generic", "tests/diagrams/program"),
 }
 # What watches the whole of the mechanics, of motions.
 _GENERAL = {
