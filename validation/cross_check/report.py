@@ -61,8 +61,8 @@ _AGAIN = 2
 _DETAILED = 2
 
 _DECISION = (
-    "**Which engine is wrong:** {}. One that disagrees where all others agree with our C is the suspect itself; where "
-    "several disagree, our C is."
+    "**Which engine disagrees with our C:** {}. One that disagrees where all others agree with our C is the suspect "
+    "itself; where several disagree, our C is."
 )
 _CLOSE = (
     "Each row is a quantity, each curve an engine that our C is compared with, over all states of all models. What "
@@ -290,7 +290,7 @@ def _decisions(record: Record) -> tuple[Block, ...]:
     table = opinions(record)
     verdicts = {str(row[0]): row[-1] for row in table.rows}
     wrong = [f"{name} ({v.text})" for name, v in verdicts.items() if isinstance(v, Cell) and v.ok is False]
-    return _DECISION.format(", ".join(wrong) or f"none of {len(table.rows)} disagrees"), table
+    return _DECISION.format(", ".join(wrong) or f"none of {len(table.rows)}"), table
 
 
 def _facts(record: Record, engines: list[str]) -> list[Fact]:

@@ -111,14 +111,17 @@ def compose(data: Data) -> Report:
             Fact(f"{len(data['identities']) - len(broken)} of {len(data['identities'])}", "identities that hold"),
         ),
         digest=(_overview(data),),
-        decisions=(_decision(cells),),
+        decisions=(_decision(cells, sum(proof["proven"] for proof in data["proofs"])),),
     )
 
 
-def _decision(cells: list[Row]) -> str:
+def _decision(cells: list[Row], proven: int) -> str:
     red = Counter(cell["engine"] for cell in cells if cell["verdict"] in RED)
     said = ", ".join(f"{engine} in {counted(number, 'cell')}" for engine, number in red.most_common()) or "none"
-    return f"**Which engine is wrong where:** {said}, each with a script: [the matrix](engines.html#overview)."
+    return (
+        f"**Which engine is wrong, against the truth in many digits:** {said}; {counted(proven, 'script')} prove it. "
+        "Where: [the matrix](engines.html#overview)."
+    )
 
 
 def _overview(data: Data) -> Table:

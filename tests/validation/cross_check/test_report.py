@@ -163,5 +163,5 @@ def test_an_engine_that_disagrees_alone_is_the_suspect_and_where_several_do_our_
         return str(compose(data).decisions[0])
 
     assert "none of" in decision()
-    assert "wrong:** mujoco (suspect)." in decision("mujoco")
+    assert "our C:** mujoco (suspect)." in decision("mujoco")
     assert "pinocchio (against our C), mujoco (against our C)" in decision("pinocchio", "mujoco")

@@ -52,7 +52,16 @@ def test_a_bad_report_is_in_the_headline(tmp_path: Path) -> None:
 
 def test_the_index_begins_with_what_decides_and_says_what_is_missed() -> None:
     page = (ROOT / "reports" / "index.html").read_text(encoding="utf-8")
-    places = [page.index(text) for text in ("Which engine is wrong", "Which method", ">Missed:<", 'href="check.html"')]
+    places = [
+        page.index(text)
+        for text in (
+            "Which engine disagrees",
+            "Which engine is wrong",
+            "Which method",
+            ">Missed:<",
+            'href="check.html"',
+        )
+    ]
     assert places == sorted(places) and "UR5, M + h, against casadi" in page
 
 
