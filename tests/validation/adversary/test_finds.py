@@ -82,7 +82,7 @@ FINDS: list[tuple[str, Scene, str]] = [
             "records": 7,
             "span": 1.0,
         },
-        "short runs are repeated with half the step",
+        "postures are looked at between steps, too: a long one leaps over a singular one",
     ),
     (
         "loop_runs",
