@@ -158,7 +158,7 @@ class Worker:
     def _once(self, job: Job) -> Iterator[Answer]:
         pipe = self._started()
         pipe.send(job)
-        for function in job.functions:
+        for left, function in zip(range(len(job.functions) - 1, -1, -1), job.functions, strict=True):
             message: Any = None
             reason = f"no answer in {self._limit:g} s"
             if pipe.poll(self._limit):
@@ -174,9 +174,16 @@ class Worker:
             if isinstance(message, Unsupported):
                 self.close()
                 raise RuntimeError(f"{job.engine}, {function}: {message.reason}")
-            yield message
-        if pipe.poll(self._limit):
-            pipe.recv()
+            # The end of the job is read before its last answer is handed out: who takes that and no more leaves nothing
+            # in the pipe that the next job would take for its own.
+            if not left and pipe.poll(self._limit):
+                pipe.recv()
+            try:
+                yield message
+            except GeneratorExit:
+                if left:
+                    self.close()
+                raise
 
     def _started(self) -> Connection:
         if self._process is not None and not self._process.is_alive():
