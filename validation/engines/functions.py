@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from decimal import Decimal
 
 import numpy as np
 
@@ -30,6 +31,7 @@ def _momentum(t: Truth, s: Point) -> Exact:
 
 
 FUNCTIONS: dict[str, Function] = {
+    "sizes": Function("lengths of q and v (2)", lambda t, s: np.array([Decimal(len(s.q)), Decimal(len(s.v))])),
     "mass_matrix": Function("M (nv, nv)", lambda t, s: t.M(s.q)),
     "mass_matrix_inverse": Function("M^-1 (nv, nv)", lambda t, s: t.inverse(s.q)),
     "bias": Function("h (nv): Coriolis, centrifugal and gravity forces", lambda t, s: t.h(s.q, s.v)),

@@ -14,7 +14,9 @@ from validation.engines.functions import FUNCTIONS
 from validation.engines.identities import held
 from validation.engines.interface import EnginePlugin, Tree
 from validation.engines.matrix import names
-from validation.engines.study import RED, gathered, proofs
+from validation.engines.readers import readings
+from validation.engines.shrink import TRIES
+from validation.engines.study import RED, gathered, proofs, read
 from validation.engines.workers import Worker, registry
 from validation.reporting.command import Run, known
 from validation.reporting.numbers import counted
@@ -43,23 +45,28 @@ def measure(
     engines: Annotated[list[str] | None, typer.Option("--engine", help="Only this engine.")] = None,
     models: Annotated[list[str] | None, typer.Option("--kinds", help="Only this kind of joint, or tree.")] = None,
     prove: Annotated[bool, typer.Option(help="Shrink red cells, write their scripts and run them.")] = True,
+    tries: Annotated[int, typer.Option(min=0, help="Cases tried to shrink each fault.")] = TRIES,
 ) -> Data:
     """Hold engines against thirty digits of truth: every kind of joint, every function that they offer."""
     plugins = registry().plugins
     present = {name: plugin for name, plugin in plugins.items() if plugin.version()}
     chosen = {name: present[name] for name in known(engines, present, "--engine", "engine present")}
-    all_trees = trees()
-    wanted = [all_trees[name] for name in known(models, all_trees, "--kinds", "kind")]
-    run.expect(len(wanted), "asking engines")
+    all_trees, files = trees(), readings()
+    names_wanted = known(models, [*all_trees, *files], "--kinds", "kind")
+    wanted = [all_trees[name] for name in names_wanted if name in all_trees]
+    run.expect(len(names_wanted), "asking engines")
     with Worker() as worker:
-        cells = gathered(chosen, wanted, worker, lambda name: run.advance(name))
+        cells = gathered(chosen, wanted, worker, run.advance)
+        cells += read(chosen, {name: files[name] for name in names_wanted if name in files}, worker, run.advance)
         proven = (
-            proofs(chosen, cells, worker, run.folder / "engines", lambda one: run.advance(one.file)) if prove else []
+            proofs(chosen, cells, worker, run.folder / "engines", lambda one: run.advance(one.file), tries)
+            if prove
+            else []
         )
     return {
         "engines": [_engine(plugin) for plugin in chosen.values()],
         "absent": {name: plugin.extra for name, plugin in plugins.items() if name not in present} | registry().failures,
-        "models": [tree.name for tree in wanted],
+        "models": names_wanted,
         "functions": {name: FUNCTIONS[name.partition(":")[0]].text for name in names(chosen)},
         "cells": [asdict(one.cell) for one in cells],
         "identities": [asdict(one) for one in held(cells)],

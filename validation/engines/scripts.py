@@ -13,7 +13,7 @@ from validation.engines.functions import FUNCTIONS
 from validation.engines.interface import EnginePlugin
 from validation.engines.matrix import Judged, Truths, judged
 from validation.engines.pieces import taken
-from validation.engines.shrink import Case, smallest
+from validation.engines.shrink import TRIES, Case, smallest
 from validation.engines.threads import thread
 from validation.engines.workers import Job, Worker
 
@@ -57,7 +57,7 @@ class Proof:
     thread: str
 
 
-def shrunk(plugin: EnginePlugin, red: Judged, worker: Worker, truths: Truths) -> Judged:
+def shrunk(plugin: EnginePlugin, red: Judged, worker: Worker, truths: Truths, tries: int = TRIES) -> Judged:
     """The smallest case that shows the fault of a red cell; of what is imprecise, and of a crash, the case itself."""
     answer = red.answer
     # What is a matter of digits is one of these very numbers.
@@ -78,13 +78,13 @@ def shrunk(plugin: EnginePlugin, red: Judged, worker: Worker, truths: Truths) ->
         best = one
         return True
 
-    case = smallest(Case(red.tree, taken(answer.layout, answer.state)), shows)
+    case = smallest(Case(red.tree, taken(answer.layout, answer.state)), shows, tries)
     if best is not red:
         final = next(judged(plugin, replace(job, tree=case.tree, pieces=case.pieces), truths, worker))
     return final if final.cell.verdict == red.cell.verdict else red
 
 
-def prove(plugin: EnginePlugin, red: Judged, worker: Worker, truths: Truths, folder: Path) -> Proof:
+def prove(plugin: EnginePlugin, red: Judged, worker: Worker, truths: Truths, folder: Path, tries: int = TRIES) -> Proof:
     """A script of a red cell, run in a fresh process: the folder's, where it still fails, or else a new one, shrunk."""
     name = red.cell.function
     known = thread(plugin.name, red.cell.model, name)
@@ -94,7 +94,7 @@ def prove(plugin: EnginePlugin, red: Judged, worker: Worker, truths: Truths, fol
         output, failed = fails(path)
         if failed and f"{plugin.name} {plugin.version()}:" in kept:
             return _proof(plugin, red, kept, output, failed, known)
-    small = shrunk(plugin, red, worker, truths)
+    small = shrunk(plugin, red, worker, truths, tries)
     folder.mkdir(parents=True, exist_ok=True)
     path.write_text(text(plugin, small, known), encoding="utf-8")
     output, failed = fails(path)

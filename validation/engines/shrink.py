@@ -9,7 +9,8 @@ from typing import Any
 from validation.engines.interface import IDENTITY, ORIGIN, Joint, Link, Tree
 from validation.engines.pieces import Piece, Pieces
 
-_MOST = 120
+# Cases that are tried for one fault.
+TRIES = 120
 _PRINCIPAL = ((2.0, 0.0, 0.0), (0.0, 3.0, 0.0), (0.0, 0.0, 4.0))
 
 
@@ -26,7 +27,7 @@ class Case:
     pieces: Pieces
 
 
-def smallest(case: Case, shows: Callable[[Case], bool], most: int = _MOST) -> Case:
+def smallest(case: Case, shows: Callable[[Case], bool], most: int = TRIES) -> Case:
     """A case that shows a fault, of which no simpler neighbour does.
 
     Args:

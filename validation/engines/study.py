@@ -7,11 +7,26 @@ from pathlib import Path
 
 from validation.engines.interface import EnginePlugin, Tree
 from validation.engines.matrix import SEED, Judged, Truths, judged, suited
+from validation.engines.readers import Reading
 from validation.engines.scripts import Proof, prove
+from validation.engines.shrink import TRIES
 from validation.engines.workers import Job, Worker
 
 # Part of the functions that are red on either of two trees that must be red on both.
 _ALIKE = 0.5
+# What a file's reading shows in: the functions that every number of it enters.
+READ = (
+    "sizes",
+    "mass_matrix",
+    "bias",
+    "gravity",
+    "inverse_dynamics",
+    "forward_dynamics",
+    "kinetic_energy",
+    "potential_energy",
+    "link_poses",
+    "link_jacobians",
+)
 RED = ("wrong", "imprecise", "crashes")
 
 
@@ -35,6 +50,22 @@ def gathered(
                 plugin, Job(plugin.name, suited(tree, plugin), tuple(plugin.functions), SEED), truths, worker
             )
         after(tree.name)
+    return cells
+
+
+def read(
+    plugins: Mapping[str, EnginePlugin], files: Mapping[str, Reading], worker: Worker, after: Callable[[str], object]
+) -> list[Judged]:
+    """The cells of engines on files that they read themselves; the arguments are those of `gathered`."""
+    cells: list[Judged] = []
+    for name, reading in files.items():
+        truths = Truths()
+        for plugin in plugins.values():
+            if reading.form in plugin.formats:
+                asked = tuple(one for one in plugin.functions if one in READ)
+                job = Job(plugin.name, suited(reading.tree, plugin), asked, SEED, form=reading.form, text=reading.text)
+                cells += judged(plugin, job, truths, worker)
+        after(name)
     return cells
 
 
@@ -69,12 +100,13 @@ def proofs(
     worker: Worker,
     folder: Path,
     after: Callable[[Proof], object],
+    tries: int = TRIES,
 ) -> list[tuple[Proof, tuple[str, ...]]]:
-    """A proven script for each fault, with the names of all trees that show it."""
+    """A proven script for each fault, with the names of all trees that show it; `tries` bounds the shrinking."""
     results = []
     for group in alike(cells):
         first = group[0]
-        proof = prove(plugins[first.cell.engine], first, worker, Truths(), folder)
+        proof = prove(plugins[first.cell.engine], first, worker, Truths(), folder, tries)
         results.append((proof, tuple(one.cell.model for one in group)))
         after(proof)
     return results

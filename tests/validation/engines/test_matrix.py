@@ -17,6 +17,7 @@ from validation.engines.interface import Array, Unsupported
 from validation.engines.kinds import KINDS, tree_of
 from validation.engines.matrix import SEED, Judged, Truths, cells, judged
 from validation.engines.plugins import OWN
+from validation.engines.readers import readings
 from validation.engines.study import alike
 from validation.engines.verdicts import judge
 from validation.engines.workers import Crashed, Job, Worker, answered
@@ -41,6 +42,16 @@ def test_pinocchio_has_every_kind_of_joint_and_the_right_mass_matrix_of_it(kind:
 def test_engines_are_right_about_hostile_trees(name: str) -> None:
     for engine in ("pinocchio", "mujoco"):
         assert {cell.verdict for cell in cells(OWN[engine], trees()[name], SIMPLE)} == {"right"}
+
+
+@pytest.mark.parametrize("name", readings())
+def test_engines_read_what_files_state(name: str) -> None:
+    for engine in ("pinocchio", "mujoco"):
+        plugin, reading = OWN[engine], readings()[name]
+        functions = ("sizes", "mass_matrix", "bias")
+        job = Job(engine, reading.tree, functions, SEED, form=reading.form, text=reading.text)
+        verdicts = {one.cell.verdict for one in judged(plugin, job, Truths())}
+        assert verdicts == ({"not offered"} if (name, engine) == ("urdf: mimic", "mujoco") else {"right"})
 
 
 def _judged(kind: str, *functions: str) -> list[Judged]:

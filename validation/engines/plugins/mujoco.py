@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from validation.engines.interface import Array, Difference, Joint, Slot, Tree, Unsupported
-from validation.engines.plugins.source import Source, SourcePlugin, Way, series
+from validation.engines.plugins.source import Source, SourcePlugin, Way, in_series, series
 
 # Kind of a joint -> elements (type, axis), chart, coordinates, speeds.
 _CHARTS: dict[str, tuple[str, int, int]] = {
@@ -142,6 +142,7 @@ _TRANSITION = (
 _ONE_SIDED, _CENTRED = 1e-4, 1e-6
 
 WAYS = {
+    "sizes": Way("nq, nv", "value = [m.nq, m.nv]"),
     "mass_matrix": Way("mj_fullM", f"{_Q}{_SQUARE}mj.mj_fullM(m, d, value)"),
     "mass_matrix:mj_mulM": Way(
         "mj_mulM", f"{_Q}{_SQUARE}for row, unit in zip(value, np.eye(m.nv)):\n    mj.mj_mulM(m, d, row, unit)"
@@ -212,6 +213,27 @@ WAYS = {
     ),
 }
 
+
+def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
+    """Text that has MuJoCo read a file."""
+    if any(joint.mimics for link in tree.links for joint in link.joints):
+        return Unsupported("a joint that mimics stays one, with an equality constraint", offered=False)
+    # MuJoCo's hinges know no cosine and sine: a joint of URDF without limits is one without limits.
+    charts = {(kind, shape): chart for kind, (chart, _, _) in _CHARTS.items() for shape in ("", "unbounded")}
+    slots, nq, nv = in_series(tree, charts)
+    names = [link.name for link in tree.links]
+    lines = (
+        "import numpy as np",
+        "import mujoco as mj",
+        f"m = mj.MjModel.from_xml_string({text!r})",
+        "d = mj.MjData(m)",
+    )
+    # Links that don't move are fused into what they are fixed to (`fusestatic`): none of them is there to be asked.
+    fused = form == "urdf" and not all(slots)
+    optional = {} if fused else {"bs": (f"bs = [m.body(name).id for name in {names!r}]",)}
+    return Source(lines, slots, nq, nv, optional)
+
+
 PLUGIN = SourcePlugin(
     name="mujoco",
     package="mujoco",
@@ -224,4 +246,6 @@ PLUGIN = SourcePlugin(
     kinds={},
     ways=WAYS,
     write=write,
+    formats=("urdf", "mjcf"),
+    write_reading=write_reading,
 )

@@ -8,7 +8,7 @@ import numpy as np
 
 from validation.engines.functions import ALIGNED
 from validation.engines.interface import Array, Difference, Joint, Slot, Tree, Unsupported
-from validation.engines.plugins.source import Source, SourcePlugin, Way, series
+from validation.engines.plugins.source import Source, SourcePlugin, Way, in_series, series
 
 # Kind and form of a joint -> joint model, chart, coordinates, speeds. {axis} is X, Y or Z where the axis is one of
 # them.
@@ -31,6 +31,9 @@ _ALIGNED = {
     ("prismatic", ""): "P{letter}()",
     ("helical", ""): "H{letter}({pitch!r})",
 }
+
+
+_CLOSING = ("d = m.createData()",)
 
 
 def _array(values: Any) -> str:
@@ -123,7 +126,7 @@ def write(tree: Tree) -> Source | Unsupported:
     optional = {"fs": ("fs = []", *frames)}
     if all(joints) and len(set(joints)) == len(joints):
         optional["js"] = (f"js = [{', '.join(joints)}]",)
-    return Source(tuple(lines), tuple(slots), nq, nv, optional, closing=("d = m.createData()",))
+    return Source(tuple(lines), tuple(slots), nq, nv, optional, closing=_CLOSING)
 
 
 _FRAMES = {"local": "pin.LOCAL", "aligned": "pin.LOCAL_WORLD_ALIGNED", "world": "pin.WORLD"}
@@ -132,6 +135,7 @@ _FK_D = "pin.computeForwardKinematicsDerivatives(m, d, q, v, a)\npin.updateFrame
 _CENTROIDAL = "value = pin.computeCentroidalDynamicsDerivatives(m, d, q, v, a)"
 
 WAYS = {
+    "sizes": Way("nq, nv", "value = [m.nq, m.nv]"),
     "mass_matrix": Way("crba", "value = pin.crba(m, d, q)"),
     "mass_matrix:crba WORLD": Way("crba in WORLD", "value = pin.crba(m, d, q, pin.Convention.WORLD)"),
     "mass_matrix:computeRNEADerivatives": Way(
@@ -243,6 +247,24 @@ for _frame, _rf in _FRAMES.items():
         ),
     }
 
+
+def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
+    """Text that has Pinocchio read a file."""
+    read = {
+        "urdf": ("m = pin.buildModelFromXML(TEXT, mimic=True)",),
+        "mjcf": (
+            "import tempfile",
+            "file = tempfile.NamedTemporaryFile('w', suffix='.xml')",
+            "print(TEXT, file=file, flush=True)",
+            "m = pin.buildModelFromMJCF(file.name)",
+        ),
+    }[form]
+    slots, nq, nv = in_series(tree, {key: model[1] for key, model in _MODELS.items()})
+    names = [link.name for link in tree.links]
+    lines = ("import numpy as np", "import pinocchio as pin", f"TEXT = {text!r}", *read)
+    return Source(lines, slots, nq, nv, {"fs": (f"fs = [m.getFrameId(name) for name in {names!r}]",)}, closing=_CLOSING)
+
+
 PLUGIN = SourcePlugin(
     name="pinocchio",
     package="pin",
@@ -255,4 +277,6 @@ PLUGIN = SourcePlugin(
     kinds={},
     ways=WAYS,
     write=write,
+    formats=("urdf", "mjcf"),
+    write_reading=write_reading,
 )

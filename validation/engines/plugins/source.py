@@ -9,9 +9,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from validation.engines.charts import CHARTS
 from validation.engines.interface import Array, Difference, EngineModel, Slot, State, Tree, Unsupported
 
-OPTIONAL = {"js"}
+OPTIONAL = {"js", "bs"}
 _INPUTS = ("q", "v", "a", "tau", "v2", "q2")
 
 
@@ -168,6 +169,31 @@ class SourcePlugin:
             raise
         except Exception as error:  # The engine refuses, in its own words.
             return Unsupported(f"{type(error).__name__}: {error}".strip())
+
+
+def in_series(tree: Tree, charts: Mapping[tuple[str, str], str]) -> tuple[tuple[tuple[Slot, ...], ...], int, int]:
+    """Slots of an engine that numbers joints as the tree does, nq and nv.
+
+    Args:
+        tree: The tree.
+        charts: Kind and form of a joint -> chart.
+    """
+    slots: dict[str, tuple[Slot, ...]] = {}
+    nq = nv = 0
+    for link in tree.links:
+        own = []
+        for joint in link.joints:
+            if joint.kind == "fixed":
+                continue
+            if joint.mimics:
+                own.append(slots[joint.mimics][0])
+                continue
+            chart = charts[joint.kind, joint.form]
+            size = CHARTS[chart]
+            own.append(Slot(chart, tuple(range(nq, nq + size.nq)), tuple(range(nv, nv + size.nv))))
+            nq, nv = nq + size.nq, nv + size.nv
+        slots[link.name] = tuple(own)
+    return tuple(slots.values()), nq, nv
 
 
 class Series(NamedTuple):
