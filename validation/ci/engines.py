@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
-from validation.engines.kinds import KINDS, tree_of
 from validation.engines.matrix import SEED, Truths, judged, suited
+from validation.engines.models.kinds import KINDS, tree_of
 from validation.engines.study import RED
 from validation.engines.verdicts import Cell
 from validation.engines.workers import Job, Worker, registry

@@ -9,13 +9,13 @@ from typing import Annotated, Any
 
 import typer
 
-from validation.engines import hostile, kinds
 from validation.engines.functions import FUNCTIONS
 from validation.engines.identities import held
 from validation.engines.interface import EnginePlugin, Tree
 from validation.engines.matrix import names
-from validation.engines.readers import readings
-from validation.engines.shrink import TRIES
+from validation.engines.models import hostile, kinds
+from validation.engines.models.readers import readings
+from validation.engines.proving.shrink import TRIES
 from validation.engines.study import RED, gathered, proofs, read
 from validation.engines.workers import Worker, registry
 from validation.reporting.command import Run, known

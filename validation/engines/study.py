@@ -7,9 +7,9 @@ from pathlib import Path
 
 from validation.engines.interface import EnginePlugin, Tree
 from validation.engines.matrix import SEED, Judged, Truths, judged, suited
-from validation.engines.readers import Reading
-from validation.engines.scripts import Proof, prove
-from validation.engines.shrink import TRIES
+from validation.engines.models.readers import Reading
+from validation.engines.proving.scripts import Proof, prove
+from validation.engines.proving.shrink import TRIES
 from validation.engines.workers import Job, Worker
 
 # Part of the functions that are red on either of two trees that must be red on both.

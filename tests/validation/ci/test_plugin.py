@@ -105,7 +105,7 @@ def test_an_engine_of_another_package_is_held_to_the_truth(project: Path) -> Non
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: toy-engine\nVersion: 1.0\n")
     (info / "entry_points.txt").write_text("[symofros.engines]\ntoy = toy_engine:PLUGIN\n")
     tree = """
-from validation.engines import kinds
+from validation.engines.models import kinds
 from validation.engines.interface import Joint, Link, Tree
 
 arm = Link("arm", -1, (Joint("revolute"),), mass=2.0, com=(0.5, 0.0, 0.0))

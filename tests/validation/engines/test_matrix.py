@@ -10,14 +10,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from validation.engines import scripts
-from validation.engines.hostile import trees
 from validation.engines.identities import held
 from validation.engines.interface import Array, Unsupported
-from validation.engines.kinds import KINDS, tree_of
 from validation.engines.matrix import SEED, Judged, Truths, cells, judged
+from validation.engines.models.hostile import trees
+from validation.engines.models.kinds import KINDS, tree_of
+from validation.engines.models.readers import readings
 from validation.engines.plugins import OWN
-from validation.engines.readers import readings
+from validation.engines.proving import scripts
 from validation.engines.study import alike
 from validation.engines.verdicts import judge
 from validation.engines.workers import Crashed, Job, Worker, answered
@@ -124,7 +124,7 @@ def test_a_process_that_died_is_started_anew() -> None:
 
 
 def test_a_state_stays_what_it_is_when_it_is_taken_apart() -> None:
-    from validation.engines.pieces import taken
+    from validation.engines.proving.pieces import taken
 
     job = Job("pinocchio", tree_of("mimic revolute"), ("mass_matrix",), SEED)
     (answer,) = answered(job)

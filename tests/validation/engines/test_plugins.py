@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from validation.engines.interface import Joint, Link, Tree, Unsupported
-from validation.engines.kinds import tree_of
 from validation.engines.matrix import cells
+from validation.engines.models.kinds import tree_of
 from validation.engines.plugins import OWN
 
 EXTRAS = ("adam", "dart", "drake", "dynibo", "frax", "idyntree", "pybullet", "pykdl", "roboticstoolbox")

@@ -13,9 +13,9 @@ from validation.engines import derived
 from validation.engines.arithmetic import cos_sin, exact, many_digits, rate, solve
 from validation.engines.charts import CHARTS
 from validation.engines.interface import Joint, Link, Slot, Tree
-from validation.engines.kinds import tree_of
-from validation.engines.pieces import Layout
-from validation.engines.shrink import Case, size, smallest
+from validation.engines.models.kinds import tree_of
+from validation.engines.proving.pieces import Layout
+from validation.engines.proving.shrink import Case, size, smallest
 from validation.engines.truth import Point, Truth, digits, random_state
 
 HINGES = Layout(3, 3, tuple((Slot("angle", (k,), (k,)),) for k in range(3)))

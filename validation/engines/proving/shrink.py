@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any
 
 from validation.engines.interface import IDENTITY, ORIGIN, Joint, Link, Tree
-from validation.engines.pieces import Piece, Pieces
+from validation.engines.proving.pieces import Piece, Pieces
 
 # Cases that are tried for one fault.
 TRIES = 120

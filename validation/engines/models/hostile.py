@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from validation.engines.interface import ORIGIN, Joint, Link, Rows, Tree, rows, vector
-from validation.engines.kinds import OBLIQUE, link, placed, shifted
+from validation.engines.models.kinds import OBLIQUE, link, placed, shifted
 
 _NOTHING: Rows = (ORIGIN, ORIGIN, ORIGIN)
 

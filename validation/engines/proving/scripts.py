@@ -12,9 +12,9 @@ import numpy as np
 from validation.engines.functions import FUNCTIONS
 from validation.engines.interface import EnginePlugin
 from validation.engines.matrix import Judged, Truths, judged
-from validation.engines.pieces import taken
-from validation.engines.shrink import TRIES, Case, smallest
-from validation.engines.threads import thread
+from validation.engines.proving.pieces import taken
+from validation.engines.proving.shrink import TRIES, Case, smallest
+from validation.engines.proving.threads import thread
 from validation.engines.workers import Job, Worker
 
 # A result of more entries is shown by its worst one.

@@ -1,0 +1,1 @@
+"""What engines are asked about: trees for kinds of joints, hostile trees, files."""

@@ -1,0 +1,1 @@
+"""Red cells: shrunk, written as scripts, run."""
