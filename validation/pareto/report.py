@@ -56,7 +56,7 @@ def measure(
     def raced(name: str) -> dict[str, Any]:
         run.expect(1, f"{name}: references")
         result = race(PROBLEMS[name], quick, lambda count: run.expect(count, name), run.advance)
-        return problem_data(PROBLEMS[name], result, now())
+        return problem_data(PROBLEMS[name], result, now(), quick)
 
     def data(done: Done) -> dict[str, Any]:
         problems = kept | done.results
@@ -77,13 +77,13 @@ def _kept(run: Run, quick: bool) -> dict[str, Any]:
     return {name: problem for name, problem in data["problems"].items() if name in PROBLEMS}
 
 
-def problem_data(problem: BenchmarkProblem, result: Result, date: str) -> dict[str, Any]:
+def problem_data(problem: BenchmarkProblem, result: Result, date: str, quick: bool = False) -> dict[str, Any]:
     """A problem that was run, for JSON: what was measured, and the verdicts on it."""
-    judged = verdicts.verdicts(problem, result.points)
+    judged = verdicts.verdicts(problem, result.points, quick)
     return {
         **plain(result),
         "title": problem.title,
-        "ok": result.agreement <= problem.trust and all(v.ok for v in judged),
+        "ok": result.agreement <= problem.trust and all(v.ok is not False for v in judged),
         "date": date,
         "targets": [
             {**vars(v.target), "found": "only ours" if math.isinf(v.ratio) else plain(v.ratio), "ok": v.ok}
@@ -110,7 +110,7 @@ _TARGETS: dict[str, Column] = {
     "#its best": lambda row: duration(row[2].engine_seconds),
     "winner": lambda row: Cell(row[2].winner, row[2].ok),
     "#asked": lambda row: short(row[2].target.ratio),
-    "verdict": lambda row: "ok" if row[2].ok else "missed",
+    "verdict": lambda row: {True: "ok", False: "missed", None: "not measured"}[row[2].ok],
 }
 
 
@@ -118,12 +118,13 @@ def compose(data: Data) -> Report:
     """The report of its JSON."""
     results = {name: (PROBLEMS[name], restored(Result, problem)) for name, problem in data["problems"].items()}
     failures, unfinished = failure_texts(data["failures"]), tuple(data["unfinished"])
-    judged = [(name, *one, v) for name, one in results.items() for v in verdicts.verdicts(one[0], one[1].points)]
-    met, problems = sum(row[3].ok for row in judged), counted(len(results), "problem")
+    quick = data["quick"]
+    judged = [(name, *one, v) for name, one in results.items() for v in verdicts.verdicts(one[0], one[1].points, quick)]
+    met, problems = sum(row[3].ok is True for row in judged), counted(len(results), "problem")
     runs = sum(len(result.points) for _, result in results.values())
     doubted = [name for name, (problem, result) in results.items() if not result.agreement <= problem.trust]
     said = f"{met} of {counted(len(judged), 'target')} met, in {problems}"
-    said += " (quick variant: few contestants, so its ratios mean little)" if data["quick"] else ""
+    said += " (quick variant: few contestants, so its ratios mean little)" if quick else ""
     said += f"; references disagree on {', '.join(doubted)}" if doubted else ""
     said += f"; {counted(len(failures), 'problem')} could not be done" if failures else ""
     said += f"; interrupted before {', '.join(unfinished)}" if unfinished else ""
@@ -140,7 +141,7 @@ def compose(data: Data) -> Report:
             Section("Targets", (targets,), "targets"),
         ),
         facts=(
-            Fact(f"{met} of {len(judged)}", "targets are met", met == len(judged)),
+            Fact(f"{met} of {len(judged)}", "targets are met", all(v.ok is not False for *_, v in judged)),
             Fact(str(runs), f"ways through {problems}"),
             Fact(times(most), "an engine's best time over ours, at equal error, where it is most"),
         ),
@@ -155,7 +156,7 @@ def compose(data: Data) -> Report:
             f"{problem.title} at {problem.shown(v.target.error)}: {v.winner}; asked is {short(v.target.ratio)} times "
             f"{v.target.engine}'s speed"
             for _, problem, _, v in judged
-            if not v.ok
+            if v.ok is False
         ),
     )
 

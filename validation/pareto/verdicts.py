@@ -20,17 +20,19 @@ class Verdict:
         seconds: Least time of our models that keeps the error [s]; infinity where none does.
         engine_seconds: Least time of the engine that keeps the error [s]; infinity where none does.
         ratio: The least seconds of the engine over ours.
+        quick: Whether few contestants ran: where none keeps the error, nothing was measured.
     """
 
     target: Target
     seconds: float
     engine_seconds: float
     ratio: float
+    quick: bool = False
 
     @property
-    def ok(self) -> bool:
-        """Whether it is met; NaN is not."""
-        return bool(self.ratio >= self.target.ratio)
+    def ok(self) -> bool | None:
+        """Whether it is met; a NaN is not, but in a quick run, where it is no verdict."""
+        return None if self.quick and math.isnan(self.ratio) else bool(self.ratio >= self.target.ratio)
 
     @property
     def winner(self) -> str:
@@ -42,12 +44,12 @@ class Verdict:
         return f"{who} by {factor:.3g}" if 0.0 < self.ratio < math.inf else f"{who} alone"
 
 
-def verdicts(problem: BenchmarkProblem, points: tuple[Point, ...]) -> list[Verdict]:
+def verdicts(problem: BenchmarkProblem, points: tuple[Point, ...], quick: bool = False) -> list[Verdict]:
     """The verdict on each target."""
     judged = []
     for target in problem.targets:
         sides = [seconds_at((p for p in points if p.who == who), target.error) for who in (OURS, target.engine)]
-        judged.append(Verdict(target, sides[0], sides[1], ratio(points, OURS, target.engine, target.error)))
+        judged.append(Verdict(target, sides[0], sides[1], ratio(points, OURS, target.engine, target.error), quick))
     return judged
 
 

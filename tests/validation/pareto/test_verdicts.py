@@ -87,3 +87,11 @@ def test_problems_say_what_they_compare(problem: BenchmarkProblem) -> None:
     assert {target.engine for target in problem.targets} <= {
         word for e in ("Exudyn", "MuJoCo") for word in [e] if e in problem.tuned
     }
+
+
+def test_a_quick_run_in_which_nobody_keeps_the_error_is_no_miss() -> None:
+    target = Target("MuJoCo", 1e-6, 2.0)
+    nobody = verdicts.Verdict(target, math.inf, math.inf, math.nan, quick=True)
+    assert nobody.ok is None
+    assert verdicts.Verdict(target, math.inf, math.inf, math.nan).ok is False
+    assert verdicts.Verdict(target, math.inf, 1.0, 0.0, quick=True).ok is False
