@@ -25,7 +25,7 @@ NO_NUMBERS: dict[str, Any] = {
     "a date of NumPy": np.array(["2020-01-01"], dtype="datetime64[D]"),
     "a span of NumPy": np.array([3], dtype="timedelta64[s]"),
     "a record": np.array([(1.0,)], dtype=[("x", float)]),
-    "a mapping": {"q": 1.0},
+    "a set": {1.0},
     "rows of unequal length": [[1.0], [1.0, 2.0]],
 }
 
