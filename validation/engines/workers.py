@@ -44,6 +44,7 @@ class Job:
         pieces: The state joint by joint, in place of a random one.
         form: Format of a file that the engine reads; "" to build the tree by its API.
         text: The file.
+        called: Whether functions are called; otherwise only their scripts are written.
     """
 
     engine: str
@@ -53,6 +54,7 @@ class Job:
     pieces: Pieces = ()
     form: str = ""
     text: str = ""
+    called: bool = True
 
 
 @dataclass(frozen=True)
@@ -98,8 +100,9 @@ def answered(job: Job) -> Iterator[Answer]:
         yield from (Answer(function, state) for function in job.functions)
         return
     for function in job.functions:
-        value = model.call(function, state)
-        script = "" if isinstance(value, Unsupported) else model.script(function, state)
+        value = model.call(function, state) if job.called else Unsupported("not called")
+        silent = job.called and isinstance(value, Unsupported)
+        script = "" if silent else model.script(function, state)
         yield Answer(function, value, layout, state, script)
 
 

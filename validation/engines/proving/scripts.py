@@ -11,7 +11,7 @@ import numpy as np
 
 from validation.engines.functions import FUNCTIONS
 from validation.engines.interface import EnginePlugin
-from validation.engines.matrix import Judged, Truths, judged
+from validation.engines.matrix import SEED, Judged, Truths, judged
 from validation.engines.proving.pieces import taken
 from validation.engines.proving.shrink import TRIES, Case, smallest
 from validation.engines.proving.threads import thread
@@ -94,11 +94,18 @@ def prove(plugin: EnginePlugin, red: Judged, worker: Worker, truths: Truths, fol
         output, failed = fails(path)
         if failed and f"{plugin.name} {plugin.version()}:" in kept:
             return _proof(plugin, red, kept, output, failed, known)
-    small = shrunk(plugin, red, worker, truths, tries)
+    small = _with_script(red, worker) if red.cell.verdict == "crashes" else shrunk(plugin, red, worker, truths, tries)
     folder.mkdir(parents=True, exist_ok=True)
     path.write_text(text(plugin, small, known), encoding="utf-8")
     output, failed = fails(path)
     return _proof(plugin, red, path.read_text(encoding="utf-8"), output, failed, known)
+
+
+def _with_script(red: Judged, worker: Worker) -> Judged:
+    """A cell whose engine took its script with it."""
+    job = Job(red.cell.engine, red.tree, (red.cell.function,), SEED, called=False)
+    (answer,) = worker.ask(job)
+    return replace(red, answer=replace(red.answer, script=answer.script))
 
 
 def _proof(plugin: EnginePlugin, red: Judged, script: str, output: str, failed: bool, known: str) -> Proof:
@@ -135,7 +142,7 @@ def text(plugin: EnginePlugin, red: Judged, known: str) -> str:
         f'"""\n\n'
     )
     if red.want is None:
-        return f"{head}{red.answer.script}\n"
+        return f"{head}{red.answer.script}\nprint(value)\n"
     value = np.asarray(red.answer.value)
     want = red.want.value
     lines = [red.answer.script.rstrip(), "value = np.array(value, dtype=float)"]

@@ -25,17 +25,13 @@ class Thread(NamedTuple):
 
 
 _PINOCCHIO = "https://github.com/stack-of-tasks/pinocchio/issues/"
-_ROBOTICSTOOLBOX = "https://github.com/petercorke/robotics-toolbox-python/issues/"
-_DART = "https://github.com/dartsim/dart/"
 THREADS = (
+    # Joints are to be added depth first, by a maintainer's answer; nothing refuses another order.
+    Thread("pinocchio", "numbered across", "", f"{_PINOCCHIO}1897"),
+    # Tensors of Eigen, stored by columns, are taken for NumPy's, stored by rows.
+    Thread("pinocchio", "", "jacobian_dq", "https://github.com/stack-of-tasks/eigenpy/issues/557"),
     # Shows it for JointModelSphericalZYX in a composite.
-    Thread(
-        "pinocchio", "euler|universal|ellipsoid|three hinges|offset|translation and", "coriolis", f"{_PINOCCHIO}2053"
-    ),
-    # Closed, for masses of fixed links; placements of fixed links before a joint are still left out of the recursion.
-    Thread("roboticstoolbox", "fixed", "mass_matrix|gravity|bias|dynamics", f"{_ROBOTICSTOOLBOX}636"),
-    # Mended integration for placed free joints; differences were left as they were.
-    Thread("dart", "free", "difference", f"{_DART}pull/2298"),
+    Thread("pinocchio", "euler|universal|ellipsoid|hinges|slide|translation and", "coriolis", f"{_PINOCCHIO}2053"),
 )
 
 

@@ -1,0 +1,25 @@
+"""pinocchio 4.1.0: getFrameJacobianTimeVariation, universal.
+
+Result: their time derivatives (L, 6, nv).
+Known: none found.
+"""
+
+import numpy as np
+import pinocchio as pin
+m = pin.Model()
+m.gravity.linear = np.zeros(3)
+j0 = m.addJoint(0, pin.JointModelUniversal(np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])), pin.SE3.Identity(), 'b')
+m.appendBodyToJoint(j0, pin.Inertia(1.0, np.zeros(3), np.eye(3)), pin.SE3.Identity())
+fs = []
+fs.append(m.addFrame(pin.Frame('f0', j0, 0, pin.SE3.Identity(), pin.FrameType.OP_FRAME)))
+d = m.createData()
+q = np.array([0.0, 0.0])
+v = np.array([0.0, 1.0])
+pin.computeJointJacobiansTimeVariation(m, d, q, v)
+pin.updateFramePlacements(m, d)
+value = np.array([pin.getFrameJacobianTimeVariation(m, d, f, pin.LOCAL_WORLD_ALIGNED) for f in fs])
+value = np.array(value, dtype=float)
+expected = np.array([[[0.0, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0]]])
+error = np.max(np.abs(value - expected))
+print(f"{value = }\n{expected = }\n{error = :.3g}")
+assert error <= 4.4e-13
