@@ -1,7 +1,7 @@
 """pinocchio 4.1.0: computeCoriolisMatrix, branches, numbered across.
 
 Result: C + C^T = dM/dt (nv, nv).
-Known: none found.
+Known: https://github.com/stack-of-tasks/pinocchio/issues/1897.
 """
 
 import numpy as np

@@ -1,7 +1,7 @@
 """pinocchio 4.1.0: computeABADerivatives, branches, numbered across.
 
 Result: derivative of forward dynamics by q (nv, nv).
-Known: none found.
+Known: https://github.com/stack-of-tasks/pinocchio/issues/1897.
 """
 
 import numpy as np

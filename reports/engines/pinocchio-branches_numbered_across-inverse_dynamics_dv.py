@@ -1,7 +1,7 @@
 """pinocchio 4.1.0: computeRNEADerivatives, branches, numbered across.
 
 Result: derivative of M a + h by v (nv, nv).
-Known: none found.
+Known: https://github.com/stack-of-tasks/pinocchio/issues/1897.
 """
 
 import numpy as np

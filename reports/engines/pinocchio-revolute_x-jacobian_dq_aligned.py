@@ -1,7 +1,7 @@
 """pinocchio 4.1.0: getJointKinematicHessian, revolute x.
 
 Result: their derivatives by q (L, 6, nv, nv).
-Known: none found.
+Known: https://github.com/stack-of-tasks/eigenpy/issues/557.
 """
 
 import numpy as np

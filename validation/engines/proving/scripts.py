@@ -166,6 +166,6 @@ def fails(path: Path) -> tuple[str, bool]:
         done = subprocess.run([sys.executable, str(path)], capture_output=True, text=True, timeout=_TIME)
     except subprocess.TimeoutExpired:
         return f"no end in {_TIME:g} s", True
-    said = done.stdout + done.stderr.replace(str(path), path.name)
+    said = done.stdout + done.stderr.replace(str(path.absolute()), path.name).replace(str(path), path.name)
     failed = done.returncode < 0 or (done.returncode != 0 and "AssertionError" in done.stderr)
     return f"{said.strip()}\nexit code {done.returncode}", failed
