@@ -2,10 +2,8 @@
 
 An engine is asked in its own conventions, about trees of rigid links that are stated neutrally (`Tree`). It says how it
 keeps a tree's joints (`Slot`: a chart of `charts.CHARTS`, and where coordinates and speeds stand in its q and v); the
-truth is
-then worked out in the same coordinates and speeds. A plug-in is an object with the members of `EnginePlugin`, offered
-under
-the entry-point group `symofros.engines`:
+truth is then worked out in the same coordinates and speeds. A plug-in is an object with the members of `EnginePlugin`,
+offered under the entry-point group `symofros.engines`:
 
     [project.entry-points."symofros.engines"]
     mine = "my_package.plugin:PLUGIN"
@@ -196,8 +194,7 @@ class EngineModel(HasLayout, Protocol):
         """A function of the plug-in's `functions`, by name, in the conventions stated there for its result.
 
         What is linear in speeds is so in the engine's own; derivatives are along its own speeds: the k-th column is
-        the rate
-        along q' = N(q) e_k. Bodies are the tree's links in their order.
+        the rate along q' = N(q) e_k. Bodies are the tree's links in their order.
         """
 
     def script(self, function: str, state: State) -> str:

@@ -1,8 +1,7 @@
 """What is right: dynamics of a tree in many digits, in an engine's coordinates and speeds.
 
 From poses alone (`kinematics`): Newton's and Euler's equations of each link, projected by its Jacobian. No generator,
-no
-engine, no recursion has a part in it.
+no engine and no recursion has a part in it.
 """
 
 from __future__ import annotations

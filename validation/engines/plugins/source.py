@@ -38,8 +38,7 @@ class Source:
     Attributes:
         lines: Statements, imports first.
         optional: Name -> statements that define it, which only functions need that use it. A function that uses a
-            name of
-            OPTIONAL which is not among them is not offered for this tree.
+            name of OPTIONAL which is not among them is not offered for this tree.
         slots: See `EngineModel`.
         nq: Length of the engine's q.
         nv: Length of the engine's v.
