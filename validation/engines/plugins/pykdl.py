@@ -141,7 +141,8 @@ def write(tree: Tree) -> Source | Unsupported:
 
 def version() -> str:
     """Version of Debian's package, or of one on Python's own path; "" for none."""
-    if importlib.util.find_spec("PyKDL") is not None:
+    known = importlib.util.find_spec("PyKDL")
+    if known is not None and SYSTEM not in Path(known.origin or "").parents:
         return "on Python's path"
     tag = f"cpython-{sys.version_info.major}{sys.version_info.minor}"
     if not any(SYSTEM.glob(f"PyKDL.{tag}*.so")):
