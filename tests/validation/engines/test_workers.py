@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from validation.engines.kinds import tree_of
 
 from validation.engines.matrix import SEED
+from validation.engines.models.kinds import tree_of
 from validation.engines.workers import Crashed, Job, Worker
 
 

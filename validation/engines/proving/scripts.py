@@ -145,7 +145,12 @@ def text(plugin: EnginePlugin, red: Judged, known: str) -> str:
         return f"{head}{red.answer.script}\nprint(value)\n"
     value = np.asarray(red.answer.value)
     want = red.want.value
-    lines = [red.answer.script.rstrip(), "value = np.array(value, dtype=float)"]
+    # A matrix of one column comes as a vector where arrays are Eigen's (`verdicts.judge`).
+    reshaped = value.shape != want.shape and value.size == want.size
+    if reshaped:
+        value = value.reshape(want.shape)
+    shape = f".reshape({want.shape})" if reshaped else ""
+    lines = [red.answer.script.rstrip(), f"value = np.array(value, dtype=float){shape}"]
     if want.shape == value.shape and want.size > _SHOWN:
         place = np.unravel_index(int(np.argmax(np.abs(value - want))), want.shape)
         at = ", ".join(str(int(k)) for k in place)
