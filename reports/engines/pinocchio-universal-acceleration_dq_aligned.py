@@ -7,27 +7,20 @@ Known: none found.
 import numpy as np
 import pinocchio as pin
 m = pin.Model()
-m.gravity.linear = np.array([0.0, 0.0, -9.81])
-j0 = m.addJoint(0, pin.JointModelRX(), pin.SE3(np.array([[-0.43245958941053764, -0.5287718025216873, -0.7303280662721615], [-0.49769225224427194, -0.5354260420194608, 0.6823645474256403], [-0.7518517976189809, 0.6585737121881959, -0.031615503028836804]]), np.array([-0.16291882563952487, -0.2870787689165759, 0.09197279439457717])), 'a')
-m.appendBodyToJoint(j0, pin.Inertia(1.5569721694480687, np.array([0.08305442680566866, 0.13393595668737535, 0.09140509725454227]), np.array([[0.13141019073029508, 0.021420970703173593, 0.016700333001167734], [0.021420970703173593, 0.13298250045453067, 0.018563345106407406], [0.016700333001167734, 0.018563345106407406, 0.12700414962911613]])), pin.SE3.Identity())
-j1 = m.addJoint(j0, pin.JointModelUniversal(np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])), pin.SE3(np.array([[-0.6584477734116765, -0.7483767594111184, -0.0798671125214782], [0.4082804294244146, -0.44432078203007247, 0.7974246883594716], [-0.6322607220429094, 0.492454331516637, 0.5981096143118593]]), np.array([-0.3155576842587212, 0.22051019077652279, 0.43853914880007194])), 'b')
-m.appendBodyToJoint(j1, pin.Inertia(0.658044816790065, np.array([-0.032580995681234265, 0.14678974484592477, 0.137871557736786]), np.array([[0.12948049046799273, -0.009478079499510244, 0.008680720281770152], [-0.009478079499510244, 0.15180938683343606, -0.017308279783943118], [0.008680720281770152, -0.017308279783943118, 0.10953433040586376]])), pin.SE3.Identity())
-j2 = m.addJoint(j1, pin.JointModelRevoluteUnaligned(np.array([0.6666666666666666, -0.3333333333333333, 0.6666666666666666])), pin.SE3(np.array([[-0.17502636247714087, -0.42797808588439995, -0.8866794970228791], [0.9296695033461279, -0.36835025272051736, -0.005718904518787878], [-0.32416105100117215, -0.8253198466797318, 0.4623491793983843]]), np.array([-0.49123765584607326, 0.3980906188726058, 0.47679153989759404])), 'c')
-m.appendBodyToJoint(j2, pin.Inertia(0.5947615223167464, np.array([-0.16155619282906378, -0.046861263096507816, 0.09437860319826191]), np.array([[0.1065066782194916, -0.0035148688058992492, -0.017427237292150042], [-0.0035148688058992492, 0.10609714458659632, -0.006262201335010905], [-0.017427237292150042, -0.006262201335010905, 0.13395043249602942]])), pin.SE3.Identity())
+m.gravity.linear = np.zeros(3)
+j0 = m.addJoint(0, pin.JointModelUniversal(np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])), pin.SE3.Identity(), 'b')
+m.appendBodyToJoint(j0, pin.Inertia(1.0, np.zeros(3), np.eye(3)), pin.SE3.Identity())
 fs = []
 fs.append(m.addFrame(pin.Frame('f0', j0, 0, pin.SE3.Identity(), pin.FrameType.OP_FRAME)))
-fs.append(m.addFrame(pin.Frame('f1', j1, 0, pin.SE3.Identity(), pin.FrameType.OP_FRAME)))
-fs.append(m.addFrame(pin.Frame('f2', j2, 0, pin.SE3.Identity(), pin.FrameType.OP_FRAME)))
 d = m.createData()
-q = np.array([-1.0996201868492035, -0.9078727378165394, 0.054260044125437945, -2.005166620907341])
-v = np.array([0.3881357647151733, -0.10262307947376259, 0.280353617179524, -0.45902228709100545])
-a = np.array([-0.39625206603607555, -0.8533158648967247, -0.8948288577550136, 0.6149502567089378])
+q = np.array([0.0, 0.0])
+v = np.array([1.0, 1.0])
+a = np.array([0.0, 0.0])
 pin.computeForwardKinematicsDerivatives(m, d, q, v, a)
 pin.updateFramePlacements(m, d)
 value = np.array([pin.getFrameAccelerationDerivatives(m, d, f, pin.LOCAL_WORLD_ALIGNED)[1] for f in fs])
 value = np.array(value, dtype=float)
-value = value[1, 5, 2]
-expected = 0.0
+expected = np.array([[[0.0, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0], [-1.0, 0.0], [0.0, 0.0]]])
 error = np.max(np.abs(value - expected))
 print(f"{value = }\n{expected = }\n{error = :.3g}")
-assert error <= 1.7e-12
+assert error <= 1.9e-12

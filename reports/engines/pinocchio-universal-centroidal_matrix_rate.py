@@ -18,4 +18,4 @@ value = np.array(value, dtype=float)
 expected = np.array([[0.0, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0]])
 error = np.max(np.abs(value - expected))
 print(f"{value = }\n{expected = }\n{error = :.3g}")
-assert error <= 8.9e-13
+assert error <= 1.9e-12

@@ -9,16 +9,14 @@ import pinocchio as pin
 m = pin.Model()
 m.gravity.linear = np.array([0.0, 0.0, -9.81])
 j0 = m.addJoint(0, pin.JointModelUniversal(np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])), pin.SE3.Identity(), 'b')
-m.appendBodyToJoint(j0, pin.Inertia(1.0, np.array([0.0, 1.0, 0.0]), np.array([[2.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 4.0]])), pin.SE3.Identity())
-j1 = m.addJoint(j0, pin.JointModelRevoluteUnaligned(np.array([0.6666666666666666, -0.3333333333333333, 0.6666666666666666])), pin.SE3.Identity(), 'c')
-m.appendBodyToJoint(j1, pin.Inertia(1.0, np.zeros(3), np.eye(3)), pin.SE3.Identity())
+m.appendBodyToJoint(j0, pin.Inertia(1.0, np.array([1.0, 0.0, 0.0]), np.eye(3)), pin.SE3.Identity())
 d = m.createData()
-q = np.array([0.0, 0.0, 1.0])
-v = np.array([0.0, 0.0, 0.0])
-tau = np.array([0.0, 0.0, 0.0])
+q = np.array([1.0, 0.0])
+v = np.array([0.0, 0.0])
+tau = np.array([0.0, 0.0])
 value = pin.computeABADerivatives(m, d, q, v, tau)[0]
 value = np.array(value, dtype=float)
-expected = np.array([[0.0, -0.7145681581685744, 0.0], [0.0, 0.1990582726326743, 0.0], [0.0, 2.388699271592092, 0.0]])
+expected = np.array([[0.0, -8.254830360965466], [-4.127415180482733, 0.0]])
 error = np.max(np.abs(value - expected))
 print(f"{value = }\n{expected = }\n{error = :.3g}")
-assert error <= 4.3e-12
+assert error <= 1.3e-11

@@ -9,14 +9,12 @@ import pinocchio as pin
 m = pin.Model()
 m.gravity.linear = np.array([0.0, 0.0, -9.81])
 j0 = m.addJoint(0, pin.JointModelUniversal(np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])), pin.SE3.Identity(), 'b')
-m.appendBodyToJoint(j0, pin.Inertia(1.0, np.zeros(3), np.eye(3)), pin.SE3.Identity())
-j1 = m.addJoint(j0, pin.JointModelRevoluteUnaligned(np.array([0.6666666666666666, -0.3333333333333333, 0.6666666666666666])), pin.SE3.Identity(), 'c')
-m.appendBodyToJoint(j1, pin.Inertia(1.0, np.array([1.0, 0.0, 0.0]), np.array([[2.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 4.0]])), pin.SE3.Identity())
+m.appendBodyToJoint(j0, pin.Inertia(1.0, np.array([1.0, 0.0, 0.0]), np.eye(3)), pin.SE3.Identity())
 d = m.createData()
-q = np.array([1.0, 0.0, 0.0])
+q = np.array([1.0, 0.0])
 value = pin.computeGeneralizedGravityDerivatives(m, d, q)
 value = np.array(value, dtype=float)
-expected = np.array([[0.0, 8.254830360965466, 0.7819669600558122], [8.254830360965466, 0.0, 0.0], [0.7819669600558122, 0.0, 0.5213113067038748]])
+expected = np.array([[0.0, 8.254830360965466], [8.254830360965466, 0.0]])
 error = np.max(np.abs(value - expected))
 print(f"{value = }\n{expected = }\n{error = :.3g}")
-assert error <= 1.4e-11
+assert error <= 1.8e-11

@@ -22,4 +22,4 @@ value = np.array(value, dtype=float)
 expected = np.array([[[0.0, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0]]])
 error = np.max(np.abs(value - expected))
 print(f"{value = }\n{expected = }\n{error = :.3g}")
-assert error <= 4.4e-13
+assert error <= 1.4e-12

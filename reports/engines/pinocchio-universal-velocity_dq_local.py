@@ -13,7 +13,7 @@ m.appendBodyToJoint(j0, pin.Inertia(1.0, np.zeros(3), np.eye(3)), pin.SE3.Identi
 fs = []
 fs.append(m.addFrame(pin.Frame('f0', j0, 0, pin.SE3.Identity(), pin.FrameType.OP_FRAME)))
 d = m.createData()
-q = np.array([1.0, 0.0])
+q = np.array([0.0, 0.0])
 v = np.array([1.0, 0.0])
 a = np.array([0.0, 0.0])
 pin.computeForwardKinematicsDerivatives(m, d, q, v, a)

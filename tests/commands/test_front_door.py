@@ -78,7 +78,7 @@ def test_the_harness_starts_from_any_folder(tmp_path: Path) -> None:
     assert done.returncode == 2 and not (tmp_path / "reports").exists()
 
 
-@pytest.mark.parametrize("arguments", [["check", "pendulum"], ["validation", "--help"], ["validation", "timing"]])
+@pytest.mark.parametrize("arguments", [["validation", "--help"], ["validation", "timing"]])
 def test_without_its_packages_the_harness_says_what_to_install(arguments: list[str], tmp_path: Path) -> None:
     """As after `pip install symofros` alone: a package that can't be imported stands for one that is not there."""
     (tmp_path / "sitecustomize.py").write_text("import sys\nsys.modules['scipy'] = sys.modules['matplotlib'] = None\n")

@@ -23,7 +23,8 @@ def check_packs(program: Program) -> None:
     homes: dict[int, tuple[int, int]] = {}
     for index, pack in enumerate(graph.packs):
         problem = next(chain(_shape_problems(pack), _lane_problems(graph, pack)), None)
-        assert problem is None, f"pack {index}: {problem}"
+        if problem is not None:
+            raise AssertionError(f"pack {index}: {problem}")
         for lane in sorted(pack.new_lanes):
             node = abs(pack.lanes[lane])
             if node in homes:

@@ -13,10 +13,11 @@ from symofros.simulation.stepping.stepper import Stepper
 
 def metrics(stepper: Stepper, q: Array, u: Array) -> Array:
     """Mass matrices (n, nv, nv) at configurations (n, nq); units where the model has no mass matrix."""
-    try:
-        M: Array = stepper.model.mass_matrix(q, u=u, par=stepper.par)
-    except SymofrosError:  # Options.functions left it out.
-        M = np.broadcast_to(np.eye(stepper.model.nv), (len(q), stepper.model.nv, stepper.model.nv))
+    model = stepper.model
+    try:  # What every model is compiled with, but for Options.functions.
+        M: Array = model.dynamics(q, np.zeros(model.nv), u, par=stepper.par)[0]
+    except SymofrosError:
+        M = np.broadcast_to(np.eye(model.nv), (len(q), model.nv, model.nv))
     return M
 
 
