@@ -28,6 +28,7 @@ ROUTES_ASKED = {
     "exudyn-loops",
     "lagrangian",
     "exudyn-beams",
+    "vectors",
     "interpreted",
     "description",
 }

@@ -17,6 +17,7 @@ def test_robot(label: str) -> None:
         "mujoco",
         "pinocchio-urdf",
         "mujoco-urdf",
+        "vectors",
         "interpreted",
         "description",
     }

@@ -92,6 +92,7 @@ ROUTES: dict[str, Route] = {
     "lagrangian": Route("validation.adapters.lagrangian.engine", "casadi", beams=True),
     "exudyn-beams": Route("validation.adapters.exudyn.mapped", "exudyn", beams=True, rotary=False),
     "exudyn-frf": Route("validation.adapters.exudyn.frf", "exudyn", beams=True),
+    "vectors": Route("validation.adapters.vectors", independent=False),
     "interpreted": Route("validation.adapters.interpreted", independent=False),
     "description": Route("validation.adapters.description", independent=False),
 }

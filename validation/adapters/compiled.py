@@ -25,7 +25,7 @@ class SymofrosEngine:
     """A `symofros.Model` behind the `Engine` protocol; our conventions are its own.
 
     Attributes:
-        name: "symofros", or "interpreted" for the NumPy back end.
+        name: "symofros"; "vectors" and "interpreted" are other ways to the same equations.
         model: Compiled model.
         frames: The subject's frames.
     """
@@ -146,7 +146,7 @@ def build_verbatim(subject: Subject) -> SymofrosEngine:
     compared = MJCF_ROUTE if subject.format == "mjcf" else SECOND_ROUTE
     functions = tuple(name for name in _FUNCTIONS if name in compared)
     frames = subject.frames if FRAME_QUANTITIES & compared else ()
-    model = sf.compile(subject.verbatim, sf.Options(functions=functions, frames=frames))
+    model = sf.compile(subject.verbatim, sf.Options(functions=functions, frames=frames, batch="loop"))
     return SymofrosEngine(NAME, model, frames)
 
 
@@ -171,13 +171,15 @@ def build_weightless(subject: Subject) -> sf.Model | None:
     """
     if not stores_energy(subject.system):
         return None
-    return sf.compile(replace(subject.system, gravity=(0.0, 0.0, 0.0)), sf.Options(functions=("potential_energy",)))
+    return sf.compile(
+        replace(subject.system, gravity=(0.0, 0.0, 0.0)), sf.Options(functions=("potential_energy",), batch="loop")
+    )
 
 
 def options(subject: Subject, backend: Literal["c", "interpreter"]) -> sf.Options:
-    """Just the functions and frames that are compared."""
+    """Just the functions and frames that are compared, state by state: vectors take many times as long to compile."""
     absent = (frozenset() if subject.frames else FRAME_QUANTITIES) | (
         frozenset() if subject.system.constraints else CONSTRAINED
     )
     functions = tuple(f for f in _FUNCTIONS if f not in absent)
-    return sf.Options(functions=functions, frames=subject.frames, backend=backend)
+    return sf.Options(functions=functions, frames=subject.frames, backend=backend, batch="loop")

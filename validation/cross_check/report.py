@@ -324,8 +324,8 @@ _METHOD = (
     "the whole manifold of q, whatever the joint limits; the first few are special: neutral, at rest, many turns, half "
     "turns, negated quaternions, fast. pinocchio and mujoco are built from our description, body by body, by code that "
     "shares nothing with the generator; pinocchio-urdf and mujoco-urdf read the robot's file themselves, every digit "
-    "as it stands; interpreted is our NumPy evaluation of the same equations; description is the stated formulas of "
-    "the joint efforts."
+    "as it stands; vectors is our C several states at a time, interpreted our NumPy evaluation of the same equations; "
+    "description is the stated formulas of the joint efforts."
 )
 _REASONS = {SOLVE: "rounding amplified by cond(M)"}
 _QUANTITIES: dict[str, Column] = {

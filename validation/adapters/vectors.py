@@ -1,0 +1,19 @@
+"""SYMOFROS' C by vectors, several states at a time, as batches call it: what others are compared with runs state by state.
+
+Both come from one program, and tests hold them to the same bits; a few functions show it on each model, and its compiler.
+"""
+
+from __future__ import annotations
+
+import symofros as sf
+from validation.adapters.compiled import SymofrosEngine
+from validation.contract.interface import Subject
+
+NAME = "vectors"
+FUNCTIONS = ("mass_matrix", "bias", "inverse_dynamics")
+
+
+def build(subject: Subject) -> SymofrosEngine:
+    """The model's C by vectors, of a few functions: each is compiled by itself."""
+    model = sf.compile(subject.system, sf.Options(functions=FUNCTIONS, batch="vector"))
+    return SymofrosEngine(NAME, model, subject.frames, frozenset(FUNCTIONS))
