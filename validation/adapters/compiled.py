@@ -171,9 +171,8 @@ def build_weightless(subject: Subject) -> sf.Model | None:
     """
     if not stores_energy(subject.system):
         return None
-    return sf.compile(
-        replace(subject.system, gravity=(0.0, 0.0, 0.0)), sf.Options(functions=("potential_energy",), batch="loop")
-    )
+    weightless = replace(subject.system, gravity=(0.0, 0.0, 0.0))
+    return sf.compile(weightless, sf.Options(functions=("potential_energy",), batch="loop"))
 
 
 def options(subject: Subject, backend: Literal["c", "interpreter"]) -> sf.Options:

@@ -1,6 +1,6 @@
-"""SYMOFROS' C by vectors, several states at a time, as batches call it: what others are compared with runs state by state.
+"""SYMOFROS' C by vectors, several states at a time, as batches call it; what others are compared with runs by state.
 
-Both come from one program, and tests hold them to the same bits; a few functions show it on each model, and its compiler.
+Both come from one program, and tests hold them to the same bits; a few functions show it on each model and compiler.
 """
 
 from __future__ import annotations
