@@ -20,7 +20,7 @@ from validation.engines.study import RED, gathered, proofs, read
 from validation.engines.workers import Worker, registry
 from validation.reporting.command import Run, known
 from validation.reporting.numbers import counted
-from validation.reporting.record import Bullets, Cell, Code, Data, Fact, Report, Section, Table, Text, Topic
+from validation.reporting.record import Bullets, Cell, Code, Data, Fact, Fold, Report, Section, Table, Text, Topic
 
 _TEXT = (
     "Each engine builds the same small trees by its own API and answers in its own conventions: coordinates, speeds, "
@@ -108,7 +108,7 @@ def compose(data: Data) -> Report:
             *by_engine,
             Section("Identities of engines with themselves", (_identities(data),), "identities"),
             Section("Conventions", (_conventions(data),), "conventions", page_only=True),
-            *(_proof(proof) for proof in data["proofs"]),
+            Section("Proofs", tuple(map(_proof, data["proofs"])), "proofs", not unproven, page_only=True),
         ),
         facts=(
             Fact(str(tally["right"]), "cells right"),
@@ -123,10 +123,12 @@ def compose(data: Data) -> Report:
 
 
 def _decision(cells: list[Row], proven: int) -> str:
-    red = Counter(cell["engine"] for cell in cells if cell["verdict"] in RED)
-    said = ", ".join(f"{engine} in {counted(number, 'cell')}" for engine, number in red.most_common()) or "none"
+    wrong = Counter(cell["engine"] for cell in cells if cell["verdict"] in ("wrong", "crashes"))
+    said = ", ".join(f"{engine} in {counted(number, 'cell')}" for engine, number in wrong.most_common()) or "none"
+    imprecise = sum(cell["verdict"] == "imprecise" for cell in cells)
     return (
-        f"**Which engine is wrong, against the truth in many digits:** {said}; {counted(proven, 'script')} prove it. "
+        f"**Which engine is wrong, against the truth in many digits:** {said}; {counted(imprecise, 'cell')} more lose "
+        f"digits beyond what rounding explains. {counted(proven, 'script')} prove it. "
         "Where: [the matrix](engines.html#overview)."
     )
 
@@ -218,9 +220,9 @@ def _anchor(proof: Row) -> str:
     return str(proof["file"]).removesuffix(".py")
 
 
-def _proof(proof: Row) -> Section:
+def _proof(proof: Row) -> Fold:
     """A red cell: where it is red, who knows it, the script, what it prints."""
-    return Section(
+    return Fold(
         f"{proof['engine']}: {proof['native']}, {proof['model']}",
         (
             Bullets(
@@ -235,9 +237,8 @@ def _proof(proof: Row) -> Section:
             Code(proof["text"]),
             Code(proof["output"]),
         ),
-        _anchor(proof),
-        proof["proven"],
         page_only=True,
+        anchor=_anchor(proof),
     )
 
 

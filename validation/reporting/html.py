@@ -112,7 +112,7 @@ def block(item: Block, figure_name: str = "") -> str:
         case Text(text, tone):
             return f'<p class="{tone}">{prose(text)}</p>'
         case Code(text):
-            return f"<pre>{escape(text)}</pre>"
+            return f'<pre tabindex="0">{escape(text)}</pre>'
         case Table():
             return table(item)
         case Bullets(items):
@@ -123,8 +123,10 @@ def block(item: Block, figure_name: str = "") -> str:
             name = f"<b>{figure_name}</b> " if figure_name else ""
             said = f"<figcaption>{name}{prose(caption)}</figcaption>" if caption else ""
             return f'<figure><div class="charts">{"".join(map(chart, charts))}</div>{said}</figure>'
-        case Fold(summary, blocks, opened):
+        case Fold(summary, blocks, opened, _, anchor):
             inner = "\n".join(block(one, figure_name) for one in blocks)
+            # Within the fold, so that a link to it opens it.
+            inner = f'<div id="{escape(anchor)}">{inner}</div>' if anchor else inner
             return f"<details{' open' if opened else ''}><summary>{prose(summary)}</summary>\n{inner}</details>"
 
 

@@ -38,7 +38,7 @@ def block(item: Block) -> str:
             return "\n".join(f"- {' '.join(one.split())}" for one in items)
         case Figure():
             return ""
-        case Fold(summary, blocks, _, page_only):
+        case Fold(summary, blocks, _, page_only, _):
             return "" if page_only else "\n\n".join(filter(None, [f"{summary}:", *map(block, blocks)]))
 
 

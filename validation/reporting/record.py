@@ -100,12 +100,14 @@ class Fold:
         blocks: Blocks that are folded.
         opened: Whether it is open at first.
         page_only: Whether the Markdown summary leaves it out.
+        anchor: Name for links, which open it; "" for none.
     """
 
     summary: str
     blocks: tuple[Block, ...]
     opened: bool = False
     page_only: bool = False
+    anchor: str = ""
 
 
 Block = str | Text | Code | Table | Bullets | Figure | Fold
