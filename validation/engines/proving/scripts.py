@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from dataclasses import dataclass, replace
@@ -172,5 +173,6 @@ def fails(path: Path) -> tuple[str, bool]:
     except subprocess.TimeoutExpired:
         return f"no end in {_TIME:g} s", True
     said = done.stdout + done.stderr.replace(str(path.absolute()), path.name).replace(str(path), path.name)
+    said = re.sub(r"\S*/site-packages/", "", said)  # Warnings of engines name where they are installed here.
     failed = done.returncode < 0 or (done.returncode != 0 and "AssertionError" in done.stderr)
     return f"{said.strip()}\nexit code {done.returncode}", failed
