@@ -1,4 +1,4 @@
-"""What `symofros info` tells of a model beside its tree: masses, coordinates with their limits, parameters, frames."""
+"""What `symofros info` shows of a model beside its tree: masses, coordinates with their limits, parameters, frames."""
 
 from __future__ import annotations
 
@@ -47,26 +47,26 @@ def details(tree: SpanningTree) -> dict[str, Any]:
     return {"bodies": bodies, "coordinates": coordinates, "parameters": parameters, "frames": frames}
 
 
-def tables(told: dict[str, Any]) -> list[Table]:
+def tables(facts: dict[str, Any]) -> list[Table]:
     """Tables for a terminal, without those that would be empty."""
     masses = Table("body", "mass [kg]", "center of mass [m]", title="Bodies")
-    for body in told["bodies"]:
+    for body in facts["bodies"]:
         if body["mass"] is not None:
             center = ", ".join(map(_number, body.get("center_of_mass", ())))
             masses.add_row(body["name"], _number(body["mass"]), center or "(beam)")
     bounds = Table("coordinate", "lower", "upper", title="Limits [rad, m]")
-    for item in told["coordinates"]:
+    for item in facts["coordinates"]:
         if item["lower"] is not None or item["upper"] is not None:
             bounds.add_row(item["name"], _number(item["lower"]), _number(item["upper"]))
     parameters = Table("parameter", "value", "unit", "", title="Parameters")
-    for item in told["parameters"]:
+    for item in facts["parameters"]:
         parameters.add_row(item["name"], _number(item["value"]), item["unit"], "constant" if item["constant"] else "")
     return [table for table in (masses, bounds, parameters) if table.row_count]
 
 
-def frames_line(told: dict[str, Any]) -> str:
+def frames_line(facts: dict[str, Any]) -> str:
     """The first frames by name, and how many there are."""
-    names = told["frames"]
+    names = facts["frames"]
     rest = f", … ({len(names)} in all; --json lists them)" if len(names) > _FRAMES else ""
     return f"frames: {', '.join(names[:_FRAMES])}{rest}"
 

@@ -39,17 +39,17 @@ def info(model: FilePath, floating_base: Floating = False, network: Network = Fa
     counts = {" of ".join(filter(None, key)): count for key, count in count_program(compilation.program).items()}
     names = tree.coordinates
     sizes = {"nq": len(names.q), "nv": len(names.v), "nu": len(names.u), "npar": len(names.par)}
-    told = details(tree)
+    facts = details(tree)
     if as_json:
         operations = {name: vars_of(count) for name, count in counts.items()}
-        stated = {"name": system.name, **sizes, **told, "operations": operations, "notes": list(system.notes)}
+        stated = {"name": system.name, **sizes, **facts, "operations": operations, "notes": list(system.notes)}
         print(json.dumps(stated, indent=1))
         return
     out.print(_draw(tree))
     out.print(", ".join(f"{key} {value}" for key, value in sizes.items()), markup=False)
-    if told["frames"]:
-        out.print(frames_line(told), markup=False, highlight=False, soft_wrap=True)
-    for shown in tables(told):
+    if facts["frames"]:
+        out.print(frames_line(facts), markup=False, highlight=False, soft_wrap=True)
+    for shown in tables(facts):
         out.print(shown)
     table = Table("function", "mul", "add", "div", "call", "total", title="Operations per call")
     for name, count in counts.items():

@@ -35,7 +35,7 @@ class Judged:
 
 
 class Truths:
-    """Truths that were worked out already: engines that keep joints alike share them.
+    """Truths that were worked out already: engines with the same layout share them.
 
     Args:
         perturbations: See `verdicts.expected`.

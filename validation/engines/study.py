@@ -43,7 +43,7 @@ def gathered(
     """
     cells: list[Judged] = []
     for tree in trees:
-        # Engines that keep a tree's joints alike share its truths; other trees have none in common with it.
+        # Engines with the same layout of a tree share its truths; other trees have none in common with it.
         truths = Truths()
         for plugin in plugins.values():
             cells += judged(
@@ -69,7 +69,7 @@ def read(
     return cells
 
 
-def alike(cells: Sequence[Judged]) -> list[list[Judged]]:
+def fault_groups(cells: Sequence[Judged]) -> list[list[Judged]]:
     """Red cells that are taken for one fault: one function of an engine, on trees where the same functions are red.
 
     Returns:
@@ -104,7 +104,7 @@ def proofs(
 ) -> list[tuple[Proof, tuple[str, ...]]]:
     """A proven script for each fault, with the names of all trees that show it; `tries` bounds the shrinking."""
     results = []
-    for group in alike(cells):
+    for group in fault_groups(cells):
         first = group[0]
         proof = prove(plugins[first.cell.engine], first, worker, Truths(), folder, tries)
         results.append((proof, tuple(one.cell.model for one in group)))

@@ -18,7 +18,7 @@ from validation.engines.models.kinds import KINDS, tree_of
 from validation.engines.models.readers import readings
 from validation.engines.plugins import OWN
 from validation.engines.proving import scripts
-from validation.engines.study import alike
+from validation.engines.study import fault_groups
 from validation.engines.verdicts import judge
 from validation.engines.workers import Crashed, Job, Worker, answered
 
@@ -139,6 +139,6 @@ def test_trees_that_show_the_same_functions_red_share_a_script() -> None:
         for kind in ("universal", "three hinges", "mimic revolute")
         for one in _judged(kind, "coriolis_forces", "coriolis_symmetry")
     ]
-    assert [[one.cell.model for one in group] for group in alike(reds)] == [
+    assert [[one.cell.model for one in group] for group in fault_groups(reds)] == [
         ["universal", "three hinges", "mimic revolute"]
     ] * 2
