@@ -20,29 +20,29 @@ CHARTS = {
 }
 _SIZES = {"revolute": (1, 1), "prismatic": (1, 1), "helical": (1, 1), "ball": (4, 3), "free": (7, 6)}
 
-# Functions whose values are kept: name here -> name of `validation.engines.functions.FUNCTIONS`.
-FUNCTIONS = {
-    "mass_matrix": "mass_matrix",
-    "mass_matrix_inverse": "mass_matrix_inverse",
-    "bias": "bias",
-    "gravity": "gravity",
-    "inverse_dynamics": "inverse_dynamics",
-    "forward_dynamics": "forward_dynamics",
-    "kinetic_energy": "kinetic_energy",
-    "potential_energy": "potential_energy",
-    "link_poses": "link_poses",
-    "link_velocities": "link_velocities",
-    "link_accelerations": "link_accelerations",
-    "link_jacobians": "link_jacobians",
-    "link_jacobian_rates": "link_jacobian_rates",
-    "centroidal_matrix": "centroidal_matrix",
-    "centroidal_momentum_rate": "centroidal_momentum_rate",
-    "inverse_dynamics_dq": "inverse_dynamics_dq",
-    "inverse_dynamics_dv": "inverse_dynamics_dv",
-    "forward_dynamics_dq": "forward_dynamics_dq",
-    "forward_dynamics_dv": "forward_dynamics_dv",
-    "torque_regressor": "torque_regressor",
-}
+# Functions of `validation.engines.functions.FUNCTIONS` that have their values in the data.
+FUNCTIONS = (
+    "mass_matrix",
+    "mass_matrix_inverse",
+    "bias",
+    "gravity",
+    "inverse_dynamics",
+    "forward_dynamics",
+    "kinetic_energy",
+    "potential_energy",
+    "link_poses",
+    "link_velocities",
+    "link_accelerations",
+    "link_jacobians",
+    "link_jacobian_rates",
+    "centroidal_matrix",
+    "centroidal_momentum_rate",
+    "inverse_dynamics_dq",
+    "inverse_dynamics_dv",
+    "forward_dynamics_dq",
+    "forward_dynamics_dv",
+    "torque_regressor",
+)
 
 
 @dataclass(frozen=True)

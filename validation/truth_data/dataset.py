@@ -56,7 +56,7 @@ def values_of(model: Model, count: int = STATES) -> dict[str, Any]:
             state = random_state(model.tree, made, seed)
             point = Point.of(state)
             stated: dict[str, Any] = {name: getattr(state, name).tolist() for name in ("q", "v", "a", "tau")}
-            stated["values"] = {name: _texts(ALL[source].truth(truth, point)) for name, source in FUNCTIONS.items()}
+            stated["values"] = {name: _texts(ALL[name].truth(truth, point)) for name in FUNCTIONS}
             states.append(stated)
     return {"model": model.name, "states": states}
 
@@ -112,7 +112,7 @@ def _manifest(models: Sequence[Model], digests: dict[str, Any]) -> dict[str, Any
         "derivatives by central differences of step 1e-18 (validation/engines/truth.py)",
         "conventions": list(CONVENTIONS),
         "charts": {name: ALL_CHARTS[name].text for name in sorted(set(CHARTS.values()))},
-        "functions": {name: ALL[source].text for name, source in FUNCTIONS.items()},
+        "functions": {name: ALL[name].text for name in FUNCTIONS},
         "models": {model.name: model.why for model in models},
         "files": digests,
     }
