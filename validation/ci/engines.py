@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from validation.ci.cells import CellFailure, CellItem
 from validation.engines.matrix import SEED, Truths, judged, suited
 from validation.engines.models.kinds import KINDS, tree_of
 from validation.engines.study import RED
@@ -18,10 +19,6 @@ from validation.reporting.numbers import digits
 
 # Functions of the smoke tier: what everything else of an engine rests on.
 SMOKE = ("mass_matrix", "bias", "gravity", "inverse_dynamics", "forward_dynamics", "kinetic_energy", "link_poses")
-
-
-class EngineFailure(Exception):
-    """A cell that is red; the message says why."""
 
 
 @cache
@@ -37,7 +34,7 @@ def _cells(engine: str, kind: str, functions: tuple[str, ...]) -> dict[str, Cell
     return {one.cell.function: one.cell for one in judged(plugin, job, Truths(), _worker())}
 
 
-class EngineCheck(pytest.Item):
+class EngineCheck(CellItem):
     """One function of an engine on one kind of joint.
 
     Args:
@@ -45,34 +42,25 @@ class EngineCheck(pytest.Item):
         kind: Name of the kind of joint.
         function: Name of the function.
         together: Functions that the engine is asked for at once.
-        tier: Name of the tier.
-        named: Others that pytest sets.
+        named: Those of `CellItem`.
     """
 
-    def __init__(
-        self, *, engine: str, kind: str, function: str, together: tuple[str, ...], tier: str, **named: Any
-    ) -> None:
+    def __init__(self, *, engine: str, kind: str, function: str, together: tuple[str, ...], **named: Any) -> None:
         super().__init__(**named)
         self.engine, self.kind, self.wanted, self.together = engine, kind, function, together
-        self.add_marker("symofros")
-        self.add_marker(f"symofros_{tier}")
 
     def runtest(self) -> None:
         """Ask the engine, and fail if its answer is wrong, or none."""
         cell = _cells(self.engine, self.kind, self.together)[self.wanted]
         if cell.verdict in RED:
             stated = cell.words if cell.verdict == "crashes" else f"error {digits(cell.error)}"
-            raise EngineFailure(
+            raise CellFailure(
                 f"{self.engine}, {self.wanted} on {self.kind}: {cell.verdict}: {stated}, "
                 f"of the largest entry; rounding explains {digits(cell.tolerance)}"
             )
         if cell.verdict != "right":
             pytest.skip(cell.words or cell.verdict)
         self.user_properties.append(("error", digits(cell.error)))
-
-    def repr_failure(self, excinfo: Any, style: Any = None) -> Any:
-        """The cell alone; another exception with its traceback."""
-        return str(excinfo.value) if isinstance(excinfo.value, EngineFailure) else super().repr_failure(excinfo, style)
 
     def reportinfo(self) -> tuple[Path, int | None, str]:
         """Where it stands in reports."""

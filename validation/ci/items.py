@@ -12,6 +12,7 @@ import pytest
 
 from validation.adapters import ROUTES
 from validation.check import ModelResult, Settings
+from validation.ci.cells import CellFailure, CellItem
 from validation.ci.engines import engine_checks
 from validation.comparison.errors import Comparison
 from validation.cross_check.baseline import Baseline, BaselineError, Regression, machine_of
@@ -43,10 +44,6 @@ class Tier:
 TIERS = {"smoke": Tier(20, SMOKE), "standard": Tier(200), "full": Tier(1000)}
 
 
-class CrossCheckFailure(Exception):
-    """Cells that disagree, are worse than before, or were not compared at all; the message lists them."""
-
-
 @cache
 def _result(case: Case, settings: Settings) -> ModelResult:
     return run_case(case, settings)
@@ -57,40 +54,31 @@ def _speeds(case: Case) -> tuple[Speed, ...]:
     return tuple(measure(case.load()))
 
 
-class CrossCheck(pytest.Item):
+class CrossCheck(CellItem):
     """One model by one engine: every quantity that both have.
 
     Args:
         case: The model.
         settings: States, seed, the one engine.
-        tier: Name of the tier.
-        named: Others that pytest sets.
+        named: Those of `CellItem`.
     """
 
-    def __init__(self, *, case: Case, settings: Settings, tier: str, **named: Any) -> None:
+    def __init__(self, *, case: Case, settings: Settings, **named: Any) -> None:
         super().__init__(**named)
         self.case, self.settings = case, settings
-        self.add_marker("symofros")
-        self.add_marker(f"symofros_{tier}")
 
     def runtest(self) -> None:
         """Check, and fail with the cells that disagree."""
         result = _result(self.case, self.settings)
         wrong = [row for row in result.comparisons if row.status in ("disagree", "failed") and row.engine != "any"]
         if wrong:
-            raise CrossCheckFailure("\n".join(map(_stated, wrong)))
+            raise CellFailure("\n".join(map(_stated, wrong)))
         (engine,) = self.settings.engines or ("",)
         compared = [row for row in result.comparisons if row.engine == engine and row.status == "agree"]
         if not compared:
             reasons = dict.fromkeys(row.note for row in result.comparisons if row.engine == engine and row.note)
             pytest.skip("; ".join(reasons) or f"{engine} has nothing to compare on {self.case.label}")
         self.user_properties += [(row.quantity, digits(row.error)) for row in compared]
-
-    def repr_failure(self, excinfo: Any, style: Any = None) -> Any:
-        """The cells alone; another exception with its traceback."""
-        if isinstance(excinfo.value, CrossCheckFailure):
-            return str(excinfo.value)
-        return super().repr_failure(excinfo, style)
 
     def reportinfo(self) -> tuple[Path, int | None, str]:
         """Where it stands in reports."""
@@ -112,7 +100,7 @@ class BaselineCheck(CrossCheck):
         regressions, notes = self.stored.judge(Record.of(data), machine_of(data))
         mine = [worse for worse in regressions if worse.model == self.case.label]
         if mine:
-            raise CrossCheckFailure("\n".join(map(_worse, mine)))
+            raise CellFailure("\n".join(map(_worse, mine)))
         if any(note.startswith(f"{self.case.label}:") for note in notes):
             pytest.skip("; ".join(notes))
 
@@ -128,7 +116,7 @@ class Confirmation(CrossCheck):
         ]
         if not any(ROUTES[row.engine].independent for row in rows if row.engine in ROUTES and row.status == "agree"):
             reasons = dict.fromkeys(f"{row.engine}: {row.note}" for row in rows if row.note and row.engine != "any")
-            raise CrossCheckFailure("\n".join(["no independent engine confirms this model", *reasons]))
+            raise CellFailure("\n".join(["no independent engine confirms this model", *reasons]))
 
 
 class CrossChecks(pytest.Collector):
