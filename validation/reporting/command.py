@@ -165,19 +165,34 @@ def write(topic: Topic, data: Data, folder: Path) -> Report:
     Raises:
         OSError: The folder can't be written to.
     """
-    folder.mkdir(parents=True, exist_ok=True)
-    text = json.dumps(data, allow_nan=False)
-    write_atomically(folder / f"{topic.name}.json", f"{text}\n")
-    return render(topic, json.loads(text), folder)
+    text, report = _composed(topic, data)
+    _write_files(topic, text, report, Provenance.of(data), folder)
+    return report
 
 
 def render(topic: Topic, data: Data, folder: Path) -> Report:
     """Write NAME.md and NAME.html from what NAME.json holds."""
-    report, provenance = topic.compose(data), Provenance.of(data)
+    report = topic.compose(data)
+    _write_pages(topic, report, Provenance.of(data), folder)
+    return report
+
+
+def _composed(topic: Topic, data: Data) -> tuple[str, Report]:
+    """Data as JSON, and the report of what JSON keeps of it."""
+    text = json.dumps(data, allow_nan=False)
+    return text, topic.compose(json.loads(text))
+
+
+def _write_files(topic: Topic, text: str, report: Report, provenance: Provenance, folder: Path) -> None:
+    folder.mkdir(parents=True, exist_ok=True)
+    write_atomically(folder / f"{topic.name}.json", f"{text}\n")
+    _write_pages(topic, report, provenance, folder)
+
+
+def _write_pages(topic: Topic, report: Report, provenance: Provenance, folder: Path) -> None:
     written = f"Written by `{topic.command}`; everything is in `{topic.name}.json`, figures in `{topic.name}.html`."
     for kind, renderer in (("html", html), ("md", markdown)):
         write_atomically(folder / f"{topic.name}.{kind}", renderer.page(report, provenance, written))
-    return report
 
 
 def code(report: Report) -> Exit:
@@ -205,11 +220,10 @@ def execute(topic: Topic, folder: Path | None, as_json: bool, **options: Any) ->
     except KeyboardInterrupt:
         run.say(f"{topic.name}: interrupted, nothing is written", bad=True)
         raise typer.Exit(Exit.INTERRUPTED) from None
-    text = json.dumps(data, allow_nan=False)
-    report = topic.compose(json.loads(text))
+    text, report = _composed(topic, data)
     kept = _keeps_whole(run, report)
     if run.writes and not kept:
-        write(topic, data, run.folder)
+        _write_files(topic, text, report, Provenance.of(data), run.folder)
     if as_json:
         typer.echo(json.dumps({name: data[name] for name in topic.printed or data}, allow_nan=False))
     else:
