@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from validation.engines.interface import Difference, Tree, Unsupported
+from validation.engines.interface import Difference, Tree
 from validation.engines.plugins.source import Source, SourcePlugin, Way
-from validation.engines.plugins.urdf import KINDS, breadth_first, describe, slots_of
+from validation.engines.plugins.urdf import KINDS, Described, breadth_first, of_files, slots_of, through_reader
 
 _SETUP = '''import numpy as np
 import tempfile
@@ -54,19 +54,12 @@ for k in links:
 _BASE = "free xyzw, angular and linear before"
 
 
-def write(tree: Tree) -> Source | Unsupported:
-    """The tree through dynibo's reader of URDF."""
-    described = describe(tree)
-    return described if isinstance(described, Unsupported) else write_reading(tree, "urdf", described.text)
-
-
-def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
-    """A file through dynibo's reader."""
-    described = describe(tree)
-    if isinstance(described, Unsupported):
-        return described
+def read(tree: Tree, described: Described) -> Source:
+    """A file through dynibo's reader of URDF."""
     count, floating = len(described.moving), described.floating
-    setup = _SETUP.format(text=text, robot="FloatingRobot" if floating else "Robot", links=list(described.links))
+    setup = _SETUP.format(
+        text=described.text, robot="FloatingRobot" if floating else "Robot", links=list(described.links)
+    )
     return Source(
         (setup, _FLOATING if floating else _FIXED),
         slots_of(tree, described, breadth_first(tree, described), _BASE),
@@ -91,8 +84,8 @@ PLUGIN = SourcePlugin(
     ),
     kinds=KINDS | {"free": "FloatingRobot"},
     ways=WAYS,
-    write=write,
+    write=through_reader(read),
     gravity=(0.0, 0.0, -9.80665),
     formats=("urdf",),
-    write_reading=write_reading,
+    write_reading=of_files(read),
 )

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from validation.engines.interface import Difference, Tree, Unsupported
+from validation.engines.interface import Difference, Tree
 from validation.engines.plugins.source import Source, SourcePlugin, Way
-from validation.engines.plugins.urdf import KINDS, describe, slots_of
+from validation.engines.plugins.urdf import KINDS, Described, of_files, slots_of, through_reader
 
 _SETUP = '''import os
 import numpy as np
@@ -41,19 +41,10 @@ WAYS = {
 }
 
 
-def write(tree: Tree) -> Source | Unsupported:
-    """The tree through frax's reader of URDF."""
-    described = describe(tree)
-    return described if isinstance(described, Unsupported) else write_reading(tree, "urdf", described.text)
-
-
-def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
-    """A file through frax's reader."""
-    described = describe(tree)
-    if isinstance(described, Unsupported):
-        return described
+def read(tree: Tree, described: Described) -> Source:
+    """A file through frax's reader of URDF."""
     # A link without inertia breaks its reader, even one that stands still.
-    text = text.replace('<link name="world"/>', _STANDING)
+    text = described.text.replace('<link name="world"/>', _STANDING)
     count, floating = len(described.moving), described.floating
     setup = _SETUP.format(text=text, joints=list(described.moving), base="'quaternion'" if floating else None)
     slots = slots_of(tree, described, described.moving, "free wxyz, linear before and angular after")
@@ -74,8 +65,8 @@ PLUGIN = SourcePlugin(
     ),
     kinds=KINDS | {"free": "floating_base='quaternion'"},
     ways=WAYS,
-    write=write,
+    write=through_reader(read),
     gravity=(0.0, 0.0, -9.81),
     formats=("urdf",),
-    write_reading=write_reading,
+    write_reading=of_files(read),
 )

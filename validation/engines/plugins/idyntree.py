@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from validation.engines.interface import Difference, Tree, Unsupported
+from validation.engines.interface import Difference, Tree
 from validation.engines.plugins.source import Source, SourcePlugin, Way
-from validation.engines.plugins.urdf import KINDS, describe, slots_of
+from validation.engines.plugins.urdf import KINDS, Described, of_files, slots_of, through_reader
 
 _SETUP = '''import numpy as np
 import idyntree.bindings as iDynTree
@@ -135,20 +135,11 @@ value = J.toNumPy()[:, cut:]""",
 _BASE = "free xyzw, linear and angular before"
 
 
-def write(tree: Tree) -> Source | Unsupported:
-    """The tree through iDynTree's reader of URDF."""
-    described = describe(tree)
-    return described if isinstance(described, Unsupported) else write_reading(tree, "urdf", described.text)
-
-
-def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
-    """A file through iDynTree's reader."""
-    described = describe(tree)
-    if isinstance(described, Unsupported):
-        return described
+def read(tree: Tree, described: Described) -> Source:
+    """A file through iDynTree's reader of URDF."""
     count, floating = len(described.moving), described.floating
     setup = _SETUP.format(
-        text=text,
+        text=described.text,
         joints=list(described.moving),
         root=described.links[0] if floating else "world",
         links=list(described.links),
@@ -177,7 +168,7 @@ PLUGIN = SourcePlugin(
     ),
     kinds=KINDS | {"free": "floating base"},
     ways=WAYS,
-    write=write,
+    write=through_reader(read),
     formats=("urdf",),
-    write_reading=write_reading,
+    write_reading=of_files(read),
 )

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 from validation.engines.charts import CHARTS
 from validation.engines.interface import IDENTITY, ORIGIN, Joint, Link, Rows, Slot, Tree, Unsupported, Vector
+from validation.engines.plugins.source import Source
 
 # URDF's names of elementary joints with one coordinate, and of none.
 SIMPLE = {"revolute": "continuous", "prismatic": "prismatic", "fixed": "fixed"}
@@ -93,6 +94,30 @@ def describe(tree: Tree, *, base: str = WORLD) -> Described | Unsupported:
         series.append(tuple(names))
     text = "\n".join(['<robot name="tree">', *lines, "</robot>"])
     return Described(text, floating, tuple(series), tuple(link.name for link in tree.links))
+
+
+# Text that has an engine read the file of a described tree.
+Reading = Callable[[Tree, Described], Source]
+
+
+def through_reader(reading: Reading) -> Callable[[Tree], Source | Unsupported]:
+    """What builds a tree by an engine's reader (`SourcePlugin.write`)."""
+
+    def write(tree: Tree) -> Source | Unsupported:
+        described = describe(tree)
+        return described if isinstance(described, Unsupported) else reading(tree, described)
+
+    return write
+
+
+def of_files(reading: Reading) -> Callable[[Tree, str, str], Source | Unsupported]:
+    """What reads a file that states a tree (`SourcePlugin.write_reading`)."""
+
+    def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
+        described = describe(tree)
+        return described if isinstance(described, Unsupported) else reading(tree, replace(described, text=text))
+
+    return write_reading
 
 
 def _floats(tree: Tree) -> bool:
