@@ -222,12 +222,14 @@ def _by_powers(row: Comparison, stated: int, at: dict[float, dict[str, float]], 
         for name, value in fine.items()
         if value > resolved
     }
-    told = [f"{name} by power {powers[name]:.2f}" if name in powers else f"{name} by nothing resolved" for name in fine]
+    shown = [
+        f"{name} by power {powers[name]:.2f}" if name in powers else f"{name} by nothing resolved" for name in fine
+    ]
     return replace(
         row,
         status="agree" if fine[worst] <= allowed[worst] else "disagree",
         error=fine[worst],
         tolerance=allowed[worst],
-        note=f"differences by powers of the deflection: {', '.join(told)}",
+        note=f"differences by powers of the deflection: {', '.join(shown)}",
         extra={"power": min(powers.values())} if powers else {},
     )

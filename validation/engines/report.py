@@ -68,7 +68,8 @@ def measure(
         "absent": {name: plugin.extra for name, plugin in plugins.items() if name not in present} | registry().failures,
         "models": names_wanted,
         "functions": {name: FUNCTIONS[name.partition(":")[0]].text for name in names(chosen)},
-        "cells": [asdict(one.cell) for one in cells],
+        # What an engine does not offer is what is left: a third of all.
+        "cells": [asdict(one.cell) for one in cells if one.cell.verdict != "not offered"],
         "identities": [asdict(one) for one in held(cells)],
         "proofs": [asdict(proof) | {"models": models} for proof, models in proven],
     }
@@ -158,19 +159,15 @@ def _overview(data: Data) -> Table:
 def _absent(data: Data) -> Sequence[Text]:
     if not data["absent"]:
         return ()
-    told = "; ".join(f"{name}: {why}" for name, why in data["absent"].items())
-    return (Text(f"Not installed here: {told}.", "soft"),)
+    listed = "; ".join(f"{name}: {why}" for name, why in data["absent"].items())
+    return (Text(f"Not installed here: {listed}.", "soft"),)
 
 
 def _matrix(engine: Row, data: Data, anchors: Mapping[tuple[str, str, str], str]) -> Section:
     """Functions by trees, those that the engine has."""
     name = engine["name"]
     own = {(cell["function"], cell["model"]): cell for cell in data["cells"] if cell["engine"] == name}
-    models = [
-        model
-        for model in data["models"]
-        if any(key[1] == model and own[key]["verdict"] != "not offered" for key in own)
-    ]
+    models = [model for model in data["models"] if any(model == known for _, known in own)]
     lines = []
     for function in data["functions"]:
         if function in engine["functions"]:
@@ -188,7 +185,7 @@ def _matrix(engine: Row, data: Data, anchors: Mapping[tuple[str, str, str], str]
 
 
 def _cell(cell: Row | None, anchors: Mapping[tuple[str, str, str], str]) -> str | Cell:
-    if cell is None or cell["verdict"] == "not offered":
+    if cell is None:
         return ""
     sign = _SIGNS[cell["verdict"]]
     anchor = anchors.get((cell["engine"], cell["model"], cell["function"]))

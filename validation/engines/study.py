@@ -13,7 +13,7 @@ from validation.engines.proving.shrink import TRIES
 from validation.engines.workers import Job, Worker
 
 # Part of the functions that are red on either of two trees that must be red on both.
-_ALIKE = 0.5
+_SIMILAR = 0.5
 # What a file's reading shows in: the functions that every number of it enters.
 READ = (
     "sizes",
@@ -84,9 +84,9 @@ def fault_groups(cells: Sequence[Judged]) -> list[list[Judged]]:
         own = functions[one.cell.engine, one.cell.model]
         known = groups.setdefault((one.cell.engine, one.cell.function), [])
         for group in known:
-            theirs = functions[one.cell.engine, group[0].cell.model]
+            others = functions[one.cell.engine, group[0].cell.model]
             same_verdict = group[0].cell.verdict == one.cell.verdict
-            if same_verdict and len(own & theirs) >= _ALIKE * len(own | theirs):
+            if same_verdict and len(own & others) >= _SIMILAR * len(own | others):
                 group.append(one)
                 break
         else:

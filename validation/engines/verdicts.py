@@ -34,7 +34,7 @@ class Cell:
         function: Name of the function.
         verdict: The verdict.
         error: Largest deviation from the truth, as part of its largest entry; 0 without an answer.
-        tolerance: What rounding explains, likewise.
+        tolerance: What rounding explains, as part of the largest entry.
         words: What the engine says, or what breaks.
     """
 

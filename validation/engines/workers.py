@@ -116,7 +116,7 @@ def serve(pipe: Connection) -> None:
         try:
             for answer in answered(job):
                 pipe.send(answer)
-        except Exception as error:  # Our own fault, or a plug-in's: told, not hidden.
+        except Exception as error:  # A fault of ours, or of a plug-in: reported, not hidden.
             pipe.send(Unsupported(f"{type(error).__name__}: {error}"))
         pipe.send(None)
 

@@ -1,4 +1,4 @@
-/* A fixed amount of arithmetic of the kind that generated code consists of: speeds are told as multiples of its time,
+/* A fixed amount of arithmetic of the kind that generated code consists of: speeds are given as multiples of its time,
    so that they can be compared between runs on machines of one kind. Never change it: stored runs rest on it. */
 
 #include <math.h>
