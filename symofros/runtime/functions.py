@@ -15,6 +15,7 @@ from symofros.errors import ParameterError, Problem, ShapeError, SymofrosError, 
 from symofros.runtime.beams import ElasticBeam
 from symofros.runtime.calls.kernel import Array, BatchOptions, Kernel, Numbers, Precision, Unit
 from symofros.runtime.calls.layout import by_columns, flat, states
+from symofros.runtime.calls.single import SingleCall, SingleCalls
 from symofros.runtime.names import Names as Names
 from symofros.runtime.names import stacked
 from symofros.runtime.record import ModelRecord
@@ -81,6 +82,7 @@ class Functions:
         self._par.flags.writeable = False
         self._kernels: dict[Key, Kernel] = {key: kernel for unit in units for key, kernel in unit.kernels.items()}
         self._prepared: dict[Key, Array] = {}
+        self._single_calls = SingleCalls()
         self.names = Names.of(record)
 
     def __repr__(self) -> str:
@@ -289,6 +291,22 @@ class Functions:
         return self._call(name, self._frame(frame) if frame else "", given, par)[0]
 
     def _call(
+        self, name: str, frame: str, given: Mapping[str, ArrayLike | None], par: ArrayLike | None
+    ) -> list[Numbers]:
+        if par is None and self._precision == "double":
+            single = self._single_calls.prepared.get((name, frame)) or self._prepare_single(name, frame)
+            outputs = single(given)
+            if outputs is not None:
+                return outputs
+        return self._call_batch(name, frame, given, par)
+
+    def _prepare_single(self, name: str, frame: str) -> SingleCall:
+        kernel = self._kernels.get((name, frame)) or self._make(name, frame)
+        single = SingleCall(kernel, self._par, np.array(self.record.u_default))
+        self._single_calls.prepared[name, frame] = single
+        return single
+
+    def _call_batch(
         self, name: str, frame: str, given: Mapping[str, ArrayLike | None], par: ArrayLike | None
     ) -> list[Numbers]:
         kernel = self._kernels.get((name, frame)) or self._make(name, frame)

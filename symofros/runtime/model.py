@@ -169,8 +169,9 @@ class Model(ConstraintFunctions, CopyFunctions, FrameFunctions, ReactionFunction
                 [1/s]; none: accelerations only, so that errors of phi and G v drift.
             multipliers: Whether to return lam (..., nc) as well: G^T lam are the constraint forces.
         """
-        a, lam, _ = self.constrained_dynamics(q, v, u, par=par, t=t, gains=gains)
-        return (a, lam) if multipliers else a
+        if multipliers:
+            return self.constrained_dynamics(q, v, u, par=par, t=t, gains=gains)[:2]
+        return self._one("forward_dynamics", {"q": q, "v": v, "u": u, "t": t, "gains": self._gains(gains)}, par)
 
     def constrained_dynamics(
         self,

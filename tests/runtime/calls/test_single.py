@@ -1,0 +1,112 @@
+"""Plain calls for one state: the bits of a batch, in new arrays, whatever kind of numbers is given."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from tests.models import model
+
+FUNCTIONS = {
+    "mass_matrix": ("q",),
+    "bias": ("q", "v"),
+    "generalized_force": ("q", "v", "u"),
+    "dynamics": ("q", "v", "u"),
+    "forward_dynamics": ("q", "v", "u"),
+    "inverse_dynamics": ("q", "v", "a"),
+    "kinetic_energy": ("q", "v"),
+    "constraint": ("q",),
+    "constraint_jacobian": ("q",),
+}
+
+
+@pytest.fixture(params=["c", "interpreter"])
+def m(request: pytest.FixtureRequest) -> sf.Model:
+    return model("parametrised0", request.param)
+
+
+def state(m: sf.Model, rng: np.random.Generator) -> dict[str, np.ndarray]:
+    q, v = m.random_state(rng)
+    return {"q": q, "v": v, "u": rng.normal(size=m.nu), "a": rng.normal(size=m.nv)}
+
+
+def outputs(results: Any) -> list[np.ndarray]:
+    return list(results) if isinstance(results, tuple) else [results]
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_one_state_has_the_bits_of_a_batch(m: sf.Model, name: str, rng: np.random.Generator) -> None:
+    for _ in range(3):
+        given = state(m, rng)
+        single = outputs(getattr(m, name)(*(given[group] for group in FUNCTIONS[name])))
+        batch = outputs(getattr(m, name)(*(given[group][None] for group in FUNCTIONS[name])))
+        for one, many in zip(single, batch, strict=True):
+            assert one.shape == many.shape[1:]
+            assert np.array_equal(one, many[0])
+
+
+def test_each_call_gives_arrays_of_its_own(m: sf.Model, rng: np.random.Generator) -> None:
+    q0, q1 = m.random_state(rng)[0], m.random_state(rng)[0]
+    M = m.mass_matrix(q0)
+    before = M.copy()
+    m.mass_matrix(q1)[:] = 0.0
+    assert np.array_equal(M, before)
+    assert np.array_equal(m.mass_matrix(q0), before)
+
+
+@pytest.mark.parametrize(
+    "kind",
+    [np.ndarray.tolist, tuple, lambda q: np.repeat(q, 2)[::2], lambda q: q.astype(">f8"), lambda q: q.astype(object)],
+    ids=["list", "tuple", "strided", "big-endian", "objects"],
+)
+def test_numbers_of_any_kind_give_one_answer(m: sf.Model, kind: Any, rng: np.random.Generator) -> None:
+    q, _ = m.random_state(rng)
+    assert np.array_equal(m.mass_matrix(kind(q)), m.mass_matrix(q))
+
+
+def test_parameters_and_inputs_of_a_call_do_not_stay(m: sf.Model, rng: np.random.Generator) -> None:
+    given = state(m, rng)
+    q, v, u = given["q"], given["v"], given["u"]
+    default = np.array(m.record.u_default)
+    before = m.generalized_force(q, v, default), m.mass_matrix(q)
+    m.generalized_force(q, v, u + 1.0)
+    m.mass_matrix(q, u=u + 1.0, par=m.parameter_values * 1.1)
+    assert np.array_equal(m.generalized_force(q, v, None), before[0])
+    assert np.array_equal(m.mass_matrix(q), before[1])
+    heavier = m.with_parameters(**{name: 1.1 * value for name, value in m.parameters.items()})
+    assert np.array_equal(heavier.mass_matrix(q), m.mass_matrix(q, par=m.parameter_values * 1.1))
+    assert np.array_equal(m.mass_matrix(q), before[1])
+
+
+def test_time_is_a_number_or_a_batch() -> None:
+    body = sf.RigidBody("b", sf.Joint("j", "revolute", effort=("sin(t)",)), sf.Inertia(1.0))
+    m = sf.compile(sf.System("s", [body]))
+    q, v, u = np.zeros(1), np.zeros(1), np.zeros(0)
+    assert m.generalized_force(q, v, u) == pytest.approx([0.0])
+    for t in (0.5, np.float64(0.5), np.array(0.5)):
+        assert m.generalized_force(q, v, u, t=t) == pytest.approx([np.sin(0.5)], rel=1e-14)
+    assert m.generalized_force(q, v, u) == pytest.approx([0.0])
+    assert m.generalized_force(q, v, u, t=np.array([0.5, 1.0])).shape == (2, 1)
+
+
+def test_threads_do_not_share_memory(m: sf.Model, rng: np.random.Generator) -> None:
+    states = [m.random_state(rng)[0] for _ in range(16)]
+    expected = [m.mass_matrix(q) for q in states]
+
+    def many(i: int) -> bool:
+        return all(np.array_equal(m.mass_matrix(states[i]), expected[i]) for _ in range(50))
+
+    with ThreadPoolExecutor(8) as pool:
+        assert all(pool.map(many, range(16)))
+
+
+@pytest.mark.parametrize("size", [0, 1, 7])
+def test_a_wrong_size_is_refused_after_a_right_one(m: sf.Model, size: int) -> None:
+    m.mass_matrix(m.neutral())
+    if size != m.nq:
+        with pytest.raises(sf.ShapeError, match="q has the wrong shape"):
+            m.mass_matrix(np.zeros(size))
