@@ -12,6 +12,7 @@ from symofros.commands.harness import check, validation
 from symofros.commands.models import compile_command, info
 from symofros.commands.motion import simulate
 from symofros.commands.shared import BAD_INPUT, load
+from symofros.commands.statics import equilibrium
 from symofros.commands.uses import advise, edit, export_command
 from symofros.studio.viewer.command import add_view
 
@@ -38,6 +39,7 @@ def main(
 app.command()(info)
 app.command("compile")(compile_command)
 app.command()(simulate)
+app.command()(equilibrium)
 app.command()(advise)
 app.command("export")(export_command)
 app.command()(edit)

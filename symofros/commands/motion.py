@@ -7,14 +7,12 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any
 
-import numpy as np
 import typer
 from rich.table import Table
 
 import symofros as sf
 from symofros.commands import view_options
 from symofros.commands.shared import (
-    BAD_INPUT,
     AsJson,
     FilePath,
     Floating,
@@ -23,16 +21,14 @@ from symofros.commands.shared import (
     err,
     load,
     names_of,
-    number,
     numbers,
     out,
     refuse,
+    stated_state,
 )
 from symofros.compiler import compile_system
 from symofros.description.system import System
 from symofros.diagrams.files import command as diagrams
-from symofros.errors import did_you_mean
-from symofros.runtime.calls.kernel import Array
 from symofros.simulation.stepping.methods import METHODS
 
 
@@ -148,11 +144,10 @@ def _simulated(
     progress: bool,
 ) -> sf.Trajectory:
     """The run of one model."""
-    stated = {name: number(name, text) for name, text in assignments(given, "--set").items()}
-    compiled = compile_system(system)
-    parameters = {name: value for name, value in stated.items() if _is_parameter(compiled, name)}
-    compiled = compiled.with_parameters(**parameters)
-    q, v = _first_state(compiled, {name: value for name, value in stated.items() if name not in parameters})
+    compiled, q, v = stated_state(compile_system(system), assignments(given, "--set"))
+    if compiled.nc:
+        closed = sf.assemble(compiled, q, v)
+        q, v = closed.q, closed.v
     return sf.simulate(
         compiled,
         q,
@@ -164,32 +159,6 @@ def _simulated(
         progress=progress,
         **settings,
     )
-
-
-def _is_parameter(model: sf.Model, name: str) -> bool:
-    """Whether a name is that of a run-time parameter; one of a coordinate or a speed comes first."""
-    return name in model.names.par and name not in (*model.names.q, *model.names.v)
-
-
-def _first_state(model: sf.Model, given: dict[str, float]) -> tuple[Array, Array]:
-    """The neutral state, with what --set gives; closed where the model has loops."""
-    q, v = model.neutral(), np.zeros(model.nv)
-    for name, value in given.items():
-        if name in model.names.q:
-            q[model.names.q.index(name)] = value
-        elif name.removeprefix("d") in model.names.v:
-            v[model.names.v.index(name.removeprefix("d"))] = value
-        elif name in model.names.v:
-            v[model.names.v.index(name)] = value
-        else:
-            known = (*model.names.q, *(f"d{speed}" for speed in model.names.v), *model.names.par)
-            missing = f"--set: no coordinate, speed or run-time parameter '{name}'"
-            err.print(f"{missing}\n  remedy: {did_you_mean(name, known)}", markup=False)
-            raise typer.Exit(BAD_INPUT)
-    if not model.nc:
-        return q, v
-    closed = sf.assemble(model, q, v)
-    return closed.q, closed.v
 
 
 def _tell(run: sf.Trajectory, files: list[str], as_json: bool) -> None:

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated
 
+import numpy as np
 import typer
 from rich.console import Console
 
 import symofros as sf
 from symofros.description.system import System
+from symofros.errors import did_you_mean
+from symofros.runtime.calls.kernel import Array
 
 out = Console()
 err = Console(stderr=True)
@@ -64,6 +68,31 @@ def numbers(name: str, text: str) -> float | list[float]:
     """One number, or some between commas."""
     parts = text.strip("[]").split(",")
     return number(name, parts[0]) if len(parts) == 1 else [number(name, part) for part in parts]
+
+
+def stated_state(model: sf.Model, given: Mapping[str, str]) -> tuple[sf.Model, Array, Array]:
+    """The model at its stated run-time parameters, and the neutral state (nq), (nv) with what is stated of it.
+
+    A name of a coordinate or a speed comes before that of a parameter; another one is reported, and ends the command.
+    """
+    stated = {name: number(name, text) for name, text in given.items()}
+    states = (*model.names.q, *model.names.v)
+    parameters = {name: value for name, value in stated.items() if name in model.names.par and name not in states}
+    model = model.with_parameters(**parameters)
+    q, v = model.neutral(), np.zeros(model.nv)
+    for name in stated.keys() - parameters.keys():
+        if name in model.names.q:
+            q[model.names.q.index(name)] = stated[name]
+        elif name.removeprefix("d") in model.names.v:
+            v[model.names.v.index(name.removeprefix("d"))] = stated[name]
+        elif name in model.names.v:
+            v[model.names.v.index(name)] = stated[name]
+        else:
+            known = (*model.names.q, *(f"d{speed}" for speed in model.names.v), *model.names.par)
+            missing = f"--set: no coordinate, speed or run-time parameter '{name}'"
+            err.print(f"{missing}\n  remedy: {did_you_mean(name, known)}", markup=False)
+            raise typer.Exit(BAD_INPUT)
+    return model, q, v
 
 
 def names_of(text: str | None) -> list[str] | None:

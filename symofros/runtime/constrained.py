@@ -23,6 +23,8 @@ UNLIKE = 1e3
 PIVOT = 1e-13
 # Reach [m] below which residuals count in proportion; SYM_SMALL_REACH in C.
 SMALL_REACH = 1e-3
+# Residual over reach that the rounding of coordinates and lengths leaves: some tens of units in the last place.
+RESIDUAL_ROUNDING = 1e-14
 # A speed that counts as rest; SYM_STILL in C.
 STILL = 1e-7
 # Of the projection, as in C: |phi| that no step improves on, most steps, halvings of one, its largest entry.
@@ -52,6 +54,11 @@ def residual_weights(G: Array, measures: Measures) -> Array:
     reach = sizes.max(axis=1, initial=0.0)
     small = (np.array(measures.unit, dtype=np.intp) == LENGTH) & (reach > LEAST_SIZE) & (reach < SMALL_REACH)
     return np.where(small, SMALL_REACH / np.where(small, reach, 1.0), 1.0)
+
+
+def residual_rounding(G: Array, measures: Measures) -> Array:
+    """What rounding leaves of phi (nc), and of G v at unit speeds (docs/theory/constraints.md, (22a))."""
+    return np.asarray(RESIDUAL_ROUNDING * natural_sizes(G, measures).max(axis=1, initial=0.0), dtype=np.float64)
 
 
 def step_factor(G: Array, measures: Measures, step: Array, most: float) -> float:

@@ -1,6 +1,7 @@
 """The first commands that a newcomer types."""
 
 import json
+import math
 import os
 import subprocess
 import sys
@@ -44,6 +45,18 @@ def test_run_time_parameters_are_set_from_the_shell() -> None:
     common = "simulate", CART_POLE, "0.05", "--json", "--set", "q=0.5"
     light, heavy = (json.loads(invoke(*common, "--set", f"m_cart={m}").output)["last"] for m in (1, 100))
     assert abs(heavy["x"]) < 0.1 * abs(light["x"])
+
+
+def test_an_equilibrium_is_told_with_what_holds_it() -> None:
+    common = "equilibrium", CART_POLE, "--set", "m_cart=3", "--set", "q=3.0"
+    data = json.loads(invoke(*common, "--hold", "x", "--json").output)
+    assert data["ok"] and data["coordinates"]["q"] == pytest.approx(math.pi) and data["inputs"] == {"F": 0.0}
+    assert list(data["efforts"]) == ["x"]
+    shown = invoke(*common, "--hold", "x", "--hold", "q").output
+    assert "effort held by" in shown and "no inputs hold this state" in shown
+    none = invoke(*common, "--input", "F=1", "--json")
+    assert none.exit_code == 1 and "no equilibrium" in json.loads(none.output)["error"]
+    assert invoke("equilibrium", CART_POLE, "--hold", "xx").exit_code == 2
 
 
 def test_a_name_that_is_not_there_and_a_mass_below_zero_are_refused() -> None:

@@ -11,7 +11,15 @@ import numpy.typing as npt
 from symofros.base.arrays import numeric
 from symofros.errors import AssemblyError, Problem, UnknownNameError, did_you_mean
 from symofros.runtime.calls.kernel import Array
-from symofros.runtime.constrained import LARGEST_STEP, eliminate, pseudo_inverse, residual_weights, step_factor
+from symofros.runtime.constrained import (
+    LARGEST_STEP,
+    RESIDUAL_ROUNDING,
+    eliminate,
+    pseudo_inverse,
+    residual_rounding,
+    residual_weights,
+    step_factor,
+)
 from symofros.runtime.model import ArrayLike, Model
 
 Indices = npt.NDArray[np.intp]
@@ -58,7 +66,8 @@ def assemble(
         u: Inputs, for prescribed motions.
         par: Run-time parameters.
         t: Time.
-        tolerance: Bound of the largest |phi| [m, rad].
+        tolerance: Bound of the largest |phi| [m, rad]; mechanisms of a millimetre and less close to their own measure,
+            large ones to their rounding.
         iterations: Most steps to take.
 
     Raises:
@@ -91,17 +100,16 @@ def assemble(
         else:
             break
         q, phi, count = tried, phi_tried, count + 1
-    _accept(model, q, phi, tolerance, count, held)
-    _check_rotations(model, q, u, par)
     G = model.constraint_jacobian(q, u=u, par=par, t=t)
-    rate = model.constraint_rate(q, wished, u=u, par=par, t=t)
-    change = np.zeros(model.nv)
-    change[free] = -_inverse(model, G[:, free], free) @ rate
-    speeds = wished + change
+    _accept(model, phi, _bounds(model, q, G, tolerance), count, held)
+    _check_rotations(model, q, u, par)
+    speeds, inverse = wished.copy(), _inverse(model, G[:, free], free)
+    for _ in range(2):  # The second time against the rounding of columns of unlike sizes.
+        speeds[free] -= inverse @ model.constraint_rate(q, speeds, u=u, par=par, t=t)
     left = model.constraint_rate(q, speeds, u=u, par=par, t=t)
-    scale = 1.0 + float(np.abs(wished).max(initial=0.0))
-    if np.abs(left).max(initial=0.0) > 1e3 * tolerance * scale:
-        worst = int(np.argmax(np.abs(left)))
+    bounds = _bounds(model, q, G, tolerance) * (1.0 + float(np.abs(wished).max(initial=0.0)))
+    if np.any(np.abs(left) > 1e3 * bounds):
+        worst = int(np.argmax(np.abs(left) / bounds))
         raise AssemblyError(
             Problem(
                 f"model '{model.record.name}': no speeds keep it closed",
@@ -149,18 +157,24 @@ def free_speeds(model: Model, held: Collection[str]) -> Indices:
     return np.array([i for i, name in enumerate(model.names.v) if name not in held], dtype=np.intp)
 
 
-def _accept(model: Model, q: Array, phi: Array, tolerance: float, count: int, held: Collection[str]) -> None:
-    # Rounding of the coordinates themselves bounds what can be reached.
-    reachable = max(tolerance, 1e-14 * (1.0 + float(np.abs(q).max(initial=0.0))))
-    if np.abs(phi).max(initial=0.0) <= reachable:
+def _bounds(model: Model, q: Array, G: Array, tolerance: float) -> Array:
+    """Largest |phi| that closes each condition (nc): the tolerance, or the rounding of coordinates and lengths."""
+    rounding = np.maximum(
+        residual_rounding(G, model.record.measures), RESIDUAL_ROUNDING * (1.0 + np.abs(q).max(initial=0))
+    )
+    return np.asarray(np.maximum(tolerance, rounding), dtype=np.float64)
+
+
+def _accept(model: Model, phi: Array, bounds: Array, count: int, held: Collection[str]) -> None:
+    if np.all(np.abs(phi) <= bounds):
         return
-    worst = int(np.argmax(np.abs(phi)))
+    worst = int(np.argmax(np.abs(phi) / bounds))
     also = f"; held: {', '.join(held)}" if held else ""
     raise AssemblyError(
         Problem(
             f"model '{model.record.name}': can't be assembled from this guess",
             f"after {count} steps phi = {phi[worst]:.3g} at '{model.names.constraints[worst]}'{also}",
-            f"|phi| <= {tolerance:g}; either no configuration closes it, or the guess leads to none",
+            f"|phi| <= {bounds[worst]:.2g}; either no configuration closes it, or the guess leads to none",
             "start nearer, hold fewer coordinates, or check lengths",
         )
     )

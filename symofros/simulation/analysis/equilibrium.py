@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from dataclasses import dataclass
+import math
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from symofros.base.arrays import numeric
-from symofros.errors import BeamTheoryError, EquilibriumError, Problem
+from symofros.errors import ActuationError, BeamTheoryError, EquilibriumError, Problem, UnknownNameError
 from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes, largest_bending
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
+from symofros.simulation.analysis.actuator_efforts import actuator_efforts
 from symofros.simulation.analysis.assembly import free_speeds
 from symofros.simulation.analysis.beam_theory import bendings_at, bendings_at_rest, beyond_critical_load, refuse_beyond
 
@@ -28,13 +30,16 @@ class Equilibrium:
     Attributes:
         q: Configuration (nq).
         v: Speeds (nv).
-        u: Inputs (nu).
+        u: Inputs that were given (nu).
         lam: Multipliers (nc).
         effort: Effort that holds the held coordinates (nv); zero for the others [N m or N].
         residual: Largest imbalance, relative to the largest force.
         iterations: Steps taken.
         bendings: Bending of each beam, with the error of its theory.
         notes: Remarks: beams whose theory errs by more than a per cent, or that are loaded beyond their critical load.
+        efforts: Effort on each held coordinate by the name of its speed [N m or N].
+        inputs: Inputs by name under which the state stays by itself, no coordinate held, those that are no prescribed
+            motions of least norm; None where no inputs do. With nothing held, those that were given.
     """
 
     q: Array
@@ -46,6 +51,8 @@ class Equilibrium:
     iterations: int
     bendings: tuple[BeamBending, ...] = ()
     notes: tuple[str, ...] = ()
+    efforts: Mapping[str, float] = field(default_factory=dict)
+    inputs: Mapping[str, float] | None = None
 
 
 def equilibrium(
@@ -68,7 +75,8 @@ def equilibrium(
         q: Guess (nq); the neutral configuration if not given.
         v: Speeds that stay (nv), zero if not given: a spin makes it a steady motion.
         u: Inputs (nu).
-        held: Names of speeds whose coordinates stay; what they need is returned as their effort.
+        held: Names of speeds whose coordinates stay; what they need is returned as their effort, and as inputs where
+            these can give it.
         par: Run-time parameters.
         t: Time.
         tolerance: Bound of the imbalance, relative to the largest force.
@@ -137,7 +145,26 @@ def equilibrium(
     effort = np.zeros(nv)
     held_rows = np.setdiff1d(np.arange(nv), free)
     effort[held_rows] = R[held_rows]
-    return Equilibrium(q, v, u, lam, effort, left, count, bendings, unstable + bending_notes(bendings))
+    efforts = {model.names.v[i]: float(effort[i]) for i in held_rows}
+    inputs = _holding_inputs(model, (q, v, u, lam), effort, par, t)
+    notes = unstable + bending_notes(bendings)
+    return Equilibrium(q, v, u, lam, effort, left, count, bendings, notes, efforts, inputs)
+
+
+def _holding_inputs(
+    model: Model, state: tuple[Array, Array, Array, Array], effort: Array, par: ArrayLike | None, t: float
+) -> dict[str, float] | None:
+    """Inputs by name that replace the effort on held coordinates; None where none do, or forces are not linear in them.
+
+    As efforts of chosen actuators (docs/theory/constraints.md, (25)): B u = B u_given + effort + G^T mu.
+    """
+    q, v, u, lam = state
+    if np.any(effort):
+        try:
+            u = actuator_efforts(model, q, v, np.zeros(model.nv), u=u, par=par, t=t, beam_limit=math.inf).u
+        except (ActuationError, UnknownNameError):
+            return None
+    return dict(zip(model.names.u, u.tolist(), strict=True))
 
 
 def _size(R: Array, scale: float, nc: int) -> float:

@@ -36,6 +36,16 @@ def test_loops_close(name: str) -> None:
     assert np.linalg.norm(change - np.linalg.pinv(G, rcond=1e-8) @ (G @ change)) < 1e-9 * np.linalg.norm(wished)
 
 
+@pytest.mark.parametrize("size", [10.0**exponent for exponent in range(-6, 9)])
+def test_loops_of_all_sizes_close(size: float) -> None:
+    m = sf.compile(MODELS["slider_crank"], FUNCTIONS)
+    m = m.with_parameters(L1=0.15 * size, L2=0.3 * size)
+    for turn in (0.5, 1.3, 2.0, -2.8):
+        closed = sf.assemble(m, [turn, -0.5 * turn, 0.3 * size], [1.0, 0.0, 0.0], held=["turn"])
+        assert np.abs(m.constraint(closed.q)).max() <= max(1e-12 * min(1e3 * size, 1.0), 1e-14 * size)
+        assert np.abs(m.constraint_rate(closed.q, closed.v)).max() <= 1e-12 * size
+
+
 def test_what_is_held_stays() -> None:
     m = sf.compile(MODELS["four_bar"], FUNCTIONS)
     found = sf.assemble(m, [1.2, -1.0, 1.3], [2.0, 0.0, 0.0], held=["q1"])

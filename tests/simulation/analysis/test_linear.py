@@ -140,6 +140,27 @@ class TestEquilibrium:
         assert np.array_equal(found.q, q)
         assert found.effort == pytest.approx(m.bias(q, [0, 0]), rel=1e-12)
 
+    @pytest.mark.parametrize("turn", [0.4, 1.7, -2.5])
+    def test_inputs_replace_the_effort_on_held_coordinates(self, turn: float) -> None:
+        m = sf.compile(MODELS["puma560"])
+        q = np.linspace(turn, -turn, m.nv)
+        rest = sf.equilibrium(m, q, held=m.names.v)
+        assert rest.inputs is not None and tuple(rest.inputs) == m.names.u
+        assert rest.efforts == dict(zip(m.names.v, rest.effort.tolist(), strict=True))
+        free = sf.equilibrium(m, q, u=rest.inputs)
+        assert free.iterations == 0 and free.inputs == rest.inputs and not free.efforts
+
+    def test_the_input_of_a_closed_loop_balances_it(self) -> None:
+        m = model("slider_crank").with_parameters(m1=2.0)
+        q = sf.assemble(m, [0.5, -0.7, 0.4], held=["turn"]).q
+        rest = sf.equilibrium(m, q, held=["turn"])
+        assert rest.inputs is not None
+        assert np.abs(m.forward_dynamics(rest.q, rest.v, list(rest.inputs.values()))).max() < 1e-9
+
+    def test_coordinates_that_no_input_moves_are_held_by_efforts_alone(self) -> None:
+        rest = sf.equilibrium(model("cart_pole"), [0.0, 0.3], held=["x", "q"])
+        assert rest.inputs is None and abs(rest.efforts["q"]) > 0.1
+
     def test_none(self) -> None:
         with pytest.raises(sf.EquilibriumError, match="imbalance of .* at 'x'"):
             sf.equilibrium(model("cart_pole"), [0, 1.0], u=[1.0])
