@@ -113,7 +113,9 @@ class UnitCompiler:
 
         def source(build: Build) -> str:
             progress.begin("generating")
-            text = model_source(program(), self._record, GENERATOR, lanes, packs=build.packs)
+            # Of a unit on vectors, the code for one state is never called.
+            packs = build.packs and lanes is None
+            text = model_source(program(), self._record, GENERATOR, lanes, packs=packs)
             progress.begin("compiling")
             return text
 

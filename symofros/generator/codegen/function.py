@@ -35,15 +35,11 @@ class FunctionText:
 
     Attributes:
         code: Definitions of its chunks and of the function that calls them.
-        work: Doubles of scratch.
-        lanes: Definitions of the function on vectors, one state a lane; empty where it is not asked for.
-        lanes_work: Vectors of scratch of the function on vectors.
+        work: Scratch: doubles, or vectors of a function on vectors.
     """
 
     code: str
     work: int
-    lanes: str = ""
-    lanes_work: int = 0
 
 
 @dataclass(frozen=True)
@@ -98,12 +94,8 @@ class FunctionWriter:
         self.statements = self.writer.statements()
         self.chunked = _Chunks.of(_chunks(self.statements) or [[]])
 
-    def text(self, lanes: LaneOptions | None = None) -> FunctionText:
-        """The C text: chunk functions, then the function that unpacks pointers and calls them.
-
-        Args:
-            lanes: Layout of a version on vectors, if one is wanted.
-        """
+    def text(self) -> FunctionText:
+        """The C text for one state: chunk functions, then the function that unpacks pointers and calls them."""
         parts = [self._chunk(i) for i in range(len(self.chunked.chunks))]
         body = [f"    const double *restrict {name} = in[{i}];" for i, name in enumerate(self.inputs)]
         body += [f"    double *restrict {output.name} = out[{i}];" for i, output in enumerate(self.outputs)]
@@ -111,18 +103,16 @@ class FunctionWriter:
         arguments = ", ".join([*self.inputs, *(output.name for output in self.outputs), "work"])
         body += [f"    {self.c_name}_{i}({arguments});" for i in range(len(self.chunked.chunks))]
         head = f"static void {self.c_name}(const double *const *in, double *const *out, double *restrict work) {{"
-        code = "\n".join([*parts, head, *body, "}"])
-        if lanes is None:
-            return FunctionText(code, self.chunked.work)
-        chunked = _Chunks.of(_chunks_in_lanes(self.statements) or [[]])
-        return FunctionText(code, self.chunked.work, self._lanes(chunked, lanes.single), chunked.work)
+        return FunctionText("\n".join([*parts, head, *body, "}"]), self.chunked.work)
 
-    def _lanes(self, chunked: _Chunks, single: bool) -> str:
-        """On vectors: chunk by chunk, each for all vectors of states; entries that are always zero are left out.
+    def text_on_vectors(self, lanes: LaneOptions) -> FunctionText:
+        """The C text for several states, one in each lane of a vector; of a writer without packs.
 
-        The chunks stay apart from the loops around them, out of which compilers would carry their constants.
+        Chunk by chunk, each for all vectors of states; entries that are always zero are left out. The chunks stay apart
+        from the loops around them, out of which compilers would carry their constants.
         """
-        writer = self.writer.in_lanes(single)
+        chunked = _Chunks.of(_chunks_in_lanes(self.statements) or [[]])
+        writer = self.writer.in_lanes(lanes.single)
         parts = [self._chunk_in_lanes(i, chunked, writer) for i in range(len(chunked.chunks))]
         columns = [f"in[{i}]" for i in range(1, len(self.inputs))] + [f"out[{i}]" for i in range(len(self.outputs))]
         arguments = ["(const sym_p *)(in[0].at + i * in[0].next)"]
@@ -132,7 +122,7 @@ class FunctionWriter:
             for k in range(len(chunked.chunks))
         ]
         head = f"static void {self.c_name}_v(int count, const sym_column *in, const sym_column *out, sym_v *work) {{"
-        return "\n".join([*parts, head, "    int i;", *calls, "}"])
+        return FunctionText("\n".join([*parts, head, "    int i;", *calls, "}"]), chunked.work)
 
     def _clear(self, output: Output) -> list[str]:
         zeros = [i for i, edge in enumerate(output.edges) if edge == 0]

@@ -44,12 +44,11 @@ def model_source(
         in_lanes: Options of the code that takes several states of a batch at once; None for none.
             Functions with a solver have none: the solver takes the time, and it pivots (docs/theory/code.md).
         c_name: Prefix of symbols; made of the record's name by default.
-        packs: Whether values formed by the same operations share vectors, which takes GNU C; not in lanes,
-            where every value is a vector already.
+        packs: Whether values of one state formed by the same operations share vectors, which takes GNU C; not in
+            lanes, where every value is a vector already.
     """
     name = c_name or identifier(record.name)
     vectors = in_lanes if any(function.solver is None for function in program.functions) else None
-    packs = packs and vectors is None
     texts = [
         "\n".join(
             [
@@ -219,18 +218,24 @@ def _one_function(
 ) -> tuple[str, _Row]:
     """The code of a function, with its rows of tables."""
     inputs = ["pre", *function.inputs]
-    if function.solver is None:
-        text = FunctionWriter(program, c_name, inputs, function.outputs, packs=packs).text(in_lanes)
-    else:
+    vectors, scratch = [], 0
+    if function.solver is not None:
+        in_lanes = None
         text = with_solver(program, c_name, function, function.solver, packs)
-    vectors, work = [], text.work
-    if text.lanes:
-        vectors = ["#if SYM_LANES > 1", text.lanes, lanes.strided(c_name, program, function, text.lanes_work), "#endif"]
-        work = max(work, lanes.scratch(program, function, text.lanes_work))
+    else:
+        writer = FunctionWriter(program, c_name, inputs, function.outputs, packs=packs)
+        text = writer.text()
+        if in_lanes is not None:
+            plain = FunctionWriter(program, c_name, inputs, function.outputs) if packs else writer
+            on_vectors = plain.text_on_vectors(in_lanes)
+            strided = lanes.strided(c_name, program, function, on_vectors.work)
+            vectors = ["#if SYM_LANES > 1", on_vectors.code, strided, "#endif"]
+            scratch = lanes.scratch(program, function, on_vectors.work)
+    work = max(text.work, scratch)
     title = f"{function.name} {function.frame}".rstrip()
     described = f"{title}: {function.summary}" if function.summary else title
     legend = _legend(record, described, function.inputs, function.returns)
-    batch = lanes.batch(c_name, function, in_lanes if text.lanes else None)
+    batch = lanes.batch(c_name, function, in_lanes)
     code = "\n".join([*legend, text.code, *vectors, batch])
     arrays_in = ", ".join(f'{{"{name}", 1, {program.sizes[name]}, 1}}' for name in inputs)
     arrays_out = ", ".join(f'{{"{name}", {len(s)}, {_rows(s)}, {_columns(s)}}}' for name, s in function.returns)
@@ -238,7 +243,7 @@ def _one_function(
         f"static const sym_array {c_name}_in[] = {{{arrays_in}}};\n"
         f"static const sym_array {c_name}_out[] = {{{arrays_out}}};"
     )
-    of_lanes = f"    {{sizeof(sym_number), SYM_OWN, {work}, {c_name}_lanes}}" if text.lanes else "    {0, 0, 0, NULL}"
+    of_lanes = f"    {{sizeof(sym_number), SYM_OWN, {work}, {c_name}_lanes}}" if vectors else "    {0, 0, 0, NULL}"
     return code, _Row(tables, _row(function, c_name, len(inputs), work), of_lanes)
 
 

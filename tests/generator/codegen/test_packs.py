@@ -19,6 +19,7 @@ from symofros.expr.packs.combine import linear_combination
 from symofros.expr.packs.pack import WIDTH, Pack
 from symofros.generator.codegen.model import model_source
 from symofros.generator.codegen.packs import PackPlan
+from symofros.runtime.calls.kernel import LaneOptions
 from tests.models import sampled
 
 # Fused multiplications and additions would round differently in vectors.
@@ -84,6 +85,18 @@ def test_a_long_chain_is_carried_in_vectors() -> None:
 
 def test_small_models_stay_scalar() -> None:
     assert "sym_pack" not in source(MODELS["double_pendulum"], ("dynamics",))
+
+
+def test_one_state_has_its_packs_beside_code_for_several() -> None:
+    """A library that also has code by vectors of states is as fast for one state as one that has none."""
+    stated = Compilation(MODELS["puma560"], sf.Options(functions=("dynamics",)))
+    alone = model_source(stated.program, stated.record, "test", packs=True)
+    beside = model_source(stated.program, stated.record, "test", LaneOptions(), packs=True)
+    head, end = f"static void {stated.record.name}_dynamics_f0", "\nstatic"
+    chunks = [text.partition(f"{head}_0(")[2].partition(end)[0] for text in (alone, beside)]
+    assert "sym_pack " in chunks[0]
+    assert chunks[0] == chunks[1]
+    assert "sym_pack " not in beside.partition(f"{head}_v_0(")[2].partition(f"{head}_batch")[0]
 
 
 def test_vectors_cross_chunks(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
