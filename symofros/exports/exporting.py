@@ -115,7 +115,7 @@ def export(
         plan(system)
         return _DESCRIBED[target](system, name, place, GENERATOR)
     stepping = replace(_stepping(method, dt, rtol, atol), beam_limit=beam_limit)
-    material = _material(system, name, frames, outputs, start or {}, stepping, target in _DIFFERENTIATED)
+    material = _material(system, name, frames, outputs, start or {}, stepping, target)
     return _COMPILED[target](material, place)
 
 
@@ -163,18 +163,18 @@ def _material(
     outputs: Sequence[str] | None,
     start: Mapping[str, float],
     stepping: Stepping,
-    differentiated: bool,
+    target: Target,
 ) -> Material:
-    """What an export is made of; `differentiated`: with the derivatives of outputs by prescribed motions, if any."""
+    """What an export is made of: C packages have reactions, FMUs derivatives of outputs by prescribed motions."""
     _refuse_variational(system, stepping)
-    needs = stepping.method.family.functions
+    needs = (*stepping.method.family.functions, *(_reactions(system) if target == "c" else ()))
     functions = tuple(dict.fromkeys((*exported(bool(system.constraints)), *needs)))
     compilation = Compilation(system, Options(functions, None if frames is None else tuple(frames)))
     record = compilation.record
     c_name = identifier(name or record.name)
     framed = [request.frame for request in compilation.requests if request.name in FRAME_FUNCTIONS]
     shown = _outputs(record.frame_names, framed, outputs)
-    if differentiated and record.driven and shown:
+    if target in _DIFFERENTIATED and record.driven and shown:
         compilation.request(("frame_derivatives",), shown)
     interpreted = compile_system(system, Options(backend="interpreter"))
     q, v = _start(interpreted, start)
@@ -194,8 +194,15 @@ def _material(
         interpreted.beams(),
         shown,
         GENERATOR,
+        target == "c",
         system.notes + _variable_lengths(system),
     )
+
+
+def _reactions(system: System) -> tuple[str, ...]:
+    """Names of the functions of reactions: efforts of drives only where a motion is prescribed."""
+    prescribed = any(body.joint is not None and body.joint.prescribed for body in system.bodies)
+    return ("joint_wrenches", "prescribed_efforts") if prescribed else ("joint_wrenches",)
 
 
 def _variable_lengths(system: System) -> tuple[str, ...]:

@@ -60,6 +60,7 @@ class Material:
         beams: Elastic beams, at the default parameters.
         outputs: Frames whose positions are outputs of blocks and FMUs.
         generator: Name and version of what wrote it.
+        reactions: Whether the package has reactions and efforts of actuators.
         notes: Remarks for the user.
     """
 
@@ -76,6 +77,7 @@ class Material:
     beams: tuple[ElasticBeam, ...]
     outputs: tuple[str, ...]
     generator: str
+    reactions: bool
     notes: tuple[str, ...] = field(default=())
 
     @property

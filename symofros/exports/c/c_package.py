@@ -7,6 +7,7 @@ from string import Template
 
 from symofros.exports.c.c_text import comment
 from symofros.exports.c.plant import header_text, plant_text, selftest_text
+from symofros.exports.c.reactions import efforts_text
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.material import Material
 from symofros.native import amalgamated, header_files, native_text
@@ -49,5 +50,6 @@ def write_c_package(material: Material, folder: Path) -> Exported:
     }
     filled = {"main.c": "main.c.in", "CMakeLists.txt": "CMakeLists.txt.in", f"{name}.pc.in": "model.pc.in"}
     files = model_files(material) | {f"{name}_selftest.c": selftest_text(material)}
+    files |= {f"{name}_efforts.c": efforts_text(material)} | header_files("exports/symofros_efforts.h")
     files |= {file: Template(native_text(f"exports/{source}")).substitute(words) for file, source in filled.items()}
     return write_folder(folder, "c", name, files, material.generator, material.notes)

@@ -1,0 +1,147 @@
+"""Reactions and efforts of actuators in C packages: what Python says of the same motion."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+from string import Template
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from tests.exports.cases import build
+
+PROGRAM = Template("""
+#include <stdio.h>
+#include <stdlib.h>
+#include "$name.h"
+static void read(int n, double *x) { int i; for (i = 0; i < n; ++i) if (scanf("%lf", x + i) != 1) exit(2); }
+static void show(int n, const double *x) { int i; for (i = 0; i < n; ++i) printf("%.17g ", x[i]); printf("\\n"); }
+static double pre[2000], q[$nq + 1], v[$nv + 1], a[$nv + 1], u[$nu + 1], lam[$nc + 1], t[1];
+static double efforts[$n + 1], sizes[$n + 1];
+static double out[20 * $nv + 20], work[20000];
+static void call(const sym_function *f) {
+    const double *in[] = {pre, q, v, a, u, lam, t};
+    double *outputs[1];
+    outputs[0] = out;
+    f->eval(in, outputs, work);
+    show(f->out[0].rows * f->out[0].cols, out);
+}
+int main(void) {
+    const sym_model *model = ${name}_model();
+    const int32_t actuators[] = {$actuators};
+    double *memory = malloc(${name}_actuator_efforts_size($n) * sizeof *memory);
+    int32_t status;
+    int state, i;
+    if (model->npre > 2000 || sym_work(model) > 20000) return 3;
+    model->init(model->par_default, pre);
+    for (i = 0; i < $joints; ++i) printf("%s ", ${name}_joint_names()[i]);
+    printf("\\n");
+    for (state = 0; state < $states; ++state) {
+        read($nq, q), read($nv, v), read($nv, a), read($nu, u), read($n, sizes), read(1, t);
+        status = ${name}_actuator_efforts(pre, q, v, a, u, t[0], $n, actuators, sizes, efforts, lam, memory);
+        printf("%d\\n", (int)status);
+        show($n, efforts), show($nc, lam);
+        call(sym_find(model, "joint_wrenches", NULL));
+        $prescribed
+    }
+    free(memory);
+    return 0;
+}
+""")
+
+# Models and the speeds whose joints have actuators: a tree, a loop with more actuators than freedoms, one in space with
+# conditions that repeat each other, one with a prescribed motion and a beam.
+CASES = {
+    "double_pendulum": ("q1", "q2"),
+    "four_bar": ("q1", "q2", "q3"),
+    "bricard": ("q1", "q3", "q4"),
+    "flexible_slider_crank": tuple(f"rod.bend_y[{i}]" for i in range(5)),
+}
+GUESSES = {
+    "four_bar": [1.2, -1.0, 1.3],
+    "bricard": [0.1, -0.1, 0.1, -0.1, 0.1],
+    "flexible_slider_crank": [-0.2, 0, 0, 0, 0, 0, 0.44],
+}
+
+
+def motions(model: sf.Model, name: str, count: int) -> list[tuple[np.ndarray, ...]]:
+    """States and accelerations on the constraints: q, v, a, u."""
+    made = []
+    for seed in range(count):
+        rng = np.random.default_rng(seed)
+        u = model.record.u_default + 0.3 * rng.standard_normal(model.nu)
+        guess = np.array(GUESSES.get(name, model.neutral())) + (0.0 if model.nc else rng.standard_normal(model.nq))
+        v = 0.1 * rng.standard_normal(model.nv)
+        if model.nc:
+            state = sf.assemble(model, guess, v, u=u)
+            guess, v = state.q, state.v
+        made.append((guess, v, model.forward_dynamics(guess, v, u), u))
+    return made
+
+
+def numbers(line: str) -> np.ndarray:
+    return np.array(list(map(float, line.split())))
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["double_pendulum", "four_bar", *(pytest.param(name, marks=pytest.mark.slow) for name in list(CASES)[2:])],
+)
+def test_c_gives_the_reactions_of_python(tmp_path: Path, name: str) -> None:
+    m, actuators = sf.compile(MODELS[name]), CASES[name]
+    states = motions(m, name, 3)
+    if not m.nc:
+        states = [(q, v, np.cos(np.arange(m.nv) + q[0]), u) for q, v, _, u in states]
+    sf.export(MODELS[name], "c", tmp_path, frames=[])
+    codes = ", ".join(
+        str(m.names.u.index(actuator)) if actuator in m.names.u else f"SYM_ON_SPEED({m.names.v.index(actuator)})"
+        for actuator in actuators
+    )
+    prescribed = 'call(sym_find(model, "prescribed_efforts", NULL));' if m.record.driven else ""
+    sizes = {"nq": m.nq, "nv": m.nv, "nu": m.nu, "nc": m.nc, "n": len(actuators), "joints": len(m.names.joints)}
+    text = PROGRAM.substitute(name=name, actuators=codes, states=len(states), prescribed=prescribed, **sizes)
+    (tmp_path / "main.c").write_text(text)
+    build(tmp_path, "reactions")
+    by_size = np.linspace(1.0, 2.0, len(actuators))
+    t = 0.25
+    given = " ".join(repr(float(x)) for state in states for part in (*state, by_size, [t]) for x in part)
+    done = subprocess.run([tmp_path / "reactions"], input=given, capture_output=True, text=True, check=True)
+    lines = iter(done.stdout.splitlines())
+    assert next(lines).split() == list(m.names.joints)
+    for q, v, a, u in states:
+        wanted = sf.actuator_efforts(m, q, v, a, actuators, u=u, sizes=by_size, t=t)
+        assert int(next(lines)) == wanted.redundancy
+        scale = 1e-9 * max(1.0, float(np.abs(wanted.efforts).max()))
+        assert numbers(next(lines)) == pytest.approx(wanted.efforts, rel=1e-9, abs=scale)
+        lam = numbers(next(lines))
+        assert lam == pytest.approx(wanted.lam, rel=1e-8, abs=1e-8 * float(np.abs(wanted.lam).max(initial=1e-3)))
+        wrenches = m.joint_wrenches(q, v, a, u, lam, t=t).ravel()
+        assert numbers(next(lines)) == pytest.approx(wrenches, rel=1e-9, abs=1e-9 * float(np.abs(wrenches).max()))
+        if prescribed:
+            drives = m.prescribed_efforts(q, v, a, u, lam, t=t)
+            assert numbers(next(lines)) == pytest.approx(drives, rel=1e-9)
+
+
+def test_motions_that_actuators_can_not_produce_are_refused(tmp_path: Path) -> None:
+    name, m = "four_bar", sf.compile(MODELS["four_bar"])
+    state = sf.assemble(m, [1.2, -1.0, 1.3], [1.0, 0, 0], held=["q1"])
+    a = m.forward_dynamics(state.q, state.v, np.zeros(m.nu))
+    sf.export(MODELS[name], "c", tmp_path, frames=[])
+    sizes = {"nq": m.nq, "nv": m.nv, "nu": m.nu, "nc": m.nc, "n": 1, "joints": 0, "states": 4}
+    (tmp_path / "main.c").write_text(PROGRAM.substitute(name=name, actuators="SYM_ON_SPEED(1)", prescribed="", **sizes))
+    build(tmp_path, "reactions")
+    u = np.zeros(m.nu)
+    cases = [
+        (state.q, state.v, a, u, [1.0], [0.0]),
+        (state.q + [0.01, 0, 0], state.v, a, u, [1.0], [0.0]),
+        (state.q, state.v + [0.01, 0, 0], a, u, [1.0], [0.0]),
+        (state.q, state.v, a + [0.01, 0, 0], u, [1.0], [0.0]),
+    ]
+    given = " ".join(repr(float(x)) for case in cases for part in case for x in part)
+    done = subprocess.run([tmp_path / "reactions"], input=given, capture_output=True, text=True, check=True)
+    # One number a line, alone: what the call returned; -2 is SYM_EFFORTS_INCONSISTENT.
+    answers = done.stdout.splitlines()[1::4]
+    assert [int(answer) for answer in answers] == [0, -2, -2, -2]
