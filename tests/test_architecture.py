@@ -55,10 +55,17 @@ def test_imports_of_the_harness_are_those_that_are_enforced(cells: list[str]) ->
     assert others == (MAY_USE["oracle"] if layer == "oracle" else (HARNESS | STUDIES)[layer])
 
 
-@pytest.mark.parametrize("part", ["symofros/", "validation/"])
+def test_every_folder_of_the_documentation_is_on_the_map() -> None:
+    named = {cells[0].strip("`") for cells in rows("docs/ and examples/")}
+    there = {folder.relative_to(ROOT).as_posix() for folder in (ROOT / "docs").iterdir() if folder.is_dir()}
+    assert {name for name in there if Path(name).name not in ("images", "static", "__pycache__")} <= named
+    assert all((ROOT / name).is_dir() for name in named)
+
+
+@pytest.mark.parametrize("part", ["symofros/", "validation/", "docs/ and examples/"])
 def test_tests_are_where_the_map_says(part: str) -> None:
     for cells in rows(part):
-        path = cells[3].strip("`")
+        path = cells[-1].strip("`")
         assert (ROOT / (path if path.startswith("tests/") else f"tests/{path}")).is_dir(), cells
 
 

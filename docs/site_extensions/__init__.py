@@ -1,0 +1,1 @@
+"""What the site needs beyond Sphinx: figures of the reports, the command line's help, links out of docs/."""

@@ -1,0 +1,42 @@
+"""Every script of examples/ runs, prints what its reader wants to see, and stays short."""
+
+from __future__ import annotations
+
+import re
+import runpy
+import shutil
+from pathlib import Path
+
+import pytest
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+SCRIPTS = sorted(EXAMPLES.glob("*.py"))
+
+# What a script must print, beyond running to its end.
+PRINTED = {
+    "closed_loop": r"finished at t = 0\.5 s",
+    "controller_diagram": r"tracking error \d\.\de-0[5-9]",
+    "cross_check": r"comparisons, all agree",
+    "first_arm": r"tip after 2 s",
+    "flexible_beam": r"    3 +[5-7]\.\d+e-04",
+    "fmu": r"differ by \d\.\de-1[4-9]",
+    "inverse_kinematics": r"converged: True",
+    "lqr": r"tilted by 0\.5 rad: .* 1\.2e-04 rad",
+    "monte_carlo": r"2000 of 2000 came to their end",
+    "urdf_to_c": r"selftest 0",
+}
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
+def test_an_example_runs(script: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    if script.stem == "urdf_to_c" and not shutil.which("cc"):
+        pytest.skip("needs a program called cc")
+    runpy.run_path(str(script), run_name="__main__")
+    assert re.search(PRINTED[script.stem], capsys.readouterr().out)
+
+
+def test_there_are_ten_short_ones_and_the_list_names_them() -> None:
+    assert len(SCRIPTS) == 10
+    assert all(len(script.read_text().splitlines()) < 60 for script in SCRIPTS)
+    listed = re.findall(r"\]\((\w+\.py)\)", (EXAMPLES / "README.md").read_text())
+    assert sorted(listed) == [script.name for script in SCRIPTS]
