@@ -29,6 +29,6 @@ TOPIC = Topic(
     "accuracy",
     "Accuracy",
     "How accurate are beams?",
-    composing("Accuracy of beams", "docs/theory/beams.md", {"spinning": (0, 0), "convergence": (0, 0)}),
+    composing("Accuracy of beams", "docs/theory/beams.md"),
     measuring(STUDIES, "Measure beams against closed forms, tables and exact rods."),
 )

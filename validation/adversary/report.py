@@ -1,22 +1,13 @@
-"""`python -m validation adversary`: the search as a command and a report."""
+"""What the adversary found."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
-from dataclasses import asdict
-from pathlib import Path
-from typing import Annotated, Any
 
-import typer
-
-from symofros.tools import write_atomically
 from validation.adversary.catalogue import ATTACKS
-from validation.adversary.search import Budget, Find, Tally, hunt
-from validation.adversary.writing import write_find
-from validation.reporting.command import Run, known
+from validation.adversary.measure import measure
 from validation.reporting.numbers import counted
-from validation.reporting.record import Bullets, Cell, Column, Data, Fact, Report, Section, Table, Topic
+from validation.reporting.record import Bullets, Data, Fact, Report, Section, Table, Topic
 
 _TEXT = (
     "Each attack draws scenes over many decades of size, mass, stiffness and step, and compares what we claim of our "
@@ -24,119 +15,19 @@ _TEXT = (
     "error in words, that there is no good answer, **undecided** where the independent route has none. A find is an "
     "answer called good that is not: it is shrunk to the plainest scene and written as a test."
 )
-_COLUMNS: dict[str, Column] = {
-    "attack": "{attack}",
-    "#scenes": "{tried}",
-    "#refused": "{refused}",
-    "#undecided": "{undecided}",
-    "#agreed": "{agreed}",
-    "#largest error over bound": "{largest:.2g}",
-    "#finds": lambda row: Cell(str(row["finds"]), not row["finds"]),
-    "#CPU time [s]": "{seconds:.0f}",
-}
-
-
-def measure(
-    run: Run,
-    chosen: Annotated[list[str] | None, typer.Option("--attack", help=f"Only this; of {', '.join(ATTACKS)}.")] = None,
-    seconds: Annotated[float, typer.Option(min=0.0, help="Budget of CPU time, all attacks together [s].")] = 300.0,
-    examples: Annotated[int, typer.Option(min=1, help="Budget of scenes for each attack.")] = 100_000,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of the first round.")] = 0,
-    work: Annotated[Path, typer.Option(help="Folder of log, examples, finds; an old one is gone on with.")] = Path(
-        "adversary"
-    ),
-) -> Data:
-    """Search for scenes that we answer as good where an independent route says otherwise; write each as a test."""
-    wanted = known(chosen, ATTACKS, "--attack", "attack")
-    log = Log(work)
-    unfinished: list[str] = []
-    run.expect(len(wanted) * 1000, "attacking")
-    for position, name in enumerate(wanted):
-        budget = Budget(seconds / len(wanted), examples)
-        tally = log.tallies.setdefault(name, Tally())
-        run.reached(1000 * position)
-
-        def show(name: str = name, position: int = position, budget: Budget = budget) -> None:
-            share = max(budget.spent / budget.seconds if budget.seconds else 1.0, budget.tried / budget.examples)
-            run.advance(f"{name}: {counted(budget.tried, 'scene')}", steps=0)
-            run.reached(1000 * position + min(1000, int(1000 * share)))
-
-        try:
-            _attack(name, log, seed, budget, tally, show, run.say)
-        except KeyboardInterrupt:
-            unfinished = wanted[position:]
-            break
-        finally:
-            log.save()
-    return {
-        "ok": not log.finds,
-        "seed": seed,
-        "unfinished": unfinished,
-        "attacks": {name: asdict(tally) for name, tally in log.tallies.items()},
-        "finds": [asdict(find) for find in log.finds],
-    }
-
-
-def _attack(
-    name: str,
-    log: Log,
-    seed: int,
-    budget: Budget,
-    tally: Tally,
-    show: Callable[[], None],
-    say: Callable[[str, bool], None],
-) -> None:
-    """Rounds of one attack until its budget is spent."""
-    attack = ATTACKS[name]
-    while not budget.over:
-        quantities = {find.quantity for find in log.finds if find.attack == name}
-        find = hunt(attack, log.folder, seed, budget, tally, quantities, show)
-        if find is not None:
-            test, _ = write_find(find, attack, log.folder)
-            log.finds.append(find)
-            say(f"{name}: {find.said}; {test}", True)
-        log.save()
-
-
-class Log:
-    """The log of a search in its folder: counts and finds, as log.json. What is mended since is looked at anew.
-
-    Args:
-        folder: Folder of the search.
-    """
-
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
-        self.tallies: dict[str, Tally] = {}
-        self.finds: list[Find] = []
-        folder.mkdir(parents=True, exist_ok=True)
-        path = folder / "log.json"
-        if path.is_file():
-            data: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-            self.tallies = {name: Tally(**one) for name, one in data["attacks"].items() if name in ATTACKS}
-            finds = [Find(**one) for one in data["finds"] if one["attack"] in ATTACKS]
-            self.finds = [find for find in finds if not ATTACKS[find.attack].verdict(find.scene).sound]
-
-    def save(self) -> None:
-        """Write it."""
-        data = {
-            "attacks": {name: asdict(tally) for name, tally in self.tallies.items()},
-            "finds": [asdict(find) for find in self.finds],
-        }
-        write_atomically(self.folder / "log.json", json.dumps(data, indent=1) + "\n")
+_COLUMNS = """attack; #scenes = {tried}; #refused; #undecided; #agreed; #largest error over bound = {largest:.2g};
+    #finds ? no finds; #CPU time [s] = {seconds:.0f}"""
 
 
 def compose(data: Data) -> Report:
     """The report of its JSON."""
-    finds = data["finds"]
+    finds, attacks = data["finds"], data["attacks"].items()
     rows = [
-        {"attack": name, **tally, "finds": sum(find["attack"] == name for find in finds)}
-        for name, tally in data["attacks"].items()
+        {"attack": name, **tally, "finds": sum(find["attack"] == name for find in finds)} for name, tally in attacks
     ]
-    tried, seconds = sum(row["tried"] for row in rows), sum(row["seconds"] for row in rows)
-    listed = Bullets(tuple(f"{find['attack']}: {find['said']}: `{json.dumps(find['scene'])}`" for find in finds))
-    claims = [{"attack": attack.name, "claim": attack.claim, "route": attack.route} for attack in ATTACKS.values()]
-    columns: dict[str, Column] = {"attack": "{attack}", "claim": "{claim}", "route": "{route}"}
+    tried, refused, seconds = (sum(row[name] for row in rows) for name in ("tried", "refused", "seconds"))
+    listed = tuple(f"{find['attack']}: {find['said']}: `{json.dumps(find['scene'])}`" for find in finds)
+    claims = Table.of(ATTACKS.values(), "attack = {name}; claim; route")
     return Report(
         "Adversary",
         f"{counted(tried, 'scene')}: {counted(len(finds), 'answer')} called good that independent routes contradict.",
@@ -144,12 +35,12 @@ def compose(data: Data) -> Report:
         (_TEXT,),
         (
             Section("By attack", (Table.of(rows, _COLUMNS),)),
-            *([Section("Finds", (listed,))] if finds else []),
-            Section("Claims and routes", (Table.of(claims, columns),), page_only=True),
+            Section("Finds", (Bullets(listed),)),
+            Section("Claims and routes", (claims,), page_only=True),
         ),
         facts=(
             Fact(str(tried), "scenes"),
-            Fact(str(sum(row["refused"] for row in rows)), "refused in words"),
+            Fact(str(refused), "refused in words"),
             Fact(str(len(finds)), "answers called good that are not", not finds),
             Fact(f"{seconds / 3600:.1f} h", "CPU time"),
         ),
@@ -158,6 +49,5 @@ def compose(data: Data) -> Report:
     )
 
 
-TOPIC = Topic(
-    "adversary", "Correctness", "Is anything called good that an independent route contradicts?", compose, measure
-)
+QUESTION = "Is anything called good that an independent route contradicts?"
+TOPIC = Topic("adversary", "Correctness", QUESTION, compose, measure)

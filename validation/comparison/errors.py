@@ -60,6 +60,11 @@ class Comparison:
         """Whether this row is no reason for concern."""
         return self.status in ("agree", "unsupported")
 
+    @property
+    def words(self) -> str:
+        """The quantity, for people."""
+        return self.quantity.replace("_", " ")
+
 
 @dataclass(frozen=True)
 class Scales:

@@ -24,7 +24,7 @@ def engine_label(engine: str) -> str:
     return engine if ROUTES[engine].independent else f"{engine} (our own)"
 
 
-def error_distributions(distributions: Distributions) -> Drawing | None:
+def error_distributions(distributions: Distributions) -> tuple[Drawing, ...]:
     """How many states err by how much: a row a quantity, an outline an engine, a bar where the tolerance is.
 
     All models together. Exact agreement has a place of its own left of the axis.
@@ -32,7 +32,7 @@ def error_distributions(distributions: Distributions) -> Drawing | None:
     rows = {q: distributions[q.name] for q in (*QUANTITIES.values(), MOTION_ENERGY) if distributions.get(q.name)}
     engines = [name for name in ROUTES if any(name in group for group in rows.values())]
     if not rows:
-        return None
+        return ()
 
     def paint(axes: Any) -> None:
         for k, (quantity, group) in enumerate(rows.items()):
@@ -50,7 +50,7 @@ def error_distributions(distributions: Distributions) -> Drawing | None:
         axes.set_xlim(LOWEST_DECADE - 2.6, max(math.log10(quantity.tolerance) for quantity in rows) + 1.5)
 
     x = "relative error of a state  [1]; height: share of states  [1]"
-    return Drawing(TITLE, x, "", paint, size=(640.0, 34.0 * len(rows)))
+    return (Drawing(TITLE, x, "", paint, size=(640.0, 34.0 * len(rows))),)
 
 
 def _outline(axes: Any, counts: Sequence[int], left: float, width: float, base: float, color: str) -> None:
@@ -65,7 +65,7 @@ def _outline(axes: Any, counts: Sequence[int], left: float, width: float, base: 
     axes.bar(left, 0.75 * counts[0] / sum(counts), width, base, align="edge", color=color)
 
 
-def error_against_condition(record: Record) -> Chart | None:
+def error_against_condition(record: Record) -> tuple[Chart, ...]:
     """Forward dynamics: a point a model and engine, its largest error over the condition number of M."""
     rows = [
         row
@@ -73,7 +73,7 @@ def error_against_condition(record: Record) -> Chart | None:
         if row.quantity == "forward_dynamics" and row.error and math.isfinite(row.extra.get("condition", math.inf))
     ]
     if not rows:
-        return None
+        return ()
     curves = []
     for k, engine in enumerate(ROUTES):
         own = [row for row in rows if row.engine == engine]
@@ -81,7 +81,7 @@ def error_against_condition(record: Record) -> Chart | None:
         curves += [Curve(engine_label(engine), x, y, k, "points")] if own else []
     span = np.array([1.0, max(row.extra["condition"] for row in rows)])
     curves.append(Curve("cond(M) · 2.2e-16", span, EPS * span, 4, "dashed"))
-    return Chart(
+    chart = Chart(
         "forward dynamics: error against the condition number of the mass matrix",
         "largest condition number of M  [1]",
         "largest relative error  [1]",
@@ -89,21 +89,4 @@ def error_against_condition(record: Record) -> Chart | None:
         (Mark("tolerance", SOLVE),),
         log="xy",
     )
-
-
-def errors_by_engine(record: Record) -> Chart:
-    """Share of comparisons that err by no more than so much, an engine a curve; exact agreement at 1e-17."""
-    curves = []
-    for k, (engine, route) in enumerate(ROUTES.items()):
-        errors = [row.error for row in record.compared if row.engine == engine and row.error is not None]
-        if errors and route.independent:
-            share = np.arange(1, len(errors) + 1) / len(errors)
-            curves.append(Curve(engine, np.maximum(np.sort(errors), 1e-17), share, k))
-    return Chart(
-        "how close independent engines are",
-        "largest relative error of a comparison  [1]",
-        "share of the comparisons  [1]",
-        tuple(curves),
-        log="x",
-        range_y=(0.0, 1.0),
-    )
+    return (chart,)

@@ -62,20 +62,13 @@ def worst_by_model(record: Record) -> Table:
     """One line a model: the comparison that is nearest to its tolerance."""
 
     def line(model: ModelResult) -> tuple[str | Cell, ...]:
-        row = worst(model.comparisons)
-        engines = {one.engine for one in model.compared} - {"symofros"}
-        status = _status(model.comparisons)
-        return (
-            model.label,
-            str(len(engines)),
-            "" if row is None else Cell(digits(row.error, 1), row.ok),
-            "" if row is None else digits(row.tolerance, 1),
-            "" if row is None else f"{row.quantity.replace('_', ' ')}, {row.engine}",
-            Cell(status, False if status in ("failed", "disagree") else None),
-        )
+        row, engines = worst(model.comparisons), {one.engine for one in model.compared} - {"symofros"}
+        error: tuple[str | Cell, ...] = ("", "", "")
+        if row is not None:
+            error = Cell(digits(row.error, 1), row.ok), digits(row.tolerance, 1), f"{row.words}, {row.engine}"
+        return model.label, str(len(engines)), *error, _verdict(model.comparisons)
 
-    head = ("model", "#engines", "#error", "#of", "in", "verdict")
-    return Table(head, tuple(line(model) for model in record.models))
+    return Table(("model", "#engines", "#error", "#of", "in", "verdict"), tuple(map(line, record.models)))
 
 
 def by_engine(record: Record, columns: Columns = COLUMNS, engines: Sequence[str] = (*ROUTES, *_OURS)) -> Table:
@@ -115,20 +108,13 @@ def opinions(record: Record) -> Table:
             "comparisons": len(rows),
             "disagree": len(disagreeing),
             "alone": alone,
-            "used": f"{used:.2g}",
-            "where": f"{nearest.quantity.replace('_', ' ')} of {nearest.model}" if nearest else "",
+            "used": used,
+            "where": f"{nearest.words} of {nearest.model}" if nearest else "",
             "verdict": "agrees" if not disagreeing else "suspect" if 2 * alone > len(disagreeing) else "against our C",
         }
 
-    names = ("models", "comparisons", "disagree", "alone")
-    columns: dict[str, Column] = {
-        "engine": "{engine}",
-        "opinion": "{opinion}",
-        **{f"#{name}": f"{{{name}}}" for name in names},
-        "#largest error / tolerance": "{used}",
-        "of": "{where}",
-        "verdict": lambda row: Cell(row["verdict"], not row["disagree"]),
-    }
+    columns = """engine; opinion; #models; #comparisons; #disagree; #alone; #largest error / tolerance = {used:.2g};
+        of = {where}; verdict ? no disagree"""
     return Table.of((line(name) for name in ROUTES if any(row.engine == name for row in record.compared)), columns)
 
 
@@ -146,7 +132,7 @@ def _table(lines: Sequence[Line], middle: str, columns: Columns) -> Table:
         "#nv": lambda line: str(line[0].sizes.get("nv", "")),
         middle: lambda line: line[1],
         **{f"#{title}": cell(quantities) for title, quantities in columns.items()},
-        "verdict": lambda line: Cell(_status(line[2]), False if _status(line[2]) in ("failed", "disagree") else None),
+        "verdict": lambda line: _verdict(line[2]),
     }
     return Table.of(lines, shown).without_empty()
 
@@ -155,6 +141,11 @@ def _status(rows: Sequence[Comparison]) -> str:
     """The worst status of some comparisons."""
     statuses = {row.status for row in rows}
     return next((status for status in ("failed", "disagree", "agree") if status in statuses), "unsupported")
+
+
+def _verdict(rows: Sequence[Comparison]) -> Cell:
+    status = _status(rows)
+    return Cell(status, False if status in ("failed", "disagree") else None)
 
 
 def _cell(row: Comparison | None, brief: bool) -> str | Cell:

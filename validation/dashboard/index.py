@@ -11,7 +11,7 @@ from validation.dashboard.gather import Entry
 from validation.dashboard.history import history
 from validation.reporting import html, markdown
 from validation.reporting.figures import Figure
-from validation.reporting.record import Block, Bullets, Cell, Column, Report, Section, Table, Text
+from validation.reporting.record import Block, Bullets, Cell, Report, Section, Table, Text
 
 BEGIN, END = "<!-- reports/summary.md begins -->", "<!-- reports/summary.md ends -->"
 
@@ -85,13 +85,13 @@ def headline(entries: Mapping[str, Entry]) -> str:
 
 def summary_table(entries: Mapping[str, Entry], linked: bool = False) -> Table:
     """A line a report."""
-    columns: dict[str, Column] = {
-        "report": "[{0}](#{0})" if linked else "{0}",
-        "what it found": lambda row: row[1].said,
-        "verdict": lambda row: Cell(row[1].verdict, not (linked and row[1].verdict == "missed")),
-        "made (UTC)": lambda row: row[1].provenance.date.removesuffix(" UTC") or "-",
-    }
-    return Table.of(entries.items(), columns)
+    name = "[{0}](#{0})" if linked else "{0}"
+    return Table.of(
+        entries.items(),
+        f"report = {name}; what it found = {{1.said}}; verdict = verdict(); made (UTC) = made()",
+        verdict=lambda row: Cell(row[1].verdict, not (linked and row[1].verdict == "missed")),
+        made=lambda row: row[1].provenance.date.removesuffix(" UTC") or "-",
+    )
 
 
 def origins(entries: Mapping[str, Entry]) -> str:
@@ -108,7 +108,7 @@ def _section(name: str, entry: Entry) -> Section:
     if entry.report is not None:
         facts = tuple(f"**{fact.value}** {fact.label}" for fact in entry.report.facts)
         blocks += [f"**{entry.report.summary}**", Bullets(facts)]
-        blocks += [Figure("", entry.report.highlights)] if entry.report.highlights else []
+        blocks += [Figure("", entry.report.telling)]
     for remark in entry.remarks:
         doubtful = any(word in remark for word in ("stale", "can't", "layout"))
         blocks.append(Text(f"This report {remark}.", "bad" if doubtful else "soft"))

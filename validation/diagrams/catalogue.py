@@ -13,8 +13,6 @@ TOPIC = Topic(
     "diagrams",
     "Diagrams",
     "How does the paper's robot trace its square?",
-    composing(
-        "Diagrams: a controlled flexible robot", "docs/theory/diagrams.md", {"square": (0, 0), "two_arms": (0, 1)}
-    ),
+    composing("Diagrams: a controlled flexible robot", "docs/theory/diagrams.md"),
     measuring(STUDIES, "Run the paper's simulations from their block diagrams."),
 )

@@ -3,14 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
+from typing import Annotated
 
+import typer
+
+from validation.engines.functions import FUNCTIONS
+from validation.engines.identities import held
 from validation.engines.interface import EnginePlugin, Tree
-from validation.engines.matrix import SEED, Judged, Truths, judged, suited
-from validation.engines.models.readers import Reading
+from validation.engines.matrix import SEED, Judged, Truths, judged, names, suited
+from validation.engines.models import hostile, kinds
+from validation.engines.models.readers import Reading, readings
 from validation.engines.proving.scripts import Proof, prove
 from validation.engines.proving.shrink import TRIES
-from validation.engines.workers import Job, Worker
+from validation.engines.workers import Job, Worker, registry
+from validation.reporting.command import Run, known
+from validation.reporting.record import Data
 
 # Part of the functions that are red on either of two trees that must be red on both.
 _SIMILAR = 0.5
@@ -110,3 +119,52 @@ def proofs(
         results.append((proof, tuple(one.cell.model for one in group)))
         after(proof)
     return results
+
+
+def trees() -> dict[str, Tree]:
+    """All trees: one for each kind of joint, and the hostile set."""
+    return {name: kinds.tree_of(name) for name in kinds.KINDS} | hostile.trees()
+
+
+def measure(
+    run: Run,
+    engines: Annotated[list[str] | None, typer.Option("--engine", help="Only this engine.")] = None,
+    models: Annotated[list[str] | None, typer.Option("--kinds", help="Only this kind of joint, or tree.")] = None,
+    prove: Annotated[bool, typer.Option(help="Shrink red cells, write their scripts and run them.")] = True,
+    tries: Annotated[int, typer.Option(min=0, help="Cases tried to shrink each fault.")] = TRIES,
+) -> Data:
+    """Hold engines against thirty digits of truth: every kind of joint, every function that they offer."""
+    plugins = registry().plugins
+    present = {name: plugin for name, plugin in plugins.items() if plugin.version()}
+    chosen = {name: present[name] for name in known(engines, present, "--engine", "engine present")}
+    all_trees, files = trees(), readings()
+    names_wanted = known(models, [*all_trees, *files], "--kinds", "kind")
+    wanted = [all_trees[name] for name in names_wanted if name in all_trees]
+    run.expect(len(names_wanted), "asking engines")
+    with Worker() as worker:
+        cells = gathered(chosen, wanted, worker, run.advance)
+        cells += read(chosen, {name: files[name] for name in names_wanted if name in files}, worker, run.advance)
+        proven = (
+            proofs(chosen, cells, worker, run.folder / "engines", lambda one: run.advance(one.file), tries)
+            if prove
+            else []
+        )
+    return {
+        "engines": [_engine(plugin) for plugin in chosen.values()],
+        "absent": {name: plugin.extra for name, plugin in plugins.items() if name not in present} | registry().failures,
+        "models": names_wanted,
+        "functions": {name: FUNCTIONS[name.partition(":")[0]].text for name in names(chosen)},
+        # What an engine does not offer is what is left: a third of all.
+        "cells": [asdict(one.cell) for one in cells if one.cell.verdict != "not offered"],
+        "identities": [asdict(one) for one in held(cells)],
+        "proofs": [asdict(proof) | {"models": models} for proof, models in proven],
+    }
+
+
+def _engine(plugin: EnginePlugin) -> Data:
+    return {
+        "name": plugin.name,
+        "version": plugin.version(),
+        "conventions": [list(row) for row in plugin.conventions],
+        "functions": dict(plugin.functions),
+    }

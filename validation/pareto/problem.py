@@ -69,9 +69,9 @@ class Point:
         return self.who, self.model, self.method
 
     @property
-    def name(self) -> str:
-        """For people."""
-        return f"{self.who}, {self.model}, {self.method}, {self.setting}"
+    def by(self) -> str:
+        """The method, with the engine that it is of."""
+        return self.method if self.who == OURS else f"{self.who}: {self.method}"
 
 
 @dataclass(frozen=True)

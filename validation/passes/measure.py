@@ -8,16 +8,20 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
+import typer
 
 import reference_models
 import symofros as sf
 from symofros.tools import ABLATIONS, count_program
 from validation.mechanics.geometry import Array
+from validation.reporting.command import Run, known
+from validation.reporting.record import Data
 from validation.timing.contestants.arrays import Arrays, loops
 from validation.timing.models import TIMED_MODELS
 from validation.timing.race import error, race
@@ -64,7 +68,7 @@ class Measured:
     off: float
 
 
-def measure(label: str, repeats: int, done: Callable[[str], None] = lambda doing: None) -> Iterator[Measured]:
+def ablated(label: str, repeats: int, done: Callable[[str], None] = lambda doing: None) -> Iterator[Measured]:
     """All of one model, raced together.
 
     Raises:
@@ -156,3 +160,14 @@ def _states(nq: int, nv: int, nu: int) -> Mapping[str, Array]:
     """Deflections stay small; angles need not be large to cost what they cost."""
     rng = np.random.default_rng(11)
     return {name: rng.uniform(-0.5, 0.5, (STATES, size)) for name, size in (("q", nq), ("v", nv), ("u", nu))}
+
+
+def measure(
+    run: Run,
+    models: Annotated[list[str] | None, typer.Option("--model", help=f"Only this one: {', '.join(MODELS)}.")] = None,
+    repeats: Annotated[int, typer.Option(min=3, help="Interleaved repeats.")] = 101,
+) -> Data:
+    """Measure what each pass of the generator gains: the same models with one of them left out."""
+    chosen = known(models, MODELS, "--model", "model")
+    run.expect(len(chosen) * len(ABLATIONS))
+    return {"rows": [asdict(row) for label in chosen for row in ablated(label, repeats, run.advance)]}

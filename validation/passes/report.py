@@ -3,19 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict
-from typing import Annotated
-
-import typer
 
 from symofros.tools import ABLATIONS
-from validation.passes.measure import ALL, APART, MODELS
-from validation.passes.measure import measure as measured
-from validation.reporting.command import Run, known
+from validation.passes.measure import ALL, APART, measure
 from validation.reporting.numbers import counted, times
 from validation.reporting.record import Column, Data, Fact, Report, Section, Table, Topic
 
-_REPEATS = 101
 _APART = "M, h and Q are one function with one set of kinematics; without: three functions."
 _INTRO = (
     'M, h and Q in one generated function, with all passes, and with each left out in turn. "More" is what leaving it '
@@ -31,35 +24,24 @@ _LEFT_OUT = (
     "talos 56 of 830: what limits is the number of instructions); `-ffast-math` (between 0.75 and 1.1 times as fast, "
     "and it costs the bits)."
 )
-
-
-def measure(
-    run: Run,
-    models: Annotated[list[str] | None, typer.Option("--model", help=f"Only this one: {', '.join(MODELS)}.")] = None,
-    repeats: Annotated[int, typer.Option(min=3, help="Interleaved repeats.")] = _REPEATS,
-) -> Data:
-    """Measure what each pass of the generator gains: the same models with one of them left out."""
-    chosen = known(models, MODELS, "--model", "model")
-    run.expect(len(chosen) * len(ABLATIONS))
-    rows = [asdict(row) for label in chosen for row in measured(label, repeats, run.advance)]
-    return {"rows": rows}
+_COLUMNS = """without; #operations; #more operations = operations(); #ns (min, median) = {minimum:.0f}, {median:.0f};
+    #more time = median(); #C text [KiB] = {text:9.765625e-4*.0f}; #made and compiled [s] = {compilation:.2f}"""
 
 
 def compose(data: Data) -> Report:
     """The report of its JSON."""
     rows = data["rows"]
-    models = list(dict.fromkeys(row["model"] for row in rows))
-    base = {row["model"]: row["median"] for row in rows if row["without"] == ALL}
-    gain, most = max(((row["median"] / base[row["model"]], row) for row in rows), key=lambda pair: pair[0])
+    base = {row["model"]: row for row in rows if row["without"] == ALL}
+    gain, most = max(((row["median"] / base[row["model"]]["median"], row) for row in rows), key=lambda pair: pair[0])
     what = {item.name: item.what for item in ABLATIONS} | {APART: _APART}
-    tables = [_section(label, [row for row in rows if row["model"] == label]) for label in models]
+    tables = [_section(whole, [row for row in rows if row["model"] == label]) for label, whole in base.items()]
     return Report(
         "What each pass gains",
-        f"Passes measured one by one on {counted(len(models), 'model')}.",
+        f"Passes measured one by one on {counted(len(base), 'model')}.",
         None,
         (_INTRO,),
         (
-            Section("What each pass does", (Table(("pass", "what it does"), tuple(what.items())),)),
+            Section("What each pass does", (Table.of(what.items(), "pass = {0}; what it does = {1}"),)),
             *tables,
             Section("What was tried and left out", (_LEFT_OUT,)),
         ),
@@ -68,23 +50,14 @@ def compose(data: Data) -> Report:
     )
 
 
-def _section(label: str, rows: Sequence[Data]) -> Section:
+def _section(base: Data, rows: Sequence[Data]) -> Section:
     """One model; gains are what leaving a pass out costs."""
-    base = next(row for row in rows if row["without"] == ALL)
 
     def more(quantity: str, form: str) -> Column:
         return lambda row: "" if row is base else format(row[quantity] / base[quantity] - 1.0, form)
 
-    columns: dict[str, Column] = {
-        "without": "{without}",
-        "#operations": "{operations}",
-        "#more operations": more("operations", "+.1%"),
-        "#ns (min, median)": "{minimum:.0f}, {median:.0f}",
-        "#more time": more("median", "+.0%"),
-        "#C text [KiB]": "{text:9.765625e-4*.0f}",
-        "#made and compiled [s]": "{compilation:.2f}",
-    }
-    return Section(f"{label}, {base['nv']} degrees of freedom", (Table.of(rows, columns),))
+    table = Table.of(rows, _COLUMNS, operations=more("operations", "+.1%"), median=more("median", "+.0%"))
+    return Section(f"{base['model']}, {base['nv']} degrees of freedom", (table,))
 
 
 TOPIC = Topic("passes", "Speed", "What does each pass of the generator gain?", compose, measure)

@@ -12,6 +12,7 @@ from pydantic import BeforeValidator
 
 from validation.mechanics.geometry import Array
 from validation.reporting.figures import Figure
+from validation.reporting.numbers import short
 from validation.reporting.plain import Number
 
 # A bound: JSON writes null where a side is open.
@@ -41,6 +42,12 @@ class Finding:
     def ok(self) -> bool:
         """Whether the number is within its bounds; NaN is not."""
         return bool(self.low <= self.value <= self.high)
+
+    @property
+    def bounds(self) -> str:
+        """The number beside its bounds, in words."""
+        bounds = " to ".join(filter(None, (short(self.low), short(self.high))))
+        return f"{short(self.value)}, asked for is {bounds}"
 
 
 @dataclass(frozen=True)

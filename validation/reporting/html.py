@@ -45,7 +45,7 @@ def page(report: Report, provenance: Provenance | None = None, closing: str = ""
         closing: Last line.
         listed: Whether links to the sections come before them.
     """
-    links = [section for section in report.sections if section.anchor]
+    links = [section for section in report.shown if section.anchor]
     parts = [
         f"<h1>{escape(report.title)}</h1>",
         f'<p class="verdict {_TONE[report.ok]}">{prose(report.summary)}</p>',
@@ -54,7 +54,7 @@ def page(report: Report, provenance: Provenance | None = None, closing: str = ""
         facts(report.facts),
         *map(block, report.blocks),
         contents(links) if listed and len(links) > 1 else "",
-        *(section(one, k + 1) for k, one in enumerate(report.sections)),
+        *(section(one, k + 1) for k, one in enumerate(report.shown)),
     ]
     if provenance is not None:
         parts += ["<h2>Versions and machine</h2>", table(Table(("what", "value"), provenance.rows))]

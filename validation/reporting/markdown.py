@@ -15,7 +15,7 @@ def page(report: Report, provenance: Provenance, closing: str) -> str:
     if report.facts:
         parts.append(block(Bullets(tuple(f"{fact.value} {fact.label}" for fact in report.facts))))
     parts += map(block, report.blocks)
-    for section in report.sections:
+    for section in report.shown:
         if not section.page_only:
             parts += [f"## {section.title}", *map(block, section.blocks)]
     told = "; ".join(f"{name} {value}" for name, value in provenance.rows)

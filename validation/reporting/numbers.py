@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import string
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -43,7 +43,7 @@ def counted(number: int, noun: str) -> str:
 def duration(seconds: float) -> str:
     """A time in the unit that suits it."""
     if not math.isfinite(seconds):
-        return "no time"
+        return "-"
     for unit, size in (("s", 1.0), ("ms", 1e-3)):
         if seconds >= size:
             return f"{seconds / size:.3g} {unit}"
@@ -56,12 +56,28 @@ def compact(x: float) -> str:
 
 
 class Form(string.Formatter):
-    """Formats of columns: Python's, "time", "short", "times" and "compact" as above, and scaled ones, "1e3*.2f".
+    """Formats of columns over the fields of a row (a mapping, a record, a tuple).
 
-    What is missing is "-"; several numbers are listed.
+    They are Python's, "time", "short", "times", "compact" and "digits" as above, and scaled ones, "1e3*.2f". What is
+    missing is "-"; several numbers are listed.
     """
 
-    NAMED = {"time": duration, "short": short, "times": times, "compact": compact}
+    NAMED: Mapping[str, Callable[[Any], str]] = {
+        f.__name__.replace("duration", "time"): f for f in (duration, short, times, compact, digits)
+    }
+
+    def of(self, text: str, row: Any) -> str:
+        """The text with the fields of a row."""
+        return self.vformat(text, (row,), {})
+
+    def field(self, row: Any, name: str) -> Any:
+        """A field of a row by its name, as in formats: "error", "target.model"."""
+        return self.get_field(name, (row,), {})[0]
+
+    def get_value(self, key: int | str, args: Sequence[Any], kwargs: Mapping[str, Any]) -> Any:
+        """A field of the row."""
+        (row,) = args
+        return row[key] if isinstance(row, Mapping) or isinstance(key, int) else getattr(row, key)
 
     def format_field(self, value: Any, format_spec: str) -> str:
         """One field."""

@@ -9,17 +9,12 @@ import typer
 
 from validation.reporting.command import Quick, Run, known
 from validation.reporting.findings import Finding, Question, Study
-from validation.reporting.numbers import counted, short
+from validation.reporting.numbers import counted
 from validation.reporting.plain import plain, restored
-from validation.reporting.record import Block, Cell, Column, Compose, Data, Fact, Fold, Report, Section, Table, Text
+from validation.reporting.record import Block, Compose, Data, Fact, Fold, Report, Section, Table, Text
 
-# Numbers beside their bounds, from the fields of a finding.
-_BOUNDS: dict[str, Column] = {
-    "number": "{quantity}",
-    "#found": lambda finding: Cell(short(finding["value"]), finding["ok"]),
-    "#at least": lambda finding: short(finding["low"]),
-    "#at most": lambda finding: short(finding["high"]),
-}
+# Numbers beside their bounds.
+_BOUNDS = "number = {quantity}; #found = {value:short} ? ok; #at least = {low:short}; #at most = {high:short}"
 
 
 def measuring(studies: Mapping[str, Question], doc: str) -> Callable[..., Data]:
@@ -51,13 +46,12 @@ def data_of(study: Study) -> dict[str, Any]:
     return {**plain(study), "ok": study.ok}
 
 
-def composing(title: str, theory: str, telling: Mapping[str, tuple[int, int]]) -> Compose:
+def composing(title: str, theory: str) -> Compose:
     """What makes the report of its JSON.
 
     Args:
         title: Title of the report.
         theory: Page of docs/ that it rests on.
-        telling: Study -> figure and chart that the index of reports shows.
     """
     intro = (
         "Each section asks a question, answers it from what this run measured, shows it, and lists the numbers with "
@@ -66,17 +60,10 @@ def composing(title: str, theory: str, telling: Mapping[str, tuple[int, int]]) -
 
     def compose(data: Data) -> Report:
         studies = {name: restored(Study, study) for name, study in data["studies"].items()}
-        figures = {name: study.figures for name, study in studies.items()}
         missed = (Fact("missed", study.title, False) for study in studies.values() if not study.ok)
-        draft = Report(
-            title,
-            f"on {counted(len(studies), 'question')}",
-            None,
-            (intro,),
-            tuple(_section(name, study) for name, study in studies.items()),
-            facts=(Fact(str(len(studies)), "questions answered"), *missed),
-            highlights=tuple(figures[name][i].charts[j] for name, (i, j) in telling.items() if figures.get(name)),
-        )
+        sections = tuple(_section(name, study) for name, study in studies.items())
+        facts = (Fact(str(len(studies)), "questions answered"), *missed)
+        draft = Report(title, f"on {counted(len(studies), 'question')}", None, (intro,), sections, facts=facts)
         return judged(draft, data, {name: study.findings for name, study in studies.items()}, "study", "number")
 
     return compose
@@ -99,29 +86,24 @@ def judged(draft: Report, data: Data, findings: Mapping[str, Sequence[Finding]],
         number: What a number is called.
     """
     rows = [(name, finding) for name, group in findings.items() for finding in group]
+    wrong = [(name, finding) for name, finding in rows if not finding.ok]
     failures, unfinished = data.get("failures", {}), tuple(data.get("unfinished", ()))
-    missed = sum(not finding.ok for _, finding in rows)
-    kept = f"{missed} miss their bounds" if missed else "all within their bounds"
+    kept = f"{len(wrong)} miss their bounds" if wrong else "all within their bounds"
     failed = f"; {counted(len(failures), part)} could not be done" if failures else ""
     quick = " (quick variant: fewer points, shorter motions)" if data.get("quick") else ""
     cut = f" Interrupted: {', '.join(unfinished)} not done." if unfinished else ""
     ok, reasons = bool(data["ok"]), failure_texts(failures)
-    lines = [{part: name, "ok": finding.ok, **vars(finding)} for name, finding in rows]
+    lines = ({part: name, "ok": finding.ok, **vars(finding)} for name, finding in rows)
     return replace(
         draft,
         summary=f"{counted(len(rows), number)} {draft.summary}: {kept}{failed}{quick}.{cut}",
         ok=ok,
         blocks=(*draft.blocks, *reasons),
         facts=(*draft.facts, Fact(str(len(rows)), f"{number}s, {kept}", ok)),
-        digest=(Table.of(lines, {part: f"{{{part}}}", **_BOUNDS}), *reasons),
+        digest=(Table.of(lines, f"{part}; {_BOUNDS}"), *reasons),
         unfinished=unfinished,
-        missed=tuple(_missed(name, finding) for name, finding in rows if not finding.ok),
+        missed=tuple(f"{name}: {finding.quantity} is {finding.bounds}" for name, finding in wrong),
     )
-
-
-def _missed(name: str, finding: Finding) -> str:
-    bounds = " to ".join(filter(None, (short(finding.low), short(finding.high))))
-    return f"{name}: {finding.quantity} is {short(finding.value)}, asked for is {bounds}"
 
 
 def findings_fold(findings: Sequence[Finding], noun: str, more: str = "", *blocks: Block) -> Fold:
@@ -135,8 +117,7 @@ def findings_fold(findings: Sequence[Finding], noun: str, more: str = "", *block
     """
     missed = sum(not finding.ok for finding in findings)
     said = f"{counted(len(findings), noun)} and their bounds" + (f": **{missed} missed**" if missed else "") + more
-    lines = [{"ok": finding.ok, **vars(finding)} for finding in findings]
-    table = Table.of(lines, {**_BOUNDS, "reason of the bound": "{reason}"})
+    table = Table.of(findings, f"{_BOUNDS}; reason of the bound = {{reason}}")
     return Fold(said, (table, *blocks), opened=bool(missed))
 
 

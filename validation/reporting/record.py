@@ -5,8 +5,10 @@ Texts may hold `code`, **bold** and [links](#anchor), as in Markdown, and nothin
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import KW_ONLY, dataclass
+from functools import partial
 from typing import Any, Literal
 
 from validation.reporting.figures import Chart, Drawing, Figure
@@ -48,8 +50,30 @@ class Cell:
 
 
 _FORM = Form()
-# What stands in a column: a format such as "{error:.1e}" (see `Form`), or a function of the row.
-Column = str | Callable[[Any], str | Cell]
+# What stands in a column: a function of the row.
+Column = Callable[[Any], str | Cell]
+Columns = Mapping[str, Column]
+_COLUMN = re.compile(r"(?P<title>.+?)(?: = (?P<text>.+?))?(?: \? (?P<no>no )?(?P<verdict>\w+))?")
+
+
+def columns(stated: str, **computed: Column) -> dict[str, Column]:
+    """Columns as "model; #error [m] = {error:.1e} ? ok; place = place()" states them.
+
+    Args:
+        stated: Titles, each with its text, in which fields of the row are formatted (`Form`); a title alone is the
+            name of its field. Behind "?" stands the field that is the verdict on the cell ("no" turns it round).
+        computed: Functions of the row, which texts name with "()".
+    """
+
+    def column(part: re.Match[str]) -> Column:
+        text, verdict = part["text"] or f"{{{part['title'].removeprefix('#')}}}", part["verdict"]
+        cell = computed[text.removesuffix("()")] if text.endswith("()") else partial(_FORM.of, text)
+        if verdict is None:
+            return cell
+        return lambda row: Cell(str(cell(row)), bool(_FORM.field(row, verdict)) is not bool(part["no"]))
+
+    parts = filter(None, map(_COLUMN.fullmatch, " ".join(stated.split()).split("; ")))
+    return {part["title"]: column(part) for part in parts}
 
 
 @dataclass(frozen=True)
@@ -65,18 +89,10 @@ class Table:
     rows: tuple[tuple[str | Cell, ...], ...]
 
     @classmethod
-    def of(cls, rows: Iterable[Any], columns: Mapping[str, Column]) -> Table:
-        """A line for each row: a mapping, a record or a tuple; a column formats its fields, or is a function of it."""
-
-        def cell(row: Any, column: Column) -> str | Cell:
-            if callable(column):
-                return column(row)
-            if isinstance(row, tuple):
-                return _FORM.vformat(column, row, {})
-            return _FORM.vformat(column, (), row if isinstance(row, Mapping) else vars(row))
-
-        lines = tuple(tuple(cell(row, column) for column in columns.values()) for row in rows)
-        return cls(tuple(columns), lines)
+    def of(cls, rows: Iterable[Any], stated: Columns | str, **computed: Column) -> Table:
+        """A line for each row; columns as in `columns`."""
+        named = columns(stated, **computed) if isinstance(stated, str) else stated
+        return cls(tuple(named), tuple(tuple(column(row) for column in named.values()) for row in rows))
 
     def without_empty(self) -> Table:
         """The table without the columns in which nothing is stated."""
@@ -135,12 +151,19 @@ class Section:
 
     @property
     def shows(self) -> bool:
-        """Whether it has more than words: a table with rows, a figure with charts, a list, or a fold."""
-        return any(
-            block.rows if isinstance(block, Table) else block.charts if isinstance(block, Figure) else True
-            for block in self.blocks
-            if not isinstance(block, str | Text)
-        )
+        """Whether anything is in it: words alone, or beside them a table with rows, a figure with charts, a list."""
+        shown = [block for block in self.blocks if not isinstance(block, str | Text)]
+        return any(map(is_filled, shown)) if shown else bool(self.blocks)
+
+
+def is_filled(block: Block) -> bool:
+    """Whether a block has any content."""
+    match block:
+        case Table(_, content) | Figure(_, content) | Bullets(content):
+            return bool(content)
+        case Fold():
+            return any(map(is_filled, block.blocks))
+    return True
 
 
 @dataclass(frozen=True)
@@ -169,7 +192,6 @@ class Report:
         blocks: Blocks before the first section.
         sections: Parts under headings.
         facts: Key numbers, for the top of the page and for the index of reports.
-        highlights: Most telling charts, for the index of reports.
         digest: Blocks that a terminal shows; by default the tables and lists of the summary.
         narrow: The same for a terminal in which a table of the digest has no room.
         unfinished: Names of parts that an interrupt cut.
@@ -185,7 +207,6 @@ class Report:
     sections: tuple[Section, ...] = ()
     _: KW_ONLY
     facts: tuple[Fact, ...] = ()
-    highlights: tuple[Chart | Drawing, ...] = ()
     digest: tuple[Block, ...] = ()
     narrow: tuple[Block, ...] = ()
     unfinished: tuple[str, ...] = ()
@@ -204,9 +225,20 @@ class Report:
         return self.missed or tuple(f"{fact.value} {fact.label}" for fact in self.facts if fact.ok is False)
 
     @property
+    def shown(self) -> tuple[Section, ...]:
+        """Sections that have something to show."""
+        return tuple(section for section in self.sections if section.shows)
+
+    @property
+    def telling(self) -> tuple[Chart | Drawing, ...]:
+        """The first chart, for the index of reports."""
+        figures = (block for section in self.sections for block in section.blocks if isinstance(block, Figure))
+        return next((figure.charts[:1] for figure in figures if figure.charts), ())
+
+    @property
     def brief(self) -> tuple[Block, ...]:
         """Blocks that a terminal shows."""
-        stated = (block for section in self.sections if not section.page_only for block in section.blocks)
+        stated = (block for section in self.shown if not section.page_only for block in section.blocks)
         return self.digest or tuple(block for block in stated if isinstance(block, Table | Bullets))
 
 

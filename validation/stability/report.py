@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 import math
-import time
 from collections import Counter
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
-import typer
 
-from validation.reporting.command import Quick, Run, known
-from validation.reporting.figures import Chart, Curve, Figure
+from validation.reporting.figures import Figure
 from validation.reporting.findings import Finding
-from validation.reporting.numbers import counted, rounded, short
-from validation.reporting.plain import plain, restored
+from validation.reporting.numbers import counted, short
+from validation.reporting.plain import restored
 from validation.reporting.questions import findings_fold, judged
 from validation.reporting.record import Bullets, Data, Fact, Report, Section, Text, Topic
 from validation.stability import heatmap
 from validation.stability.catalogue import STUDIES
-from validation.stability.study import FINISHED, Cell, Grid, Map, ParameterStudy, survey
+from validation.stability.measure import measure
+from validation.stability.study import FINISHED, Cell, Grid, Map, ParameterStudy
 
 INTRO = (
     "Where simulations fail, and what to use instead. Each map runs one study over two parameters: a cell is a run, "
@@ -28,59 +26,6 @@ INTRO = (
     "and bad as measured; a dashed line is a closed form. Numbers in cells are decades. Every claim comes back with "
     "the command under its study."
 )
-# Methods of the study of energies that the index shows.
-_METHODS = ("semi_implicit_euler", "rk4", "dop853", "variational")
-# Different reasons of ends that are kept of a map.
-_MOST_NOTES = 8
-
-
-def measure(
-    run: Run,
-    chosen: Annotated[list[str] | None, typer.Option("--study", help=f"Only this; of {', '.join(STUDIES)}.")] = None,
-    quick: Quick = False,
-) -> Data:
-    """Map where simulations fail, against closed forms and other engines.
-
-    With --study, the report is that of these studies alone, in the subfolder stability.
-    """
-    wanted = known(chosen, STUDIES, "--study", "study")
-    if chosen:  # One study must not overwrite the atlas of all of them.
-        run.folder = run.folder / "stability"
-    run.expect(sum(STUDIES[name].runs(quick) for name in wanted))
-
-    def surveyed(name: str) -> dict[str, Any]:
-        run.advance(name, steps=0)
-        return study_data(STUDIES[name], quick, run)
-
-    done = run.each(wanted, surveyed)
-    ok = all(study["ok"] for study in done.results.values())
-    return done.head(ok, quick) | {"studies": done.results}
-
-
-def study_data(study: ParameterStudy, quick: bool, run: Run) -> dict[str, Any]:
-    """Run one study and judge it; what is asked and how stands in the study."""
-    start = time.perf_counter()
-    maps = survey(study, quick, run.advance)
-    verdict = study.judge(maps)
-    return {
-        "verdict": verdict.statement,
-        "see": verdict.see,
-        "ok": all(finding.ok for finding in verdict.findings),
-        "seconds": round(time.perf_counter() - start, 1),
-        "findings": plain(verdict.findings),
-        "maps": {name: _map_data(study, one) for name, one in maps.items()},
-    }
-
-
-def _map_data(study: ParameterStudy, one: Map) -> dict[str, Any]:
-    notes = sorted({c.note for row in one.cells for c in row if c.note})
-    return {
-        "x": [study.x.label(x) if study.x.labels else float(x) for x in one.x],
-        "y": [study.y.label(y) if study.y.labels else float(y) for y in one.y],
-        "values": [rounded(row) for row in one.values],
-        "ended": [[c.ended for c in row] for row in one.cells],
-        "said": notes[:_MOST_NOTES],
-    }
 
 
 def maps_of(study: ParameterStudy, data: Data) -> dict[str, Map]:
@@ -115,7 +60,6 @@ def compose(data: Data) -> Report:
         (INTRO,),
         tuple(_section(name, study, findings[name], data["quick"]) for name, study in studies.items()),
         facts=(Fact(str(len(studies)), "studies"), Fact(str(runs), "runs")),
-        highlights=tuple(_energies(studies["energy"])) if "energy" in studies else (),
     )
     return judged(draft, data, findings, "study", "claim")
 
@@ -145,16 +89,6 @@ def _ends(one: Map, notes: list[str]) -> str:
     said += [f"{one.wrong} come to their end and miss it"] if one.wrong else []
     said += [f"{count} {kind}" for kind, count in Counter(c.ended for c in cells if c.ended not in FINISHED).items()]
     return ", ".join(said) + (f" (such as “{notes[0]}”)" if notes else "")
-
-
-def _energies(data: Data) -> list[Chart]:
-    """Who keeps energy, over the longest runs."""
-    study = STUDIES["energy"]
-    title, one = list(data["maps"].items())[-1]
-    rows = [(name, values) for name, values in zip(one["y"], one["values"], strict=True) if name in _METHODS]
-    drawn = tuple(Curve(name, one["x"], values, k, "joined") for k, (name, values) in enumerate(rows))
-    named = f"a pendulum's energy, {title}"
-    return [Chart(named, study.x.name, study.quantity, drawn, log="xy")] if drawn else []
 
 
 TOPIC = Topic("stability", "Stability", "Where do simulations fail?", compose, measure)

@@ -8,12 +8,16 @@ import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
+import typer
 
 import symofros as sf
 from validation.inputs.cases import robot_case
+from validation.reporting.command import Run
+from validation.reporting.plain import plain
+from validation.reporting.record import Data
 
 ROBOT = "xarm7"
 CALLS = 1_000_000
@@ -156,3 +160,8 @@ def _sizes(package: Path, name: str) -> dict[str, int]:
         sizes[f"{part}.o: code and constants"] = sum(n for name, n in sections.items() if name.startswith(held))
         sizes[f"{part}.o: data that is written to"] = sections.get(".data", 0) + sections.get(".bss", 0)
     return sizes
+
+
+def measure(_: Run, calls: Annotated[int, typer.Option(min=1000, help="Calls of each kind in C.")] = CALLS) -> Data:
+    """Time calls of an exported seven-joint arm: C, Python, MEX, FMU; and the worst case in C."""
+    return dict(plain(run_study(calls)))

@@ -6,23 +6,32 @@ accepted must survive being written and read again; of the accepted files, a sam
 
 from __future__ import annotations
 
+import resource
 import signal
+import sys
 import tempfile
 import time
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from types import FrameType
+from typing import Annotated
+
+import typer
 
 import symofros as sf
+from validation.reporting.command import Run
+from validation.reporting.record import Data
 from validation.studies.fuzz_inputs import KINDS, mutated
 
 # A reader that takes longer on some kilobytes has been made to hang.
 SLOWEST = 10.0
 # Compiling is slower than reading: one accepted file in so many.
 COMPILED = 25
+# Inputs of a whole run.
+INPUTS = 120_000
 
 _INTERPRETED = sf.Options(functions=("mass_matrix",), backend="interpreter")
 
@@ -183,3 +192,31 @@ def _interrupted() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGALRM, before)
+
+
+def measure(
+    run: Run,
+    count: Annotated[int, typer.Option(min=1, help="Inputs, all kinds together.")] = INPUTS,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the mutations.")] = 0,
+) -> Data:
+    """Feed mutated, hostile files and formulas to the readers: none may crash or hang them."""
+    run.expect(count, "feeding")
+    result = fuzz(count, seed, run.reached)
+    kinds = {}
+    for kind, answers in result.answers.items():
+        faults = sum(fault.kind == kind for fault in result.faults)
+        inputs = answers.read + answers.refused + faults
+        kinds[kind] = {**asdict(answers), "inputs": inputs, "faults": faults, "slowest": round(answers.slowest, 4)}
+    # Linux counts kilobytes, macOS bytes.
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / (1 << (20 if sys.platform == "darwin" else 10))
+    return {
+        "ok": not result.faults,
+        "inputs": sum(row["inputs"] for row in kinds.values()),
+        "seed": seed,
+        "peak_memory_mib": round(peak),
+        "kinds": kinds,
+        "faults": [
+            {"kind": f.kind, "number": f.number, "what": f.what, "input": f.data.decode("latin-1")}
+            for f in result.faults
+        ],
+    }

@@ -10,12 +10,15 @@ has *survived*: the harness should have seen it, and did not.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Annotated, Any
 
 import mpmath
 import numpy as np
+import typer
 
+import reference_models
 import symofros as sf
 from symofros.tools import Function, evaluate_edges, evaluate_precisely
 from validation.adapters import ROUTES, Missing, description
@@ -24,16 +27,25 @@ from validation.comparison.errors import Scales, compute, state_errors, typical_
 from validation.comparison.variants import with_forces
 from validation.contract.interface import Engine, States, Subject, Unsupported
 from validation.contract.quantities import FORCES_STATED, FRAME_QUANTITIES, QUANTITIES, Quantity
+from validation.inputs.cases import standard_set
 from validation.inputs.frames import chosen_frames
 from validation.inputs.sampling import sample
 from validation.mechanics.assembly import assemble
 from validation.mechanics.geometry import Array
+from validation.reporting.command import Run
+from validation.reporting.record import Data
 from validation.studies.faults import Fault, FaultSimulator, faults_at
 
 STATES = 60
 # Outputs that agree to this many of DIGITS digits at random points are equal.
 DIGITS, EQUAL = 60, 40
 PROOF_POINTS = 2
+# Models that an independent engine can represent whole, small and large, fixed and floating.
+MODELS = tuple(
+    "pendulum double_pendulum cart_pole open_chain_5r space_arm rx90 chain7 mss ur5 panda solo12 bolt".split()
+)
+PER_MODEL = 700
+FATES = ("planted", "caught", "silent", "too_small")
 
 
 @dataclass(frozen=True)
@@ -202,3 +214,41 @@ def _independent(subject: Subject) -> Engine:
             return engine
         reasons.append(f"{name}: {engine.reason}")
     raise ValueError(f"model '{subject.label}': no independent engine for it ({'; '.join(reasons)})")
+
+
+def measure(
+    run: Run,
+    faults: Annotated[int, typer.Option(min=1, help="Faults a model, at most.")] = PER_MODEL,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the choice of faults and of the states.")] = 0,
+) -> Data:
+    """Plant single faults in generated programs; the cross-check must catch every one that matters."""
+    cases = {case.label: case for case in standard_set()}
+    scores = []
+    run.expect(len(MODELS), "planting faults")
+    for name in MODELS:
+        system = cases[name].load().system if name in cases else reference_models.MODELS[name]
+        scores.append(mutate(name, system, faults, seed))
+        run.advance()
+    return as_data(scores) | {"faults_per_model": faults, "seed": seed}
+
+
+def as_data(scores: Sequence[MutationScore]) -> dict[str, Any]:
+    """The scores as plain data."""
+    rows = [
+        {
+            "model": score.model,
+            "engine": score.engine,
+            **{fate: getattr(score, fate).total() for fate in FATES},
+            "largest_too_small": score.largest_small,
+            "survived": [{"kind": f.kind, "node": f.node, "error": error} for f, error in score.survivors],
+        }
+        for score in scores
+    ]
+    totals = {fate: sum((getattr(score, fate) for score in scores), Counter[str]()) for fate in FATES}
+    kinds = sorted({kind for total in totals.values() for kind in total})
+    return {
+        "ok": all(score.ok for score in scores),
+        "planted": totals["planted"].total(),
+        "models": rows,
+        "kinds": {kind: {fate: total[kind] for fate, total in totals.items()} for kind in kinds},
+    }

@@ -6,10 +6,12 @@ import os
 import socket
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
+import typer
 
 import reference_models
 import symofros as sf
@@ -27,12 +29,17 @@ from symofros.blocks import (
     joined,
 )
 from symofros.tools import Jitter, jitter_of
+from validation.mechanics.geometry import Array
+from validation.reporting.command import Run
+from validation.reporting.record import Data
 
 ROBOT = Path(reference_models.__file__).parent / "rigid" / "puma560.yaml"
 # Of the motion that is followed: half its width [rad], its frequency [rad/s].
 SWING, RATE = 0.4, 2.0
 # Of the controller [1/s^2], [1/s].
 KP, KD = 400.0, 40.0
+# Edges of bins of lateness [us], twelve a decade.
+_EDGES = np.logspace(-1, 5, 73)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -181,3 +188,26 @@ def _free_port() -> int:
         probe.bind(("127.0.0.1", 0))
         port: int = probe.getsockname()[1]
         return port
+
+
+def measure(
+    progress: Run, seconds: Annotated[float, typer.Option(min=0.01, help="Length of each diagram.")] = 20.0
+) -> Data:
+    """Keep pace with the clock, and say how well."""
+    ways = (False, True) if may_come_first() else (False,)
+    progress.expect(len(ways) * len(TIMED_DIAGRAMS), "in real time")
+    diagrams = []
+    for first in ways:
+        for diagram in TIMED_DIAGRAMS:
+            row = run(seconds, diagram, first)
+            stated = {name: getattr(row, name) for name in ("what", "first", "period", "busy")}
+            diagrams.append({**stated, **asdict(row.jitter), "late": _share_later(row.late)})
+            progress.advance()
+    return {"diagrams": diagrams, "length": seconds, "cores": os.cpu_count(), "load": os.getloadavg()[0]}
+
+
+def _share_later(late: Array) -> dict[str, list[float]]:
+    """Share of the instants that began later than each of some times [us], as far as there are any."""
+    shares = 1.0 - np.searchsorted(np.sort(1e6 * late), _EDGES) / len(late)
+    used = int(np.count_nonzero(shares)) + 1
+    return {"us": [float(f"{x:.4g}") for x in _EDGES[:used]], "share": [float(f"{x:.4g}") for x in shares[:used]]}

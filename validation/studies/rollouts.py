@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import os
+from dataclasses import asdict, dataclass
 from statistics import median
+from typing import Annotated
 
 import numpy as np
+import typer
 
 import symofros as sf
 from validation.adapters.mujoco import tree as mujoco
 from validation.adapters.mujoco.rollout import roll_out
 from validation.contract.interface import Subject, Unsupported
 from validation.mechanics.geometry import Array
+from validation.reporting.command import Run
+from validation.reporting.record import Data
 from validation.studies.simulation import DAMPING, STIFFNESS, TARGET
 from validation.timing.models import TIMED_MODELS
 
@@ -130,3 +135,20 @@ def _moved(run: sf.Trajectories) -> sf.Trajectories:
     if not run.ok.all():
         raise ValueError(f"{run.model.record.name}: {run}")
     return run
+
+
+def measure(
+    _: Run,
+    trajectories: Annotated[int, typer.Option(min=1, help="Number of motions.")] = TRAJECTORIES,
+    steps: Annotated[int, typer.Option(min=1, help="Steps of a millisecond each.")] = STEPS,
+    repeats: Annotated[int, typer.Option(min=1, help="Interleaved repeats.")] = 7,
+    threads: Annotated[int, typer.Option(min=1, help="Threads of each side.")] = 1,
+) -> Data:
+    """Time thousands of motions of an arm, against mujoco.rollout."""
+    rows = run(repeats, trajectories, steps, threads)
+    return {
+        "rollouts": [asdict(row) for row in rows],
+        "trajectories": trajectories,
+        "repeats": repeats,
+        "load": os.getloadavg()[0],
+    }

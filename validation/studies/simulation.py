@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from statistics import median
 from time import perf_counter
+from typing import Annotated
 
 import numpy as np
+import typer
 
 import reference_models
 import symofros as sf
@@ -18,6 +20,8 @@ from validation.adapters.exudyn.ancf import spin_up
 from validation.adapters.mujoco import motion as mujoco_motion
 from validation.adapters.mujoco import tree as mujoco
 from validation.contract.interface import Subject, Unsupported
+from validation.reporting.command import Run, known
+from validation.reporting.record import Data
 from validation.reporting.references import References
 from validation.stability.closed_loops import four_bars
 from validation.stability.closed_loops.singular import ends_of_crank
@@ -345,3 +349,28 @@ def iftomm(repeats: int) -> list[Benchmark]:
         seconds = min(run.statistics.seconds for run in runs)
         benchmarks.append(Benchmark(name, span, how, measure, judge(runs[-1]), threshold, seconds))
     return benchmarks
+
+
+MOTIONS = {
+    "arm": arm,
+    "four_bar": four_bar,
+    "planar_robot": planar_robot,
+    "spinning_beam": spinning_beam,
+}
+
+
+def measure(
+    run: Run,
+    chosen: Annotated[list[str] | None, typer.Option("--motion", help=f"Only this: {', '.join(MOTIONS)}.")] = None,
+    repeats: Annotated[int, typer.Option(min=1, help="Interleaved repeats.")] = 7,
+) -> Data:
+    """Time motions: times real time, and against MuJoCo and Exudyn at equal accuracy."""
+    motions = known(chosen, MOTIONS, "--motion", "motion")
+    run.expect(len(motions), "motions")
+    races = []
+    for name in motions:
+        row = MOTIONS[name](repeats)
+        races.append(asdict(row) | {"real_time": row.real_time})
+        run.advance()
+    benchmarks = [] if chosen else [asdict(row) for row in iftomm(repeats)]
+    return {"races": races, "iftomm": benchmarks, "repeats": repeats}

@@ -23,6 +23,25 @@ FUNCTIONS = {
     "forward_dynamics_derivatives": "derivatives of forward dynamics",
     "step": "one step of RK4",
 }
+
+
+class Labelled:
+    """What is of one function of one model, with their names in tables."""
+
+    model: str
+    function: str
+
+    @property
+    def title(self) -> str:
+        """Name of the model."""
+        return TIMED_MODELS[self.model].title
+
+    @property
+    def task(self) -> str:
+        """Name of the function."""
+        return FUNCTIONS[self.function]
+
+
 # Our C of derivatives of forward dynamics of a humanoid takes minutes to compile.
 _HUMANOID = tuple(name for name in FUNCTIONS if name != "forward_dynamics_derivatives")
 # Of chains: what exponents are fitted to. CasADi's C of the longest takes a minute a function to compile.

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from validation.reporting.plain import plain, restored
+from validation.timing.models import Labelled
 
 SCHEMA = 2
 
@@ -19,7 +20,7 @@ def _now() -> str:
 
 
 @dataclass(frozen=True)
-class Entry:
+class Entry(Labelled):
     """One function of one model by the generated C and by one build of one peer, timed in turn.
 
     Attributes:
@@ -67,7 +68,7 @@ class Entry:
 
 
 @dataclass(frozen=True)
-class Made:
+class Made(Labelled):
     """What a generated function costs to make and to run.
 
     Attributes:
@@ -145,6 +146,11 @@ class Record:
             if (x.model, x.function, x.peer) == (model, function, peer) and x.variant.startswith(family)
         ]
         return min(alike, key=lambda x: x.peer_time[1], default=None)
+
+    def fastest(self) -> list[Entry]:
+        """Each peer's fastest build of each function of each model."""
+        races = dict.fromkeys((row.model, row.function, row.peer) for row in self.entries)
+        return [row for race in races if (row := self.best(*race))]
 
     def cost(self, model: str, function: str, by: str) -> Made | None:
         """Of the fastest build."""

@@ -6,76 +6,53 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from validation.reporting.figures import Chart, Curve, Figure
-from validation.reporting.numbers import compact
-from validation.reporting.record import Block, Cell, Column, Section, Table
+from validation.reporting.figures import Chart, Curve, Figure, Mark
+from validation.reporting.record import Block, Cell, Section, Table
 from validation.timing.growth import Growth, growth
 from validation.timing.models import FUNCTIONS, TIMED_MODELS
-from validation.timing.record import Made, Record
-from validation.timing.targets import verdicts
+from validation.timing.record import Entry, Made, Record
+from validation.timing.targets import Verdict, verdicts
 
 _GENERATORS = ("symofros", "casadi", "sympy")
 _PEERS = {"pinocchio": "Pinocchio", "mujoco": "MuJoCo", "casadi": "CasADi", "sympy": "SymPy"}
 # What growth is drawn of.
 _DRAWN = ("time [ns]", "operations", "generation [s]", "compilation [s]")
+# What a simulation asks for at each step: ratios are drawn of it.
+_RACED = ("dynamics", "forward_dynamics")
+_KINDS = ("mul", "add", "div", "call")
 COLORS = {"symofros": 0, "symofros, batch": 2, "pinocchio": 1, "mujoco": 5, "casadi": 6, "sympy": 7}
 
-
-def sections(record: Record) -> list[Section]:
-    """All that have something to show."""
-    made = [
-        Section("Targets", (_TARGETS_TEXT, targets_table(record)), "targets"),
-        *(_function(record, name) for name in FUNCTIONS),
-        _growth(record),
-        Section("What it costs to make", (_MAKING_TEXT, Table.of(_costs(record), _MAKING)), "making"),
-        _limits(record),
-        _skipped(record),
-    ]
-    return [section for section in made if section.shows]
-
-
-_TARGETS_TEXT = (
+TARGETS_TEXT = (
     "Ratios of medians, the peer's to ours, each of one race. A peer's best is the fastest of its builds and ways, "
     "chosen by its median alone. Batches are column by column: the states are the fast axis (NumPy's Fortran order), "
     "and arrays are read and written in place; beside them the same by rows."
 )
-_TARGETS: dict[str, Column] = {
-    "model": lambda v: TIMED_MODELS[v.target.model].title,
-    "function": lambda v: FUNCTIONS[v.target.function],
-    "ours": lambda v: {"scalar": "state by state", "columns": "batch by columns"}[v.target.how],
-    "against": lambda v: ", ".join(filter(None, (v.target.peer, v.target.family))),
-    "#ratio": lambda v: Cell(f"{v.ratio:.2f}", v.met) if v.entry else "-",
-    "#by rows": lambda v: "" if v.by_rows is None else f"{v.by_rows:.2f}",
-    "#target": lambda v: f"{v.target.least:g}",
-    "verdict": lambda v: v.statement,
-    "measured as": lambda v: v.entry.variant if v.entry else "",
-}
-
-
-def targets_table(record: Record) -> Table:
-    """Each target and what was found."""
-    return Table.of(verdicts(record), _TARGETS)
-
-
-_TIMES: dict[str, Column] = {
-    "model": "{model}",
-    "#nv": "{nv}",
-    "#ours": "{generated_time:compact}",
-    "#batch, rows": "{batch:compact}",
-    "#columns": "{columns:compact}",
-    "#floats": "{single:compact}",
-    "#Pinocchio, gcc": "{gcc:compact}",
-    "#Pinocchio, best": "{pinocchio:compact}",
-    **{f"#{name}": f"{{{peer}:compact}}" for peer, name in _PEERS.items() if peer != "pinocchio"},
-}
-_RATIOS: dict[str, Column] = {
-    "model": "{model}",
-    "#nv": "{nv}",
-    "#Pinocchio": "{pinocchio ratio:.2f}",
-    "#batch by rows": "{batch_ratio:.1f}",
-    "#batch by columns": "{columns_ratio:.1f}",
-    **{f"#{name}": f"{{{peer} ratio:.2f}}" for peer, name in _PEERS.items() if peer != "pinocchio"},
-}
+_TARGETS = """model = {target.title}; function = {target.task}; ours = {target.how}; against = peer(); #ratio = ratio();
+    #by rows = {by_rows:.2f}; #target = {target.least:g}; verdict = {statement}; measured as = variant()"""
+_MADE = "model = {title}; function = {task}; by"
+_MAKING_TEXT = (
+    "Generation is from the description to C text, the processor's time; compilation is of that text alone, by the "
+    "build that runs fastest, by the clock, at whatever load the machine had then: it is done once and kept."
+)
+_MAKING = f"""{_MADE}; #generation [s] = {{generation:.3f}}; #compilation [s] = {{compilation:.2f}};
+    #C text [kB] = {{text:1e-3*.1f}}; #machine code [kB] = {{code:1e-3*.1f}}; 
+    #constants [kB] = {{constants:1e-3*.1f}}"""
+_LIMITS_TEXT = (
+    "Operations are what one call executes; a sine or cosine counts as one. Distance is the measured time over "
+    "that of the same operations at this core's measured peak, {:.1f} GFlop/s in fused multiply-adds, and for batches "
+    "{:.0f} GFlop/s in vectors: 1 is the limit of code in which every multiplication has an addition to go with, and "
+    "calls cost far more than the one operation that they count. Memory is what a call reads and writes; its limit is "
+    "the time it takes at the {:.0f} GB/s of copies in the core's first cache."
+)
+_LIMITS = f"""{_MADE}; #mul = {{mul}}; #add = {{add}}; #div = {{div}}; #calls = {{call}}; #time [ns] = {{time:compact}};
+    #limit [ns] = {{limit:compact}}; #distance = {{distance:.1f}}; #of batches = {{batches:.1f}};
+    #memory [B] = {{memory}}; #its limit [ns] = {{copying:.2f}}"""
+_GROWTH_TEXT = (
+    "Over chains of generic bodies in space. The exponent is the slope on logarithmic axes, by least squares over "
+    "seven joints and more: time = c n^exponent."
+)
+_GROWTH = """function = {task}; quantity; by = {who}; joints = {n[0]} ... {longest}; #at the longest = {last:compact};
+    #exponent = {exponent:.2f}"""
 _NOTES = {
     "dynamics": "Ours is M + h + Q, in one function. Pinocchio's is crba, then nonLinearEffects; MuJoCo's shares its "
     "kinematics between both; CasADi's is one function, common subexpressions shared.",
@@ -87,6 +64,56 @@ _NOTES = {
     "frame_jacobian": "Of the body that most joints carry, in world axes.",
     "step": "Our loop of sf.simulate, mj_step with contacts, constraints and sensors off; free motion.",
 }
+_TIMES = f"""model; #nv; #ours = {{generated_time:compact}}; #batch, rows = {{batch:compact}};
+    #columns = {{columns:compact}}; #floats = {{single:compact}};
+    #Pinocchio, gcc = {{gcc:compact}}; #Pinocchio, best = {{pinocchio:compact}};
+    {"; ".join(f"#{name} = {{{peer}:compact}}" for peer, name in _PEERS.items() if peer != "pinocchio")}"""
+_RATIOS = f"""model; #nv; #Pinocchio = {{pinocchio ratio:.2f}}; #batch by rows = {{batch_ratio:.1f}};
+    #batch by columns = {{columns_ratio:.1f}};
+    {"; ".join(f"#{name} = {{{peer} ratio:.2f}}" for peer, name in _PEERS.items() if peer != "pinocchio")}"""
+
+
+def sections(record: Record) -> list[Section]:
+    """Times of each function, growth, costs, limits, and what is missing."""
+    costs = (record.cost(model, function, by) for model in TIMED_MODELS for function in FUNCTIONS for by in _GENERATORS)
+    made = [cost for cost in costs if cost is not None]
+    return [
+        *(_function(record, name) for name in FUNCTIONS),
+        _growth(record),
+        Section("What it costs to make", (_MAKING_TEXT, Table.of(made, _MAKING)), "making"),
+        _limits(record, made),
+        _skipped(record),
+    ]
+
+
+def targets_table(record: Record) -> Table:
+    """Each target and what was found."""
+
+    def peer(verdict: Verdict) -> str:
+        return ", ".join(filter(None, (verdict.target.peer, verdict.target.family)))
+
+    def ratio(verdict: Verdict) -> str | Cell:
+        return Cell(f"{verdict.ratio:.2f}", verdict.met) if verdict.entry else "-"
+
+    def variant(verdict: Verdict) -> str:
+        return verdict.entry.variant if verdict.entry else ""
+
+    return Table.of(verdicts(record), _TARGETS, peer=peer, ratio=ratio, variant=variant)
+
+
+def ratios(rows: Sequence[Entry]) -> Figure:
+    """Their time over ours, over the size of the model; a point a model."""
+    charts = []
+    for function in _RACED:
+        own = [row for row in rows if row.function == function]
+        curves = []
+        for k, peer in enumerate(dict.fromkeys(row.peer for row in own)):
+            x, y = zip(*sorted((row.nv, row.ratio) for row in own if row.peer == peer), strict=True)
+            curves.append(Curve(peer, x, y, k, "points"))
+        title = f"{FUNCTIONS[function]}: their time over ours, a point a model"
+        axes, even = ("speeds of the model  [1]", "ratio of medians  [1]"), (Mark("as fast as we", 1.0),)
+        charts += [Chart(title, *axes, tuple(curves), even, log="xy")] if curves else []
+    return Figure("Each peer's fastest build over ours, state by state. Above the line ours is faster.", tuple(charts))
 
 
 def _function(record: Record, function: str) -> Section:
@@ -123,88 +150,27 @@ def _title(function: str) -> str:
     return name if len(name.split()[0]) == 1 else name[0].upper() + name[1:]
 
 
-def _costs(record: Record) -> list[Made]:
-    """Costs of the fastest build of each side."""
-    costs = (record.cost(model, function, by) for model in TIMED_MODELS for function in FUNCTIONS for by in _GENERATORS)
-    return [cost for cost in costs if cost is not None]
-
-
-_MAKING_TEXT = (
-    "Generation is from the description to C text, the processor's time; compilation is of that text alone, by the "
-    "build that runs fastest, by the clock, at whatever load the machine had then: it is done once and kept."
-)
-_COST: dict[str, Column] = {
-    "model": lambda cost: TIMED_MODELS[cost.model].title,
-    "function": lambda cost: FUNCTIONS[cost.function],
-    "by": "{by}",
-}
-_MAKING = {
-    **_COST,
-    "#generation [s]": "{generation:.3f}",
-    "#compilation [s]": "{compilation:.2f}",
-    "#C text [kB]": "{text:1e-3*.1f}",
-    "#machine code [kB]": "{code:1e-3*.1f}",
-    "#constants [kB]": "{constants:1e-3*.1f}",
-}
-
-
-def _limits(record: Record) -> Section:
-    flops, vector, copied = (
-        record.machine.get(name, math.nan) for name in ("scalar_flops", "vector_flops", "copied_bytes")
-    )
-    text = (
-        "Operations are what one call executes; a sine or cosine counts as one. Distance is the measured time over "
-        f"that of the same operations at this core's measured peak, {flops / 1e9:.1f} GFlop/s in fused multiply-adds, "
-        f"and for batches {vector / 1e9:.0f} GFlop/s in vectors: 1 is the limit of code in which every multiplication "
-        "has an addition to go with, and calls cost far more than the one operation that they count. Memory is what a "
-        f"call reads and writes; its limit is the time it takes at the {copied / 1e9:.0f} GB/s of copies in the "
-        "core's first cache."
-    )
-
-    def distance(cost: Made) -> str:
-        # A Jacobian of one joint takes no operations.
-        return f"{cost.time / (1e9 * cost.total / flops):.1f}" if cost.total else "-"
-
-    def distance_of_batches(cost: Made) -> str:
+def _limits(record: Record, made: Sequence[Made]) -> Section:
+    """Costs against what the machine could do at its best."""
+    peaks = [record.machine.get(name, math.nan) / 1e9 for name in ("scalar_flops", "vector_flops", "copied_bytes")]
+    flops, vector, copied = peaks
+    rows = []
+    for cost in made:
         alike = (x for x in record.entries if (x.model, x.function) == (cost.model, cost.function) and x.batch)
-        time = next((x.columns or x.batch for x in alike), None) if cost.by == "symofros" else None
-        return f"{time[1] / (1e9 * cost.total / vector):.1f}" if time else "-"
-
-    columns: dict[str, Column] = {
-        **_COST,
-        **{f"#{title}": _operations(title.rstrip("s")) for title in ("mul", "add", "div", "calls")},
-        "#time [ns]": "{time:compact}",
-        "#limit [ns]": lambda cost: compact(1e9 * cost.total / flops),
-        "#distance": distance,
-        "#of batches": distance_of_batches,
-        "#memory [B]": "{memory}",
-        "#its limit [ns]": lambda cost: f"{1e9 * cost.memory / copied:.2f}",
-    }
-    return Section("How far from the machine's limit", (text, Table.of(_costs(record), columns)), "limits")
-
-
-def _operations(kind: str) -> Column:
-    return lambda cost: str(cost.operations.get(kind, 0))
-
-
-_GROWTH_TEXT = (
-    "Over chains of generic bodies in space. The exponent is the slope on logarithmic axes, by least squares over "
-    "seven joints and more: time = c n^exponent."
-)
-_GROWTH: dict[str, Column] = {
-    "function": lambda curve: FUNCTIONS[curve.function],
-    "quantity": "{quantity}",
-    "by": "{who}",
-    "joints": lambda curve: f"{curve.n[0]} ... {curve.n[-1]}",
-    "#at the longest": lambda curve: format(curve.values[-1], ".0f" if curve.values[-1] >= 100 else ".3g"),
-    "#exponent": "{exponent:.2f}",
-}
+        batch = next((x.columns or x.batch for x in alike), None) if cost.by == "symofros" else None
+        # A Jacobian of one joint takes no operations.
+        limit, kinds = cost.total / flops or None, {kind: cost.operations.get(kind, 0) for kind in _KINDS}
+        far = {"distance": limit and cost.time / limit, "batches": batch and limit and batch[1] / cost.total * vector}
+        named = {"title": cost.title, "task": cost.task, "limit": limit, "copying": cost.memory / copied}
+        rows.append({**vars(cost), **kinds, **named, **far})
+    return Section("How far from the machine's limit", (_LIMITS_TEXT.format(*peaks), Table.of(rows, _LIMITS)), "limits")
 
 
 def _growth(record: Record) -> Section:
-    found = growth(record)
-    figures = [_growth_figure(found, function) for function in dict.fromkeys(c.function for c in found)]
-    return Section("Growth", (_GROWTH_TEXT, Table.of(found, _GROWTH), *figures), "growth")
+    curves = growth(record)
+    figures = [_growth_figure(curves, function) for function in dict.fromkeys(c.function for c in curves)]
+    rows = [{**vars(c), "task": FUNCTIONS[c.function], "longest": c.n[-1], "last": c.values[-1]} for c in curves]
+    return Section("Growth", (_GROWTH_TEXT, Table.of(rows, _GROWTH), *figures), "growth")
 
 
 def _growth_figure(found: Sequence[Growth], function: str) -> Figure:
@@ -227,5 +193,6 @@ def _skipped(record: Record) -> Section:
     for model, function, peer, why in (*record.failed, *record.skipped):
         key = TIMED_MODELS[model].title if model in TIMED_MODELS else model, peer, why.partition("\n")[0]
         merged.setdefault(key, []).append(FUNCTIONS.get(function, function))
-    rows = tuple((model, peer, ", ".join(dict.fromkeys(names)), why) for (model, peer, why), names in merged.items())
-    return Section("What was not timed", (Table(("model", "side", "functions", "why"), rows),), "skipped")
+    rows = ((*key, ", ".join(dict.fromkeys(names))) for key, names in merged.items())
+    table = Table.of(rows, "model = {0}; side = {1}; functions = {3}; why = {2}")
+    return Section("What was not timed", (table,), "skipped")

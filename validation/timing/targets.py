@@ -5,17 +5,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from validation.timing.models import Labelled
 from validation.timing.record import Entry, Record
 
 
 @dataclass(frozen=True)
-class Target:
+class Target(Labelled):
     """A ratio of medians, the peer's to that of the generated C, that is to be reached.
 
     Attributes:
         model, function, peer: Race that the target is of.
         least: The ratio.
-        how: Generated C state by state ("scalar"), or by vectors, column by column ("columns").
+        how: Generated C state by state, or by vectors, column by column.
         family: Family of the peer's compiler; "" for its best.
     """
 
@@ -23,7 +24,7 @@ class Target:
     function: str
     peer: str
     least: float
-    how: Literal["scalar", "columns"] = "scalar"
+    how: Literal["state by state", "batch by columns"] = "state by state"
     family: str = ""
 
 
@@ -72,10 +73,10 @@ TARGETS: tuple[Target, ...] = (
     *_of("talos", "forward_dynamics", pinocchio=2.8, mujoco=2.8),
     *_of("panda", "inverse_dynamics_derivatives", pinocchio=3.0),
     *_of("panda", "forward_dynamics_derivatives", pinocchio=3.0),
-    Target("panda", "dynamics", "pinocchio", 45.0, "columns"),
-    Target("panda", "dynamics", "mujoco", 36.0, "columns"),
-    Target("mss", "dynamics", "pinocchio", 20.0, "columns"),
-    Target("chain52", "dynamics", "pinocchio", 14.0, "columns"),
+    Target("panda", "dynamics", "pinocchio", 45.0, "batch by columns"),
+    Target("panda", "dynamics", "mujoco", 36.0, "batch by columns"),
+    Target("mss", "dynamics", "pinocchio", 20.0, "batch by columns"),
+    Target("chain52", "dynamics", "pinocchio", 14.0, "batch by columns"),
 )
 
 
@@ -84,7 +85,7 @@ def verdicts(record: Record) -> list[Verdict]:
     judged = []
     for target in TARGETS:
         entry = record.best(target.model, target.function, target.peer, target.family)
-        in_columns = target.how == "columns"
+        in_columns = target.how == "batch by columns"
         ratio = None if entry is None else entry.columns_ratio if in_columns else entry.ratio
         by_rows = entry.batch_ratio if entry is not None and in_columns else None
         judged.append(Verdict(target, entry if ratio is not None else None, ratio or 0.0, by_rows))

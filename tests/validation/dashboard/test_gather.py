@@ -119,5 +119,5 @@ def test_the_reports_that_are_here_are_understood(name: str) -> None:
     found = entry(REPORTS, name)
     assert found.report is not None, found.remarks
     assert found.report.summary.endswith(".") and found.page
-    for chart in found.report.highlights:
+    for chart in found.report.telling:
         assert not isinstance(chart, Chart) or any(len(curve.x) for curve in chart.curves)

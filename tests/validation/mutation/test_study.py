@@ -10,8 +10,9 @@ import pytest
 
 from validation.mutation import overlay as overlays
 from validation.mutation.fault import SIGN, SourceFault
+from validation.mutation.measure import as_data
 from validation.mutation.overlay import Overlay
-from validation.mutation.report import as_data, compose
+from validation.mutation.report import compose
 from validation.mutation.store import Store
 from validation.mutation.study import CHECK, OUTPUTS, TESTS, Study
 from validation.mutation.tests_judge import chosen

@@ -9,7 +9,7 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from symofros.tools import ABLATIONS, Ablation, count_program
-from validation.passes.measure import AGAIN, ALL, APART, Measured, measure
+from validation.passes.measure import AGAIN, ALL, APART, Measured, ablated
 from validation.passes.measure import MODELS as MEASURED
 from validation.passes.report import compose
 from validation.reporting.record import Table
@@ -48,7 +48,7 @@ def test_a_pass_that_is_left_out_shows(one: Ablation) -> None:
 
 def test_a_model_is_measured_without_each(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(MEASURED, "small", lambda: MODELS["rx90"])
-    rows = list(measure("small", repeats=3))
+    rows = list(ablated("small", repeats=3))
     assert [row.without for row in rows] == [ALL, AGAIN, *(one.name for one in ABLATIONS), APART]
     assert all(row.off <= 1e-11 and row.minimum > 0.0 for row in rows)
     assert rows[0].off == rows[1].off == 0.0

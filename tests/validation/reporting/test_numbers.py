@@ -20,4 +20,4 @@ from validation.reporting.numbers import Form
     ],
 )
 def test_columns_scale_list_and_name_numbers(form: str, value: object, shown: str) -> None:
-    assert Form().format(form, value) == shown
+    assert Form().of(form.replace("{", "{x"), {"x": value}) == shown

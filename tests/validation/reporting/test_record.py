@@ -98,11 +98,25 @@ def test_numbers_are_read_with_ease(number: int, says: str) -> None:
     assert counted(number, "run") == says
 
 
-def test_columns_format_mappings_and_records_alike() -> None:
-    columns = {"gap": "{quantity}", "#value": "{value:.1f}", "#ok": lambda row: Cell("", row.ok)}
-    table = Table.of(FINDINGS, columns)
-    assert table.head == ("gap", "#value", "#ok") and table.rows[0] == ("gap [m]", "2.0", Cell("", False))
-    assert Table.of([{"quantity": "rate", "value": 1}], {"#n": "{value}"}).rows == (("1",),)
+def test_columns_format_mappings_records_and_tuples_alike() -> None:
+    stated = "gap = {quantity}; #value = {value:.1f} ? ok; #half = half()"
+    table = Table.of(FINDINGS, stated, half=lambda row: str(row.value / 2))
+    assert table.head == ("gap", "#value", "#half")
+    assert table.rows[0] == ("gap [m]", Cell("2.0", False), "1.0")
+    assert Table.of([{"quantity": "rate", "value": 1}], "quantity; #n = {value}").rows == (("rate", "1"),)
+    assert Table.of([("a", [1e-3, None])], "who = {0}; #ms = {1:1e3*.2f}").rows == (("a", "1.00, -"),)
+
+
+@pytest.mark.parametrize(("finds", "good"), [(0, True), (3, False)])
+def test_a_count_of_what_may_not_be_is_a_verdict(finds: int, good: bool) -> None:
+    assert Table.of([{"finds": finds}], "#finds ? no finds").rows == ((Cell(str(finds), good),),)
+
+
+def test_a_section_without_content_is_left_out() -> None:
+    empty = Section("Finds", ("These were found:", Table.of([], "#finds"), Figure("", ()), Fold("All", (Bullets(()),))))
+    report = Report("T", "s", True, (), (empty, Section("Words", ("alone.",)), SECTION))
+    assert report.shown == report.sections[1:] and report.telling == (CHART,)
+    assert "Finds" not in html.page(report) + markdown.page(report, NOWHERE, "")
 
 
 def test_a_column_in_which_nothing_is_stated_is_left_out() -> None:

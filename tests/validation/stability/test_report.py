@@ -17,7 +17,8 @@ from validation.__main__ import app
 from validation.reporting.command import Run
 from validation.reporting.findings import Finding
 from validation.stability.catalogue import STUDIES
-from validation.stability.report import TOPIC, compose, measure
+from validation.stability.measure import measure
+from validation.stability.report import TOPIC, compose
 from validation.stability.study import Cell, ParameterStudy, Subject, Verdict, survey
 
 # Those whose models other tests compile, and that take less than half a second.

@@ -17,7 +17,8 @@ from validation.reporting.command import Run
 from validation.reporting.findings import Finding
 from validation.stability import heatmap
 from validation.stability.closed_loops import baumgarte
-from validation.stability.report import TOPIC, measure
+from validation.stability.measure import measure
+from validation.stability.report import TOPIC
 from validation.stability.study import Cell, Grid, Limit, Map, Subject, cell, decades
 
 

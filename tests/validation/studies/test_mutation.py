@@ -12,8 +12,8 @@ import symofros as sf
 from validation.contract import quantities
 from validation.studies import mutation
 from validation.studies.faults import FaultSimulator, faults_at
-from validation.studies.mutation import mutate
-from validation.studies.reports.mutation import as_data, compose
+from validation.studies.mutation import as_data, mutate
+from validation.studies.reports.mutation import compose
 
 
 @pytest.mark.parametrize("name", ["double_pendulum", "space_arm"])

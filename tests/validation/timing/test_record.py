@@ -76,7 +76,7 @@ def test_targets_use_the_family_and_the_batch_they_name() -> None:
     )
     found = [v for v in verdicts(record) if v.entry is not None]
     ratios = {(v.target.how, v.target.family): v.ratio for v in found}
-    assert ratios == {("scalar", ""): 8.0, ("scalar", "gcc"): 12.0, ("columns", ""): 50.0}
+    assert ratios == {("state by state", ""): 8.0, ("state by state", "gcc"): 12.0, ("batch by columns", ""): 50.0}
     assert {v.by_rows for v in found} == {None, 40.0}
 
 

@@ -2,15 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
-import typer
-
-from validation.reporting.command import Run
 from validation.reporting.figures import Chart, Figure, curves
-from validation.reporting.plain import plain
-from validation.reporting.record import Column, Data, Fact, Report, Section, Table, Topic
-from validation.studies.exports import CALLS, run_study
+from validation.reporting.record import Data, Fact, Report, Section, Table, Topic
+from validation.studies.exports import measure
 
 _LIMITS = (
     "The machine runs other work and no real-time kernel: the median and 99.9 % say what the code takes, the longest "
@@ -22,53 +16,42 @@ _LIMITS = (
 _SEE = (
     "Each peak is what the code takes; what lies a decade to the right is the operating system, as with the bare clock."
 )
-_WORST: dict[str, Column] = {
-    "call": "{name}",
-    "#median [ns]": "{median:.0f}",
-    "#99.9 % [ns]": "{high:.0f}",
-    "#longest [ns]": "{worst:.0f}",
-}
-
-
-def measure(run: Run, calls: Annotated[int, typer.Option(min=1000, help="Calls of each kind in C.")] = CALLS) -> Data:
-    """Time calls of an exported seven-joint arm: C, Python, MEX, FMU; and the worst case in C."""
-    return dict(plain(run_study(calls)))
+_WORST = "call = {name}; #median [ns] = {median:.0f}; #99.9 % [ns] = {high:.0f}; #longest [ns] = {worst:.0f}"
 
 
 def compose(data: Data) -> Report:
     """The report of its JSON."""
-    overheads, latencies = data["overheads"], data["latencies"]
-    calls = f"{data['calls']:,}".replace(",", " ")
-    costs = Table.of(
-        overheads.items(), {"from": "{0}", **{f"#{name} [us]": f"{{1[{name}]:1e-3*.2f}}" for name in overheads["C"]}}
-    )
+    overheads, latencies, calls = data["overheads"], data["latencies"], f"{data['calls']:,}".replace(",", " ")
+    times = "; ".join(f"#{name} [us] = {{1[{name}]:1e-3*.2f}}" for name in overheads["C"])
     # Bin i ends at 2^(i + 1) ns.
-    used = [i for i in range(len(latencies[0]["bins"])) if any(row["bins"][i] for row in latencies)]
+    used = [i for i, column in enumerate(zip(*(row["bins"] for row in latencies), strict=True)) if any(column)]
     counts = {row["name"]: [row["bins"][i] for i in used] for row in latencies}
-    ends = [2 << i for i in used]
-    bins = zip(map(str, ends), *(map(str, column) for column in counts.values()), strict=True)
-    chart = Chart(
-        "calls by time", "time of a call, upper end of its bin  [ns]", "calls  [1]", curves(ends, counts), log="xy"
-    )
-    steps = {where: row["step of 1 ms"] for where, row in overheads.items() if row.get("step of 1 ms") is not None}
-    worst = (
-        Table.of(latencies, _WORST),
-        Figure(_SEE, (chart,)),
-        Table(("#below [ns]", *(f"#{name}" for name in counts)), tuple(bins)),
-    )
-    sizes = Table(("part", "#size [bytes]"), tuple((part, f"{size:,}") for part, size in data["bytes"].items()))
+    bins = [{"end": 2 << i} | {name: count[k] for name, count in counts.items()} for k, i in enumerate(used)]
+    axes = "time of a call, upper end of its bin  [ns]", "calls  [1]"
+    chart = Chart("calls by time", *axes, curves([row["end"] for row in bins], counts), log="xy")
     return Report(
         "Exports: what a call costs",
         f"{data['model']}: the cost of calls from {', '.join(overheads)}.",
         None,
         (_LIMITS,),
         (
-            Section("From where", (costs,)),
-            Section(f"Worst case of {calls} calls in C", worst),
-            Section("Size of the C package", (sizes,)),
+            Section("From where", (Table.of(overheads.items(), f"from = {{0}}; {times}"),)),
+            Section(
+                f"Worst case of {calls} calls in C",
+                (
+                    Table.of(latencies, _WORST),
+                    Figure(_SEE, (chart,)),
+                    Table.of(bins, "; ".join(["#below [ns] = {end}", *(f"#{name}" for name in counts)])),
+                ),
+            ),
+            Section("Size of the C package", (Table.of(data["bytes"].items(), "part = {0}; #size [bytes] = {1:,}"),)),
         ),
         facts=(
-            *(Fact(f"{time / 1e3:.2g} µs", f"a step of 1 ms from {where}") for where, time in steps.items()),
+            *(
+                Fact(f"{row['step of 1 ms'] / 1e3:.2g} µs", f"a step of 1 ms from {where}")
+                for where, row in overheads.items()
+                if row.get("step of 1 ms") is not None
+            ),
             Fact(f"{max(row['high'] for row in latencies) / 1e3:.2g} µs", f"99.9 % of {calls} calls in C are below"),
         ),
     )

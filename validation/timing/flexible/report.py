@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from validation.reporting.record import Column, Section, Table
+from validation.reporting.record import Section, Table
 from validation.timing.flexible.race import CALLS
 
 _LIMITS = (
@@ -26,19 +26,10 @@ _LIMITS = (
     "with it that system's own small work, so the truth lies between the two. Both are medians over the repeats; "
     "minima are what a calm machine gives.",
 )
-
-
-_COLUMNS: dict[str, Column] = {
-    "ours: functions (nv)": "{functions} ({sizes[0]})",
-    "Exudyn: elements (coordinates + equations)": "{elements} ({sizes[1]} + {sizes[2]})",
-    "error: ours, Exudyn's": "{error:.1e}",
-    "quantity": "{quantity}",
-    "#ours [ns]": "{generated_time:.0f}",
-    "#Exudyn [ns]": "{engine_time:.0f}",
-    "#calls [ns]": "{calls:.0f}",
-    "#ratio": "{ratio:.1f}",
-    "#net ratio": "{corrected:.1f}",
-}
+_COLUMNS = """ours: functions (nv) = {functions} ({sizes[0]});
+    Exudyn: elements (coordinates + equations) = {elements} ({sizes[1]} + {sizes[2]});
+    error: ours, Exudyn's = {error:.1e}; quantity; #ours [ns] = {generated_time:.0f}; #Exudyn [ns] = {engine_time:.0f};
+    #calls [ns] = {calls:.0f}; #ratio = {ratio:.1f}; #net ratio = {corrected:.1f}"""
 
 
 def flexible_section(rows: Iterable[Mapping[str, Any]]) -> Section:

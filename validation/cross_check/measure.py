@@ -1,0 +1,134 @@
+"""The cross-check as a command: what is asked of which models, against which stored run."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+import symofros as sf
+from symofros.tools import write_atomically
+from validation.adapters import ROUTES
+from validation.check import ModelResult, Settings
+from validation.cross_check.baseline import Baseline, BaselineError, Regression, machine_of, slowest
+from validation.cross_check.junit import to_junit
+from validation.cross_check.record import Record, as_data
+from validation.cross_check.speed import Speed, YardstickError
+from validation.cross_check.speed import measure as measure_speed
+from validation.inputs.cases import Case, named, standard_set
+from validation.inputs.sampling import DEFAULT_STATES
+from validation.reporting.command import Run, known
+from validation.reporting.record import (
+    Data,
+)
+from validation.worker_pool import run as run_cases
+
+# Times that speeds are taken again where they seem lower than in a stored run.
+_AGAIN = 2
+# Models checked at the same time.
+WORKERS = min(os.cpu_count() or 1, 4)
+
+
+def measure(
+    run: Run,
+    models: Annotated[
+        list[str] | None,
+        typer.Argument(help="URDF, MJCF or YAML files, or names of the standard set; none: all of it."),
+    ] = None,
+    floating_base: Annotated[
+        bool, typer.Option("--floating-base", help="Put a free joint under the root of URDF files.")
+    ] = False,
+    states: Annotated[int, typer.Option(min=1, help="Random states a model.")] = DEFAULT_STATES,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the random states.")] = 0,
+    engine: Annotated[
+        list[str] | None, typer.Option("--engine", help=f"Only this engine; repeatable. {', '.join(ROUTES)}.")
+    ] = None,
+    junit: Annotated[Path | None, typer.Option(help="Also write a JUnit file.")] = None,
+    workers: Annotated[int, typer.Option(min=1, help="Models checked at the same time.")] = WORKERS,
+    speed: Annotated[bool, typer.Option("--speed", help="Also time our functions, against a fixed program.")] = False,
+    baseline: Annotated[
+        Path | None, typer.Option(help="A stored check.json: fail where this run is less accurate or slower.")
+    ] = None,
+) -> Data:
+    """Compare our C of each MODEL with every engine that can represent it."""
+    known(engine, ROUTES, "--engine", "engine")
+    settings = Settings(states, seed, tuple(engine) if engine else None)
+    stored = _baseline(baseline, settings)
+    try:
+        cases = named(models, floating_base) if models else standard_set()
+    except (LookupError, FileNotFoundError) as error:
+        raise typer.BadParameter(str(error.args[0]), param_hint="MODEL") from None
+    first = ", ".join(case.label for case in sorted(cases, key=lambda case: -case.weight)[:workers])
+    run.expect(len(cases), f"cross-checking {first}")
+    results: dict[str, ModelResult] = {}
+
+    def done(result: ModelResult) -> None:
+        results[result.label] = result
+        count = len(result.compared)
+        run.advance(
+            f"{result.label}: {f'{count} agree' if result.ok else 'DISAGREES'}, {sum(result.seconds.values()):.1f} s"
+        )
+
+    with contextlib.suppress(KeyboardInterrupt):  # What was finished is reported.
+        run_cases(cases, settings, workers, done)
+    finished = [results[case.label] for case in cases if case.label in results]
+    unfinished = [case.label for case in cases if case.label not in results]
+    # The report of the standard set is not replaced by one of some models or engines, unless that is asked for.
+    run.writes = run.asked or not (models or engine)
+    compiled = [case for case in cases if case.label in results and results[case.label].sizes]
+    wanted = (speed or (stored is not None and bool(stored.record.speeds))) and not unfinished
+    speeds = _speeds(run, compiled, stored) if wanted else []
+    data = as_data(settings, finished, run.seconds, unfinished, speeds)
+    regressions: list[Regression] = []
+    if stored is not None:
+        regressions, notes = stored.judge(Record.of(data), machine_of(data))
+        origin = {"file": stored.name, "revision": stored.revision, "date": stored.date, "notes": notes}
+        data |= {"ok": data["ok"] and not regressions, "baseline": origin}
+        data["baseline"]["regressions"] = [asdict(worse) for worse in regressions]
+    if junit is not None:
+        junit.parent.mkdir(parents=True, exist_ok=True)
+        write_atomically(junit, to_junit(finished, run.seconds, regressions))
+    return data
+
+
+def _baseline(path: Path | None, settings: Settings) -> Baseline | None:
+    """The stored run, before anything is computed in vain."""
+    if path is None:
+        return None
+    try:
+        stored = Baseline.read(path)
+        stored.require(settings.states, settings.seed)
+    except BaselineError as error:
+        raise typer.BadParameter(str(error), param_hint="--baseline") from None
+    return stored
+
+
+def _speeds(run: Run, cases: Sequence[Case], stored: Baseline | None) -> list[Speed]:
+    """Speeds, one model after the other; what looks slower than in the stored run is timed again, and its best kept."""
+    before = {} if stored is None else {(row.model, row.function): row for row in stored.record.speeds}
+    run.expect(len(cases), "timing")
+    speeds: list[Speed] = []
+    for case in cases:
+        try:
+            subject = case.load()
+            timed = measure_speed(subject)
+            for _ in range(_AGAIN):
+                if not any(_is_slower(before.get((row.model, row.function)), row) for row in timed):
+                    break
+                timed = [
+                    min(pair, key=lambda row: row.ratio) for pair in zip(timed, measure_speed(subject), strict=True)
+                ]
+            speeds += timed
+        except (YardstickError, sf.SymofrosError) as error:
+            run.say(f"{case.label}: not timed: {error}", bad=True)
+        run.advance(case.label)
+    return speeds
+
+
+def _is_slower(stored: Speed | None, fresh: Speed) -> bool:
+    return stored is not None and fresh.ratio > slowest(stored, fresh)

@@ -1,0 +1,109 @@
+"""Faults before two judges as a command: what is known of each, and the scores."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from validation.mutation.study import (
+    CAUGHT,
+    CHECK,
+    OPEN,
+    OUTPUTS,
+    SURVIVED,
+    TESTS,
+    Study,
+    seen_by_check,
+    seen_by_tests,
+)
+from validation.reporting.command import Run
+from validation.reporting.record import Data
+
+_ROOT = Path(__file__).parents[2]
+BOTH, CHECK_ALONE = 0.98, 0.85  # Asked-for shares of the faults that change a result.
+
+
+def measure(
+    run: Run,
+    faults: Annotated[int, typer.Option(min=1, help="Number of faults, spread over all modules.")] = 600,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the draw.")] = 0,
+    seconds: Annotated[float, typer.Option(min=0.0, help="Time after which no further fault is begun [s].")] = 36000.0,
+    work: Annotated[
+        Path, typer.Option(help="Folder of the copy of the tree, of answers; an old one is gone on with.")
+    ] = Path("mutants"),
+    cache: Annotated[
+        Path | None, typer.Option(help="Folder of models that are compiled already, to begin with.")
+    ] = None,
+) -> Data:
+    """Plant single faults in the source, Python and C: `check` or the tests must see each that changes a result."""
+    study = Study.begun(_ROOT, work.absolute(), faults, seed, cache, lambda module: run.advance(module))
+    unfinished: list[str] = []
+    run.expect(len(study.faults), "planting faults")
+    try:
+        study.run(seconds)
+    except KeyboardInterrupt:
+        unfinished = [fault.id for fault in study.faults if study.fate(fault) == OPEN]
+    finally:
+        study.overlay.close()
+    return as_data(study) | {"seed": seed, "unfinished": unfinished}
+
+
+def as_data(study: Study) -> dict[str, Any]:
+    """What is known of each fault, as plain data; faults that no judge was asked about are left out."""
+    rows = []
+    for fault in study.faults:
+        answers = {stage: study.store.get(fault.id, stage) for stage in (CHECK, TESTS, OUTPUTS)}
+        check = answers[CHECK]
+        if check is not None:
+            rows.append(
+                {
+                    "id": fault.id,
+                    "module": fault.module,
+                    "kind": fault.kind,
+                    "fate": study.fate(fault),
+                    "seen_by_check": seen_by_check(check),
+                    "seen_by_tests": None if answers[TESTS] is None else seen_by_tests(answers[TESTS]),
+                    "said": _said(answers).replace(f"{study.folder}/tree/", ""),
+                    "seconds": sum(answer["seconds"] for answer in answers.values() if answer is not None),
+                }
+            )
+    fates = Counter(row["fate"] for row in rows)
+    judged = _scores(rows)
+    met = judged["both"] >= BOTH and judged["check"] >= CHECK_ALONE and not fates[OPEN]
+    return {"ok": met, "faults": rows, "scores": judged}
+
+
+def _said(answers: dict[str, Any]) -> str:
+    """The first judge's word on a fault."""
+    for stage in (CHECK, TESTS, OUTPUTS):
+        answer = answers[stage]
+        if answer is None:
+            continue
+        if answer["answer"] is None:
+            return f"{stage}: {answer['fate']}"
+        said = answer["answer"]
+        if said.get("status") != "passed":
+            words = [said[key] for key in ("model", "reason", "test", "where") if said.get(key)]
+            return f"{stage}: {said['status']} {' '.join(map(str, words))}"
+    return ""
+
+
+def _scores(rows: Sequence[dict[str, Any]]) -> dict[str, float]:
+    """Shares of the faults that change a result: seen by check, by tests where they were asked, by either."""
+    matter = [row for row in rows if row["fate"] in (CAUGHT, SURVIVED)]
+    asked = [row for row in matter if row["seen_by_tests"] is not None]
+    return {
+        "matter": len(matter),
+        "check": _share([row["seen_by_check"] for row in matter]),
+        "tests": _share([bool(row["seen_by_tests"]) for row in asked]),
+        "tests_asked": len(asked),
+        "both": _share([row["fate"] == CAUGHT for row in matter]),
+    }
+
+
+def _share(seen: Sequence[bool]) -> float:
+    return sum(seen) / len(seen) if seen else 0.0

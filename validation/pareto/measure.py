@@ -1,0 +1,73 @@
+"""Races of speed against accuracy as a command; what an earlier run left is kept."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Annotated, Any
+
+import typer
+
+from validation.pareto import verdicts
+from validation.pareto.catalogue import PROBLEMS
+from validation.pareto.problem import BenchmarkProblem
+from validation.pareto.race import Result, race
+from validation.reporting.command import Done, Quick, Run, known
+from validation.reporting.plain import plain
+from validation.reporting.provenance import machine, now
+from validation.reporting.record import Data
+
+
+def measure(
+    run: Run,
+    chosen: Annotated[list[str] | None, typer.Option("--problem", help=f"Only this; of {', '.join(PROBLEMS)}.")] = None,
+    quick: Quick = False,
+    resume: Annotated[bool, typer.Option("--resume", help="Leave out problems that pareto.json has.")] = False,
+) -> Data:
+    """Compare speed at equal accuracy: our models and methods, and engines with their own integrators.
+
+    Problems that are not run again keep the results that pareto.json has of them; those of --quick have a subfolder.
+    """
+    names = known(chosen, PROBLEMS, "--problem", "problem")
+    if quick:
+        run.folder = run.folder / "pareto_quick"
+    kept = _kept(run, quick)
+    names = [name for name in names if not (resume and name in kept)]
+
+    def raced(name: str) -> dict[str, Any]:
+        run.expect(1, f"{name}: references")
+        result = race(PROBLEMS[name], quick, lambda count: run.expect(count, name), run.advance)
+        return problem_data(PROBLEMS[name], result, now(), quick)
+
+    def data(done: Done) -> dict[str, Any]:
+        problems = kept | done.results
+        whole = Done(problems, done.failures, done.unfinished)
+        ok = all(problem["ok"] for problem in problems.values())
+        return whole.head(ok, quick) | {"problems": {name: problems[name] for name in PROBLEMS if name in problems}}
+
+    # Each is kept as soon as it is done.
+    return data(run.each(names, raced, lambda done: run.save(data(done))))
+
+
+def _kept(run: Run, quick: bool) -> dict[str, Any]:
+    """What an earlier run left on this machine, in the same way: problems by name."""
+    path = run.folder / "pareto.json"
+    data = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+    if not data or data["quick"] != quick or data["machine"] != machine():
+        return {}
+    return {name: problem for name, problem in data["problems"].items() if name in PROBLEMS}
+
+
+def problem_data(problem: BenchmarkProblem, result: Result, date: str, quick: bool = False) -> dict[str, Any]:
+    """A problem that was run, for JSON: what was measured, and the verdicts on it."""
+    judged = verdicts.verdicts(problem, result.points, quick)
+    return {
+        **plain(result),
+        "title": problem.title,
+        "ok": result.agreement <= problem.trust and all(v.ok is not False for v in judged),
+        "date": date,
+        "targets": [
+            {**vars(v.target), "found": "only ours" if math.isinf(v.ratio) else plain(v.ratio), "ok": v.ok}
+            for v in judged
+        ],
+    }

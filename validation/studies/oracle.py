@@ -1,0 +1,38 @@
+"""Every derivation by SymPy, as a command."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Annotated
+
+import typer
+
+from validation.reporting.command import Run, known
+from validation.reporting.record import Data
+
+
+def measure(
+    run: Run,
+    chosen: Annotated[list[str] | None, typer.Option("--model", help="Only this model; repeatable.")] = None,
+    points: Annotated[int, typer.Option(min=1, help="Rational points a model.")] = 2,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the points.")] = 0,
+) -> Data:
+    """Compare with SymPy's derivations by Lagrange and by Kane, in extended precision.
+
+    With --model, the report is that of these models alone, in the subfolder oracle.
+    """
+    # SymPy's mechanics cost a second to import; only this command pays.
+    from validation.oracle.compare import check
+    from validation.oracle.models import MODELS
+
+    models = known(chosen, MODELS, "--model", "model")
+    if chosen:
+        run.folder = run.folder / "oracle"
+    wanted = [(name, by) for name in models for by in MODELS[name].derivations]
+    run.expect(len(wanted), "deriving")
+    results = []
+    for name, by in wanted:
+        results.append(check(name, by, points, seed))
+        run.advance()
+    ok = all(result.ok for result in results)
+    return {"ok": ok, "points": points, "seed": seed, "comparisons": [asdict(result) for result in results]}

@@ -1,0 +1,96 @@
+"""Races as a command, in parts if wanted: a part that is measured anew replaces that part of the record."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Annotated, Any
+
+import typer
+
+from validation.reporting.command import Run, known
+from validation.reporting.record import Data
+from validation.timing.contestants.programs import BuildError
+from validation.timing.flexible.race import LABEL, run_flexible
+from validation.timing.models import FUNCTIONS, TIMED_MODELS
+from validation.timing.record import Record, as_data, read
+from validation.timing.run import facts, jobs, load, prepare, run_job
+from validation.timing.task import STATES
+from validation.timing.worker import PEERS, Job
+
+# Four times through the copies of a library.
+REPEATS = 24
+
+
+def measure(
+    run: Run,
+    models: Annotated[list[str] | None, typer.Option("--model", help="Only this model; repeatable.")] = None,
+    peers: Annotated[list[str] | None, typer.Option("--peer", help=f"Only this peer: {', '.join(PEERS)}.")] = None,
+    functions: Annotated[list[str] | None, typer.Option("--function", help="Only this function; repeatable.")] = None,
+    repeats: Annotated[int, typer.Option(min=3, help="Interleaved repeats.")] = REPEATS,
+    states: Annotated[int, typer.Option(min=64, help="Random states.")] = STATES,
+    resume: Annotated[bool, typer.Option("--resume", help="Leave out what the report has figures of.")] = False,
+) -> Data:
+    """Time generated C against Pinocchio's C++, MuJoCo's C, C by CasADi and by SymPy, and Exudyn's flexible robot.
+
+    A part that is chosen replaces that part of the report's figures; the whole starts afresh. Ctrl-C keeps what was
+    measured.
+    """
+    chosen = known(models, [*TIMED_MODELS, LABEL], "--model", "model")
+    record = read(run.folder / "timing.json") if models or peers or functions or resume else Record()
+    todo = jobs(
+        [name for name in chosen if name in TIMED_MODELS],
+        tuple(known(peers, PEERS, "--peer", "peer")),
+        known(functions, FUNCTIONS, "--function", "function"),
+        repeats,
+        states,
+        record if resume else None,
+    )
+    flexible = LABEL in models if models else not (peers or functions) and not (resume and record.flexible)
+    measures = bool(todo) or flexible
+    before, limits = load(), facts() if measures else {}
+
+    def data(unfinished: Sequence[str] = ()) -> dict[str, Any]:
+        if measures:
+            record.machine = {
+                **limits,
+                "load before and after": [*before, *load()],
+                "date": time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime()),
+                "states": states,
+                "repeats": repeats,
+            }
+        return as_data(record) | {"unfinished": list(unfinished)}
+
+    left = [*(job.model for job in todo), *([LABEL] if flexible else [])]
+    run.expect(sum(len(job.functions) for job in todo) + int(flexible), "compiling the engines")
+    try:
+        for failure in prepare({peer for job in todo for peer in job.peers}):
+            run.say(failure, bad=True)
+        for job in todo:
+            _time(job, record, run)
+            left.remove(job.model)
+            run.save(data())  # So that even a kill leaves what was measured.
+        if flexible:
+            _time_flexible(record, repeats, run)
+    except KeyboardInterrupt:
+        return data(left)
+    return data()
+
+
+def _time(job: Job, record: Record, run: Run) -> None:
+    """One model; what could not be timed is told."""
+    skipped, failed = len(record.skipped), len(record.failed)
+    run_job(job, record, lambda model, function: run.advance(f"{model}: {FUNCTIONS[function]}"))
+    for notes, bad in ((record.skipped[skipped:], False), (record.failed[failed:], True)):
+        for model, function, peer, why in notes:
+            run.say(f"not timed: {model}, {function}, {peer}: {why}", bad)
+
+
+def _time_flexible(record: Record, repeats: int, run: Run) -> None:
+    run.advance(LABEL)
+    try:
+        record.flexible = [asdict(row) for row in run_flexible(repeats)]
+    except BuildError as error:
+        record.failed.append((LABEL, "M + h", "exudyn", str(error)))
+        run.say(f"not timed: {error}", bad=True)
