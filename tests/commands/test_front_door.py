@@ -3,8 +3,6 @@
 import json
 import math
 import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -76,31 +74,29 @@ def test_formats_that_are_not_read_say_how_to_convert(suffix: str, remedy: str, 
     assert result.exit_code == 2 and remedy in result.output
 
 
-def test_the_harness_starts_from_any_folder(tmp_path: Path) -> None:
+def test_the_harness_starts_from_any_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
     """A file of the user's with the name of its package does not take its place."""
     (tmp_path / "validation.py").write_text("raise SystemExit('not the harness')\n")
-    command = [
-        sys.executable,
-        "-c",
-        f"import sys; sys.path.insert(0, {str(ROOT)!r}); from symofros.__main__ import app; app()",
-    ]
-    for arguments, expected in ((["check", "--help"], "Compare our C"), (["validation", "--help"], "timing")):
-        done = subprocess.run([*command, *arguments], cwd=tmp_path, capture_output=True, text=True, timeout=120)
-        assert done.returncode == 0 and expected in done.stdout, done.stdout + done.stderr
-    done = subprocess.run([*command, "check", "nobody"], cwd=tmp_path, capture_output=True, text=True, timeout=120)
-    assert done.returncode == 2 and not (tmp_path / "reports").exists()
+    monkeypatch.chdir(tmp_path)
+    for arguments, code, expected in (
+        (("check", "--help"), 0, "Compare our C"),
+        (("check", "nobody"), 2, "nobody"),
+        (("validation", "--help"), 0, "timing"),
+    ):
+        status = invoke(*arguments).exit_code
+        said = "".join(capfd.readouterr())  # Of the process that runs the harness.
+        assert status == code and expected in said, said
+    assert not (tmp_path / "reports").exists()
 
 
 @pytest.mark.parametrize("arguments", [["validation", "--help"], ["validation", "timing"]])
-def test_without_its_packages_the_harness_says_what_to_install(arguments: list[str], tmp_path: Path) -> None:
+def test_without_its_packages_the_harness_says_what_to_install(
+    arguments: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
     """As after `pip install symofros` alone: a package that can't be imported stands for one that is not there."""
     (tmp_path / "sitecustomize.py").write_text("import sys\nsys.modules['scipy'] = sys.modules['matplotlib'] = None\n")
-    path = f"{tmp_path}{os.pathsep}{ROOT}"
-    done = subprocess.run(
-        [sys.executable, "-m", "symofros", *arguments],
-        env=os.environ | {"PYTHONPATH": path},
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 2 and "Traceback" not in done.stderr
-    assert "pip install 'symofros[validation]'" in done.stderr
+    monkeypatch.setenv("PYTHONPATH", f"{tmp_path}{os.pathsep}{ROOT}")  # Of the process that runs the harness.
+    status, said = invoke(*arguments).exit_code, capfd.readouterr().err
+    assert status == 2 and "Traceback" not in said and "pip install 'symofros[validation]'" in said

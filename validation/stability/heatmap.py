@@ -44,7 +44,9 @@ def draw(mapped: Map, x: Grid, y: Grid, quantity: str) -> Drawing:
         axes.add_collection(library("matplotlib.collections").LineCollection(lines, colors=INK, linewidths=1.8))
         for k, limit in enumerate(mapped.subject.limits):
             color = (GOOD, SERIES[6])[k % 2]
-            axes.plot(limit.x, limit.y, color=color, linewidth=2, linestyle=(0, (5, 2.5)), label=limit.label)
+            axes.plot(
+                limit.x, limit.form(limit.x), color=color, linewidth=2, linestyle=(0, (5, 2.5)), label=limit.label
+            )
         axes.plot([], [], color=INK, linewidth=1.8, label="edge as measured")
 
     return Drawing(mapped.subject.name, x.name, y.name, paint, f"numbers: decade of the {quantity}", SIZE)

@@ -120,12 +120,12 @@ class Limit:
     Attributes:
         label: Name in the legend.
         x: Points (n); for categories, between -0.5 and their number - 0.5.
-        y: Points (n).
+        form: x -> y (n), evaluated when the map is drawn: it may need models.
     """
 
     label: str
     x: Array
-    y: Array
+    form: Callable[[Array], Array]
 
 
 @dataclass(frozen=True)

@@ -58,7 +58,7 @@ class TestMaps:
         grid = Grid("p [-]", (1.0, 10.0, 100.0), (1.0, 100.0))
         found = a_map(
             [[0.1, 0.1, 0.1], [0.1, 0.1, 5.0], [0.1, math.nan, 7.0]],
-            limits=(Limit("one", np.array([1.0, 100.0]), np.array([10.0, 10.0])),),
+            limits=(Limit("one", np.array([1.0, 100.0]), lambda x: np.full_like(x, 10.0)),),
         )
         svg = draw(heatmap.draw(found, grid, grid, "a < b [m]"))
         kinds = [[heatmap.cell(one, found.bound)[0] for one in row] for row in found.cells]

@@ -86,8 +86,7 @@ GAIN = Grid("gains α = β [1/s]", (0.01, *decades(0.1, 1e4, 4)), (0.1, 1.0, 20.
 
 def limit(method: str) -> Limit:
     """The line a h = constant."""
-    h = np.array([1e-4, 1e-1])
-    return Limit(f"α h = {REAL[method]:.3f}", h, REAL[method] / h)
+    return Limit(f"α h = {REAL[method]:.3f}", np.array([1e-4, 1e-1]), lambda h: REAL[method] / h)
 
 
 def judge(maps: Maps) -> Verdict:

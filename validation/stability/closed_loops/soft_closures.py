@@ -120,7 +120,7 @@ STUDY = ParameterStudy(
         Subject(
             f"MuJoCo {name}",
             measure(name),
-            (Limit(f"{SAFE:g} h", np.array([1e-4, 1e-1]), SAFE * np.array([1e-4, 1e-1])),),
+            (Limit(f"{SAFE:g} h", np.array([1e-4, 1e-1]), lambda h: SAFE * h),),
         )
         for name in INTEGRATORS
     ),

@@ -218,7 +218,9 @@ def judge_damped(maps: Maps) -> Verdict:
 def line(bound: float) -> Limit:
     """bound/omega_max over the number of modes."""
     return Limit(
-        f"{bound:.3g}/ω_max", np.array(MODES.values), np.array([bound / frequencies(int(n))[-1] for n in MODES.values])
+        f"{bound:.3g}/ω_max",
+        np.array(MODES.values),
+        lambda modes: np.array([bound / frequencies(int(n))[-1] for n in modes]),
     )
 
 
@@ -245,7 +247,7 @@ def stiff() -> ParameterStudy:
 def kelvin_voigt() -> ParameterStudy:
     """Damped."""
     c = np.array(RETARDATION.values)
-    boundary = Limit("|R(h s)| = 1", c, np.array([closed_form(x) for x in c]))
+    boundary = Limit("|R(h s)| = 1", c, lambda values: np.array([closed_form(x) for x in values]))
     return ParameterStudy(
         "Does damping let steps be longer?",
         f"The strip with three modes and Kelvin-Voigt damping of retardation time c, {STEPS} steps.",

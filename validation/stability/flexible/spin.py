@@ -100,7 +100,11 @@ def judge(maps: Maps) -> Verdict:
 
 def limits(name: str) -> tuple[Limit, ...]:
     """Where the wrong model diverges."""
-    return (Limit("η = 3.516", np.array([CRITICAL, CRITICAL]), np.array([-1.0, 3.0])),) if name == WITHOUT else ()
+    return (
+        (Limit("η = 3.516", np.array([CRITICAL, CRITICAL]), lambda _: np.array([-1.0, 3.0])),)
+        if name == WITHOUT
+        else ()
+    )
 
 
 STUDY = ParameterStudy(

@@ -205,7 +205,9 @@ def judge_cross(maps: Maps) -> Verdict:
 def boundary(stiffness: float) -> Limit:
     """2.83 over the higher frequency."""
     return Limit(
-        "2.828/ω_max", np.array(MASS.values), np.array([2.8284271 / fastest(m, stiffness) for m in MASS.values])
+        "2.828/ω_max",
+        np.array(MASS.values),
+        lambda masses: np.array([2.8284271 / fastest(m, stiffness) for m in masses]),
     )
 
 

@@ -104,7 +104,7 @@ def measure(method: str) -> Callable[[float, float], Cell]:
 def limit(bound: float) -> Limit:
     """H F/(m v0) = bound: the slope of friction at rest against the stability of the method."""
     v = np.array([SMOOTH.values[0], SMOOTH.values[-1]])
-    return Limit(f"{bound:.3g} m v₀/F", v, bound * v / STATED)
+    return Limit(f"{bound:.3g} m v₀/F", v, lambda v: bound * v / STATED)
 
 
 LIMITS = {"rk4": 2.7853, "semi_implicit_euler": 2.0}
