@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -13,12 +14,15 @@ from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.program.compiled import CompiledDiagram, Resolved, compile_diagram, rates_of, resolve
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.result import DiagramRun
-from symofros.diagrams.run.interpret import Blocks, InterpretedRun, run_interpreted
+from symofros.diagrams.run.block_functions import Blocks
+from symofros.diagrams.run.halved_steps import STEPS, halved_steps_note
+from symofros.diagrams.run.interpret import BeamWatch, InterpretedRun, run_interpreted
 from symofros.diagrams.run.loop import RECORD
 from symofros.diagrams.run.python_blocks import begun
 from symofros.diagrams.run.simulate import run_compiled
 from symofros.diagrams.run.values import parameter_values, record_interval
 from symofros.errors import Problem, SymofrosError
+from symofros.runtime.beams import BEAM_LIMIT
 from symofros.runtime.build.toolchain import find_toolchain
 from symofros.simulation.progress import bar
 from symofros.simulation.stepping.methods import METHODS
@@ -69,6 +73,7 @@ class Simulation:
         record: float | None = None,
         parameters: Mapping[str, Any] | None = None,
         gains: tuple[float, float] | None = None,
+        beam_limit: float = BEAM_LIMIT,
         compiled: bool = True,
         progress: bool = False,
     ) -> InterpretedRun:
@@ -82,6 +87,7 @@ class Simulation:
             record: Interval of recording [s].
             parameters: Run-time parameters by name.
             gains: Baumgarte's (alpha, beta) [1/s]; None keeps constraints by projection.
+            beam_limit: Estimated error of the beams' theory beyond which the run ends.
             compiled: Whether each block is compiled by itself; else NumPy interprets its formulas.
             progress: Show a progress bar.
 
@@ -109,12 +115,27 @@ class Simulation:
             )
         par = parameter_values(resolved, parameters or {})
         toolchain = find_toolchain(self.options.compiler) if compiled else None
-        blocks = Blocks(resolved, par, gains or (0.0, 0.0), toolchain)
         interval = record_interval(record, t0, t_end, dt)
         plan = schedule([*rates_of(resolved.pieces), (RECORD, interval, 0.0)], resolved.wired.name)
         instants = list(_instants(plan, t0, t_end))
-        with begun(resolved.wired) as called, bar(progress, t0, t_end) as show:
-            return run_interpreted(blocks, called, instants, t_end, dt, METHODS[method].tableau, gains is None, show)
+        tableau = METHODS[method].tableau
+
+        def once(h: float, watched: bool) -> InterpretedRun:
+            blocks = Blocks(resolved, par, gains or (0.0, 0.0), toolchain)
+            watch = BeamWatch(resolved, par, beam_limit)
+            with begun(resolved.wired) as called, bar(progress and watched, t0, t_end) as show:
+                return run_interpreted(blocks, called, instants, t_end, h, tableau, gains is None, watch, show)
+
+        run = once(dt, watched=True)
+        external = any(piece.is_external for piece in resolved.pieces.values())
+        if run.outcome.ok and 0 < run.steps <= STEPS and resolved.layout.v and not external:
+            h = min(dt, plan.spacing)
+            half = once(0.5 * h, watched=False)
+            finer = (half.t, half.q, half.v) if half.outcome.ok else None
+            note = halved_steps_note(resolved.layout, (run.t, run.q, run.v), finer, h)
+            outcome = replace(run.outcome, notes=(*run.outcome.notes, *([note] if note else [])))
+            run = replace(run, outcome=outcome)
+        return run
 
 
 def _end(diagram: Diagram, t_end: float | None) -> float:

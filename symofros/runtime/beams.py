@@ -135,6 +135,12 @@ class ElasticBeam:
         largest: Array = np.abs(self.angles).max(axis=0) * self.scale
         return largest
 
+    def error_bound(self, elastic: Array) -> float:
+        """An upper bound of the error of a deformation that costs little: each coordinate's largest angle counts."""
+        angles = self.reach * np.abs(elastic)
+        slope, twist = float(angles[: sum(self.counts[:2])].sum()), float(angles[sum(self.counts[:2]) :].sum())
+        return native_number(_JUDGE, "SYM_BEAM_SLOPE_ERROR") * slope**2 + self.contrast * twist**2
+
     def bending(self, elastic: Array, t: float = math.nan, amplification: float = 1.0) -> BeamBending:
         """Judge a deformation.
 

@@ -8,14 +8,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from symofros.base.user_functions import raised_where
+from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.program.layout import Layout
+from symofros.diagrams.run.faults import fault_at
 from symofros.diagrams.run.loop import Loop
 from symofros.runtime.beams import BeamBending, bending_notes, largest_bending
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.results.outcome import Kind, Outcome
 from symofros.simulation.results.step_size import examine_steps, remedy, step_size_note
 from symofros.simulation.settings import Settings
-from symofros.simulation.stepping.resolution import Mode
+from symofros.simulation.stepping.resolution import Resolution
 from symofros.simulation.stepping.status import Status
 
 _ENDS: dict[int, tuple[Kind, str, str]] = {
@@ -37,7 +39,8 @@ class Ended:
 
     Attributes:
         loop: Loop at its last state.
-        layout: Layout of the diagram's vectors.
+        resolved: Diagram that ran.
+        par: Run-time parameters (npar).
         settings: Settings of each part.
         spacing: Shortest time between two instants, where steps end [s].
         states: All that it recorded: t (n), q, v, u.
@@ -46,12 +49,18 @@ class Ended:
     """
 
     loop: Loop
-    layout: Layout
+    resolved: Resolved
+    par: Array
     settings: Sequence[Settings]
     spacing: float
     states: Sequence[Array]
     status: int
     interrupted: bool
+
+    @property
+    def layout(self) -> Layout:
+        """Layout of the diagram's vectors."""
+        return self.resolved.layout
 
     @property
     def t(self) -> float:
@@ -64,36 +73,40 @@ class Ended:
         return tuple(bending for part in self.loop.parts for bending in part.bendings)
 
 
-def diagnose(ended: Ended) -> Outcome:
-    """How a run ended."""
+def diagnose(ended: Ended) -> tuple[Outcome, bool]:
+    """How a run ended, and whether its steps are evidently short enough, or adapt."""
     loop, status, t, bendings = ended.loop, ended.status, ended.t, ended.bendings
     notes = (*bending_notes(bendings), *([loop.fault] if loop.fault else []))
     if ended.interrupted:
-        return Outcome("interrupted", t, "Ctrl-C; the part up to here is kept", notes=notes)
+        return Outcome("interrupted", t, "Ctrl-C; the part up to here is kept", notes=notes), True
     if status == Status.CALLBACK_FAILED:
         raised = raised_where(loop.failure) if loop.failure else "an exception"
         reason, advice = f"block '{loop.failed_block}' raised {raised}", "call it by itself; outcome.failure"
-        return Outcome("input failed", t, reason, advice, notes, loop.failure)
-    fault = (loop.fault or _held_fault(ended)) if status in _ENDS else ""
+        return Outcome("input failed", t, reason, advice, notes, loop.failure), True
+    fault = (loop.fault or _signal_fault(ended)) if status in _ENDS else ""
     if fault:
-        return Outcome("input failed", t, fault, "outputs that are finite at all samples", bending_notes(bendings))
-    failed = status in (Status.DIVERGED, Status.BEYOND_THEORY)
+        return Outcome(
+            "input failed", t, fault, "outputs that are finite at all samples", bending_notes(bendings)
+        ), True
+    failed, evident = status in (Status.DIVERGED, Status.BEYOND_THEORY), True
     for i, settings in enumerate(ended.settings):
-        mode = _unresolved_mode(ended, i, failed)
+        steps = _resolution(ended, i, failed)
+        mode, evident = steps.worst, evident and steps.evident
         if mode is not None:
             notes = (*notes, step_size_note(mode, loop.parts[i], _stepped(ended, settings), ()))
+            evident = True  # It is remarked upon as it is.
             if failed and mode.amplified:
                 reason = f"the step is past the limit of stability of '{settings.method.name}'"
-                return Outcome("diverged", t, reason, remedy(mode, settings), notes)
+                return Outcome("diverged", t, reason, remedy(mode, settings), notes), True
     if status == Status.BEYOND_THEORY:
         worst = largest_bending(bendings)
         assert worst is not None
         advice = f"{worst.remedy}; or move the limit, beam_limit=..."
-        return Outcome("beyond theory", worst.t, str(worst), advice, notes[len(bending_notes(bendings)) :])
+        return Outcome("beyond theory", worst.t, str(worst), advice, notes[len(bending_notes(bendings)) :]), True
     if status == Status.FINISHED:
-        return Outcome("finished", float(loop.diagram.t_end), f"{int(loop.diagram.steps)} steps", notes=notes)
+        return Outcome("finished", float(loop.diagram.t_end), f"{int(loop.diagram.steps)} steps", notes=notes), evident
     kind, reason, advice = _ENDS[status]
-    return Outcome(kind, t, reason, advice, notes)
+    return Outcome(kind, t, reason, advice, notes), True
 
 
 def _stepped(ended: Ended, settings: Settings) -> Settings:
@@ -101,25 +114,22 @@ def _stepped(ended: Ended, settings: Settings) -> Settings:
     return replace(settings, dt=min(settings.dt, ended.spacing))
 
 
-def _unresolved_mode(ended: Ended, part: int, failed: bool) -> Mode | None:
-    """The mode of a part that its fixed steps resolve worst, under the inputs held at the end."""
+def _resolution(ended: Ended, part: int, failed: bool) -> Resolution:
+    """How well the fixed steps of a part resolve its modes, under the inputs held at the end."""
     settings, place = _stepped(ended, ended.settings[part]), ended.layout.parts[part]
     t, q, v, u = ended.states
     if not len(t) or settings.adaptive:
-        return None
+        return Resolution()
     states = (t, q[:, place.q], v[:, place.v], u)
     steps = ((settings.t_end if failed else ended.t) - settings.t0) / settings.dt
     start, stepper = (states[1][0], states[2][0]), ended.loop.parts[part]
-    return examine_steps(stepper, settings, start, states, max(1, round(steps))).worst
+    return examine_steps(stepper, settings, start, states, max(1, round(steps)))
 
 
-def _held_fault(ended: Ended) -> str:
-    """An output held between samples that is not finite though all states are, in words; "" where there is none."""
-    loop, u = ended.loop, ended.loop.held
-    if not all(np.isfinite(np.concatenate(stepper.state[1:])).all() for stepper in loop.parts):
-        return ""
-    for (block, port), place in ended.layout.held.items():
-        bad = u[place.slice][~np.isfinite(u[place.slice])]
-        if len(bad):
-            return f"block '{block}': output '{port}' is {bad[0]} before t = {ended.t:.6g} s"
-    return ""
+def _signal_fault(ended: Ended) -> str:
+    """A signal that is not finite though all states are, in words; "" where there is none."""
+    loop, layout = ended.loop, ended.layout
+    q, v, t = np.zeros(len(layout.q0)), np.zeros(len(layout.v0)), ended.t
+    for stepper, part in zip(loop.parts, layout.parts, strict=True):
+        t, q[part.q], v[part.v] = stepper.evaluation_point
+    return fault_at(ended.resolved, ended.par, (t, q, v), loop.held)

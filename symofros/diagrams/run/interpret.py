@@ -4,176 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
-from symofros.diagrams.program.compiled import Resolved, bare_record, unit_of
+from symofros.diagrams.program.compiled import Resolved, part_beams
 from symofros.diagrams.program.layout import Part
-from symofros.diagrams.program.lowered_block import INPUT, MEMORY, PARAMETER, STATE, Piece
-from symofros.diagrams.program.model_environment import parameter_group
+from symofros.diagrams.run.block_functions import Blocks
+from symofros.diagrams.run.faults import first_fault
 from symofros.diagrams.run.python_blocks import Called
 from symofros.diagrams.wiring import Source
-from symofros.expr.program import Function, Output, Program
-from symofros.generator.passes import run_passes
-from symofros.runtime.build.toolchain import Toolchain
+from symofros.runtime.beams import BeamBending, ElasticBeam, bending_notes, largest_bending
 from symofros.runtime.calls.kernel import Array
-from symofros.runtime.constrained import constrained, project
+from symofros.runtime.constrained import project
 from symofros.runtime.manifold import chart_rate, retract
+from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.stepping.tableaus import Tableau
 
-Call = Callable[[], None]
-
-
-class Blocks:
-    """Every block of a diagram as functions on memory of its own.
-
-    Args:
-        resolved: The diagram.
-        par: Run-time parameters (npar).
-        gains: Baumgarte's, one pair for all conditions.
-        toolchain: Compiles each block by itself; None: NumPy interprets it.
-    """
-
-    def __init__(self, resolved: Resolved, par: Array, gains: tuple[float, float], toolchain: Toolchain | None) -> None:
-        self.resolved = resolved
-        self._par, self._gains, self._toolchain = par, gains, toolchain
-        layout = resolved.layout
-        self.t = np.zeros(1)
-        self.q, self.v = np.array(layout.q0, dtype=np.float64), np.array(layout.v0, dtype=np.float64)
-        self.a, self.lam = np.zeros(len(self.v)), np.zeros(len(layout.condition_names))
-        self.memory = {key: resolved.pieces[key[0]].memory[key[1]].copy() for key in layout.memory}
-        self.out = {source: np.zeros(resolved.wired.shape(source)) for source in resolved.order}
-        self.calls: dict[tuple[str, str], tuple[Call, dict[str, Array]]] = {}
-        for piece in resolved.pieces.values():
-            self._make(piece)
-
-    def _make(self, piece: Piece) -> None:
-        """The functions of one block: each output, rates, updates, the terms of its motion."""
-        name = piece.name
-        stated: dict[str, dict[str, Any]] = {f"out_{port}": {"y": value} for port, value in piece.outputs.items()}
-        stated["rates"] = {f"d_{key}": value for key, value in piece.rates.items()}
-        stated["updates"] = {f"n_{key}": value for key, value in piece.updates.items()}
-        stated["motion"] = {f"t_{key}": value for key, value in piece.terms.stated().items()}
-        functions, sizes = [], {"par": 0}
-        for which, outputs in stated.items():
-            if outputs:
-                edges = [edge for value in outputs.values() for edge in value.flat]
-                groups = sorted(piece.groups(edges))
-                sizes |= {group: self._memory_of(piece, group).size for group in groups}
-                made = tuple(Output(key, value.shape, tuple(value.flat)) for key, value in outputs.items())
-                functions.append(Function(which, "", tuple(groups), made))
-        if not functions:
-            return
-        program = run_passes(Program(name, piece.g, sizes, tuple(functions)))
-        unit, _ = unit_of(program, bare_record(name), self._toolchain)
-        for function in functions:
-            kernel = unit.kernels[function.name, ""]
-            inputs = [self._memory_of(piece, group) for group in function.inputs]
-            port = function.name.removeprefix("out_")
-            returned = {key: self.out[name, port] if key == "y" else np.zeros(shape) for key, shape in function.returns}
-            pre = kernel.prepare(np.zeros((1, 0)))
-            self.calls[name, function.name] = kernel.bind(pre, inputs, list(returned.values())), returned
-
-    def _memory_of(self, piece: Piece, group: str) -> Array:
-        """The array that an input group of a block is read from, flat."""
-        name, layout, wired = piece.name, self.resolved.layout, self.resolved.wired
-        if group == "t":
-            return self.t
-        if group in ("q", "v", "a"):
-            places = layout.q if group == "q" else layout.v
-            array: Array = getattr(self, group)[places[name].slice]
-            return array
-        if group == "lam":
-            return self.lam[layout.lam[name].slice]
-        if group == "gains":
-            return np.repeat(np.array(self._gains), piece.nc)
-        if group.startswith(INPUT):
-            return self.out[wired.sources[name, group.removeprefix(INPUT)]].reshape(-1)
-        if group.startswith(STATE):
-            return self.v[layout.states[name, group.removeprefix(STATE)].slice]
-        if group.startswith(MEMORY):
-            return self.memory[name, group.removeprefix(MEMORY)].reshape(-1)
-        if group.startswith(PARAMETER):
-            return self._par[layout.parameters[name, group.removeprefix(PARAMETER)].slice]
-        model = next(model for model in wired.models.names if parameter_group(model) == group)
-        return self._par[layout.parameters["", model].slice]
-
-    def signals(self, due: frozenset[str] = frozenset(), called: Called | None = None) -> None:
-        """Continuous outputs at the present point, in order; those of sampled blocks that are due, too.
-
-        Python is called once a block: at its first output, all of which need all inputs; without outputs, at the end.
-
-        Args:
-            due: Blocks that are sampled.
-            called: The blocks of Python's; None where none is due.
-        """
-        waiting = {name for name in due if called and self.resolved.pieces[name].is_external}
-        for source in self.resolved.order:
-            name, port = source
-            piece = self.resolved.pieces[name]
-            block = piece.block
-            if port in block.samples():
-                self._sample(source)
-            elif called and name in waiting:
-                waiting.remove(name)
-                self._call_python(called, name)
-            elif not piece.is_external and (name in due or not piece.is_discrete):
-                self.calls[name, f"out_{port}"][0]()
-        for name in self.resolved.pieces:
-            if called and name in waiting:
-                self._call_python(called, name)
-
-    def _sample(self, source: Source) -> None:
-        signal = self.resolved.pieces[source[0]].block.samples()[source[1]]
-        columns = signal.values.reshape(len(signal.t), -1).T
-        t = float(self.t[0])
-        if signal.kind == "linear":
-            samples = [np.interp(t, signal.t, column) for column in columns]
-        else:
-            samples = [column[max(0, int(np.searchsorted(signal.t, t, side="right")) - 1)] for column in columns]
-        self.out[source].reshape(-1)[:] = samples
-
-    def _call_python(self, called: Called, name: str) -> None:
-        sources = self.resolved.wired.sources
-        inputs = {port: self.out[source].copy() for (block, port), source in sources.items() if block == name}
-        for key, value in called.call(name, float(self.t[0]), inputs).items():
-            self.out[name, key][...] = value
-
-    def engaged(self) -> Array:
-        """What says which constraints hold."""
-        wired = self.resolved.wired
-        ports = [(name, port) for name, piece in self.resolved.pieces.items() for port in piece.block.lock_inputs()]
-        return np.concatenate([np.zeros(0), *(self.out[wired.sources[port]].reshape(-1) for port in ports)])
-
-    def update(self, due: frozenset[str]) -> None:
-        """Memory of the sampled blocks that are due."""
-        new = []
-        for name in due:
-            if (name, "updates") in self.calls:
-                call, outputs = self.calls[name, "updates"]
-                call()
-                new += [((name, key.removeprefix("n_")), value.copy()) for key, value in outputs.items()]
-        for key, value in new:
-            self.memory[key][...] = value
-
-    def accelerate(self) -> None:
-        """The accelerations a and multipliers of all mechanisms, and rates of states, at the present point."""
-        layout = self.resolved.layout
-        for name in layout.v:
-            call, outputs = self.calls[name, "motion"]
-            call()
-            if "t_a" in outputs:
-                self.a[layout.v[name].slice] = outputs["t_a"]
-            else:
-                M, r, G, c = (outputs[f"t_{key}"][np.newaxis] for key in ("M", "r", "G", "c"))
-                a, lam, _ = constrained(M, r, G, c, layout.measures[name])
-                self.a[layout.v[name].slice], self.lam[layout.lam[name].slice] = a[0], lam[0]
-        for (name, key), place in layout.states.items():
-            if place.size:
-                call, outputs = self.calls[name, "rates"]
-                call()
-                self.a[place.slice] = outputs[f"d_{key}"].reshape(-1)
+# An instant of a run: its time, what is due, whether to record.
+Instant = tuple[float, frozenset[str], bool]
 
 
 @dataclass
@@ -184,12 +32,22 @@ class InterpretedRun:
         resolved: Diagram that ran.
         t: Times (n) [s].
         values: (block, output) -> its signal.
+        q: Configurations of all mechanisms (n, nq).
+        v: Speeds and continuous states (n, nv).
+        outcome: Outcome of the run.
+        steps: Number of steps.
+        bendings: Bending of each beam at the step where its theory errs most.
         kept: Block -> what it kept of the run, by name.
     """
 
     resolved: Resolved
     t: Array
     values: dict[Source, Array]
+    q: Array
+    v: Array
+    outcome: Outcome
+    steps: int
+    bendings: tuple[BeamBending, ...] = ()
     kept: Mapping[str, Mapping[str, Array]] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> Array:
@@ -197,8 +55,16 @@ class InterpretedRun:
         return self.values[self.resolved.wired.output(name)]
 
 
+class NotFiniteError(Exception):
+    """An acceleration, a rate or a state that is no finite number ends an interpreted run."""
+
+
 def step(blocks: Blocks, tableau: Tableau, h: float, projects: bool) -> None:
-    """One step of an explicit Runge-Kutta method, all parts together."""
+    """One step of an explicit Runge-Kutta method, all parts together.
+
+    Raises:
+        NotFiniteError: The motion has no finite rate at a stage, where the blocks then are.
+    """
     segments, nv = blocks.resolved.layout.segments, len(blocks.v)
     t, q, v = float(blocks.t[0]), blocks.q.copy(), blocks.v.copy()
     k: list[Array] = []
@@ -216,6 +82,8 @@ def step(blocks: Blocks, tableau: Tableau, h: float, projects: bool) -> None:
         blocks.q[:], blocks.v[:] = retract(segments, q, theta), speeds
         blocks.signals()
         blocks.accelerate()
+        if not np.isfinite(blocks.a).all():
+            raise NotFiniteError
         k.append(np.concatenate([chart_rate(segments, theta, speeds), blocks.a]))
     theta, speeds = moved(tableau.b)
     blocks.t[0] = t + h
@@ -265,14 +133,49 @@ def _project(blocks: Blocks, part: Part) -> None:
     blocks.q[part.q], blocks.v[part.v] = q_on, v_on
 
 
+class BeamWatch:
+    """The bending of all beams of a diagram, each at the step where its theory errs most.
+
+    Args:
+        resolved: The diagram.
+        par: Run-time parameters (npar).
+        limit: Estimated error beyond which the run ends.
+    """
+
+    def __init__(self, resolved: Resolved, par: Array, limit: float) -> None:
+        self._limit = limit
+        self._beams: list[tuple[ElasticBeam, slice]] = []
+        for part in resolved.layout.parts:
+            for beam in part_beams(resolved, part, par):
+                first = part.q.start + beam.q
+                self._beams.append((beam, slice(first, first + beam.size)))
+        self._largest: list[BeamBending | None] = [None] * len(self._beams)
+
+    @property
+    def bendings(self) -> tuple[BeamBending, ...]:
+        """The largest bending of each beam that was bent at all."""
+        return tuple(bending for bending in self._largest if bending is not None)
+
+    def judge(self, q: Array, t: float) -> bool:
+        """Judge a configuration of the diagram (nq); whether it lies within the limit."""
+        for i, (beam, at) in enumerate(self._beams):
+            largest = self._largest[i]
+            if largest is None or beam.error_bound(q[at]) > largest.error:
+                bending = beam.bending(q[at], t)
+                if largest is None or bending.error > largest.error:
+                    self._largest[i] = bending
+        return all(bending.error <= self._limit for bending in self.bendings)
+
+
 def run_interpreted(
     blocks: Blocks,
     called: Called,
-    instants: Sequence[tuple[float, frozenset[str], bool]],
+    instants: Sequence[Instant],
     t_end: float,
     dt: float,
     tableau: Tableau,
     projects: bool,
+    watch: BeamWatch,
     show: Callable[[float], None],
 ) -> InterpretedRun:
     """Run from the first state.
@@ -280,50 +183,86 @@ def run_interpreted(
     Args:
         blocks: The diagram's.
         called: Python blocks, started.
-        instants: (time, what is due, whether to record), in order; the first is the start.
+        instants: Instants in order; the first is the start.
         t_end: End time [s].
         dt: Step [s]; steps also end at instants.
         tableau: Tableau of the method.
         projects: Whether constraints are met again after each step.
+        watch: Watch on the beams.
         show: Called with the time [s].
     """
-    times: list[float] = []
+    rows: list[tuple[float, Array, Array]] = []
     kept: dict[Source, list[Array]] = {source: [] for source in blocks.out}
-    reads_accelerations = bool(len(blocks.lam))
 
     def record() -> None:
-        times.append(float(blocks.t[0]))
+        rows.append((float(blocks.t[0]), blocks.q.copy(), blocks.v.copy()))
         for source, array in blocks.out.items():
             kept[source].append(array.copy())
 
-    for i, (t, due, recorded) in enumerate(instants):
-        blocks.t[0] = t
-        if due:
+    steps, within, failed = 0, watch.judge(blocks.q, float(blocks.t[0])), False
+    with np.errstate(all="ignore"):  # What is not finite ends the run, and is named.
+        for i, instant in enumerate(instants):
+            _meet(blocks, called, instant, projects, record)
+            show(instant[0])
+            until = min(instants[i + 1][0] if i + 1 < len(instants) else t_end, t_end)
+            while blocks.t[0] < until and within and not failed:
+                now = float(blocks.t[0])
+                last = now + dt >= until - 1e-9 * dt
+                try:
+                    step(blocks, tableau, (until if last else now + dt) - now, projects)
+                except NotFiniteError:
+                    failed = True
+                    break
+                steps += 1
+                failed = not np.isfinite(np.concatenate([blocks.q, blocks.v])).all()
+                if last:
+                    blocks.t[0] = until
+                within = watch.judge(blocks.q, float(blocks.t[0]))
+            if failed or not within:
+                break
+        if not failed and (not rows or rows[-1][0] < float(blocks.t[0])):
+            blocks.t[0] = t_end if within else blocks.t[0]
             blocks.signals()
-            if reads_accelerations:
-                blocks.accelerate()
-            before = blocks.engaged()
-            blocks.signals(due, called)
-            blocks.update(due)
-            if projects and not np.array_equal(before, blocks.engaged()):
-                project_all(blocks)
-        if recorded:
-            blocks.signals()
-            if reads_accelerations:
-                blocks.accelerate()
-                blocks.signals()
             record()
-        show(t)
-        until = min(instants[i + 1][0] if i + 1 < len(instants) else t_end, t_end)
-        while blocks.t[0] < until:
-            now = float(blocks.t[0])
-            last = now + dt >= until - 1e-9 * dt
-            step(blocks, tableau, (until if last else now + dt) - now, projects)
-            if last:
-                blocks.t[0] = until
-    if not times or times[-1] < t_end:
-        blocks.t[0] = t_end
+    outcome = _outcome(blocks, watch, steps, failed=failed, within=within)
+    t, q, v = (np.array(column) for column in zip(*rows, strict=True)) if rows else (np.zeros(0), blocks.q, blocks.v)
+    values = {source: np.array(values) for source, values in kept.items()}
+    return InterpretedRun(blocks.resolved, t, values, q, v, outcome, steps, watch.bendings, called.kept())
+
+
+def _meet(blocks: Blocks, called: Called, instant: Instant, projects: bool, record: Callable[[], None]) -> None:
+    """What happens at an instant: blocks are sampled, constraints engage, signals are recorded."""
+    t, due, recorded = instant
+    blocks.t[0] = t
+    reads_accelerations = bool(len(blocks.lam))
+    if due:
         blocks.signals()
+        if reads_accelerations:
+            blocks.accelerate()
+        before = blocks.engaged()
+        blocks.signals(due, called)
+        blocks.update(due)
+        if projects and not np.array_equal(before, blocks.engaged()):
+            project_all(blocks)
+    if recorded:
+        blocks.signals()
+        if reads_accelerations:
+            blocks.accelerate()
+            blocks.signals()
         record()
-    values = {source: np.array(rows) for source, rows in kept.items()}
-    return InterpretedRun(blocks.resolved, np.array(times), values, called.kept())
+
+
+def _outcome(blocks: Blocks, watch: BeamWatch, steps: int, *, failed: bool, within: bool) -> Outcome:
+    """How a run ended."""
+    t, notes = float(blocks.t[0]), bending_notes(watch.bendings)
+    if failed:
+        fault = first_fault(blocks)
+        if fault:
+            return Outcome("input failed", t, fault, "outputs that are finite at all samples", notes)
+        return Outcome(
+            "diverged", t, "a state is no longer finite", "a smaller dt; look for gains that are too high", notes
+        )
+    worst = largest_bending(watch.bendings)
+    if not within and worst is not None:
+        return Outcome("beyond theory", t, str(worst), f"{worst.remedy}; or move the limit, beam_limit=...")
+    return Outcome("finished", t, f"{steps} steps", notes=notes)

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from symofros.diagrams.program.compiled import CompiledDiagram
+from symofros.diagrams.program.compiled import CompiledDiagram, Resolved
 from symofros.diagrams.program.layout import Part
 from symofros.diagrams.program.lowered_block import watched
+from symofros.diagrams.run.faults import fault_at
 from symofros.errors import AssemblyError, Problem, SymofrosError
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
@@ -79,8 +80,14 @@ def place_parts(compiled: CompiledDiagram, settings_of: Callable[[Model], Settin
     return placed
 
 
-def start(parts: list[Placed], name: str) -> None:
+def start(parts: list[Placed], resolved: Resolved, par: Array, t0: float) -> None:
     """Evaluate the first accelerations.
+
+    Args:
+        parts: Parts, which are placed at their first states.
+        resolved: The diagram.
+        par: Run-time parameters (npar).
+        t0: Start time [s].
 
     Raises:
         SymofrosError: They are not finite.
@@ -91,10 +98,12 @@ def start(parts: list[Placed], name: str) -> None:
         if status == Status.BEYOND_THEORY:
             refuse_beyond(stepper.model, stepper.bendings, float(stepper.run.beam_limit), "the first state")
         if status < 0:
+            layout = resolved.layout
+            fault = fault_at(resolved, par, (t0, np.array(layout.q0), np.array(layout.v0)), np.array(layout.u0))
             raise SymofrosError(
                 Problem(
-                    f"diagram '{name}': the first accelerations are not finite",
-                    ", ".join(stepper.model.names.v[:6]),
+                    f"diagram '{resolved.wired.name}': the first accelerations are not finite",
+                    fault or ", ".join(stepper.model.names.v[:6]),
                     "the start is one that moves",
                     "look for a mass of zero or a first state that is not a number",
                 )

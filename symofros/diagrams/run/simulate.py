@@ -15,10 +15,11 @@ from symofros.diagrams.program.lowered_block import watched
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.result import DiagramRun
 from symofros.diagrams.run.diagnosis import Ended, diagnose
+from symofros.diagrams.run.halved_steps import STEPS, halved_steps_note
 from symofros.diagrams.run.loop import RECORD, Loop, Task
 from symofros.diagrams.run.options import DiagramOptions
 from symofros.diagrams.run.parts import place_parts, start
-from symofros.diagrams.run.python_blocks import ExternalCalls, begun
+from symofros.diagrams.run.python_blocks import Called, ExternalCalls, begun
 from symofros.diagrams.run.recording import Cost, Crossed
 from symofros.diagrams.run.values import parameter_values, record_interval
 from symofros.runtime.calls.kernel import Array
@@ -57,24 +58,48 @@ def run_compiled(
     par = parameter_values(resolved, parameters or {})
     interval = record_interval(options.record, options.t0, t_end, options.dt)
     plan = schedule([*rates_of(resolved.pieces), (RECORD, interval, 0.0)], name)
-    parts = place_parts(compiled, lambda model: options.settings(model, t_end), par)
     with begun(resolved.wired) as called:
-        external = ExternalCalls(resolved, called)
-        loop = Loop(
-            resolved.layout,
-            [part.stepper for part in parts],
-            plan,
-            _tasks(compiled, plan, external),
-            [Task(_kernel(compiled, f"crossed_{i}")) for i in range(len(watched(resolved.pieces)))],
-            par,
-            np.array(resolved.layout.u0, dtype=np.float64),
-            external,
-            compiled.reads_accelerations,
-        )
-        with closing(loop):
-            start(parts, name)
-            run = _drive(compiled, loop, plan, options, t_end, par, progress)
-            return replace(run, kept=called.kept())
+        run, evident = _once(compiled, plan, options, t_end, par, called, progress)
+        run = replace(run, kept=called.kept())
+    external = any(piece.is_external for piece in resolved.pieces.values())
+    steps = run.cost.steps // max(1, len(compiled.parts))
+    if run.outcome.kind != "finished" or evident or not 0 < steps <= STEPS or external or not resolved.layout.v:
+        return run
+    h = min(options.settings(compiled.parts[0], t_end).dt, plan.spacing)
+    with begun(resolved.wired) as called:
+        half, _ = _once(compiled, plan, replace(options, dt=0.5 * h, realtime=False), t_end, par, called)
+    finer = (half.t, half.q, half.v) if half.outcome.ok else None
+    note = halved_steps_note(resolved.layout, (run.t, run.q, run.v), finer, h)
+    return replace(run, outcome=replace(run.outcome, notes=(*run.outcome.notes, *([note] if note else []))))
+
+
+def _once(
+    compiled: CompiledDiagram,
+    plan: Schedule,
+    options: DiagramOptions,
+    t_end: float,
+    par: Array,
+    called: Called,
+    progress: bool = False,
+) -> tuple[DiagramRun, bool]:
+    """A run from the first state, and whether its steps evidently resolve it."""
+    resolved = compiled.resolved
+    parts = place_parts(compiled, lambda model: options.settings(model, t_end), par)
+    external = ExternalCalls(resolved, called)
+    loop = Loop(
+        resolved.layout,
+        [part.stepper for part in parts],
+        plan,
+        _tasks(compiled, plan, external),
+        [Task(_kernel(compiled, f"crossed_{i}")) for i in range(len(watched(resolved.pieces)))],
+        par,
+        np.array(resolved.layout.u0, dtype=np.float64),
+        external,
+        compiled.reads_accelerations,
+    )
+    with closing(loop):
+        start(parts, resolved, par, options.t0)
+        return _drive(compiled, loop, plan, options, t_end, par, progress)
 
 
 def _kernel(compiled: CompiledDiagram, name: str) -> CompiledKernel:
@@ -109,7 +134,7 @@ def _drive(
     t_end: float,
     par: Array,
     progress: bool,
-) -> DiagramRun:
+) -> tuple[DiagramRun, bool]:
     t0, realtime = options.t0, float(options.realtime)
     span = float(plan.base) * plan.cycle
     instants = int((t_end - t0) / span + 2) * len(plan.instants)
@@ -135,8 +160,8 @@ def _drive(
         interrupted = True
     t, q, v, u = (np.concatenate(columns) for columns in zip(*portions, strict=True))
     settings = [options.settings(part.model, t_end) for part in loop.parts]
-    layout, recorded = compiled.resolved.layout, (t, q, v, u)
-    outcome = diagnose(Ended(loop, layout, settings, plan.spacing, recorded, status, interrupted))
+    ended = Ended(loop, compiled.resolved, par, settings, plan.spacing, (t, q, v, u), status, interrupted)
+    outcome, evident = diagnose(ended)
     looked_for = watched(compiled.resolved.pieces)
     crossings = tuple(Crossed(*looked_for[which], when) for when, which in met)
     d = loop.diagram
@@ -149,4 +174,4 @@ def _drive(
         loop.lateness,
         plan.spacing / (realtime or 1.0),
     )
-    return DiagramRun(compiled, t, q, v, u, par, outcome, crossings, cost)
+    return DiagramRun(compiled, t, q, v, u, par, outcome, crossings, cost), evident

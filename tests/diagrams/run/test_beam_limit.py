@@ -34,3 +34,15 @@ def test_a_diagram_notes_the_largest_bending_at_its_parameters() -> None:
     first, second = (note for note in stiff.run(2.0).outcome.notes if "second-order theory" in note)
     assert "'first.blade'" in first and "'second.blade'" in second and "x = 0.875 m" in first
     assert not stiff.run(1.0, parameters={"plant.L": 0.5}).outcome.notes
+
+
+def test_interpreted_runs_say_the_same_of_beams() -> None:
+    stiff, limp = simulation(0.5), simulation(60.0)
+    notes = [note for note in stiff.run(1.0, dt=0.01, record=0.1).outcome.notes if "second-order theory" in note]
+    run = stiff.interpret(1.0, dt=0.01, record=0.1)
+    assert [note for note in run.outcome.notes if "second-order theory" in note] == notes and len(notes) == 2
+    assert [bending.beam for bending in run.bendings] == ["first.blade", "second.blade"]
+    outcome = limp.interpret(1.0, dt=0.01).outcome
+    assert outcome.kind == "beyond theory" and "'first.blade' bends by" in outcome.reason
+    assert outcome.t == pytest.approx(limp.run(1.0, dt=0.01, record=0.01).outcome.t, abs=0.01)
+    assert limp.interpret(0.2, dt=0.01, beam_limit=math.inf).outcome.kind == "finished"

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from symofros.blocks import ForwardDynamics, PythonBlock
+from symofros.blocks import Formula, ForwardDynamics, PythonBlock
+from tests.diagrams.parts import Lag, Wave
 from tests.simulation.oscillator import oscillator_system
 
 PERIOD = 0.01
@@ -55,6 +56,59 @@ def test_an_output_that_nothing_needs_is_noted_only() -> None:
     diagram.add(PythonBlock(name="idle", function=lambda t, inputs: {"y": np.nan}, outputs={"y": ()}, period=PERIOD))
     outcome = sf.Simulation(diagram).run(0.05, dt=PERIOD).outcome
     assert outcome.ok and "block 'idle': output 'y' is nan" in outcome.notes[0]
+
+
+def fed_back(formula: str, period: float | None = None) -> sf.Simulation:
+    """An oscillator under a formula of its displacement."""
+    diagram = sf.Diagram("fed_back")
+    diagram.add_model("plant", oscillator_system(k=100.0), start={"x": 0.1})
+    diagram.add(Formula(name="half", formulas={"y": "x[0]/2"}), x="plant.q")
+    diagram.add(Formula(name="law", formulas={"force": [formula]}, period=period), x="half.y")
+    diagram.add(ForwardDynamics(name="plant", model="plant"), u="law.force")
+    return sf.Simulation(diagram)
+
+
+@pytest.mark.parametrize("period", [None, 0.01])
+@pytest.mark.parametrize(("formula", "value"), [("sqrt(x)", "nan"), ("-1/max(x - 0.02, 0)", "-inf")])
+def test_a_formula_that_is_not_finite_is_named_compiled_and_interpreted(
+    formula: str, value: str, period: float | None
+) -> None:
+    simulation = fed_back(formula, period)
+    outcomes = [simulation.run(1.0, method=method, dt=1e-3).outcome for method in ("rk4", "dopri5", "euler")]
+    outcomes.append(simulation.interpret(1.0, dt=1e-3, compiled=False).outcome)
+    for outcome in outcomes:
+        assert outcome.kind == "input failed", outcome
+        when = "before t = 0.1" if period else "at t = 0.1"
+        assert f"block 'law': output 'force' is {value} {when}" in outcome.reason
+        assert period or ", with x = " in outcome.reason
+
+
+def test_a_first_output_that_is_not_finite_is_named() -> None:
+    with pytest.raises(sf.SymofrosError, match="block 'law': output 'force' is nan at t = 0 s, with x = 0.05"):
+        fed_back("sqrt(-x)").run(1.0, dt=1e-3)
+    assert "output 'force' is nan at t = 0 s" in fed_back("sqrt(-x)").interpret(1.0, compiled=False).outcome.reason
+
+
+def test_a_signal_that_spoils_a_state_of_a_block_is_named() -> None:
+    diagram = sf.Diagram("rate")
+    diagram.add(Wave(name="wave"))
+    diagram.add(Formula(name="root", formulas="sqrt(x)"), x="wave.y")
+    diagram.add(Lag(name="lag"), x="root.y")
+    outcome = sf.Simulation(diagram).run(1.0, dt=1e-3).outcome
+    assert "block 'root': output 'y' is nan" in outcome.reason and outcome.t == pytest.approx(np.pi / 7, abs=2e-3)
+
+
+def test_short_runs_are_judged_by_half_the_step_compiled_and_interpreted() -> None:
+    """A spring that hardens: its modes at the states examined are followed, its motion is not."""
+    diagram = sf.Diagram("hard")
+    diagram.add_model("plant", oscillator_system(k=1.0), start={"dx": 2.0})
+    diagram.add(Formula(name="law", formulas={"force": ["-2000*x[0]^3"]}), x="plant.q")
+    diagram.add(ForwardDynamics(name="plant", model="plant"), u="law.force")
+    simulation = sf.Simulation(diagram)
+    for run in (simulation.run, simulation.interpret):
+        (note,) = run(5.0, dt=0.05, record=0.05).outcome.notes
+        assert "steps of 0.05 s do not determine the motion of 'plant'" in note
+        assert not run(0.5, dt=0.01, record=0.05).outcome.notes
 
 
 @pytest.mark.parametrize("method", ["rk4", "semi_implicit_euler"])
