@@ -92,7 +92,8 @@ HARNESS = table("""
     inputs:      contract mechanics
     adapters:    contract mechanics
     comparison:  adapters contract mechanics
-    check:       comparison adapters inputs contract mechanics
+    procedures:  comparison contract mechanics
+    check:       procedures comparison adapters inputs contract mechanics
     worker_pool: check adapters inputs
     reporting:   mechanics
 """)

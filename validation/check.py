@@ -37,6 +37,7 @@ from validation.inputs.sampling import DEFAULT_STATES, sample, special_states
 from validation.mechanics.assembly import Assembly, assemble
 from validation.mechanics.geometry import Array
 from validation.mechanics.parts import has_quaternion
+from validation.procedures.catalogue import judge_procedures
 
 FORWARD = "forward_dynamics"
 # Quantities that come from solving a linear system, so that its condition limits their agreement.
@@ -199,6 +200,10 @@ def _comparisons(bench: _Bench) -> Iterator[Comparison]:
             yield judge_order(bench.label, order, bench.assembly, *models, bench.variants.states)
         for one in bench.engines:
             yield from judge_elements(one, bench.assembly, bench.variants)
+        if bench.settings.engines is None:
+            start = time.perf_counter()
+            yield from judge_procedures(bench.label, bench.subject.system, bench.assembly)
+            bench.seconds["procedures"] = time.perf_counter() - start
 
 
 def _unsampled_motion(system: sf.System, assembly: Assembly) -> str:

@@ -11,6 +11,7 @@ from validation.cross_check import tables
 from validation.cross_check.figures import error_against_condition, error_distributions
 from validation.cross_check.measure import measure
 from validation.cross_check.record import Record
+from validation.procedures.catalogue import ENGINE as FORMULAS
 from validation.reporting.figures import Figure
 from validation.reporting.numbers import counted, digits
 from validation.reporting.record import Block, Bullets, Cell, Data, Fact, Fold, Report, Section, Table, Text, Topic
@@ -48,6 +49,11 @@ _ELEMENTS = (
     "with the fourth power of the element length, lumped terms with the second; elastic forces differ from ours by "
     "the third power of the deflection, rotary inertia by the second."
 )
+_PROCEDURES = (
+    "Steps of every method are retold by coefficients of SciPy, matrix exponentials and general solvers; what chooses "
+    "them, records, events, projection, assembly, equilibria, modes, derivatives, inverse kinematics, batches and "
+    "diagrams are compared with their definitions, central differences and closed forms, on a few small models."
+)
 _NO_SAY = "These engines have no say on these models; nobody else's comparison is weakened."
 _SPEED = (
     "Times of our functions in batches of 4096 states, as multiples of the time that a fixed program takes for as many "
@@ -69,6 +75,7 @@ _DRIFT = """model; #drift at the full step = {extra[drift_coarse]:digits};
     #ratio = ratio(); #allowed = {tolerance:digits} ? ok"""
 _POWERS = """model; what = {words}; #power = power(); #at the finer scale = {error:digits};
     #allowed = {tolerance:digits} ? ok; where = {note}"""
+_CELLS = "model; what = {quantity}; #error = {error:digits} ? ok; #allowed = {tolerance:digits}"
 _SPEEDS = "model; function; #yardsticks = {ratio:.3g}; #noise = {noise:.1%}; #ns a state = {nanoseconds:.3g}"
 _CONVENTIONS = "engine = {0}; what = {1}; SYMOFROS = {2}; the engine = {3}"
 _QUANTITIES = "quantity = {name}; symbol; unit; #tolerance = {tolerance:digits}; reason = reason()"
@@ -169,10 +176,12 @@ def _own(record: Record) -> tuple[Section, ...]:
         return f"{row.extra['power']:.2f}" if "power" in row.extra else ""
 
     drifts = Table.of((row for row in record.compared if row.quantity == "energy_drift"), _DRIFT, ratio=ratio)
+    procedures = Table.of((row for row in record.compared if row.engine == FORMULAS), _CELLS)
     powers = Table.of((row for row in record.compared if row.quantity in ELEMENT_ROWS), _POWERS, power=power)
     return (
         Section("Energy along a free motion", (_ENERGY, drifts), page_only=True),
         Section("Beams against finite elements", (_ELEMENTS, powers), page_only=True),
+        Section("What is done with the equations", (_PROCEDURES, procedures), page_only=True),
     )
 
 

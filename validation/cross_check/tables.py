@@ -11,6 +11,7 @@ from validation.check import ModelResult
 from validation.comparison.errors import Comparison
 from validation.contract.quantities import MOTION_ENERGY, QUANTITIES
 from validation.cross_check.record import Record
+from validation.procedures.catalogue import ENGINE as FORMULAS
 from validation.reporting.numbers import counted, digits
 from validation.reporting.record import Cell, Column, Table
 
@@ -44,7 +45,7 @@ BRIEF = _columns(
 )
 
 # Engines of rows that no other engine is behind: our own drift, and what was asked of any of them.
-_OURS = ("symofros", "any")
+_OURS = ("symofros", "any", FORMULAS)
 # Statuses with a verdict on numbers.
 _JUDGED = ("agree", "disagree")
 # Depth of the background of a cell whose error is at the tolerance.
@@ -53,7 +54,7 @@ _DEEPEST = 0.55
 
 def by_model(record: Record, columns: Columns = COLUMNS) -> Table:
     """One line a model, the worst over all engines in each cell."""
-    compared = ({row.engine for row in m.comparisons if row.status in _JUDGED} - {"symofros"} for m in record.models)
+    compared = ({row.engine for row in m.comparisons if row.status in _JUDGED} - {*_OURS} for m in record.models)
     lines = [(m, str(len(names)), m.comparisons) for m, names in zip(record.models, compared, strict=True)]
     return _table(lines, "#engines", columns)
 
@@ -62,7 +63,7 @@ def worst_by_model(record: Record) -> Table:
     """One line a model: the comparison that is nearest to its tolerance."""
 
     def line(model: ModelResult) -> tuple[str | Cell, ...]:
-        row, engines = worst(model.comparisons), {one.engine for one in model.compared} - {"symofros"}
+        row, engines = worst(model.comparisons), {one.engine for one in model.compared} - {*_OURS}
         error: tuple[str | Cell, ...] = ("", "", "")
         if row is not None:
             error = Cell(digits(row.error, 1), row.ok), digits(row.tolerance, 1), f"{row.words}, {row.engine}"

@@ -12,6 +12,9 @@ import symofros as sf
 from validation.contract.interface import MjcfSource, Subject, UrdfSource
 
 ROBOT_PACKAGE = "example-robot-data"
+_CORPUS = Path(__file__).parents[1] / "corpus"
+# Our own files of what robots and reference models lack: kinds of joints, of shapes, ways to state them.
+FILES = {"battery": "battery.yaml", "creature": "creature.xml", "sampler": "arm.urdf"}
 
 
 @dataclass(frozen=True)
@@ -88,12 +91,18 @@ ROBOTS: dict[str, Robot] = {
 
 
 def standard_set() -> list[Case]:
-    """The robots of the package and every reference model.
+    """The robots of the package, every reference model, and our own files.
 
     Raises:
         FileNotFoundError: The package is not installed, or lacks a file.
     """
-    return [*(robot_case(label) for label in ROBOTS), *(Case(label) for label in reference_models.MODELS)]
+    robots = (robot_case(label) for label in ROBOTS)
+    return [*robots, *(Case(label) for label in reference_models.MODELS), *map(file_case, FILES)]
+
+
+def file_case(label: str) -> Case:
+    """One of our own files."""
+    return Case(label, _CORPUS / FILES[label])
 
 
 def robot_case(label: str) -> Case:
@@ -144,7 +153,9 @@ def _named(name: str, floating_base: bool) -> Case:
         return robot_case(name)
     if name in reference_models.MODELS:
         return Case(name)
-    known = [*ROBOTS, *reference_models.MODELS]
+    if name in FILES:
+        return file_case(name)
+    known = [*ROBOTS, *reference_models.MODELS, *FILES]
     near = difflib.get_close_matches(name, known, n=1)
     remedy = f"did you mean '{near[0]}'?" if near else f"the standard set has {', '.join(known)}"
     raise LookupError(f"'{name}' is neither a file nor a model of the standard set; {remedy}")

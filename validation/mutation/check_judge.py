@@ -1,26 +1,27 @@
-"""`check` as a judge of faults: a few small models that between them have every part of the mechanics."""
+"""`check` as a judge of faults: a few models of its standard set that between them have every part of the mechanics."""
 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
-from pathlib import Path
+from collections.abc import Callable, Iterable
 from typing import Any
 
-import reference_models
 import symofros as sf
 from validation.adapters import ROUTES, compiled, interpreted
 from validation.check import Settings, check
+from validation.comparison.errors import Comparison
 from validation.contract.interface import Subject
+from validation.inputs.cases import named
+from validation.mechanics.assembly import assemble
+from validation.procedures.catalogue import PROCEDURES, judge_procedures
 
-_PLACES = {"battery.yaml": Path(__file__).parent, "arm.urdf": Path(__file__).parents[1] / "corpus"}
 STATES = 8
 # Compared by interpreted programs, which needs no compiler; in the order of cost: most faults show in the first ones.
 GENERAL = (
     "double_pendulum",
     "rolling_disc",  # Free joint, conditions on speeds.
     "friction_arm",
-    "battery.yaml",  # Rotors, elements, parameters, turned frames, universal, cylindrical, ball, free.
+    "battery",  # Rotors, elements, parameters, turned frames, universal, cylindrical, ball, free.
     "gyroscope",
     "four_bar",
     "flyball_governor",  # Parameters, springs.
@@ -29,10 +30,13 @@ GENERAL = (
     "spinning_beam",
 )
 BEAMS = ("spinning_beam", "flexible_slider_crank", "planar_robot", "double_pendulum")
-FILES = ("arm.urdf",)
+READ = {"urdf": ("sampler",), "mjcf": ("creature",)}
 # Compared compiled, free motion included: what writes C, and what steps, shows there only.
 WRITTEN = ("double_pendulum", "heavy_top", "friction_arm", "rolling_disc", "four_bar", "spinning_beam")
 STEPPED = ("double_pendulum", "heavy_top", "friction_arm")
+# Loops whose conditions repeat each other, where a module solves with them.
+REPEATED = ("bricard", "two_four_bars")
+_SOLVING = ("kkt", "null_space", "project", "constrained", "dense")
 _STEPPING = ("symofros/simulation/", "symofros/native/stepping/", "symofros/native/diagrams/")
 _WRITING = ("symofros/native/model/", "symofros/generator/codegen/")
 _FORMING = ("symofros/generator/", "symofros/expr/packs/", "symofros/expr/numerics/")
@@ -42,21 +46,21 @@ def interpreted_models(module: str) -> tuple[str, ...]:
     """The models whose interpreted programs are compared where a module has a fault."""
     if module.startswith(_STEPPING + _WRITING):
         return ()
-    if "beam" in module:
-        return BEAMS
-    return (FILES if "/urdf/" in module else ()) + GENERAL
+    read = next((names for folder, names in READ.items() if f"/{folder}/" in module), ())
+    return read or (BEAMS if "beam" in module else GENERAL)
 
 
 def compiled_models(module: str) -> tuple[str, ...]:
     """The models that are compiled and compared, with their free motions, where a module has a fault."""
-    return STEPPED if module.startswith(_STEPPING) else WRITTEN if module.startswith(_WRITING + _FORMING) else ()
+    if module.startswith(_STEPPING):
+        return STEPPED
+    solving = module.startswith(_WRITING) and any(name in module for name in _SOLVING)
+    return (WRITTEN if module.startswith(_WRITING + _FORMING) else ()) + (REPEATED if solving else ())
 
 
 def subject(name: str) -> Subject:
-    """A model of the battery."""
-    if name in _PLACES:
-        return Subject(name, sf.load(_PLACES[name] / name))
-    return Subject(name, reference_models.MODELS[name])
+    """A model of the standard set."""
+    return named([name], False)[0].load()
 
 
 def judge(module: str) -> dict[str, Any]:
@@ -66,31 +70,45 @@ def judge(module: str) -> dict[str, Any]:
         module: Where the fault is.
     """
     warnings.simplefilter("ignore")
-    build = compiled.build
     others = tuple(name for name in ROUTES if name != "interpreted")
-    compiled.build = interpreted.build
-    for name in interpreted_models(module):
-        verdict = _verdict(name, lambda one: check(one, Settings(STATES, engines=others, first=1)))
-        if verdict is not None:
-            return verdict
-    compiled.build = build
-    for name in compiled_models(module):
-        verdict = _verdict(name, lambda one: check(one, Settings(STATES)))
+
+    def by_interpreter(one: Subject) -> Iterable[Comparison]:
+        build, compiled.build = compiled.build, interpreted.build
+        try:
+            return check(one, Settings(STATES, engines=others, first=1)).comparisons
+        finally:
+            compiled.build = build
+
+    def by_compiler(one: Subject) -> Iterable[Comparison]:
+        return check(one, Settings(STATES, engines=tuple(ROUTES))).comparisons
+
+    def by_procedures(one: Subject) -> Iterable[Comparison]:
+        return judge_procedures(one.label, one.system, assemble(one.system))
+
+    stages = [
+        *((name, by_interpreter) for name in interpreted_models(module)),
+        *((name, by_procedures) for name in PROCEDURES),
+        *((name, by_compiler) for name in compiled_models(module)),
+    ]
+    if module.startswith(_WRITING + _FORMING):
+        stages.sort(key=lambda stage: stage[1] is by_procedures)
+    for name, asked in stages:
+        verdict = _verdict(name, asked)
         if verdict is not None:
             return verdict
     return {"status": "passed"}
 
 
-def _verdict(name: str, asked: Callable[[Subject], Any]) -> dict[str, Any] | None:
+def _verdict(name: str, asked: Callable[[Subject], Iterable[Comparison]]) -> dict[str, Any] | None:
     """What is wrong with a model; None if nothing is."""
     try:
-        result = asked(subject(name))
+        for row in asked(subject(name)):
+            if not row.ok:
+                status = "disagreed" if row.status == "disagree" else "failed"
+                reason = f"{row.engine} {row.quantity} {row.error} {row.note}"
+                return {"status": status, "model": name, "reason": reason[:300]}
     except sf.CompileError as error:
         return {"status": "raised", "model": name, "reason": f"CompileError: {error}"[:300]}
     except Exception as error:
         return {"status": "raised", "model": name, "reason": f"{type(error).__name__}: {error}"[:300]}
-    for row in result.comparisons:
-        if not row.ok:
-            status = "disagreed" if row.status == "disagree" else "failed"
-            return {"status": status, "model": name, "reason": f"{row.engine} {row.quantity} {row.error} {row.note}"}
     return None

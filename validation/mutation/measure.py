@@ -58,13 +58,14 @@ def as_data(study: Study) -> dict[str, Any]:
     for fault in study.faults:
         answers = {stage: study.store.get(fault.id, stage) for stage in (CHECK, TESTS, OUTPUTS)}
         check = answers[CHECK]
-        if check is not None:
+        if check is not None or fault.id in study.argued:
             rows.append(
                 {
                     "id": fault.id,
                     "module": fault.module,
                     "kind": fault.kind,
                     "fate": study.fate(fault),
+                    "argued": study.argued.get(fault.id, ""),
                     "seen_by_check": seen_by_check(check),
                     "seen_by_tests": None if answers[TESTS] is None else seen_by_tests(answers[TESTS]),
                     "said": _said(answers).replace(f"{study.folder}/tree/", ""),

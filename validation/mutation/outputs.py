@@ -16,7 +16,7 @@ from reference_models import MODELS
 from symofros.blocks import ForwardDynamics, PythonBlock
 from symofros.tools import METHODS
 from validation.mechanics.geometry import Array
-from validation.mutation.check_judge import BEAMS, FILES, GENERAL, subject
+from validation.mutation.check_judge import BEAMS, GENERAL, READ, subject
 
 ROUNDING = 1e-11  # Of the largest entry; other orders of the same operations differ by less.
 MOTION_ROUNDING = 1e-8  # Of runs, in which rounding grows.
@@ -131,7 +131,7 @@ def _values() -> Iterator[tuple[str, Callable[[], Any]]]:
             results.append(_flat(_called(model, function, q, v, a, u)))
         return np.concatenate(results)
 
-    for name in dict.fromkeys((*GENERAL, *BEAMS, *FILES)):
+    for name in dict.fromkeys((*GENERAL, *BEAMS, *READ["urdf"], *READ["mjcf"])):
         yield f"values {name}", partial(values, name)
 
 

@@ -76,7 +76,7 @@ class Overlay:
         Args:
             module: Module of the function.
             function: Name of the function; it returns JSON.
-            limit: Time after which the child is ended [s].
+            limit: Processor time after which the child is ended [s].
             arguments: Arguments of the function.
 
         Returns:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 
 from validation.mutation.fault import KINDS
 from validation.mutation.measure import BOTH, CHECK_ALONE, measure
-from validation.mutation.study import CAUGHT, OPEN, STILLBORN, SURVIVED, UNCHANGED
+from validation.mutation.study import ARGUED, CAUGHT, HALTED, OPEN, STILLBORN, SURVIVED, UNCHANGED
 from validation.reporting.numbers import counted
 from validation.reporting.record import Bullets, Data, Fact, Fold, Report, Section, Table, Topic
 
@@ -16,19 +16,22 @@ _TEXT = (
     "index, a frame or a transpose, a dropped term, the edge of a comparison, a constant, swapped arguments. The "
     "package with the fault is judged by `check` over a few small models, and by the tests of the module. **No "
     "result changed**: neither judge sees it, and the C text, the values of functions, motions and analyses of a "
-    "battery are those of the sound package but for rounding. **Open**: the tests were not asked yet, "
+    "battery are those of the sound package but for rounding; or a person has argued that no result depends on it, with "
+    "the reason below. **Does not end**: the process of `check` crashes or runs on, which is no verdict; such faults count "
+    "neither as seen nor as missed. **Open**: the tests were not asked yet, "
     "or their time was over before all had run. {} that the C compiler refuses are left out. Of the tests alone: "
     "{:.1%} of the {} faults that they were asked about."
 )
 _COLUMNS = """#planted; #check; #tests alone = {tests}; #neither = {survived} ? no survived;
-    #no result changed = {unchanged}; #open"""
+    #no result changed = {unchanged}; #does not end = {halted}; #open"""
 
 
 def _row(rows: Sequence[Data], label: str = "") -> Data:
     fates = Counter(row["fate"] for row in rows)
     valid = [row for row in rows if row["fate"] != STILLBORN]
     check = sum(row["seen_by_check"] for row in valid)
-    counts = {"survived": fates[SURVIVED], "unchanged": fates[UNCHANGED], "open": fates[OPEN]}
+    counts = {"survived": fates[SURVIVED], "unchanged": fates[UNCHANGED] + fates[ARGUED]}
+    counts |= {"halted": fates[HALTED], "open": fates[OPEN]}
     return {"label": label, "planted": len(valid), "check": check, "tests": fates[CAUGHT] - check, **counts}
 
 
@@ -44,7 +47,9 @@ def compose(data: Data) -> Report:
     rows, scores, total = data["faults"], data["scores"], _row(data["faults"])
     seconds = sum(row["seconds"] for row in rows) / max(1, len(rows))
     survivors = tuple(f"`{row['id']}`: {row['said']}" for row in rows if row["fate"] == SURVIVED)
-    unchanged = tuple(f"`{row['id']}`" for row in rows if row["fate"] == UNCHANGED)
+    unchanged = tuple(f"`{row['id']}`: the same outputs" for row in rows if row["fate"] == UNCHANGED)
+    unchanged += tuple(f"`{row['id']}`: {row['argued']}" for row in rows if row["fate"] == ARGUED)
+    halts = tuple(f"`{row['id']}`: {row['said']}" for row in rows if row["fate"] == HALTED)
     refused = counted(len(rows) - total["planted"], "fault")
     seen = f"{scores['check']:.1%} of those known to change a result, `check` and tests {scores['both']:.1%}"
     modules = counted(len({row["module"] for row in rows}), "module")
@@ -58,6 +63,7 @@ def compose(data: Data) -> Report:
             Section("By kind of fault", (_table("kind of fault", rows, lambda row: str(row["kind"]), tuple(KINDS)),)),
             Section("By module", (Fold("All modules", (_table("module", rows, lambda row: str(row["module"])),)),)),
             Section("What survived", (Bullets(survivors),)),
+            Section("What makes check crash, or not end", (Bullets(halts),)),
             Section("What changed no result", (Fold("All", (Bullets(unchanged),)),)),
         ),
         facts=(

@@ -23,6 +23,7 @@ PRELOADED = (
     " pinocchio mujoco casadi exudyn yaml sksundae pytest hypothesis _pytest.assertion.rewrite typer rich.console"
 ).split()
 MEMORY = 12 << 30  # Bytes of address space: a fault may ask for all there is.
+WAIT = 8  # Seconds that a child is waited for, over those of processor time: other work delays it.
 
 
 def main() -> None:
@@ -39,7 +40,7 @@ def main() -> None:
 
 
 def _served(task: dict[str, Any]) -> dict[str, Any]:
-    """How a task ended in a child of its own, which gets `limit` seconds."""
+    """How a task ended in a child of its own, which gets `limit` seconds of processor time, and WAIT times as many."""
     began = time.perf_counter()
     reading, writing = os.pipe()
     child = os.fork()
@@ -49,7 +50,7 @@ def _served(task: dict[str, Any]) -> dict[str, Any]:
     os.close(writing)
     received, ended = b"", False
     while not ended:
-        left = began + task["limit"] - time.perf_counter()
+        left = began + WAIT * task["limit"] - time.perf_counter()
         ready = select.select([reading], [], [], max(0.0, left))[0]
         if not ready:
             break
@@ -64,6 +65,7 @@ def _served(task: dict[str, Any]) -> dict[str, Any]:
     answer = json.loads(received) if received and ended else None
     fate = "answered" if answer is not None else "crashed" if ended else "timed out"
     code = os.waitstatus_to_exitcode(status)
+    fate = "timed out" if code == -signal.SIGXCPU else fate
     return {"fate": fate, "code": code, "answer": answer, "seconds": round(time.perf_counter() - began, 2)}
 
 
@@ -72,7 +74,7 @@ def _work(task: dict[str, Any], writing: int) -> None:
     code = 1
     try:
         os.setsid()
-        _limit_memory()
+        _limit_resources(task["limit"])
         log = os.open(task["log"], os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
         os.dup2(log, 1)
         os.dup2(log, 2)
@@ -91,11 +93,12 @@ def _work(task: dict[str, Any], writing: int) -> None:
         os._exit(code)
 
 
-def _limit_memory() -> None:
+def _limit_resources(seconds: float) -> None:
     with suppress(ImportError, ValueError, OSError):
         resource = importlib.import_module("resource")
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        resource.setrlimit(resource.RLIMIT_CPU, (int(seconds) + 1, int(seconds) + 5))
 
 
 if __name__ == "__main__":

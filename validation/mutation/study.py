@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -13,13 +14,17 @@ from validation.mutation.fault import SourceFault
 from validation.mutation.overlay import Overlay
 from validation.mutation.sampling import drawn
 from validation.mutation.store import Store
-from validation.mutation.tests_judge import HUNG, chosen
+from validation.mutation.tests_judge import chosen
 
 CHECK, OUTPUTS, TESTS, SOUND = "check", "outputs", "tests", "sound"
-# Fates of a fault. "stillborn": the C compiler refuses it, so that nobody could use it.
+# Fates of a fault. "stillborn": the C compiler refuses it, so that nobody could use it; "halted": check does not end,
+# or its process crashes, which is seen by whoever runs it, but is no verdict; "argued": looked at by a person.
 STILLBORN, CAUGHT, UNCHANGED, SURVIVED, OPEN = "stillborn", "caught", "no result changed", "survived", "open"
-CHECK_LIMIT, OUTPUTS_LIMIT, TESTS_LIMIT, SOUND_LIMIT = 120.0, 240.0, 240.0, 2400.0
-TESTS_BUDGET = 6.0  # CPU time after which no further test of a fault begins [s].
+HALTED, ARGUED = "halted", "argued"
+# Processor times [s].
+CHECK_LIMIT, OUTPUTS_LIMIT, TESTS_LIMIT, SOUND_LIMIT = 90.0, 120.0, 90.0, 600.0
+TESTS_BUDGET = 15.0  # Processor time after which no further test of a fault begins [s].
+_ARGUED = Path(__file__).with_name("argued.json")
 _CHECK_JUDGE, _TESTS_JUDGE = "validation.mutation.check_judge", "validation.mutation.tests_judge"
 _OUTPUTS = "validation.mutation.outputs"
 
@@ -38,6 +43,7 @@ class Study:
         folder: Folder of copy, answers, outputs of the sound package.
         report: Told what was done.
         failing: Tests that fail without a fault.
+        argued: Fault -> why it changes no result, or what is changed is none; looked at by a person.
     """
 
     faults: tuple[SourceFault, ...]
@@ -46,6 +52,7 @@ class Study:
     folder: Path
     report: Report
     failing: set[str] = field(default_factory=set)
+    argued: dict[str, str] = field(default_factory=lambda: json.loads(_ARGUED.read_text(encoding="utf-8")))
 
     @classmethod
     def begun(cls, root: Path, folder: Path, count: int, seed: int, cache: Path | None, report: Report) -> Study:
@@ -77,6 +84,8 @@ class Study:
             for fault in faults():
                 if time.monotonic() > end:
                     return
+                if fault.id in self.argued or (stage != CHECK and halted(self.store.get(fault.id, CHECK))):
+                    continue
                 self._asked(fault, stage, ask)
                 self.report(f"{stage}: {fault.module}")
 
@@ -143,6 +152,10 @@ class Study:
             return STILLBORN
         if seen_by_check(check) or seen_by_tests(tests):
             return CAUGHT
+        if halted(check):
+            return HALTED
+        if fault.id in self.argued:
+            return ARGUED
         if check is None or tests is None or outputs is None or not (tests["answer"] or {}).get("whole"):
             return OPEN  # Tests that ran out of time have said nothing.
         return UNCHANGED if unchanged(outputs) else SURVIVED
@@ -160,14 +173,17 @@ def unchanged(answer: Answer | None) -> bool:
 
 
 def seen_by_check(answer: Answer | None) -> bool:
-    """Whether `check` said so, or could not go on."""
-    return answer is not None and (answer["answer"] or {}).get("status") != "passed"
+    """Whether `check` said so."""
+    said = (answer or {}).get("answer") or {}
+    return bool(said.get("status", "passed") != "passed")
+
+
+def halted(answer: Answer | None) -> bool:
+    """Whether `check` did not end, or its process crashed."""
+    return answer is not None and answer["answer"] is None
 
 
 def seen_by_tests(answer: Answer | None) -> bool:
-    """Whether a test failed, or could not go on; a run that takes too long as a whole has seen nothing."""
-    if answer is None:
-        return False
-    if answer["fate"] == "answered":
-        return bool(answer["answer"].get("status") != "passed")
-    return bool(answer["fate"] == "crashed" or answer.get("code") == HUNG)
+    """Whether a test failed; one that crashes or does not end has seen nothing."""
+    said = (answer or {}).get("answer") or {}
+    return bool(said.get("status", "passed") != "passed")

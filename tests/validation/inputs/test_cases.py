@@ -5,7 +5,7 @@ import pytest
 import reference_models
 import symofros as sf
 from tests.validation.subjects import URDF
-from validation.inputs.cases import ROBOTS, Case, named, robot_case, standard_set
+from validation.inputs.cases import FILES, ROBOTS, Case, named, robot_case, standard_set
 
 
 def test_robots_are_found_in_the_package() -> None:
@@ -15,9 +15,9 @@ def test_robots_are_found_in_the_package() -> None:
         assert case.path is not None and case.path.is_file() and case.floating_base == robot.floating_base
 
 
-def test_the_standard_set_is_robots_and_reference_models() -> None:
+def test_the_standard_set_is_robots_reference_models_and_files() -> None:
     labels = [case.label for case in standard_set()]
-    assert labels == [*ROBOTS, *reference_models.MODELS] and len(labels) == len(set(labels))
+    assert labels == [*ROBOTS, *reference_models.MODELS, *FILES] and len(labels) == len(set(labels))
 
 
 def test_a_package_that_is_not_there(monkeypatch: pytest.MonkeyPatch) -> None:

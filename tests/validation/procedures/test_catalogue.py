@@ -1,0 +1,80 @@
+"""Procedures agree with formulas of their own, and a wrong one on either side shows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from validation.mechanics.assembly import assemble
+from validation.procedures import analyses, batches, catalogue, runs, steps
+from validation.procedures.catalogue import PROCEDURES, first_scene, judge_procedures
+from validation.procedures.scene import Cell, Scene
+
+
+def scene(name: str) -> Scene:
+    return first_scene(MODELS[name], assemble(MODELS[name]))
+
+
+def wrong(cells: Iterator[Cell]) -> list[str]:
+    return [cell.name for cell in cells if not cell.error <= cell.tolerance]
+
+
+@pytest.mark.parametrize("name", ["heavy_top", "sleigh", "puma560"])
+def test_procedures_agree(name: str) -> None:
+    rows = list(judge_procedures(name, MODELS[name], assemble(MODELS[name])))
+    assert rows and all(row.ok for row in rows), [row for row in rows if not row.ok]
+
+
+def test_every_label_is_a_reference_model() -> None:
+    assert set(PROCEDURES) <= set(MODELS)
+
+
+def test_a_file_that_is_called_like_a_reference_model_is_none() -> None:
+    other = replace(MODELS["heavy_top"], name="heavy_top")
+    assert not list(judge_procedures("heavy_top", other, assemble(other)))
+
+
+def test_a_wrong_coefficient_of_a_method_shows(monkeypatch: pytest.MonkeyPatch) -> None:
+    """On the side of the formulas, which stands for one in C."""
+    rk4 = steps.EXPLICIT["rk4"]
+    monkeypatch.setitem(steps.STEPS, "rk4", replace(rk4, b=rk4.b + [1e-6, -1e-6, 0, 0]).step)
+    assert wrong(runs.fixed_steps(scene("heavy_top"))) == ["steps by rk4"]
+
+
+def test_a_wrong_safety_factor_shows(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(steps, "SAFETY", 0.91)
+    assert "steps chosen by dopri5" in wrong(runs.chosen_steps(scene("heavy_top")))
+
+
+def test_a_wrong_sign_of_the_gyroscopic_terms_shows(monkeypatch: pytest.MonkeyPatch) -> None:
+    top = scene("heavy_top")
+    linearize = type(top.model).linearize
+
+    def turned(model: sf.Model, *given: np.ndarray, **stated: object) -> object:
+        A, *rest = linearize(model, *given, **stated)  # type: ignore[call-overload]
+        A[: model.nv, : model.nv] *= -1.0
+        return (A, *rest) if "outputs" not in stated else linearize(model, *given, **stated)  # type: ignore[call-overload]
+
+    monkeypatch.setattr(type(top.model), "linearize", turned)
+    assert wrong(analyses.linearised(top)) == ["A of the kinematics"]
+
+
+def test_a_trajectory_of_a_batch_that_takes_other_inputs_shows(monkeypatch: pytest.MonkeyPatch) -> None:
+    simulate: Callable[..., sf.Trajectory] = sf.simulate
+    monkeypatch.setattr(sf, "simulate", lambda *given, **stated: simulate(*given, **{**stated, "u": None}))
+    assert "a batch by rk4" in wrong(batches.trajectories(scene("double_pendulum")))
+
+
+def test_what_a_procedure_raises_is_a_failed_row(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(_: Scene) -> Iterator[Cell]:
+        yield Cell("before", 0.0, 1.0)
+        raise sf.SymofrosError(sf.Problem("a", "b", "c", "d"))
+
+    monkeypatch.setattr(catalogue, "PROCEDURES", {"heavy_top": (refused,)})
+    rows = list(judge_procedures("heavy_top", MODELS["heavy_top"], assemble(MODELS["heavy_top"])))
+    assert [row.status for row in rows] == ["agree", "failed"]

@@ -1,0 +1,147 @@
+"""Which procedures are asked of which models: each of a few small ones that have what the procedure turns on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+import reference_models
+import symofros as sf
+from validation.comparison.errors import Comparison
+from validation.mechanics.assembly import Assembly
+from validation.mechanics.geometry import Array
+from validation.procedures import analyses, batches, diagrams, runs
+from validation.procedures.scene import Cell, Manifold, Scene
+
+Procedure = Callable[[Scene], Iterator[Cell]]
+# Name of the other side of these rows: what is compared with is no engine.
+ENGINE = "formulas"
+SEED = 3
+SMALL = 0.03
+
+
+@dataclass(frozen=True)
+class _Driven:
+    """Inputs of a pendulum of two joints: one by a formula of the state, one that is smooth, or sampled, in time."""
+
+    sampled: bool
+
+    def __call__(self, t: float, q: Array, v: Array) -> Array:
+        second = np.interp(t, [0.0, 0.3, 0.5], [1.0, -1.0, 2.0]) if self.sampled else 0.4 * np.sin(5 * t)
+        return np.array([0.3 * np.cos(3 * t) - 0.2 * q[1] * v[0], second])
+
+    @property
+    def stated(self) -> dict[str, object]:
+        """The same, as runs are given them."""
+        samples = sf.Signal([0.0, 0.3, 0.5], [1.0, -1.0, 2.0])
+        return {"q1": "0.3*cos(3*t) - 0.2*q2*dq1", "q2": samples if self.sampled else "0.4*sin(5*t)"}
+
+
+def _inputs(sampled: bool, procedure: Procedure) -> Procedure:
+    law = _Driven(sampled)
+    return lambda scene: procedure(replace(scene, law=law, u=law.stated))
+
+
+def _events(scene: Scene) -> Iterator[Cell]:
+    formulas = {
+        "both 0.1": sf.Event("q1 - 0.1"),
+        "falling 0.3": sf.Event("q2 - 0.3", "falling"),
+        "rising -0.2": sf.Event("q1 + 0.2", "rising"),
+        "end 1.9": sf.Event("q2 - 1.9", "both", True),
+    }
+    return runs.events(scene, formulas, {"both 0.1": 0, "falling 0.3": 1, "rising -0.2": 0, "end 1.9": 1})
+
+
+def _oscillations(_: Scene) -> Iterator[Cell]:
+    model = batches.oscillator()
+    yield from batches.amplified(model)
+    yield from batches.remarks(model)
+
+
+_MOVED: tuple[Procedure, ...] = (runs.fixed_steps, runs.chosen_steps, analyses.linearised, analyses.differentiated)
+PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
+    "pendulum": (_oscillations, lambda _: diagrams.switched()),
+    "cart_pole": (lambda scene: diagrams.looped(scene.system),),
+    "double_pendulum": (
+        _inputs(True, runs.fixed_steps),
+        _inputs(False, runs.chosen_steps),
+        _inputs(False, runs.implicit_steps),
+        _inputs(True, runs.records),
+        _events,
+        lambda scene: runs.multistep(scene, ("cvode", "cvode_adams")),
+        runs.pace,
+        batches.trajectories,
+        batches.states,
+        analyses.linearised,
+        analyses.differentiated,
+        lambda scene: analyses.at_rest(scene, scene.q),
+        lambda scene: analyses.at_rest(scene, scene.q, ("q2",)),
+        lambda scene: analyses.driven(scene, ("q1", "q2")),
+    ),
+    "heavy_top": (*_MOVED, runs.implicit_steps, batches.trajectories),
+    "torque_free_body": (*_MOVED, runs.implicit_steps),
+    "four_bar": (
+        *_MOVED,
+        runs.implicit_steps,
+        runs.stabilised,
+        lambda scene: runs.multistep(scene, ("ida", "cvode")),
+        batches.trajectories,
+        lambda scene: analyses.closed(scene, "q1"),
+        lambda scene: analyses.at_rest(scene, scene.q),
+        lambda scene: analyses.driven(scene, ("q1", "q2")),
+    ),
+    "sleigh": (runs.implicit_steps,),
+    "rolling_disc": (runs.fixed_steps, runs.chosen_steps, lambda scene: analyses.closed(scene, scene.model.names.v[3])),
+    "flexible_pendulum": (
+        runs.implicit_steps,
+        lambda scene: analyses.at_rest(scene, scene.model.neutral() + 0.1),
+        batches.states,
+    ),
+    "puma560": (
+        lambda scene: analyses.reached(scene, scene.model.names.frames[-1]),
+        lambda scene: analyses.traced(scene, scene.model.names.frames[-1]),
+    ),
+    "stewart": (lambda scene: analyses.driven(scene, scene.model.names.u),),
+}
+
+
+def judge_procedures(label: str, system: sf.System, assembly: Assembly) -> Iterator[Comparison]:
+    """What is done with the equations of a model, against formulas of its own; nothing for most models.
+
+    Args:
+        label: Name of the model in tables.
+        system: Description; those of reference models count, not of files that are called the same.
+        assembly: The same as numbers.
+    """
+    procedures = PROCEDURES.get(label, ())
+    if not procedures or system is not reference_models.MODELS[label]:
+        return
+    scene = first_scene(system, assembly)
+    for procedure in procedures:
+        try:
+            yield from (row(label, cell) for cell in procedure(scene))
+        except sf.SymofrosError as error:
+            yield Comparison(label, ENGINE, "procedure", "failed", note=f"{type(error).__name__}: {error}")
+
+
+def row(label: str, cell: Cell) -> Comparison:
+    """A cell as a row of the check's table."""
+    agrees = cell.error <= cell.tolerance
+    return Comparison(
+        label, ENGINE, cell.name, "agree" if agrees else "disagree", 1, cell.error, cell.tolerance, note=cell.note
+    )
+
+
+def first_scene(system: sf.System, assembly: Assembly) -> Scene:
+    """A model at a random state, assembled, with constant inputs."""
+    model = sf.compile(system)
+    q, v = model.random_state(np.random.default_rng(SEED))
+    if model.nc:
+        start = sf.assemble(model, q, v)
+        q, v = start.q, start.v
+    if any(isinstance(body, sf.Beam) for body in system.bodies):  # Small, as its theory asks for.
+        q, v = SMALL * q, SMALL * v
+    u = np.linspace(0.3, 0.5, model.nu)
+    return Scene(model, system, Manifold.of(assembly), q, v, lambda *_: u, u)

@@ -1,0 +1,75 @@
+"""Block diagrams in C against block by block from Python, and against closed forms."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+import symofros as sf
+from symofros import blocks
+from validation.procedures.scene import Cell, off
+
+ROUNDING = 1e-10
+
+
+def looped(plant: sf.System) -> Iterator[Cell]:
+    """Two plants, one of them under a sampled controller with a filter, delays and several rates.
+
+    Args:
+        plant: A mechanism of two coordinates with one input.
+    """
+    d = sf.Diagram("loop")
+    for name in ("plant", "other"):
+        d.add_model(name, plant, start=dict(zip(sf.compile(plant).names.q, (0.1, 0.2), strict=True)))
+    d.add(blocks.Sine(name="wave", amplitude=0.4, frequency=3.0))
+    d.add(blocks.TransferFunction(name="filter", num=(1.0,), den=(0.05, 1.0)), u="wave.y")
+    d.add(blocks.Pick(name="angle", entries=[1]), u="plant.q")
+    d.add(blocks.UnitDelay(name="late", period=0.03, offset=0.01), u="angle")
+    d.add(blocks.Hold(name="held", period=0.02), u="filter")
+    d.add(blocks.Formula(name="force", formulas={"y": ["2*a - 3*b[0] + 0.1*sin(t)"]}), a="held", b="late")
+    d.add(blocks.RateLimit(name="slow", rising=3.0, falling=2.0, period=0.01), u="force.y")
+    d.add(blocks.Saturation(name="limited", low=-0.5, high=0.6), u="slow")
+    d.add(blocks.ForwardDynamics(name="plant", model="plant"), u="limited")
+    d.add(blocks.ForwardDynamics(name="other", model="other"), u="slow")
+    simulation = sf.Simulation(d)
+    names = ("plant.q", "plant.v", "plant.a", "other.q", "filter.y", "late.y", "limited.y")
+    for method in ("rk4", "euler"):
+        run = simulation.run(0.107, dt=2e-3, record=0.004, method=method)
+        other = simulation.interpret(0.107, dt=2e-3, record=0.004, method=method, compiled=False)
+        error = off(run.t, other.t) + max(off(run[name], other[name]) for name in names)
+        yield Cell(f"a diagram by {method}", error + float(not run.outcome.ok), ROUNDING)
+    again = simulation.run(0.107, dt=2e-3, record=0.004, method="euler", threads=2)
+    yield Cell("a diagram by two threads", max(off(again[name], run[name]) for name in names), ROUNDING)
+    fine = [simulation.run(0.107, method=name, rtol=1e-9, atol=1e-9, record=0.107) for name in ("dop853", "dopri5")]
+    yield Cell("a diagram by chosen steps", off(fine[0]["plant.q"][-1], fine[1]["plant.q"][-1]), 1e-6)
+
+
+def switched() -> Iterator[Cell]:
+    """A relay that a sine switches: its crossings and the time that it was on."""
+    d = sf.Diagram("switch")
+    d.add(blocks.Sine(name="wave", amplitude=1.0, frequency=1.0))
+    d.add(blocks.Relay(name="relay", lower=-0.5, upper=0.5, on=2.0, off=-1.0), u="wave.y")
+    d.add(blocks.Integrator(name="sum"), u="relay")
+    run = sf.Simulation(d).run(1.3, dt=0.01, record=0.1)
+    rise, fall = 1 / 12, 7 / 12  # sin(2 pi t) = 1/2 rising, -1/2 falling.
+
+    def integral(t: float) -> float:
+        ends = np.clip([rise, fall, 1 + rise, 10.0], 0.0, t)
+        on = ends[1] - ends[0] + max(0.0, t - ends[2])
+        return float(2.0 * on - (t - on))
+
+    wanted = np.array([integral(float(t)) for t in run.t])
+    # Cubics locate the crossings of a sine, to the fourth power of the step.
+    yield Cell("a relay that a sine switches", off(run["sum.y"].ravel(), wanted), 1e-5)
+    inner = [t for t in run.t if abs(t * 10 - round(t * 10)) > 1e-6]
+    crossings = np.array(sorted(set(np.round(inner, 6))))
+    yield Cell("crossings", off(crossings, np.array([rise, fall, 1 + rise])), 1e-5)
+    lag = sf.Diagram("lag")
+    lag.add(blocks.Sine(name="wave", amplitude=1.0, frequency=7.0 / (2 * math.pi)))
+    lag.add(blocks.TransferFunction(name="lag", num=(1.0,), den=(0.1, 1.0)), u="wave.y")
+    run = sf.Simulation(lag).run(1.0, method="dop853", rtol=1e-11, atol=1e-13, record=0.25)
+    b, t = 0.7, run.t
+    wanted = (np.sin(7 * t) - b * np.cos(7 * t) + b * np.exp(-10 * t)) / (1 + b * b)
+    yield Cell("a lag", off(run["lag.y"].ravel(), wanted), 1e-9)

@@ -1,0 +1,199 @@
+"""Runs of ours against the same runs retold: steps fixed and chosen, records, events, inputs, stabilisation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from scipy.optimize import brentq
+
+import symofros as sf
+from symofros.tools import METHODS
+from validation.mechanics.geometry import Array
+from validation.procedures.scene import Cell, Scene, off
+from validation.procedures.steps import STEPS, Path, alpha_run, retold, variational_run
+
+# Rounding of some ten steps; where a Jacobian is of finite differences, what these leave; where steps are chosen by an
+# estimate, a relative rounding of the estimate moves each end a little.
+EXACT, DIFFERENCED, CHOSEN, DIFFERENCED_STEPS = 1e-10, 1e-6, 1e-6, 1e-4
+T0, T_END, STEP = 0.25, 0.4, 0.02
+TOLERANCES = {"dopri5": 1e-4, "dop853": 1e-7, "rodas4": 1e-4}
+IMPLICIT = ("implicit_euler", "rodas4")
+# Solvers of variable order err by their own estimates: what they are off by, over the tolerance.
+MULTISTEP = 300.0
+
+
+def fixed_steps(scene: Scene) -> Iterator[Cell]:
+    """Each method with fixed steps."""
+    for name in STEPS:
+        adaptive = False if METHODS[name].adaptive else None
+        run = sf.simulate(
+            scene.model, scene.q, scene.v, T_END, u=scene.u, method=name, dt=STEP, t0=T0, adaptive=adaptive
+        )
+        tolerance = DIFFERENCED if name in IMPLICIT else EXACT
+        yield Cell(f"steps by {name}", _off(scene, run, retold(scene, name, T0, T_END, STEP)), tolerance)
+
+
+def implicit_steps(scene: Scene) -> Iterator[Cell]:
+    """Generalised alpha, and the variational rule where nothing is constrained."""
+    steps = 4
+    for name, reference in (("generalized_alpha", alpha_run), ("variational", variational_run)):
+        if name == "variational" and scene.model.nc:
+            continue
+        run = sf.simulate(scene.model, scene.q, scene.v, steps * STEP, u=scene.u, method=name, dt=STEP)
+        q, v = reference(scene, STEP, steps)
+        # MINPACK's solution is good to 1e-13 of the accelerations, whose steps count h^2.
+        yield Cell(f"steps by {name}", _worst((run.q, q), (run.v, v)), 1e-8)
+
+
+def chosen_steps(scene: Scene) -> Iterator[Cell]:
+    """Methods that choose their steps, with records on a grid along their dense output, and without."""
+    for name, tolerance in TOLERANCES.items():
+        if name == "rodas4" and scene.manifold.nq != scene.manifold.nv:
+            continue  # Its estimate by Jacobians of finite differences chooses other steps.
+        both: dict[str, Any] = {"rtol": tolerance, "atol": 0.1 * tolerance}
+        path = retold(scene, name, T0, T_END, 0.0, (tolerance, 0.1 * tolerance))
+        given: dict[str, Any] = {"u": scene.u, "method": name, "t0": T0, **both}
+        run = sf.simulate(scene.model, scene.q, scene.v, T_END, **given)
+        bound = DIFFERENCED_STEPS if name in IMPLICIT else CHOSEN
+        yield Cell(f"steps chosen by {name}", _off(scene, run, path), bound)
+        grid = np.array([T0, 0.2617, 0.3, 0.3511, T_END])
+        run = sf.simulate(scene.model, scene.q, scene.v, T_END, output=grid, **given)
+        states = [path.within(t) for t in grid]
+        yield Cell(f"records within steps of {name}", _off_states(scene, run, grid, states), bound)
+
+
+def records(scene: Scene) -> Iterator[Cell]:
+    """Which steps are recorded, on a grid within fixed steps, and where a bound ends the run or the step."""
+    path = retold(scene, "rk4", T0, T_END, STEP)
+    given: dict[str, Any] = {"u": scene.u, "method": "rk4", "dt": STEP, "t0": T0}
+    run = sf.simulate(scene.model, scene.q, scene.v, T_END, every=3, **given)
+    kept = sorted({*range(0, len(path.t), 3), len(path.t) - 1})
+    yield Cell("every third step", _off_states(scene, run, path.t[kept], [(path.q[i], path.v[i]) for i in kept]), EXACT)
+    run = sf.simulate(scene.model, scene.q, scene.v, T_END, output=0.013, **given)
+    grid = np.asarray(T0 + 0.013 * np.arange(12), dtype=np.float64)
+    yield Cell("a grid", _off_states(scene, run, grid, [path.within(t) for t in grid]), EXACT)
+    run = sf.simulate(scene.model, scene.q, scene.v, T_END, max_steps=3, **given)
+    yield Cell("no more steps than asked for", off(run.t, path.t[:4]) + float(run.outcome.kind != "interrupted"), EXACT)
+    free = sf.simulate(scene.model, scene.q, scene.v, T_END, method="dopri5", rtol=1e-2, atol=1e-2)
+    short = sf.simulate(scene.model, scene.q, scene.v, T_END, method="dopri5", rtol=1e-2, atol=1e-2, max_step=0.01)
+    longest = float(np.diff(short.t).max()) / 0.01 - 1.0
+    yield Cell("longest step", abs(longest) + float(np.diff(free.t).max() < 0.02), 1e-9)
+
+
+def events(scene: Scene, formulas: Mapping[str, sf.Event], values: Mapping[str, int]) -> Iterator[Cell]:
+    """Zeros of coordinates along the path: times, states, directions, and where a terminal one ends the run.
+
+    Args:
+        scene: Model and first state.
+        formulas: Events, each the coordinate of `values` less a number that its name ends with.
+        values: Name of an event -> index of its coordinate.
+    """
+    for method, tolerances in (("dopri5", (1e-4, 1e-5)), ("rk4", (0.0, 0.0))):
+        t_end = 2.0
+        path = retold(scene, method, 0.0, t_end, 0.0 if tolerances[0] else 0.05, tolerances)
+        met = sorted(
+            (t, name) for name, event in formulas.items() for t in _zeros(path, values[name], _level(name), event.sign)
+        )
+        stop = next((i for i, (_, name) in enumerate(met) if formulas[name].terminal), len(met) - 1)
+        met = met[: stop + 1]
+        options: dict[str, Any] = {"rtol": tolerances[0], "atol": tolerances[1]} if tolerances[0] else {"dt": 0.05}
+        run = sf.simulate(scene.model, scene.q, scene.v, t_end, u=scene.u, method=method, events=formulas, **options)
+        error = float("inf")
+        if [one.name for one in run.events] == [name for _, name in met]:
+            states = [path.within(t) for t, _ in met]
+            error = _worst(
+                ([one.t for one in run.events], [t for t, _ in met]),
+                ([one.q for one in run.events], [q for q, _ in states]),
+                ([one.v for one in run.events], [v for _, v in states]),
+            )
+            if met and formulas[met[-1][1]].terminal:
+                error = max(error, _worst(([run.t[-1]], [met[-1][0]]), (run.q[-1], states[-1][0])))
+                error += float(run.outcome.kind != "event")
+        yield Cell(f"events by {method}", error, CHOSEN, f"{len(met)} events")
+
+
+def _level(name: str) -> float:
+    return float(name.rpartition(" ")[2])
+
+
+def _zeros(path: Path, index: int, level: float, sign: int) -> Iterator[float]:
+    for start, end, before, after in zip(
+        path.t[:-1], path.t[1:], path.q[:-1, index] - level, path.q[1:, index] - level, strict=True
+    ):
+        rises, falls = before < 0.0 <= after, before > 0.0 >= after
+        if (rises and sign >= 0) or (falls and sign <= 0):
+            yield float(brentq(lambda t: path.within(t)[0][index] - level, start, end, xtol=1e-15, rtol=1e-15))
+
+
+def stabilised(scene: Scene) -> Iterator[Cell]:
+    """Constraints kept by gains, by those of a step's length, and not at all."""
+    away = scene.manifold.moved(scene.q, np.full(scene.model.nv, 1e-3))
+    cases: tuple[tuple[Any, dict[str, Any], tuple[float, float], float], ...] = (
+        ("baumgarte", {"gains": (5.0, 7.0)}, (5.0, 7.0), 0.02),
+        ("baumgarte", {}, (10.0, 10.0), 0.05),
+        ("baumgarte", {}, (20.0, 20.0), 0.01),
+        ("none", {}, (0.0, 0.0), 0.02),
+    )
+    for kind, given, gains, h in cases:
+        q = away if kind == "baumgarte" else scene.q
+        freed = replace(scene, q=q, gains=gains, projects=False)
+        run = sf.simulate(scene.model, q, scene.v, 0.1, u=scene.u, method="rk4", dt=h, stabilisation=kind, **given)
+        name = f"stabilisation {kind} {'' if not given else given['gains']} at {h:g} s"
+        yield Cell(name, _off(freed, run, retold(freed, "rk4", 0.0, 0.1, h)), EXACT)
+
+
+def multistep(scene: Scene, methods: tuple[str, ...]) -> Iterator[Cell]:
+    """SUNDIALS' methods against a tight run, and how their error follows the tolerance."""
+    exact = sf.simulate(scene.model, scene.q, scene.v, 0.5, u=scene.u, method="dop853", rtol=1e-12, atol=1e-13)
+    for name in methods:
+        keeps: dict[str, Any] = {"stabilisation": "baumgarte"} if scene.model.nc and name != "ida" else {}
+        for tolerance in (1e-4, 1e-8):
+            given: dict[str, Any] = {"u": scene.u, "method": name, "rtol": tolerance, "atol": tolerance, **keeps}
+            run = sf.simulate(scene.model, scene.q, scene.v, 0.5, output=[0.1, 0.3, 0.5], **given)
+            error = _worst((run.q[-1], exact.q[-1]), (run.v[-1], exact.v[-1])) + float(not run.outcome.ok)
+            yield Cell(f"{name} at {tolerance:g}", error, MULTISTEP * tolerance)
+
+
+def pace(scene: Scene) -> Iterator[Cell]:
+    """Inputs by formula, by samples and by a Python function are the same inputs."""
+    names = scene.model.names.u
+    t = np.linspace(0.0, 1.0, 9)
+    samples = np.outer(np.sin(3 * t), np.arange(1, len(names) + 1))
+
+    def called(at: float, _q: Array, _v: Array) -> Array:
+        return np.array([np.interp(at, t, column) for column in samples.T])
+
+    runs = [
+        sf.simulate(scene.model, scene.q, scene.v, 0.4, u=u, method="rk4", dt=STEP)
+        for u in (
+            called,
+            sf.Signal(t, samples),
+            {name: sf.Signal(t, samples[:, i]) for i, name in enumerate(names)},
+        )
+    ]
+    wanted = np.array([called(at, scene.q, scene.v) for at in runs[0].t])
+    for run, kind in zip(runs, ("a function", "a signal of all", "signals by name"), strict=True):
+        yield Cell(f"inputs by {kind}", _worst((run.u, wanted), (run.v, runs[0].v)), EXACT)
+
+
+def _off(scene: Scene, run: sf.Trajectory, path: Path) -> float:
+    if run.q.shape != path.q.shape:
+        return float("inf")
+    u = np.array([scene.law(t, q, v) for t, q, v in zip(path.t, path.q, path.v, strict=True)])
+    return _worst(
+        (run.t, path.t), (scene.manifold.same_sign(run.q, path.q), path.q), (run.v, path.v), (run.u, u)
+    ) + float(not run.outcome.ok)
+
+
+def _off_states(scene: Scene, run: sf.Trajectory, t: Array, states: list[tuple[Array, Array]]) -> float:
+    q, v = np.array([q for q, _ in states]), np.array([v for _, v in states])
+    if run.q.shape != q.shape:
+        return float("inf")
+    return _worst((run.t, t), (scene.manifold.same_sign(run.q, q), q), (run.v, v))
+
+
+def _worst(*pairs: tuple[object, object]) -> float:
+    return max(off(np.asarray(ours), np.asarray(reference)) for ours, reference in pairs)
