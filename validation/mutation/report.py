@@ -16,9 +16,9 @@ _TEXT = (
     "index, a frame or a transpose, a dropped term, the edge of a comparison, a constant, swapped arguments. The "
     "package with the fault is judged by `check` over a few small models, and by the tests of the module. **No "
     "result changed**: neither judge sees it, and the C text, the values of functions, motions and analyses of a "
-    "battery are those of the sound package but for rounding; or a person has argued that no result depends on it, with "
-    "the reason below. **Does not end**: the process of `check` crashes or runs on, which is no verdict; such faults count "
-    "neither as seen nor as missed. **Open**: the tests were not asked yet, "
+    "battery are those of the sound package but for rounding; or a person has argued that no result depends on it, "
+    "with the reason below. **Does not end**: the process of `check` crashes or runs on, which is no verdict; such "
+    "faults count neither as seen nor as missed. **Open**: the tests were not asked yet, "
     "or their time was over before all had run. {} that the C compiler refuses are left out. Of the tests alone: "
     "{:.1%} of the {} faults that they were asked about."
 )
