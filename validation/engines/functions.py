@@ -7,10 +7,10 @@ from decimal import Decimal
 
 import numpy as np
 
-from validation.engines import derived
-from validation.engines.arithmetic import Exact
-from validation.engines.derived import FRAMES, Frame, TruthOf
-from validation.engines.truth import Point, Truth
+from validation.engines.truth import derived
+from validation.engines.truth.arithmetic import Exact
+from validation.engines.truth.derived import FRAMES, Frame, TruthOf
+from validation.engines.truth.dynamics import Point, Truth
 
 
 @dataclass(frozen=True)

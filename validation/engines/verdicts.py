@@ -9,7 +9,7 @@ import numpy as np
 
 from validation.engines.functions import FUNCTIONS
 from validation.engines.interface import Array, HasLayout, Link, State, Tree, Unsupported, Vector, rows, vector
-from validation.engines.truth import Point, Truth, digits
+from validation.engines.truth.dynamics import Point, Truth, digits
 
 Verdict = Literal["right", "imprecise", "wrong", "refuses", "crashes", "not offered"]
 

@@ -14,7 +14,7 @@ from typing import Any
 from validation.engines.interface import Array, EngineModel, Registry, State, Tree, Unsupported, installed
 from validation.engines.plugins import OWN
 from validation.engines.proving.pieces import Layout, Pieces, assembled
-from validation.engines.truth import random_state
+from validation.engines.truth.dynamics import random_state
 
 # Time for one answer; the first includes the import of the engine, and Warp and JAX compile then: minutes on a busy
 # machine.

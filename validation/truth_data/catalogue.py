@@ -10,7 +10,7 @@ from validation.engines.interface import Joint, Link, Slot, Tree, Vector, rows
 from validation.engines.models.kinds import link, placed
 from validation.engines.proving.pieces import Layout
 
-# Kind of joint -> the chart that says what its coordinates and speeds are (`validation.engines.charts`).
+# Kind of joint -> the chart that says what its coordinates and speeds are (`validation.engines.truth.charts`).
 CHARTS = {
     "revolute": "angle",
     "prismatic": "length",

@@ -20,10 +20,10 @@ import numpy as np
 
 import symofros as sf
 from symofros.tools import write_atomically
-from validation.engines.arithmetic import many_digits
-from validation.engines.charts import CHARTS as ALL_CHARTS
 from validation.engines.functions import FUNCTIONS as ALL
-from validation.engines.truth import Point, Truth, random_state
+from validation.engines.truth.arithmetic import many_digits
+from validation.engines.truth.charts import CHARTS as ALL_CHARTS
+from validation.engines.truth.dynamics import Point, Truth, random_state
 from validation.truth_data.catalogue import CHARTS, FUNCTIONS, Model, layout
 from validation.truth_data.descriptions import files, numbers
 from validation.truth_data.schema import SCHEMA
@@ -109,7 +109,7 @@ def _manifest(models: Sequence[Model], digests: dict[str, Any]) -> dict[str, Any
         "digits": DIGITS,
         "made_by": f"symofros {sf.__version__}, python -m validation truth",
         "method": "Newton's and Euler's equations of each link projected by its Jacobian, in 130 decimal digits; "
-        "derivatives by central differences of step 1e-18 (validation/engines/truth.py)",
+        "derivatives by central differences of step 1e-18 (validation/engines/truth/dynamics.py)",
         "conventions": list(CONVENTIONS),
         "charts": {name: ALL_CHARTS[name].text for name in sorted(set(CHARTS.values()))},
         "functions": {name: ALL[name].text for name in FUNCTIONS},

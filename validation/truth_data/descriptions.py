@@ -8,7 +8,7 @@ from typing import Any
 
 import symofros as sf
 from validation.engines.interface import Joint, Link, Tree, Unsupported
-from validation.engines.plugins.urdf import describe
+from validation.engines.plugins.writing.urdf import describe
 from validation.truth_data.catalogue import CHARTS, layout
 
 # Constructors turn numbers into values; their types say what they keep.

@@ -9,14 +9,14 @@ import mpmath
 import numpy as np
 import pytest
 
-from validation.engines import derived
-from validation.engines.arithmetic import cos_sin, exact, many_digits, rate, solve
-from validation.engines.charts import CHARTS
 from validation.engines.interface import Joint, Link, Slot, Tree
 from validation.engines.models.kinds import tree_of
 from validation.engines.proving.pieces import Layout
 from validation.engines.proving.shrink import Case, size, smallest
-from validation.engines.truth import Point, Truth, digits, random_state
+from validation.engines.truth import derived
+from validation.engines.truth.arithmetic import cos_sin, exact, many_digits, rate, solve
+from validation.engines.truth.charts import CHARTS
+from validation.engines.truth.dynamics import Point, Truth, digits, random_state
 
 HINGES = Layout(3, 3, tuple((Slot("angle", (k,), (k,)),) for k in range(3)))
 

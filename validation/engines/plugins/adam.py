@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from validation.engines.interface import Difference, Tree
-from validation.engines.plugins.source import Source, SourcePlugin, Way
-from validation.engines.plugins.urdf import KINDS, Described, of_files, slots_of, through_reader
+from validation.engines.plugins.writing.source import Source, SourcePlugin, Way
+from validation.engines.plugins.writing.urdf import KINDS, Described, of_files, slots_of, through_reader
 
 _SETUP = '''import casadi as ca
 import numpy as np

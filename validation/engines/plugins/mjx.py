@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from validation.engines.interface import Difference, Tree, Unsupported
 from validation.engines.plugins import mujoco
-from validation.engines.plugins.source import Source, SourcePlugin, Way
+from validation.engines.plugins.writing.source import Source, SourcePlugin, Way
 
 _SETUP = """import jax
 jax.config.update("jax_enable_x64", True)

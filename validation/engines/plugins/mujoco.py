@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from validation.engines.interface import Array, Difference, Joint, Slot, Tree, Unsupported
-from validation.engines.plugins.source import Source, SourcePlugin, Way, in_series, series
+from validation.engines.plugins.writing.source import Source, SourcePlugin, Way, in_series, series
 
 # Kind of a joint -> elements (type, axis), chart, coordinates, speeds.
 _CHARTS: dict[str, tuple[str, int, int]] = {

@@ -8,7 +8,7 @@ import numpy as np
 
 from validation.engines.functions import ALIGNED
 from validation.engines.interface import Array, Difference, Joint, Slot, Tree, Unsupported
-from validation.engines.plugins.source import Source, SourcePlugin, Way, in_series, series
+from validation.engines.plugins.writing.source import Source, SourcePlugin, Way, in_series, series
 
 # Kind and form of a joint -> joint model, chart, coordinates, speeds. {axis} is X, Y or Z where the axis is one of
 # them.

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 
 from validation.engines.interface import Difference, Tree, Unsupported
-from validation.engines.plugins.source import Source, SourcePlugin, Way
-from validation.engines.plugins.urdf import KINDS, describe, slots_of
+from validation.engines.plugins.writing.source import Source, SourcePlugin, Way
+from validation.engines.plugins.writing.urdf import KINDS, describe, slots_of
 
 _SETUP = '''import tempfile
 import numpy as np

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from validation.engines.interface import Difference, Rows, Slot, Tree, Unsupported, Vector
-from validation.engines.plugins.source import Source, SourcePlugin, Way
+from validation.engines.plugins.writing.source import Source, SourcePlugin, Way
 
 # Where Debian's package for the system's Python puts it.
 SYSTEM = Path("/usr/lib/python3/dist-packages")

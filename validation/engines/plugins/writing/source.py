@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from validation.engines.charts import CHARTS
 from validation.engines.interface import Array, Difference, EngineModel, Slot, State, Tree, Unsupported
+from validation.engines.truth.charts import CHARTS
 
 OPTIONAL = {"js", "bs"}
 _INPUTS = ("q", "v", "a", "tau", "v2", "q2")

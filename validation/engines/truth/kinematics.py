@@ -6,9 +6,20 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from validation.engines.arithmetic import Exact, exact, eye, many_digits, orthonormal, rate, skew, stack, vee, zeros
-from validation.engines.charts import CHARTS, Pose
 from validation.engines.interface import HasLayout, Joint, Link, Slot, Tree
+from validation.engines.truth.arithmetic import (
+    Exact,
+    exact,
+    eye,
+    many_digits,
+    orthonormal,
+    rate,
+    skew,
+    stack,
+    vee,
+    zeros,
+)
+from validation.engines.truth.charts import CHARTS, Pose
 
 _REMEMBERED = 1000
 

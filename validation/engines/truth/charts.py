@@ -15,7 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from validation.engines.arithmetic import (
+from validation.engines.interface import Array, Joint
+from validation.engines.truth.arithmetic import (
     Exact,
     cos_sin,
     exact,
@@ -28,7 +29,6 @@ from validation.engines.arithmetic import (
     unit,
     zeros,
 )
-from validation.engines.interface import Array, Joint
 
 Pose = tuple[Exact, Exact]
 Draw = np.random.Generator
