@@ -57,6 +57,20 @@ class Unsupported:
     offered: bool = True
 
 
+class Steps(NamedTuple):
+    """A function that an engine documents to take by differences of finite steps.
+
+    Attributes:
+        function: Name of the function that it takes differences of.
+        step: Size of a step.
+        truncation: What the steps' size makes of a smooth function, as part of the largest entry.
+    """
+
+    function: str
+    step: float
+    truncation: float
+
+
 class Difference(NamedTuple):
     """One convention of an engine that a reader must know."""
 
@@ -120,6 +134,39 @@ class Link:
     inertia: Rows = IDENTITY
 
 
+class End(NamedTuple):
+    """A frame that a constraint holds.
+
+    Attributes:
+        link: Name of its link; "" for the world.
+        R: Rotation (3, 3) in the link's frame.
+        p: Position (3) in the link's frame [m].
+    """
+
+    link: str
+    R: Rows = IDENTITY
+    p: Vector = ORIGIN
+
+
+@dataclass(frozen=True)
+class Constraint:
+    """An equation between positions of links.
+
+    "point": the origins of two frames coincide. "weld": two frames coincide. "coupling": a sum of coordinates, each
+    times its coefficient, is constant; each is that of the only joint of a link. "path": the sum of the distances from
+    point to point is what it is with all coordinates zero.
+
+    Attributes:
+        kind: One of these.
+        ends: Frames that it holds; of a "coupling", their links; of a "path", its points in order.
+        coefficients: Of a "coupling", for each end.
+    """
+
+    kind: str
+    ends: tuple[End, ...]
+    coefficients: tuple[float, ...] = ()
+
+
 @dataclass(frozen=True)
 class Tree:
     """A mechanism as it is stated to all engines.
@@ -128,11 +175,13 @@ class Tree:
         name: Name for tables.
         links: Links, each after its parent.
         gravity: Acceleration of gravity (3) in the world [m/s^2].
+        constraints: Equations that bind the links further. Only `functions.CONSTRAINED` are asked of such a tree.
     """
 
     name: str
     links: tuple[Link, ...]
     gravity: Vector = (0.0, 0.0, -9.81)
+    constraints: tuple[Constraint, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -214,7 +263,8 @@ class EnginePlugin(Protocol):
             named after a colon: "inverse_dynamics:mj_rne".
         gravity: The one acceleration of gravity (3) that it knows; () where a tree may state any.
         formats: Formats of files that its own parser reads, of "urdf", "mjcf", "sdf".
-        slacks: Functions that it documents as approximate -> error to grant, as part of the largest entry.
+        slacks: Functions that it documents as approximate -> error to grant, as part of the largest entry, or the steps
+            of its differences.
     """
 
     @property
@@ -234,7 +284,7 @@ class EnginePlugin(Protocol):
     @property
     def formats(self) -> tuple[str, ...]: ...  # noqa: D102
     @property
-    def slacks(self) -> Mapping[str, float]: ...  # noqa: D102
+    def slacks(self) -> Mapping[str, float | Steps]: ...  # noqa: D102
 
     def version(self) -> str:
         """Version of the engine; "" where it is not installed."""

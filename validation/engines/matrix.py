@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from validation.engines.functions import FUNCTIONS
-from validation.engines.interface import EnginePlugin, State, Tree, Unsupported, vector
+from validation.engines.functions import CONSTRAINED, FUNCTIONS, WITH_CONSTRAINTS
+from validation.engines.interface import EnginePlugin, State, Steps, Tree, Unsupported, vector
 from validation.engines.verdicts import Cell, Expected, Verdict, expected, judge
 from validation.engines.workers import Answer, Crashed, Job, Worker, answered
 
@@ -45,7 +45,7 @@ class Truths:
         self._perturbations = perturbations
         self._known: dict[tuple[object, ...], Expected] = {}
 
-    def of(self, function: str, tree: Tree, answer: Answer, slack: float) -> Expected:
+    def of(self, function: str, tree: Tree, answer: Answer, slack: float | Steps) -> Expected:
         """The truth that an answer is judged by."""
         assert answer.layout is not None and answer.state is not None
         name = function.partition(":")[0]
@@ -68,6 +68,13 @@ def names(plugins: Mapping[str, EnginePlugin]) -> list[str]:
 def suited(tree: Tree, plugin: EnginePlugin) -> Tree:
     """The tree with the gravity that an engine knows."""
     return replace(tree, gravity=vector(np.array(plugin.gravity))) if plugin.gravity else tree
+
+
+def asked(plugin: EnginePlugin, tree: Tree) -> tuple[str, ...]:
+    """The functions of an engine that a tree is for: those of constraints where it has any."""
+    if tree.constraints:
+        return tuple(name for name in plugin.functions if name.partition(":")[0] in WITH_CONSTRAINTS)
+    return tuple(name for name in plugin.functions if name.partition(":")[0] not in CONSTRAINED)
 
 
 def judged(
@@ -106,7 +113,7 @@ def _judge(plugin: EnginePlugin, tree: Tree, answer: Answer, truths: Truths) -> 
 
 def cells(plugin: EnginePlugin, tree: Tree, functions: Sequence[str] = ()) -> Iterator[Cell]:
     """Cells of one engine on one tree, in this process: of the given functions, or of all that it offers."""
-    chosen = tuple(functions) or tuple(plugin.functions)
+    chosen = tuple(functions) or asked(plugin, tree)
     job = Job(plugin.name, suited(tree, plugin), chosen, SEED)
     for one in judged(plugin, job, Truths()):
         yield one.cell

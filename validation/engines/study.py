@@ -12,8 +12,8 @@ import typer
 from validation.engines.functions import FUNCTIONS
 from validation.engines.identities import held
 from validation.engines.interface import EnginePlugin, Tree
-from validation.engines.matrix import SEED, Judged, Truths, judged, names, suited
-from validation.engines.models import hostile, kinds
+from validation.engines.matrix import SEED, Judged, Truths, asked, judged, names, suited
+from validation.engines.models import hostile, kinds, loops
 from validation.engines.models.readers import Reading, readings
 from validation.engines.proving.scripts import Proof, prove
 from validation.engines.proving.shrink import TRIES
@@ -55,9 +55,8 @@ def gathered(
         # Engines with the same layout of a tree share its truths; other trees have none in common with it.
         truths = Truths()
         for plugin in plugins.values():
-            cells += judged(
-                plugin, Job(plugin.name, suited(tree, plugin), tuple(plugin.functions), SEED), truths, worker
-            )
+            job = Job(plugin.name, suited(tree, plugin), asked(plugin, tree), SEED)
+            cells += judged(plugin, job, truths, worker)
         after(tree.name)
     return cells
 
@@ -122,8 +121,8 @@ def proofs(
 
 
 def trees() -> dict[str, Tree]:
-    """All trees: one for each kind of joint, and the hostile set."""
-    return {name: kinds.tree_of(name) for name in kinds.KINDS} | hostile.trees()
+    """All trees: one for each kind of joint, the hostile set, and those with constraints."""
+    return {name: kinds.tree_of(name) for name in kinds.KINDS} | hostile.trees() | loops.trees()
 
 
 def measure(

@@ -14,6 +14,7 @@ from typing import Any
 from validation.engines.interface import Array, EngineModel, Registry, State, Tree, Unsupported, installed
 from validation.engines.plugins import OWN
 from validation.engines.proving.pieces import Layout, Pieces, assembled
+from validation.engines.truth.constraints import closed
 from validation.engines.truth.dynamics import random_state
 
 # Time for one answer; the first includes the import of the engine, and Warp and JAX compile then: minutes on a busy
@@ -96,6 +97,8 @@ def answered(job: Job) -> Iterator[Answer]:
         return
     layout = Layout(model.nq, model.nv, model.slots)
     state = assembled(layout, job.pieces) if job.pieces else random_state(job.tree, model, job.seed)
+    if job.tree.constraints and not isinstance(state, Unsupported):
+        state = closed(job.tree, layout, state)
     if isinstance(state, Unsupported):
         yield from (Answer(function, state) for function in job.functions)
         return

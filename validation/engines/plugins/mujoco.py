@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from validation.engines.interface import Array, Difference, Joint, Slot, Tree, Unsupported
+from validation.engines.interface import Array, Difference, Joint, Slot, Steps, Tree, Unsupported
 from validation.engines.plugins.writing.source import Source, SourcePlugin, Way, in_series, series
 
 # Kind of a joint -> elements (type, axis), chart, coordinates, speeds.
@@ -138,8 +138,9 @@ _TRANSITION = (
     f"d.qfrc_applied[:] = tau\n{_QV}A = np.zeros((2 * m.nv, 2 * m.nv))\n"
     "mj.mjd_transitionFD(m, d, 1e-6, True, A, None, None, None)\n"
 )
-# Differences with steps of 1e-6: one-sided ones are off by the step times the second derivative.
-_ONE_SIDED, _CENTRED = 1e-4, 1e-6
+# One-sided differences are off by the step times the second derivative, centred ones by its square times the third.
+_INVERSE_STEPS = Steps("inverse_dynamics", 1e-6, 1e-4)
+_FORWARD_STEPS = Steps("forward_dynamics", 1e-6, 1e-9)
 
 WAYS = {
     "sizes": Way("nq, nv", "value = [m.nq, m.nv]"),
@@ -148,7 +149,7 @@ WAYS = {
         "mj_mulM", f"{_Q}{_SQUARE}for row, unit in zip(value, np.eye(m.nv)):\n    mj.mj_mulM(m, d, row, unit)"
     ),
     "mass_matrix:mjd_inverseFD": Way(
-        "mjd_inverseFD", f"{_INVERSE_FD}None, None, value, None, None, None, None)", _ONE_SIDED
+        "mjd_inverseFD", f"{_INVERSE_FD}None, None, value, None, None, None, None)", _INVERSE_STEPS
     ),
     "mass_matrix_inverse": Way("mj_solveM", f"{_Q}{_SQUARE}mj.mj_solveM(m, d, value, np.eye(m.nv))"),
     "bias": Way("qfrc_bias", f"{_QV}value = d.qfrc_bias"),
@@ -192,10 +193,10 @@ WAYS = {
         f"{_QV}mj.mj_subtreeVel(m, d)\nvalue = np.r_[m.body_subtreemass[0] * d.subtree_linvel[0], d.subtree_angmom[0]]",
     ),
     "inverse_dynamics_dq": Way(
-        "mjd_inverseFD", f"{_INVERSE_FD}value, None, None, None, None, None, None)\nvalue = value.T", _ONE_SIDED
+        "mjd_inverseFD", f"{_INVERSE_FD}value, None, None, None, None, None, None)\nvalue = value.T", _INVERSE_STEPS
     ),
     "inverse_dynamics_dv": Way(
-        "mjd_inverseFD", f"{_INVERSE_FD}None, value, None, None, None, None, None)\nvalue = value.T", _ONE_SIDED
+        "mjd_inverseFD", f"{_INVERSE_FD}None, value, None, None, None, None, None)\nvalue = value.T", _INVERSE_STEPS
     ),
     "inverse_dynamics_dv:qDeriv": Way(
         "mj_implicit",
@@ -203,8 +204,10 @@ WAYS = {
         f"{_QV}mj.mj_implicit(m, d)\n{_SQUARE}for i in range(m.nv):\n"
         "    row = slice(m.D_rowadr[i], m.D_rowadr[i] + m.D_rownnz[i])\n    value[i, m.D_colind[row]] = -d.qDeriv[row]",
     ),
-    "forward_dynamics_dq": Way("mjd_transitionFD", f"{_TRANSITION}value = A[m.nv:, :m.nv]", _CENTRED),
-    "forward_dynamics_dv": Way("mjd_transitionFD", f"{_TRANSITION}value = A[m.nv:, m.nv:] - np.eye(m.nv)", _CENTRED),
+    "forward_dynamics_dq": Way("mjd_transitionFD", f"{_TRANSITION}value = A[m.nv:, :m.nv]", _FORWARD_STEPS),
+    "forward_dynamics_dv": Way(
+        "mjd_transitionFD", f"{_TRANSITION}value = A[m.nv:, m.nv:] - np.eye(m.nv)", _FORWARD_STEPS
+    ),
     "integrate": Way("mj_integratePos", "value = q\nmj.mj_integratePos(m, value, v2, 1.0)"),
     "difference": Way(
         "mj_differentiatePos",

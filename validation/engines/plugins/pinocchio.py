@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from validation.engines.functions import ALIGNED
-from validation.engines.interface import Array, Difference, Joint, Slot, Tree, Unsupported
+from validation.engines.interface import Array, Difference, End, Joint, Slot, Tree, Unsupported
+from validation.engines.plugins.loops import pinocchio as constrained
 from validation.engines.plugins.writing.source import Source, SourcePlugin, Way, in_series, series
 
 # Kind and form of a joint -> joint model, chart, coordinates, speeds. {axis} is X, Y or Z where the axis is one of
@@ -123,9 +124,15 @@ def write(tree: Tree) -> Source | Unsupported:
         joints.append(name if not np.any(p) and np.array_equal(R, np.eye(3)) else "")
     if any(armature):
         lines.append(f"m.armature = {_array(armature)}")
-    optional = {"fs": ("fs = []", *frames)}
+    optional: dict[str, tuple[str, ...]] = {"fs": ("fs = []", *frames)}
     if all(joints) and len(set(joints)) == len(joints):
         optional["js"] = (f"js = [{', '.join(joints)}]",)
+
+    def place(end: End) -> tuple[str, str]:
+        joint, R, p = places[ids[end.link]] if end.link else ("0", np.eye(3), np.zeros(3))
+        return joint, _placement(R @ np.array(end.R), p + R @ np.array(end.p))
+
+    optional |= constrained.optional(tree.constraints, place)
     return Source(tuple(lines), tuple(slots), nq, nv, optional, closing=_CLOSING)
 
 
@@ -272,11 +279,15 @@ PLUGIN = SourcePlugin(
     conventions=(
         Difference("quaternion", "x, y, z, w"),
         Difference("free joint", "linear and angular velocity in the axes of the body"),
+        Difference(
+            "constraints", "force on the first joint's body, along its frame; anchors' Jacobians have the other sign"
+        ),
         Difference("armature", "m.armature; rotorInertia and rotorGearRatio have no effect on rnea, crba, aba"),
     ),
     kinds={},
-    ways=WAYS,
+    ways=WAYS | constrained.WAYS,
     write=write,
+    constraints=constrained.KINDS,
     formats=("urdf", "mjcf"),
     write_reading=write_reading,
 )

@@ -128,6 +128,8 @@ def solve(matrix: Exact, right: Exact) -> Exact:
     for k in range(n):
         pivot = k + int(np.argmax([abs(x) for x in rows[k:, k]]))
         rows[[k, pivot]] = rows[[pivot, k]]
+        if rows[k, k] == 0:
+            raise ZeroDivisionError("the matrix is singular")
         rows[k] = rows[k] / rows[k, k]
         for i in range(n):
             if i != k and rows[i, k] != 0:

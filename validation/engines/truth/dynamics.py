@@ -16,6 +16,9 @@ from validation.engines.truth.arithmetic import Exact, cross, exact, eye, many_d
 from validation.engines.truth.charts import CHARTS, Pose
 from validation.engines.truth.kinematics import Inertia, Kinematics
 
+_REMEMBERED = 1000
+ROUNDING = 2.0**-52
+
 
 class Point(NamedTuple):
     """A state in many digits (`interface.State`)."""
@@ -39,26 +42,46 @@ class Truth:
     Args:
         tree: The tree.
         model: Says how an engine keeps its joints.
+        roundings: Seed of a rounding that each component of each link's force, moment and momentum suffers, as it does
+            in the steadiest of recursions; None for none.
     """
 
-    def __init__(self, tree: Tree, model: HasLayout) -> None:
+    def __init__(self, tree: Tree, model: HasLayout, roundings: int | None = None) -> None:
         self.tree, self.kinematics = tree, Kinematics(tree, model)
         self.nv = model.nv
+        # Differences of several functions ask for the same again and again.
+        self.remembered: dict[tuple[object, ...], Exact] = {}
         self.gravity_vector = exact(tree.gravity)
         self.inertias = [Inertia.of(link) for link in tree.links]
+        self._rounded = exact(np.ones((len(tree.links), 6)))
+        if roundings is not None:
+            # No two alike: what equal ones make of parts that cancel cancels, too.
+            parts = np.random.default_rng(roundings).uniform(-1.0, 1.0, (len(tree.links), 6))
+            self._rounded = self._rounded + exact(parts * ROUNDING)
         self.armature = zeros(self.nv)
         for index in range(len(tree.links)):
             for joint, slot in self.kinematics.joints(index):
                 if slot is not None and joint.armature and not joint.mimics:
                     self.armature[list(slot.v)] = exact(joint.armature)
 
+    def once(self, key: tuple[object, ...], compute: Callable[[], Exact]) -> Exact:
+        """What was worked out under a key, or is now; it must not be changed in place."""
+        if key not in self.remembered:
+            if len(self.remembered) >= _REMEMBERED:
+                self.remembered.clear()
+            self.remembered[key] = compute()
+        return self.remembered[key]
+
     def M(self, q: Exact) -> Exact:
         """The mass matrix (nv, nv)."""
+        return self.once(("M", *q), lambda: self._mass_matrix(q))
+
+    def _mass_matrix(self, q: Exact) -> Exact:
         M = np.array(np.diag(self.armature))
-        for inertia, (R, _), J in zip(
-            self.inertias, self.kinematics.poses(q), self.kinematics.jacobians(q), strict=True
+        for inertia, (R, _), J, rounded in zip(
+            self.inertias, self.kinematics.poses(q), self.kinematics.jacobians(q), self._rounded, strict=True
         ):
-            M = M + J.T @ inertia.turned(R).matrix() @ J
+            M = M + J.T @ (rounded[:, np.newaxis] * (inertia.turned(R).matrix() @ J))
         return M
 
     def motions(self, q: Exact, v: Exact, a: Exact) -> tuple[Exact, Exact, Exact]:
@@ -80,7 +103,8 @@ class Truth:
             force = inertia.mass * falling + cross(alpha, inertia.first) + cross(w, cross(w, inertia.first))
             momentum = inertia.second @ w
             moment = cross(inertia.first, falling) + inertia.second @ alpha + cross(w, momentum)
-            total = total + J[k, :3].T @ force + J[k, 3:].T @ moment
+            rounded = self._rounded[k]
+            total = total + J[k, :3].T @ (force * rounded[:3]) + J[k, 3:].T @ (moment * rounded[3:])
         return total
 
     def ID(self, q: Exact, v: Exact, a: Exact) -> Exact:
@@ -89,7 +113,7 @@ class Truth:
 
     def h(self, q: Exact, v: Exact) -> Exact:
         """Coriolis, centrifugal and gravity forces (nv)."""
-        return self.ID(q, v, zeros(self.nv))
+        return self.once(("h", *q, *v), lambda: self.ID(q, v, zeros(self.nv)))
 
     def g(self, q: Exact) -> Exact:
         """Gravity forces (nv)."""

@@ -9,10 +9,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from validation.engines.interface import Array, Difference, EngineModel, Slot, State, Tree, Unsupported
+from validation.engines.interface import Array, Difference, EngineModel, Slot, State, Steps, Tree, Unsupported
 from validation.engines.truth.charts import CHARTS
 
-OPTIONAL = {"js", "bs"}
+# Names that not every tree's source defines -> why it may not.
+OPTIONAL = {
+    "js": "not for links without a joint of their own",
+    "bs": "not for links without a joint of their own",
+    "cm": "not for constraints of this kind",
+    "am": "not for constraints of this kind",
+}
 _INPUTS = ("q", "v", "a", "tau", "v2", "q2")
 
 
@@ -23,12 +29,12 @@ class Way(NamedTuple):
         native: Name that the engine gives it.
         code: Statements that leave the result in `value`; they may use what the source defines, and the parts of the
             state by their names (`interface.State`).
-        slack: Error that the engine documents, as part of the largest entry.
+        slack: Error that the engine documents, as part of the largest entry, or the steps of its differences.
     """
 
     native: str
     code: str
-    slack: float = 0.0
+    slack: float | Steps = 0.0
 
 
 @dataclass(frozen=True)
@@ -38,12 +44,12 @@ class Source:
     Attributes:
         lines: Statements, imports first.
         optional: Name -> statements that define it, which only functions need that use it. A function that uses a
-            name of OPTIONAL which is not among them is not offered for this tree.
+            name of OPTIONAL that is not among them is not offered for this tree.
         slots: See `EngineModel`.
         nq: Length of the engine's q.
         nv: Length of the engine's v.
         lacks: Functions that the engine doesn't offer for this tree.
-        closing: Statements after all of these.
+        closing: Statements after all of these, run anew for each call: nothing is left of what others wrote there.
     """
 
     lines: tuple[str, ...]
@@ -79,13 +85,12 @@ class SourceModel:
         """A function in the engine's conventions (`EngineModel`)."""
         if function not in self._ways or function in self._source.lacks:
             return Unsupported(f"no {function}", offered=False)
-        lacking = OPTIONAL & words(self._ways[function].code) - set(self._source.optional)
-        if lacking:
-            return Unsupported("not for links without a joint of their own", offered=False)
+        for name in (OPTIONAL.keys() & words(self._ways[function].code)) - set(self._source.optional):
+            return Unsupported(OPTIONAL[name], offered=False)
         names = dict(self._names)
         names.update({name: getattr(state, name).copy() for name in _INPUTS})
         try:
-            exec(self._ways[function].code, names)
+            exec("\n".join([*self._source.closing, self._ways[function].code]), names)
         except (NameError, SyntaxError):  # A fault of our text is no word of the engine's.
             raise
         except Exception as error:  # The engine refuses, in its own words.
@@ -114,6 +119,7 @@ class SourcePlugin:
         ways: Functions by name.
         write_reading: Tree, format, file's text -> text that has the engine read the file.
         find: Version of an engine that is no Python distribution.
+        constraints: Kinds of constraints that it has of its own -> what it calls them.
     """
 
     name: str
@@ -127,6 +133,7 @@ class SourcePlugin:
     formats: tuple[str, ...] = ()
     write_reading: Callable[[Tree, str, str], Source | Unsupported] | None = None
     find: Callable[[], str] | None = None
+    constraints: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def functions(self) -> Mapping[str, str]:
@@ -134,7 +141,7 @@ class SourcePlugin:
         return {name: way.native for name, way in self.ways.items()}
 
     @property
-    def slacks(self) -> Mapping[str, float]:
+    def slacks(self) -> Mapping[str, float | Steps]:
         """Functions that are approximate by their documentation."""
         return {name: way.slack for name, way in self.ways.items() if way.slack}
 
@@ -149,6 +156,9 @@ class SourcePlugin:
 
     def build(self, tree: Tree) -> EngineModel | Unsupported:
         """The tree by the engine's API."""
+        for one in tree.constraints:
+            if one.kind not in self.constraints:
+                return Unsupported(f"no constraint of kind {one.kind}", offered=False)
         return self._made(self.write(tree))
 
     def read(self, tree: Tree, form: str, text: str) -> EngineModel | Unsupported:

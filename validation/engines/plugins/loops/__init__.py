@@ -1,0 +1,1 @@
+"""Constraints of engines that have them: one file an engine."""

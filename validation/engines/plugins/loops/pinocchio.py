@@ -1,0 +1,127 @@
+"""Pinocchio's constraints: rigid ones with their dynamics, impacts and derivatives, and the anchors of Pinocchio 4."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+
+from validation.engines.interface import Constraint, End
+from validation.engines.plugins.writing.source import Way
+
+KINDS = {"point": "RigidConstraintModel, CONTACT_3D", "weld": "RigidConstraintModel, CONTACT_6D"}
+_TYPES = {"point": "CONTACT_3D", "weld": "CONTACT_6D"}
+_ANCHORS = {"point": "PointAnchorConstraintModel", "weld": "FrameAnchorConstraintModel"}
+
+# Where an end stands: variable of its joint, placement there.
+Place = Callable[[End], tuple[str, str]]
+
+
+def optional(constraints: tuple[Constraint, ...], place: Place) -> Mapping[str, tuple[str, ...]]:
+    """Statements that define the constraints of a tree: `cm` the rigid ones, `am` the anchors."""
+    if not constraints:
+        return {}
+    rigid = [
+        f"pin.RigidConstraintModel(pin.ContactType.{one}, pin.LOCAL)" for one in _calls(constraints, place, _TYPES)
+    ]
+    anchors = [f"pin.ConstraintModel(pin.{one})" for one in _calls(constraints, place, _ANCHORS)]
+    return {
+        "cm": ("cm = pin.StdVec_RigidConstraintModel()", f"cm.extend([{', '.join(rigid)}])"),
+        "am": ("am = pin.StdVec_ConstraintModel()", f"am.extend([{', '.join(anchors)}])"),
+    }
+
+
+def _calls(constraints: tuple[Constraint, ...], place: Place, names: Mapping[str, str]) -> Iterator[str]:
+    for one in constraints:
+        (joint, X), (joint2, X2) = (place(end) for end in one.ends)
+        name = names[one.kind]
+        yield (
+            f"{name}, m, {joint}, {X}, {joint2}, {X2}"
+            if name in _TYPES.values()
+            else f"{name}(m, {joint}, {X}, {joint2}, {X2})"
+        )
+
+
+_DATA = "cd = pin.StdVec_RigidConstraintData()\ncd.extend([one.createData() for one in cm])\n"
+_SOLVED = f"{_DATA}ps = pin.ProximalSettings(1e-14, 1e-12, 20)\npin.initConstraintDynamics(m, d, cm, cd)\n"
+_DYNAMICS = f"{_SOLVED}value = pin.constraintDynamics(m, d, q, v, tau, cm, cd, ps)\n"
+_IMPACT = f"{_SOLVED}value = pin.impulseDynamics(m, d, q, v2, cm, cd, "
+_PLACED = f"{_DATA}pin.computeJointJacobians(m, d, q)\nfor one, data in zip(cm, cd): one.calc(m, d, data)\n"
+_JACOBIAN = f"{_PLACED}J = pin.getConstraintsJacobian(m, d, cm, cd)\n"
+_CHOLESKY = (
+    f"{_DATA}pin.crba(m, d, q, pin.Convention.WORLD)\n"
+    "for one, data in zip(cm, cd): one.calc(m, d, data)\n"
+    "C = pin.ContactCholeskyDecomposition(m, d, cm, cd)\nC.compute(m, d, cm, cd, 1e-12)\n"
+)
+_DERIVATIVES = f"{_DYNAMICS}value = pin.computeConstraintDynamicsDerivatives(m, d, cm, cd, ps)"
+# With its own regularisation, 1e-6, and accuracy: what the proximal steps leave.
+_PROXIMAL = 1e-8
+# The inverse is what is left of 1 by a difference: as its note says, damping and what it scales by lose their digits.
+_DAMPED = 1e-7
+# What mu = 1e-12 makes of a matrix whose entries are of order one, or of its inverse.
+_REGULAR = 1e-9
+
+WAYS = {
+    "constraint_jacobian": Way("getConstraintsJacobian", f"{_JACOBIAN}value = J"),
+    "constraint_jacobian:anchors": Way(
+        "getConstraintsJacobian of anchors",
+        "ad = pin.StdVec_ConstraintData()\nad.extend([one.createData() for one in am])\n"
+        "pin.computeJointJacobians(m, d, q)\nfor one, data in zip(am, ad): one.calc(m, d, data)\n"
+        "value = -pin.getConstraintsJacobian(m, d, am, ad)",
+    ),
+    "delassus": Way("computeDelassusMatrix", f"{_DATA}value = pin.computeDelassusMatrix(m, d, q, cm, cd, 0.0)"),
+    "delassus:ContactCholesky": Way(
+        "getInverseOperationalSpaceInertiaMatrix",
+        f"{_CHOLESKY}value = C.getInverseOperationalSpaceInertiaMatrix()",
+        _REGULAR,
+    ),
+    "delassus_inverse_damped": Way(
+        "computeDampedDelassusMatrixInverse",
+        f"{_DATA}value = pin.computeDampedDelassusMatrixInverse(m, d, q, cm, cd, 1e-4, True) / 1e-4",
+        _DAMPED,
+    ),
+    "delassus_inverse": Way(
+        "getOperationalSpaceInertiaMatrix", f"{_CHOLESKY}value = C.getOperationalSpaceInertiaMatrix()", _REGULAR
+    ),
+    "kkt_inverse": Way(
+        "computeKKTContactDynamicMatrixInverse",
+        f"{_JACOBIAN}value = pin.computeKKTContactDynamicMatrixInverse(m, d, q, J, 0.0)",
+    ),
+    "kkt_inverse:ContactCholesky": Way(
+        "ContactCholeskyDecomposition.inverse",
+        f"{_CHOLESKY}value = np.roll(C.inverse(), (m.nv, m.nv), (0, 1))",
+        _REGULAR,
+    ),
+    "constrained_acceleration": Way("constraintDynamics", _DYNAMICS),
+    "constrained_acceleration:proximal": Way(
+        "constraintDynamics, mu = 1e-6",
+        f"{_SOLVED}ps = pin.ProximalSettings(1e-13, 1e-6, 100)\n"
+        "value = pin.constraintDynamics(m, d, q, v, tau, cm, cd, ps)",
+        _PROXIMAL,
+    ),
+    "constrained_acceleration:lcaba": Way(
+        "lcaba, mu = 1e-6",
+        f"{_SOLVED}ps = pin.ProximalSettings(1e-13, 1e-6, 100)\npin.computeJointMinimalOrdering(m, d, cm)\n"
+        "value = pin.lcaba(m, d, q, v, tau, cm, cd, ps)",
+        _PROXIMAL,
+    ),
+    "constraint_forces": Way("constraintDynamics: lambda_c", f"{_DYNAMICS}value = d.lambda_c"),
+    "impact_velocity": Way("impulseDynamics", f"{_IMPACT}0.0, ps)", _REGULAR),
+    "impact_velocity_rebound": Way("impulseDynamics", f"{_IMPACT}0.5, ps)", _REGULAR),
+    "impact_velocity:forms": Way(
+        "impulseDynamics of a Jacobian", f"{_JACOBIAN}value = pin.impulseDynamics(m, d, q, v2, J, 0.0, 1e-12)", _REGULAR
+    ),
+    "impulses": Way("impulseDynamics: impulse_c", f"{_IMPACT}0.0, ps)\nvalue = d.impulse_c", _REGULAR),
+    "impact_velocity_dq": Way(
+        "computeImpulseDynamicsDerivatives",
+        f"{_IMPACT}0.0, ps)\npin.computeImpulseDynamicsDerivatives(m, d, cm, cd, 0.0, ps)\nvalue = d.ddq_dq",
+        _REGULAR,
+    ),
+    "impulses_dq": Way(
+        "computeImpulseDynamicsDerivatives",
+        f"{_IMPACT}0.0, ps)\npin.computeImpulseDynamicsDerivatives(m, d, cm, cd, 0.0, ps)\nvalue = d.dlambda_dq",
+        _REGULAR,
+    ),
+}
+for _number, _name in enumerate(("dq", "dv", "dtau")):
+    _native = "computeConstraintDynamicsDerivatives"
+    WAYS[f"constrained_acceleration_{_name}"] = Way(_native, f"{_DERIVATIVES}[{_number}]")
+    WAYS[f"constraint_forces_{_name}"] = Way(_native, f"{_DERIVATIVES}[{_number + 3}]")
