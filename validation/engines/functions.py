@@ -204,5 +204,3 @@ def _derivatives(name: str, of: Callable[[Truth, Exact, Exact, Exact], Exact]) -
 
 CONSTRAINED = _constrained()
 FUNCTIONS |= CONSTRAINED
-# What is asked of a tree with constraints besides, for identities.
-WITH_CONSTRAINTS = (*CONSTRAINED, "mass_matrix", "bias")

@@ -7,12 +7,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from validation.engines.functions import CONSTRAINED, FUNCTIONS, WITH_CONSTRAINTS
+from validation.engines.functions import CONSTRAINED, FUNCTIONS
 from validation.engines.interface import EnginePlugin, State, Steps, Tree, Unsupported, vector
 from validation.engines.verdicts import Cell, Expected, Verdict, expected, judge
 from validation.engines.workers import Answer, Crashed, Job, Worker, answered
 
 SEED = 20
+# What is asked of a tree with constraints besides, for identities.
+_BESIDES = ("mass_matrix", "bias")
 
 
 @dataclass(frozen=True)
@@ -73,7 +75,7 @@ def suited(tree: Tree, plugin: EnginePlugin) -> Tree:
 def asked(plugin: EnginePlugin, tree: Tree) -> tuple[str, ...]:
     """The functions of an engine that a tree is for: those of constraints where it has any."""
     if tree.constraints:
-        return tuple(name for name in plugin.functions if name.partition(":")[0] in WITH_CONSTRAINTS)
+        return tuple(name for name in plugin.functions if name in _BESIDES or name.partition(":")[0] in CONSTRAINED)
     return tuple(name for name in plugin.functions if name.partition(":")[0] not in CONSTRAINED)
 
 

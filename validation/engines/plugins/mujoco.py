@@ -7,6 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from validation.engines.interface import Array, Difference, Joint, Slot, Steps, Tree, Unsupported
+from validation.engines.plugins.loops import mujoco as constrained
 from validation.engines.plugins.writing.source import Source, SourcePlugin, Way, in_series, series
 
 # Kind of a joint -> elements (type, axis), chart, coordinates, speeds.
@@ -59,6 +60,7 @@ def document(tree: Tree) -> tuple[str, tuple[tuple[Slot, ...], ...], int, int] |
         children[link.parent].append(k)
     slots: dict[int, tuple[Slot, ...]] = {}
     counted = [0, 0]
+    coupled = {end.link for one in tree.constraints if one.kind == "coupling" for end in one.ends}
 
     def body(k: int) -> str | Unsupported:
         link = tree.links[k]
@@ -83,14 +85,15 @@ def document(tree: Tree) -> tuple[str, tuple[tuple[Slot, ...], ...], int, int] |
             )
             counted[0], counted[1] = counted[0] + nq, counted[1] + nv
             armature = f' armature="{joint.armature[0]!r}"' if joint.armature else ""
+            named = f' name="{link.name}"' if link.name in coupled else ""
             for kind, axis in _elements(joint):
                 about = f' axis="{_text(axis)}"' if kind in ("hinge", "slide") else ""
-                elements.append(f'<joint type="{kind}"{about}{armature}/>')
+                elements.append(f'<joint{named} type="{kind}"{about}{armature}/>')
         slots[k] = tuple(own)
         inertia = np.array(link.inertia)
         entries = _text(inertia[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)))
         inertial = f'<inertial pos="{_text(link.com)}" mass="{link.mass!r}" fullinertia="{entries}"/>'
-        inner = [inertial if link.mass else "", *elements]
+        inner = [inertial if link.mass else "", *elements, constrained.sites(tree, link.name)]
         for child in children[k]:
             text = body(child)
             if isinstance(text, Unsupported):
@@ -103,9 +106,10 @@ def document(tree: Tree) -> tuple[str, tuple[tuple[Slot, ...], ...], int, int] |
         if isinstance(text, Unsupported):
             return text
         opened[root] = text
-    bodies = "\n".join(opened.values())
+    bodies = "\n".join([*opened.values(), *filter(None, [constrained.sites(tree, "")])])
     option = f'<option gravity="{_text(tree.gravity)}"/>'
-    xml = f'<mujoco><compiler angle="radian"/>{option}<worldbody>\n{bodies}\n</worldbody></mujoco>'
+    xml = f'<mujoco><compiler angle="radian"/>{option}<worldbody>\n{bodies}\n</worldbody>'
+    xml += f"{constrained.elements(tree)}</mujoco>"
     return xml, tuple(slots[k] for k in range(len(tree.links))), counted[0], counted[1]
 
 
@@ -122,7 +126,7 @@ def write(tree: Tree) -> Source | Unsupported:
         "d = mj.MjData(m)",
     ]
     names = [link.name for link in tree.links]
-    optional = {"bs": (f"bs = [m.body(name).id for name in {names!r}]",)}
+    optional = {"bs": (f"bs = [m.body(name).id for name in {names!r}]",)} | constrained.optional(tree)
     return Source(tuple(lines), slots, nq, nv, optional)
 
 
@@ -244,11 +248,15 @@ PLUGIN = SourcePlugin(
     conventions=(
         Difference("quaternion", "w, x, y, z"),
         Difference("free joint", "linear velocity in world axes, angular velocity in the axes of the body"),
+        Difference(
+            "constraints", "soft: a row's acceleration is aref - R f; R is least, not zero, at the impedance 0.9999"
+        ),
         Difference("armature", "part of the mass matrix; mj_rne leaves it out"),
     ),
     kinds={},
-    ways=WAYS,
+    ways=WAYS | constrained.WAYS,
     write=write,
+    constraints=constrained.KINDS,
     formats=("urdf", "mjcf"),
     write_reading=write_reading,
 )

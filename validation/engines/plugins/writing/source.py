@@ -17,6 +17,7 @@ OPTIONAL = {
     "js": "not for links without a joint of their own",
     "bs": "not for links without a joint of their own",
     "cm": "not for constraints of this kind",
+    "axes": "not for trees without constraints",
     "am": "not for constraints of this kind",
 }
 _INPUTS = ("q", "v", "a", "tau", "v2", "q2")

@@ -1,0 +1,109 @@
+"""Constraint dynamics: the truth against what defines it, Pinocchio and MuJoCo against the truth."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from validation.engines.identities import held
+from validation.engines.interface import Unsupported
+from validation.engines.matrix import SEED, Judged, Truths, asked, judged
+from validation.engines.models.loops import trees
+from validation.engines.plugins import OWN
+from validation.engines.truth import constraints
+from validation.engines.truth.arithmetic import exact
+from validation.engines.truth.dynamics import Point, Truth, digits
+from validation.engines.workers import Job, answered
+
+TREES = trees()
+DYNAMICS = ("constraint_jacobian", "constrained_acceleration", "constraint_forces", "mass_matrix", "bias")
+
+
+def _judged(engine: str, name: str, *functions: str) -> dict[str, Judged]:
+    plugin = OWN[engine]
+    job = Job(engine, TREES[name], tuple(functions), SEED)
+    return {one.cell.function: one for one in judged(plugin, job, Truths())}
+
+
+def _closed(name: str) -> tuple[Truth, Point]:
+    """A truth and a state that satisfies its constraints."""
+    (answer,) = answered(Job("mujoco", TREES[name], ("sizes",), SEED))
+    assert answer.layout is not None and answer.state is not None
+    return Truth(TREES[name], answer.layout), Point.of(answer.state)
+
+
+@pytest.mark.parametrize("name", ["point between branches", "weld on the world", "cable over four points"])
+def test_constraint_dynamics_obey_the_equations_that_define_them_to_all_digits(name: str) -> None:
+    truth, s = _closed(name)
+
+    def residuals(t: Truth, s: Point) -> object:
+        a, f = constraints.motion(t, s.q, s.v, s.tau)
+        J = constraints.jacobian(t, s.q)
+        assert f is not None
+        return np.concatenate([t.ID(s.q, s.v, a) - s.tau - J.T @ f, J @ a + constraints.products(t, s.q, s.v)])
+
+    assert np.max(np.abs(digits(truth.value(residuals, s)))) < 1e-30
+    assert np.max(np.abs(digits(truth.value(lambda t, s: constraints.jacobian(t, s.q) @ s.v, s)))) < 1e-13
+
+
+def test_power_of_constraint_forces_is_none_on_a_closed_state() -> None:
+    truth, s = _closed("weld between branches")
+    power = truth.value(
+        lambda t, s: np.array([constraints.forces(t, s.q, s.v, s.tau) @ (constraints.jacobian(t, s.q) @ s.v)]), s
+    )
+    assert abs(float(power[0])) < 1e-12
+
+
+def test_redundant_equations_leave_one_acceleration_and_no_one_force() -> None:
+    truth, s = _closed("four-bar in a plane")
+    a = truth.value(lambda t, s: constraints.acceleration(t, s.q, s.v, s.tau), s)
+    rest = truth.value(
+        lambda t, s: constraints.jacobian(t, s.q) @ exact(digits(a)) + constraints.products(t, s.q, s.v), s
+    )
+    assert np.max(np.abs(digits(rest))) < 1e-13
+    with pytest.raises(ZeroDivisionError):
+        truth.value(lambda t, s: constraints.forces(t, s.q, s.v, s.tau), s)
+
+
+def test_an_impact_with_rebound_reverses_half_of_the_velocity_of_closing() -> None:
+    truth, s = _closed("point held in the world")
+
+    def closing(t: Truth, s: Point) -> object:
+        after = constraints.after_impact(t, s.q, s.v2, exact(0.5)[()])
+        return constraints.jacobian(t, s.q) @ (after + s.v2 / 2)
+
+    assert np.max(np.abs(digits(truth.value(closing, s)))) < 1e-30
+
+
+@pytest.mark.parametrize("engine", ["pinocchio", "mujoco"])
+@pytest.mark.parametrize("name", ["point between branches", "weld of a free base's branch on the world"])
+def test_engines_are_right_about_loops(engine: str, name: str) -> None:
+    cells = _judged(engine, name, *DYNAMICS)
+    assert {one.cell.verdict for one in cells.values()} == {"right"}
+    assert [row.identity for row in held(list(cells.values())) if row.ok] == ["M a + h = tau + J^T f"]
+
+
+def test_derivatives_of_point_constraints_are_right_in_the_world_and_wrong_between_two_bodies() -> None:
+    function = "constrained_acceleration_dq"
+    verdicts = {
+        name: _judged("pinocchio", name, function)[function].cell.verdict
+        for name in ("point held in the world", "point between branches")
+    }
+    assert verdicts == {"point held in the world": "right", "point between branches": "wrong"}
+
+
+def test_functions_of_constraints_are_asked_of_trees_with_constraints_only() -> None:
+    bound = TREES["point between branches"]
+    free = replace(bound, constraints=())
+    plugin = OWN["pinocchio"]
+    assert set(asked(plugin, bound)) & set(asked(plugin, free)) == {"mass_matrix", "bias"}
+    refused = OWN["pinocchio"].build(TREES["cable of two points"])
+    assert isinstance(refused, Unsupported) and "path" in refused.reason
+
+
+@pytest.mark.parametrize("name", [name for name in TREES if name.startswith(("coupling", "cable"))])
+def test_mujoco_couples_coordinates_and_measures_cables(name: str) -> None:
+    verdicts = {one.cell.verdict for one in _judged("mujoco", name, "constraint_jacobian", "delassus").values()}
+    assert verdicts == {"right"}
