@@ -155,10 +155,10 @@ def _constrained() -> dict[str, Function]:
         "delassus": Function("J M^-1 J^T (m, m)", lambda t, s: constraints.delassus(t, s.q)),
         "delassus_inverse": Function(
             "(J M^-1 J^T)^-1 (m, m)",
-            lambda t, s: derived.solve(constraints.delassus(t, s.q), derived.eye(len(constraints.jacobian(t, s.q)))),
+            lambda t, s: constraints.delassus_inverse(t, s.q),
         ),
         "delassus_inverse_damped": Function(
-            "(J M^-1 J^T + 1e-4)^-1 (m, m)", lambda t, s: constraints.damped_delassus_inverse(t, s.q)
+            "(J M^-1 J^T + 1e-4)^-1 (m, m)", lambda t, s: constraints.delassus_inverse(t, s.q, 1e-4)
         ),
         "kkt_inverse": Function("inverse of [[M, J^T], [J, 0]] (nv + m, nv + m)", constraints.kkt_inverse),
         "constrained_acceleration": Function(

@@ -16,7 +16,7 @@ def _hinge(draw: np.random.Generator) -> Joint:
 
 def _branches(draw: np.random.Generator, count: int, root: int, *lengths: int) -> tuple[Link, ...]:
     """Chains of links on oblique hinges, that hang on one root; `count` links stand before them."""
-    links = []
+    links: list[Link] = []
     for letter, length in zip("abc", lengths, strict=False):
         for k in range(length):
             parent = count + len(links) - 1 if k else root

@@ -137,13 +137,10 @@ def products(t: Truth, q: Exact, v: Exact) -> Exact:
     return np.concatenate(parts)
 
 
-DAMPING = 1e-4
-
-
-def damped_delassus_inverse(t: Truth, q: Exact) -> Exact:
-    """(J M^-1 J^T + DAMPING)^-1 (m, m)."""
+def delassus_inverse(t: Truth, q: Exact, damping: float = 0.0) -> Exact:
+    """(J M^-1 J^T + damping)^-1 (m, m)."""
     A = delassus(t, q)
-    return solve(A + exact(DAMPING)[()] * eye(len(A)), eye(len(A)))
+    return solve(A + exact(damping)[()] * eye(len(A)), eye(len(A)))
 
 
 def delassus(t: Truth, q: Exact) -> Exact:
