@@ -28,7 +28,8 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> dict[str, np.ndarray]:
     if gcc is None:
         pytest.skip("needs gcc")
     folder = tmp_path_factory.mktemp("routines")
-    files = dict.fromkeys(file for needed in ROUTINES.values() for file in needed)
+    # The systems of packed matrices have the names of the full ones: tests/generator/codegen/test_sparse.py.
+    files = dict.fromkeys(file for needed in ROUTINES.values() for file in needed if file != "sparse_system")
     routines = "\n".join(native_text(f"model/{file}.c.in") for file in files)
     head = "#include <math.h>\n#include <stdint.h>\n#include <string.h>\n"
     (folder / "driver.c").write_text(head + routines + DRIVER.read_text(encoding="utf-8"), encoding="utf-8")

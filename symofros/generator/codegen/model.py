@@ -14,7 +14,8 @@ from symofros.expr.program import Function, Output, Program
 from symofros.generator.codegen import lanes, trigonometry
 from symofros.generator.codegen.function import FunctionWriter
 from symofros.generator.codegen.names import c_string, identifier
-from symofros.generator.codegen.solvers import ROUTINES, with_solver
+from symofros.generator.codegen.solvers import routines, sparse_systems, with_solver
+from symofros.generator.codegen.sparse import SparseSystem
 from symofros.generator.passes.count import count_program
 from symofros.native import native_text
 from symofros.runtime.calls.kernel import LaneOptions
@@ -62,10 +63,10 @@ def model_source(
             ]
         )
     ]
-    rows = []
+    rows, sparse = [], sparse_systems(program)
     for i, function in enumerate(program.functions):
         c_function = f"{name}_{identifier(function.name)}_f{i}"
-        text, row = _one_function(program, record, function, c_function, vectors, packs)
+        text, row = _one_function(program, record, function, c_function, vectors, packs, sparse.get(function.name))
         texts.append(text)
         rows.append(row)
     counts = count_program(program)
@@ -82,7 +83,7 @@ def model_source(
                 *trigonometry.routines(texts, vectors is not None),
                 *([lanes.routines(vectors)] if vectors is not None else []),
                 *([native_text("model/pack.c.in")] if packs and any("sym_pack " in text for text in texts) else []),
-                *_routines(program),
+                *routines(program, bool(sparse)),
                 *texts,
             ]
         ),
@@ -106,12 +107,6 @@ def model_source(
         par_default=_numbers(record.par_default),
         q_neutral=_numbers(record.q_neutral),
     )
-
-
-def _routines(program: Program) -> list[str]:
-    """The hand-written routines that the functions call, and what those rest on."""
-    called = {function.solver.routine for function in program.functions if function.solver is not None}
-    return [native_text(f"model/{name}.c.in") for name in ROUTINES if any(name in ROUTINES[other] for other in called)]
 
 
 def _init_function(program: Program, name: str) -> str:
@@ -214,14 +209,20 @@ def _shaped(name: str, shape: tuple[int, ...]) -> str:
 
 
 def _one_function(
-    program: Program, record: ModelRecord, function: Function, c_name: str, in_lanes: LaneOptions | None, packs: bool
+    program: Program,
+    record: ModelRecord,
+    function: Function,
+    c_name: str,
+    in_lanes: LaneOptions | None,
+    packs: bool,
+    sparse: SparseSystem | None,
 ) -> tuple[str, _Row]:
     """The code of a function, with its rows of tables."""
     inputs = ["pre", *function.inputs]
     vectors, scratch = [], 0
     if function.solver is not None:
         in_lanes = None
-        text = with_solver(program, c_name, function, function.solver, packs)
+        text = with_solver(program, c_name, function, function.solver, packs, sparse)
     else:
         writer = FunctionWriter(program, c_name, inputs, function.outputs, packs=packs)
         text = writer.text()

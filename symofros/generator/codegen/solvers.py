@@ -8,6 +8,7 @@ from functools import cache, partial
 
 from symofros.expr.program import Function, Program, Solver
 from symofros.generator.codegen.function import FunctionText, FunctionWriter
+from symofros.generator.codegen.sparse import SparseSystem
 from symofros.native import native_text
 
 _WORK_MACRO = re.compile(r"^#define (SYM_\w+_WORK)\(([\w, ]+)\) (.+)$", re.MULTILINE)
@@ -19,12 +20,46 @@ ROUTINES: dict[str, tuple[str, ...]] = {
     "null_space": ("dense", "row_sizes", "null_space_factors", "null_space"),
     "kkt": ("dense", "row_sizes", "null_space_factors", "kkt"),
     "constrained": ("dense", "row_sizes", "null_space_factors", "kkt", "constrained"),
+    "dense_system": ("dense", "row_sizes", "null_space_factors", "kkt", "constrained", "dense_system"),
+    "sparse_system": ("dense", "row_sizes", "null_space_factors", "kkt", "constrained", "sparse_system"),
     "project": ("dense", "row_sizes", "null_space_factors", "kkt", "constrained", "project"),
     "differentiate": ("dense", "row_sizes", "null_space_factors", "kkt", "differentiate"),
 }
 
 
-def with_solver(program: Program, c_name: str, function: Function, solver: Solver, packs: bool = False) -> FunctionText:
+# Routines that solve M a = r + G^T lam, G a = c, with full matrices or with packed ones.
+_OF_SYSTEMS = ("constrained", "project")
+
+
+def sparse_systems(program: Program) -> dict[str, SparseSystem]:
+    """Patterns of each function that solves for constrained motion, by its name; none where full matrices do better."""
+    systems = {}
+    for function in program.functions:
+        if function.solver is not None and function.solver.routine in _OF_SYSTEMS:
+            by_name = {output.name: output for output in function.outputs}
+            system = SparseSystem.of(by_name["M"], by_name["G"])
+            if system is None:
+                return {}
+            systems[function.name] = system
+    return systems
+
+
+def routines(program: Program, sparse: bool) -> list[str]:
+    """The hand-written routines that a program's functions call, and those that they rest on, in order."""
+    called = {function.solver.routine for function in program.functions if function.solver is not None}
+    if called.intersection(_OF_SYSTEMS):
+        called.add("sparse_system" if sparse else "dense_system")
+    return [native_text(f"model/{name}.c.in") for name in ROUTINES if any(name in ROUTINES[other] for other in called)]
+
+
+def with_solver(
+    program: Program,
+    c_name: str,
+    function: Function,
+    solver: Solver,
+    packs: bool = False,
+    sparse: SparseSystem | None = None,
+) -> FunctionText:
     """The C text of a function and of its parts, and the call of the routine that finishes it.
 
     Args:
@@ -33,56 +68,83 @@ def with_solver(program: Program, c_name: str, function: Function, solver: Solve
         function: Function whose outputs generated code computes.
         solver: Routine that finishes it.
         packs: Whether values formed by the same operations share vectors.
+        sparse: Patterns of M and G, where these are packed.
     """
-    terms = FunctionWriter(program, f"{c_name}_terms", ["pre", *function.inputs], function.outputs, packs=packs).text()
+    outputs = function.outputs if sparse is None else sparse.packed(function.outputs)
+    terms = FunctionWriter(program, f"{c_name}_terms", ["pre", *function.inputs], outputs, packs=packs).text()
     parts = [
         FunctionWriter(program, f"{c_name}_{part.name}", ["pre", *part.inputs], part.outputs, packs=packs).text()
         for part in solver.parts
     ]
     needs = max(text.work for text in (terms, *parts))
     head = f"static void {c_name}(const double *const *in, double *const *out, double *restrict work) {{"
-    body, work = _CALLS[solver.routine](c_name, function, needs)
-    body = [*_tables(solver), *body]
+    body, work = _CALLS[solver.routine](c_name, function, needs, sparse)
+    body = [*_tables(solver, sparse), *body]
     return FunctionText("\n".join([terms.code, *(part.code for part in parts), head, *body, "}"]), work)
 
 
-def _tables(solver: Solver) -> list[str]:
+def _tables(solver: Solver, sparse: SparseSystem | None) -> list[str]:
     """The tables of a routine as the constant `measures`; C has no empty arrays."""
     names = ("group", "unit", "speed")
+    patterns = "NULL" if sparse is None else "&sparse"
     return [
         *(
             f"    static const short {name}[] = {{{', '.join(map(str, table or (0,)))}}};"
             for name, table in zip(names, solver.tables, strict=True)
         ),
-        f"    static const sym_measures measures = {{{', '.join(names)}}};",
+        *(sparse.tables() if sparse is not None else ()),
+        f"    static const sym_measures measures = {{{', '.join(names)}, {patterns}}};",
     ]
 
 
-def _constrained(c_name: str, function: Function, needs: int) -> tuple[list[str], int]:
+def _solving(n: int, m: int, sparse: SparseSystem | None) -> int:
+    """Doubles of scratch of sym_system_solve."""
+    if sparse is None:
+        return work_size("SYM_CONSTRAINED_WORK", n, m)
+    return max(work_size("SYM_SPARSE_WORK", n, m, sparse.entries), work_size("SYM_SPARSE_FALLBACK_WORK", n, m))
+
+
+def _constrained(c_name: str, function: Function, needs: int, sparse: SparseSystem | None) -> tuple[list[str], int]:
     """M, r, G, c -> a, lam, rank, by multipliers."""
     m, n = function.outputs[2].shape
-    return _on_terms("sym_constrained", c_name, m, n, max(needs, work_size("SYM_CONSTRAINED_WORK", n, m)))
+    M, _, G, _ = function.outputs if sparse is None else sparse.packed(function.outputs)
+    return _on_terms(
+        "sym_system_solve", c_name, (m, n), (len(M.edges), len(G.edges)), max(needs, _solving(n, m, sparse))
+    )
 
 
-def _null_space(c_name: str, function: Function, needs: int) -> tuple[list[str], int]:
+def _null_space(c_name: str, function: Function, needs: int, sparse: SparseSystem | None) -> tuple[list[str], int]:
     """M, r, G, c -> a, lam, rank, in the coordinates that the constraints leave free."""
     m, n = function.outputs[2].shape
-    return _on_terms("sym_null_space", c_name, m, n, max(needs, work_size("SYM_NULL_SPACE_WORK", n, m)))
+    return _on_terms(
+        "sym_null_space", c_name, (m, n), (n * n, m * n), max(needs, work_size("SYM_NULL_SPACE_WORK", n, m))
+    )
 
 
-def _on_terms(routine: str, c_name: str, m: int, n: int, scratch: int) -> tuple[list[str], int]:
-    """A routine that turns r and c, in the places of the results, into a and lam."""
-    start = n * n + m * n
+def _on_terms(
+    routine: str, c_name: str, shape: tuple[int, int], sizes: tuple[int, int], scratch: int
+) -> tuple[list[str], int]:
+    """A routine that turns r and c, in the places of the results, into a and lam.
+
+    Args:
+        routine: Name of the routine.
+        c_name: Prefix of the function's names.
+        shape: Shape of G.
+        sizes: Numbers that M and G are stored as.
+        scratch: Doubles of scratch of the routine and of the terms.
+    """
+    m, n = shape
+    start = sum(sizes)
     lines = [
         "    double *terms[4];",
-        f"    terms[0] = work, terms[1] = out[0], terms[2] = work + {n * n}, terms[3] = out[1];",
+        f"    terms[0] = work, terms[1] = out[0], terms[2] = work + {sizes[0]}, terms[3] = out[1];",
         f"    {c_name}_terms(in, terms, work + {start});",
         f"    *out[2] = {routine}({n}, {m}, &measures, terms[0], out[0], terms[2], out[1], work + {start});",
     ]
     return lines, start + scratch
 
 
-def _project(c_name: str, function: Function, needs: int) -> tuple[list[str], int]:
+def _project(c_name: str, function: Function, needs: int, sparse: SparseSystem | None) -> tuple[list[str], int]:
     """The state -> the nearest one on the constraints."""
     m, n = function.outputs[1].shape
     nq = function.returns[0][1][0]
@@ -90,10 +152,10 @@ def _project(c_name: str, function: Function, needs: int) -> tuple[list[str], in
         f"    *out[3] = sym_project({nq}, {n}, {m}, &measures, {c_name}_terms, {c_name}_move,",
         "                          in, out[0], out[1], out[2], out[4], work);",
     ]
-    return lines, work_size("SYM_PROJECT_WORK", nq, n, m) + max(needs, work_size("SYM_CONSTRAINED_WORK", n, m))
+    return lines, work_size("SYM_PROJECT_WORK", nq, n, m) + max(needs, _solving(n, m, sparse))
 
 
-def _differentiate(c_name: str, function: Function, needs: int) -> tuple[list[str], int]:
+def _differentiate(c_name: str, function: Function, needs: int, sparse: SparseSystem | None) -> tuple[list[str], int]:
     """The state -> derivatives of a and lam."""
     m, n = function.outputs[2].shape
     columns = [shape[1] for _, shape in function.returns]
@@ -123,7 +185,7 @@ def _work_macros() -> dict[str, tuple[list[str], str]]:
     return {name: (parameters.split(", "), expression) for name, parameters, expression in _WORK_MACRO.findall(text)}
 
 
-_CALLS: dict[str, Callable[[str, Function, int], tuple[list[str], int]]] = {
+_CALLS: dict[str, Callable[[str, Function, int, SparseSystem | None], tuple[list[str], int]]] = {
     "constrained": _constrained,
     "null_space": _null_space,
     "project": _project,
