@@ -1,7 +1,7 @@
 """A flexible beam: its first flapping frequency, how many shape functions that takes, and how spin stiffens it.
 
-At rest it is 1.8751^2 sqrt(EI/(rhoA L^4)); with spin it stays below sqrt(w^2 + 1.193 spin^2), Rayleigh's quotient of the
-mode at rest.
+At rest it is 1.8751^2 sqrt(EI/(rhoA L^4)); with spin it stays below sqrt(w^2 + 1.193 spin^2), Rayleigh's quotient
+of the mode at rest.
 """
 
 import numpy as np

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 import reference_models
+from tests.docs.pages import blocks
 
 PAGE = Path(__file__).parent.parent / "docs" / "view.md"
 ARM = Path(reference_models.__file__).parent / "rigid" / "double_pendulum.yaml"
@@ -19,7 +20,7 @@ def test_the_examples_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setattr("webbrowser.open", opened.append)
     monkeypatch.chdir(tmp_path)
     shutil.copy(ARM, "arm.yaml")
-    snippets = re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
+    snippets = [block.text for block in blocks("docs/view.md", "python")]
     assert len(snippets) == 5
     names: dict[str, object] = {}
     for snippet in snippets:

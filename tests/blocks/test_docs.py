@@ -12,6 +12,7 @@ import pytest
 import symofros as sf
 import symofros.blocks as library
 from symofros.diagrams.block import Block
+from tests.docs.pages import blocks
 
 PAGE = (Path(__file__).parents[2] / "docs" / "blocks.md").read_text()
 CLASSES = {name: item for name, item in vars(library).items() if isinstance(item, type)}
@@ -31,8 +32,8 @@ def ports_seen() -> dict[str, set[str]]:
 
     original, sf.Simulation = sf.Simulation, Watched  # type: ignore[misc]
     try:
-        for number, code in enumerate(re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)):
-            exec(compile(code, f"blocks.md, piece {number + 1}", "exec"), namespace)
+        for block in blocks("docs/blocks.md", "python"):
+            exec(compile("\n" * block.line + block.text, "blocks.md", "exec"), namespace)
     finally:
         sf.Simulation = original  # type: ignore[misc]
     found: dict[str, set[str]] = {}

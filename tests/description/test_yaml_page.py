@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import fields
-from pathlib import Path
 
 import pytest
 from ruamel.yaml import YAML
 
 import symofros as sf
-
-PAGE = (Path(__file__).parent.parent.parent / "docs" / "yaml.md").read_text(encoding="utf-8")
+from tests.docs.pages import blocks
 
 
 def block(entry: str) -> str:
     """The code block that begins with an entry."""
-    (shown,) = [code for code in re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL) if code.startswith(f"{entry}:")]
+    (shown,) = [block.text for block in blocks("docs/yaml.md", "yaml") if block.text.startswith(f"{entry}:")]
     return shown
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import numpy as np
@@ -11,14 +10,14 @@ import symofros as sf
 from symofros.diagrams.files.reader import MODEL, PART, SECTIONS
 from symofros.diagrams.files.run_settings import SETTINGS
 from tests.diagrams.files.cases import folder_with
+from tests.docs.pages import blocks
 
 PAGE = (Path(__file__).parents[3] / "docs" / "diagrams.md").read_text(encoding="utf-8")
 
 
 def test_the_example_runs_as_it_says(tmp_path: Path) -> None:
-    match = re.search(r"```yaml\n(.*?)```", PAGE, re.DOTALL)
-    assert match
-    run = sf.Simulation(sf.load_diagram(folder_with(tmp_path, match.group(1)))).run()
+    example, *_ = blocks("docs/diagrams.md", "yaml")
+    run = sf.Simulation(sf.load_diagram(folder_with(tmp_path, example.text))).run()
     assert run.outcome.ok and len(run.t) == 201
     # Nobody sent anything: the arm is held near the fallback, against its weight.
     assert np.all(run["desired.signal"] == [0.3, -0.2]) and np.all(run["desired.alive"] == 0.0)

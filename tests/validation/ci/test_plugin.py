@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.docs.pages import blocks
 from tests.validation.subjects import URDF
 
 ROOT = Path(__file__).parents[3]
@@ -94,7 +95,7 @@ def test_a_stored_run_is_a_test_of_its_own(project: Path) -> None:
     assert done.returncode == 1 and "arm, bias_of_before by mujoco: not compared" in done.stdout
 
 
-TOY = (ROOT / "docs/engines.md").read_text().split("```python\n")[1].split("```")[0]
+TOY = blocks("docs/engines.md", "python")[0].text
 
 
 def test_an_engine_of_another_package_is_held_to_the_truth(project: Path) -> None:

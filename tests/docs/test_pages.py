@@ -1,0 +1,111 @@
+"""Every block of code on every page: Python runs, YAML is valid, commands of the shell run or are understood."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import pytest
+from ruamel.yaml import YAML
+
+import symofros as sf
+from tests.docs.pages import ELSEWHERE, GIVEN, ROOT, Block, blocks, pages
+from tests.docs.shell import commands, try_out
+from validation.campaigns import plan
+
+LANGUAGES = {"python", "sh", "yaml", "toml", "xml", "c", "text"}
+SCHEMA = json.loads((ROOT / "symofros/description/yaml/schema.json").read_text())
+WITH_CODE = [page for page in pages() if blocks(page) and page not in ELSEWHERE and "tutorial/" not in page]
+
+
+def validated(block: Block, folder: Path) -> None:
+    """A whole file is read; a part of a model's file fits the schema that is published for it."""
+    data: Any = YAML(typ="safe").load(block.text)
+    path = folder / (block.said("file: ") or "part.yaml")
+    path.write_text(block.text, encoding="utf-8")
+    if "symofros" in data:
+        sf.compile(sf.load(path), sf.Options(backend="interpreter"))
+    elif "symofros_diagram" in data:
+        sf.Simulation(sf.load_diagram(path))
+    elif "outputs" in data:
+        sf.load_scene(path)
+    else:
+        entry = block.said("part of ")
+        parts = {entry: data} if entry else data
+        assert parts.keys() <= SCHEMA["properties"].keys(), f"{block.page}:{block.line}: entries of no model"
+        for name, part in parts.items():
+            jsonschema.validate(part, {**SCHEMA["properties"][name], "$defs": SCHEMA["$defs"]})
+
+
+def stated(block: Block) -> None:
+    """A plan of a campaign is one; other TOML is at least TOML."""
+    data = tomllib.loads(block.text)
+    if "kind" in data:
+        plan.make(data, block.page)
+
+
+@pytest.fixture
+def folder(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder of a reader who has the repository's models and the files that the page takes for granted."""
+    for name, path in GIVEN.get(page, {}).items():
+        shutil.copy(ROOT / path, tmp_path / name)
+    for name in ("validation", "reference_models"):
+        (tmp_path / name).symlink_to(ROOT / name)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("MPLBACKEND", "agg")
+    monkeypatch.setenv("COLUMNS", "200")
+    return tmp_path
+
+
+@pytest.mark.parametrize("page", WITH_CODE)
+def test_the_code_of_a_page_runs(page: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    names: dict[str, Any] = {"__name__": "__main__"}
+    for block in blocks(page):
+        if not block.runs:
+            continue
+        where = f"{page}:{block.line}"
+        if block.language == "python":
+            exec(compile("\n" * block.line + block.text, page, "exec"), names)
+        elif block.language == "yaml":
+            validated(block, folder)
+        elif block.language == "toml":
+            stated(block)
+        elif block.language == "sh":
+            for command in commands(block):
+                try_out(command, folder)
+        else:
+            assert block.language in LANGUAGES, f"{where}: a block of language '{block.language}'"
+
+
+@pytest.mark.parametrize("page", sorted(ELSEWHERE))
+def test_pages_that_other_tests_run_are_read_by_those(page: str, folder: Path) -> None:
+    assert Path(page).name in (ROOT / ELSEWHERE[page]).read_text(encoding="utf-8")
+    for block in blocks(page, "sh"):
+        for command in commands(block):
+            try_out(command, folder)
+
+
+def test_what_does_not_run_says_why() -> None:
+    unmarked = [block for page in pages() for block in blocks(page) if block.mark]
+    assert all(re.match(r"(not run: .{12,}|file: [\w./]+|part of \w+)$", block.mark) for block in unmarked)
+    left_out = [block for block in unmarked if not block.runs]
+    assert len(left_out) <= 8, [f"{block.page}:{block.line}" for block in left_out]
+
+
+@pytest.mark.parametrize("page", pages())
+def test_links_lead_to_files_that_exist(page: str) -> None:
+    text = re.sub(r"^```.*?^```$", "", (ROOT / page).read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+    for target in re.findall(r"\]\(([^)#\s]+)(?:#[^)]*)?\)", text):
+        assert target.startswith(("http", "mailto:")) or (ROOT / page).parent.joinpath(target).exists(), target
+
+
+def test_the_first_example_is_short_and_does_all_that_it_says(capsys: pytest.CaptureFixture[str]) -> None:
+    first, *_ = blocks("README.md", "python")
+    assert len(first.text.strip().splitlines()) <= 25
+    exec(compile(first.text, "README.md", "exec"), {})
+    assert "(1000, 2, 2) (6, 2)" in capsys.readouterr().out
