@@ -75,7 +75,7 @@ ALLOWED = table("""
         simulation diagrams __init__
     # The editor checks documents itself, and hands the rest to workers that use the front doors.
     studio.editor: base errors expr description mechanics.beams mechanics.topology generator.passes
-        compiler simulation exports studio.viewer __init__
+        runtime compiler simulation diagrams diagrams.files exports studio.viewer __init__
     # Passes left out in turn, for studies: their context managers reach into every stage.
     generator.ablation: base expr mechanics.kinematics mechanics.dynamics generator.passes generator.codegen
         runtime

@@ -18,6 +18,7 @@ from symofros.commands.details import details, frames_line, tables
 from symofros.commands.shared import AsJson, FilePath, Floating, ModelPath, Network, load, out, refuse
 from symofros.compiler import Compilation
 from symofros.diagrams.files import command as diagrams
+from symofros.diagrams.files.kind import is_diagram
 from symofros.generator.codegen.names import identifier
 from symofros.generator.passes.count import Operations, count_program
 from symofros.mechanics.topology.tree import BASE, SpanningTree
@@ -26,7 +27,7 @@ from symofros.native import native_text
 
 def info(model: FilePath, floating_base: Floating = False, network: Network = False, as_json: AsJson = False) -> None:
     """Show a model: its tree, its sizes, the operations of each function; or a diagram: blocks, rates, order."""
-    if diagrams.is_diagram(model):
+    if is_diagram(model):
         try:
             diagrams.tell_diagram(sf.load_diagram(model, network=network), as_json, out)
         except sf.SymofrosError as error:

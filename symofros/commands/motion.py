@@ -29,6 +29,7 @@ from symofros.commands.shared import (
 from symofros.compiler import compile_system
 from symofros.description.system import System
 from symofros.diagrams.files import command as diagrams
+from symofros.diagrams.files.kind import is_diagram
 from symofros.simulation.stepping.methods import METHODS
 
 
@@ -86,7 +87,7 @@ def simulate(
     wanted = not as_json and err.is_terminal
     viewing = view_options.ViewOptions(view, view_block, record_view, exaggeration)
     try:
-        if diagrams.is_diagram(model):
+        if is_diagram(model):
             if inputs:
                 raise sf.SymofrosError(
                     sf.Problem(

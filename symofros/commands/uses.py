@@ -23,7 +23,7 @@ from symofros.commands.shared import (
     out,
     refuse,
 )
-from symofros.diagrams.files import command as diagrams
+from symofros.diagrams.files.kind import is_diagram
 from symofros.exports.exporting import TARGETS
 from symofros.studio.advice.report import table_of
 
@@ -79,7 +79,7 @@ def export_command(
     as_json: AsJson = False,
 ) -> None:
     """Write a model for C, Matlab, Octave, Simulink, FMI, or as URDF or MJCF; a diagram as a C program."""
-    described = sf.load_diagram(model) if diagrams.is_diagram(model) else load(model, floating_base)
+    described = sf.load_diagram(model) if is_diagram(model) else load(model, floating_base)
     start = {key: number(key, text) for key, text in assignments(given, "--set").items()}
     try:
         done = sf.export(

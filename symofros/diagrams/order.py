@@ -9,15 +9,29 @@ from symofros.diagrams.wiring import Source, Wired
 from symofros.errors import DescriptionError, Problem
 
 
-def order_of(wired: Wired, pieces: Mapping[str, Piece]) -> list[Source]:
+class AlgebraicLoopError(DescriptionError):
+    """A signal that needs itself at the same instant.
+
+    Attributes:
+        path: Outputs along the loop, in the direction of the signals; the first is the last again.
+    """
+
+    def __init__(self, problem: Problem, path: Sequence[Source]) -> None:
+        super().__init__(problem)
+        self.path = tuple(path)
+
+
+def order_of(wired: Wired, needs: Mapping[str, Mapping[str, frozenset[str]]]) -> list[Source]:
     """All outputs, each after those that it depends on at once, as if every sampled block were due.
 
+    Args:
+        wired: Diagram whose signals are ordered.
+        needs: Block -> output -> inputs that it depends on at once.
+
     Raises:
-        DescriptionError: Signals that need themselves, with their path.
+        AlgebraicLoopError: A signal needs itself.
     """
-    before = {
-        (name, port): wired.behind(name, needs) for name, piece in pieces.items() for port, needs in piece.needs.items()
-    }
+    before = {(name, port): wired.behind(name, inputs) for name, of in needs.items() for port, inputs in of.items()}
     done: list[Source] = []
     state: dict[Source, int] = {}  # 1: on the path, 2: done.
     for first in before:
@@ -40,18 +54,19 @@ def order_of(wired: Wired, pieces: Mapping[str, Piece]) -> list[Source]:
     return done
 
 
-def _loop(wired: Wired, path: Sequence[Source]) -> DescriptionError:
+def _loop(wired: Wired, path: Sequence[Source]) -> AlgebraicLoopError:
     """The stack runs against the flow of signals."""
     forward = [*reversed(path), path[-1]]
     text = " -> ".join(".".join(source) for source in forward)
-    return DescriptionError(
+    return AlgebraicLoopError(
         Problem(
             f"diagram '{wired.name}': an algebraic loop",
             text,
             "a signal does not depend on itself at the same instant",
             "break the loop by a delay, an integrator or a filter, or sample one of its blocks before the other",
             wired.origin.get(("block", forward[0][0]), ""),
-        )
+        ),
+        forward,
     )
 
 

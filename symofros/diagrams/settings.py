@@ -13,10 +13,12 @@ class Plot:
     Attributes:
         title: Above it.
         signals: Outputs as "block.port", or "block.port[i]" for one entry.
+        xy: Whether the second entry of each signal is drawn over its first, at one scale, in place of both over time.
     """
 
     title: str
     signals: tuple[str, ...]
+    xy: bool = False
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ import numpy as np
 
 from symofros.base.options import Options
 from symofros.diagrams.diagram import Diagram
+from symofros.diagrams.observer import NoObserver, Observer
 from symofros.diagrams.program.compiled import CompiledDiagram, Resolved, compile_diagram, rates_of, resolve
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.result import DiagramRun
@@ -54,8 +55,8 @@ class Simulation:
 
         Args:
             t_end: End time [s]; the diagram's own where it states one.
-            settings: Fields of `DiagramOptions` in place of the diagram's own; `parameters` and
-                `progress` as of `run_compiled`.
+            settings: Fields of `DiagramOptions` in place of the diagram's own; `parameters`, `progress`
+                and `observer` as of `run_compiled`.
 
         Raises:
             SymofrosError: As `run_compiled`; or nobody says where to end.
@@ -76,6 +77,7 @@ class Simulation:
         beam_limit: float = BEAM_LIMIT,
         compiled: bool = True,
         progress: bool = False,
+        observer: Observer | None = None,
     ) -> InterpretedRun:
         """Run it block by block from Python: the reference of `run`, and some hundred times slower.
 
@@ -90,6 +92,7 @@ class Simulation:
             beam_limit: Estimated error of the beams' theory beyond which the run ends.
             compiled: Whether each block is compiled by itself; else NumPy interprets its formulas.
             progress: Show a progress bar.
+            observer: Receiver of the records while the run goes on, which may stop it by time.
 
         Raises:
             SymofrosError: The method is implicit or adaptive, or the diagram has crossings.
@@ -120,17 +123,18 @@ class Simulation:
         instants = list(_instants(plan, t0, t_end))
         tableau = METHODS[method].tableau
 
-        def once(h: float, watched: bool) -> InterpretedRun:
+        def once(h: float, observer: Observer | None) -> InterpretedRun:
             blocks = Blocks(resolved, par, gains or (0.0, 0.0), toolchain)
             watch = BeamWatch(resolved, par, beam_limit)
-            with begun(resolved.wired) as called, bar(progress and watched, t0, t_end) as show:
-                return run_interpreted(blocks, called, instants, t_end, h, tableau, gains is None, watch, show)
+            with begun(resolved.wired) as called, bar(progress and observer is not None, t0, t_end) as show:
+                stepping = (instants, t_end, h, tableau, gains is None)
+                return run_interpreted(blocks, called, *stepping, watch, show, observer or NoObserver())
 
-        run = once(dt, watched=True)
+        run = once(dt, observer or NoObserver())
         external = any(piece.is_external for piece in resolved.pieces.values())
         if run.outcome.ok and 0 < run.steps <= STEPS and resolved.layout.v and not external:
             h = min(dt, plan.spacing)
-            half = once(0.5 * h, watched=False)
+            half = once(0.5 * h, None)
             finer = (half.t, half.q, half.v) if half.outcome.ok else None
             note = halved_steps_note(resolved.layout, (run.t, run.q, run.v), finer, h)
             outcome = replace(run.outcome, notes=(*run.outcome.notes, *([note] if note else [])))

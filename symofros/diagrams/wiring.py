@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,10 +11,10 @@ import numpy as np
 from symofros.description.system import System
 from symofros.diagrams.block import Block, Port, Ports, Shape
 from symofros.diagrams.diagram import Diagram
+from symofros.diagrams.fit import check_fit
 from symofros.diagrams.program.model_environment import Models
 from symofros.diagrams.settings import Plot
 from symofros.diagrams.signals import check_entry, split
-from symofros.diagrams.units import agree, parse
 from symofros.errors import DescriptionError, Problem, did_you_mean
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.record import ModelRecord
@@ -115,11 +115,31 @@ def surroundings(wired: Wired, block: str) -> _Surroundings:
     return _Surroundings(wired.models, shapes)
 
 
-def wire(diagram: Diagram) -> Wired:
-    """Check a diagram.
+@dataclass(frozen=True)
+class Draft:
+    """A diagram as far as it holds together, with everything that keeps it from being run.
 
-    Raises:
-        DescriptionError: With every fault found.
+    Attributes:
+        models: Models that blocks refer to.
+        ports: Name of a block -> its ports; blocks whose ports are not known are left out.
+        sources: (block, input) -> (block, output), as far as both are known.
+        outlets: Name -> (block, output), as far as known.
+        problems: Every fault found.
+    """
+
+    models: Models
+    ports: Mapping[str, Ports]
+    sources: Mapping[Source, Source]
+    outlets: Mapping[str, Source]
+    problems: Sequence[Problem]
+
+
+def draft(diagram: Diagram, unread: Collection[str] = ()) -> Draft:
+    """Find out what holds together of a diagram.
+
+    Args:
+        diagram: Diagram as its author stated it, as far as it could be read.
+        unread: Names of the blocks that could not be read, whose faults are known: wires from them are no others.
     """
     models = Models(diagram.name, diagram.models)
     problems: list[Problem] = []
@@ -131,21 +151,39 @@ def wire(diagram: Diagram) -> Wired:
     for block in diagram.blocks.values():
         problems += located(_sampling(diagram.name, block), diagram.where(block.name))
     ports = _first_ports(diagram, models, problems)
-    if problems:
-        raise DescriptionError(problems)
+    silent = {*unread, *(diagram.blocks.keys() - ports.keys())}
     outlets: dict[str, Source] = {}
     for name, text in diagram.outlets.items():
-        where = diagram.origin.get(("outlet", name), "")
-        outlets[name] = _collected(problems, where, diagram.name, text, diagram.blocks, ports, outlets) or ("", "")
-    sources = _sources(diagram, ports, outlets, problems)
-    if problems:
-        raise DescriptionError(problems)
+        if _block_of(text) not in silent:
+            where = diagram.origin.get(("outlet", name), "")
+            source = _collected(problems, where, diagram.name, text, diagram.blocks, ports, outlets)
+            outlets |= {name: source} if source else {}
+    sources = _sources(diagram, ports, outlets, silent, problems)
     ports = _settle(diagram, models, ports, sources, problems)
-    _check(diagram, ports, sources, problems)
-    plots = diagram.simulation.plots
-    wired = Wired(diagram.name, dict(diagram.blocks), ports, sources, models, outlets, diagram.origin, plots)
-    if not problems:
-        problems += _unseen(wired)
+    check_fit(diagram, ports, sources, problems)
+    return Draft(models, ports, sources, outlets, problems)
+
+
+def wire(diagram: Diagram) -> Wired:
+    """Check a diagram.
+
+    Raises:
+        DescriptionError: With every fault found.
+    """
+    return whole(diagram, draft(diagram))
+
+
+def whole(diagram: Diagram, drafted: Draft) -> Wired:
+    """A diagram of which everything holds together.
+
+    Raises:
+        DescriptionError: With every fault found.
+    """
+    if drafted.problems:
+        raise DescriptionError(list(drafted.problems))
+    parts = (drafted.ports, drafted.sources, drafted.models, drafted.outlets)
+    wired = Wired(diagram.name, dict(diagram.blocks), *parts, diagram.origin, diagram.simulation.plots)
+    problems = _unseen(wired)
     if problems:
         raise DescriptionError(problems)
     return wired
@@ -158,9 +196,26 @@ def _unseen(wired: Wired) -> list[Problem]:
         for text in plot.signals:
             try:
                 wired.check_signal(text)
+                if plot.xy:
+                    _check_plane(wired, text)
             except DescriptionError as error:
                 problems += located(error.problems, wired.origin.get(("plot", str(i)), ""))
     return problems
+
+
+def _check_plane(wired: Wired, text: str) -> None:
+    """Refuse a signal that gives no points of a plane."""
+    name, index = split(text)
+    shape = wired.shape(wired.output(name))
+    if index is not None or len(shape) != 1 or shape[0] < 2:
+        raise DescriptionError(
+            Problem(
+                f"plot: '{text:.80}' over a plane",
+                "one entry" if index is not None else f"shape {shape}",
+                "with xy, the second entry of a signal is drawn over its first",
+                "name a vector of two entries or more, or leave xy out",
+            )
+        )
 
 
 def located(problems: Sequence[Problem], where: str) -> list[Problem]:
@@ -193,11 +248,22 @@ def _first_ports(diagram: Diagram, models: Models, problems: list[Problem]) -> d
     return ports
 
 
+def _block_of(text: str) -> str:
+    """The block, or the part, that the text of a source names."""
+    return text.rpartition(".")[0] if "." in text else text
+
+
 def _sources(
-    diagram: Diagram, ports: Mapping[str, Ports], outlets: Mapping[str, Source], problems: list[Problem]
+    diagram: Diagram,
+    ports: Mapping[str, Ports],
+    outlets: Mapping[str, Source],
+    silent: Collection[str],
+    problems: list[Problem],
 ) -> dict[Source, Source]:
     sources = {}
     for (block, port), text in diagram.wires.items():
+        if block in silent or (_block_of(text) in silent and text not in outlets):
+            continue
         if block not in diagram.blocks:
             problems.append(
                 Problem(
@@ -298,15 +364,15 @@ def _settle(
             (block, item.name): item.shape for block, stated_ports in ports.items() for item in stated_ports.outputs
         }
         now = {}
-        for name, block in diagram.blocks.items():
+        for name, stated in ports.items():
             inputs = {}
-            for item in ports[name].inputs:
+            for item in stated.inputs:
                 source = sources.get((name, item.name))
                 shape = shapes.get(source) if source else np.shape(item.default) or item.shape
                 if shape is not None:
                     inputs[item.name] = shape
             try:
-                stated_ports = block.ports(_Surroundings(models, inputs))
+                stated_ports = diagram.blocks[name].ports(_Surroundings(models, inputs))
             except DescriptionError as error:
                 problems += located(error.problems, diagram.where(name))
                 return ports
@@ -319,54 +385,3 @@ def _settle(
             break
         ports = now
     return ports
-
-
-def _check(
-    diagram: Diagram, ports: Mapping[str, Ports], sources: Mapping[Source, Source], problems: list[Problem]
-) -> None:
-    outputs = {(block, item.name): item for block, block_ports in ports.items() for item in block_ports.outputs}
-    for block, block_ports in ports.items():
-        for item in (*block_ports.inputs, *block_ports.outputs):
-            try:
-                parse(item.unit)
-            except DescriptionError as error:
-                one = error.problems[0]
-                what = f"diagram '{diagram.name}': '{block}.{item.name}': {one.what}"
-                problems.append(replace(one, what=what, where=diagram.where(block, item.name)))
-        unknown = [item.name for item in block_ports.outputs if item.shape is None]
-        if unknown:
-            problems.append(
-                Problem(
-                    f"diagram '{diagram.name}': the shape of '{block}.{unknown[0]}' is unknown",
-                    "a loop of open shapes",
-                    "the shape of a signal follows from one of its sources",
-                    "give a block of the loop a first value",
-                    diagram.where(block),
-                )
-            )
-    if problems:
-        return
-    for (block, port), source in sources.items():
-        item = next(item for item in ports[block].inputs if item.name == port)
-        given = outputs[source]
-        wire = f"diagram '{diagram.name}': {'.'.join(source)} -> {block}.{port}"
-        if item.shape != given.shape:
-            problems.append(
-                Problem(
-                    f"{wire}: shapes differ",
-                    f"{given.shape}",
-                    f"the input takes {item.shape}",
-                    "pick or join entries in a block between",
-                    diagram.where(block, port),
-                )
-            )
-        if not agree(given.unit, item.unit):
-            problems.append(
-                Problem(
-                    f"{wire}: units differ",
-                    f"{given.unit}",
-                    f"the input takes {item.unit}",
-                    "convert by a gain with units",
-                    diagram.where(block, port),
-                )
-            )

@@ -50,12 +50,33 @@ def load_diagram(path: str | os.PathLike[str], *, blocks: Iterable[type[Block]] 
         DescriptionError: With every fault that was found. What concerns the diagram as a whole (wires, shapes, units,
             loops) is found by `sf.Simulation`, which knows the same lines.
     """
+    diagram, problems = read_diagram(path, blocks=blocks, network=network)
+    if problems or diagram is None:
+        raise DescriptionError(problems)
+    return diagram
+
+
+def read_diagram(
+    path: str | os.PathLike[str],
+    text: str | None = None,
+    *,
+    blocks: Iterable[type[Block]] = (),
+    network: bool = False,
+) -> tuple[Diagram | None, list[Problem]]:
+    """Read a diagram as far as it can be read, and everything that is wrong with its file.
+
+    Args:
+        path: File of the diagram, as of `load_diagram`.
+        text: Content of the file, where that is not written yet; then only its name and folder are used.
+        blocks: Classes of blocks of the caller's own.
+        network: Whether blocks may reach other machines than this one.
+    """
     file = Path(path)
     shared = _Shared(file.parent.resolve(), kinds(blocks), network)
+    if text is not None:
+        shared.unwritten[file.resolve()] = text.encode("utf-8")
     diagram = shared.file(file, str(file), ())
-    if shared.problems or diagram is None:
-        raise DescriptionError(in_order(shared.problems))
-    return diagram
+    return diagram, list(in_order(shared.problems))
 
 
 @dataclass
@@ -69,12 +90,13 @@ class _Shared:
     systems: dict[tuple[Path, bool], System | None] = field(default_factory=dict)
     files: int = 0
     bytes_left: int = MAX_BYTES
+    unwritten: dict[Path, bytes] = field(default_factory=dict)
 
     def file(self, path: Path, shown: str, including: tuple[Path, ...]) -> Diagram | None:
         """A file's diagram, as far as it can be read."""
         self.files += 1
         try:
-            data = read_bytes(path, self.bytes_left)
+            data = self.unwritten.get(path.resolve()) or read_bytes(path, self.bytes_left)
             self.bytes_left -= len(data)
             root, repeated = compose(data, shown)
         except (YamlFault, DescriptionError) as error:

@@ -37,12 +37,13 @@ def _plot(entries: Entries, diagram: Diagram, i: int, node: Node) -> Plot:
     what = f"plot {i + 1}"
     if isinstance(node.value, str):
         return Plot(node.value, (node.value,))
-    title, signals = "", node
+    title, signals, xy = "", node, False
     if isinstance(node.value, dict):
-        stated = entries.mapping(node, what, ("title", "signals"))
+        stated = entries.mapping(node, what, ("title", "signals", "xy"))
+        xy = "xy" in stated and entries.one_of(stated["xy"], f"{what}: xy", (True, False)) is True
         title = entries.text(stated["title"], f"{what}: title") if "title" in stated else ""
         if entries.missing(node, what, "signals", stated, "a plot shows signals"):
             return Plot(title, ())
         signals = stated["signals"]
     names = tuple(entries.text(item, what) for item in entries.listed(signals, what))
-    return Plot(title or ", ".join(names)[:80], names)
+    return Plot(title or ", ".join(names)[:80], names, xy)

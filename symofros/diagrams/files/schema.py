@@ -5,19 +5,23 @@ from __future__ import annotations
 import dataclasses
 import inspect
 import json
+import re
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from types import NoneType, UnionType
 from typing import Any, Literal, Union, get_args, get_origin
 
 from symofros.diagrams.block import Block
-from symofros.diagrams.files.fields import required, types_of, words_for
+from symofros.diagrams.files.fields import MISSING, required, types_of, words_for, write
 from symofros.diagrams.files.reader import HEAD, VERSION
 from symofros.diagrams.files.registry import entry_of, kinds
 from symofros.diagrams.files.run_settings import SETTINGS
 from symofros.simulation.stepping.methods import METHODS
 
 SCHEMA_FILE = Path(__file__).with_name("schema.json")
+
+_ATTRIBUTE = re.compile(r"    (?P<name>\w+): (?P<text>.+)")
 
 Plain = dict[str, Any]
 _PLAIN: dict[Any, Plain] = {
@@ -83,16 +87,46 @@ def json_schema() -> Plain:
 
 def _block(kind: str, owner: type[Block]) -> Plain:
     properties: Plain = {"kind": {"const": kind}}
-    properties |= {entry_of(name): of_type(item) for name, item in types_of(owner).items() if name != "name"}
+    words, defaults = _attributes(owner), _defaults(owner)
+    for name, item in types_of(owner).items():
+        if name != "name":
+            said = {"description": words[name]} if name in words else {}
+            properties[entry_of(name)] = of_type(item) | said | defaults.get(name, {})
     schema = _object(properties | {"inputs": _TEXTS}, ["kind", *sorted(map(entry_of, required(owner) - {"name"}))])
     return {"description": (inspect.getdoc(owner) or "").split("\n")[0], **schema}
 
 
+def _attributes(owner: type[Block]) -> dict[str, str]:
+    """Field -> what the docstrings of a class and its bases say of it."""
+    words: dict[str, str] = {}
+    for base in reversed(owner.__mro__):
+        _, _, section = inspect.cleandoc(vars(base).get("__doc__") or "").partition("Attributes:\n")
+        name = ""
+        for line in section.split("\n\n")[0].splitlines():
+            if match := _ATTRIBUTE.match(line):
+                name, words[match["name"]] = match["name"], match["text"]
+            elif name:
+                words[name] += " " + line.strip()
+    return words
+
+
+def _defaults(owner: type[Block]) -> dict[str, Plain]:
+    """Field -> its default, where JSON can state it."""
+    stated: dict[str, Plain] = {}
+    for item in dataclasses.fields(owner):
+        with suppress(TypeError, ValueError):
+            if item.default is not MISSING:
+                stated[item.name] = {"default": write(item.default)}
+                json.dumps(stated[item.name], allow_nan=False)
+                continue
+        stated.pop(item.name, None)
+    return stated
+
+
 def _settings() -> Plain:
     signals: Plain = {"type": "array", "items": {"type": "string"}}
-    plot = {
-        "anyOf": [{"type": "string"}, signals, _object({"title": {"type": "string"}, "signals": signals}, ["signals"])]
-    }
+    titled = {"title": {"type": "string"}, "signals": signals, "xy": {"type": "boolean"}}
+    plot = {"anyOf": [{"type": "string"}, signals, _object(titled, ["signals"])]}
     known: Plain = {name: _ABOVE for name in SETTINGS}
     known |= {
         "t0": {"type": "number"},

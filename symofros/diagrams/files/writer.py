@@ -238,7 +238,10 @@ def _settings(settings: RunSettings) -> Plain:
     stated: Plain = {"t_end": settings.t_end} if settings.t_end is not None else {}
     stated |= settings.keywords()
     if settings.plots:
-        stated["plots"] = [{"title": plot.title, "signals": list(plot.signals)} for plot in settings.plots]
+        stated["plots"] = [
+            {"title": plot.title, "signals": list(plot.signals)} | ({"xy": True} if plot.xy else {})
+            for plot in settings.plots
+        ]
     return {key: write(value) for key, value in stated.items()}
 
 

@@ -72,28 +72,42 @@ def resolve(diagram: Diagram) -> Resolved:
         DescriptionError: With what is wrong: names, shapes, units, sample times, algebraic loops.
     """
     wired = wire(diagram)
-    pieces, problems = {}, []
+    pieces: dict[str, Piece] = {}
+    problems: list[Problem] = []
     for name in wired.blocks:
         try:
-            pieces[name] = piece_of(wired, name)
+            pieces[name] = lowered(wired, name)
         except DescriptionError as error:
-            problems += located(error.problems, diagram.where(name))
-        except (ValueError, IndexError, TypeError) as error:  # Fields that do not fit what is connected.
-            shapes = ", ".join(f"{port.name} {port.shape}" for port in wired.ports[name].inputs)
-            problems.append(
-                Problem(
-                    f"block '{name}': its fields do not fit its inputs",
-                    f"{error}"[:200],
-                    f"inputs here: {shapes or 'none'}",
-                    "mend the shapes of its fields",
-                    diagram.where(name),
-                )
-            )
+            problems += error.problems
     if problems:
         raise DescriptionError(problems)
-    order = order_of(wired, pieces)
+    order = order_of(wired, {name: piece.needs for name, piece in pieces.items()})
     layout = lay_out(wired, pieces, groups_in_motion(wired, pieces))
     return Resolved(wired, pieces, order, layout, schedule(rates_of(pieces), wired.name))
+
+
+def lowered(wired: Wired, name: str) -> Piece:
+    """A block's formulas.
+
+    Raises:
+        DescriptionError: Its fields do not fit each other, or what is connected.
+    """
+    origin = wired.origin.get(("block", name), "")
+    try:
+        return piece_of(wired, name)
+    except DescriptionError as error:
+        raise DescriptionError(located(error.problems, origin)) from None
+    except (ValueError, IndexError, TypeError) as error:
+        shapes = ", ".join(f"{port.name} {port.shape}" for port in wired.ports[name].inputs)
+        raise DescriptionError(
+            Problem(
+                f"block '{name}': its fields do not fit its inputs",
+                f"{error}"[:200],
+                f"inputs here: {shapes or 'none'}",
+                "mend the shapes of its fields",
+                origin,
+            )
+        ) from None
 
 
 @dataclass

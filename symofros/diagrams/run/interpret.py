@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
+from symofros.diagrams.observer import Observer
 from symofros.diagrams.program.compiled import Resolved, part_beams
 from symofros.diagrams.program.layout import Part
 from symofros.diagrams.run.block_functions import Blocks
@@ -19,6 +21,9 @@ from symofros.runtime.constrained import project
 from symofros.runtime.manifold import chart_rate, retract
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.stepping.tableaus import Tableau
+
+# How often an observer is told of records [s], and how much earlier than its stop an instant may be, by rounding [s].
+_TOLD_EVERY, _SLACK = 0.05, 1e-12
 
 # An instant of a run: its time, what is due, whether to record.
 Instant = tuple[float, frozenset[str], bool]
@@ -133,6 +138,43 @@ def _project(blocks: Blocks, part: Part) -> None:
     blocks.q[part.q], blocks.v[part.v] = q_on, v_on
 
 
+class _Told:
+    """Records on their way to an observer.
+
+    Args:
+        observer: Observer that is told.
+        blocks: The diagram's blocks.
+        rows: Records that grow: times first.
+        kept: Signals that grow.
+    """
+
+    def __init__(
+        self,
+        observer: Observer,
+        blocks: Blocks,
+        rows: Sequence[tuple[float, Array, Array]],
+        kept: Mapping[Source, Sequence[Array]],
+    ) -> None:
+        self._observer, self._rows, self._kept = observer, rows, kept
+        self._sources = {name: blocks.resolved.wired.output(name) for name in observer.signals}
+        self._told, self._when = 0, time.perf_counter()
+
+    def tell(self, t: float, is_over: bool = False) -> bool:
+        """Tell what is new, at a stop or when it is time for it; whether the run goes on."""
+        is_due = t >= self._observer.stop() - _SLACK or time.perf_counter() - self._when >= _TOLD_EVERY
+        if not (is_over and self._told < len(self._rows)) and not (is_due and not is_over):
+            return True
+        new = {name: np.array(self._kept[source][self._told :]) for name, source in self._sources.items()}
+        times = np.array([row[0] for row in self._rows[self._told :]])
+        self._told = len(self._rows)
+        try:
+            self._observer.see(t, times, new)
+        except KeyboardInterrupt:
+            return False
+        self._when = time.perf_counter()
+        return True
+
+
 class BeamWatch:
     """The bending of all beams of a diagram, each at the step where its theory errs most.
 
@@ -177,6 +219,7 @@ def run_interpreted(
     projects: bool,
     watch: BeamWatch,
     show: Callable[[float], None],
+    observer: Observer,
 ) -> InterpretedRun:
     """Run from the first state.
 
@@ -190,6 +233,7 @@ def run_interpreted(
         projects: Whether constraints are met again after each step.
         watch: Watch on the beams.
         show: Called with the time [s].
+        observer: Receiver of the records, which may stop the run by time.
     """
     rows: list[tuple[float, Array, Array]] = []
     kept: dict[Source, list[Array]] = {source: [] for source in blocks.out}
@@ -199,11 +243,15 @@ def run_interpreted(
         for source, array in blocks.out.items():
             kept[source].append(array.copy())
 
+    told, goes_on = _Told(observer, blocks, rows, kept), True
     steps, within, failed = 0, watch.judge(blocks.q, float(blocks.t[0])), False
     with np.errstate(all="ignore"):  # What is not finite ends the run, and is named.
         for i, instant in enumerate(instants):
             _meet(blocks, called, instant, projects, record)
             show(instant[0])
+            goes_on = told.tell(instant[0])
+            if not goes_on:
+                break
             until = min(instants[i + 1][0] if i + 1 < len(instants) else t_end, t_end)
             while blocks.t[0] < until and within and not failed:
                 now = float(blocks.t[0])
@@ -220,11 +268,14 @@ def run_interpreted(
                 within = watch.judge(blocks.q, float(blocks.t[0]))
             if failed or not within:
                 break
-        if not failed and (not rows or rows[-1][0] < float(blocks.t[0])):
+        if goes_on and not failed and (not rows or rows[-1][0] < float(blocks.t[0])):
             blocks.t[0] = t_end if within else blocks.t[0]
             blocks.signals()
             record()
+    told.tell(float(blocks.t[0]), is_over=True)
     outcome = _outcome(blocks, watch, steps, failed=failed, within=within)
+    if not goes_on:
+        outcome = Outcome("interrupted", outcome.t, "stopped; the part up to here is kept", notes=outcome.notes)
     t, q, v = (np.array(column) for column in zip(*rows, strict=True)) if rows else (np.zeros(0), blocks.q, blocks.v)
     values = {source: np.array(values) for source, values in kept.items()}
     return InterpretedRun(blocks.resolved, t, values, q, v, outcome, steps, watch.bendings, called.kept())

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+import sys
+from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -173,6 +176,18 @@ class Loop:
     def advance(self, instants: int) -> int:
         """At most `instants` instants further; returns a Status."""
         return int(self.native.sym_diagram_advance(self.diagram, instants))
+
+    def instants_until(self, t: float) -> int:
+        """The number of instants from the next one up to the first that is not before t [s]; at least one."""
+        d = self.diagram
+        if not math.isfinite(t):
+            return sys.maxsize
+        base = float(d.base_numerator) / float(d.base_denominator)
+        ticks = [int(d.instant_tick[i]) for i in range(d.n_instants)]
+        cycles, rest = divmod(math.ceil((t - float(d.t0)) / base - 1e-9), int(d.cycle_ticks))
+        before = cycles * len(ticks) + bisect_left(ticks, rest)
+        done = int(d.cycle) * len(ticks) + int(d.next_instant)
+        return max(1, before + 1 - done)
 
     @property
     def held(self) -> Array:

@@ -53,20 +53,46 @@ def draw(run: Recording, plots: Sequence[Plot], figure: Any = None) -> Any:
     if figure is None:
         figure = figure_class()(figsize=(8.0, 1.0 + 2.2 * len(plots)), layout="constrained")
     run.compute([run.compiled.resolved.wired.output(split(text)[0]) for plot in plots for text in plot.signals])
-    grid = figure.subplots(len(plots), 1, sharex=True, squeeze=False)[:, 0]
+    grid = figure.subplots(len(plots), 1, squeeze=False)[:, 0]
+    over_time = [axis for axis, plot in zip(grid, plots, strict=True) if not plot.xy]
     for axis, plot in zip(grid, plots, strict=True):
-        shown = columns(run, plot.signals)
-        for name in list(shown)[1 : _MOST + 1]:
-            axis.plot(run.t, shown[name], label=name)
-        left_out = len(shown) - 1 - _MOST
-        axis.set_title(plot.title + (f" (first {_MOST} of {len(shown) - 1})" if left_out > 0 else ""), loc="left")
-        units = {run.unit(split(text)[0]) for text in plot.signals} - {""}
-        axis.set_ylabel(", ".join(f"[{unit}]" for unit in sorted(units)))
+        if plot.xy:
+            _draw_plane(run, plot, axis)
+        else:
+            axis.sharex(over_time[0])
+            _draw_over_time(run, plot, axis)
         axis.grid(alpha=0.3)
         axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize="small")
-    grid[-1].set_xlabel("t [s]")
+    for axis in over_time[-1:]:
+        axis.set_xlabel("t [s]")
     figure.suptitle(f"{run.compiled.resolved.wired.name}: {run.outcome.kind} at t = {run.outcome.t:.4g} s")
     return figure
+
+
+def _draw_over_time(run: Recording, plot: Plot, axis: Any) -> None:
+    """All entries of the signals over time."""
+    shown = columns(run, plot.signals)
+    for name in list(shown)[1 : _MOST + 1]:
+        axis.plot(run.t, shown[name], label=name)
+    left_out = len(shown) - 1 - _MOST
+    axis.set_title(plot.title + (f" (first {_MOST} of {len(shown) - 1})" if left_out > 0 else ""), loc="left")
+    axis.set_ylabel(_units(run, plot))
+
+
+def _draw_plane(run: Recording, plot: Plot, axis: Any) -> None:
+    """The second entry of each signal over its first."""
+    for name in plot.signals[:_MOST]:
+        values = run[name]
+        axis.plot(values[:, 0], values[:, 1], label=name)
+    axis.set_title(plot.title, loc="left")
+    axis.set_xlabel(f"x {_units(run, plot)}")
+    axis.set_ylabel(f"y {_units(run, plot)}")
+    axis.set_aspect("equal", adjustable="datalim")
+
+
+def _units(run: Recording, plot: Plot) -> str:
+    units = {run.unit(split(text)[0]) for text in plot.signals} - {""}
+    return ", ".join(f"[{unit}]" for unit in sorted(units))
 
 
 def window_figure() -> Any:

@@ -50,8 +50,8 @@ class Cost:
 
 
 @dataclass(frozen=True)
-class Recording(Mapping[str, Array]):
-    """Signals over time, `run["block.port"]`, computed from the recorded states when they are asked for.
+class Records:
+    """Recorded states, and any signal computed from them.
 
     Attributes:
         compiled: Compiled diagram.
@@ -60,10 +60,6 @@ class Recording(Mapping[str, Array]):
         v: Speeds and continuous states (n, nv).
         u: Inputs, held between samples (n, nu).
         par: Run-time parameters.
-        outcome: Outcome of the run.
-        crossings: Crossings met, in the order of time.
-        cost: Cost of the run.
-        kept: Block -> what it kept of the run by itself, by name: arrays at its own times "t", or counts.
     """
 
     compiled: CompiledDiagram
@@ -72,11 +68,7 @@ class Recording(Mapping[str, Array]):
     v: Array
     u: Array
     par: Array
-    outcome: Outcome
-    crossings: tuple[Crossed, ...]
-    cost: Cost
-    kept: Mapping[str, Mapping[str, Array]] = field(default_factory=dict)
-    _known: dict[Source, Array] = field(default_factory=dict)
+    _known: dict[Source, Array] = field(default_factory=dict, kw_only=True)
 
     def __getitem__(self, name: str) -> Array:
         """A signal over time (n, *shape).
@@ -88,15 +80,6 @@ class Recording(Mapping[str, Array]):
         if source not in self._known:
             self.compute([source])
         return self._known[source]
-
-    def __iter__(self) -> Iterator[str]:
-        """Names of all outputs."""
-        wired = self.compiled.resolved.wired
-        return (f"{block}.{port.name}" for block in wired.ports for port in wired.ports[block].outputs)
-
-    def __len__(self) -> int:
-        """How many outputs there are."""
-        return sum(len(ports.outputs) for ports in self.compiled.resolved.wired.ports.values())
 
     def unit(self, name: str) -> str:
         """Of a signal."""
@@ -136,6 +119,32 @@ class Recording(Mapping[str, Array]):
                     self.q[:, part.q], self.v[:, part.v], self.u, par=self.par, t=self.t
                 )
         return a, lam
+
+
+@dataclass(frozen=True)
+class Recording(Records, Mapping[str, Array]):
+    """The records of a whole run: signals over time, `run["block.port"]`, computed when they are asked for.
+
+    Attributes:
+        outcome: Outcome of the run.
+        crossings: Crossings met, in the order of time.
+        cost: Cost of the run.
+        kept: Block -> what it kept of the run by itself, by name: arrays at its own times "t", or counts.
+    """
+
+    outcome: Outcome
+    crossings: tuple[Crossed, ...]
+    cost: Cost
+    kept: Mapping[str, Mapping[str, Array]] = field(default_factory=dict)
+
+    def __iter__(self) -> Iterator[str]:
+        """Names of all outputs."""
+        wired = self.compiled.resolved.wired
+        return (f"{block}.{port.name}" for block in wired.ports for port in wired.ports[block].outputs)
+
+    def __len__(self) -> int:
+        """How many outputs there are."""
+        return sum(len(ports.outputs) for ports in self.compiled.resolved.wired.ports.values())
 
     def motion(self, block: str) -> tuple[Array, Array]:
         """Configurations (n, nq) and speeds (n, nv) of the mechanism that a block moves."""

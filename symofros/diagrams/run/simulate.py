@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from symofros.diagrams.observer import NoObserver, Observer
 from symofros.diagrams.program.compiled import CompiledDiagram, rates_of
 from symofros.diagrams.program.lowered_block import watched
 from symofros.diagrams.rates import Schedule, schedule
@@ -20,7 +21,7 @@ from symofros.diagrams.run.loop import RECORD, Loop, Task
 from symofros.diagrams.run.options import DiagramOptions
 from symofros.diagrams.run.parts import place_parts, start
 from symofros.diagrams.run.python_blocks import Called, ExternalCalls, begun
-from symofros.diagrams.run.recording import Cost, Crossed
+from symofros.diagrams.run.recording import Cost, Crossed, Records
 from symofros.diagrams.run.values import parameter_values, record_interval
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.calls.library import CompiledKernel
@@ -36,6 +37,7 @@ def run_compiled(
     *,
     parameters: Mapping[str, Any] | None = None,
     progress: bool = False,
+    observer: Observer | None = None,
     **changes: Any,
 ) -> DiagramRun:
     """Run a compiled diagram from its first state.
@@ -46,6 +48,7 @@ def run_compiled(
         options: Options of stepping, constraints, recording and pace; those of `DiagramOptions()` by default.
         parameters: Run-time parameters by name, such as {"pd.kp": [100, 80, 50], "plant.m_load": 0.8}.
         progress: Show a progress bar.
+        observer: Receiver of the records while the run goes on, which may stop it by time.
         changes: Fields of DiagramOptions by name, which replace those of `options`: method="dopri5", dt=1e-4, ...
 
     Raises:
@@ -59,7 +62,7 @@ def run_compiled(
     interval = record_interval(options.record, options.t0, t_end, options.dt)
     plan = schedule([*rates_of(resolved.pieces), (RECORD, interval, 0.0)], name)
     with begun(resolved.wired) as called:
-        run, evident = _once(compiled, plan, options, t_end, par, called, progress)
+        run, evident = _once(compiled, plan, options, t_end, par, called, progress, observer)
         run = replace(run, kept=called.kept())
     external = any(piece.is_external for piece in resolved.pieces.values())
     steps = run.cost.steps // max(1, len(compiled.parts))
@@ -81,6 +84,7 @@ def _once(
     par: Array,
     called: Called,
     progress: bool = False,
+    observer: Observer | None = None,
 ) -> tuple[DiagramRun, bool]:
     """A run from the first state, and whether its steps evidently resolve it."""
     resolved = compiled.resolved
@@ -99,7 +103,18 @@ def _once(
     )
     with closing(loop):
         start(parts, resolved, par, options.t0)
-        return _drive(compiled, loop, plan, options, t_end, par, progress)
+        return _drive(compiled, loop, plan, options, t_end, par, progress, observer or NoObserver())
+
+
+def _tell(observer: Observer, compiled: CompiledDiagram, loop: Loop, states: list[Array], par: Array) -> None:
+    """Tell an observer what was recorded; the clock of a run in real time stands still meanwhile."""
+    began = time.perf_counter()
+    t, q, v, u = states
+    portion = Records(compiled, t, q, v, u, par)
+    portion.compute(list(map(compiled.resolved.wired.output, observer.signals)))
+    observer.see(float(loop.diagram.t[0]), portion.t, {name: portion[name] for name in observer.signals})
+    if observer.signals:
+        loop.diagram.clock_start += time.perf_counter() - began
 
 
 def _kernel(compiled: CompiledDiagram, name: str) -> CompiledKernel:
@@ -134,6 +149,7 @@ def _drive(
     t_end: float,
     par: Array,
     progress: bool,
+    observer: Observer,
 ) -> tuple[DiagramRun, bool]:
     t0, realtime = options.t0, float(options.realtime)
     span = float(plan.base) * plan.cycle
@@ -147,11 +163,13 @@ def _drive(
     with bar(progress, t0, t_end) as show:
         try:
             while status in (Status.RUNNING, Status.RECORDS_FULL):
-                status = time_slice.measure(loop.advance, time_slice.steps)
+                instants = min(time_slice.steps, loop.instants_until(observer.stop()))
+                status = time_slice.measure(loop.advance, instants)
                 states, crossed = loop.take()
                 portions.append(states)
                 met += crossed
                 show(float(loop.diagram.t[0]))
+                _tell(observer, compiled, loop, states, par)
         except KeyboardInterrupt:
             interrupted = True
             portions.append(loop.take()[0])

@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 
 import symofros as sf
 from symofros.__main__ import app
-from symofros.diagrams.files.command import is_diagram
+from symofros.diagrams.files.kind import is_diagram
 from tests.diagrams.files.cases import ARM, TEXT, folder_with
 
 

@@ -1,46 +1,21 @@
-"""What a text says: its data, its diagram, and everything wrong with it."""
+"""Text -> its meaning: that of a mechanism is found here, that of a diagram in symofros/studio/editor/diagrams."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from math import isfinite
 from pathlib import Path
 from typing import Any
 
 from symofros.description.reading import in_order
 from symofros.description.system import System
-from symofros.description.yaml.files import read_yaml
+from symofros.description.yaml.files import DIAGRAM, read_yaml
 from symofros.description.yaml.yaml_nodes import YamlFault
 from symofros.errors import DescriptionError, Problem
 from symofros.mechanics.topology.graph import find_problems
+from symofros.studio.editor.diagrams.analysis import analyse_diagram
 from symofros.studio.editor.document.diagram import diagram
+from symofros.studio.editor.document.meaning import Analysis, Json, as_json
 from symofros.studio.editor.document.problems import placed, schema_problems
 from symofros.studio.editor.editing.yaml_spans import YamlText, yaml_text_of
-
-Json = dict[str, Any]
-
-
-@dataclass(frozen=True)
-class Analysis:
-    """A text's meaning.
-
-    Attributes:
-        readable: Whether it is YAML at all; if not, there are no data.
-        data: The YAML as JSON holds it.
-        graph: Diagram of the document.
-        problems: Problems as the page shows them.
-        parameters: Parameters; those that could not be read have no number.
-        inputs: Inputs that could be read.
-        system: System that was read; None where nothing could be.
-    """
-
-    readable: bool
-    data: Any = None
-    graph: Json = field(default_factory=lambda: {"nodes": [], "edges": []})
-    problems: list[Json] = field(default_factory=list)
-    parameters: list[Json] = field(default_factory=list)
-    inputs: list[Json] = field(default_factory=list)
-    system: System | None = None
 
 
 def analyse(file: Path, text: str) -> Analysis:
@@ -54,6 +29,8 @@ def analyse(file: Path, text: str) -> Analysis:
         source = yaml_text_of(text)
     except YamlFault as error:
         return Analysis(False, problems=[placed(error.problem, None, "", {})])
+    if isinstance(source.root.value, dict) and DIAGRAM in source.root.value:
+        return analyse_diagram(file, source)
     problems, system = _checked(file, source)
     exact = schema_problems(source, str(file))
     shown_problems = [placed(problem, source, str(file), exact) for problem in problems]
@@ -103,14 +80,3 @@ def _checked(file: Path, source: YamlText) -> tuple[list[Problem], System | None
     except DescriptionError as error:
         return list(error.problems), None
     return list(in_order([*reading.problems, *problems])), reading.system
-
-
-def as_json(value: Any) -> Any:
-    """Plain data that JSON can hold: a number that is not finite becomes the text that YAML writes for it."""
-    if isinstance(value, dict):
-        return {key: as_json(item) for key, item in value.items()}
-    if isinstance(value, list):
-        return [as_json(item) for item in value]
-    if isinstance(value, float) and not isfinite(value):
-        return ".nan" if value != value else ".inf" if value > 0 else "-.inf"
-    return value

@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from symofros.errors import Problem, SymofrosError
-from symofros.studio.editor.document.analysis import Analysis, analyse
+from symofros.studio.editor.document.analysis import analyse
+from symofros.studio.editor.document.meaning import Analysis
 from symofros.studio.editor.editing.data_edits import EditError, refusal
 
 BOM = "\ufeff"
@@ -65,6 +66,10 @@ class EditedDocument:
             if self._analysis.readable:
                 self._readable = self._analysis
         return self._analysis
+
+    def read_again(self, revision: int) -> None:
+        """Forget what the text says, because files that it refers to have changed; at a new revision."""
+        self.revision, self._analysis = revision, None
 
     def expect(self, revision: Any) -> None:
         """Refuse a change of another revision.
@@ -128,6 +133,7 @@ class EditedDocument:
             "text": self.text,
             "data": readable.data,
             "graph": readable.graph,
+            "diagram": readable.diagram,
             "problems": now.problems,
             "parameters": readable.parameters,
             "inputs": readable.inputs,

@@ -10,8 +10,9 @@ from symofros.description.values import as_value, symbols
 from symofros.description.yaml.yaml_nodes import YamlFault, scalar_of
 from symofros.errors import Problem
 from symofros.expr.expression import Expression, evaluate
-from symofros.studio.editor.document.analysis import Analysis, analyse
+from symofros.studio.editor.document.analysis import analyse
 from symofros.studio.editor.document.document import refuse_text
+from symofros.studio.editor.document.meaning import Analysis
 from symofros.studio.editor.editing.data_edits import Edit, EditError, Path, same
 from symofros.studio.editor.editing.yaml_edits import apply
 

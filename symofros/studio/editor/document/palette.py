@@ -8,6 +8,7 @@ import symofros
 from symofros.description.yaml.schema import json_schema
 from symofros.exports.exporting import TARGETS
 from symofros.simulation.stepping.methods import METHODS
+from symofros.studio.editor.diagrams.palette import diagram_catalogue
 
 Json = dict[str, Any]
 
@@ -139,4 +140,5 @@ def catalogue() -> Json:
         "methods": methods,
         "units": list(UNITS),
         "targets": list(TARGETS),
+        "diagram": diagram_catalogue(),
     }

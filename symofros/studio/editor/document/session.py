@@ -12,8 +12,8 @@ from symofros.studio.editor.document.document import EditedDocument, refuse_text
 from symofros.studio.editor.document.expressions import check_field
 from symofros.studio.editor.document.parts import insertion
 from symofros.studio.editor.document.parts_library import Library
-from symofros.studio.editor.document.storage import Storage
-from symofros.studio.editor.document.workspace import READABLE, FileError, Workspace, write
+from symofros.studio.editor.document.storage import EMPTY, Storage
+from symofros.studio.editor.document.workspace import READABLE, FileError, Workspace, read_text, write
 from symofros.studio.editor.editing.data_edits import four_parts, refusal
 from symofros.studio.editor.editing.requests import edits_of, path_of, text_of
 from symofros.studio.editor.editing.yaml_edits import with_references
@@ -21,7 +21,9 @@ from symofros.studio.editor.editing.yaml_spans import yaml_text_of
 
 Json = dict[str, Any]
 
-JOBS = ("compile", "crosscheck", "simulate", "export")
+MECHANISM_JOBS = ("compile", "crosscheck", "simulate", "export")
+DIAGRAM_JOBS = ("run",)
+MAX_DEPTH = 10
 
 
 class Session:
@@ -36,6 +38,7 @@ class Session:
         self.workspace = workspace
         self.library = Library(workspace)
         self.storage = Storage(workspace, file)
+        self._outer: list[Storage] = []  # What was open when somebody went into a model or part of it.
 
     @property
     def document(self) -> EditedDocument:
@@ -52,6 +55,7 @@ class Session:
         """The document as every answer carries it."""
         return {
             "path": self.workspace.shown(self.document.file),
+            "trail": [self.workspace.shown(storage.document.file) for storage in self._outer],
             **self.document.as_json(),
             "layout": self.storage.layout,
             "recovered": self.storage.recovered,
@@ -112,7 +116,31 @@ class Session:
     def create(self, body: Json) -> None:
         """Begin a document in a new file of the workspace."""
         file = self.workspace.inside(text_of(body, "path"))
-        self._leave(body, lambda: self.storage.create(file))
+        kind = text_of(body, "kind") or "mechanism"
+        if kind not in EMPTY:
+            raise refusal("no such kind of document", f"'{kind[:50]}'", f"one of {', '.join(EMPTY)}", "choose one")
+        self._leave(body, lambda: self.storage.create(file, kind))
+
+    def enter(self, body: Json) -> None:
+        """Go into a model or a part of the open diagram, to come back later; its undo steps are kept meanwhile."""
+        self.document.expect(body.get("revision"))
+        if len(self._outer) >= MAX_DEPTH:
+            raise refusal("the way back is too long", f"{MAX_DEPTH} documents", "at most that many", "go back first")
+        file = self.workspace.inside((self.document.file.parent / text_of(body, "path")).as_posix())
+        read_text(file)
+        inner = Storage(self.workspace, file, self.storage.next_revision)
+        self._outer.append(self.storage)
+        self.storage = inner
+
+    def leave(self, body: Json) -> None:
+        """Go back to the diagram that one came from; `discard`: what is unsaved here is given up."""
+        self.document.expect(body.get("revision"))
+        if not self._outer:
+            raise refusal("there is no way back", "the outermost document", "one goes back from inside", "open a file")
+        if body.get("discard") is True:
+            self.storage.forget()
+        inner, self.storage = self.storage, self._outer.pop()
+        self.storage.take_up(inner.next_revision)
 
     def adopt(self, body: Json, name: str, text: str) -> None:
         """Begin a document with a text that came from elsewhere."""
@@ -122,13 +150,14 @@ class Session:
         """Go to another document; what is unsaved stays beside its file, unless it was given up."""
         if body.get("discard") is not True:
             enter()
-            return
-        self.storage.forget()
-        try:
-            enter()
-        except FileError:
-            self.storage.autosave()  # The user is still here.
-            raise
+        else:
+            self.storage.forget()
+            try:
+                enter()
+            except FileError:
+                self.storage.autosave()  # The user is still here.
+                raise
+        self._outer.clear()
 
     def insert_part(self, body: Json) -> None:
         """Put a part into the document, on a frame of a body."""
@@ -164,15 +193,16 @@ class Session:
             EditError: An unknown kind, or options that are no mapping.
             FileError: An export to outside of the workspace.
         """
-        kind, options = body.get("kind"), body.get("options") or {}
-        if kind not in JOBS or not isinstance(options, dict):
+        kind, options = text_of(body, "kind"), body.get("options") or {}
+        document = self.document
+        jobs = MECHANISM_JOBS if document.analysis.diagram is None else DIAGRAM_JOBS
+        if kind not in jobs or not isinstance(options, dict):
             raise refusal(
-                "no such job",
+                "no such job of this document",
                 f"{kind!r:.50}",
-                f"one of {', '.join(JOBS)}; options are a mapping",
+                f"one of {', '.join(jobs)}; options are a mapping",
                 "choose one of them",
             )
-        document = self.document
         request: Json = {"file": str(document.file), "text": document.text, "options": options}
         if kind == "export":
             folder = self.workspace.inside(text_of(options, "folder"), ())

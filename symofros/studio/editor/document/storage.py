@@ -24,7 +24,11 @@ from symofros.studio.editor.document.workspace import (
     write,
 )
 
-EMPTY = "symofros: 1\nsystem: {{name: {name}, gravity: [0, 0, -9.81]}}\nparameters: {{}}\nbodies: {{}}\n"
+# What a new document of each kind says.
+EMPTY = {
+    "mechanism": "symofros: 1\nsystem: {{name: {name}, gravity: [0, 0, -9.81]}}\nparameters: {{}}\nbodies: {{}}\n",
+    "diagram": "symofros_diagram: 1\nname: {name}\nmodels: {{}}\nblocks: {{}}\n",
+}
 
 
 class ConflictError(SymofrosError):
@@ -50,8 +54,13 @@ class Storage:
         unkept: Why unsaved work could not be kept; None where it is.
     """
 
-    def __init__(self, workspace: Workspace, file: Path | None) -> None:
+    def __init__(self, workspace: Workspace, file: Path | None, revision: int = 1) -> None:
         """Open a file; begin it if it is not there; None: begin one without a name.
+
+        Args:
+            workspace: Folder that the file is in.
+            file: File to open.
+            revision: Revision that its document begins with.
 
         Raises:
             FileError: It can't be read.
@@ -63,7 +72,7 @@ class Storage:
         self.unkept: Problem | None = None
         self._on_disk = ""  # Digest of the file when it was last read or written; "" where there was none.
         self._signature = ""
-        self._revision = 1
+        self._revision = revision
         if file is None:
             file = self._unused("untitled")
         if file.exists():
@@ -83,13 +92,13 @@ class Storage:
         marked = data.startswith(BOM.encode())
         self._become(EditedDocument(file, text, text, marked=marked, revision=self._revision), digest(data))
 
-    def begin(self, file: Path) -> None:
-        """Begin a file that is not there yet."""
-        empty = EMPTY.format(name=identifier(file.stem))
+    def begin(self, file: Path, kind: str = "mechanism") -> None:
+        """Begin a file that is not there yet, with an empty document of a kind."""
+        empty = EMPTY[kind].format(name=identifier(file.stem))
         self._become(EditedDocument(file, empty, None, revision=self._revision), "")
 
-    def create(self, file: Path) -> None:
-        """Begin a new file.
+    def create(self, file: Path, kind: str = "mechanism") -> None:
+        """Begin a new file with an empty document of a kind.
 
         Raises:
             FileError: There is one of that name, or its folder is missing.
@@ -101,7 +110,7 @@ class Storage:
                     f"'{file.name}' can't be begun", obstacle, "a new file has a name of its own", "choose another name"
                 )
             )
-        self.begin(file)
+        self.begin(file, kind)
 
     def adopt(self, name: str, text: str) -> None:
         """Begin a new document with a text that came from elsewhere; it takes a free name."""
@@ -121,9 +130,19 @@ class Storage:
             self.recovered = True
         self.note_revision()
 
+    @property
+    def next_revision(self) -> int:
+        """A revision that no document here has had."""
+        return max(self._revision, self.document.revision) + 1
+
+    def take_up(self, revision: int) -> None:
+        """Go on with a document that was put aside: files that it refers to may have changed meanwhile."""
+        self.document.read_again(revision)
+        self.note_revision()
+
     def note_revision(self) -> None:
         """No later document may have a revision of an earlier one: a page that shows that would edit this."""
-        self._revision = max(self._revision, self.document.revision) + 1
+        self._revision = self.next_revision
 
     def _unused(self, stem: str) -> Path:
         """A free name; an untitled document with unsaved work is there to go on with."""
@@ -188,7 +207,8 @@ class Storage:
     def discard(self) -> None:
         """Go back to what was saved, or to the empty document; what is discarded can be had back by undo."""
         saved = self.document.saved
-        empty = EMPTY.format(name=identifier(self.document.file.stem))
+        kind = "mechanism" if self.document.analysis.diagram is None else "diagram"
+        empty = EMPTY[kind].format(name=identifier(self.document.file.stem))
         self.document.change("discard", lambda _: empty if saved is None else saved)
         self.recovered = False
         self.forget()

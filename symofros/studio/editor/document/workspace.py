@@ -10,6 +10,7 @@ from typing import Any
 
 from symofros.base.atomic import write_atomically
 from symofros.description.yaml.files import MAX_BYTES, SUFFIXES
+from symofros.diagrams.files.kind import is_diagram
 from symofros.errors import Problem, SymofrosError
 
 MAX_LISTED = 1000
@@ -85,7 +86,8 @@ class Workspace:
             for name in sorted(names):
                 path = Path(folder) / name
                 if path.suffix.lower() in READABLE and not name.startswith(".") and self._is_ours(path):
-                    files.append({"path": self.shown(path), "bytes": path.stat().st_size})
+                    kind = "diagram" if is_diagram(path) else "mechanism"
+                    files.append({"path": self.shown(path), "bytes": path.stat().st_size, "kind": kind})
             if len(files) >= MAX_LISTED or scanned > MAX_SCANNED:
                 break
         return files[:MAX_LISTED]

@@ -26,6 +26,9 @@ SECTIONS = (
     "nonholonomic",
     "options",
 )
+# The same of a diagram's file.
+DIAGRAM_SECTIONS = ("symofros_diagram", "name", "models", "simulation", "blocks", "parts", "wires", "inlets", "outlets")
+_ORDER = (*SECTIONS, *DIAGRAM_SECTIONS)
 
 
 class EditError(SymofrosError):
@@ -109,9 +112,9 @@ def inserted(owner: Any, edit: Edit) -> Any:
 
 def place(path: Path, keys: Sequence[str], key: str) -> int:
     """Where a new key goes: a section to its place in the file, anything else to the end."""
-    if path or key not in SECTIONS:
+    if path or key not in _ORDER:
         return len(keys)
-    after = SECTIONS[: SECTIONS.index(key)]
+    after = _ORDER[: _ORDER.index(key)]
     return max((i + 1 for i, other in enumerate(keys) if other in after), default=0)
 
 

@@ -8,6 +8,7 @@ from typing import Any
 from symofros.description.beam import STATION
 from symofros.description.joint import WORLD, Joint
 from symofros.description.joint_kinds import KINDS
+from symofros.description.yaml.files import DIAGRAM
 from symofros.description.yaml.schema import default_joint_name
 from symofros.errors import DescriptionError
 from symofros.expr.expression import CONSTANTS
@@ -16,6 +17,7 @@ from symofros.mechanics.topology.coordinates import coordinate_names, rate_symbo
 from symofros.mechanics.topology.formulas import TIME
 from symofros.mechanics.topology.joints import IDENTIFIER
 from symofros.studio.editor.editing.data_edits import Edit, Path, edited, fault
+from symofros.studio.editor.editing.diagram_renaming import renaming_in_diagram
 from symofros.studio.editor.editing.formulas import formulas, with_names
 
 # Mappings whose keys are speeds that formulas could name.
@@ -35,6 +37,8 @@ def renaming(data: Any, edit: Edit) -> list[Edit]:
         EditError: There is no such entry, or the name is taken or unusable.
     """
     path, new = edit.path, edit.key
+    if isinstance(data, dict) and DIAGRAM in data:
+        return renaming_in_diagram(data, edit)
     if path[:1] == ("bodies",) and path[2:] in (("joint",), ("joint", "name")):
         return _joint(data, path[:3], new)
     if len(path) == 5 and path[0] == "bodies" and path[2:4] == ("joint", "coordinates"):

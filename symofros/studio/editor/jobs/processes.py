@@ -15,6 +15,7 @@ from typing import IO, Any
 
 import symofros
 from symofros.studio.editor.editing.data_edits import refusal
+from symofros.studio.editor.jobs.request import ORDERS
 
 Json = dict[str, Any]
 
@@ -102,6 +103,23 @@ class Jobs:
             )
         return self._jobs[key]
 
+    def order(self, key: str, order: Any) -> Job:
+        """Tell a job that is running to pause, to go on, or to end with what it has.
+
+        Raises:
+            EditError: There is no such order, or no such job.
+        """
+        job = self.get(key)
+        if order not in ORDERS:
+            raise refusal("no such order", f"{order!r:.50}", f"one of {', '.join(ORDERS)}", "choose one of them")
+        with self._lock:
+            # Before its first progress a worker has not read its request, behind which the order would be lost.
+            if job.state == "running" and job.progress["total"] and job.process is not None and job.process.stdin:
+                with contextlib.suppress(OSError):  # It ends at this moment.
+                    job.process.stdin.write(order.encode() + b"\n")
+                    job.process.stdin.flush()
+        return job
+
     def cancel(self, key: str) -> Job:
         """Kill a job's processes; one that is over stays as it is."""
         job = self.get(key)
@@ -152,6 +170,8 @@ class Jobs:
         if "progress" in said:
             job.progress = said["progress"]
             self.publish("job", job.as_json(whole=False))
+        if "samples" in said:
+            self.publish("samples", {"id": job.key, **said["samples"]})
         job.result, job.error = said.get("result", job.result), said.get("error", job.error)
 
     def _end(self, job: Job, code: int, complaint: str) -> None:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from pathlib import Path
+from queue import SimpleQueue
 from typing import Any
 
 from symofros.description.reading import in_order
@@ -13,7 +15,24 @@ from symofros.errors import DescriptionError
 from symofros.mechanics.topology.graph import find_problems
 
 Json = dict[str, Any]
-Tell = Callable[[int, int, str], None]
+ORDERS = ("pause", "resume", "stop")
+
+
+@dataclass
+class Tell:
+    """What a worker tells while it works, and the orders that reach it.
+
+    Attributes:
+        say: Function that sends one message to the server.
+        orders: Orders that nobody has followed yet, each one of ORDERS.
+    """
+
+    say: Callable[[Json], None]
+    orders: SimpleQueue[str] = field(default_factory=SimpleQueue)
+
+    def __call__(self, done: int, total: int, text: str, paused: bool = False) -> None:
+        """Tell how far the work is."""
+        self.say({"progress": {"done": done, "total": total, "text": text, "paused": paused}})
 
 
 def system_of(request: Json) -> System:

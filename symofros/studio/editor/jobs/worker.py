@@ -1,7 +1,8 @@
 """What a worker process does: reads one request, says how far it is, answers, ends.
 
-Lines of JSON: in comes the request; out go {"progress": …}, and at last {"result": …} or {"error": …}. When the server
-is gone, the request's pipe ends, and so does the worker with all that it started.
+Lines of JSON: in comes the request, and after it orders, a word each; out go {"progress": …}, {"samples": …}, and at
+last {"result": …} or {"error": …}. When the server is gone, the request's pipe ends, and so
+does the worker with all that it started.
 """
 
 from __future__ import annotations
@@ -36,14 +37,13 @@ def main() -> None:
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)
     request = json.loads(sys.stdin.readline())
-    threading.Thread(target=_end_with_the_server, daemon=True).start()
 
     def say(message: Json) -> None:
         answers.write(json.dumps(message) + "\n")
         answers.flush()
 
-    def tell(done: int, total: int, text: str) -> None:
-        say({"progress": {"done": done, "total": total, "text": text}})
+    tell = Tell(say)
+    threading.Thread(target=_follow_the_server, args=(tell,), daemon=True).start()
 
     try:
         say({"result": task(request["kind"])(request, tell)})
@@ -56,15 +56,21 @@ def main() -> None:
 
 def task(kind: str) -> Callable[[Json, Tell], Any]:
     """What a kind of work is; each brings its own imports, which the others do not pay for."""
+    if kind == "run":
+        from symofros.studio.editor.jobs.diagram_run import run_diagram
+
+        return run_diagram
     from symofros.studio.editor.jobs import operations
 
     return operations.TASKS[kind]
 
 
-def _end_with_the_server() -> None:
+def _follow_the_server(tell: Tell) -> None:
+    """Pass the server's orders on, a line each, and end with it."""
     # By the descriptor: a buffered read would hold a lock that the end of the interpreter waits for.
-    while os.read(0, 4096):
-        pass
+    while data := os.read(0, 4096):
+        for order in data.decode(errors="replace").split():
+            tell.orders.put(order)
     os.killpg(0, signal.SIGKILL)
 
 

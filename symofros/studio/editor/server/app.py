@@ -67,6 +67,8 @@ class Editor:
             "reload": session.reload,
             "open": session.open,
             "new": session.create,
+            "enter": session.enter,
+            "leave": session.leave,
             "parts/insert": session.insert_part,
         }
         made = [Route(f"/api/{name}", self.changing(action), methods=["POST"]) for name, action in changes.items()]
@@ -83,6 +85,7 @@ class Editor:
             Route("/api/import", self.import_text, methods=["POST"]),
             Route("/api/jobs", self.start_job, methods=["POST"]),
             Route("/api/jobs/{key}", self.job),
+            Route("/api/jobs/{key}", self.order_job, methods=["POST"]),
             Route("/api/jobs/{key}", self.cancel_job, methods=["DELETE"]),
             Route("/api/events", self.listen),
             Route("/api/view", self.look),
@@ -182,6 +185,11 @@ class Editor:
     async def job(self, request: Request) -> Response:
         """How far a job is."""
         return JSONResponse(self.jobs.get(request.path_params["key"]).as_json())
+
+    async def order_job(self, request: Request) -> Response:
+        """Pause a job, let it go on, or end it with what it has."""
+        order = (await body_of(request)).get("order")
+        return JSONResponse((await run_sync(self.jobs.order, request.path_params["key"], order)).as_json(whole=False))
 
     async def cancel_job(self, request: Request) -> Response:
         """Stop a job."""

@@ -2,10 +2,12 @@ import { ReactFlowProvider } from "@xyflow/react";
 import { type DragEvent, useEffect } from "react";
 
 import { Canvas } from "./canvas/Canvas";
+import { DiagramCanvas } from "./canvas/DiagramCanvas";
 import { IMPORTED } from "./files/choose";
 import { Bottom } from "./panels/Bottom";
 import { Right } from "./panels/Right";
 import { Banners, Notices } from "./shell/Banners";
+import { DiagramPalette } from "./shell/DiagramPalette";
 import { Palette } from "./shell/Palette";
 import { onKey } from "./shell/shortcuts";
 import { Status } from "./shell/Status";
@@ -24,7 +26,8 @@ function dropFile(event: DragEvent): void {
 }
 
 function Editor() {
-  const { name, dirty } = useDocument();
+  const { name, dirty, path, diagram } = useDocument();
+  const isDiagram = diagram !== null;
   useEffect(() => {
     window.document.title = `${dirty ? "• " : ""}${name} - SYMOFROS`;
   }, [name, dirty]);
@@ -36,9 +39,9 @@ function Editor() {
         <Banners />
         <Toolbar />
         <div className="middle">
-          <Palette />
+          {isDiagram ? <DiagramPalette /> : <Palette />}
           <main className="work" aria-label="Diagram">
-            <Canvas />
+            {isDiagram ? <DiagramCanvas key={path} /> : <Canvas key={path} />}
             {bottom === null ? null : <Bottom current={bottom} />}
           </main>
           {right === null ? null : <Right current={right} />}

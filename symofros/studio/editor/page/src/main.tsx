@@ -2,6 +2,7 @@ import "./style/tokens.css";
 import "./style/controls.css";
 import "./style/shell.css";
 import "./style/canvas.css";
+import "./style/diagram.css";
 import "./style/windows.css";
 import "./style/panels.css";
 

@@ -37,6 +37,8 @@ const document: Document = {
     parameters: { tipmass: 1 },
   },
   layout: {},
+  diagram: null,
+  trail: [],
   graph: {
     nodes: [block("a<b"), block("boom")],
     edges: [

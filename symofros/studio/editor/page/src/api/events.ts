@@ -1,12 +1,13 @@
 /** The server's stream of events. */
 
 import { withToken } from "./client";
-import type { Job } from "./jobs";
+import type { Job, Samples } from "./jobs";
 
 export interface Listener {
   document(revision: number, name: string): void;
   disk(): void;
   job(job: Job): void;
+  samples(samples: Samples): void;
   lost(): void;
 }
 
@@ -22,5 +23,6 @@ export function listen(listener: Listener): void {
     listener.document(revision, name);
   });
   source.addEventListener("disk", () => listener.disk());
+  source.addEventListener("samples", (event) => listener.samples(JSON.parse(event.data as string) as Samples));
   source.addEventListener("job", (event) => listener.job(JSON.parse(event.data as string) as Job));
 }

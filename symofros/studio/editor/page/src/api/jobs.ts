@@ -2,7 +2,7 @@
 
 import type { Fault } from "./types";
 
-export type JobKind = "compile" | "crosscheck" | "simulate" | "export";
+export type JobKind = "compile" | "crosscheck" | "simulate" | "export" | "run";
 export type JobState = "running" | "done" | "failed" | "cancelled";
 
 export interface Count {
@@ -57,6 +57,40 @@ export interface Simulated {
   wall_s: number;
 }
 
+export interface RunCurve {
+  name: string;
+  unit: string;
+  /** The signal that it is an entry of. */
+  signal: string;
+}
+
+export interface RunPlot<C extends RunCurve = RunCurve> {
+  title: string;
+  /** Whether the second curve of each signal is drawn over the first, in place of both over time. */
+  xy: boolean;
+  curves: C[];
+}
+
+/** A diagram's run. */
+export interface Ran {
+  mode: "compiled" | "interpreted";
+  method: string;
+  t: number[];
+  plots: RunPlot<RunCurve & { values: (number | null)[] }>[];
+  outcome: { ok: boolean; t: number; reason: string; advice: string; notes: string[] };
+  steps: number;
+  wall_s: number;
+}
+
+/** What a run tells while it goes on; the first message names the plots. */
+export interface Samples {
+  id: string;
+  plots: RunPlot[] | null;
+  t: number[];
+  /** Of each name that occurs in the plots, in order. */
+  values: (number | null)[][];
+}
+
 export interface Exported {
   files: string[];
   notes: string[];
@@ -68,7 +102,7 @@ export interface Job {
   /** Revision of the document that it is of. */
   revision: number;
   state: JobState;
-  progress: { done: number; total: number; text: string };
+  progress: { done: number; total: number; text: string; paused?: boolean };
   result: unknown;
   error: Fault | null;
 }

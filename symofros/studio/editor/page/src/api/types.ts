@@ -53,6 +53,60 @@ export interface Graph {
   edges: GraphEdge[];
 }
 
+/** Where a signal enters or leaves a block of a diagram. */
+export interface SignalPort {
+  name: string;
+  /** Null as long as nothing tells. */
+  shape: number[] | null;
+  unit: string;
+  /** Whether an input must be fed. */
+  required: boolean;
+  /** What is wrong with what feeds an input; "" if nothing. */
+  fault: string;
+}
+
+export interface SignalNode {
+  id: string;
+  /** The kind of block; `model` and `part` for these. */
+  kind: string;
+  group: string;
+  title: string;
+  note: string;
+  path: Path;
+  /** Seconds between samples; null: continuous. */
+  period: number | null;
+  inputs: SignalPort[];
+  outputs: SignalPort[];
+  problems: number;
+}
+
+export interface Wire {
+  id: string;
+  source: string;
+  source_port: string;
+  target: string;
+  target_port: string;
+  path: Path;
+  period: number | null;
+  fault: string;
+  /** Whether it closes an algebraic loop with others. */
+  loop: boolean;
+}
+
+/** Names in a model of a diagram. */
+export interface ModelNames {
+  frames: string[];
+  q: string[];
+  v: string[];
+  parameters: string[];
+}
+
+export interface Diagram {
+  nodes: SignalNode[];
+  wires: Wire[];
+  models: Record<string, ModelNames>;
+}
+
 export interface Parameter {
   name: string;
   value: Json;
@@ -73,7 +127,12 @@ export interface Document {
   text: string;
   data: JsonMap;
   layout: Record<string, Point>;
+  /** Of a mechanism; empty of a diagram. */
   graph: Graph;
+  /** Of a diagram; null of a mechanism. */
+  diagram: Diagram | null;
+  /** Paths of the documents that one came through to this one. */
+  trail: string[];
   problems: Problem[];
   parameters: Parameter[];
   recovered: boolean;
@@ -102,6 +161,18 @@ export interface PaletteItem {
   name: string;
 }
 
+/** An entry of a diagram's palette. */
+export interface BlockItem extends PaletteItem {
+  group: string;
+}
+
+/** What is known of diagrams as such. */
+export interface DiagramCatalogue {
+  schema: JsonMap;
+  groups: { key: string; title: string }[];
+  palette: BlockItem[];
+}
+
 export interface Method {
   name: string;
   adaptive: boolean;
@@ -115,6 +186,7 @@ export interface Catalogue {
   methods: Method[];
   units: string[];
   targets: string[];
+  diagram: DiagramCatalogue;
   version?: string;
 }
 
@@ -135,6 +207,7 @@ export interface Part {
 }
 
 export interface FileEntry {
+  kind: "mechanism" | "diagram";
   path: string;
   bytes: number;
 }

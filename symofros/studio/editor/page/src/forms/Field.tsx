@@ -7,9 +7,11 @@ import { MapField } from "./Map";
 import { Moments } from "./Moments";
 import { OneOf } from "./OneOf";
 import { isReference, Reference } from "./Reference";
+import { useForm } from "./context";
 import { RecordField } from "./Record";
 import type { Field } from "./schema";
 import { ChoiceField, FlagField, NumberField, SetField, TextField } from "./scalars";
+import { ValueField } from "./Value";
 import { Matrix, partNames, Vector } from "./Vector";
 
 interface FieldProps {
@@ -26,16 +28,21 @@ interface FieldProps {
 
 /** The control that suits a property's shape. */
 export function FieldControl({ name, field, value, onChange, path, label, siblings }: FieldProps) {
+  const { choices } = useForm();
   const { shape, help, fallback } = field;
   const common = { value: value === null ? undefined : value, onChange, label, help, fallback };
   if (name === "moments") return <Moments {...common} path={path} />;
   if (name === "effort" && shape.kind !== "number") return <Effort {...common} path={path} joint={siblings} />;
+  const options = shape.kind === "text" ? choices(name, siblings) : null;
+  if (options !== null) return <ChoiceField {...common} options={["", ...options]} />;
   if (isReference(name, shape.kind)) return <Reference {...common} name={name} siblings={siblings} />;
   switch (shape.kind) {
     case "formula":
       return <Expression {...common} path={path} required={!field.optional} />;
     case "text":
       return <TextField {...common} />;
+    case "value":
+      return <ValueField {...common} path={path} />;
     case "number":
       return <NumberField {...common} integer={shape.integer} minimum={shape.minimum} maximum={shape.maximum} />;
     case "flag":

@@ -39,6 +39,8 @@ export function start(root: JsonMap, schema: JsonMap): Json {
       return shape.minimum ?? 0;
     case "choice":
       return shape.options[0] ?? "";
+    case "value":
+      return 0;
     case "text":
       return "world";
   }

@@ -18,6 +18,8 @@ export interface FormContext {
   /** Told of each number as it is typed, so that it can be written so. */
   type(path: Path, text: string): void;
   hint(text: string): void;
+  /** What a property of a record can be chosen from; null where it is typed. */
+  choices(name: string, record: Json | undefined): readonly string[] | null;
 }
 
 export const Form = createContext<FormContext>({
@@ -28,6 +30,7 @@ export const Form = createContext<FormContext>({
   rename: () => undefined,
   type: () => undefined,
   hint: () => undefined,
+  choices: () => null,
 });
 export const useForm = (): FormContext => useContext(Form);
 

@@ -7,6 +7,8 @@ export type Shape =
   | { kind: "formula" }
   | { kind: "number"; integer: boolean; minimum: number | null; maximum: number | null }
   | { kind: "text" }
+  /** Anything that fits on a line of the file. */
+  | { kind: "value" }
   | { kind: "flag" }
   | { kind: "choice"; options: string[] }
   | { kind: "set"; options: string[] }
@@ -43,9 +45,11 @@ function given(root: JsonMap, schema: JsonMap): JsonMap {
   const real = branches.filter((branch) => branch["type"] !== "null");
   const first = real[0];
   if (first === undefined) return schema;
+  const { anyOf: _, ...beside } = schema;
+  // Ways that have no name of their own: as one writes them in the file.
+  if (real.length > 1 && !real.some((branch) => "$ref" in branch)) return beside;
   // Several ways to write one thing: the richest one can be edited, the others are read.
   const rich = real.find((branch) => "$ref" in branch && branch["$ref"] !== "#/$defs/Formula") ?? first;
-  const { anyOf: _, ...beside } = schema;
   return { ...resolved(root, rich), ...beside };
 }
 
@@ -85,6 +89,8 @@ function shapeOf(root: JsonMap, schema: JsonMap): Shape {
       return arrayShape(root, schema);
     case "object":
       return objectShape(schema);
+    case undefined:
+      return { kind: "value" };
     default:
       return { kind: "text" };
   }

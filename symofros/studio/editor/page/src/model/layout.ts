@@ -2,6 +2,7 @@
 
 import type { Graph, GraphEdge, GraphNode, Point } from "../api/types";
 import { size, WIDTH } from "./geometry";
+import { completedPlaces, type Places } from "./places";
 
 const COLUMN = WIDTH + 56;
 const GAP = 22;
@@ -9,8 +10,6 @@ const ROW_GAP = 44;
 // Width over height that a diagram should have, roughly that of a screen.
 const ASPECT = 1.7;
 const FEWEST_COLUMNS = 4;
-
-type Places = Record<string, Point>;
 
 interface Tree {
   nodes: Map<string, GraphNode>;
@@ -85,12 +84,6 @@ export function tidy(graph: Graph): Places {
   return best;
 }
 
-function overlaps(a: Point, aSize: Point, b: Point, bSize: Point): boolean {
-  return [0, 1].every(
-    (i) => (a[i] ?? 0) < (b[i] ?? 0) + (bSize[i] ?? 0) && (b[i] ?? 0) < (a[i] ?? 0) + (aSize[i] ?? 0),
-  );
-}
-
 /**
  * Places of all blocks.
  *
@@ -100,24 +93,10 @@ function overlaps(a: Point, aSize: Point, b: Point, bSize: Point): boolean {
  */
 export function completed(graph: Graph, known: Places, remembered: Places = {}): Places {
   if (!graph.nodes.some((node) => node.id in known)) return tidy(graph);
-  const places: Places = {};
-  for (const node of graph.nodes) {
-    const place = known[node.id];
-    if (place !== undefined) places[node.id] = place;
-  }
-  const nodes = new Map(graph.nodes.map((node) => [node.id, node]));
-  for (const node of graph.nodes.filter((each) => !(each.id in places))) {
-    const isFree = (place: Point): boolean =>
-      Object.entries(places).every(
-        ([id, other]) => !overlaps(place, size(node), other, size(nodes.get(id) as GraphNode)),
-      );
-    const old = remembered[node.id];
+  const start = (node: GraphNode, places: Places): Point => {
     const parent = graph.edges.find((edge) => edge.target === node.id && places[edge.source] !== undefined);
-    const start = parent === undefined ? undefined : places[parent.source];
-    let place: Point = start === undefined ? [0, 0] : [start[0] + COLUMN, start[1]];
-    if (old !== undefined && isFree(old)) place = old;
-    while (!isFree(place)) place = [place[0], place[1] + 24];
-    places[node.id] = place;
-  }
-  return places;
+    const place = parent === undefined ? undefined : places[parent.source];
+    return place === undefined ? [0, 0] : [place[0] + COLUMN, place[1]];
+  };
+  return completedPlaces(graph.nodes, known, remembered, size, start);
 }

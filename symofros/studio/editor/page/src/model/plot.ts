@@ -24,6 +24,16 @@ export function span(values: readonly (number | null)[]): Span {
   return [low - margin, high + margin];
 }
 
+/** Spans that hold the given ones, with one scale along both sides of a box. */
+export function equal(xs: Span, ys: Span, box: Box): [Span, Span] {
+  const scale = 1.06 * Math.max((xs[1] - xs[0]) / box.width, (ys[1] - ys[0]) / box.height);
+  const about = ([low, high]: Span, extent: number): Span => {
+    const middle = (low + high) / 2;
+    return [middle - (scale * extent) / 2, middle + (scale * extent) / 2];
+  };
+  return [about(xs, box.width), about(ys, box.height)];
+}
+
 /** Round numbers inside a span, about as many as asked for. */
 export function ticks([low, high]: Span, count: number): number[] {
   const rough = (high - low) / count;
@@ -38,14 +48,20 @@ export function ticks([low, high]: Span, count: number): number[] {
 const MOST = 1500;
 
 /** A polyline; it breaks where a value is not finite. */
-export function line(x: readonly number[], values: readonly (number | null)[], xs: Span, ys: Span, box: Box): string {
+export function line(
+  x: readonly (number | null)[],
+  values: readonly (number | null)[],
+  xs: Span,
+  ys: Span,
+  box: Box,
+): string {
   const stride = Math.max(1, Math.ceil(x.length / MOST));
   let path = "";
   let pen = "M";
   for (let i = 0; i < x.length; i += stride) {
     const value = values[i];
     const at = x[i];
-    if (value === undefined || value === null || at === undefined) {
+    if (value === undefined || value === null || at === undefined || at === null) {
       pen = "M";
       continue;
     }

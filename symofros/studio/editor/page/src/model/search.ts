@@ -14,6 +14,8 @@ export interface Hit {
 
 export function everything(document: Document): Hit[] {
   const { data } = document;
+  if (document.diagram !== null)
+    return document.diagram.nodes.map(({ id, title, kind }) => ({ what: kind.replaceAll("_", " "), name: title, id }));
   const hits: Hit[] = [];
   for (const [body, value] of Object.entries(mapAt(data, ["bodies"]))) {
     const node = document.graph.nodes.find((each) => each.path[0] === "bodies" && each.path[1] === body);

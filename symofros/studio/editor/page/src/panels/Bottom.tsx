@@ -6,17 +6,19 @@ import type {
   Exported,
   Job,
   JobKind,
+  Ran,
   Simulated,
 } from "../api/jobs";
 import { Glyph } from "../shell/Glyph";
 import { IconButton } from "../shell/IconButton";
 import { Splitter } from "../shell/Splitter";
 import { type Tab, Tabs } from "../shell/Tabs";
-import { cancel } from "../store/jobs";
+import { cancel, order } from "../store/jobs";
 import { type BottomPane, update, useBegun, useDocument, useStore } from "../store/store";
 import { Compiled } from "./Compiled";
 import { Crosschecked } from "./Crosschecked";
 import { Problems } from "./Problems";
+import { LiveRun, Run } from "./Run";
 import { Simulation } from "./Simulation";
 
 const TITLES: Record<JobKind, string> = {
@@ -24,14 +26,42 @@ const TITLES: Record<JobKind, string> = {
   crosscheck: "Cross-check",
   simulate: "Simulation",
   export: "Export",
+  run: "Run",
 };
+
+/** Pause, go on, end with what there is. */
+function Orders({ job }: { job: Job }) {
+  const isPaused = job.progress.paused === true;
+  return (
+    <>
+      <button type="button" className="small" onClick={() => void order(job.kind, isPaused ? "resume" : "pause")}>
+        {isPaused ? "Go on" : "Pause"}
+      </button>
+      <button type="button" className="small" onClick={() => void order(job.kind, "stop")}>
+        Stop
+      </button>
+    </>
+  );
+}
+
+function RunningDiagram({ job }: { job: Job }) {
+  const live = useStore((state) => state.live);
+  return (
+    <>
+      <Running job={job} />
+      {live === null ? null : <LiveRun live={live} />}
+    </>
+  );
+}
 
 function Running({ job }: { job: Job }) {
   const { done, total, text } = job.progress;
+  const live = useStore((state) => state.live);
   return (
     <div className="running" role="status">
       <progress max={total || 1} value={total > 0 ? done : undefined} aria-label={TITLES[job.kind]} />
       <span>{text || "starting"}</span>
+      {job.kind === "run" && live !== null && live.t.length > 0 ? <Orders job={job} /> : null}
       <button type="button" className="small" onClick={() => void cancel(job.kind)}>
         Cancel
       </button>
@@ -47,6 +77,8 @@ function Result({ job }: { job: Job }) {
       return <Crosschecked result={job.result as CrosscheckedResult} />;
     case "simulate":
       return <Simulation result={job.result as Simulated} />;
+    case "run":
+      return <Run result={job.result as Ran} />;
     case "export":
       return (
         <ul className="results">
@@ -66,8 +98,8 @@ function Past({ job }: { job: Job }) {
   return (
     <>
       <p className="pane past" role="status">
-        <Glyph name="warning" size={14} /> The model has changed since: {TITLES[job.kind].toLowerCase()} of an earlier
-        state. Run it again.
+        <Glyph name="warning" size={14} /> The {job.kind === "run" ? "diagram" : "model"} has changed since:{" "}
+        {TITLES[job.kind].toLowerCase()} of an earlier state. Run it again.
       </p>
       <div className="past-result">
         <Result job={job} />
@@ -78,7 +110,7 @@ function Past({ job }: { job: Job }) {
 
 function Outcome({ job }: { job: Job }) {
   const { revision } = useDocument();
-  if (job.state === "running") return <Running job={job} />;
+  if (job.state === "running") return job.kind === "run" ? <RunningDiagram job={job} /> : <Running job={job} />;
   if (job.state === "cancelled") return <p className="pane quiet">Cancelled.</p>;
   if (job.state === "done") return job.revision === revision ? <Result job={job} /> : <Past job={job} />;
   return (

@@ -7,6 +7,7 @@ function go({ node, path }: Problem): void {
   if (node !== "") update({ selected: [node], sight: { id: node } });
   const [section, name] = path;
   if (section === "parameters" || section === "inputs") update({ right: "parameters" });
+  else if (section === "simulation" || section === "wires") update({ right: "text" });
   else if (path.length >= 2 && section !== undefined && name !== undefined && section !== "system")
     show({ kind: "properties", path: [section, name], entry: path.slice(2) });
   else if (section === "system") show({ kind: "properties", path: ["system"] });
@@ -15,8 +16,11 @@ function go({ node, path }: Problem): void {
 
 /** What is wrong with the document, in four parts each. */
 export function Problems() {
-  const { problems } = useDocument();
-  if (problems.length === 0) return <p className="pane quiet">No problems: the model can be compiled.</p>;
+  const { problems, diagram } = useDocument();
+  if (problems.length === 0)
+    return (
+      <p className="pane quiet">No problems: the {diagram === null ? "model can be compiled" : "diagram can run"}.</p>
+    );
   return (
     <ul className="pane problems">
       {problems.map((problem, i) => (

@@ -3,8 +3,9 @@ import { lazy, Suspense, useState } from "react";
 import { IconButton } from "../shell/IconButton";
 import { Splitter } from "../shell/Splitter";
 import { type Tab, Tabs } from "../shell/Tabs";
-import { type RightPane, update } from "../store/store";
+import { type RightPane, update, useDocument } from "../store/store";
 import { Inputs } from "./Inputs";
+import { Models } from "./Models";
 import { Parameters } from "./Parameters";
 import { ViewPane } from "./ViewPane";
 
@@ -12,23 +13,36 @@ const TextPane = lazy(() => import("../text/TextPane"));
 
 /** Parameters, the text of the file, the 3-D view. */
 export function Right({ current }: { current: RightPane }) {
-  const [widths, setWidths] = useState({ parameters: 400, text: 400, view: 540 });
-  const width = widths[current];
-  const tabs: Tab<RightPane>[] = [
-    { key: "parameters", title: "Parameters" },
-    { key: "text", title: "YAML" },
-    { key: "view", title: "3-D" },
-  ];
+  const [widths, setWidths] = useState({ parameters: 400, text: 400, view: 540, models: 272 });
+  const isDiagram = useDocument().diagram !== null;
+  const pane = isDiagram && current !== "text" ? "models" : current;
+  const width = widths[pane];
+  const tabs: Tab<RightPane>[] = isDiagram
+    ? [
+        { key: "parameters", title: "Models" },
+        { key: "text", title: "YAML" },
+      ]
+    : [
+        { key: "parameters", title: "Parameters" },
+        { key: "text", title: "YAML" },
+        { key: "view", title: "3-D" },
+      ];
   return (
     <aside className="side-dock" style={{ width }} aria-label="Side pane">
       <Splitter
         side="right"
         label="Width of the side pane"
         size={width}
-        onChange={(size) => setWidths({ ...widths, [current]: size })}
+        onChange={(size) => setWidths({ ...widths, [pane]: size })}
       />
-      <Tabs tabs={tabs} current={current} onChange={(key) => update({ right: key })} label="Side pane">
-        {current === "parameters" ? (
+      <Tabs
+        tabs={tabs}
+        current={isDiagram && current === "view" ? "parameters" : current}
+        onChange={(key) => update({ right: key })}
+        label="Side pane"
+      >
+        {current !== "text" && isDiagram ? <Models /> : null}
+        {current === "parameters" && !isDiagram ? (
           <>
             <Parameters />
             <Inputs />
@@ -39,7 +53,7 @@ export function Right({ current }: { current: RightPane }) {
             <TextPane />
           </Suspense>
         ) : null}
-        {current === "view" ? <ViewPane /> : null}
+        {current === "view" && !isDiagram ? <ViewPane /> : null}
       </Tabs>
       <IconButton glyph="close" label="Close the side pane" onClick={() => update({ right: null })} />
     </aside>

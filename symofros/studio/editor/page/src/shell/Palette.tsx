@@ -1,7 +1,7 @@
 import type { DragEvent } from "react";
 
 import type { PaletteItem } from "../api/types";
-import { DRAGGED } from "../canvas/Canvas";
+import { DRAGGED } from "../canvas/Board";
 import { add, selectedBodies } from "../store/bodies";
 import { insertPart } from "../store/clipboard";
 import { show, useStore } from "../store/store";
@@ -17,7 +17,7 @@ interface EntryProps {
 }
 
 /** Something to add: dragged onto the canvas, or put beside the selected block by a click or Enter. */
-function Entry({ glyph, title, help, word, onAdd, draggable }: EntryProps) {
+export function Entry({ glyph, title, help, word, onAdd, draggable }: EntryProps) {
   const begin = (event: DragEvent): void => {
     event.dataTransfer.setData(DRAGGED, word);
     event.dataTransfer.effectAllowed = "copy";

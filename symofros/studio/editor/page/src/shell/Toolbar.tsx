@@ -4,10 +4,12 @@ import type { JobKind } from "../api/jobs";
 import { pace, whole } from "../canvas/useSight";
 import { chooseImport } from "../files/choose";
 import { savePicture } from "../files/picture";
+import { tidyDiagram } from "../model/diagram_layout";
 import { tidy } from "../model/layout";
 import { copy, paste } from "../store/clipboard";
 import { place, redo, undo } from "../store/edits";
-import { browse, save } from "../store/files";
+import { remove } from "../store/elements";
+import { browse, leave, save } from "../store/files";
 import { run } from "../store/jobs";
 import { now, show, update, useBegun, useDocument, useStore } from "../store/store";
 import { toggleTheme } from "../store/theme";
@@ -25,29 +27,62 @@ function FileMenu() {
         { title: "Save", keys: "Ctrl S", act: () => void save() },
         { title: "Save as…", keys: "Ctrl Shift S", act: () => show({ kind: "save as" }) },
         { title: "Import URDF, MJCF, YAML…", act: () => void chooseImport() },
-        { title: "Picture of the diagram, SVG", act: () => void savePicture(document, "svg") },
-        { title: "Picture of the diagram, PNG", act: () => void savePicture(document, "png") },
+        ...(document.diagram === null
+          ? [
+              { title: "Picture of the diagram, SVG", act: () => void savePicture(document, "svg") },
+              { title: "Picture of the diagram, PNG", act: () => void savePicture(document, "png") },
+            ]
+          : []),
       ]}
     />
   );
 }
 
 function EditMenu() {
+  const isDiagram = useDocument().diagram !== null;
   return (
     <Menu
       title="Edit"
       items={[
-        { title: "Copy", keys: "Ctrl C", act: copy },
-        { title: "Paste", keys: "Ctrl V", act: () => void paste() },
+        ...(isDiagram
+          ? [{ title: "Remove", keys: "Delete", act: () => void remove(now().selected) }]
+          : [
+              { title: "Copy", keys: "Ctrl C", act: copy },
+              { title: "Paste", keys: "Ctrl V", act: () => void paste() },
+            ]),
         { title: "Find…", keys: "Ctrl K", act: () => show({ kind: "search" }) },
-        { title: "System: gravity, virtual power…", act: () => show({ kind: "properties", path: ["system"] }) },
+        ...(isDiagram
+          ? [{ title: "Simulation: end, step, plots…", act: () => show({ kind: "properties", path: ["simulation"] }) }]
+          : [{ title: "System: gravity, virtual power…", act: () => show({ kind: "properties", path: ["system"] }) }]),
         { title: "Keys", keys: "?", act: () => show({ kind: "keys" }) },
       ]}
     />
   );
 }
 
-const WORK: readonly { kind: JobKind; title: string; help: string; start(): void }[] = [
+interface Command {
+  kind: JobKind;
+  title: string;
+  help: string;
+  start(): void;
+}
+
+const OF_DIAGRAM: readonly Command[] = [
+  {
+    kind: "run",
+    title: "Run",
+    help: "Run the diagram as its file says: compiled, to its end",
+    start: () => void run("run"),
+  },
+  {
+    kind: "run",
+    title: "Run…",
+    help: "Compiled or block by block, to when, at what pace, with stops",
+    start: () => show({ kind: "run" }),
+  },
+];
+
+const OF_MECHANISM: readonly Command[] = [
   {
     kind: "compile",
     title: "Compile",
@@ -70,12 +105,12 @@ const WORK: readonly { kind: JobKind; title: string; help: string; start(): void
 ];
 
 function Work() {
-  const { problems } = useDocument();
+  const { problems, diagram } = useDocument();
   const begun = useBegun();
   const jobs = useStore((state) => state.jobs);
   const count = problems.length;
   return (
-    <div className="cluster" role="group" aria-label="Model">
+    <div className="cluster" role="group" aria-label={diagram === null ? "Model" : "Diagram"}>
       <button
         type="button"
         className={count === 0 ? "check good" : begun ? "check bad" : "check"}
@@ -83,9 +118,9 @@ function Work() {
       >
         {count === 0 ? "No problems" : `${count} problem${count > 1 ? "s" : ""}`}
       </button>
-      {WORK.map(({ kind, title, help, start }) => (
+      {(diagram === null ? OF_MECHANISM : OF_DIAGRAM).map(({ kind, title, help, start }) => (
         <button
-          key={kind}
+          key={title}
           type="button"
           title={help}
           disabled={count > 0 || jobs[kind]?.state === "running"}
@@ -104,8 +139,8 @@ export function Toolbar() {
   const flow = useReactFlow();
   const right = useStore((state) => state.right);
   const arrange = async (): Promise<void> => {
-    await place(tidy(document.graph));
-    requestAnimationFrame(() => void flow.fitView({ ...whole(document.graph), duration: pace() }));
+    await place(document.diagram === null ? tidy(document.graph) : tidyDiagram(document.diagram));
+    requestAnimationFrame(() => void flow.fitView({ ...whole(), duration: pace() }));
   };
   return (
     <header className="toolbar">
@@ -128,11 +163,21 @@ export function Toolbar() {
         <IconButton
           glyph="fit"
           label="Show the whole diagram"
-          onClick={() => void flow.fitView({ ...whole(document.graph), duration: pace() })}
+          onClick={() => void flow.fitView({ ...whole(), duration: pace() })}
         />
         <IconButton glyph="search" label="Find (Ctrl K)" onClick={() => show({ kind: "search" })} />
       </div>
       <h1 className="file-name" title={document.path}>
+        {document.trail.length > 0 ? (
+          <button
+            type="button"
+            className="small trail"
+            title="Back to the diagram (Alt ←)"
+            onClick={() => void leave()}
+          >
+            ← {document.trail.join(" › ")}
+          </button>
+        ) : null}
         {document.path}
         {document.dirty ? <span className="dirty">unsaved</span> : null}
       </h1>
@@ -145,13 +190,15 @@ export function Toolbar() {
         >
           YAML
         </button>
-        <button
-          type="button"
-          aria-pressed={right === "view"}
-          onClick={() => update({ right: right === "view" ? "parameters" : "view" })}
-        >
-          3-D
-        </button>
+        {document.diagram === null ? (
+          <button
+            type="button"
+            aria-pressed={right === "view"}
+            onClick={() => update({ right: right === "view" ? "parameters" : "view" })}
+          >
+            3-D
+          </button>
+        ) : null}
         <IconButton glyph="theme" label="Dark or light" onClick={toggleTheme} />
       </div>
     </header>

@@ -1,10 +1,10 @@
 /** Keys that work wherever no field and no window has the focus. */
 
-import { openProperties } from "../canvas/Canvas";
-import { remove } from "../store/bodies";
+import { openProperties } from "../canvas/open";
+import { remove } from "../store/elements";
 import { copy, paste } from "../store/clipboard";
 import { redo, undo } from "../store/edits";
-import { browse, save } from "../store/files";
+import { browse, leave, save } from "../store/files";
 import { now, show, update } from "../store/store";
 
 const isTyping = (target: EventTarget | null): boolean =>
@@ -31,7 +31,10 @@ const WITH_CONTROL: Record<string, () => void> = {
     void remove(now().selected);
   },
   v: () => void paste(),
-  a: () => update({ selected: now().document?.graph.nodes.map((node) => node.id) ?? [] }),
+  a: () => {
+    const { graph, diagram } = now().document ?? {};
+    update({ selected: [...(graph?.nodes ?? []), ...(diagram?.nodes ?? [])].map(({ id }) => id) });
+  },
 };
 
 const ALONE: Record<string, () => void> = {
@@ -73,6 +76,11 @@ export function onKey(event: KeyboardEvent): void {
       event.preventDefault();
       openProperties(id);
     }
+    return;
+  }
+  if (event.altKey && event.key === "ArrowLeft" && (now().document?.trail.length ?? 0) > 0) {
+    event.preventDefault();
+    void leave();
     return;
   }
   const act = control ? WITH_CONTROL[event.key] : ALONE[event.key];

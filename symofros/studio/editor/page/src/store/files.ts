@@ -19,7 +19,19 @@ async function replace(address: string, body: object): Promise<void> {
 }
 
 export const open = (path: string): Promise<void> => replace("api/open", { path });
-export const begin = (path: string): Promise<void> => replace("api/new", { path });
+export const begin = (path: string, kind: "mechanism" | "diagram"): Promise<void> => replace("api/new", { path, kind });
+
+/** Goes into a model or a part of the diagram: its file becomes the open one, until one leaves it again. */
+export const enter = (path: string): Promise<boolean> => change("api/enter", () => ({ path }));
+
+/** Back to the diagram that one came from. */
+export async function leave(): Promise<void> {
+  const back = async (discard: boolean): Promise<void> => {
+    if (await change("api/leave", () => ({ discard }))) dismiss();
+  };
+  if (now().document?.dirty === true) show({ kind: "discard", proceed: () => void back(true) });
+  else await back(false);
+}
 const importText = (name: string, text: string): Promise<void> => replace("api/import", { name, text });
 
 export const importPath = (path: string): Promise<void> => replace("api/import", { path });

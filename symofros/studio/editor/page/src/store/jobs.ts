@@ -1,7 +1,7 @@
 /** Long work of the server: start, follow, cancel. */
 
 import { get, post, remove } from "../api/client";
-import type { Job, JobKind } from "../api/jobs";
+import type { Job, JobKind, Samples } from "../api/jobs";
 import { explain, ordered } from "./requests";
 import { now, update } from "./store";
 
@@ -12,6 +12,29 @@ export function hear(job: Job): void {
   if (now().jobs[job.kind]?.id !== job.id) return;
   if (job.state === "running") take(job);
   else void fetchJob(job.id);
+}
+
+/** What a run tells while it goes on. */
+export function hearSamples({ id, plots, t, values }: Samples): void {
+  if (now().jobs.run?.id !== id) return;
+  if (plots !== null) {
+    const names = [...new Set(plots.flatMap(({ curves }) => curves.map(({ name }) => name)))];
+    update({ live: { id, plots, t: [], values: Object.fromEntries(names.map((name) => [name, []])) } });
+    return;
+  }
+  const { live } = now();
+  if (live === null || live.id !== id) return;
+  const longer = Object.entries(live.values).map(([name, before], i): [string, (number | null)[]] => [
+    name,
+    [...before, ...(values[i] ?? [])],
+  ]);
+  update({ live: { ...live, t: [...live.t, ...t], values: Object.fromEntries(longer) } });
+}
+
+/** Pauses a run, lets it go on, or ends it with what it has. */
+export async function order(kind: JobKind, order: "pause" | "resume" | "stop"): Promise<void> {
+  const job = now().jobs[kind];
+  if (job !== undefined) await ordered(() => post(`api/jobs/${job.id}`, { order }));
 }
 
 async function fetchJob(id: string): Promise<Job | undefined> {
@@ -46,7 +69,7 @@ export async function run(kind: JobKind, options: object = {}): Promise<void> {
     result: null,
     error: null,
   });
-  update({ bottom: kind });
+  update({ bottom: kind, live: null });
   await follow(kind, started.id);
 }
 

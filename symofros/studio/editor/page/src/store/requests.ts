@@ -2,6 +2,7 @@
 
 import { Refused, Unreachable } from "../api/client";
 import type { Document } from "../api/types";
+import { completedDiagram } from "../model/diagram_layout";
 import { completed } from "../model/layout";
 import { notify, now, update } from "./store";
 
@@ -12,13 +13,19 @@ export function accept(document: Document): void {
   const old = now().document;
   // Another file, or a new start: what was chosen in the old one means nothing here.
   const fresh = old === null || old.path !== document.path;
-  const ids = new Set(document.graph.nodes.map((node) => node.id));
+  const { graph, diagram } = document;
+  const ids = new Set([...graph.nodes, ...(diagram?.nodes ?? []), ...(diagram?.wires ?? [])].map(({ id }) => id));
   update((state) => ({
     document,
     // Blocks that nobody has put stay where they were first shown.
-    places: completed(document.graph, fresh ? document.layout : state.places, document.layout),
+    places:
+      diagram === null
+        ? completed(graph, fresh ? document.layout : state.places, document.layout)
+        : completedDiagram(diagram, fresh ? document.layout : state.places, document.layout),
     selected: fresh ? [] : state.selected.filter((id) => ids.has(id)),
     jobs: fresh ? {} : state.jobs,
+    live: fresh ? null : state.live,
+    bottom: fresh && state.bottom !== "problems" ? null : state.bottom,
   }));
 }
 

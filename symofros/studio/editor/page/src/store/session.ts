@@ -5,7 +5,7 @@ import { listen } from "../api/events";
 import type { Catalogue } from "../api/types";
 import { fetchParts } from "./clipboard";
 import { refresh } from "./files";
-import { hear } from "./jobs";
+import { hear, hearSamples } from "./jobs";
 import { busy, explain } from "./requests";
 import { now, update } from "./store";
 
@@ -23,6 +23,7 @@ async function attend(): Promise<void> {
         },
         disk: () => void refresh(),
         job: hear,
+        samples: hearSamples,
         lost,
       });
     });

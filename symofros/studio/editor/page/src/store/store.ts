@@ -2,13 +2,13 @@
 
 import { create } from "zustand";
 
-import type { Job, JobKind } from "../api/jobs";
+import type { Job, JobKind, RunPlot } from "../api/jobs";
 import type { Catalogue, Document, Fault, FileEntry, Json, LibraryPart, Path, Point, View } from "../api/types";
 import { isMap } from "../model/paths";
 
 export type Link = "ok" | "lost" | "expired";
 export type RightPane = "parameters" | "text" | "view";
-export type BottomPane = "problems" | "compile" | "crosscheck" | "simulate" | "export";
+export type BottomPane = "problems" | JobKind;
 
 export interface Anchor {
   body: string;
@@ -21,6 +21,7 @@ export type Dialog =
   | { kind: "new" }
   | { kind: "save as" }
   | { kind: "simulate" }
+  | { kind: "run" }
   | { kind: "export" }
   | { kind: "save part"; bodies: string[] }
   | { kind: "link"; first: Anchor; second: Anchor }
@@ -28,6 +29,14 @@ export type Dialog =
   | { kind: "changed on disk"; disk: string; over: string; path: string | null }
   | { kind: "search" }
   | { kind: "keys" };
+
+/** The curves of a run that goes on, as far as they were told. */
+export interface Live {
+  id: string;
+  plots: RunPlot[];
+  t: number[];
+  values: Record<string, (number | null)[]>;
+}
 
 export interface Notice {
   id: number;
@@ -44,6 +53,7 @@ export interface State {
   sight: { id: string } | null;
   dialog: Dialog | null;
   jobs: Partial<Record<JobKind, Job>>;
+  live: Live | null;
   link: Link;
   notices: Notice[];
   /** What the 3-D view shows, while its pane is open; a fault: why it shows nothing. */
@@ -63,6 +73,7 @@ export const useStore = create<State>(() => ({
   sight: null,
   dialog: null,
   jobs: {},
+  live: null,
   link: "ok",
   notices: [],
   view: null,
@@ -81,13 +92,13 @@ export function useDocument(): Document {
   return document;
 }
 
+// What a new document says.
+const OF_EMPTY = ["bodies", "system", "symofros", "symofros_diagram", "name"];
+
 /** Whether there is anything yet that could be wrong: a new file is no fault. */
 export function useBegun(): boolean {
   const { data } = useDocument();
-  return (
-    Object.keys(data).some((key) => key !== "bodies" && key !== "system" && key !== "symofros" && filled(data[key])) ||
-    filled(data["bodies"])
-  );
+  return Object.keys(data).some((key) => !OF_EMPTY.includes(key) && filled(data[key])) || filled(data["bodies"]);
 }
 
 const filled = (section: Json | undefined): boolean =>

@@ -5,6 +5,7 @@ import { Keys } from "./Keys";
 import { LinkForm } from "./LinkForm";
 import { PartForm } from "./PartForm";
 import { Properties } from "./Properties";
+import { RunForm } from "./RunForm";
 import { SearchBox } from "./SearchBox";
 import { SimulateForm } from "./SimulateForm";
 
@@ -24,6 +25,8 @@ export function Dialogs() {
       return <SaveAs />;
     case "simulate":
       return <SimulateForm />;
+    case "run":
+      return <RunForm />;
     case "export":
       return <ExportForm />;
     case "save part":

@@ -1,15 +1,18 @@
 import { useCallback, useMemo, useRef, useState } from "react";
 
 import type { Json, Path } from "../api/types";
+import { fileOf } from "../canvas/open";
 import { Form, type FormContext } from "../forms/context";
 import { asTyped, changes, keyOf, type Renames } from "../model/changes";
-import { at, difference } from "../model/paths";
+import { at, difference, textAt } from "../model/paths";
 import { Foot } from "../shell/Foot";
 import { TextRow } from "../shell/Row";
 import { Window } from "../shell/Window";
 import { edit } from "../store/edits";
+import { enter } from "../store/files";
 import { dismiss, useDocument, useStore } from "../store/store";
 import { BodyForm } from "./BodyForm";
+import { DiagramForm } from "./DiagramForm";
 import { EntryForm } from "./EntryForm";
 import { SystemForm } from "./SystemForm";
 
@@ -18,15 +21,26 @@ const NOUNS: Record<string, string> = {
   closures: "Closure",
   connections: "Connection",
   nonholonomic: "Condition",
+  blocks: "Block",
+  models: "Model",
+  parts: "Part",
+  simulation: "Simulation",
+  wires: "Wires",
 };
 
 /** What the system window shows: all that concerns no single block. */
 const SYSTEM = ["system", "virtual_power", "potentials"] as const;
 
+async function goIn(file: string): Promise<void> {
+  if (await enter(file)) dismiss();
+}
+
 /** The window of a block, a link or the whole system. Nothing is changed until it is accepted, as one step of undo. */
 export function Properties({ path, entry }: { path: Path; entry: Path }) {
   const document = useDocument();
-  const schema = useStore((state) => state.catalogue?.schema);
+  const catalogue = useStore((state) => state.catalogue);
+  const diagram = document.diagram;
+  const schema = diagram === null ? catalogue?.schema : catalogue?.diagram.schema;
   const isSystem = path[0] === "system";
   // What the window was opened with; changes from elsewhere do not touch what is being typed.
   const [data] = useState(document.data);
@@ -51,8 +65,13 @@ export function Properties({ path, entry }: { path: Path; entry: Path }) {
       rename,
       type,
       hint: setHint,
+      choices: (key, record) => {
+        if (diagram === null) return null;
+        if (key === "model") return Object.keys(diagram.models);
+        return key === "frame" ? (diagram.models[textAt(record, ["model"]) ?? ""]?.frames ?? null) : null;
+      },
     }),
-    [schema, data, section, path, renames, rename, type],
+    [schema, data, diagram, section, path, renames, rename, type],
   );
   const accept = async (): Promise<void> => {
     const edits = isSystem
@@ -62,7 +81,9 @@ export function Properties({ path, entry }: { path: Path; entry: Path }) {
       : changes(path, before, draft, renames, typed.current);
     if (await edit(isSystem ? "change the system" : `change ${name}`, edits)) dismiss();
   };
-  const title = isSystem ? "System" : `${NOUNS[section] ?? "Entry"} ${String(path[1])}`;
+  const isNamed = path.length > 1;
+  const title = isSystem ? "System" : `${NOUNS[section] ?? "Entry"} ${isNamed ? String(path[1]) : ""}`.trim();
+  const file = fileOf(path);
   return (
     <Window
       title={title}
@@ -74,12 +95,17 @@ export function Properties({ path, entry }: { path: Path; entry: Path }) {
           <span className="hint" aria-hidden="true">
             {hint}
           </span>
+          {file === undefined ? null : (
+            <button type="button" onClick={() => void goIn(file)}>
+              Open its canvas
+            </button>
+          )}
           <Foot word="OK" disabled={Object.values(renames).includes("")} />
         </>
       }
     >
       <Form.Provider value={context}>
-        {isSystem ? null : (
+        {isSystem || !isNamed ? null : (
           <TextRow
             title="Name"
             text={name}
@@ -89,7 +115,8 @@ export function Properties({ path, entry }: { path: Path; entry: Path }) {
         )}
         {isSystem ? <SystemForm value={draft} onChange={setDraft} /> : null}
         {section === "bodies" ? <BodyForm value={draft} onChange={setDraft} path={path} entry={entry} /> : null}
-        {isSystem || section === "bodies" ? null : (
+        {diagram === null ? null : <DiagramForm value={draft} onChange={setDraft} path={path} />}
+        {isSystem || section === "bodies" || diagram !== null ? null : (
           <EntryForm section={section} value={draft} onChange={setDraft} path={path} />
         )}
       </Form.Provider>

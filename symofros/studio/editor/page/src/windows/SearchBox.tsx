@@ -32,7 +32,7 @@ export function SearchBox() {
     <Window title="Find" onClose={dismiss} onSubmit={accept}>
       <input
         value={text}
-        placeholder="body, joint, frame, parameter…"
+        placeholder={document.diagram === null ? "body, joint, frame, parameter…" : "block, model, kind…"}
 
         role="combobox"
         aria-label="Find by name"

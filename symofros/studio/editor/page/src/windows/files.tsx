@@ -1,8 +1,8 @@
-import { useState } from "react";
+import { type ReactNode, useState } from "react";
 
 import type { FileEntry } from "../api/types";
 import { Foot } from "../shell/Foot";
-import { TextRow } from "../shell/Row";
+import { Row, TextRow } from "../shell/Row";
 import { Window } from "../shell/Window";
 import { setText } from "../store/edits";
 import { begin, importPath, open, save } from "../store/files";
@@ -34,11 +34,14 @@ export function OpenFile({ files }: { files: FileEntry[] }) {
         onChange={(event) => setFilter(event.target.value)}
       />
       <ul className="files">
-        {found.map(({ path, bytes }) => (
+        {found.map(({ path, bytes, kind }) => (
           <li key={path}>
             <button type="button" onClick={() => take(path)}>
               <span>{path}</span>
-              <span className="quiet">{Math.ceil(bytes / 1024)} KiB</span>
+              <span className="quiet">
+                {kind === "diagram" ? "diagram, " : ""}
+                {Math.ceil(bytes / 1024)} KiB
+              </span>
             </button>
           </li>
         ))}
@@ -54,11 +57,13 @@ function AskPath({
   word,
   start,
   onDone,
+  children,
 }: {
   title: string;
   word: string;
   start: string;
   onDone(path: string): void;
+  children?: ReactNode;
 }) {
   const [path, setPath] = useState(start);
   const full = isModel(path.trim()) ? path.trim() : `${path.trim()}.yaml`;
@@ -70,11 +75,26 @@ function AskPath({
       foot={<Foot word={word} disabled={path.trim() === ""} />}
     >
       <TextRow title="File" text={path} onChange={setPath} />
+      {children}
     </Window>
   );
 }
 
-export const NewFile = () => <AskPath title="New model" word="Create" start="" onDone={(path) => void begin(path)} />;
+export function NewFile() {
+  const [kind, setKind] = useState<"mechanism" | "diagram">("mechanism");
+  return (
+    <AskPath title="New document" word="Create" start="" onDone={(path) => void begin(path, kind)}>
+      <Row title="Kind">
+        {(id) => (
+          <select id={id} value={kind} onChange={(event) => setKind(event.target.value as typeof kind)}>
+            <option value="mechanism">mechanism: bodies on joints</option>
+            <option value="diagram">diagram: blocks and signals</option>
+          </select>
+        )}
+      </Row>
+    </AskPath>
+  );
+}
 
 export function SaveAs() {
   const { path } = useDocument();

@@ -1,0 +1,1 @@
+"""Diagrams under edit: what is drawn of one, where its faults are, its palette, renaming."""

@@ -1,0 +1,70 @@
+import type { Ran, RunCurve, RunPlot } from "../api/jobs";
+import { brief } from "../model/plot";
+import type { Live } from "../store/store";
+import { Plot, type PlotCurve } from "./Plot";
+
+type Values = (curve: RunCurve) => readonly (number | null)[];
+
+/** The second entry of each signal over its first. */
+function inPlane(curves: readonly RunCurve[], values: Values): PlotCurve[] {
+  const signals = [...new Set(curves.map(({ signal }) => signal))];
+  return signals.flatMap((signal) => {
+    const [x, y] = curves.filter((curve) => curve.signal === signal);
+    return x === undefined || y === undefined ? [] : [{ name: signal, x: values(x), y: values(y) }];
+  });
+}
+
+function OnePlot({ plot, t, values }: { plot: RunPlot; t: readonly number[]; values: Values }) {
+  const units = [...new Set(plot.curves.map(({ unit }) => unit))].filter(Boolean);
+  const unit = units.map((each) => `[${each}]`).join(", ");
+  const curves = plot.xy
+    ? inPlane(plot.curves, values)
+    : plot.curves.map((curve) => ({ name: curve.name, x: t, y: values(curve) }));
+  const label = `${plot.title}: ${curves.map(({ name }) => name).join(", ")}${plot.xy ? " in a plane" : " over time"}`;
+  const titles = plot.xy ? { xTitle: `x ${unit}`, unit: `y ${unit}` } : { xTitle: "t [s]", unit };
+  return <Plot curves={curves} label={label} title={plot.title} plane={plot.xy} {...titles} />;
+}
+
+/** The curves of a run that goes on. */
+export function LiveRun({ live }: { live: Live }) {
+  return (
+    <div className="results">
+      <div className="plots">
+        {live.plots.map((plot) => (
+          <OnePlot key={plot.title} plot={plot} t={live.t} values={({ name }) => live.values[name] ?? []} />
+        ))}
+      </div>
+    </div>
+  );
+}
+
+/** What a diagram's run left. */
+export function Run({ result }: { result: Ran }) {
+  const { ok, t, reason, advice, notes } = result.outcome;
+  const known = new Map(
+    result.plots.flatMap(({ curves }) => curves.map(({ name, values }) => [name, values] as const)),
+  );
+  return (
+    <div className="results">
+      <p className="quiet">
+        {result.mode}, {result.method}
+        {result.steps > 0 ? `, ${result.steps} steps` : ""}, {brief(result.wall_s)} s of computing to t = {brief(t)} s
+      </p>
+      {ok ? null : (
+        <p className="bad">
+          {reason} {advice}
+        </p>
+      )}
+      {notes.map((note) => (
+        <p key={note} className="quiet">
+          {note}
+        </p>
+      ))}
+      <div className="plots">
+        {result.plots.map((plot, i) => (
+          <OnePlot key={i} plot={plot} t={result.t} values={({ name }) => known.get(name) ?? []} />
+        ))}
+      </div>
+    </div>
+  );
+}
