@@ -20,6 +20,7 @@ _PORTS = (
     re.compile(rf"block '(?P<block>{_NAME})' has no input '(?P<port>{_NAME})'"),
 )
 _FIELD = re.compile(rf"(?P<what>block|model|part) '(?P<name>{_NAME})'(?: \(\w+\))?(?:: (?P<field>\w+))?")
+_SOURCE = re.compile(r"source '(?P<source>[^']*)'")
 _SECTIONS = {"block": "blocks", "model": "models", "part": "parts"}
 
 
@@ -52,6 +53,8 @@ def _place(problem: Problem, data: Any) -> tuple[Path, str]:
             inputs = entry.get("inputs") if isinstance(entry, dict) else None
             inside = ("inputs", match["port"]) if isinstance(inputs, dict) and match["port"] in inputs else ()
             return ("blocks", match["block"], *inside), match["port"]
+    if (match := _SOURCE.match(problem.found)) and (path := _fed_by(match["source"], data)):
+        return path, str(path[-1])
     for match in _FIELD.finditer(what):
         section = _SECTIONS[match["what"]]
         if match["name"] in _section(data, section):
@@ -59,6 +62,17 @@ def _place(problem: Problem, data: Any) -> tuple[Path, str]:
             known = isinstance(entry, dict) and match["field"] in entry
             return (section, match["name"], *([match["field"]] if known else [])), ""
     return (), ""
+
+
+def _fed_by(source: str, data: Any) -> Path:
+    """The first input that a source is written for."""
+    for section in ("blocks", "parts"):
+        for name, entry in _section(data, section).items():
+            inputs = entry.get("inputs") if isinstance(entry, dict) else None
+            for port, text in inputs.items() if isinstance(inputs, dict) else ():
+                if text == source:
+                    return (section, name, "inputs", port)
+    return ()
 
 
 def _by_line(source: YamlText, line: int) -> Path:

@@ -126,14 +126,6 @@ def test_numbers_that_json_lacks_become_texts() -> None:
     assert found.data["parameters"]["L1"]["value"] == ".inf"
 
 
-def test_a_diagram_is_told_from_a_mechanism() -> None:
-    """Once an empty world with seven problems, none of which said so."""
-    file = Path(__file__).parents[4] / "reference_models" / "square.yaml"
-    found = analyse(file, file.read_text())
-    assert [problem["object"] for problem in found.problems] == ["the file is a diagram of blocks, not a mechanism"]
-    assert found.problems[0]["line"] > 0 and "models" in found.problems[0]["remedy"]
-
-
 @pytest.mark.parametrize("value", ["0,5", "1e999", "[1]"])
 def test_a_parameter_that_can_not_be_read_stays_in_the_table(value: str) -> None:
     text = TEXTS["four_bar"].replace("L: {value: 1.0", f"L: {{value: {value!r}", 1)

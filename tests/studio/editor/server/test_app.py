@@ -23,6 +23,8 @@ from tests.studio.editor.texts import FILES, TEXTS
 
 KEYS = {
     "path",
+    "trail",
+    "diagram",
     "name",
     "revision",
     "dirty",

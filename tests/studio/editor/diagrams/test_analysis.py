@@ -1,0 +1,102 @@
+"""What the editor makes of a diagram's text: what is drawn of it, and where each of its faults is shown."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from symofros.studio.editor.document.analysis import analyse
+from symofros.studio.editor.document.meaning import Analysis
+
+SQUARE = Path(__file__).parents[4] / "reference_models" / "square.yaml"
+CHAIN = """symofros_diagram: 1
+blocks:
+  a: {kind: constant, value: [1, 2], unit: m}
+  b: {kind: gain, gain: 2, unit_in: m, unit_out: m, period: 0.01, inputs: {u: a}}
+  c: {kind: sum, inputs: {u1: b.y, u2: a.y}}
+"""
+LOOP = """symofros_diagram: 1
+blocks:
+  a: {kind: sum, inputs: {u1: b.y, u2: c}}
+  b: {kind: gain, inputs: {u: a}}
+  c: {kind: constant, value: 1}
+"""
+
+
+def drawn(text: str) -> Analysis:
+    found = analyse(SQUARE.with_name("drawn.yaml"), text)
+    assert found.diagram is not None
+    return found
+
+
+def node(found: Analysis, name: str) -> dict[str, Any]:
+    assert found.diagram is not None
+    return next(node for node in found.diagram["nodes"] if node["id"] == name)
+
+
+def test_the_papers_square_is_drawn_whole() -> None:
+    found = analyse(SQUARE, SQUARE.read_text())
+    assert found.problems == [] and found.diagram is not None
+    kinds = [node["id"].split("/")[0] for node in found.diagram["nodes"]]
+    assert (kinds.count("models"), kinds.count("blocks"), len(found.diagram["wires"])) == (2, 14, 25)
+    pd = node(found, "blocks/pd")
+    assert pd["group"] == "controllers" and pd["period"] == 1e-3
+    assert [(port["name"], port["shape"]) for port in pd["inputs"]][0] == ("q_desired", [3])
+    assert found.diagram["models"]["control"]["q"] == ["q1", "e1", "q2", "q3"]
+
+
+def test_a_wire_leaves_the_port_that_its_source_means() -> None:
+    found = drawn(CHAIN)
+    assert found.problems == [] and found.diagram is not None
+    ends = {wire["id"]: (wire["source"], wire["source_port"], wire["period"]) for wire in found.diagram["wires"]}
+    assert ends["blocks/b/inputs/u"] == ("blocks/a", "y", None)
+    assert ends["blocks/c/inputs/u1"] == ("blocks/b", "y", 0.01)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "path", "port"),
+    [
+        ("unit_in: m", "unit_in: rad", ["blocks", "b", "inputs", "u"], "u"),
+        ("u2: a.y", "u2: nothing.y", ["blocks", "c", "inputs", "u2"], "u2"),
+        ("value: [1, 2]", "value: fish", ["blocks", "a", "value"], ""),
+        ("{u1: b.y, u2: a.y}", "{u1: b.y}", ["blocks", "c"], "u2"),
+        ("kind: gain", "kind: gian", ["blocks", "b"], ""),
+    ],
+)
+def test_a_fault_is_shown_at_its_block_and_port(old: str, new: str, path: list[str], port: str) -> None:
+    assert old in CHAIN
+    found = drawn(CHAIN.replace(old, new))
+    assert path in [problem["path"] for problem in found.problems], found.problems
+    shown = next(problem for problem in found.problems if problem["path"] == path)
+    assert shown["line"] > 0 and (port == "" or shown["port"] == port)
+    assert node(found, "/".join(path[:2]))["problems"] >= 1
+    if port:
+        ports = {item["name"]: item["fault"] for item in node(found, "/".join(path[:2]))["inputs"]}
+        assert ports[port]
+
+
+def test_what_is_wrong_at_one_block_does_not_hide_what_is_wrong_at_another() -> None:
+    text = CHAIN.replace("unit_in: m", "unit_in: rad").replace("u2: a.y", "")
+    paths = [problem["path"] for problem in drawn(text).problems]
+    assert ["blocks", "b", "inputs", "u"] in paths and ["blocks", "c"] in paths
+
+
+def test_wires_of_a_block_that_can_not_be_read_are_drawn_and_are_no_faults_of_others() -> None:
+    found = drawn(CHAIN.replace("gain: 2", "gain: {x: [y, {}]}"))
+    assert found.diagram is not None
+    assert len(found.diagram["wires"]) == 3
+    assert {problem["node"] for problem in found.problems} == {"blocks/b"}
+
+
+def test_an_algebraic_loop_is_marked_at_its_wires_and_at_no_others() -> None:
+    found = drawn(LOOP)
+    assert "algebraic loop" in found.problems[0]["object"] and found.diagram is not None
+    marked = {wire["id"] for wire in found.diagram["wires"] if wire["loop"]}
+    assert marked == {"blocks/a/inputs/u1", "blocks/b/inputs/u"}
+
+
+@pytest.mark.parametrize("text", ["symofros_diagram: 1\n", "symofros_diagram: 2\nblocks: 3\nmodels: [a]\n"])
+def test_a_diagram_without_anything_to_draw_is_a_diagram(text: str) -> None:
+    assert drawn(text).diagram == {"nodes": [], "wires": [], "models": {}}
