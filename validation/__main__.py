@@ -37,6 +37,14 @@ def studies() -> Mapping[str, Any]:
     return typer.main.get_group(imported("validation.commands").app).commands
 
 
+@cache
+def campaign() -> Any:
+    """The commands of campaigns alone: each of their processes would import the studies."""
+    app = typer.Typer()
+    imported("validation.campaigns.command").register(app)
+    return typer.main.get_group(app).commands["campaign"]
+
+
 class Commands(TyperGroup):
     """`check` at hand, the other commands when they are asked for. Typer's own copy of Click has no public types."""
 
@@ -51,7 +59,8 @@ class Commands(TyperGroup):
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         """A command by its name."""
-        return super().get_command(ctx, cmd_name) or studies().get(cmd_name)
+        known = super().get_command(ctx, cmd_name)
+        return known or (campaign() if cmd_name == "campaign" else studies().get(cmd_name))
 
 
 app = typer.Typer(cls=Commands, add_completion=False, no_args_is_help=False, pretty_exceptions_enable=False)

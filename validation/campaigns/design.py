@@ -8,7 +8,6 @@ from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, model_validator
-from scipy.stats import qmc
 
 from validation.mechanics.geometry import Array
 
@@ -98,6 +97,8 @@ def _spread(over: Mapping[str, Range], design: Design, points: int | None, seed:
         raise ValueError(f"a Sobol sequence is even over powers of two, {points} points are none")
     if count == 0:
         return np.empty((0, len(over)))
+    from scipy.stats import qmc  # Half a second, which every worker of a check would take.
+
     if design == "sobol":
         return np.asarray(qmc.Sobol(len(over), seed=seed).random(points))
     return np.asarray(qmc.LatinHypercube(len(over), seed=seed).random(points))

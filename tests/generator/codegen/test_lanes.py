@@ -209,7 +209,7 @@ def test_builds_without_warnings(flags: tuple[str, ...], lanes: LaneOptions, tmp
     """As strict C99, where batches are loops, and on vectors of every width."""
     if not any(word in platform.machine() for word in ("x86", "AMD64")) and len(flags) > 1:
         pytest.skip("flags of another processor")
-    stated = Compilation(MODELS["friction_arm"], sf.Options(functions=("dynamics", "forward_dynamics")))
+    stated = Compilation(MODELS["double_pendulum"], sf.Options(functions=("dynamics", "forward_dynamics")))
     source = model_source(stated.program, stated.record, "test", in_lanes=lanes)
     compile_strictly(tmp_path, source, COMPILERS[0], *flags)
 

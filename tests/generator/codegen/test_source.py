@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 from typing import Literal
 
+import numpy as np
 import pytest
 
 import symofros as sf
@@ -96,46 +97,53 @@ def test_any_name_makes_legal_c(name: str, tmp_path: Path) -> None:
         [sf.Frame(f"frame {name}")],
     )
     stated = sf.System(name, [body])
-    compile_strictly(tmp_path, source_of(stated), COMPILERS[0])
+    compile_strictly(tmp_path, source_of_functions(stated, ("mass_matrix", "frame_pose")), COMPILERS[0])
     model = sf.compile(stated)
     assert model.names.q == (f"joint {name}",)
     assert model.mass_matrix([0.0]).shape == (1, 1)
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        "int",
-        "double",
-        "while",
-        "restrict",
-        "main",
-        "NULL",
-        "M",
-        "q",
-        "v",
-        "u",
-        "par",
-        "pre",
-        "h",
-        "sym_model",
-        "_t",
-        "EOF",
-    ],
+WORDS_OF_C = (
+    *("int", "double", "while", "restrict", "main", "NULL", "sym_model", "_t", "EOF"),
+    *("M", "q", "v", "u", "par", "pre", "h"),
 )
-def test_parameters_inputs_and_coordinates_may_be_words_of_c(name: str) -> None:
-    """Each names another thing in turn; what the C computes does not depend on what its things are called."""
-    inertia = sf.Inertia(f"2*{name}", (0.1, 0, 0), (1, 1, 1))
-    as_parameter = sf.System(name, [sf.RigidBody("b", sf.Joint("x_", "prismatic"), inertia)], [sf.Parameter(name, 3.0)])
-    assert sf.compile(as_parameter).mass_matrix([0.0]) == 6.0
-    solid = sf.Inertia(2.0, (0.1, 0, 0), (1, 1, 1))
-    as_input = sf.System(
-        "s", [sf.RigidBody("b", sf.Joint("x_", "prismatic", effort=(f"3*{name}",)), solid)], inputs=[sf.Input(name)]
+
+
+def test_parameters_inputs_and_coordinates_may_be_words_of_c() -> None:
+    """All name another thing in turn; what the C computes does not depend on what its things are called."""
+    count = len(WORDS_OF_C)
+    numbers, zeros = np.arange(1.0, count + 1), np.zeros(count)
+
+    def slider(i: int, mass: str = "2", effort: str = "0") -> sf.RigidBody:
+        inertia = sf.Inertia(mass, (0.1, 0, 0), (1, 1, 1))
+        return sf.RigidBody(f"b{i}", sf.Joint(f"x_{i}", "prismatic", effort=(effort,)), inertia)
+
+    as_parameters = sf.System(
+        "while",
+        [slider(i, mass=f"2*{name}") for i, name in enumerate(WORDS_OF_C)],
+        [sf.Parameter(name, number) for name, number in zip(WORDS_OF_C, numbers, strict=True)],
     )
-    assert sf.compile(as_input).generalized_force([0.0], [0.0], [2.0]) == 6.0
-    joint = sf.Joint(name, "prismatic", effort=(f"-3*{name} - d{name}",))
-    as_coordinate = sf.System("s", [sf.RigidBody(name, joint, solid, [sf.Frame(f"{name}_tip")])])
-    assert sf.compile(as_coordinate).generalized_force([1.0], [2.0], []) == -5.0
+    np.testing.assert_array_equal(sf.compile(as_parameters).mass_matrix(zeros), np.diag(2 * numbers))
+    as_inputs = sf.System(
+        "double",
+        [slider(i, effort=f"3*{name}") for i, name in enumerate(WORDS_OF_C)],
+        inputs=[sf.Input(name) for name in WORDS_OF_C],
+    )
+    np.testing.assert_array_equal(sf.compile(as_inputs).generalized_force(zeros, zeros, numbers), 3 * numbers)
+    as_coordinates = sf.System(
+        "restrict",
+        [
+            sf.RigidBody(
+                name,
+                sf.Joint(name, "prismatic", effort=(f"-3*{name} - d{name}",)),
+                sf.Inertia(2.0, (0.1, 0, 0), (1, 1, 1)),
+                [sf.Frame(f"{name}_tip")],
+            )
+            for name in WORDS_OF_C
+        ],
+    )
+    forces = sf.compile(as_coordinates).generalized_force(numbers, 2 * numbers, [])
+    np.testing.assert_array_equal(forces, -5 * numbers)
 
 
 def test_names_are_readable() -> None:
@@ -172,8 +180,6 @@ def test_what_no_output_needs_is_not_emitted() -> None:
 
 def test_every_operation_prints_what_it_computes() -> None:
     """One model whose efforts use every row of the op table, compiled and interpreted."""
-    import numpy as np
-
     formulas = [
         "sin(u1) + cos(u2)",
         "tan(u1)*asin(u2/4)",

@@ -9,9 +9,11 @@ from importlib.metadata import entry_points
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
 from tests.docs.pages import blocks
 from tests.validation.subjects import URDF
+from validation.__main__ import app
 
 ROOT = Path(__file__).parents[3]
 # An engine that answers wrongly in one entry, planted as a user's conftest can.
@@ -79,10 +81,10 @@ def test_a_model_that_no_engine_confirms_fails(project: Path) -> None:
     assert done.returncode == 1 and "no independent engine confirms this model" in done.stdout
 
 
-def test_a_stored_run_is_a_test_of_its_own(project: Path) -> None:
-    command = [sys.executable, "-m", "validation", "check", "arm.urdf", "--states", "20", "--engine", "mujoco"]
-    made = subprocess.run([*command, "--report", "stored"], cwd=project, env=os.environ | {"PYTHONPATH": str(ROOT)})
-    assert made.returncode == 0
+def test_a_stored_run_is_a_test_of_its_own(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(project)
+    command = ["check", "arm.urdf", "--states", "20", "--engine", "mujoco", "--report", "stored"]
+    assert CliRunner().invoke(app, command).exit_code == 0
     asked = (*SMOKE, "--symofros-engine", "mujoco", "--symofros-baseline", "stored/check.json", "-k", "baseline")
     assert pytest_in(project, *asked).returncode == 0
     data = json.loads((project / "stored/check.json").read_text())

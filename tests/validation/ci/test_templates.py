@@ -2,15 +2,18 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+import typer
 from ruamel.yaml import YAML
 
 from tests.validation.ci.test_plugin import ROOT, cases
 from tests.validation.subjects import URDF
+from validation.__main__ import app
 
 
 def template(name: str) -> dict:
@@ -65,7 +68,22 @@ def run(project: Path, command: str, stated: dict[str, str]) -> subprocess.Compl
     )
 
 
-@pytest.mark.parametrize("server", [github, pytest.param(gitlab, marks=pytest.mark.slow(1))])
+@pytest.mark.parametrize("server", [github, gitlab])
+def test_the_steps_of_a_template_ask_for_what_there_is(server) -> None:
+    """Options of the plug-in, then options of `check`."""
+    _, (install, check, compare) = server()
+    assert "symofros[validation]" in install
+    asked = re.findall(r"--symofros-[a-z-]+", check)
+    plugin = (ROOT / "validation/ci/plugin.py").read_text()
+    assert "--symofros-model" in asked and all(f'"{option}"' in plugin for option in asked)
+    asked = re.findall(r"--[a-z-]+", compare)
+    known = {name for option in typer.main.get_group(app).commands["check"].params for name in option.opts}
+    assert "--baseline" in asked and set(asked) <= known
+
+
+# In every run: the same of the plug-in, in test_plugin.py.
+@pytest.mark.slow
+@pytest.mark.parametrize("server", [github, gitlab])
 def test_the_steps_of_a_template_pass_and_catch_a_regression(project: Path, server) -> None:
     environment, commands = server()
     install, check, compare = commands
