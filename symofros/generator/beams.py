@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
+from functools import cache, lru_cache, partial
 
 import numpy as np
 
@@ -19,17 +19,21 @@ from symofros.mechanics.topology.tree import SpanningTree
 from symofros.runtime.beams import ElasticBeam
 from symofros.runtime.calls.kernel import Array
 
+# Sets of parameters whose beams are kept, with their stiffness.
+_KEPT = 8
+
 
 def beams_at(tree: SpanningTree) -> Callable[[Array], tuple[ElasticBeam, ...]]:
     """What gives a tree's elastic beams from its run-time parameters (npar)."""
     names, constants = tree.coordinates.par, tree.coordinates.constants
     tips = [(link.tip_of, link.q[0], link.v[0]) for link in tree.links if link.tip_of is not None and link.tip_of.modes]
 
-    def at(par: Array) -> tuple[ElasticBeam, ...]:
-        values = constants | dict(zip(names, par.tolist(), strict=True))
+    @lru_cache(maxsize=_KEPT)
+    def numbers_at(par: tuple[float, ...]) -> tuple[ElasticBeam, ...]:
+        values = constants | dict(zip(names, par, strict=True))
         return tuple(_numbers(beam, q, v, values) for beam, q, v in tips)
 
-    return at
+    return lambda par: numbers_at(tuple(par.tolist()))
 
 
 def _numbers(beam: Beam, q: int, v: int, values: dict[str, float]) -> ElasticBeam:
@@ -52,7 +56,7 @@ def _numbers(beam: Beam, q: int, v: int, values: dict[str, float]) -> ElasticBea
         xi=xi,
         angles=angles,
         scale=np.array([1.0 / length if displacement else 1.0 for displacement in shape.lengths]),
-        elastic_stiffness=partial(_stiffness, beam, values),
+        elastic_stiffness=cache(partial(_stiffness, beam, values)),
         EI_z=at_middle(beam.EI_z),
         EI_y=at_middle(beam.EI_y),
     )

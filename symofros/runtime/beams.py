@@ -199,16 +199,22 @@ class ElasticBeam:
         return energy / float(elastic @ symmetric @ elastic) if energy > 0.0 else 1.0
 
 
-def worst_bendings(beams: Sequence[ElasticBeam], t: Array, elastic: Array) -> tuple[BeamBending, ...]:
+def worst_bendings(
+    beams: Sequence[ElasticBeam], t: Array, elastic: Array, amplifications: Sequence[float] = ()
+) -> tuple[BeamBending, ...]:
     """The bending of each beam at an instant of its own.
 
     Args:
         beams: Beams.
         t: Instant of each (k) [s].
         elastic: Elastic coordinates of all, one beam after the other.
+        amplifications: Amplification of each by its axial loads (k); ones if not given.
     """
     parts = np.split(elastic, np.cumsum([beam.size for beam in beams])[:-1]) if beams else []
-    return tuple(beam.bending(q, float(when)) for beam, q, when in zip(beams, parts, t, strict=True))
+    factors = amplifications or [1.0] * len(beams)
+    return tuple(
+        beam.bending(q, float(when), factor) for beam, q, when, factor in zip(beams, parts, t, factors, strict=True)
+    )
 
 
 def largest_bending(bendings: Sequence[BeamBending]) -> BeamBending | None:

@@ -80,11 +80,11 @@ def simulate(
         recorded = drive(stepper, q, v, settings, show)
     seconds, worked = time.perf_counter() - began, time.thread_time() - worked
     states = recorded.arrays()
-    outcome = diagnose(stepper, recorded, states, settings, (q, v))
+    outcome, bendings = diagnose(stepper, recorded, states, settings, (q, v))
     met = tuple(Found(looked_for[which].name, when, q_at, v_at) for which, when, q_at, v_at in recorded.events)
     statistics = _statistics(stepper, seconds, worked)
     t, q_all, v_all, u_all = states
-    return Trajectory(model, t, q_all, v_all, u_all, np.array(values), outcome, met, statistics, stepper.bendings)
+    return Trajectory(model, t, q_all, v_all, u_all, np.array(values), outcome, met, statistics, bendings)
 
 
 def _statistics(stepper: Stepper, seconds: float, worked: float) -> Statistics:

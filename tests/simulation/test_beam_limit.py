@@ -83,3 +83,37 @@ def test_a_column_past_its_critical_load_ends_when_it_swings_out() -> None:
 def test_a_limit_is_positive() -> None:
     with pytest.raises(sf.SymofrosError, match="beam_limit is not positive"):
         swung(0.1, beam_limit=0.0)
+
+
+@pytest.mark.parametrize("share", [-5.0, -2.0, -0.5, 0.0, 0.5, 0.8, 0.9, 0.95])
+@pytest.mark.parametrize("L", [1e-3, 1.0, 30.0])
+def test_axial_loads_amplify_the_error_of_runs_and_modes_as_that_of_rest(share: float, L: float) -> None:
+    """A column that rests is an equilibrium, a motion and the state of modes: one beam, one error."""
+    P, F = share * critical_load() / L**2, 0.2 * (1.0 - share) / L**2
+    m = cantilever().with_parameters(P=P, F=F, L=L)
+    rest = sf.equilibrium(m)
+    (bent,) = rest.bendings
+    span = 0.2 * L**2
+    run = sf.simulate(m, rest.q, t_end=span, dt=span / 200)
+    runs = sf.simulate_batch(m, rest.q[None], t_end=span, dt=span / 200)
+    others = (sf.modes(m, rest.q).bendings, run.bendings, runs.bendings(0))
+    assert [one[0].error for one in others] == pytest.approx([bent.error] * 3, rel=1e-6)
+    assert [len(beam_notes(one.outcome)) for one in (run, runs[0])] == [int(bent.error > 0.01)] * 2
+    assert not [note for note in run.outcome.notes if "determine the motion" in note]
+
+
+def test_a_column_near_its_critical_load_is_noted_though_its_slope_is_small() -> None:
+    m = cantilever().with_parameters(P=0.97 * critical_load(), F=0.004)
+    run = sf.simulate(m, t_end=20.0, dt=2e-3, output=0.1)
+    assert run.bendings[0].slope < 0.14 and len(beam_notes(run.outcome)) == 1
+    ended = sf.simulate(m, t_end=20.0, dt=2e-3, output=0.1, beam_limit=0.01)
+    assert ended.outcome.kind == "beyond theory" and not ended.outcome.ok
+
+
+def test_the_tension_of_a_rotor_lessens_the_error_of_its_blade() -> None:
+    blade = sf.Beam("blade", sf.Joint("hub", "revolute"), 1.0, 1.0, EI_z=1.0, bend_y=3, family="legendre")
+    m = sf.compile(sf.System("rotor", (blade,), gravity=(0, 0, 0)))
+    q = np.array([0.0, 0.2, 0.0, 0.0])
+    errors = [sf.modes(m, q, [speed, 0, 0, 0]).bendings[0].error for speed in (0.0, 1.0, 4.0, 16.0, 64.0)]
+    assert errors[0] == pytest.approx(m.beams()[0].bending(q[1:]).error, rel=1e-9)
+    assert np.all(np.diff(errors) < 0.0) and errors[-1] == pytest.approx(0.75 * errors[0], rel=0.02)

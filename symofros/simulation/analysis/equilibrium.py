@@ -15,7 +15,12 @@ from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.actuator_efforts import actuator_efforts
 from symofros.simulation.analysis.assembly import free_speeds
-from symofros.simulation.analysis.beam_theory import bendings_at, bendings_at_rest, beyond_critical_load, refuse_beyond
+from symofros.simulation.analysis.beam_theory import (
+    bendings_at_rest,
+    bendings_in_motion,
+    beyond_critical_load,
+    refuse_beyond,
+)
 
 # Largest step of a coordinate at once; of a beam's displacements over its length.
 LARGEST_STEP = 0.5
@@ -189,7 +194,7 @@ def _bendings(
     if not beams or not np.all(np.isfinite(q)):
         return (), ()
     if np.any(v):  # Motion stiffens and softens; stability is then no matter of stiffness alone.
-        return bendings_at(model, q, par), ()
+        return bendings_in_motion(model, q, v, u, par, t), ()
     K, _, _ = model.residual_derivatives(q, v, np.zeros(model.nv), u, lam, par=par, t=t)
     notes = tuple(
         f"beam '{name}' is loaded past its critical load: this rest is unstable"

@@ -11,7 +11,7 @@ from symofros.base.arrays import numeric
 from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
-from symofros.simulation.analysis.beam_theory import bendings_at, refuse_beyond
+from symofros.simulation.analysis.beam_theory import bendings_in_motion, refuse_beyond
 from symofros.simulation.analysis.state_space import state_space
 
 Complex = npt.NDArray[np.complex128]
@@ -63,7 +63,14 @@ def modes(
     Raises:
         BeamTheoryError: A beam is bent beyond the limit.
     """
-    bendings = bendings_at(model, numeric("q", model.by_name("q", q)), par)
+    bendings = bendings_in_motion(
+        model,
+        numeric("q", model.by_name("q", q)),
+        np.zeros(model.nv) if v is None else numeric("v", model.by_name("v", v)),
+        numeric("u", model.record.u_default if u is None else model.by_name("u", u)),
+        par,
+        t,
+    )
     refuse_beyond(model, bendings, beam_limit, "the state of the modes")
     linear_model = state_space(model, q, v, u, par=par, t=t)
     s, X = np.linalg.eig(linear_model.A)

@@ -9,8 +9,9 @@ from dataclasses import replace
 import numpy as np
 
 from symofros.errors import SymofrosError
-from symofros.runtime.beams import bending_notes, largest_bending
+from symofros.runtime.beams import BeamBending, bending_notes, largest_bending
 from symofros.runtime.calls.kernel import Array
+from symofros.simulation.analysis.beam_theory import UNAMPLIFIED, amplifications
 from symofros.simulation.analysis.postures import nearest_to_singular
 from symofros.simulation.results.constraint_faults import jump, lost_energy, violation
 from symofros.simulation.results.energy_balance import EXPLODED
@@ -29,8 +30,8 @@ _CREEP = 1e-8
 
 def diagnose(
     stepper: Stepper, recorded: Recorded, states: Sequence[Array], settings: Settings, start: tuple[Array, Array]
-) -> Outcome:
-    """How a run ended.
+) -> tuple[Outcome, tuple[BeamBending, ...]]:
+    """How a run ended, and the bending of its beams.
 
     Args:
         stepper: Stepper at its last state.
@@ -39,12 +40,36 @@ def diagnose(
         settings: Settings of the run.
         start: Initial q, v.
     """
-    status, interrupted = recorded.status, recorded.interrupted
-    t, q, v = stepper.state
     if settings.every != 1 and not stepper.method.family.multistep:
         kept = stepper.diagnostic_states()
         states = kept if len(kept[0]) > 1 else states
-    run, notes = stepper.run, _notes(stepper, states, status)
+    bendings = _amplified(stepper, states)
+    return _outcome(stepper, recorded, states, settings, start, bendings), bendings
+
+
+def _amplified(stepper: Stepper, states: Sequence[Array]) -> tuple[BeamBending, ...]:
+    """Bending of each beam where its theory errs most, amplified by the axial loads of the motion."""
+    bendings = stepper.bendings
+    if max((bending.error for bending in bendings), default=0.0) < UNAMPLIFIED:
+        return bendings
+    return stepper.amplified_bendings(amplifications(stepper.model, states, stepper.par))
+
+
+def _outcome(
+    stepper: Stepper,
+    recorded: Recorded,
+    states: Sequence[Array],
+    settings: Settings,
+    start: tuple[Array, Array],
+    bendings: tuple[BeamBending, ...],
+) -> Outcome:
+    status, interrupted = recorded.status, recorded.interrupted
+    t, q, v = stepper.state
+    most_bent, limit = largest_bending(bendings), settings.beam_limit
+    run, notes = (
+        stepper.run,
+        _notes(stepper, states, () if status == Status.BEYOND_THEORY else bendings),
+    )  # Else the reason says it.
     fault = input_fault(stepper) if status < 0 else ""
     failed = status in (Status.DIVERGED, Status.BEYOND_THEORY) and not fault
     steps = _steps_meant(settings) if failed else int(run.steps)
@@ -114,11 +139,9 @@ def diagnose(
             lost_energy(stepper),
             "a smaller step; look for a posture near here in which the loops are singular",
         )
-    if status == Status.BEYOND_THEORY:
-        beyond = largest_bending(stepper.bendings)
-        assert beyond is not None
-        limit = f"the limit is {100.0 * settings.beam_limit:g} %"
-        return outcome("beyond theory", f"{beyond}; {limit}", f"{beyond.remedy}; or move the limit, beam_limit=...")
+    if most_bent is not None and (status == Status.BEYOND_THEORY or (status >= 0 and most_bent.error > limit)):
+        reason = f"{most_bent}; the limit is {100.0 * limit:g} %"
+        return outcome("beyond theory", reason, f"{most_bent.remedy}; or move the limit, beam_limit=...")
     if status == Status.RUNNING and t < float(run.t_end):
         done, h = f"max_steps: {int(run.steps)} steps are done", float(run.next_step)
         if settings.adaptive and h < _CREEP * (settings.t_end - settings.t0):
@@ -181,7 +204,7 @@ def _steady(settings: Settings) -> str:
     return "a smaller dt, an adaptive or an implicit method; for stiff beams and contacts, an implicit one"
 
 
-def _notes(stepper: Stepper, states: Sequence[Array], status: int) -> tuple[str, ...]:
+def _notes(stepper: Stepper, states: Sequence[Array], bendings: Sequence[BeamBending]) -> tuple[str, ...]:
     run = stepper.run
     notes = []
     if stepper.model.nc and 0 <= run.rank_min < run.rank_max:
@@ -198,8 +221,7 @@ def _notes(stepper: Stepper, states: Sequence[Array], status: int) -> tuple[str,
                 f"the constraints came close to a singular posture at t = {when:.6g} s, to {share:.1%} of"
                 " their strength: compare with another step"
             )
-    if status != Status.BEYOND_THEORY:  # The reason says it then.
-        notes += bending_notes(stepper.bendings)
+    notes += bending_notes(bendings)
     if run.late_steps:
         notes.append(f"{run.late_steps} of {run.paced_steps} steps began late, by {1e3 * run.late_max:.3g} ms at most")
     return tuple(notes)

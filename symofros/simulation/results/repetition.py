@@ -24,6 +24,8 @@ _STEPS = 256
 # Differences of displacements and energies count by this share: they are relative to how they change in the run, while
 # coordinates and energies themselves may be larger.
 _POSITIONS = 3.0
+# Share of coordinates and energies that is rounding, and what an equilibrium is found to: at rest nothing else moves.
+_AT_REST = 1e-11
 # Share of the largest speed that the absolute tolerance may allow as the error of a step; displacements over it that
 # are a motion and not rest; share of the largest speed that is asked for instead; most steps that this may take.
 _ALLOWED, _MOTION, _TIGHT, _MOST = 0.1, 100.0, 1e-3, 8192
@@ -139,13 +141,24 @@ def _change(stepper: Stepper, q0: Array, states: Sequence[Array], finer: Sequenc
         changes = stepper.model.difference(q_finer[rows], q[rows]), v[rows] - v_finer[rows]
         moved, fastest = (float(energy_norms(stepper, q_finer, u, x).max()) for x in (displacements, v_finer))
         apart, faster = (float(energy_norms(stepper, q_finer[rows], u[rows], x).max()) for x in changes)
-        change = [_share(faster, fastest), _share(apart, moved) / _POSITIONS]
+        rounding, span = _rounding(stepper, (t, q_finer, v_finer, u)), float(t[-1] - t[0])
+        change = [_share(faster, max(fastest, rounding)), _share(apart, max(moved, rounding * span)) / _POSITIONS]
         energies = energies_of(stepper, (t, q_finer, v_finer, u))
         others = energies_of(stepper, (t[rows], q[rows], v[rows], u[rows]))
         if energies is not None and others is not None:
-            spread = max(float(energies[0].max()), float(np.ptp(energies[1])))
+            largest = float(np.abs(energies[1] - energies[0]).max() + energies[0].max())
+            spread = max(float(energies[0].max()), float(np.ptp(energies[1])), _AT_REST * largest)
             change.append(_share(float(np.abs(others[1] - energies[1][rows]).max()), spread) / _POSITIONS)
     return max(change)
+
+
+def _rounding(stepper: Stepper, states: Sequence[Array]) -> float:
+    """Speed of a motion by rounding, in the norm of the kinetic energy: a share of the coordinates a record."""
+    t, q, _, u = states
+    model = stepper.model
+    coordinates = model.difference(model.neutral(), q[-1])[np.newaxis]
+    span = float(t[-1] - t[0]) / max(1, len(t) - 1)
+    return _AT_REST * float(energy_norms(stepper, q[-1:], u[-1:], coordinates)[0]) / span if span > 0.0 else 0.0
 
 
 def _share(part: float, whole: float) -> float:

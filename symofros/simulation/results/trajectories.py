@@ -11,6 +11,7 @@ import numpy.typing as npt
 from symofros.runtime.beams import NOTED_ERROR, BeamBending, bending_notes, largest_bending, worst_bendings
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
+from symofros.simulation.analysis.beam_theory import UNAMPLIFIED, amplifications
 from symofros.simulation.results.batch_examination import BatchExamination
 from symofros.simulation.results.outcome import Kind, Outcome
 from symofros.simulation.results.trajectory import Statistics, Trajectory
@@ -148,6 +149,15 @@ class Trajectories:
         """The mode that the steps of one run resolve worst, and notes on its steps."""
         if self.examination is None or not self.steps[index]:
             return None, ()
+        states = self._states(index)
+        settings = self.examination.settings
+        meant = max(1, round((settings.t_end - settings.t0) / settings.dt)) if settings.dt > 0.0 else 1
+        failed, ended_well = self.status[index] in _EXPLODED, bool(self.status[index] >= 0)
+        steps = meant if failed else int(self.steps[index])
+        return self.examination.step_size(self._number(index), states, steps, ended_well=ended_well, failed=failed)
+
+    def _states(self, index: Index) -> tuple[Array, Array, Array, Array]:
+        """Samples that one run reached, and its last state: t (n), q, v, u."""
         reached = self._reached(index)
         t, q, v = self.t[reached], self.q[index][reached], self.v[index][reached]
         u = self.u[index][reached]
@@ -158,11 +168,7 @@ class Trajectories:
                 np.vstack([v, self.v_last[index]]),
             )
             u = np.vstack([u, u[-1:] if len(u) else np.zeros((1, u.shape[1]))])
-        settings = self.examination.settings
-        meant = max(1, round((settings.t_end - settings.t0) / settings.dt)) if settings.dt > 0.0 else 1
-        failed, ended_well = self.status[index] in _EXPLODED, bool(self.status[index] >= 0)
-        steps, states = meant if failed else int(self.steps[index]), (t, q, v, u)
-        return self.examination.step_size(self._number(index), states, steps, ended_well=ended_well, failed=failed)
+        return t, q, v, u
 
     def _reached(self, index: Index) -> npt.NDArray[np.bool_]:
         """Which samples one run reached (m)."""
@@ -172,7 +178,12 @@ class Trajectories:
     def bendings(self, index: Index) -> tuple[BeamBending, ...]:
         """Bending of each beam in one run, at the step where its theory errs most."""
         par = self.par[index] if self.par.ndim > 1 else self.par
-        return worst_bendings(self.model.beams(par), self.beam_times[index], self.beam_coordinates[index])
+        beams, t, elastic = self.model.beams(par), self.beam_times[index], self.beam_coordinates[index]
+        bent = worst_bendings(beams, t, elastic)
+        if max((bending.error for bending in bent), default=0.0) < UNAMPLIFIED:
+            return bent
+        states = self._states(index)
+        return worst_bendings(beams, t, elastic, amplifications(self.model, states, par)) if len(states[0]) else bent
 
     def __getitem__(self, index: Index) -> Trajectory:
         """One run, as far as it was recorded; `index` addresses all batch dimensions."""

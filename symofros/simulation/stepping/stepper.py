@@ -111,9 +111,13 @@ class Stepper:
 
     @property
     def bendings(self) -> tuple[BeamBending, ...]:
-        """Bending of each beam at the accepted step where its theory errs most."""
+        """Bending of each beam at the accepted step where its theory errs most, axial loads apart."""
+        return self.amplified_bendings(())
+
+    def amplified_bendings(self, amplifications: Sequence[float]) -> tuple[BeamBending, ...]:
+        """Bending of each beam at that step, its error amplified by axial loads."""
         _, t, q = self._beam_record
-        return worst_bendings(self.beams, t, q)
+        return worst_bendings(self.beams, t, q, amplifications)
 
     def judge_beams(self) -> int:
         """Judge the present state's beams, for integrators of others; returns a Status."""

@@ -24,7 +24,8 @@ CRITICAL = np.pi**2 / 4.0
 # Compressive loads over the critical one, each with transverse loads beside it.
 COLUMNS = (-2.0, 0.5, 0.75, 0.9, 0.95)
 PAST = (1.02, 1.05, 1.2)
-# In motion inertia carries a part of the load that the estimate does not know of: it errs to the safe side.
+# At the turning point of a sudden swing inertia carries half of the load: the error is half of that at rest, (26b) of
+# docs/theory/beams.md; a tenth beside it as at rest.
 FACTOR_IN_MOTION = 2.2
 # End of a swing, past its first peak, in units of sqrt(rhoA L^4/EI).
 SWING = 0.9
