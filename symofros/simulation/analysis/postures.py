@@ -13,8 +13,9 @@ from symofros.runtime.model import Model
 # A loop whose conditions are this much weaker than at their best is close to a singular posture. A step that all but
 # lands in the posture itself costs decades of accuracy (atlas of stability, singular postures).
 NEAR = 0.05
-# States that are looked at, spread over the run; more would cost more than short runs themselves.
-MOST = 1000
+# States that are looked at, spread over the run; more would cost more than short runs themselves. Singular values of nc
+# conditions take nc^3 operations: of many, that number is bounded, but for the fewest states.
+MOST, MOST_OPERATIONS, FEWEST = 1000, 1e7, 16
 # States farther apart than this [rad, m] have others looked at between them, so many at most.
 FAR, MOST_BETWEEN = 0.05, 16
 # Change of a row of G, relative to its size, while the configuration changes by MOST_CHANGE [rad, m], halved BISECTIONS
@@ -135,24 +136,34 @@ def nearest_to_singular(
     if rank < 1 or len(t) < 2:
         return None
     model = model.with_precision("double")
-    chosen = np.unique(np.linspace(0, len(t) - 1, min(len(t), MOST)).astype(int))
-    t, q, u = _between(model, t[chosen], q[chosen], u[chosen])
-    G = model.constraint_jacobian(q, u=u, par=par, t=t)
-    squares = np.linalg.eigvalsh(G @ np.swapaxes(G, -1, -2))
-    # Of the conditions that do not repeat others, the weakest.
-    weakest = np.sqrt(np.maximum(squares[:, -rank], 0.0))
-    at = int(np.argmin(weakest))
-    share = float(weakest[at] / max(weakest.max(), 1e-300))
-    return (float(t[at]), share) if share < NEAR else None
+    most = int(min(MOST, max(FEWEST, MOST_OPERATIONS / model.nc**3)))
+
+    def weakest(first: int, end: int) -> tuple[Array, Array]:
+        """Times, and there the singular value of the weakest condition of those that do not repeat others."""
+        chosen = np.unique(np.linspace(first, end, min(end - first + 1, most)).astype(int))
+        times, at, inputs = _between(model, most, t[chosen], q[chosen], u[chosen])
+        G = model.constraint_jacobian(at, u=inputs, par=par, t=times)
+        squares = np.linalg.eigvalsh(G @ np.swapaxes(G, -1, -2))
+        return times, np.sqrt(np.maximum(squares[:, -rank], 0.0))
+
+    times, sizes = weakest(0, len(t) - 1)
+    largest = max(float(sizes.max()), 1e-300)
+    at = int(np.argmin(sizes))
+    if len(t) > most:  # Between the states that were chosen others may be weaker.
+        first, end = (int(np.searchsorted(t, times[max(0, min(len(times) - 1, i))])) for i in (at - 1, at + 1))
+        times, sizes = (np.append(x, y) for x, y in zip((times[at], sizes[at]), weakest(first, end), strict=True))
+        at = int(np.argmin(sizes))
+    share = float(sizes[at]) / largest
+    return (float(times[at]), share) if share < NEAR else None
 
 
-def _between(model: Model, t: Array, q: Array, u: Array) -> tuple[Array, Array, Array]:
-    """States with others between them where they are far apart: a long step leaps over a posture."""
+def _between(model: Model, most: int, t: Array, q: Array, u: Array) -> tuple[Array, Array, Array]:
+    """States with others between them where they are far apart, at most about so many: a long step leaps over a posture."""
     changes = model.difference(q[:-1], q[1:])
     if not np.isfinite(changes).all():
         return t, q, u
     far = float(np.abs(changes).max(initial=0.0)) / FAR
-    parts = int(min(max(1.0, math.ceil(far)), MOST_BETWEEN, max(1, MOST // len(t))))
+    parts = int(min(max(1.0, math.ceil(far)), MOST_BETWEEN, max(1, most // len(t))))
     shares = np.arange(parts) / parts
     inner = model.integrate(
         np.repeat(q[:-1], parts, axis=0), (shares[:, np.newaxis] * changes[:, np.newaxis]).reshape(-1, model.nv)
