@@ -205,8 +205,9 @@ class Constraints:
         g: Graph = self.g
         row = [ZERO] * self.nv
         for frame, f, n, sign in parts:
-            for k in range(self.nv):
-                column = [line[k] for line in frame.J]
+            for k, column in enumerate(zip(*frame.J, strict=True)):
+                if not any(column):  # A frame moves with its ancestors alone.
+                    continue
                 for vector, part in ((f, column[:3]), (n, column[3:])):
                     if vector is not None:
                         row[k] = g.add(row[k], sign * vector.dot(Vec3(g, *part)))
