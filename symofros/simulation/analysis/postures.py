@@ -158,7 +158,7 @@ def nearest_to_singular(
 
 
 def _between(model: Model, most: int, t: Array, q: Array, u: Array) -> tuple[Array, Array, Array]:
-    """States with others between them where they are far apart, at most about so many: a long step leaps over a posture."""
+    """States with others between them where they are far apart, at most about so many: long steps leap over some."""
     changes = model.difference(q[:-1], q[1:])
     if not np.isfinite(changes).all():
         return t, q, u
