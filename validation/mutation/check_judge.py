@@ -31,9 +31,8 @@ GENERAL = (
 )
 BEAMS = ("spinning_beam", "flexible_slider_crank", "planar_robot", "double_pendulum")
 READ = {"urdf": ("sampler",), "mjcf": ("creature",)}
-# Compared compiled, free motion included: what writes C, and what steps, shows there only.
+# Compared compiled, free motion included: what writes C shows there only.
 WRITTEN = ("double_pendulum", "heavy_top", "friction_arm", "rolling_disc", "four_bar", "spinning_beam")
-STEPPED = ("double_pendulum", "heavy_top", "friction_arm")
 # Loops whose conditions repeat each other, where a module solves with them.
 REPEATED = ("bricard", "two_four_bars")
 _SOLVING = ("kkt", "null_space", "project", "constrained", "dense")
@@ -53,7 +52,7 @@ def interpreted_models(module: str) -> tuple[str, ...]:
 def compiled_models(module: str) -> tuple[str, ...]:
     """The models that are compiled and compared, with their free motions, where a module has a fault."""
     if module.startswith(_STEPPING):
-        return STEPPED
+        return ()
     solving = module.startswith(_WRITING) and any(name in module for name in _SOLVING)
     return (WRITTEN if module.startswith(_WRITING + _FORMING) else ()) + (REPEATED if solving else ())
 

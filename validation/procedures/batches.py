@@ -12,6 +12,7 @@ import symofros as sf
 from symofros.tools import METHODS
 from validation.mechanics.geometry import Array
 from validation.procedures.scene import Cell, Scene, off
+from validation.procedures.steps import EXPLICIT
 
 # Trajectories: more than are stepped at once, and no multiple of a vector's lanes.
 COUNT = 67
@@ -119,7 +120,7 @@ def amplified(model: sf.Model) -> Iterator[Cell]:
             roots = np.roots([1.0, *-fit])
             worst = max(worst, float(np.abs(roots - told).min()), float(np.abs(roots - told.conjugate()).min()))
         yield Cell(f"modes by {name}", worst, 1e-6)
-        ends = []
+        ends = [] if name not in EXPLICIT and name != "semi_implicit_euler" else list(_missed(name, method))
         for limit, direction in ((method.real_limit, -1.0), (method.imaginary_limit, 1.0j)):
             radii = np.array([0.3, 0.9, 0.999]) * min(limit, 1e3)
             grown = [abs(method.amplification(complex(r * direction))) for r in radii if r > 0.0]
@@ -127,6 +128,28 @@ def amplified(model: sf.Model) -> Iterator[Cell]:
             if np.isfinite(limit):
                 ends.append(max(0.0, 1.0 - abs(method.amplification(complex(1.05 * max(limit, 0.1) * direction)))))
         yield Cell(f"limits of {name}", max(ends), 1e-9)
+
+
+def _missed(name: str, method: Any) -> Iterator[float]:
+    """By how much limits of stability miss those of the growth that the formulas of a step have."""
+    for limit, direction in ((method.real_limit, -1.0 + 0.0j), (method.imaginary_limit, 1.0j)):
+        if limit > 0.0:
+            yield max(0.0, _growth(name, 0.999 * limit * direction) - 1.0 - 1e-9)
+            yield max(0.0, 1.0 - _growth(name, 1.001 * limit * direction))
+        else:
+            yield max(0.0, 1.0 - _growth(name, 0.01 * direction))
+
+
+def _growth(name: str, z: complex) -> float:
+    """Largest factor of a mode in a step, by coefficients of SciPy or the matrix of semi-implicit Euler."""
+    if name in EXPLICIT:
+        A, b = EXPLICIT[name].A, EXPLICIT[name].b
+        n = len(b)
+        A = np.pad(A, ((0, 0), (0, n - A.shape[1])))
+        return float(abs(1.0 + z * b @ np.linalg.solve(np.eye(n) - z * A, np.ones(n))))
+    k, c = (abs(z) ** 2, -2 * z.real) if z.imag else (0.0, -z.real)
+    matrix = np.array([[1.0 - k, 1.0 - c], [-k, 1.0 - c]]) if k else np.array([[1.0 - c]])
+    return float(np.abs(np.linalg.eigvals(matrix)).max())
 
 
 def remarks(model: sf.Model) -> Iterator[Cell]:

@@ -12,7 +12,7 @@ import symofros as sf
 from validation.comparison.errors import Comparison
 from validation.mechanics.assembly import Assembly
 from validation.mechanics.geometry import Array
-from validation.procedures import analyses, batches, diagrams, runs
+from validation.procedures import analyses, batches, diagrams, forces, runs
 from validation.procedures.scene import Cell, Manifold, Scene
 
 Procedure = Callable[[Scene], Iterator[Cell]]
@@ -62,8 +62,6 @@ def _oscillations(_: Scene) -> Iterator[Cell]:
 
 _MOVED: tuple[Procedure, ...] = (runs.fixed_steps, runs.chosen_steps, analyses.linearised, analyses.differentiated)
 PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
-    "pendulum": (_oscillations, lambda _: diagrams.switched()),
-    "cart_pole": (lambda scene: diagrams.looped(scene.system),),
     "double_pendulum": (
         _inputs(True, runs.fixed_steps),
         _inputs(False, runs.chosen_steps),
@@ -94,16 +92,17 @@ PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
     ),
     "sleigh": (runs.implicit_steps,),
     "rolling_disc": (runs.fixed_steps, runs.chosen_steps, lambda scene: analyses.closed(scene, scene.model.names.v[3])),
-    "flexible_pendulum": (
-        runs.implicit_steps,
-        lambda scene: analyses.at_rest(scene, scene.model.neutral() + 0.1),
-        batches.states,
-    ),
     "puma560": (
         lambda scene: analyses.reached(scene, scene.model.names.frames[-1]),
         lambda scene: analyses.traced(scene, scene.model.names.frames[-1]),
     ),
+    "pendulum": (forces.formulas, forces.applied, _oscillations, lambda _: diagrams.switched()),
+    "cart_pole": (lambda scene: diagrams.looped(scene.system),),
     "stewart": (lambda scene: analyses.driven(scene, scene.model.names.u),),
+    "flexible_pendulum": (
+        runs.implicit_steps,
+        lambda scene: analyses.at_rest(scene, scene.model.neutral() + 0.1),
+    ),
 }
 
 

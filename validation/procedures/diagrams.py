@@ -31,10 +31,20 @@ def looped(plant: sf.System) -> Iterator[Cell]:
     d.add(blocks.Formula(name="force", formulas={"y": ["2*a - 3*b[0] + 0.1*sin(t)"]}), a="held", b="late")
     d.add(blocks.RateLimit(name="slow", rising=3.0, falling=2.0, period=0.01), u="force.y")
     d.add(blocks.Saturation(name="limited", low=-0.5, high=0.6), u="slow")
+    d.add(
+        blocks.PythonBlock(
+            name="law",
+            function=lambda t, given: {"y": [0.2 * given["x"][0] - t], "z": [t, 2.0]},
+            inputs={"x": (1,)},
+            outputs={"y": (1,), "z": (2,)},
+            period=0.015,
+        ),
+        x="angle",
+    )
     d.add(blocks.ForwardDynamics(name="plant", model="plant"), u="limited")
-    d.add(blocks.ForwardDynamics(name="other", model="other"), u="slow")
+    d.add(blocks.ForwardDynamics(name="other", model="other"), u="law.y")
     simulation = sf.Simulation(d)
-    names = ("plant.q", "plant.v", "plant.a", "other.q", "filter.y", "late.y", "limited.y")
+    names = ("plant.q", "plant.v", "plant.a", "other.q", "filter.y", "late.y", "limited.y", "law.y", "law.z")
     for method in ("rk4", "euler"):
         run = simulation.run(0.107, dt=2e-3, record=0.004, method=method)
         other = simulation.interpret(0.107, dt=2e-3, record=0.004, method=method, compiled=False)
