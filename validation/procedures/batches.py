@@ -102,7 +102,7 @@ def oscillator() -> sf.Model:
 def amplified(model: sf.Model) -> Iterator[Cell]:
     """What steps make of modes in C is what the method's factor says, and so are limits of stability."""
     h, n = 0.1, 12
-    modes = [0.3j, 0.9 * cmath.exp(2.0j), 1.4 * cmath.exp(1.7j), complex(-0.4), complex(-1.1)]
+    modes = [0.3j, 2.3j, 0.9 * cmath.exp(2.0j), 1.4 * cmath.exp(1.7j), complex(-0.4), complex(-1.1)]
     for name, method in METHODS.items():
         if not method.family.judged:
             continue

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 
 import numpy as np
 
@@ -41,7 +40,7 @@ def formulas(_: Scene) -> Iterator[Cell]:
         for i in range(n)
     )
     system = sf.System("formulas", bodies)
-    q = 0.3 + 0.05 * np.arange(n)
+    q: Array = np.asarray(0.3 + 0.05 * np.arange(n), dtype=np.float64)
 
     def forces(x: Array) -> Array:
         return np.array([f(x[i], x[(i + 1) % n]) for i, f in enumerate(FORMULAS.values())])
@@ -56,8 +55,12 @@ def formulas(_: Scene) -> Iterator[Cell]:
         yield Cell(f"derivatives at a tie, {backend}", off(row[[n - 1, 0]], np.array([2.5, 0.5])), ROUNDING)
 
 
-def carried() -> sf.System:
-    """A body on a ball joint that carries a rod, with every kind of applied force between them and from outside."""
+def carried(loaded: bool = True) -> sf.System:
+    """A body on a ball joint that carries a rod, with every kind of applied force between them and from outside.
+
+    Args:
+        loaded: Whether there are forces from outside.
+    """
     ball = sf.Joint("b", "ball", position=(0.1, 0.0, 0.2))
     first = sf.RigidBody(
         "first",
@@ -65,9 +68,13 @@ def carried() -> sf.System:
         sf.Inertia(1.2, center_of_mass=(0.1, 0.2, -0.1), moments=(0.2, 0.25, 0.3)),
         frames=(sf.Frame("side", (0.3, -0.1, 0.2), sf.Rotation.rpy(0.2, -0.4, 0.7)),),
         loads=(
-            sf.Load(force=(1.0, -2.0, "F"), torque=(0.3, "0.2*t", -0.4), at="side", axes="body"),
-            sf.Load(force=("0.5*dq", 0.2, 1.0), at="center_of_mass", axes="world"),
-        ),
+            sf.Load(
+                force=(1.0, -2.0, sf.formula("F")), torque=(0.3, sf.formula("0.2*t"), -0.4), at="side", axes="body"
+            ),
+            sf.Load(force=(sf.formula("0.5*dq"), 0.2, 1.0), at="center_of_mass", axes="world"),
+        )
+        if loaded
+        else (),
     )
     rod = sf.RigidBody(
         "rod",
@@ -90,8 +97,8 @@ def carried() -> sf.System:
             sf.Connection("spring", ("world", None), ("rod", "tip"), stiffness=40.0, length=0.2, damping=1.5),
             sf.Connection("inner", ("first", "side"), ("rod", "tip"), stiffness=9.0, damping=0.7),
         ),
-        potentials=(sf.Potential("well", "0.4*sin(2*q)"),),
-        virtual_power=(sf.VirtualPower("drag", (("dq", "-0.6*dq*q"),)),),
+        potentials=(sf.Potential("well", sf.formula("0.4*sin(2*q)")),),
+        virtual_power=(sf.VirtualPower("drag", (("dq", sf.formula("-0.6*dq*q")),)),),
     )
 
 
@@ -131,8 +138,7 @@ def applied(_: Scene) -> Iterator[Cell]:
         return np.array([model.potential_energy(manifold.moved(q, theta), u=0 * u)])
 
     weight = model.bias(q, still)
-    quiet = replace(system, bodies=(replace(system.bodies[0], loads=()), *system.bodies[1:]))
-    without = sf.compile(quiet)
+    without = sf.compile(carried(loaded=False))
     conserved = weight - without.generalized_force(q, still, 0 * u)
     yield Cell("potential energy of forces", off(derivative(potential, still)[0], conserved), DIFFERENCED)
 
