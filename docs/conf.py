@@ -20,6 +20,7 @@ extensions = [
     "sphinx.ext.napoleon",
     "site_extensions.commands",
     "site_extensions.docstrings",
+    "site_extensions.equations",
     "site_extensions.figures",
     "site_extensions.links",
 ]
@@ -59,3 +60,4 @@ html_static_path = ["static"]
 html_css_files = ["site.css"]
 html_copy_source = False
 html_show_sphinx = False
+html_show_copyright = False

@@ -1,4 +1,4 @@
-"""Docstrings are plain text with `code`: stars and bars in their formulas mean themselves."""
+"""Docstrings are plain text with `code`: stars and bars in their formulas mean themselves; Attributes are called so."""
 
 from __future__ import annotations
 
@@ -7,12 +7,14 @@ from collections.abc import Mapping
 from typing import Any
 
 from sphinx.application import Sphinx
+from sphinx.domains.python import PyObject
 
-_CODE_OR_MARK = re.compile(r"(`[^`]*`)|([*|])")
+# What is no code, and what would be markup or the scheme of a link there.
+_CODE_OR_MARK = re.compile(r"(`[^`]*`)|([*|]|\bfile:)")
 
 
 def escaped(line: str) -> str:
-    """A line whose stars and bars outside of code are no markup."""
+    """A line whose stars, bars and "file:line" outside of code are no markup."""
     return _CODE_OR_MARK.sub(lambda match: match[1] or f"\\{match[2]}", line)
 
 
@@ -22,5 +24,8 @@ def _escape(app: Sphinx, what: str, name: str, obj: object, options: object, lin
 
 def setup(app: Sphinx) -> Mapping[str, Any]:
     """Called by Sphinx."""
+    for field in PyObject.doc_field_types:
+        if field.name == "variable":
+            field.label = "Attributes"
     app.connect("autodoc-process-docstring", _escape, priority=100)  # Before napoleon, which writes stars of its own.
     return {"parallel_read_safe": True}

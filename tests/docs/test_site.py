@@ -46,6 +46,12 @@ def test_every_step_of_the_tutorial_shows_what_it_printed(site: Path) -> None:
         assert "Traceback" not in page and (step.stem == "index" or page.count("cell_output") >= 3)
 
 
+@pytest.mark.parametrize("step", sorted((ROOT / "docs/tutorial").glob("*.md")), ids=lambda step: step.stem)
+def test_lines_of_the_tutorial_fit_its_page(step: Path) -> None:
+    cells = re.findall(r"^```{code-cell} python\n(.*?)^```", step.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
+    assert max((len(line) for cell in cells for line in cell.splitlines()), default=0) <= 92
+
+
 def test_pages_load_nothing_from_the_network(site: Path) -> None:
     for page in site.rglob("*.html"):
         loaded = re.findall(r'<(?:script|link|img)[^>]*(?:src|href)="(https?:[^"]*)"', page.read_text(encoding="utf-8"))
