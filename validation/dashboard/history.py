@@ -1,45 +1,44 @@
-"""Summaries of earlier commits -> what became of each report over commits."""
+"""Summaries of earlier commits -> what changed in each report over commits."""
 
 from __future__ import annotations
 
 import re
 import subprocess
+from itertools import pairwise
 from pathlib import Path
 
-from validation.reporting.record import Cell, Column, Table
+from validation.reporting.record import Table
 
-# Summaries of so many commits, the latest ones.
-MOST = 8
+# Commits of the summary that are looked at, the latest ones; changes that are told.
+COMMITS, MOST = 40, 15
+_COLUMNS = "report = [{name}](#{name}); #since = {date} {commit}; found = {said}; verdict ? ok; before = {before}"
 
 
 def history(summary: Path, names: tuple[str, ...]) -> Table | None:
-    """The first number that each report stated in the summaries of the last commits that changed them.
+    """What reports found since when, and before, by the summaries of the last commits that changed them.
 
     Returns:
-        A line a report; None where there are no two commits, or no repository.
+        A line a change, the latest first; None where there is none, or no repository.
     """
     git = ["git", "-C", str(summary.parent)]
-    commits = _said([*git, "log", f"-{3 * MOST}", "--format=%h %cs", "--", summary.name]).splitlines()
-    stated: dict[str, dict[str, Cell]] = {}
-    for commit in commits:
-        text = _said([*git, "show", f"{commit.split()[0]}:./{summary.name}"])
-        cells = dict(re.findall(r"^\| (\w+) \| (.*\|.*) \|$", text, flags=re.M))
-        now = {name: _cell(cells[name]) for name in names if name in cells}
-        if now and now not in stated.values() and len(stated) < MOST:
-            stated[commit] = now
-    if len(stated) < 2:
-        return None
-    columns: dict[str, Column] = {"report": str}
-    for commit, cells in reversed(stated.items()):
-        short, date = commit.split()
-        columns[f"#{date[5:]} {short}"] = lambda name, cells=cells: cells.get(name, "-")  # type: ignore[misc]
-    return Table.of(names, columns)
+    log = _said([*git, "log", f"-{COMMITS}", "--format=%h %cs", "--", summary.name]).splitlines()
+    stated = [(line, _stated(_said([*git, "show", f"{line.split()[0]}:./{summary.name}"]))) for line in log]
+    rows = []
+    for (line, now), (_, before) in pairwise(stated):
+        commit, date = line.split()
+        for name in names:
+            if name in now and now[name] != before.get(name) and now[name][1] != "absent":
+                said, verdict = now[name]
+                was = ": ".join(reversed(before[name])) if name in before else "not there"
+                row = {"name": name, "date": date, "commit": commit, "said": said, "verdict": verdict, "before": was}
+                rows.append(row | {"ok": verdict != "missed"})
+    return Table.of(rows[:MOST], _COLUMNS) if rows else None
 
 
-def _cell(line: str) -> Cell:
-    said, verdict = line.split(" | ")[:2]
-    number = re.search(r"\d+(?: \d{3})*(?: of \d+)?", said)
-    return Cell(number[0] if number else "-", verdict != "missed", hint=said)
+def _stated(text: str) -> dict[str, tuple[str, str]]:
+    """What a summary says of each report, and its verdict."""
+    rows = re.findall(r"^\| (\w+) \| (.*) \| (?:\*\*missed\*\* )?(\w+) \| [^|]* \|$", text, flags=re.M)
+    return {name: (said, verdict) for name, said, verdict in rows}
 
 
 def _said(command: list[str]) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -19,7 +20,7 @@ BEGIN, END = "<!-- reports/summary.md begins -->", "<!-- reports/summary.md ends
 _VERDICTS = {"good": True, "missed": False, "measured": None, "absent": None}
 
 
-_TREND = "The first number of each report in the summaries of the last commits that changed one; red: missed something."
+_TREND = "What the summaries of earlier commits said otherwise, the latest change first."
 # Reports whose decisions the index shows, in this order.
 _DECIDING = ("pareto", "check", "engines")
 
@@ -40,7 +41,7 @@ def write_index(entries: Mapping[str, Entry], folder: Path, date: str) -> Path:
     report = index(entries)
     trend = history(folder / "summary.md", tuple(entries))
     if trend is not None:
-        report = replace(report, sections=(Section("Over commits", (_TREND, trend), "history"), *report.sections))
+        report = replace(report, sections=(Section("What changed", (_TREND, trend), "history"), *report.sections))
     closing = f"Gathered {date} by `python -m validation dashboard`; `--regenerate` writes the reports anew before."
     write_atomically(folder / "index.html", html.page(report, closing=closing, listed=False))
     said = [f"**{report.summary}** (gathered {date})", markdown.table(summary_table(entries)), origins(entries)]
@@ -56,7 +57,7 @@ def index(entries: Mapping[str, Entry]) -> Report:
     reports = {name: entry.report for name, entry in entries.items() if entry.report}
     return Report(
         "What the harness found",
-        headline(entries),
+        re.sub(r"(?<=missed: )[^;]*", lambda names: re.sub(r"\w+", r"[\g<0>](#\g<0>)", names[0]), headline(entries)),
         ok,
         (table,),
         sections,
@@ -68,8 +69,9 @@ def index(entries: Mapping[str, Entry]) -> Report:
 def _decisions(groups: Sequence[tuple[Block, ...]]) -> tuple[Block, ...]:
     """The first group, after the sentences of the others, which its table would hide; then their tables."""
     others = [group for group in groups[1:] if group]
-    tables = (block for group in others for block in group[1:])
-    return (*(group[0] for group in others), *(groups[0] if groups else ()), *tables)
+    tables = [block for group in others for block in group[1:]]
+    named = ("The opinions on our C, engine by engine:", *tables) if tables else ()
+    return (*(group[0] for group in others), *(groups[0] if groups else ()), *named)
 
 
 def headline(entries: Mapping[str, Entry]) -> str:

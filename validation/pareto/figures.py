@@ -97,7 +97,7 @@ def _methods_drawing(problem: BenchmarkProblem, result: Result, points: list[Poi
 
 
 def _style(name: str, k: int, kind: Any) -> dict[str, Any]:
-    return style(Curve(name, (), (), _COLORS[k], kind, k - _COLORS[k])) | {"markersize": 7 if kind == "points" else 5}
+    return style(Curve(name, (), (), _COLORS[k], kind, k - _COLORS[k])) | {"markersize": 7 if kind == "points" else 6}
 
 
 def _xy(points: Sequence[Point]) -> tuple[list[float], list[float]]:

@@ -57,9 +57,10 @@ def compose(data: Data) -> Report:
     said += f"; interrupted before {', '.join(unfinished)}" if unfinished else ""
     most = max((row["v"].ratio for row in targets if math.isfinite(row["v"].ratio)), default=0.0)
     choices = [
-        {"scene": f"[{one.title}](pareto.html#{name})", **vars(choice)}
+        # A scene is named once, with what its error is.
+        {"scene": "" if k else f"[{one.title}](pareto.html#{name}): {one.axis.removesuffix('  [1]')}", **vars(choice)}
         for name, (one, result) in results.items()
-        for choice in verdicts.choices(one, result)
+        for k, choice in enumerate(verdicts.choices(one, result))
     ]
     decisions = Table.of(
         choices,
