@@ -105,7 +105,7 @@ def test_interrupted(arm: Path, run: Any, monkeypatch: pytest.MonkeyPatch) -> No
         done(failed(cases[0].label, "load", "x"))
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("validation.cross_check.report.run_cases", interrupt)
+    monkeypatch.setattr("validation.cross_check.measure.run_cases", interrupt)
     result = run(arm, "ur5")
     assert result.exit_code == 130 and "Interrupted: 1 model not checked" in result.stdout
 
@@ -113,7 +113,7 @@ def test_interrupted(arm: Path, run: Any, monkeypatch: pytest.MonkeyPatch) -> No
 def test_no_word_is_the_standard_set(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     asked: list[str] = []
     monkeypatch.setattr(
-        "validation.cross_check.report.run_cases", lambda cases, *rest: asked.extend(case.label for case in cases)
+        "validation.cross_check.measure.run_cases", lambda cases, *rest: asked.extend(case.label for case in cases)
     )
     CliRunner().invoke(app, ["--report", str(tmp_path)])
     assert {"ur5", "talos"} < set(asked)
@@ -139,7 +139,7 @@ def test_a_run_cut_short_leaves_the_whole_report(tmp_path: Path, monkeypatch: py
         done(failed(cases[0].label, "check", "x"))
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("validation.cross_check.report.run_cases", interrupted)
+    monkeypatch.setattr("validation.cross_check.measure.run_cases", interrupted)
     result = unasked(*asked)
     assert result.exit_code == 130 and "stays that of a whole run" in result.stdout
     assert (tmp_path / "check.json").read_bytes() == whole
@@ -154,7 +154,7 @@ def test_progress_is_told_in_lines_where_there_is_no_terminal() -> None:
     assert sum("agree, " in line for line in lines) == 2 and "[2/2]" in lines[-1]
 
 
-def test_a_narrow_terminal_gets_one_line_a_model(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_terminal_of_any_width_gets_one_line_a_model(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("validation.reporting.terminal.PLAIN_WIDTH", 80)
     shown = unasked("pendulum", "cart_pole", "heavy_top", "--engine", "pinocchio").stdout
     assert all(len(line) <= 80 for line in shown.splitlines()) and "…" not in shown

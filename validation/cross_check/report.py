@@ -112,7 +112,6 @@ def compose(data: Data) -> Report:
         ),
         facts=tuple(_facts(record, engines)),
         digest=(*_digest(record), *baseline.blocks),
-        narrow=(*_narrow(record), *baseline.blocks),
         unfinished=record.unfinished,
         refused=record.refused,
         decisions=(_DECISION.format(wrong or f"none of {len(verdicts)}"), decisions) if verdicts else (),
@@ -154,9 +153,7 @@ def _facts(record: Record, engines: list[str]) -> list[Fact]:
 
 def _closeness(record: Record, engines: list[str]) -> tuple[Section, ...]:
     """Distributions of errors, the worst of each model, and errors against the condition number."""
-    alone = (
-        Fold(f"Against {name} alone", (tables.by_engine(record, engines=(name,)),), page_only=True) for name in engines
-    )
+    alone = (Fold(f"Against {name} alone", (tables.by_engine(record, name),), page_only=True) for name in engines)
     condition = Figure(_CONDITION, error_against_condition(record))
     return (
         Section("How close", (Figure(_CLOSE, error_distributions(record.distributions)),), page_only=True),
@@ -201,26 +198,14 @@ def _model(model: ModelResult) -> Fold:
     return Fold(f"{model.label} {sizes} {model.hash}".strip(), (*frames, Bullets(tuple(model.notes)), spent))
 
 
-def _narrow(record: Record) -> tuple[Block, ...]:
-    """A short line a model for terminals that have no room for every quantity."""
-    refusals = tables.unsupported(record)
-    said = f"{counted(len(refusals), 'reason')} why an engine had no say: in the report, or a wider terminal"
-    title = "Worst comparison of each model: error relative to the largest entry, of its tolerance"
-    return (title, tables.worst_by_model(record), *_bad(record), *([said] if refusals else []))
-
-
-def _digest(record: Record) -> tuple[Block, ...]:
-    detailed = len(record.models) <= _DETAILED
-    said = f"Largest error over all states{'' if detailed else ' and engines'}, relative to the largest entry"
-    worst = tables.by_engine(record, tables.BRIEF) if detailed else tables.by_model(record, tables.BRIEF)
-    refusals = [
-        Text(f"not compared: {models}, {who}: {why}", "soft") for models, who, why in tables.unsupported(record)
-    ]
-    return (*((said, worst) if record.models else ()), *refusals, *_bad(record))
-
-
-def _bad(record: Record) -> list[Text]:
-    return [Text(f"{model}, {engine}: {text}", "bad") for model, engine, text in tables.failures(record)]
+def _digest(record: Record) -> list[Block]:
+    """For a terminal of any width: a line a model, or where there are few, a line an engine."""
+    each = len(record.models) <= _DETAILED
+    of = "engine" if each else "model"
+    said = f"Worst comparison of each {of}: error relative to the largest entry, of its tolerance"
+    blocks: list[Block] = [said, tables.nearest(record, each)] if record.models else []
+    blocks += [Text(f"not compared: {models}, {who}: {why}", "soft") for models, who, why in tables.unsupported(record)]
+    return blocks + [Text(f"{model}, {who}: {text}", "bad") for model, who, text in tables.failures(record)]
 
 
 QUESTION = "Do our C and independent engines agree?"

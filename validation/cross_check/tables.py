@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from validation.adapters import ROUTES
@@ -15,35 +15,17 @@ from validation.procedures.catalogue import ENGINE as FORMULAS
 from validation.reporting.numbers import counted, digits
 from validation.reporting.record import Cell, Column, Table
 
-# Title of a column -> quantities that share it.
-Columns = dict[str, tuple[str, ...]]
 
-
-def _columns(merged: Mapping[str, tuple[str, ...]]) -> Columns:
-    """The columns that quantities name, in their order, and the drift of our own free motion.
-
-    Args:
-        merged: Columns that become one, under its title.
-    """
-    becomes = {title: brief for brief, titles in merged.items() for title in titles}
-    columns: Columns = {}
+def _columns() -> dict[str, tuple[str, ...]]:
+    """Titles of columns -> quantities that share one, in their order, and the drift of our own free motion."""
+    columns: dict[str, tuple[str, ...]] = {}
     for quantity in (*QUANTITIES.values(), MOTION_ENERGY):
-        own = quantity.column or quantity.symbol
-        title = becomes.get(own, own)
+        title = quantity.column or quantity.symbol
         columns[title] = (*columns.get(title, ()), quantity.name)
     return columns | {"drift": ("energy_drift",)}
 
 
-COLUMNS = _columns({})
-# The same with fewer columns, for a terminal.
-BRIEF = _columns(
-    {
-        "energy": ("T, V", "motion"),
-        "frames": ("poses", "twists", "J, dJ/dt"),
-        "loops": ("phi, G, gamma", "multipliers"),
-    }
-)
-
+COLUMNS = _columns()
 # Engines of rows that no other engine is behind: our own drift, and what was asked of any of them.
 _OURS = ("symofros", "any", FORMULAS)
 # Statuses with a verdict on numbers.
@@ -52,30 +34,43 @@ _JUDGED = ("agree", "disagree")
 _DEEPEST = 0.55
 
 
-def by_model(record: Record, columns: Columns = COLUMNS) -> Table:
+Line = tuple[ModelResult, str, Sequence[Comparison]]
+
+
+def by_model(record: Record) -> Table:
     """One line a model, the worst over all engines in each cell."""
-    compared = ({row.engine for row in m.comparisons if row.status in _JUDGED} - {*_OURS} for m in record.models)
-    lines = [(m, str(len(names)), m.comparisons) for m, names in zip(record.models, compared, strict=True)]
-    return _table(lines, "#engines", columns)
+    return _table(_models(record), "#engines")
 
 
-def worst_by_model(record: Record) -> Table:
-    """One line a model: the comparison that is nearest to its tolerance."""
+def by_engine(record: Record, engine: str) -> Table:
+    """One line a model that an engine has something to say of."""
+    return _table(_engines(record, (engine,)), "engine")
 
-    def line(model: ModelResult) -> tuple[str | Cell, ...]:
-        row, engines = worst(model.comparisons), {one.engine for one in model.compared} - {*_OURS}
+
+def nearest(record: Record, each: bool) -> Table:
+    """The comparison that is nearest to its tolerance, of each model, or of each engine of each model."""
+
+    def shown(line: Line) -> tuple[str | Cell, ...]:
+        row = worst(line[2])
         error: tuple[str | Cell, ...] = ("", "", "")
         if row is not None:
-            error = Cell(digits(row.error, 1), row.ok), digits(row.tolerance, 1), f"{row.words}, {row.engine}"
-        return model.label, str(len(engines)), *error, _verdict(model.comparisons)
+            place = row.words if each else f"{row.words}, {row.engine}"
+            error = Cell(digits(row.error, 1), row.ok), digits(row.tolerance, 1), place
+        return line[0].label, line[1], *error, _verdict(line[2])
 
-    return Table(("model", "#engines", "#error", "#of", "in", "verdict"), tuple(map(line, record.models)))
+    lines = _engines(record, (*ROUTES, *_OURS)) if each else _models(record)
+    head = ("model", "engine" if each else "#engines", "#error", "#of", "in", "verdict")
+    return Table(head, tuple(map(shown, lines)))
 
 
-def by_engine(record: Record, columns: Columns = COLUMNS, engines: Sequence[str] = (*ROUTES, *_OURS)) -> Table:
-    """One line for each engine of each model that it has something to say of."""
+def _models(record: Record) -> list[Line]:
+    compared = ({row.engine for row in m.comparisons if row.status in _JUDGED} - {*_OURS} for m in record.models)
+    return [(m, str(len(names)), m.comparisons) for m, names in zip(record.models, compared, strict=True)]
+
+
+def _engines(record: Record, engines: Sequence[str]) -> list[Line]:
     lines = [(m, name, [row for row in m.comparisons if row.engine == name]) for m in record.models for name in engines]
-    return _table([line for line in lines if line[2]], "engine", columns)
+    return [line for line in lines if line[2]]
 
 
 def opinions(record: Record) -> Table:
@@ -119,20 +114,17 @@ def opinions(record: Record) -> Table:
     return Table.of((line(name) for name in ROUTES if any(row.engine == name for row in record.compared)), columns)
 
 
-Line = tuple[ModelResult, str, Sequence[Comparison]]
-
-
-def _table(lines: Sequence[Line], middle: str, columns: Columns) -> Table:
+def _table(lines: Sequence[Line], middle: str) -> Table:
     """A line each: the model, whom it is compared with, the worst comparison in each column, the verdict."""
 
     def cell(quantities: tuple[str, ...]) -> Column:
-        return lambda line: _cell(worst(row for row in line[2] if row.quantity in quantities), columns is BRIEF)
+        return lambda line: _cell(worst(row for row in line[2] if row.quantity in quantities))
 
     shown: dict[str, Column] = {
         "model": lambda line: Cell(line[0].label, None if _status(line[2]) in ("agree", "unsupported") else False),
         "#nv": lambda line: str(line[0].sizes.get("nv", "")),
         middle: lambda line: line[1],
-        **{f"#{title}": cell(quantities) for title, quantities in columns.items()},
+        **{f"#{title}": cell(quantities) for title, quantities in COLUMNS.items()},
         "verdict": lambda line: _verdict(line[2]),
     }
     return Table.of(lines, shown).without_empty()
@@ -149,11 +141,11 @@ def _verdict(rows: Sequence[Comparison]) -> Cell:
     return Cell(status, False if status in ("failed", "disagree") else None)
 
 
-def _cell(row: Comparison | None, brief: bool) -> str | Cell:
+def _cell(row: Comparison | None) -> str | Cell:
     if row is None:
         return ""
     hint = f"{row.quantity}, {row.engine}; median {digits(row.median)}"
-    return Cell(digits(row.error, 1 if brief else 2), row.ok, _DEEPEST * margin_used(row) if row.ok else 0.0, hint)
+    return Cell(digits(row.error), row.ok, _DEEPEST * margin_used(row) if row.ok else 0.0, hint)
 
 
 def margin_used(row: Comparison) -> float:

@@ -193,7 +193,6 @@ class Report:
         sections: Parts under headings.
         facts: Key numbers, for the top of the page and for the index of reports.
         digest: Blocks that a terminal shows; by default the tables and lists of the summary.
-        narrow: The same for a terminal in which a table of the digest has no room.
         unfinished: Names of parts that an interrupt cut.
         refused: Inputs that could not be read, where nothing else is wrong.
         decisions: What readers decide by, first on the page and on the index of reports.
@@ -208,7 +207,6 @@ class Report:
     _: KW_ONLY
     facts: tuple[Fact, ...] = ()
     digest: tuple[Block, ...] = ()
-    narrow: tuple[Block, ...] = ()
     unfinished: tuple[str, ...] = ()
     refused: tuple[str, ...] = ()
     decisions: tuple[Block, ...] = ()

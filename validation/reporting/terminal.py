@@ -9,7 +9,7 @@ from rich.markdown import Markdown
 from rich.text import Text
 
 from validation.reporting import markdown
-from validation.reporting.record import Cell, Report, Table
+from validation.reporting.record import Report
 
 # Wide enough for every column when the output is not a terminal, which has a width of its own.
 PLAIN_WIDTH = 140
@@ -24,13 +24,6 @@ def output() -> Console:
 def show(report: Report) -> None:
     """Print the digest and the summary."""
     console = output()
-    fits = all(_width(block) <= console.width for block in report.brief if isinstance(block, Table))
-    for block in report.brief if fits else report.narrow or report.brief:
+    for block in report.brief:
         console.print(Markdown(markdown.block(block), hyperlinks=False))
     console.print(Text(report.summary, style=_STYLE[report.ok]), soft_wrap=True)
-
-
-def _width(table: Table) -> int:
-    """Columns of a terminal that a table needs: its longest texts, and the space around them."""
-    lines = [[cell.text if isinstance(cell, Cell) else cell for cell in row] for row in (table.head, *table.rows)]
-    return sum(max(map(len, column)) + 3 for column in zip(*lines, strict=True))

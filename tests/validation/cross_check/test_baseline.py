@@ -15,7 +15,7 @@ from validation.__main__ import app
 from validation.check import ModelResult, Settings, check
 from validation.comparison.errors import Comparison
 from validation.contract.interface import Subject
-from validation.cross_check import report, speed
+from validation.cross_check import measure, speed
 from validation.cross_check.baseline import Baseline, BaselineError, machine_of, slowest
 from validation.cross_check.junit import to_junit
 from validation.cross_check.record import Record, as_data
@@ -150,11 +150,11 @@ def test_the_command_fails_where_a_stored_run_was_faster(tmp_path: Path, monkeyp
     def timed(factor: float) -> Callable[[Subject], list[Speed]]:
         return lambda subject: [Speed(subject.label, "bias", factor, 0.01, 10.0 * factor)]
 
-    monkeypatch.setattr(report, "measure_speed", timed(1.0))
+    monkeypatch.setattr(measure, "measure_speed", timed(1.0))
     assert invoke(tmp_path / "a", "--speed").exit_code == 0
     file = tmp_path / "a/check.json"
     assert invoke(tmp_path / "b", "--baseline", file).exit_code == 0
-    monkeypatch.setattr(report, "measure_speed", timed(1.3))
+    monkeypatch.setattr(measure, "measure_speed", timed(1.3))
     junit = tmp_path / "junit.xml"
     result = invoke(tmp_path / "c", "--baseline", file, "--junit", junit)
     assert result.exit_code == 1, result.output

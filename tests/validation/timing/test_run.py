@@ -13,10 +13,11 @@ from tests.validation.timing.records import cubic, entry, made
 from validation.__main__ import app
 from validation.reporting.command import write
 from validation.reporting.record import Table
-from validation.timing import report, worker
+from validation.timing import measure, worker
 from validation.timing.contestants import engines
 from validation.timing.models import FUNCTIONS, TIMED_MODELS
 from validation.timing.record import Record, as_data
+from validation.timing.report import TOPIC
 from validation.timing.run import jobs, peaks, take
 from validation.timing.tables import sections
 from validation.timing.worker import Job
@@ -99,7 +100,7 @@ def test_the_report_shows_targets_costs_growth_and_what_was_left_out(tmp_path: P
         "copied_bytes": 1e11,
         "versions": {"pinocchio": "4.1.0"},
     }
-    made_of_it = write(report.TOPIC, as_data(record), tmp_path)
+    made_of_it = write(TOPIC, as_data(record), tmp_path)
     assert made_of_it.ok is False and made_of_it.summary.startswith("0 of 26 targets are met, 23 were not measured")
     page = (tmp_path / "timing.html").read_text()
     for text in (page, (tmp_path / "timing.md").read_text()):
@@ -128,8 +129,8 @@ def test_interrupted_it_keeps_what_was_measured(tmp_path: Path, monkeypatch: pyt
         record.entries.append(entry())
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(report, "run_job", half)
-    monkeypatch.setattr(report, "prepare", lambda peers: [])
+    monkeypatch.setattr(measure, "run_job", half)
+    monkeypatch.setattr(measure, "prepare", lambda peers: [])
     arguments = ["timing", "--model", "panda", "--report", str(tmp_path)]
     assert CliRunner().invoke(app, arguments).exit_code == 130
     assert len(json.loads((tmp_path / "timing.json").read_text())["entries"]) == 1
