@@ -43,7 +43,8 @@ def simulate(
         t_end: End time [s].
         u: Inputs: an array (nu), a Signal of all, a mapping from input names to numbers, formulas (of coordinates,
             speeds, parameters and t, compiled to C) and Signals, or a function (t, q, v) -> (nu), called from the loop
-            and hence slow; after a run of fixed steps, but not in real time, it is called about a few states again.
+            and hence slow; after a run of fixed steps, but not in real time, it is called about a few states again, and
+            where it gives the same, a short run in doubt is made once more with half the step.
             Those not given are zero, but for the rates of a prescribed motion that is a formula of t.
         par: Run-time parameters (npar), or values by name; the model's own by default.
         events: Name -> formula or Event.

@@ -10,7 +10,7 @@ import numpy as np
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.manifold import retract
 from symofros.simulation.results.energy_norm import energies_of
-from symofros.simulation.results.repetition import repeated
+from symofros.simulation.results.repetition import repeatable, repeated
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.stepper import Stepper
 
@@ -76,12 +76,14 @@ def _between(
     """The ends of all steps in the intervals where the energy changes most; None where they can't be repeated."""
     if steps <= _DENSE * (len(states[0]) - 1):
         return
+    if not repeatable(stepper, settings, states):
+        yield None
+        return
     t, q, v, _ = states
     changes = np.abs(np.diff(energy))
     for i in np.argsort(-changes)[:_REPEATED]:
         if changes[i] > 0.0:
-            again = repeated(stepper, settings, (float(t[i]), q[i], v[i]), float(t[i + 1]), settings.dt)
-            yield again[1] if again is not None else None
+            yield repeated(stepper, settings, (float(t[i]), q[i], v[i]), float(t[i + 1]), settings.dt)[1]
 
 
 def energy_that_appeared(stepper: Stepper, settings: Settings, states: Sequence[Array]) -> str:

@@ -21,6 +21,8 @@ from symofros.simulation.stepping.stepper import Stepper
 
 # Steps of a run that is repeated as a whole; a call takes as long as some hundred steps of a small model.
 _STEPS = 256
+# States, about, at which a function of the user's is asked again for the inputs; share by which they may differ.
+_CALLED, _SAME = 8, 1e-9
 # Differences of displacements and energies count by this share: they are relative to how they change in the run, while
 # coordinates and energies themselves may be larger.
 _POSITIONS = 3.0
@@ -31,6 +33,31 @@ _AT_REST = 1e-11
 _ALLOWED, _MOTION, _TIGHT, _MOST = 0.1, 100.0, 1e-3, 8192
 
 
+def repeatable(stepper: Stepper, settings: Settings, states: Sequence[Array]) -> bool:
+    """Whether a run can be made once more: a function of the user's that gives the inputs has to give the same again.
+
+    It is called at some of the recorded states, the last one first, so that what it keeps of the run shows. In real
+    time it is not called: what it serves may be hardware.
+
+    Args:
+        stepper: Stepper of the run.
+        settings: Settings of the run.
+        states: States of the run: t (n), q, v, u.
+    """
+    function = stepper.inputs.callback
+    if stepper.method.family.multistep or (function is not None and settings.realtime):
+        return False
+    if function is None:
+        return True
+    t, q, v, u = (array[:: -max(1, len(array) // _CALLED)] for array in states)
+    try:
+        again = [np.asarray(function(float(t[i]), q[i].copy(), v[i].copy()), float) for i in range(len(t))]
+    except Exception:  # Whatever it raises: the run itself has ended well.
+        return False
+    size = float(np.abs(u).max(initial=0.0))
+    return all(row.shape == u[i].shape and np.abs(row - u[i]).max() <= _SAME * size for i, row in enumerate(again))
+
+
 def repeated(
     stepper: Stepper,
     settings: Settings,
@@ -39,8 +66,8 @@ def repeated(
     dt: float,
     every: int = 1,
     max_steps: int | None = None,
-) -> tuple[int, list[Array]] | None:
-    """Status and states of a part of a run, made once more; None where a function of the user's gives the inputs.
+) -> tuple[int, list[Array]]:
+    """Status and states of a part of a run, made once more.
 
     Args:
         stepper: Stepper of the run.
@@ -51,8 +78,6 @@ def repeated(
         every: Number of steps between records.
         max_steps: Number of steps after which it ends; None: no bound.
     """
-    if stepper.inputs.callback is not None or stepper.method.family.multistep:
-        return None
     t, q, v = start
     part = replace(settings, t0=t, t_end=t_end, dt=dt, every=every, grid=np.zeros(0), max_steps=max_steps, realtime=0.0)
     again = Stepper(stepper.model, stepper.method, stepper.inputs, (), stepper.par)
@@ -76,11 +101,15 @@ def halved_step_note(
     if settings.adaptive or not 1 <= steps <= _STEPS or not stepper.model.nv:
         return ""
     t, q, v, _ = states
-    again = repeated(stepper, settings, (settings.t0, *start), float(t[-1]), 0.5 * settings.dt, every=2)
-    if again is None:
-        return ""
-    status, half = again
     h = settings.dt
+    if not repeatable(stepper, settings, states):
+        if settings.realtime or stepper.method.family.multistep:
+            return ""
+        return (
+            f"steps of {h:.4g} s were not held against half of that: the input function gives other inputs when it is"
+            " asked again about a state; compare with a smaller dt"
+        )
+    status, half = repeated(stepper, settings, (settings.t0, *start), float(t[-1]), 0.5 * h, every=2)
     if status < 0:
         return (
             f"steps of {h:.4g} s do not show the motion: with half of that it does not come to this end; a smaller dt"
@@ -112,10 +141,9 @@ def tolerance_note(
     if not (settings.atol * inertia > _ALLOWED * largest > 0.0 and moved > _MOTION * settings.atol):
         return ""
     tighter = replace(settings, atol=_TIGHT * largest / inertia)
-    again = repeated(stepper, tighter, (settings.t0, *start), float(t[-1]), 0.0, max_steps=_MOST)
-    if again is None:
+    if not repeatable(stepper, settings, states):
         return ""
-    status, tight = again
+    status, tight = repeated(stepper, tighter, (settings.t0, *start), float(t[-1]), 0.0, max_steps=_MOST)
     if status == Status.FINISHED and not _change(stepper, start[0], (t[-1:], q[-1:], v[-1:]), tight) > TOLERANCE:
         return ""
     fastest = float(np.abs(v).max())

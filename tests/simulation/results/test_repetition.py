@@ -9,6 +9,7 @@ import pytest
 import scipy.linalg
 
 import symofros as sf
+from tests.simulation.oscillator import oscillator
 
 
 @cache
@@ -52,6 +53,36 @@ def test_short_runs_that_err_by_a_third_bear_a_note(method: str) -> None:
             wrong += 1
             assert run.outcome.notes, (par, h, steps)
     assert wrong
+
+
+def test_runs_under_a_pure_function_are_judged_by_half_the_step_and_others_say_that_they_were_not() -> None:
+    """A spring that hardens, as a formula, as a function, as a function with a memory of its calls."""
+    calls = []
+
+    def pure(t: float, q: np.ndarray, v: np.ndarray) -> list[float]:
+        return [-2000.0 * float(q[0]) ** 3]
+
+    def remembering(t: float, q: np.ndarray, v: np.ndarray) -> list[float]:
+        calls.append(t)
+        return [-2000.0 * float(q[0]) ** 3 + 1e-3 * len(calls)]
+
+    def raising(t: float, q: np.ndarray, v: np.ndarray) -> list[float]:
+        calls.append(t)
+        if len(calls) > 1 and t < max(calls) - 0.2:
+            raise RuntimeError("the past is gone")
+        return [-2000.0 * float(q[0]) ** 3]
+
+    def notes(u: object, dt: float = 0.05) -> list[str]:
+        calls.clear()
+        outcome = sf.simulate(oscillator(), [0.0], [2.0], 5.0, u=u, dt=dt).outcome  # type: ignore[arg-type]
+        assert outcome.kind == "finished"
+        return [note for note in outcome.notes if note.startswith(f"steps of {dt:g} s")]
+
+    (by_formula,), (by_function,) = notes({oscillator().names.u[0]: "-2000*x^3"}), notes(pure)
+    assert by_formula == by_function and "half of that changes it by" in by_function
+    for function in (remembering, raising):
+        (note,) = notes(function)
+        assert "were not held against half of that" in note
 
 
 def test_energy_is_judged_whatever_is_recorded() -> None:
