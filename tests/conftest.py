@@ -8,6 +8,7 @@ import sys
 import zlib
 from collections.abc import Iterator
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -25,12 +26,22 @@ os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
 
 
+# The browser's tests name Playwright's types as they are collected.
+_PLAYWRIGHT = find_spec("playwright") is not None
+collect_ignore = [] if _PLAYWRIGHT else ["studio/editor/browser"]
+
+
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--slow", action="store_true", help="also run what a run leaves out for its time")
     parser.addoption("--slow-part", metavar="I/N", help="only every N-th of the slow tests, from the I-th on")
     parser.addoption("--tools", action="store_true", help="also run tests of programs that .ci/run installs")
     parser.addoption("--browser", action="store_true", help="also run tests that look at pages with Chromium")
     parser.addoption("--update-golden", action="store_true", help="rewrite the expected texts that tests compare with")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    if config.getoption("--browser") and not _PLAYWRIGHT:
+        raise pytest.UsageError("--browser needs Playwright: pip install -e '.[dev]'")
 
 
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:

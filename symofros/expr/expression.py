@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
-from symofros.expr.numerics.extended import CONTEXT, Extended, extended_rule
+from symofros.expr.numerics.extended import Extended, extended_context, extended_rule
 from symofros.expr.ops import FUNCTIONS
 
 CONSTANTS: dict[str, float] = {"pi": 3.141592653589793}
@@ -129,17 +129,19 @@ def evaluate_extended(expression: Expression | float, values: Mapping[str, Exten
         ArithmeticError: Division by zero, or outside a function's domain.
     """
     if isinstance(expression, float):
-        return CONTEXT.mpf(expression)
+        return extended_context().mpf(expression)
     kind = expression.kind
     if kind == "number":
-        return CONTEXT.mpf(expression.number)
+        return extended_context().mpf(expression.number)
     if kind == "symbol":
         known = CONSTANTS.get(expression.name)
-        return values[expression.name] if known is None else CONTEXT.mpf(known)
+        return values[expression.name] if known is None else extended_context().mpf(known)
     args = [evaluate_extended(arg, values) for arg in expression.args]
     if kind == "neg":
         return -args[0]
     value = args[0] - args[1] if kind == "sub" else extended_rule(kind)(*args)
-    if not isinstance(value, CONTEXT.mpf) or not CONTEXT.isfinite(value):  # mpmath has complex roots and logarithms.
+    if not isinstance(value, extended_context().mpf) or not extended_context().isfinite(
+        value
+    ):  # mpmath has complex roots and logarithms.
         raise ArithmeticError(f"{expression} is not a finite number")
     return value

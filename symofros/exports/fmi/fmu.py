@@ -79,7 +79,7 @@ def fmi_headers() -> Path:
                 "an FMU needs the headers of the FMI standard",
                 "no package fmpy",
                 "they are read from the package FMPy",
-                "pip install symofros[fmi]",
+                "pip install 'symofros[fmi]'",
             )
         )
     return Path(spec.origin).parent / "c-code"

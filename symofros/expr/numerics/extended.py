@@ -9,20 +9,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import lru_cache
+from functools import cache, lru_cache
+from importlib import import_module
 from typing import Any
-
-import mpmath
 
 from symofros.expr.ops import ADD, DIV, MUL, OPS, STOP_GRADIENT
 
 # A number in extended precision: mpmath's mpf, which has no type annotations.
 Extended = Any
 
-# A context of its own, as mpmath's global precision belongs to its other users. A double has 53 bits; the others
-# allow for cancellation and tell the nearest double from the next one.
-CONTEXT = mpmath.MPContext()
-CONTEXT.prec = 192
+# A double has 53 bits; the others allow for cancellation and tell the nearest double from the next one.
+PRECISION = 192
 
 _RULES: dict[str, Callable[..., Extended]] = {
     ADD: lambda x, y: x + y,
@@ -37,9 +34,21 @@ _SPELLINGS = {"pow": "power", "abs": "fabs"}
 _EXACT = {ADD, MUL, DIV, "sqrt", "abs", "sign", "min", "max", "floor", "step", STOP_GRADIENT}
 
 
-def extended_rule(op: str, context: Any = CONTEXT) -> Callable[..., Extended]:
-    """An operation of the op table on the numbers of a context of mpmath."""
-    rule: Callable[..., Extended] = _RULES.get(op) or getattr(context, _SPELLINGS.get(op, op))
+@cache
+def extended_context() -> Any:
+    """A context of mpmath with `PRECISION` bits, apart from the global one, whose precision belongs to other users.
+
+    mpmath is loaded here, at the first formula: `import symofros` alone needs none.
+    """
+    context = import_module("mpmath").MPContext()
+    context.prec = PRECISION
+    return context
+
+
+def extended_rule(op: str, context: Any = None) -> Callable[..., Extended]:
+    """An operation of the op table on the numbers of a context of mpmath; of `extended_context` where none is given."""
+    named = context or extended_context()
+    rule: Callable[..., Extended] = _RULES.get(op) or getattr(named, _SPELLINGS.get(op, op))
     return rule
 
 
@@ -59,4 +68,4 @@ def _nearest(op: str, *x: float) -> float:
     approximate = float(OPS[op].rule(*x))
     if op in _EXACT or approximate == 0.0 or not math.isfinite(approximate) or not all(map(math.isfinite, x)):
         return approximate
-    return float(extended_rule(op)(*map(CONTEXT.mpf, x)))
+    return float(extended_rule(op)(*map(extended_context().mpf, x)))

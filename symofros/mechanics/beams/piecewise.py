@@ -14,7 +14,7 @@ from fractions import Fraction
 from functools import cache, lru_cache
 from itertools import pairwise, zip_longest
 
-from symofros.expr.numerics.extended import CONTEXT, Extended
+from symofros.expr.numerics.extended import Extended, extended_context
 
 Number = Fraction | float | int
 Coefficients = tuple[Number, ...]
@@ -137,7 +137,7 @@ def fitted(function: Callable[[Extended], Extended], pieces: int) -> Piecewise:
     interpolants = []
     for k in range(pieces):
         values = [function((k + t) / pieces) for t in points]
-        coefficients = [CONTEXT.fdot(row, values) for row in weights]
+        coefficients = [extended_context().fdot(row, values) for row in weights]
         negligible = _NEGLIGIBLE * max(map(abs, coefficients))
         kept = [c * pieces**n if abs(c) > negligible else 0 for n, c in enumerate(coefficients)]
         while len(kept) > 1 and not kept[-1]:
@@ -150,8 +150,8 @@ def fitted(function: Callable[[Extended], Extended], pieces: int) -> Piecewise:
 def _interpolation() -> tuple[list[Extended], list[list[Extended]]]:
     """Chebyshev points on [0, 1], and the matrix from values there to coefficients of 1, t, t^2, ..."""
     n = _FIT_DEGREE + 1
-    angles = [CONTEXT.pi * (2 * j + 1) / (2 * n) for j in range(n)]
-    cosines = [[CONTEXT.cos(m * angle) for angle in angles] for m in range(n)]
+    angles = [extended_context().pi * (2 * j + 1) / (2 * n) for j in range(n)]
+    cosines = [[extended_context().cos(m * angle) for angle in angles] for m in range(n)]
     # Rows of coefficients of the shifted Chebyshev polynomials T_m(2 t - 1), by T_(m+1) = 2 (2 t - 1) T_m - T_(m-1).
     chebyshev = [[1], [-1, 2]]
     for _ in range(2, n):
@@ -181,7 +181,7 @@ def _gauss_node(n: int, i: int) -> tuple[Extended, Extended]:
         value, slope = _legendre(n, x)
         x -= value / slope
     # From a double's digits to all that count in two steps more, wherever the first ones ended.
-    x = CONTEXT.mpf(x)
+    x = extended_context().mpf(x)
     for _ in range(2):
         value, slope = _legendre(n, x)
         x -= value / slope

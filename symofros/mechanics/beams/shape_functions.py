@@ -22,7 +22,7 @@ from typing import NamedTuple
 
 from symofros.description.beam import Direction, UserShape
 from symofros.expr.expression import Expression, evaluate_extended
-from symofros.expr.numerics.extended import CONTEXT, Extended
+from symofros.expr.numerics.extended import Extended, extended_context
 from symofros.mechanics.beams.piecewise import XI, Number, Piecewise, fitted, polynomial
 
 MAX_MODES = 40
@@ -164,16 +164,18 @@ def _eigenmodes(bending: bool, count: int) -> list[Piecewise]:
 
 def _shaft_slope(k: int) -> ExtendedFunction:
     """The derivative of shaft mode k (from 0), sqrt(2) sin(b xi) with b = (k + 1/2) pi."""
-    b = (k + CONTEXT.mpf(0.5)) * CONTEXT.pi
-    amplitude = CONTEXT.sqrt(2) * b
-    return lambda xi: amplitude * CONTEXT.cos(b * xi)
+    context = extended_context()
+    b = (k + context.mpf(0.5)) * context.pi
+    amplitude = context.sqrt(2) * b
+    return lambda xi: amplitude * context.cos(b * xi)
 
 
 @cache
 def cantilever_root(k: int) -> Extended:
     """Root number k (from 0) of cos(b) cosh(b) = -1, by Newton's method on cos(b) + 1/cosh(b)."""
-    cos, sin, sech, tanh = CONTEXT.cos, CONTEXT.sin, CONTEXT.sech, CONTEXT.tanh
-    b = (k + CONTEXT.mpf(0.5)) * CONTEXT.pi
+    context = extended_context()
+    cos, sin, sech, tanh = context.cos, context.sin, context.sech, context.tanh
+    b = (k + context.mpf(0.5)) * context.pi
     for _ in range(_NEWTON_STEPS):
         b += (cos(b) + sech(b)) / (sin(b) + tanh(b) * sech(b))
     return b
@@ -181,19 +183,19 @@ def cantilever_root(k: int) -> Extended:
 
 def _cantilever_curvature(k: int) -> ExtendedFunction:
     """The second derivative of cantilever mode k with mean square 1, in a form without differences of large numbers."""
-    b = cantilever_root(k)
-    c_b, s_b = CONTEXT.cos_sin(b)
+    b, context = cantilever_root(k), extended_context()
+    c_b, s_b = context.cos_sin(b)
     # sigma = (sinh b - sin b)/(cosh b + cos b); 1 - sigma is exponentially small and written without cancellation.
-    e = CONTEXT.exp(-b)
+    e = context.exp(-b)
     scale = 1 + e * e + 2 * e * c_b
     sigma = (1 - e * e - 2 * e * s_b) / scale
     half_rest = (e * c_b + e * e + e * s_b) / scale
 
     def curvature(xi: Extended) -> Extended:
         # cosh - sigma sinh = e^(-b xi) + (1 - sigma) sinh(b xi), and the second term as a difference of exponentials.
-        decaying = CONTEXT.exp(-b * xi)
+        decaying = context.exp(-b * xi)
         growing = half_rest * (1 / decaying - decaying)
-        c, s = CONTEXT.cos_sin(b * xi)
+        c, s = context.cos_sin(b * xi)
         return b * b * (decaying + growing + c - sigma * s)
 
     return curvature
@@ -253,7 +255,7 @@ def _through(xi: Sequence[float], values: Sequence[float], bending: bool) -> Pie
     In bending it has no slope at the root. Elsewhere nothing is known of the ends: the two intervals there share one
     cubic (docs/theory/beams.md, section 2).
     """
-    x, y = ([CONTEXT.mpf(number) for number in numbers] for numbers in (xi, values))
+    x, y = ([extended_context().mpf(number) for number in numbers] for numbers in (xi, values))
     h = [b - a for a, b in pairwise(x)]
     chords = [(b - a) / step for (a, b), step in zip(pairwise(y), h, strict=True)]
     curvatures = _spline_curvatures(h, chords, bending)
@@ -278,7 +280,7 @@ def _spline_curvatures(h: Sequence[Extended], chords: Sequence[Extended], clampe
     r = h[-1] / h[-2]
     rows[-1] = _without_end(rows[-1], 2, 0, r)
     if clamped:
-        rows.insert(0, [CONTEXT.zero, 2 * h[0], h[0], 6 * chords[0]])
+        rows.insert(0, [extended_context().zero, 2 * h[0], h[0], 6 * chords[0]])
     else:
         rows[0] = _without_end(rows[0], 0, 2, h[0] / h[1])
     c = _tridiagonal(rows)
@@ -292,19 +294,19 @@ def _without_end(row: list[Extended], end: int, inner: int, r: Extended) -> list
     reduced = list(row)
     reduced[1] += (1 + r) * row[end]
     reduced[inner] -= r * row[end]
-    reduced[end] = CONTEXT.zero
+    reduced[end] = extended_context().zero
     return reduced
 
 
 def _tridiagonal(rows: Sequence[Sequence[Extended]]) -> list[Extended]:
     """The unknowns of a tridiagonal system of rows (lower, diagonal, upper, right), diagonally dominant."""
     reduced: list[tuple[Extended, Extended]] = []  # (upper, right) of rows with a unit diagonal and nothing below.
-    above = (CONTEXT.zero, CONTEXT.zero)
+    above = (extended_context().zero, extended_context().zero)
     for lower, diagonal, upper, right in rows:
         pivot = diagonal - lower * above[0]
         above = (upper / pivot, (right - lower * above[1]) / pivot)
         reduced.append(above)
-    unknowns = [CONTEXT.zero]
+    unknowns = [extended_context().zero]
     for upper, right in reversed(reduced):
         unknowns.append(right - upper * unknowns[-1])
     return unknowns[:0:-1]

@@ -398,7 +398,7 @@ def test_a_frame_that_an_input_moves_depends_on_it(made: Any, version: int) -> N
 
 def test_without_fmpy(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
-    with pytest.raises(sf.ExportError, match=r"pip install symofros\[fmi\]"):
+    with pytest.raises(sf.ExportError, match=r"pip install 'symofros\[fmi\]'"):
         sf.export(REFERENCE["pendulum"], "fmu2", tmp_path)
 
 

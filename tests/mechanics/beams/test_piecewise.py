@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import scipy.interpolate
 
-from symofros.expr.numerics.extended import CONTEXT
+from symofros.expr.numerics.extended import extended_context
 from symofros.mechanics.beams.piecewise import XI, Piecewise, fitted, gauss, polynomial, stations
 
 THIRDS = tuple(Fraction(k, 3) for k in range(4))
@@ -70,7 +70,7 @@ def test_zero_is_known_as_zero() -> None:
 
 @pytest.mark.parametrize("pieces", [1, 3])
 def test_a_smooth_function_is_interpolated_to_rounding(pieces: int) -> None:
-    f = fitted(lambda x: CONTEXT.exp(x) * CONTEXT.cos(3 * x), pieces)
+    f = fitted(lambda x: extended_context().exp(x) * extended_context().cos(3 * x), pieces)
     xi = np.linspace(0, 1, 97)
     expected = np.exp(xi) * np.cos(3 * xi)
     # Three terms of the Taylor series of exp(x) cos(3 x) are left out of degree 14 where one piece spans the beam.
@@ -79,7 +79,7 @@ def test_a_smooth_function_is_interpolated_to_rounding(pieces: int) -> None:
 
 def test_the_second_derivative_of_an_interpolant_keeps_its_digits() -> None:
     """It is what stiffness is made of: in doubles, interpolation would leave ten digits of it."""
-    curvature = fitted(lambda x: CONTEXT.exp(-x) * x**2, 16).derivative().derivative()
+    curvature = fitted(lambda x: extended_context().exp(-x) * x**2, 16).derivative().derivative()
     xi = np.linspace(0, 1, 97)
     np.testing.assert_allclose([float(curvature(x)) for x in xi], (2 - 4 * xi + xi**2) * np.exp(-xi), atol=5e-15)
 
@@ -132,5 +132,5 @@ def test_values_are_rounded_once_whatever_cancels() -> None:
 
 
 def test_values_of_float_coefficients_are_those_of_horners_rule() -> None:
-    phi = fitted(CONTEXT.exp, 3)
+    phi = fitted(extended_context().exp, 3)
     assert phi.rounded([0.0, 1 / 3, 0.4, 1.0]) == [float(phi(x)) for x in (0.0, 1 / 3, 0.4, 1.0)]

@@ -136,7 +136,7 @@ def test_without_any_compiler_the_interpreter_serves(
 def test_the_ziglang_package_serves_as_compiler(
     cache: Path, without_compilers: pytest.MonkeyPatch, rng: np.random.Generator
 ) -> None:
-    pytest.importorskip("ziglang")
+    pytest.importorskip("ziglang", reason="needs the extra 'zig', which 'dev' brings")
     try:
         with pytest.warns(sf.CompilerMissingWarning, match="ziglang"):
             m = sf.compile(random_tree(33))
