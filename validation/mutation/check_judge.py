@@ -30,7 +30,7 @@ GENERAL = (
     "spinning_beam",
 )
 BEAMS = ("spinning_beam", "flexible_slider_crank", "planar_robot", "double_pendulum")
-READ = {"urdf": ("sampler",), "mjcf": ("creature",)}
+READ = {"urdf": ("sampler", "panda"), "mjcf": ("creature",)}
 # Compared compiled, free motion included: what writes C shows there only.
 WRITTEN = ("double_pendulum", "heavy_top", "friction_arm", "rolling_disc", "four_bar", "spinning_beam")
 # Loops whose conditions repeat each other, where a module solves with them.

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 import symofros as sf
+from validation.mechanics.assembly import Mover, assemble
 from validation.mechanics.geometry import Array
 from validation.procedures.scene import Cell, Scene, derivative, freedoms, off
 
@@ -80,13 +81,9 @@ def differentiated(scene: Scene) -> Iterator[Cell]:
         yield Cell("forward dynamics by parameters", off(model.forward_dynamics_by_par(q, v, u) * par, by_par), 1e-6)
 
 
-def identified(scene: Scene, pi: Array) -> Iterator[Cell]:
-    """The regressor and its base parameters.
-
-    Args:
-        scene: Model of rigid bodies without anything that stores or takes energy but weight.
-        pi: Inertial parameters of its links (10 links).
-    """
+def identified(scene: Scene) -> Iterator[Cell]:
+    """The regressor and base parameters of a tree of rigid bodies on which weight alone acts."""
+    pi = np.concatenate([_inertial(mover) for mover in assemble(scene.system).movers])
     model, rng = scene.model, np.random.default_rng(SEED)
     n = 8
     q = np.array([model.random_state(rng)[0] for _ in range(n)])
@@ -99,6 +96,16 @@ def identified(scene: Scene, pi: Array) -> Iterator[Cell]:
     rank = int(np.linalg.matrix_rank(model.regressor(*_many(model, rng)).reshape(-1, len(pi)), rtol=1e-9))
     error = off(stacked[:, list(base.independent)] @ (base.combine @ pi), efforts.ravel())
     yield Cell("base parameters", error + float(rank != len(base.independent)), SOLVED)
+
+
+def _inertial(mover: Mover) -> Array:
+    """Mass, first moment, and Ixx, Ixy, Iyy, Ixz, Iyz, Izz about the origin of the body frame (10)."""
+    ten = np.zeros(10)
+    for part in mover.masses:
+        c, m = part.p_BC, part.mass
+        about = part.J_BC + m * (c @ c * np.eye(3) - np.outer(c, c))
+        ten += [m, *(m * c), about[0, 0], about[0, 1], about[1, 1], about[0, 2], about[1, 2], about[2, 2]]
+    return ten
 
 
 def _many(model: sf.Model, rng: np.random.Generator) -> tuple[Array, Array, Array]:

@@ -74,11 +74,12 @@ PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
         batches.states,
         analyses.linearised,
         analyses.differentiated,
+        analyses.identified,
         lambda scene: analyses.at_rest(scene, scene.q),
         lambda scene: analyses.at_rest(scene, scene.q, ("q2",)),
         lambda scene: analyses.driven(scene, ("q1", "q2")),
     ),
-    "heavy_top": (*_MOVED, runs.implicit_steps, batches.trajectories),
+    "heavy_top": (*_MOVED, runs.small_turns, runs.implicit_steps, batches.trajectories),
     "torque_free_body": (*_MOVED, runs.implicit_steps),
     "four_bar": (
         *_MOVED,
@@ -102,6 +103,7 @@ PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
     "flexible_pendulum": (
         runs.implicit_steps,
         lambda scene: analyses.at_rest(scene, scene.model.neutral() + 0.1),
+        runs.mirrored,
     ),
 }
 

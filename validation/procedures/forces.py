@@ -84,7 +84,7 @@ def carried(loaded: bool = True) -> sf.System:
             parent="first",
             position=(0.2, 0.1, 0.0),
             axis=(0.6, 0.0, 0.8),
-            elements=(sf.Spring(3.0, rest=0.1, cubic=2.0), sf.Damper(0.3, quadratic=0.2)),
+            elements=(sf.Spring(3.0, rest=0.1, cubic=2.0), sf.Damper(0.2, quadratic=0.2), sf.Damper(0.1)),
         ),
         sf.Inertia(0.7, center_of_mass=(0.0, 0.1, 0.1), moments=(0.1, 0.12, 0.14)),
         frames=(sf.Frame("tip", (0.1, 0.3, 0.4)),),

@@ -157,6 +157,31 @@ def multistep(scene: Scene, methods: tuple[str, ...]) -> Iterator[Cell]:
             yield Cell(f"{name} at {tolerance:g}", error, MULTISTEP * tolerance)
 
 
+def small_turns(scene: Scene) -> Iterator[Cell]:
+    """Steps in which a top turns by less than a milliradian about an axis that changes: series hold, no closed form."""
+    lying = np.array([0.0, np.sqrt(0.5), 0.0, np.sqrt(0.5)])  # Its axis is level, so that weight turns it.
+    at_rest = replace(scene, q=lying, v=np.array([0.3, 0.0, 0.1]))
+    for name in ("rk4", "dop853"):
+        adaptive = False if METHODS[name].adaptive else None
+        run = sf.simulate(scene.model, lying, at_rest.v, 3e-3, method=name, dt=3e-3, adaptive=adaptive)
+        yield Cell(f"small turns by {name}", _off(at_rest, run, retold(at_rest, name, 0.0, 3e-3, 3e-3)), 2e-14)
+
+
+def mirrored(scene: Scene) -> Iterator[Cell]:
+    """A motion of a pendulum and its mirror image bend their beams by the same amounts."""
+    hanging = np.eye(scene.model.nq)[0] * np.pi / 2
+    runs = [
+        sf.simulate(
+            scene.model, hanging + s * scene.q, s * scene.v, 0.02, method="rodas4", rtol=1e-5, atol=1e-8, output=0.01
+        )
+        for s in (1, -1)
+    ]
+    slopes = [[x for one in run.bendings for x in (one.slope, one.error)] for run in runs]
+    yield Cell("a mirrored motion", off(runs[1].q - hanging, hanging - runs[0].q), 1e-6)
+    error = off(np.array(slopes[1]), np.array(slopes[0]))
+    yield Cell("bending of a mirrored motion", error + float(not slopes[0]), 1e-6)
+
+
 def pace(scene: Scene) -> Iterator[Cell]:
     """Inputs by formula, by samples and by a Python function are the same inputs."""
     names = scene.model.names.u
