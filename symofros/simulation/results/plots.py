@@ -13,13 +13,13 @@ _MOST = 12  # Curves in one picture; more can't be distinguished.
 
 
 def figure_class() -> Any:
-    """Matplotlib's Figure, which needs no window.
+    """Matplotlib's Figure, which needs no window; notebooks show it.
 
     Raises:
         SymofrosError: Matplotlib is not installed.
     """
     try:
-        return import_module("matplotlib.figure").Figure
+        return import_module("symofros.simulation.results.notebook_figure").NotebookFigure
     except ImportError:
         missing = Problem(
             "plot: Matplotlib is not installed",

@@ -61,6 +61,7 @@ def test_columns_by_name(run: sf.Trajectory) -> None:
 
 def test_picture(run: sf.Trajectory) -> None:
     figure = run.plot()
+    assert figure._repr_png_().startswith(b"\x89PNG")  # What a notebook shows.
     assert [axis.get_ylabel() for axis in figure.axes] == [
         "coordinates [rad, m]",
         "speeds [rad/s, m/s]",
