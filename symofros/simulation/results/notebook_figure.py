@@ -7,7 +7,7 @@ from io import BytesIO
 from matplotlib.figure import Figure
 
 
-class NotebookFigure(Figure):  # type: ignore[misc]
+class NotebookFigure(Figure):
     """Matplotlib's Figure without a window, which notebooks would otherwise name and not show."""
 
     def _repr_png_(self) -> bytes:
