@@ -7,9 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from symofros.base.arrays import numeric
+from symofros.errors import Problem, SymofrosError
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import null_space, pseudo_inverse
 from symofros.runtime.model import ArrayLike, Model, Output
+from symofros.simulation.analysis.singular_mass import ADVICE, singular_mass
 
 
 @dataclass(frozen=True)
@@ -57,11 +60,22 @@ def state_space(
 
     Raises:
         UnknownNameError: No such output or frame.
+        SymofrosError: The accelerations have no derivatives, as where the mass matrix is singular.
     """
     model = model.with_precision("double")
     v = np.zeros(model.nv) if v is None else np.asarray(model.by_name("v", v), dtype=np.float64)
     u = np.asarray(model.record.u_default if u is None else model.by_name("u", u), dtype=np.float64)
     A, B, C, D = model.linearize(q, v, u, outputs=outputs, par=par, t=t)
+    if not np.all(np.isfinite(A)):
+        configuration = numeric("q", model.by_name("q", q))
+        raise SymofrosError(
+            Problem(
+                f"model '{model.record.name}': no linear model about this state",
+                singular_mass(model, configuration, par, u) or "derivatives that are not finite",
+                "accelerations and their derivatives are finite",
+                ADVICE,
+            )
+        )
     S = _allowed(model, q, v, u, par, t) if model.nc else np.eye(2 * model.nv)
     return StateSpace(S.T @ A @ S, S.T @ B, C @ S, D, S)
 

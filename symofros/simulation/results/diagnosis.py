@@ -8,11 +8,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from symofros.errors import SymofrosError
 from symofros.runtime.beams import BeamBending, bending_notes, largest_bending
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.analysis.beam_theory import UNAMPLIFIED, amplifications
 from symofros.simulation.analysis.postures import nearest_to_singular
+from symofros.simulation.analysis.singular_mass import ADVICE, singular_mass
 from symofros.simulation.results.constraint_faults import jump, lost_energy, violation
 from symofros.simulation.results.energy_balance import EXPLODED
 from symofros.simulation.results.input_faults import input_failure, input_fault
@@ -23,7 +23,6 @@ from symofros.simulation.stepping.loops import Recorded
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
 
-_ROUNDING = float(np.finfo(np.float64).eps)
 # A step this short, relative to the run, is creeping.
 _CREEP = 1e-8
 
@@ -100,12 +99,9 @@ def _outcome(
     if failed and mode is not None and mode.amplified:
         reason = f"the step is past the limit of stability of '{settings.method.name}'; {_largest(stepper, q, v)}"
         return outcome("diverged", reason, remedy(mode, settings))
-    if status == Status.DIVERGED and _immobile(stepper, start, q, v):
-        return outcome(
-            "singular",
-            "the mass matrix is singular: a speed moves no mass",
-            "give every speed an inertia; look for a mass that a parameter sets to zero",
-        )
+    massless = _massless(stepper, start, q, v) if status == Status.DIVERGED else ""
+    if massless:
+        return outcome("singular", massless, ADVICE)
     if status == Status.DIVERGED:
         return outcome("diverged", f"a state is no longer finite; {_largest(stepper, q, v)}", _steady(settings))
     if status == Status.SINGULAR:
@@ -165,29 +161,15 @@ def _steps_meant(settings: Settings) -> int:
     return max(1, round((settings.t_end - settings.t0) / settings.dt)) if settings.dt > 0.0 else 1
 
 
-def _immobile(stepper: Stepper, start: tuple[Array, Array], q: Array, v: Array) -> bool:
-    """Whether a tree's mass matrix has lost a direction, at the start or at the last state.
+def _massless(stepper: Stepper, start: tuple[Array, Array], q: Array, v: Array) -> str:
+    """The motion that moves no mass at the start or at the last state, in words; "" where all do.
 
-    Constraints may bind such a direction. A last state whose speeds have exploded says nothing of the mechanism.
+    A last state whose speeds have exploded says nothing of the mechanism.
     """
-    model = stepper.model
     sane = EXPLODED * (1.0 + float(np.abs(start[1]).max(initial=0.0)))
     states = [start[0], *([q] if float(np.abs(v).max(initial=0.0)) < sane else [])]
-    return not model.nc and any(_singular_mass(stepper, state) for state in states)
-
-
-def _singular_mass(stepper: Stepper, q: Array) -> bool:
-    if not np.all(np.isfinite(q)):
-        return False
-    try:
-        M = stepper.model.mass_matrix(q, u=stepper.inputs_now, par=stepper.par)
-    except SymofrosError:  # Options.functions left it out; the run has diverged all the same.
-        return False
-    scale = np.sqrt(np.diag(M))
-    if not np.all(np.isfinite(M)) or not np.all(scale > 0.0):
-        return bool(np.all(np.isfinite(M)))
-    # Each speed in units of its own inertia: a body may be light, but not weightless.
-    return bool(np.linalg.eigvalsh(M / np.outer(scale, scale))[0] <= _ROUNDING * len(M))
+    said = (singular_mass(stepper.model, state, stepper.par, stepper.inputs_now) for state in states)
+    return next((words for words in said if words), "")
 
 
 def _largest(stepper: Stepper, q: np.ndarray, v: np.ndarray) -> str:

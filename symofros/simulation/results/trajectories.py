@@ -12,6 +12,7 @@ from symofros.runtime.beams import NOTED_ERROR, BeamBending, bending_notes, larg
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
 from symofros.simulation.analysis.beam_theory import UNAMPLIFIED, amplifications
+from symofros.simulation.analysis.singular_mass import ADVICE, singular_mass
 from symofros.simulation.results.batch_examination import BatchExamination
 from symofros.simulation.results.outcome import Kind, Outcome
 from symofros.simulation.results.trajectory import Statistics, Trajectory
@@ -131,6 +132,11 @@ class Trajectories:
         if self.status[index] in _EXPLODED and mode is not None and mode.amplified:
             reason, advice = f"the step is past the limit of stability of '{self.method}'", "see the note"
             return Outcome("diverged", t, reason, advice, notes)
+        if self.status[index] == Status.DIVERGED:
+            par = self.par[index] if self.par.ndim > 1 else self.par
+            massless = singular_mass(self.model, self.q_last[index], par)
+            if massless:
+                return Outcome("singular", t, massless, ADVICE, notes)
         if self.status[index] == Status.BEYOND_THEORY:
             worst = largest_bending(bendings)
             assert worst is not None
