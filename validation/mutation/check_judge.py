@@ -28,6 +28,7 @@ GENERAL = (
     "joint_zoo",
     "car",
     "spinning_beam",
+    "flexible_pendulum",
 )
 BEAMS = ("spinning_beam", "flexible_slider_crank", "planar_robot", "double_pendulum")
 READ = {"urdf": ("sampler", "panda"), "mjcf": ("creature",)}

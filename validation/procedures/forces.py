@@ -84,7 +84,12 @@ def carried(loaded: bool = True) -> sf.System:
             parent="first",
             position=(0.2, 0.1, 0.0),
             axis=(0.6, 0.0, 0.8),
-            elements=(sf.Spring(3.0, rest=0.1, cubic=2.0), sf.Damper(0.2, quadratic=0.2), sf.Damper(0.1)),
+            elements=(
+                sf.Stop(2.0, upper=-5.0, lower=5.0),
+                sf.Spring(3.0, rest=0.1, cubic=2.0),
+                sf.Damper(0.2, quadratic=0.2),
+                sf.Damper(0.1),
+            ),
         ),
         sf.Inertia(0.7, center_of_mass=(0.0, 0.1, 0.1), moments=(0.1, 0.12, 0.14)),
         frames=(sf.Frame("tip", (0.1, 0.3, 0.4)),),
@@ -130,6 +135,7 @@ def applied(_: Scene) -> Iterator[Cell]:
     outside = np.array([0.5 * rate, 0.2, 1.0])
     Q += J.T @ np.concatenate([outside, np.cross(arm, outside)])
     Q[i] += -3.0 * (angle - 0.1) - 2.0 * (angle - 0.1) ** 3 - 0.3 * rate - 0.2 * abs(rate) * rate
+    Q[i] += -2.0 * (angle + 5.0) + 2.0 * (5.0 - angle)  # Beyond both ends of the stop, as they are stated.
     Q[i] += -0.8 * np.cos(2 * angle) - 0.6 * rate * angle
     yield Cell("applied forces", off(model.generalized_force(q, v, u, t=t), Q), 1e-10)
     still = 0.0 * v

@@ -268,3 +268,17 @@ def test_prescribed_motions_are_no_actuators() -> None:
     a = m.forward_dynamics([0.3], [0.2], u)
     result = sf.actuator_efforts(m, [0.3], [0.2], a, u=u)
     assert result.actuators == ("q",) and result.efforts == pytest.approx([1.5], rel=1e-11)
+
+
+def test_a_beam_bends_by_the_parameters_that_are_given() -> None:
+    """The slope of a displacement is its share of the length: half on a beam twice as long."""
+    model = sf.compile(MODELS["flexible_pendulum"])
+    q, rest = model.neutral() + np.array([0.0, 0.01, 0.0, 0.0]), np.zeros(model.nv)
+    own, twice = np.array(model.parameter_values), np.array(model.parameter_values)
+    twice[model.names.par.index("L")] *= 2.0
+    slopes = [
+        sf.actuator_efforts(model, q, rest, rest, model.names.v, par=par, beam_limit=np.inf).bendings[0].slope
+        for par in (None, own, twice)
+    ]
+    assert slopes[0] == slopes[1] > 0.0
+    assert slopes[2] == pytest.approx(0.5 * slopes[0], rel=1e-12)
