@@ -14,6 +14,7 @@ from validation.engines.identities import held
 from validation.engines.interface import EnginePlugin, Tree
 from validation.engines.matrix import SEED, Judged, Truths, asked, judged, names, suited
 from validation.engines.models import hostile, kinds, loops
+from validation.engines.models.formats import formats
 from validation.engines.models.readers import Reading, readings
 from validation.engines.proving.scripts import Proof, prove
 from validation.engines.proving.shrink import TRIES
@@ -136,7 +137,7 @@ def measure(
     plugins = registry().plugins
     present = {name: plugin for name, plugin in plugins.items() if plugin.version()}
     chosen = {name: present[name] for name in known(engines, present, "--engine", "engine present")}
-    all_trees, files = trees(), readings()
+    all_trees, files = trees(), readings() | formats()
     names_wanted = known(models, [*all_trees, *files], "--kinds", "kind")
     wanted = [all_trees[name] for name in names_wanted if name in all_trees]
     run.expect(len(names_wanted), "asking engines")

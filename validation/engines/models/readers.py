@@ -15,7 +15,7 @@ class Reading:
     """A file and the tree that it states.
 
     Attributes:
-        form: Format: "urdf" or "mjcf".
+        form: Format: "urdf", "mjcf" or "sdf".
         text: The file; its links are named as the tree's.
         tree: The tree.
     """
@@ -25,7 +25,7 @@ class Reading:
     tree: Tree
 
 
-def _rpy(roll: float, pitch: float, yaw: float) -> Rows:
+def rpy_rotation(roll: float, pitch: float, yaw: float) -> Rows:
     """Rz(yaw) Ry(pitch) Rx(roll)."""
     (cr, sr), (cp, sp), (cy, sy) = ((math.cos(angle), math.sin(angle)) for angle in (roll, pitch, yaw))
     Rx, Ry = np.array([[1, 0, 0], [0, cr, -sr], [0, sr, cr]]), np.array([[cp, 0, sp], [0, 1, 0], [-sp, 0, cp]])
@@ -33,7 +33,7 @@ def _rpy(roll: float, pitch: float, yaw: float) -> Rows:
 
 
 _PRINCIPAL: Rows = ((0.2, 0.0, 0.0), (0.0, 0.3, 0.0), (0.0, 0.0, 0.4))
-_PLACED = Joint("revolute", R=_rpy(0.3, -0.4, 0.5), p=(0.1, 0.2, 0.3), axis=(0.6, 0.0, 0.8))
+_PLACED = Joint("revolute", R=rpy_rotation(0.3, -0.4, 0.5), p=(0.1, 0.2, 0.3), axis=(0.6, 0.0, 0.8))
 _BODY = Link("a", -1, (_PLACED,), 2.0, (0.1, -0.2, 0.3), _PRINCIPAL)
 _NEXT = Link("b", 0, (Joint("revolute", p=(0.0, 0.0, 0.5), axis=(0.0, 1.0, 0.0)),), 1.0, (0.0, 0.1, 0.2), _PRINCIPAL)
 
@@ -66,7 +66,7 @@ _MA = '<inertial pos="0.1 -0.2 0.3" mass="2" diaginertia="0.2 0.3 0.4"/>'
 _MB = '<inertial pos="0 0.1 0.2" mass="1" diaginertia="0.2 0.3 0.4"/>'
 _HINGE_A = f'pos="0.1 0.2 0.3"><joint axis="0.6 0 0.8"/>{_MA}'
 _HINGE_B = f'pos="0 0 0.5"><joint axis="0 1 0"/>{_MB}'
-_UNTURNED = replace(_BODY, joints=(replace(_PLACED, R=_rpy(0, 0, 0)),))
+_UNTURNED = replace(_BODY, joints=(replace(_PLACED, R=rpy_rotation(0, 0, 0)),))
 
 
 def _tree(name: str, a: Link, b: Link) -> Tree:
@@ -79,7 +79,7 @@ def _with(link: Link, **changes: object) -> Link:
 
 
 def _turned_inertia() -> Link:
-    R = np.array(_rpy(0.5, 0.6, 0.7))
+    R = np.array(rpy_rotation(0.5, 0.6, 0.7))
     return replace(_BODY, inertia=rows(R @ np.array(_PRINCIPAL) @ R.T))
 
 
@@ -149,7 +149,7 @@ def readings() -> dict[str, Reading]:
             "mjcf: angles in degrees",
             "mjcf",
             _mjcf(_HINGE_A.replace('0.3">', '0.3" euler="30 0 0">', 1), _HINGE_B, '<compiler angle="degree"/>'),
-            _with(_UNTURNED, R=_rpy(math.pi / 6, 0, 0)),
+            _with(_UNTURNED, R=rpy_rotation(math.pi / 6, 0, 0)),
             _NEXT,
         ),
         (

@@ -160,6 +160,46 @@ def write(tree: Tree) -> Source | Unsupported:
     return Source(tuple(lines), tuple(slots), nq=count, nv=count)
 
 
+_READERS = {
+    "urdf": (
+        "loader = dart.utils.DartLoader()",
+        "loader.setOptions(dart.utils.DartLoaderOptions(defaultRootJointType=dart.utils.DartLoaderRootJointType.FIXED))",
+        "s = loader.parseSkeletonString(TEXT, dart.common.Uri(''))",
+    ),
+    "sdf": (
+        "import tempfile",
+        "file = tempfile.NamedTemporaryFile('w', suffix='.sdf')",
+        "print(TEXT, file=file, flush=True)",
+        "options = dart.utils.SdfParser.Options(None, dart.utils.SdfParser.RootJointType.FIXED)",
+        "s = dart.utils.SdfParser.readSkeleton(dart.common.Uri('file://' + file.name), options)",
+    ),
+}
+
+
+def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
+    """Text that has DART read a file."""
+    slots: list[tuple[Slot, ...]] = []
+    count = 0
+    for link in tree.links:
+        own = []
+        for joint in link.joints:
+            if joint.mimics:
+                return Unsupported("what mimics is a constraint of its simulation", offered=False)
+            if joint.kind != "fixed":
+                own.append(Slot(_JOINTS[joint.kind].chart, (count,), (count,)))
+                count += 1
+        slots.append(tuple(own))
+    names = [link.name for link in tree.links]
+    lines = ["import numpy as np", "import dartpy as dart", "dy = dart.dynamics", _HELPERS, f"TEXT = {text!r}"]
+    lines += [
+        *_READERS[form],
+        "if s is None: raise ValueError('no skeleton: see the log')",
+        f"s.setGravity({list(tree.gravity)!r})",
+    ]
+    lines.append(f"links = [s.getBodyNode(name) for name in {names!r}]")
+    return Source(tuple(lines), tuple(slots), nq=count, nv=count)
+
+
 PLUGIN = SourcePlugin(
     name="dart",
     package="dartpy",
@@ -197,4 +237,6 @@ PLUGIN = SourcePlugin(
     },
     ways=WAYS,
     write=write,
+    formats=tuple(_READERS),
+    write_reading=write_reading,
 )

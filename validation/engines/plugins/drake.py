@@ -215,6 +215,37 @@ def write(tree: Tree) -> Source | Unsupported:
     return Source(tuple(lines), slots, nq=nq, nv=nv)
 
 
+_PARSERS = {"urdf": "urdf", "sdf": "sdf", "mjcf": "xml"}
+
+
+def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
+    """Text that has Drake's parser read a file; a base link of URDF that is not called "world" is welded to it."""
+    chosen: list[list[_Native]] = []
+    for link in tree.links:
+        natives = []
+        for joint in link.joints:
+            native = _JOINTS.get((joint.kind, ""))
+            if joint.mimics:
+                return Unsupported("what mimics is a constraint of its discrete solvers", offered=False)
+            if native is not None:
+                natives.append(native)
+        chosen.append(natives)
+    names = [link.name for link in tree.links]
+    lines = [
+        *_SETUP.split("\n"),
+        "from pydrake.multibody.parsing import Parser",
+        f"TEXT = {text!r}",
+        f"p.mutable_gravity_field().set_gravity_vector({list(tree.gravity)!r})",
+        f"Parser(p).AddModelsFromString(TEXT, {_PARSERS[form]!r})",
+        *(["p.WeldFrames(p.world_frame(), p.GetFrameByName('w'))"] if '<link name="w"/>' in text else []),
+        "p.Finalize()",
+        *_END.split("\n"),
+        f"links = [p.GetBodyByName(name) for name in {names!r}]",
+    ]
+    slots, nq, nv = _slots(tree, chosen)
+    return Source(tuple(lines), slots, nq=nq, nv=nv)
+
+
 def _slots(tree: Tree, chosen: list[list[_Native]]) -> tuple[tuple[tuple[Slot, ...], ...], int, int]:
     """Slots in the order of Drake's numbering of mobilized bodies: depth first."""
     slots: dict[int, tuple[Slot, ...]] = {}
@@ -275,4 +306,6 @@ PLUGIN = SourcePlugin(
     },
     ways=WAYS,
     write=write,
+    formats=tuple(_PARSERS),
+    write_reading=write_reading,
 )

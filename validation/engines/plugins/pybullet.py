@@ -1,4 +1,4 @@
-"""PyBullet: articulated bodies of Bullet, from URDF."""
+"""PyBullet: articulated bodies of Bullet, from URDF and SDF."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from validation.engines.plugins.writing.urdf import KINDS, describe, slots_of
 _SETUP = '''import tempfile
 import numpy as np
 import pybullet as p
-URDF = """{text}"""
+TEXT = """{text}"""
 if not p.isConnected():
     p.connect(p.DIRECT)
 p.setGravity(*{gravity})
-with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
-    file.write(URDF)
+with tempfile.NamedTemporaryFile("w", suffix=".{form}") as file:
+    file.write(TEXT)
     file.flush()
     flags = p.URDF_USE_INERTIA_FROM_FILE | p.URDF_MAINTAIN_LINK_ORDER
-    robot = p.loadURDF(file.name, useFixedBase=True, flags=flags)
+    robot = {load}
 named = {{p.getJointInfo(robot, k)[12].decode(): k for k in range(p.getNumJoints(robot))}}
 links = [named[name] for name in {links}]
 moving = [k for k in range(p.getNumJoints(robot)) if p.getJointInfo(robot, k)[2] != p.JOINT_FIXED]
@@ -28,6 +28,10 @@ def states(q, v):
         p.resetJointState(robot, k, position, speed)
     return [p.getLinkState(robot, k, computeLinkVelocity=1, computeForwardKinematics=1) for k in links]
 '''
+_LOADS = {
+    "urdf": "p.loadURDF(file.name, useFixedBase=True, flags=flags)",
+    "sdf": "p.loadSDF(file.name)[0]",
+}
 _MASSLESS = '<inertial><mass value="0"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial>'
 WAYS = {
     "mass_matrix": Way("calculateMassMatrix", "value = p.calculateMassMatrix(robot, q.tolist())"),
@@ -72,7 +76,9 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
         return described
     if described.floating:
         return Unsupported("coordinates of floating bases are not documented", offered=False)
-    setup = _SETUP.format(text=text, gravity=list(tree.gravity), links=list(described.links))
+    setup = _SETUP.format(
+        text=text, form=form, load=_LOADS[form], gravity=list(tree.gravity), links=list(described.links)
+    )
     count = len(described.moving)
     return Source((setup,), slots_of(tree, described, described.moving), nq=count, nv=count)
 
@@ -93,6 +99,6 @@ PLUGIN = SourcePlugin(
     kinds=KINDS,
     ways=WAYS,
     write=write,
-    formats=("urdf",),
+    formats=tuple(_LOADS),
     write_reading=write_reading,
 )
