@@ -96,6 +96,8 @@ class Joint:
         mimics: Name of the link whose (one and only) joint it follows: q = ratio q_followed + offset; "" for none.
         ratio: See `mimics`.
         offset: See `mimics`.
+        locked: Coordinate that a joint of one coordinate is locked at, by the engine: the joint moves no more. None for
+            none.
     """
 
     kind: str
@@ -111,6 +113,7 @@ class Joint:
     mimics: str = ""
     ratio: float = 1.0
     offset: float = 0.0
+    locked: float | None = None
 
 
 @dataclass(frozen=True)
@@ -176,12 +179,23 @@ class Tree:
         links: Links, each after its parent.
         gravity: Acceleration of gravity (3) in the world [m/s^2].
         constraints: Equations that bind the links further. Only `functions.CONSTRAINED` are asked of such a tree.
+        attached: Name of a link that begins a model of its own, which the engine attaches to the others' ("").
+        fused: Whether the engine fuses links that don't move against each other.
     """
 
     name: str
     links: tuple[Link, ...]
     gravity: Vector = (0.0, 0.0, -9.81)
     constraints: tuple[Constraint, ...] = ()
+    attached: str = ""
+    fused: bool = False
+
+    @property
+    def transformations(self) -> frozenset[str]:
+        """What engines must do to it once it is built: "locked", "attached", "fused"."""
+        locked = any(joint.locked is not None for link in self.links for joint in link.joints)
+        stated = {"locked": locked, "attached": bool(self.attached), "fused": self.fused}
+        return frozenset(name for name, there in stated.items() if there)
 
 
 @dataclass(frozen=True)
@@ -233,7 +247,7 @@ class HasLayout(Protocol):
 
     @property
     def slots(self) -> tuple[tuple[Slot, ...], ...]:
-        """For each link of the tree, in its order, the slots of its joints, without those of kind "fixed"."""
+        """For each link of the tree, in its order, the slots of its joints, without fixed and locked ones."""
 
 
 class EngineModel(HasLayout, Protocol):

@@ -74,6 +74,8 @@ def suited(tree: Tree, plugin: EnginePlugin) -> Tree:
 
 def asked(plugin: EnginePlugin, tree: Tree) -> tuple[str, ...]:
     """The functions of an engine that a tree is for: those of constraints where it has any."""
+    if tree.transformations - set(getattr(plugin, "transformations", ())):
+        return ()
     if tree.constraints:
         return tuple(name for name in plugin.functions if name in _BESIDES or name.partition(":")[0] in CONSTRAINED)
     return tuple(name for name in plugin.functions if name.partition(":")[0] not in CONSTRAINED)

@@ -13,7 +13,7 @@ from validation.engines.functions import FUNCTIONS
 from validation.engines.identities import held
 from validation.engines.interface import EnginePlugin, Tree
 from validation.engines.matrix import SEED, Judged, Truths, asked, judged, names, suited
-from validation.engines.models import hostile, kinds, loops
+from validation.engines.models import hostile, kinds, loops, transformed
 from validation.engines.models.formats import formats
 from validation.engines.models.readers import Reading, readings
 from validation.engines.proving.scripts import Proof, prove
@@ -122,8 +122,8 @@ def proofs(
 
 
 def trees() -> dict[str, Tree]:
-    """All trees: one for each kind of joint, the hostile set, and those with constraints."""
-    return {name: kinds.tree_of(name) for name in kinds.KINDS} | hostile.trees() | loops.trees()
+    """All trees: one for each kind of joint, the hostile set, loops, transformed models."""
+    return {name: kinds.tree_of(name) for name in kinds.KINDS} | hostile.trees() | loops.trees() | transformed.trees()
 
 
 def measure(

@@ -11,6 +11,7 @@ from validation.engines.models.readers import Reading, rpy_rotation
 from validation.engines.plugins import mujoco
 from validation.engines.plugins.writing import sdf, urdf
 
+_WIDE = '<limit lower="-100" upper="100" effort="1e9" velocity="1e9"/>'
 _LIMIT = "<limit><lower>-9</lower><upper>9</upper><effort>9</effort><velocity>9</velocity></limit>"
 _PRINCIPAL = ((0.2, 0.0, 0.0), (0.0, 0.3, 0.0), (0.0, 0.0, 0.4))
 _TURNED = rpy_rotation(0.3, -0.4, 0.5)
@@ -35,7 +36,9 @@ def _texts(tree: Tree) -> dict[str, str]:
     assert not isinstance(described, Unsupported)
     assert not isinstance(document, Unsupported)
     assert not isinstance(model, Unsupported)
-    return {"urdf": described.text, "mjcf": document[0], "sdf": model}
+    # Not all readers keep a hinge without limits by its angle.
+    bounded = described.text.replace('type="continuous">', f'type="revolute">{_WIDE}')
+    return {"urdf": bounded, "mjcf": document[0], "sdf": model}
 
 
 def _one_link(name: str, head: str, inertial: str, axis: str, tree_link: Link, end: str = "") -> tuple[str, Reading]:

@@ -59,7 +59,9 @@ _TURNED_A = _A.replace('xyz="0.1 -0.2 0.3"', 'xyz="0.1 -0.2 0.3" rpy="0.5 0.6 0.
 
 
 def _mjcf(a: str, b: str, options: str = '<compiler angle="radian"/>') -> str:
-    return f'<mujoco>{options}<worldbody><body name="a" {a}<body name="b" {b}</body></body></worldbody></mujoco>'
+    return (
+        f'<mujoco model="r">{options}<worldbody><body name="a" {a}<body name="b" {b}</body></body></worldbody></mujoco>'
+    )
 
 
 _MA = '<inertial pos="0.1 -0.2 0.3" mass="2" diaginertia="0.2 0.3 0.4"/>'

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 
 import numpy as np
 
 from validation.engines.interface import Array, Difference, Joint, Slot, Steps, Tree, Unsupported
 from validation.engines.plugins.loops import mujoco as constrained
-from validation.engines.plugins.writing.source import Source, SourcePlugin, Way, in_series, series
+from validation.engines.plugins.writing.source import Source, SourcePlugin, Way, attached, in_series, series
 
 # Kind of a joint -> elements (type, axis), chart, coordinates, speeds.
 _CHARTS: dict[str, tuple[str, int, int]] = {
@@ -108,7 +109,7 @@ def document(tree: Tree) -> tuple[str, tuple[tuple[Slot, ...], ...], int, int] |
         opened[root] = text
     bodies = "\n".join([*opened.values(), *filter(None, [constrained.sites(tree, "")])])
     option = f'<option gravity="{_text(tree.gravity)}"/>'
-    xml = f'<mujoco><compiler angle="radian"/>{option}<worldbody>\n{bodies}\n</worldbody>'
+    xml = f'<mujoco model="tree"><compiler angle="radian"/>{option}<worldbody>\n{bodies}\n</worldbody>'
     xml += f"{constrained.elements(tree)}</mujoco>"
     return xml, tuple(slots[k] for k in range(len(tree.links))), counted[0], counted[1]
 
@@ -119,15 +120,40 @@ def write(tree: Tree) -> Source | Unsupported:
     if isinstance(made, Unsupported):
         return made
     xml, slots, nq, nv = made
-    lines = [
-        "import numpy as np",
-        "import mujoco as mj",
-        f"m = mj.MjModel.from_xml_string('''{xml}''')",
-        "d = mj.MjData(m)",
-    ]
-    names = [link.name for link in tree.links]
+    if tree.fused:
+        xml = xml.replace("<compiler ", '<compiler fusestatic="true" ')
+    lines = ["import numpy as np", "import mujoco as mj", *_compiled(tree, xml), "d = mj.MjData(m)"]
+    # A model that is attached takes a prefix to its names; links that are fused are there no more.
+    own = attached(tree)
+    names = [("own_" if k in own else "") + link.name for k, link in enumerate(tree.links)]
+    if tree.fused:
+        return Source(tuple(lines), slots, nq, nv)
     optional = {"bs": (f"bs = [m.body(name).id for name in {names!r}]",)} | constrained.optional(tree)
     return Source(tuple(lines), slots, nq, nv, optional)
+
+
+def _compiled(tree: Tree, xml: str) -> list[str]:
+    """Statements that make the model `m`, of one document or of two, one attached to the other."""
+    own = attached(tree)
+    if not own:
+        return [f"m = mj.MjModel.from_xml_string('''{xml}''')"]
+    first = min(own)
+    kept = {k: place for place, k in enumerate(k for k in range(len(tree.links)) if k not in own)}
+    places = {k: place for place, k in enumerate(sorted(own))}
+    rest = tuple(replace(tree.links[k], parent=kept.get(tree.links[k].parent, -1)) for k in kept)
+    branch = tuple(replace(tree.links[k], parent=places.get(tree.links[k].parent, -1)) for k in sorted(own))
+    texts = []
+    for links in (rest, branch):
+        part = document(replace(tree, links=links, attached=""))
+        assert not isinstance(part, Unsupported)  # The whole is none, either.
+        texts.append(part[0])
+    holder = tree.links[tree.links[first].parent].name
+    return [
+        f"s = mj.MjSpec.from_string('''{texts[0]}''')",
+        f"own = mj.MjSpec.from_string('''{texts[1]}''')",
+        f"s.body({holder!r}).add_frame().attach_body(own.body({tree.attached!r}), 'own_', '')",
+        "m = s.compile()",
+    ]
 
 
 _Q = "d.qpos[:] = q\nmj.mj_forward(m, d)\n"
@@ -257,6 +283,7 @@ PLUGIN = SourcePlugin(
     ways=WAYS | constrained.WAYS,
     write=write,
     constraints=constrained.KINDS,
+    transformations={"attached": "MjSpec, attach_body", "fused": "fusestatic"},
     formats=("urdf", "mjcf"),
     write_reading=write_reading,
 )

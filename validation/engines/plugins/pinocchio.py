@@ -9,7 +9,7 @@ import numpy as np
 from validation.engines.functions import ALIGNED
 from validation.engines.interface import Array, Difference, End, Joint, Slot, Tree, Unsupported
 from validation.engines.plugins.loops import pinocchio as constrained
-from validation.engines.plugins.writing.source import Source, SourcePlugin, Way, in_series, series
+from validation.engines.plugins.writing.source import Source, SourcePlugin, Way, attached, in_series, series
 
 # Kind and form of a joint -> joint model, chart, coordinates, speeds. {axis} is X, Y or Z where the axis is one of
 # them.
@@ -77,8 +77,17 @@ def write(tree: Tree) -> Source | Unsupported:
     armature: list[float] = []
     frames: list[str] = []
     joints: list[str] = []
+    locked: list[str] = []
+    own_model = attached(tree)
     for k, link in enumerate(tree.links):
-        parent, R0, p0 = places[link.parent] if link.parent >= 0 else ("0", np.eye(3), np.zeros(3))
+        m = "m2" if k in own_model else "m"
+        if link.name == tree.attached:
+            lines += ["m2 = pin.Model()"]
+            held, R0, p0 = places[link.parent] if link.parent >= 0 else ("0", np.eye(3), np.zeros(3))
+            lines.append(f"at = m.addFrame(pin.Frame('at', {held}, 0, {_placement(R0, p0)}, pin.FrameType.OP_FRAME))")
+            parent, R0, p0 = "0", np.eye(3), np.zeros(3)
+        else:
+            parent, R0, p0 = places[link.parent] if link.parent >= 0 else ("0", np.eye(3), np.zeros(3))
         steps, (R_end, p_end) = series(link.joints)
         own: list[Slot] = []
         models: list[tuple[str, str]] = []
@@ -95,6 +104,9 @@ def write(tree: Tree) -> Source | Unsupported:
                 ]
                 model = f"pin.JointModelMimic(s{k}, {joint.ratio!r}, {joint.offset!r})"
                 own.append(Slot(chart, slots[followed][0].q, slots[followed][0].v))
+            elif joint.locked is not None:
+                locked.append(f"m.joints[j{k}].idx_q")
+                locked.append(repr(joint.locked))
             else:
                 own.append(Slot(chart, tuple(range(nq, nq + coordinates)), tuple(range(nv, nv + speeds))))
                 nq, nv = nq + coordinates, nv + speeds
@@ -113,18 +125,25 @@ def write(tree: Tree) -> Source | Unsupported:
                     for n, (one, where) in enumerate(models)
                 ]
                 model = "c"
-            lines.append(f"j{k} = m.addJoint({parent}, {model}, {placement}, {link.name!r})")
+            lines.append(f"j{k} = {m}.addJoint({parent}, {model}, {placement}, {link.name!r})")
+            if "locked" in tree.transformations:
+                lines.append(f"{m}.addJointFrame(j{k})")
             places.append((f"j{k}", R_end, p_end))
         slots.append(tuple(own))
         name, R, p = places[-1]
         inertia = f"pin.Inertia({link.mass!r}, {_array(link.com)}, {_array(link.inertia)})"
-        lines.append(f"m.appendBodyToJoint({name}, {inertia}, {_placement(R, p)})")
+        lines.append(f"{m}.appendBodyToJoint({name}, {inertia}, {_placement(R, p)})")
         frame = f"pin.Frame('f{k}', {name}, 0, {_placement(R, p)}, pin.FrameType.OP_FRAME)"
-        frames.append(f"fs.append(m.addFrame({frame}))")
+        frames.append(f"fs.append({m}.addFrame({frame}))")
         joints.append(name if not np.any(p) and np.array_equal(R, np.eye(3)) else "")
     if any(armature):
         lines.append(f"m.armature = {_array(armature)}")
     optional: dict[str, tuple[str, ...]] = {"fs": ("fs = []", *frames)}
+    if tree.transformations:
+        lines += ["fs = []", *frames, *_transformed(locked, len(own_model) > 0)]
+        return Source(
+            tuple(lines), tuple(slots), nq, nv, {"fs": (_NAMED_FRAMES.format(len(tree.links)),)}, closing=_CLOSING
+        )
     if all(joints) and len(set(joints)) == len(joints):
         optional["js"] = (f"js = [{', '.join(joints)}]",)
 
@@ -134,6 +153,20 @@ def write(tree: Tree) -> Source | Unsupported:
 
     optional |= constrained.optional(tree.constraints, place)
     return Source(tuple(lines), tuple(slots), nq, nv, optional, closing=_CLOSING)
+
+
+_NAMED_FRAMES = "fs = [m.getFrameId(f'f{{k}}') for k in range({})]"
+
+
+def _transformed(locked: list[str], appended: bool) -> list[str]:
+    """Statements that make the model that is asked for: one appended to another, joints locked."""
+    lines = ["m = pin.appendModel(m, m2, at, pin.SE3.Identity())"] if appended else []
+    if locked:
+        lines.append("q0 = pin.neutral(m)")
+        lines += [f"q0[{place}] = {value}" for place, value in zip(locked[::2], locked[1::2], strict=True)]
+        ids = ", ".join(place.removeprefix("m.joints[").removesuffix("].idx_q") for place in locked[::2])
+        lines.append(f"m = pin.buildReducedModel(m, [{ids}], q0)")
+    return lines
 
 
 _FRAMES = {"local": "pin.LOCAL", "aligned": "pin.LOCAL_WORLD_ALIGNED", "world": "pin.WORLD"}
@@ -288,6 +321,7 @@ PLUGIN = SourcePlugin(
     ways=WAYS | constrained.WAYS,
     write=write,
     constraints=constrained.KINDS,
+    transformations={"locked": "buildReducedModel", "attached": "appendModel"},
     formats=("urdf", "mjcf"),
     write_reading=write_reading,
 )

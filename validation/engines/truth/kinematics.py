@@ -19,7 +19,7 @@ from validation.engines.truth.arithmetic import (
     vee,
     zeros,
 )
-from validation.engines.truth.charts import CHARTS, Pose
+from validation.engines.truth.charts import CHARTS, GEOMETRIES, Pose
 
 _REMEMBERED = 1000
 
@@ -44,10 +44,11 @@ class Kinematics:
         self._motions: dict[tuple[object, ...], tuple[Exact, Exact, list[tuple[Exact, Exact]]]] = {}
 
     def joints(self, index: int) -> Iterator[tuple[Joint, Slot | None]]:
-        """Joints of a link with their slots; those of kind "fixed" have none."""
+        """Joints of a link with their slots; fixed and locked ones have none."""
         slots = iter(self.slots[index])
         for joint in self.tree.links[index].joints:
-            yield joint, None if joint.kind == "fixed" else next(slots)
+            still = joint.kind == "fixed" or joint.locked is not None
+            yield joint, None if still else next(slots)
 
     def rates(self, q: Exact) -> Exact:
         """N (nq, nv) with q' = N v."""
@@ -95,6 +96,8 @@ class Kinematics:
             R, p, J = frames[link.parent] if link.parent >= 0 else start
             for number, (joint, slot) in enumerate(self.joints(index)):
                 R, p, J = _moved(R, p, J, *self._placements[index][number])
+                if joint.locked is not None:
+                    R, p, J = _moved(R, p, J, *_locked(joint))
                 if slot is not None:
                     R_step, p_step, columns = self._motion(joint, slot, q)
                     R_before = R
@@ -126,6 +129,11 @@ class Kinematics:
             columns = [(column[:3], vee(column[3:].reshape(3, 3) @ R.T)) for column in rates]
             self._motions[key] = (R, p, columns)
         return self._motions[key]
+
+
+def _locked(joint: Joint) -> Pose:
+    """Placement after a joint that moves no more."""
+    return CHARTS[GEOMETRIES[joint.kind]].pose(joint, exact([joint.locked]))
 
 
 def _own(joint: Joint, q: Exact) -> Exact:

@@ -121,6 +121,7 @@ class SourcePlugin:
         write_reading: Tree, format, file's text -> text that has the engine read the file.
         find: Version of an engine that is no Python distribution.
         constraints: Kinds of constraints that it has of its own -> what it calls them.
+        transformations: What it does to trees that are built (`Tree.transformations`) -> what it calls that.
     """
 
     name: str
@@ -135,6 +136,7 @@ class SourcePlugin:
     write_reading: Callable[[Tree, str, str], Source | Unsupported] | None = None
     find: Callable[[], str] | None = None
     constraints: Mapping[str, str] = field(default_factory=dict)
+    transformations: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def functions(self) -> Mapping[str, str]:
@@ -157,6 +159,8 @@ class SourcePlugin:
 
     def build(self, tree: Tree) -> EngineModel | Unsupported:
         """The tree by the engine's API."""
+        for name in tree.transformations - set(self.transformations):
+            return Unsupported(f"no model is {name}", offered=False)
         for one in tree.constraints:
             if one.kind not in self.constraints:
                 return Unsupported(f"no constraint of kind {one.kind}", offered=False)
@@ -204,6 +208,15 @@ def in_series(tree: Tree, charts: Mapping[tuple[str, str], str]) -> tuple[tuple[
             nq, nv = nq + size.nq, nv + size.nv
         slots[link.name] = tuple(own)
     return tuple(slots.values()), nq, nv
+
+
+def attached(tree: Tree) -> set[int]:
+    """Links of the model that is attached to the others'."""
+    own: set[int] = set()
+    for k, link in enumerate(tree.links):
+        if link.parent in own or (tree.attached and link.name == tree.attached):
+            own.add(k)
+    return own
 
 
 class Series(NamedTuple):

@@ -1,0 +1,61 @@
+"""Models that engines make of others, and one tree in three formats."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from validation.engines.interface import Joint, Link, Slot, Tree
+from validation.engines.matrix import SEED, Truths, cells, judged
+from validation.engines.models.formats import formats
+from validation.engines.models.transformed import trees
+from validation.engines.plugins import OWN
+from validation.engines.proving.pieces import Layout
+from validation.engines.truth.arithmetic import exact
+from validation.engines.truth.dynamics import Truth, digits
+from validation.engines.workers import Job
+
+FUNCTIONS = ("mass_matrix", "bias", "gravity", "link_jacobians")
+
+
+@pytest.mark.parametrize("name", trees())
+def test_engines_are_right_about_models_that_they_make_of_others(name: str) -> None:
+    tree = trees()[name]
+    offering = [
+        engine
+        for engine in ("pinocchio", "mujoco")
+        if tree.transformations <= set(getattr(OWN[engine], "transformations", ()))
+    ]
+    assert offering
+    for engine in offering:
+        verdicts = {cell.verdict for cell in cells(OWN[engine], tree, FUNCTIONS)}
+        assert verdicts <= {"right", "not offered"} and "right" in verdicts
+
+
+def test_an_engine_that_locks_no_joints_is_asked_nothing_of_locked_ones() -> None:
+    assert list(cells(OWN["mujoco"], trees()["locked hinge amid"])) == []
+
+
+def test_a_locked_joint_is_a_placement() -> None:
+    hinge = Joint("revolute", axis=(0.0, 1.0, 0.0), p=(0.5, 0.0, 0.0))
+    arm = Link("b", 0, (replace(hinge, locked=0.5),), 2.0, (0.25, 0.0, 0.0))
+    c, s = float(np.cos(0.5)), float(np.sin(0.5))
+    fixed = replace(arm, joints=(Joint("fixed", R=((c, 0.0, s), (0.0, 1.0, 0.0), (-s, 0.0, c)), p=hinge.p),))
+    layout = Layout(1, 1, ((Slot("angle", (0,), (0,)),), ()))
+    M = [
+        Truth(Tree("arm", (Link("a", -1, (hinge,)), last)), layout).value(lambda t, _: t.M(exact([0.25])), None)  # type: ignore[arg-type]
+        for last in (arm, fixed)
+    ]
+    np.testing.assert_allclose(digits(M[0]), digits(M[1]), rtol=1e-15)
+
+
+@pytest.mark.parametrize("name", [name for name in formats() if "of " in name])
+def test_readers_agree_about_a_tree_in_each_format(name: str) -> None:
+    reading = formats()[name]
+    for engine in ("pinocchio", "mujoco", "drake"):
+        plugin = OWN[engine]
+        if reading.form in plugin.formats and plugin.version():
+            job = Job(engine, reading.tree, ("mass_matrix", "bias"), SEED, form=reading.form, text=reading.text)
+            assert {one.cell.verdict for one in judged(plugin, job, Truths())} <= {"right"}

@@ -1,0 +1,49 @@
+"""Trees that an engine transforms once it has built them: joints locked, models attached, links fused."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from validation.engines.interface import ORIGIN, Joint, Link, Tree
+from validation.engines.models.hostile import trees as hostile_trees
+from validation.engines.models.kinds import OBLIQUE, link, placed
+
+
+def _hinge(draw: np.random.Generator, **changes: float) -> Joint:
+    return replace(placed(draw, Joint("revolute", axis=OBLIQUE)), **changes)  # type: ignore[arg-type]
+
+
+def _massless(tree: Tree) -> Tree:
+    """The tree with no mass in its first link."""
+    first = replace(tree.links[0], mass=0.0, com=ORIGIN, inertia=(ORIGIN, ORIGIN, ORIGIN))
+    return replace(tree, links=(first, *tree.links[1:]))
+
+
+def _locked(name: str, *joints: Joint, base: bool = False) -> Tree:
+    draw = np.random.default_rng([ord(letter) for letter in name])
+    links: list[Link] = [link(draw, "base", -1, Joint("free"))] if base else []
+    for k, joint in enumerate(joints):
+        links.append(link(draw, "abcdef"[k], len(links) - 1, placed(draw, joint)))
+    return Tree(name, tuple(links))
+
+
+def trees() -> dict[str, Tree]:
+    """All of them, by name."""
+    free, held = Joint("revolute", axis=OBLIQUE), Joint("revolute", axis=OBLIQUE, locked=0.75)
+    slide = Joint("prismatic", axis=OBLIQUE, locked=-0.5)
+    draw = np.random.default_rng(8)
+    parts = tuple(link(draw, "abcde"[k], parent, _hinge(draw)) for k, parent in enumerate((-1, 0, 1, 2, 2)))
+    made = (
+        _locked("locked hinge amid", free, held, free),
+        _locked("locked slide at the end", free, free, slide),
+        # Not all engines count the mass of what stands still.
+        _massless(_locked("locked hinge first", held, free, free)),
+        _locked("locked hinge and slide in series", free, held, slide, free),
+        _locked("locked hinge on a free base", held, free, base=True),
+        Tree("attached chain", parts[:4], attached="c"),
+        Tree("attached branches", parts, attached="c"),
+        replace(hostile_trees()["fixed links amid"], name="fixed links fused", fused=True),
+    )
+    return {tree.name: tree for tree in made}
