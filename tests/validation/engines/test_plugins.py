@@ -9,7 +9,7 @@ from validation.engines.matrix import cells
 from validation.engines.models.kinds import tree_of
 from validation.engines.plugins import OWN
 
-EXTRAS = ("adam", "dart", "drake", "dynibo", "frax", "idyntree", "pybullet", "pykdl", "roboticstoolbox")
+EXTRAS = ("adam", "dart", "drake", "dynibo", "exudyn", "frax", "idyntree", "pybullet", "pykdl", "roboticstoolbox")
 
 
 def _installed(engine: str) -> None:

@@ -8,6 +8,7 @@ from validation.engines.plugins import (
     dart,
     drake,
     dynibo,
+    exudyn,
     frax,
     idyntree,
     mjx,
@@ -19,5 +20,20 @@ from validation.engines.plugins import (
     roboticstoolbox,
 )
 
-_MODULES = (pinocchio, mujoco, adam, dart, drake, dynibo, frax, idyntree, mjx, newton, pybullet, pykdl, roboticstoolbox)
+_MODULES = (
+    pinocchio,
+    mujoco,
+    exudyn,
+    adam,
+    dart,
+    drake,
+    dynibo,
+    frax,
+    idyntree,
+    mjx,
+    newton,
+    pybullet,
+    pykdl,
+    roboticstoolbox,
+)
 OWN: dict[str, EnginePlugin] = {module.PLUGIN.name: module.PLUGIN for module in _MODULES}
