@@ -8,6 +8,7 @@ from decimal import Decimal
 import mpmath
 import numpy as np
 import pytest
+import sympy
 
 from validation.engines.interface import Joint, Link, Slot, Tree
 from validation.engines.models.kinds import tree_of
@@ -17,6 +18,8 @@ from validation.engines.truth import derived
 from validation.engines.truth.arithmetic import cos_sin, exact, many_digits, rate, solve
 from validation.engines.truth.charts import CHARTS
 from validation.engines.truth.dynamics import Point, Truth, digits, random_state
+from validation.oracle.compare import DERIVATIONS
+from validation.truth_data.descriptions import system
 
 HINGES = Layout(3, 3, tuple((Slot("angle", (k,), (k,)),) for k in range(3)))
 
@@ -102,3 +105,43 @@ def test_a_case_is_shrunk_to_what_shows_the_fault_and_no_further() -> None:
     )
     kinds = [own.joints[0].kind for own in smaller.tree.links]
     assert "helical" in kinds and size(smaller) < size(case) / 2
+
+
+_ACROSS = ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
+_INERTIA = ((0.5, 0.03125, -0.0625), (0.03125, 0.625, 0.015625), (-0.0625, 0.015625, 0.75))
+
+
+def _exact_tree() -> Tree:
+    """A hinge and a slide across it, of numbers that have no rounding in any program."""
+    joints = (
+        Joint("revolute", axis=(1.0, 0.0, 0.0), p=(0.5, 0.25, -0.125)),
+        Joint("prismatic", axis=(0.0, 1.0, 0.0), R=_ACROSS, p=(0.25, -0.5, 0.375)),
+    )
+    links = tuple(
+        Link("abc"[k], k - 1, (joint,), 1.5 + k, (0.125, -0.25, 0.0625 * k), _INERTIA) for k, joint in enumerate(joints)
+    )
+    return Tree("exact", links, gravity=(1.0, -2.0, -9.5))
+
+
+@pytest.mark.parametrize("derivation", ["lagrange", "kane"])
+def test_the_truth_and_sympys_derivations_agree_to_thirty_digits(derivation: str) -> None:
+    """Newton's and Euler's equations by differences against Lagrange's or Kane's by symbols: no line in common."""
+    tree = _exact_tree()
+    layout = Layout(2, 2, ((Slot("angle", (0,), (0,)),), (Slot("length", (1,), (1,)),)))
+    q, v = (0.375, -0.5), (0.25, -0.75)
+    derived_model = DERIVATIONS[derivation](system(tree))
+    names = ("mass_matrix", "bias")
+    point = {**dict(zip(derived_model.q, q, strict=True)), **dict(zip(derived_model.v, v, strict=True))}
+    with mpmath.workdps(60):
+        function = sympy.lambdify(
+            [*point, *derived_model.shorts], [list(derived_model.values[n]) for n in names], "mpmath"
+        )
+        theirs = function(*map(mpmath.mpf, point.values()), *derived_model.shorts.values())
+        truth = Truth(tree, layout)
+        ours = (
+            truth.value(lambda t, _: t.M(exact(q)), None),  # type: ignore[arg-type]
+            truth.value(lambda t, _: t.h(exact(q), exact(v)), None),  # type: ignore[arg-type]
+        )
+        for mine, other in zip(ours, theirs, strict=True):
+            apart = [abs(mpmath.mpf(str(a)) - b) for a, b in zip(np.ravel(mine), other, strict=True)]
+            assert max(apart) < mpmath.mpf(10) ** -30
