@@ -27,6 +27,7 @@ class Judged:
         want: The truth; None where there was no answer.
         tree: The tree, with the engine's gravity.
         form: Format of the file that the engine read; "" where it was built by its API.
+        text: The file.
     """
 
     cell: Cell
@@ -34,6 +35,7 @@ class Judged:
     want: Expected | None
     tree: Tree
     form: str = ""
+    text: str = ""
 
 
 class Truths:
@@ -98,7 +100,7 @@ def judged(
     offered = replace(job, functions=tuple(name for name in job.functions if name in plugin.functions))
     for answer in worker.ask(offered) if worker else answered(offered):
         cell, want = _judge(plugin, job.tree, answer, truths)
-        yield Judged(cell, answer, want, job.tree, job.form)
+        yield Judged(cell, answer, want, job.tree, job.form, job.text)
 
 
 def _judge(plugin: EnginePlugin, tree: Tree, answer: Answer, truths: Truths) -> tuple[Cell, Expected | None]:

@@ -98,7 +98,7 @@ def answered(job: Job) -> Iterator[Answer]:
     layout = Layout(model.nq, model.nv, model.slots)
     state = assembled(layout, job.pieces) if job.pieces else random_state(job.tree, model, job.seed)
     if job.tree.constraints and not isinstance(state, Unsupported):
-        state = closed(job.tree, layout, state)
+        state = closed(job.tree, layout, state, restarts=0 if job.pieces else 20)
     if isinstance(state, Unsupported):
         yield from (Answer(function, state) for function in job.functions)
         return

@@ -13,16 +13,19 @@ import numpy as np
 from validation.engines.functions import FUNCTIONS
 from validation.engines.interface import EnginePlugin
 from validation.engines.matrix import SEED, Judged, Truths, judged
+from validation.engines.plugins.writing.source import SourcePlugin
 from validation.engines.proving.pieces import taken
 from validation.engines.proving.shrink import TRIES, Case, smallest
 from validation.engines.proving.threads import thread
-from validation.engines.workers import Job, Worker
+from validation.engines.workers import Crashed, Job, Worker
 
 # A result of more entries is shown by its worst one.
 _SHOWN = 16
 # A smaller case keeps at least this part of the error, so that it shows the same fault plainly.
 _KEPT = 0.05
 _TIME = 120.0
+# Cases tried to shrink a tree with constraints.
+_LOOPS = 24
 
 
 @dataclass(frozen=True)
@@ -71,6 +74,9 @@ def shrunk(plugin: EnginePlugin, red: Judged, worker: Worker, truths: Truths, tr
     if red.form:
         return red
 
+    # A state of a loop is closed anew for each case.
+    most = min(tries, _LOOPS) if red.tree.constraints else tries
+
     def shows(case: Case) -> bool:
         nonlocal best
         one = next(judged(plugin, replace(job, tree=case.tree, pieces=case.pieces), quick, worker))
@@ -79,7 +85,7 @@ def shrunk(plugin: EnginePlugin, red: Judged, worker: Worker, truths: Truths, tr
         best = one
         return True
 
-    case = smallest(Case(red.tree, taken(answer.layout, answer.state)), shows, tries)
+    case = smallest(Case(red.tree, taken(answer.layout, answer.state)), shows, most)
     if best is not red:
         final = next(judged(plugin, replace(job, tree=case.tree, pieces=case.pieces), truths, worker))
     return final if final.cell.verdict == red.cell.verdict else red
@@ -95,18 +101,25 @@ def prove(plugin: EnginePlugin, red: Judged, worker: Worker, truths: Truths, fol
         output, failed = fails(path)
         if failed and f"{plugin.name} {plugin.version()}:" in kept:
             return _proof(plugin, red, kept, output, failed, known)
-    small = _with_script(red, worker) if red.cell.verdict == "crashes" else shrunk(plugin, red, worker, truths, tries)
+    small = (
+        _with_script(plugin, red, worker)
+        if red.cell.verdict == "crashes"
+        else shrunk(plugin, red, worker, truths, tries)
+    )
     folder.mkdir(parents=True, exist_ok=True)
     path.write_text(text(plugin, small, known), encoding="utf-8")
     output, failed = fails(path)
     return _proof(plugin, red, path.read_text(encoding="utf-8"), output, failed, known)
 
 
-def _with_script(red: Judged, worker: Worker) -> Judged:
-    """A cell whose engine took its script with it."""
-    job = Job(red.cell.engine, red.tree, (red.cell.function,), SEED, called=False)
+def _with_script(plugin: EnginePlugin, red: Judged, worker: Worker) -> Judged:
+    """A cell whose engine took its script with it; where it does so as it builds, what would have been run."""
+    job = Job(red.cell.engine, red.tree, (red.cell.function,), SEED, form=red.form, text=red.text, called=False)
     (answer,) = worker.ask(job)
-    return replace(red, answer=replace(red.answer, script=answer.script))
+    script = answer.script
+    if isinstance(answer.value, Crashed) and isinstance(plugin, SourcePlugin):
+        script = plugin.building(red.tree, red.form, red.text)
+    return replace(red, answer=replace(red.answer, script=script))
 
 
 def _proof(plugin: EnginePlugin, red: Judged, script: str, output: str, failed: bool, known: str) -> Proof:
@@ -143,7 +156,7 @@ def text(plugin: EnginePlugin, red: Judged, known: str) -> str:
         f'"""\n\n'
     )
     if red.want is None:
-        return f"{head}{red.answer.script}\nprint(value)\n"
+        return f"{head}{red.answer.script}\n"
     value = np.asarray(red.answer.value)
     want = red.want.value
     # A matrix of one column comes as a vector where arrays are Eigen's (`verdicts.judge`).

@@ -106,7 +106,8 @@ def _with(items: Any, place: int, item: Any) -> Any:
 
 def _without_links(case: Case) -> Iterator[Case]:
     links = case.tree.links
-    followed = {joint.mimics for link in links for joint in link.joints}
+    followed = {joint.mimics for link in links for joint in link.joints} | {case.tree.attached}
+    followed |= {end.link for one in case.tree.constraints for end in one.ends}
     for gone in reversed(range(len(links))):
         if len(links) == 1 or links[gone].name in followed:
             continue
@@ -135,6 +136,13 @@ def _without_joints(case: Case) -> Iterator[Case]:
 
 def _plainer_trees(tree: Tree) -> Iterator[Tree]:
     yield replace(tree, gravity=ORIGIN)
+    for number, one in enumerate(tree.constraints):
+        if len(tree.constraints) > 1:
+            yield replace(tree, constraints=tree.constraints[:number] + tree.constraints[number + 1 :])
+        for place, end in enumerate(one.ends):
+            for plain in (end._replace(R=IDENTITY, p=ORIGIN), end._replace(R=IDENTITY), end._replace(p=ORIGIN)):
+                changed = replace(one, ends=_with(one.ends, place, plain))
+                yield replace(tree, constraints=_with(tree.constraints, number, changed))
     for k, link in enumerate(tree.links):
         for simpler in _plainer_links(link):
             yield replace(tree, links=_with(tree.links, k, simpler))

@@ -30,6 +30,8 @@ THREADS = (
     Thread("pinocchio", "numbered across", "", f"{_PINOCCHIO}1897"),
     # Tensors of Eigen, stored by columns, are taken for NumPy's, stored by rows.
     Thread("pinocchio", "", "jacobian_dq", "https://github.com/stack-of-tasks/eigenpy/issues/557"),
+    # Armature is the rotor inertia of actuators; a joint without one loses it.
+    Thread("drake", "armature by default", "", "https://github.com/RobotLocomotion/drake/pull/21967"),
     # Shows it for JointModelSphericalZYX in a composite.
     Thread("pinocchio", "euler|universal|ellipsoid|hinges|slide|translation and", "coriolis", f"{_PINOCCHIO}2053"),
 )

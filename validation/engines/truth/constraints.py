@@ -19,8 +19,7 @@ from validation.engines.truth.kinematics import Kinematics
 # Rows whose part that is free of the others is smaller than this, as part of the largest, are taken for redundant:
 # what roundings of a tree's numbers leave of the zeros of a plane mechanism is smaller by far, what counts larger.
 _REDUNDANT = Decimal(10) ** -20
-_STEPS = 60
-_STARTS = 20
+_STEPS = 40
 _CLOSED = 1e-14
 
 
@@ -222,13 +221,19 @@ def kkt_inverse(t: Truth, s: Point) -> Exact:
     return solve(whole, eye(len(whole)))
 
 
-def closed(tree: Tree, model: HasLayout, state: State) -> State | Unsupported:
+def closed(tree: Tree, model: HasLayout, state: State, restarts: int = 20) -> State | Unsupported:
     """A state near a given one, or another random one, that satisfies the constraints: by Gauss' and Newton's steps.
 
     What is left of a residual is rounding, as in an engine's own state.
+
+    Args:
+        tree: The tree.
+        model: Says how an engine keeps its joints.
+        state: State to begin at.
+        restarts: Random states to begin at where that one leads nowhere.
     """
     kinematics = Kinematics(tree, model)
-    for seed in range(-1, _STARTS):
+    for seed in range(-1, restarts):
         q = _closed_from(kinematics, np.array(state.q if seed < 0 else random_state(tree, model, seed).q))
         if q is not None:
             _, J = _linear(kinematics, q)
@@ -244,7 +249,7 @@ def _closed_from(kinematics: Kinematics, q: Array) -> Array | None:
         error = float(np.max(np.abs(residual)))
         if error < _CLOSED:
             return q
-        if step_number % 10 == 9:
+        if step_number % 5 == 4:
             if error > best / 2:
                 return None
             best = error

@@ -172,6 +172,11 @@ class SourcePlugin:
             return Unsupported(f"reads no {form}", offered=False)
         return self._made(self.write_reading(tree, form, text))
 
+    def building(self, tree: Tree, form: str = "", text: str = "") -> str:
+        """The text that would build a tree, or have a file read; "" for none."""
+        made = self.write_reading(tree, form, text) if form and self.write_reading else self.write(tree)
+        return "" if isinstance(made, Unsupported) else "\n".join(made.text())
+
     def _made(self, source: Source | Unsupported) -> EngineModel | Unsupported:
         if not self.version():
             return Unsupported(f"{self.name} is not installed: pip install '{self.extra}'", offered=False)
