@@ -59,11 +59,13 @@ def deflection(modes: int, **changed: object) -> tuple[np.ndarray, np.ndarray]:
     return np.array(across) - DATA["mid"], np.array(along) - DATA["x_slider"]
 
 
-@pytest.mark.parametrize(("retain", "bound"), [("first_order", 0.02), ("all", 0.02)])
+@pytest.mark.parametrize(
+    ("retain", "bound"), [("first_order", 0.02), pytest.param("all", 0.02, marks=pytest.mark.slow)]
+)
 def test_with_foreshortening(retain: str, bound: float) -> None:
     """Three functions on the clamped root frame; the reference's own rod of four elements errs by 0.7 %."""
     across, along = deflection(3, retain=retain)
-    assert np.abs(across).max() < bound * LARGEST and np.abs(along).max() < 2e-6
+    assert np.abs(across).max() < 0.02 * LARGEST and np.abs(along).max() < 2e-6
 
 
 def test_without_foreshortening() -> None:

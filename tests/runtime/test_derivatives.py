@@ -24,7 +24,7 @@ CLOSED = {
 }
 OPEN = ("pendulum", "cart_pole", "rx90", "space_arm", "flexible_pendulum", "parametrised0", "parametrised2")
 CASES = (*OPEN, *CLOSED)
-LARGE = ("rx90", "parametrised0", "parametrised2")
+LARGE = ("rx90", "space_arm", "parametrised0", "parametrised2")
 # With parameters that are no numbers of the text.
 PARAMETRISED = ("four_bar", "slider_crank", "cart_pole", "parametrised0", "parametrised2")
 

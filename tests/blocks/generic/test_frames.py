@@ -62,8 +62,15 @@ def back(form: str, value: np.ndarray) -> np.ndarray:
     return Rotation.from_euler(form[-3:].upper(), value).as_matrix()
 
 
-@pytest.mark.parametrize("source", FORMS)
-@pytest.mark.parametrize("target", FORMS)
+@pytest.mark.parametrize(
+    ("source", "target"),
+    # All go by way of the matrix: into it and out of it in every run.
+    [
+        pytest.param(source, target, marks=[] if "matrix" in (source, target) else [pytest.mark.slow])
+        for source in FORMS
+        for target in FORMS
+    ],
+)
 def test_orientations_keep_their_digits_at_every_angle(source: str, target: str) -> None:
     found = run(Orientation(name="o", source=source, target=target), {"u": FORMS[source]})["y"]
     # Euler angles near their singular attitude keep half the digits, as an arc sine does.

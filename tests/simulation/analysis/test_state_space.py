@@ -9,6 +9,7 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from tests.models import sampled
 
 CLOSED = {
     "four_bar": [1.2, -1.2, 1.2],
@@ -16,6 +17,7 @@ CLOSED = {
     "rolling_disc": [0, 0, 0.5, 0.5, 0.5, 0.5, 0.5],
 }
 OPEN = ("double_pendulum", "rx90", "space_arm", "flexible_pendulum")
+CASES = (*OPEN, *CLOSED, "driven")
 STEP = 1e-3
 SOLID = sf.Inertia(1.5, (0.1, -0.2, 0.05), (0.3, 0.4, 0.5))
 
@@ -46,7 +48,7 @@ def state(name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return q, v, rng.normal(size=m.nu)
 
 
-@pytest.mark.parametrize("name", [*OPEN, *CLOSED, "driven"])
+@pytest.mark.parametrize("name", sampled(CASES, [name for name in CASES if name != "rx90"]))
 def test_outputs_against_differences(name: str) -> None:
     m = model(name)
     q, v, u = state(name)
@@ -141,7 +143,7 @@ def test_a_loop_and_a_shaft_of_any_sizes_have_the_same_freedoms(L: float) -> Non
         sf.Closure("loop", ("rocker", "e"), ("coupler", "e"), ("x", "y", "z")),
         sf.Nonholonomic("gear", {"dq4": 1.0, "dq1": 2.0}),
     )
-    m = sf.compile(sf.System("loop", bodies, constraints=ties))
+    m = sf.compile(sf.System("loop", bodies, constraints=ties), sf.Options(backend="interpreter"))
     at = sf.assemble(m, [1.2, -0.9, 1.4, -2.4], held=("q1",))
     linear = sf.state_space(m, at.q)
     assert linear.A.shape == (3, 3)  # Angles of crank and shaft, one speed.

@@ -148,7 +148,8 @@ def test_a_beam_that_may_be_rigid_is_said_to() -> None:
 
 
 @pytest.mark.parametrize(
-    "estimated", ["rigid", "foreshortening", pytest.param("elastic joint", marks=pytest.mark.slow)]
+    "estimated",
+    ["rigid", *(pytest.param(name, marks=pytest.mark.slow) for name in ("foreshortening", "elastic joint"))],
 )
 def test_tighter_tolerances_keep_more(estimated: str) -> None:
     """Estimates are in units of what is allowed: a hundredth of it, a hundred times the estimate."""

@@ -75,7 +75,7 @@ def trees(draw: st.DrawFn) -> sf.System:
 
 
 @pytest.mark.parametrize("engine", sampled((pinocchio, mujoco), [pinocchio]), ids=["pinocchio", "mujoco"])
-@settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
+@settings(max_examples=12, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
 @given(trees())
 def test_random_trees_agree(engine: object, system: sf.System) -> None:
     assembly = assemble(system)

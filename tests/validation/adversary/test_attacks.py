@@ -12,6 +12,7 @@ import pytest
 
 import symofros as sf
 from symofros.simulation.results.outcome import Outcome
+from tests.models import sampled
 from validation.adversary.catalogue import ATTACKS
 from validation.adversary.search import Budget, Find, Tally, hunt
 
@@ -92,7 +93,10 @@ def test_each_attack_has_a_planted_fault() -> None:
     assert FAULTS.keys() == ATTACKS.keys()
 
 
-@pytest.mark.parametrize("name", FAULTS)
+# Runs of loops and of steps that are too long show in every run what those of beams and of wheels would.
+@pytest.mark.parametrize(
+    "name", sampled(tuple(FAULTS), [name for name in FAULTS if name not in ("beam_runs", "rolling_runs")])
+)
 def test_a_planted_fault_is_found_and_its_scene_is_plain(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -107,9 +111,9 @@ def test_a_planted_fault_is_found_and_its_scene_is_plain(
 
 @pytest.mark.parametrize("name", ATTACKS)
 def test_a_few_scenes_contradict_nothing(name: str, tmp_path: Path) -> None:
-    find, tally = hunted(name, tmp_path, 12)
+    find, tally = hunted(name, tmp_path, 8)
     assert find is None, find
-    assert tally.tried == 12 and tally.agreed > 0, tally
+    assert tally.tried == 8 and tally.agreed > 0, tally
 
 
 @pytest.mark.slow

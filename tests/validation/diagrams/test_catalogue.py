@@ -15,7 +15,8 @@ from validation.reporting.findings import Study
 from validation.reporting.plain import restored
 
 
-@pytest.mark.parametrize("name", ["square", pytest.param("two_arms", marks=pytest.mark.slow)])
+@pytest.mark.slow  # In every run: the report of another study, below.
+@pytest.mark.parametrize("name", ["square", "two_arms"])
 def test_the_studies_answer(name: str, tmp_path: Path) -> None:
     command = ["diagrams", "--study", name, "--quick", "--json", "--report", str(tmp_path)]
     done = CliRunner().invoke(app, command)
@@ -39,3 +40,5 @@ def test_a_miss_is_said(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None
     done = CliRunner().invoke(app, ["diagrams", "--study", "threads", "--quick", "--report", str(tmp_path)])
     assert done.exit_code == 1
     assert "missed" in (tmp_path / "diagrams.md").read_text()
+    page = (tmp_path / "diagrams.html").read_text()
+    assert 'role="img"' in page and "Figure 1.1" in page

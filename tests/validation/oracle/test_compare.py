@@ -17,8 +17,11 @@ from validation.oracle import compare, kane, lagrange
 from validation.oracle.models import EXACT, MODELS
 from validation.oracle.scope import NotDerivable
 
-# With parameters or numbers as axes, in trees, of forces that other models show too: with --slow.
-SLOW = ("axes by parameters", "constant axes", "universal", "branches", "general, by matrix", "massless between")
+# With parameters or numbers as axes, in trees, of joints and forces that other models show too: with --slow.
+SLOW = (
+    *("axes by parameters", "constant axes", "universal", "branches", "general, by matrix", "massless between"),
+    *("cylindrical", "general, by angles", "connections"),
+)
 # Each model by one of its derivations in every run, by the others with --slow.
 CASES = [
     pytest.param(name, by, marks=[pytest.mark.slow] if i or name in SLOW else [])

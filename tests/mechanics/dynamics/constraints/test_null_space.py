@@ -35,9 +35,7 @@ def test_null_space_and_multipliers_give_the_same_motion(name: str) -> None:
     assert_the_same_motion(name, "interpreter")
 
 
-@pytest.mark.parametrize(
-    "name", sampled((*GUESSES, *LOOSE), ("four_bar", "slider_crank", "rolling_disc", "flexible_slider_crank"))
-)
+@pytest.mark.parametrize("name", sampled((*GUESSES, *LOOSE), ("four_bar", "slider_crank", "rolling_disc")))
 def test_null_space_and_multipliers_give_the_same_motion_in_c(name: str) -> None:
     assert_the_same_motion(name, "c")
 
@@ -64,8 +62,10 @@ def nested(inertia: float) -> sf.System:
 
 
 @pytest.mark.parametrize("form", ["multipliers", "null_space"])
-@pytest.mark.parametrize("backend", ["c", "interpreter"])
-@pytest.mark.parametrize("inertia", [1e-2, 1e-6, 1e-10, 1e-13, 0.0])
+@pytest.mark.parametrize(
+    ("inertia", "backend"),
+    [*((inertia, "interpreter") for inertia in (1e-2, 1e-6, 1e-10, 1e-13, 0.0)), (1e-10, "c"), (0.0, "c")],
+)
 def test_a_light_body_costs_no_digits(inertia: float, form: str, backend: str) -> None:
     """Closed form: (9 J + 16 I) v2' = 3 u1 + u2, v1' = 3 v2'; by M alone, six digits are left at 1e-10."""
     m = sf.compile(nested(inertia), sf.Options(constraints=form, backend=backend))  # type: ignore[arg-type]

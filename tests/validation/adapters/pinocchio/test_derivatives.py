@@ -48,7 +48,7 @@ def is_rigid(system: sf.System) -> bool:
 RIGID = tuple(name for name in MODELS if is_rigid(MODELS[name]) and not MODELS[name].constraints)
 TREES = tuple(name for name in RIGID if name != "gyroscope")
 # Each kind of joint, rotors, wheels, short chains; long chains and wide trees take seconds each to generate.
-TAKE_SECONDS = ("mss", "spdm", "ssrms", "puma560", "rx90", "stanford_arm", "space_arm", "friction_arm")
+TAKE_SECONDS = ("car", "mss", "spdm", "ssrms", "puma560", "rx90", "stanford_arm", "space_arm", "friction_arm")
 SMALL = tuple(name for name in TREES if not name.startswith(("chain", "random_tree")) and name not in TAKE_SECONDS)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.special import ellipk
 
+from tests.models import sampled
 from validation.adapters.exudyn.steps import Solver
 from validation.adapters.exudyn.timed_systems import Rod, pendulum
 from validation.pareto.catalogue import PROBLEMS
@@ -17,7 +18,7 @@ from validation.pareto.problems import pendulum as swing
 from validation.pareto.race import race
 
 
-@pytest.mark.parametrize("name", [pytest.param("arm", marks=pytest.mark.slow), "four_bar", "andrews"])
+@pytest.mark.parametrize("name", sampled(("arm", "four_bar", "andrews"), ["four_bar"]))
 def test_references_agree_and_sides_move_alike(name: str) -> None:
     problem = PROBLEMS[name]
     found = race(problem, quick=True)
