@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import datetime
+import subprocess
+import sys
+import time
 from pathlib import Path
 from typing import Annotated
 
@@ -12,10 +15,10 @@ from rich.console import Console
 from validation.dashboard.catalogue import TOPICS
 from validation.dashboard.gather import Entry, gather
 from validation.dashboard.index import QuoteError, headline, quote, write_index
-from validation.dashboard.regenerate import regenerate
 from validation.reporting import provenance
 from validation.reporting.command import REPORTS, Exit, Output, known, progress_bar
 from validation.reporting.command import render as render_report
+from validation.reporting.record import Topic
 
 Readme = Annotated[Path, typer.Option(help="Gets the summary between its marks, if it is there.")]
 
@@ -61,8 +64,8 @@ def render(
     chosen = known(names, TOPICS, "NAME", "report")
     entries = gather(output, provenance.versions_now(), datetime.date.today())
     for name in chosen:
-        if entries[name].report is not None:
-            render_report(TOPICS[name], entries[name].data, output)
+        if (report := entries[name].report) is not None:
+            render_report(TOPICS[name], entries[name].data, output, report)
     _show({name: entries[name] for name in chosen})
     unread = any(entries[name].report is None for name in chosen)
     raise typer.Exit(Exit.MISSED if unread else Exit.GOOD)
@@ -87,6 +90,20 @@ def _all_anew(folder: Path) -> bool:
             console.print("interrupted; the reports that were finished are kept", markup=False)
             return False
     return True
+
+
+def regenerate(topic: Topic, folder: Path) -> str:
+    """Run the command of a report in a process of its own: one that crashes takes no other with it.
+
+    Returns:
+        How it ended, with the last lines of what it complained of if it wrote no report.
+    """
+    start, ends = time.perf_counter(), {0: "written", 1: "written; something in it is missed"}
+    command = [sys.executable, "-m", *topic.words, "--output", str(folder)]
+    run = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False)
+    end = ends.get(run.returncode, f"failed ({run.returncode})")
+    complaint = [] if run.returncode in ends else run.stderr.strip().splitlines()[-5:]
+    return "\n".join([f"{topic.name}: {end}, {time.perf_counter() - start:.0f} s", *complaint])
 
 
 def _show(entries: dict[str, Entry]) -> None:

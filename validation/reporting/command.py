@@ -159,40 +159,34 @@ class Run:
         write(self.topic, self.stamped(data), self.folder)
 
 
-def write(topic: Topic, data: Data, folder: Path) -> Report:
+def composed(topic: Topic, data: Data) -> Report:
+    """The report of what JSON keeps of its data."""
+    return topic.compose(json.loads(json.dumps(data, allow_nan=False)))
+
+
+def write(topic: Topic, data: Data, folder: Path, report: Report | None = None) -> Report:
     """Write NAME.json (everything), NAME.md (texts and tables), NAME.html (one self-contained page).
+
+    Args:
+        topic: The report.
+        data: JSON of the report.
+        folder: Folder of the files.
+        report: What is made of the data, where that is known.
 
     Raises:
         OSError: The folder can't be written to.
     """
-    text, report = _composed(topic, data)
-    _write_files(topic, text, report, Provenance.of(data), folder)
-    return report
-
-
-def render(topic: Topic, data: Data, folder: Path) -> Report:
-    """Write NAME.md and NAME.html from what NAME.json holds."""
-    report = topic.compose(data)
-    _write_pages(topic, report, Provenance.of(data), folder)
-    return report
-
-
-def _composed(topic: Topic, data: Data) -> tuple[str, Report]:
-    """Data as JSON, and the report of what JSON keeps of it."""
-    text = json.dumps(data, allow_nan=False)
-    return text, topic.compose(json.loads(text))
-
-
-def _write_files(topic: Topic, text: str, report: Report, provenance: Provenance, folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
-    write_atomically(folder / f"{topic.name}.json", f"{text}\n")
-    _write_pages(topic, report, provenance, folder)
+    write_atomically(folder / f"{topic.name}.json", f"{json.dumps(data, allow_nan=False)}\n")
+    return render(topic, data, folder, report or composed(topic, data))
 
 
-def _write_pages(topic: Topic, report: Report, provenance: Provenance, folder: Path) -> None:
+def render(topic: Topic, data: Data, folder: Path, report: Report) -> Report:
+    """Write NAME.md and NAME.html."""
     written = f"Written by `{topic.command}`; everything is in `{topic.name}.json`, figures in `{topic.name}.html`."
     for kind, renderer in (("html", html), ("md", markdown)):
-        write_atomically(folder / f"{topic.name}.{kind}", renderer.page(report, provenance, written))
+        write_atomically(folder / f"{topic.name}.{kind}", renderer.page(report, Provenance.of(data), written))
+    return report
 
 
 def code(report: Report) -> Exit:
@@ -220,10 +214,10 @@ def execute(topic: Topic, folder: Path | None, as_json: bool, **options: Any) ->
     except KeyboardInterrupt:
         run.say(f"{topic.name}: interrupted, nothing is written", bad=True)
         raise typer.Exit(Exit.INTERRUPTED) from None
-    text, report = _composed(topic, data)
+    report = composed(topic, data)
     kept = _keeps_whole(run, report)
     if run.writes and not kept:
-        _write_files(topic, text, report, Provenance.of(data), run.folder)
+        write(topic, data, run.folder, report)
     if as_json:
         typer.echo(json.dumps({name: data[name] for name in topic.printed or data}, allow_nan=False))
     else:

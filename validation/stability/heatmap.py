@@ -59,7 +59,7 @@ def borders(values: Array, grid: Grid) -> Array:
     at = np.log10(values) if grid.log else values
     middle = (at[1:] + at[:-1]) / 2
     ends = np.array([2 * at[0] - middle[0], *middle, 2 * at[-1] - middle[-1]])
-    return np.power(10.0, ends) if grid.log else ends if grid.log else ends
+    return np.power(10.0, ends) if grid.log else ends
 
 
 def _scaled(axes: Any, name: str, values: Array, grid: Grid, ends: Array) -> None:

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from tests.validation.dashboard.test_gather import FUZZ, TODAY, write
 from validation.__main__ import app
-from validation.dashboard import regenerate
+from validation.dashboard import command as dashboard
 from validation.dashboard.catalogue import TOPICS
 from validation.dashboard.gather import gather
 from validation.dashboard.index import BEGIN, END, QuoteError, headline, quote, quoted, write_index
@@ -97,14 +97,14 @@ def test_reports_are_written_one_by_one_and_an_interrupt_keeps_the_finished(
 ) -> None:
     ran: list[list[str]] = []
 
-    def fake(command: list[str], **_: object) -> subprocess.CompletedProcess[str]:
-        ran.append(command[3:])
+    def fake(words: list[str], **_: object) -> subprocess.CompletedProcess[str]:
+        ran.append(words[3:])
         if len(ran) == 3:
             raise KeyboardInterrupt
-        return subprocess.CompletedProcess(command, 0 if len(ran) == 1 else 7, None, "lines\nthe reason")
+        return subprocess.CompletedProcess(words, 0 if len(ran) == 1 else 7, None, "lines\nthe reason")
 
     instead = SimpleNamespace(run=fake, DEVNULL=subprocess.DEVNULL, PIPE=subprocess.PIPE)
-    monkeypatch.setattr(regenerate, "subprocess", instead)
+    monkeypatch.setattr(dashboard, "subprocess", instead)
     result = CliRunner().invoke(app, ["dashboard", "--report", str(tmp_path), "--readme", "none", "--regenerate"])
     assert result.exit_code == 130
     assert ran == [["--output", str(tmp_path)], *([name, "--output", str(tmp_path)] for name in ("oracle", "mutation"))]
