@@ -31,7 +31,7 @@ GENERAL = (
     "flexible_pendulum",
 )
 BEAMS = ("spinning_beam", "flexible_slider_crank", "planar_robot", "double_pendulum")
-READ = {"urdf": ("sampler", "panda"), "mjcf": ("creature",)}
+READ = {"urdf": ("sampler", "ur5"), "mjcf": ("creature",)}
 # Compared compiled, free motion included: what writes C shows there only.
 WRITTEN = ("double_pendulum", "heavy_top", "friction_arm", "rolling_disc", "four_bar", "spinning_beam")
 # Loops whose conditions repeat each other, where a module solves with them.
@@ -47,7 +47,8 @@ def interpreted_models(module: str) -> tuple[str, ...]:
     if module.startswith(_STEPPING + _WRITING):
         return ()
     read = next((names for folder, names in READ.items() if f"/{folder}/" in module), ())
-    return read or (BEAMS if "beam" in module else GENERAL)
+    rods = ("delta_rods",) if "constraints" in module else ()
+    return read or (BEAMS if "beam" in module else GENERAL + rods)
 
 
 def compiled_models(module: str) -> tuple[str, ...]:

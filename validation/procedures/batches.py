@@ -61,6 +61,10 @@ def trajectories(scene: Scene, threads: int = 2) -> Iterator[Cell]:
         stated = per_name | {first: float(samples[1, 0, 0])}
         one = sf.simulate(model, q[1], v[1], 0.1, u=stated, method="rk4", dt=0.01)
         yield Cell("a batch whose inputs are given by name", off(constants.q[1, -1], one.q[-1]), ROUNDING)
+        own_samples = {name: sf.Signal(t, samples[:, :, i : i + 1]) for i, name in enumerate(model.names.u)}
+        each = sf.simulate_batch(model, q, v, 0.1, u=own_samples, method="rk4", dt=0.01)
+        one = sf.simulate(model, q[3], v[3], 0.1, u=sf.Signal(t, samples[3]), method="rk4", dt=0.01)
+        yield Cell("a batch whose samples differ by name", off(each.q[3, -1], one.q[-1]), ROUNDING)
         rows = sf.simulate_batch(model, q, v, 0.1, u=samples[:, 0], method="rk4", dt=0.01)
         one = sf.simulate(model, q[2], v[2], 0.1, u=samples[2, 0], method="rk4", dt=0.01)
         yield Cell("a batch of constant inputs", off(rows.q[2, -1], one.q[-1]), ROUNDING)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -158,3 +159,26 @@ def applied(_: Scene) -> Iterator[Cell]:
         off(np.hstack([by_q, by_v]), derivative(inverse, np.concatenate([still, still]))),
         DIFFERENCED,
     )
+
+
+def rods(_: Scene) -> Iterator[Cell]:
+    """The condition of a rod by its length; its Jacobian and bias by differences along a motion."""
+    length = 0.8
+    bar = sf.Rod("bar", ("world", None), ("rod", "tip"), length)
+    system = replace(carried(loaded=False), constraints=(bar,))
+    model, manifold = sf.compile(system), Manifold.of(assemble(system))
+    q, v = model.random_state(np.random.default_rng(6))
+
+    def phi(theta: Array) -> Array:
+        p = np.asarray(model.frame_pose("tip", manifold.moved(q, theta))[0])
+        return np.array([(p @ p - length**2) / (2 * length)])
+
+    def rate(s: Array) -> Array:
+        ahead = manifold.moved(q, s[0] * v)
+        return np.asarray(model.constraint_jacobian(ahead) @ v)
+
+    G, still = model.constraint_jacobian(q), np.zeros(model.nv)
+    yield Cell("condition of a rod", off(model.constraint(q), phi(still)), ROUNDING)
+    yield Cell("Jacobian of a rod", off(G, derivative(phi, still)), DIFFERENCED)
+    yield Cell("rate of a rod", off(model.constraint_rate(q, v), G @ v), ROUNDING)
+    yield Cell("bias of a rod", off(model.constraint_bias(q, v), -derivative(rate, np.zeros(1))[:, 0]), DIFFERENCED)
