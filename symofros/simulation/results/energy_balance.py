@@ -49,10 +49,11 @@ def energy_note(stepper: Stepper, settings: Settings, states: Sequence[Array], s
         if not np.isfinite(energy).all():
             return f"energy overflows, although the states do not: speeds have exploded; {cure}"
         gain = float(energy.max() - energy[0])
-        growth = math.sqrt(float(kinetic.max()) / max(_first_energy(stepper, few), 1e-300))
-        if growth > EXPLODED and gain > 0.5 * kinetic.max() and not few[3].any():
+        if gain > 0.5 * kinetic.max() and not few[3].any():
             # Angles may have no digits left, and power none.
-            return f"speeds grow {growth:.3g}-fold and energy by {gain:.3g} J although no input acts: {cure}"
+            growth = math.sqrt(float(kinetic.max()) / max(_first_energy(stepper, few), 1e-300))
+            if growth > EXPLODED:
+                return f"speeds grow {growth:.3g}-fold and energy by {gain:.3g} J although no input acts: {cure}"
         change, largest = float(np.abs(energy - energy[0]).max()), float(kinetic.max())
         if not change > _NOTED_CHANGE * largest > 0.0:
             return ""

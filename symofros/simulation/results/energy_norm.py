@@ -23,9 +23,14 @@ def metrics(stepper: Stepper, q: Array, u: Array) -> Array:
 
 def energy_norms(stepper: Stepper, q: Array, u: Array, v: Array) -> Array:
     """The root of v^T M v for each row of speeds (n, nv), without overflow."""
+    return norms_in(metrics(stepper, q, u), v)
+
+
+def norms_in(metric: Array, v: Array) -> Array:
+    """The root of v^T M v for each row of speeds (n, nv) in metrics M (n, nv, nv), without overflow."""
     sizes = np.abs(v).max(axis=1, initial=0.0)
     unit = v / np.where(sizes > 0.0, sizes, 1.0)[:, np.newaxis]
-    squares = np.einsum("ni,nij,nj->n", unit, metrics(stepper, q, u), unit)
+    squares = np.einsum("ni,nij,nj->n", unit, metric, unit)
     norms: Array = sizes * np.sqrt(np.maximum(squares, 0.0))
     return norms
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.results.energy_balance import EXPLODED, energy_note, energy_that_appeared
-from symofros.simulation.results.energy_norm import energy_norms, metrics
+from symofros.simulation.results.energy_norm import metrics, norms_in
 from symofros.simulation.results.repetition import halved_step_note, tolerance_note
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.resolution import Mode, Resolution, largest_stable_step, resolution, states_to_examine
@@ -76,9 +76,10 @@ def examine_steps(
     stride = max(1, good // _SPEEDS)
     q_all, v_all = (np.concatenate([x[np.newaxis], y[:good:stride]]) for x, y in zip(start, (q, v), strict=True))
     u_all = np.concatenate([u[:1], u[:good:stride]])
-    norms = energy_norms(stepper, q_all, u_all, v_all)
     places = np.stack([where for _, where, _ in examined])
-    metric = metrics(stepper, places, u_all[:1])
+    rows = len(places)
+    metric = metrics(stepper, np.concatenate([places, q_all]), np.concatenate([np.repeat(u_all[:1], rows, 0), u_all]))
+    metric, norms = metric[:rows], norms_in(metric[rows:], v_all)
     speeds = [_speed_of_motion(norms, i // stride + 2) for i in (0, *later)]
     with stepper.preserved(), np.errstate(all="ignore"):  # States that have exploded overflow.
         return resolution(stepper, settings.dt, steps, examined, speeds, metric)
