@@ -56,12 +56,14 @@ class Server:
 
 @pytest.fixture
 def serve(tmp_path: Path) -> Iterator[Callable[..., Server]]:
-    """Starts servers: `serve("double.yaml")` in the test's folder, of a copy of `source` if one is given."""
+    """Starts servers: `serve("double.yaml")` in the test's folder, a copy of `source` or with `content`."""
     servers: list[Server] = []
 
-    def start(name: str, source: Path | None = None, **more: object) -> Server:
+    def start(name: str, source: Path | None = None, content: str = "", **more: object) -> Server:
         if source is not None:
             shutil.copy(source, tmp_path / name)
+        elif content:
+            (tmp_path / name).write_text(content)
         servers.append(Server(tmp_path / name, **more))  # type: ignore[arg-type]
         return servers[-1]
 

@@ -15,6 +15,15 @@ from tests.studio.editor.browser.conftest import Server
 pytestmark = pytest.mark.browser
 
 MODELS = Path(__file__).parents[4] / "reference_models"
+# A fast loop within a slow one; nothing is wrong with it.
+DRAWN = """symofros_diagram: 1
+simulation: {t_end: 1, dt: 0.01}
+blocks:
+  wave: {kind: sine, unit: rad}
+  slow: {kind: hold, period: 0.1, inputs: {u: wave.y}}
+  fast: {kind: gain, gain: 2, period: 0.01, inputs: {u: slow}}
+  sight: {kind: scope, signals: [held, wave], inputs: {held: fast, wave: wave.y}}
+"""
 
 
 @pytest.fixture
@@ -70,6 +79,27 @@ def test_the_page_and_its_windows(
     assert faults() == []
     if theme == "dark":
         picture("dark")
+
+
+def test_a_diagram_and_its_windows(serve: Callable[..., Server], page: Page, faults: Callable[[], list[str]]) -> None:
+    server = serve("drawn.yaml", content=DRAWN)
+    steps.open_editor(page, server.url)
+    assert faults() == []
+    steps.open_window(page, "blocks/slow")
+    assert faults() == []
+    page.keyboard.press("Escape")
+    steps.wire(page, "blocks/slow/inputs/u").focus()
+    page.keyboard.press("Space")
+    steps.run(page, "Run…")
+    steps.fill(page, "Pause at", "0.5")
+    assert faults() == []
+    steps.window(page).get_by_role("button", name="Run").click()
+    expect(steps.results(page).get_by_role("button", name="Go on")).to_be_visible(timeout=60_000)
+    assert faults() == []
+    steps.results(page).get_by_role("button", name="Stop").click()
+    expect(steps.results(page).get_by_text("s of computing")).to_be_visible()
+    page.emulate_media(color_scheme="dark")
+    assert faults() == []
 
 
 def test_a_window_holds_the_focus_and_gives_it_back(serve: Callable[..., Server], page: Page) -> None:

@@ -1,11 +1,11 @@
 /** A diagram's blocks and wires as React Flow's nodes and edges. */
 
-import type { Diagram, Point, SignalNode } from "../api/types";
+import type { Diagram, Point, SignalNode, Wire } from "../api/types";
 import { blockSize, inlet, outlet } from "../model/diagram_geometry";
 import { same } from "../model/paths";
 import { colourOf, type Rate } from "../model/rates";
 import { type Box, type End, routes } from "../model/routes";
-import type { SignalBlockNode } from "./SignalBlock";
+import { portWords, type SignalBlockNode } from "./SignalBlock";
 import type { SignalEdge } from "./SignalWire";
 
 type Places = Record<string, Point>;
@@ -75,12 +75,21 @@ export function waysOf(diagram: Diagram, nodes: readonly SignalBlockNode[], last
   return new Map([...last, ...moving]);
 }
 
+/** What goes into a wire, and what it should be, in as few words as stand on it. */
+function misfit(wire: Wire, nodes: ReadonlyMap<string, SignalNode>): string {
+  const output = nodes.get(wire.source)?.outputs.find(({ name }) => name === wire.source_port);
+  const input = nodes.get(wire.target)?.inputs.find(({ name }) => name === wire.target_port);
+  const [given, wanted] = [output, input].map((port) => (port === undefined ? "" : portWords(port)));
+  return given === "" || wanted === "" || given === wanted ? "does not fit" : `${given} → ${wanted}`;
+}
+
 export function signalWires(
   diagram: Diagram,
   all: readonly Rate[],
   ways: ReadonlyMap<string, Point[]>,
   selected: readonly string[],
 ): SignalEdge[] {
+  const nodes = new Map(diagram.nodes.map((node) => [node.id, node]));
   let isLoopNamed = false;
   return diagram.wires.flatMap((wire) => {
     const points = ways.get(wire.id);
@@ -97,7 +106,7 @@ export function signalWires(
       targetHandle: `in ${wire.target_port}`,
       className: `signal rate ${colourOf(all, wire.period)} ${state}`,
       selected: selected.includes(wire.id),
-      data: { points, label: wire.fault || (isNamed ? "algebraic loop" : "") },
+      data: { points, label: wire.fault === "" ? (isNamed ? "algebraic loop" : "") : misfit(wire, nodes) },
       ariaLabel: `wire from ${wire.source.split("/")[1]} ${wire.source_port} to ${wire.target.split("/")[1]} ${wire.target_port}${wire.fault === "" ? "" : `: ${wire.fault}`}${wire.loop ? ", in an algebraic loop" : ""}`,
     };
   });

@@ -21,3 +21,27 @@ export function shown(value: Json | undefined): string {
   if (typeof value === "number" && value !== 0 && Math.abs(value) < SMALL) return value.toExponential();
   return value === undefined || value === null ? "" : typeof value === "object" ? JSON.stringify(value) : String(value);
 }
+
+/** A value as one writes it in the file: 4, [600, 250, 40], [[1, 0], [0, 1]], a word. */
+export function written(value: Json | undefined): string {
+  if (Array.isArray(value)) return `[${value.map(written).join(", ")}]`;
+  return shown(value);
+}
+
+/** What is meant by a text; undefined if it is neither a value nor nothing. */
+export function meant(text: string): { value: Json | undefined } | undefined {
+  const trimmed = text.trim();
+  if (trimmed === "") return { value: undefined };
+  if (isNumber(trimmed)) return { value: Number(trimmed) };
+  if (trimmed === "true" || trimmed === "false") return { value: trimmed === "true" };
+  if (!/^[[{]/.test(trimmed)) return { value: trimmed };
+  // Words go without quotes in the file; JSON wants them.
+  const quoted = trimmed.replace(/"[^"]*"|(?<![\w.])[A-Za-z_][\w.]*/g, (word) =>
+    word.startsWith('"') || ["true", "false", "null"].includes(word) ? word : JSON.stringify(word),
+  );
+  try {
+    return { value: JSON.parse(quoted.replace(/(^|[[,\s])([+-]?)\.(\d)/g, "$1$20.$3")) as Json };
+  } catch {
+    return undefined;
+  }
+}

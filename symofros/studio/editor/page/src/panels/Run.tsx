@@ -29,7 +29,7 @@ function OnePlot({ plot, t, values }: { plot: RunPlot; t: readonly number[]; val
 export function LiveRun({ live }: { live: Live }) {
   return (
     <div className="results">
-      <div className="plots">
+      <div className="plots of-run">
         {live.plots.map((plot) => (
           <OnePlot key={plot.title} plot={plot} t={live.t} values={({ name }) => live.values[name] ?? []} />
         ))}
@@ -60,7 +60,7 @@ export function Run({ result }: { result: Ran }) {
           {note}
         </p>
       ))}
-      <div className="plots">
+      <div className="plots of-run">
         {result.plots.map((plot, i) => (
           <OnePlot key={i} plot={plot} t={result.t} values={({ name }) => known.get(name) ?? []} />
         ))}

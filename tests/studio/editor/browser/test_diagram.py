@@ -1,0 +1,166 @@
+"""Diagrams in the page: the paper's square is opened and run; another one is drawn, checked, mended, saved."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Locator, Page, expect
+
+from tests.studio.editor.browser import steps
+from tests.studio.editor.browser.conftest import Server
+
+pytestmark = pytest.mark.browser
+
+MODELS = Path(__file__).parents[4] / "reference_models"
+JOB = 60_000
+DRAWN = """symofros_diagram: 1
+name: drawn   # a comment that stays
+blocks:
+  source: {kind: sine, unit: rad}
+  speed: {kind: gain, unit_in: rad/s, unit_out: "rad/s", inputs: {}}
+"""
+HELD = """symofros_diagram: 1
+models: {arm: {file: arm.yaml}}
+blocks:
+  plant: {kind: forward_dynamics, model: arm, inputs: {u: pd}}
+  pd:
+    kind: joint_pd   # holds it
+    kp: 3
+    kd: 8.0e-1
+    inputs: {q_desired: where, q: plant.q, v: plant.v}
+  where: {kind: constant, value: [0.1, 0.2], unit: rad}
+"""
+
+
+@pytest.fixture
+def square(serve: Callable[..., Server], tmp_path: Path) -> Server:
+    shutil.copytree(MODELS / "flexible", tmp_path / "flexible")
+    return serve("square.yaml", source=MODELS / "square.yaml")
+
+
+def port(page: Page, name: str) -> Locator:
+    return page.locator(f'.react-flow__handle[aria-label^="{name}"]')
+
+
+def curve(page: Page) -> str:
+    """The flexible robot's tool in the picture of figure 9."""
+    picture = steps.results(page).get_by_role("img", name="Tool and path: tip.p, path.p in a plane")
+    expect(picture).to_be_visible(timeout=JOB)
+    expect(steps.results(page).get_by_text("s of computing")).to_be_visible(timeout=JOB)
+    return picture.locator("path.series").first.get_attribute("d") or ""
+
+
+def test_the_papers_square_runs_and_another_model_is_one_choice(
+    square: Server, page: Page, picture: Callable[[str], None]
+) -> None:
+    text = square.file.read_text()
+    steps.open_editor(page, square.url)
+    expect(page.locator(".signal-block")).to_have_count(16)
+    steps.problems(page, 0)
+    picture("diagram")
+
+    steps.run(page, "Run…")
+    steps.fill(page, "Pause at", "4")
+    steps.window(page).get_by_role("button", name="Run").click()
+    going = steps.results(page).get_by_role("button", name="Go on")
+    expect(going).to_be_visible(timeout=JOB)
+    expect(steps.results(page).get_by_text("paused at t = 4 s")).to_be_visible()
+    assert steps.results(page).locator("path.series").first.get_attribute("d")  # Drawn while it waits.
+    going.click()
+    flexible = curve(page)
+    picture("square")
+
+    # The same with a rigid plant: one choice, one entry of the file.
+    page.get_by_label("Shape functions of plant").select_option("0")
+    expect(steps.results(page).get_by_text("The diagram has changed since")).to_be_visible()
+    steps.run(page, "Run…")
+    steps.fill(page, "Pause at", "")
+    steps.window(page).get_by_role("button", name="Run").click()
+    expect(steps.results(page).get_by_text("The diagram has changed since")).to_have_count(0)
+    assert curve(page) != flexible
+    steps.saved(page)
+    plant = "plant: {file: flexible/planar_robot.yaml, start: {q1: -0.1, q2: 0.1, q3: 0}"
+    assert square.file.read_text() == text.replace(f"{plant}}}", f"{plant}, functions: 0}}")
+
+
+def test_a_model_has_a_canvas_of_its_own_and_a_way_back(
+    serve: Callable[..., Server], page: Page, tmp_path: Path
+) -> None:
+    shutil.copy(MODELS / "rigid" / "double_pendulum.yaml", tmp_path / "arm.yaml")
+    server = serve("held.yaml", content=HELD)
+    steps.open_editor(page, server.url)
+    steps.problems(page, 0)
+    steps.block(page, "models/arm").dblclick()
+    expect(steps.block(page, "bodies/upper")).to_be_visible()
+    page.get_by_role("button", name="← held.yaml").click()
+    # The window of a block, and a new name, which all that refers to it follows.
+    steps.block(page, "blocks/pd").dblclick()
+    steps.fill(page, "Name", "law")
+    steps.fill(page, "Kp", "[6.0e1, 25]")
+    steps.accept(page)
+    expect(steps.wire(page, "blocks/plant/inputs/u")).to_have_count(1)
+    steps.problems(page, 0)
+    steps.saved(page)
+    changed = HELD.replace("u: pd", "u: law").replace("  pd:", "  law:").replace("kp: 3", "kp: [60, 25]")
+    assert server.file.read_text() == changed
+
+
+def test_a_diagram_is_checked_as_it_is_drawn_and_saved_with_every_other_byte_as_it_was(
+    serve: Callable[..., Server], page: Page, picture: Callable[[str], None]
+) -> None:
+    server = serve("drawn.yaml", content=DRAWN)
+    steps.open_editor(page, server.url)
+    steps.problems(page, 1)  # Nothing feeds the gain.
+
+    # From port to port; the server's check of the units stands on the wire.
+    port(page, "output y of source").drag_to(port(page, "input u of speed"))
+    expect(page.locator(".react-flow__edge.wrong")).to_have_count(1)
+    expect(page.locator(".wire-label")).to_have_text("rad → rad/s")
+    steps.wire(page, "blocks/speed/inputs/u").focus()
+    page.keyboard.press("Space")
+    page.keyboard.press("Delete")
+    expect(steps.wire(page, "blocks/speed/inputs/u")).to_have_count(0)
+    page.keyboard.press("Control+z")
+    expect(steps.wire(page, "blocks/speed/inputs/u")).to_have_count(1)
+
+    # Mended in the source's window; then a loop, which shows where it is.
+    steps.open_window(page, "blocks/speed")
+    steps.fill(page, "Unit in", "rad")
+    steps.accept(page)
+    steps.problems(page, 0)
+    page.get_by_label("Find a block").fill("sum")
+    page.get_by_role("button", name="sum", exact=True).drag_to(
+        page.locator(".react-flow__pane"), target_position={"x": 300, "y": 500}
+    )
+    expect(steps.block(page, "blocks/sum")).to_be_visible()
+    port(page, "output y of speed").drag_to(port(page, "input u1 of sum"))
+    expect(steps.wire(page, "blocks/sum/inputs/u1")).to_have_count(1)
+    port(page, "output y of sum").drag_to(port(page, "input u2 of sum"))
+    expect(page.locator(".react-flow__edge.loop")).to_have_count(1)
+    expect(page.locator(".wire-label")).to_have_text("algebraic loop")
+    picture("diagram-loop")
+
+    # Fed by another signal, by the keyboard alone; a scope on a signal; then it runs.
+    steps.open_window(page, "blocks/sum")
+    steps.window(page).get_by_label("Source of u2").select_option("source.y")
+    steps.accept(page)
+    expect(page.locator(".react-flow__edge.loop")).to_have_count(0)
+    steps.wire(page, "blocks/sum/inputs/u1").focus()
+    page.keyboard.press("Space")
+    page.get_by_role("button", name="Add a scope").click()
+    expect(steps.block(page, "blocks/scope")).to_be_visible()
+    steps.problems(page, 0)
+    steps.run(page, "Run…")
+    steps.window(page).get_by_label("How").select_option("interpreted")
+    steps.window(page).get_by_role("button", name="Run").click()
+    expect(steps.results(page).get_by_role("img", name="speed.y over time")).to_be_visible(timeout=JOB)
+    steps.saved(page)
+    assert server.file.read_text() == DRAWN.replace(
+        'rad/s, unit_out: "rad/s", inputs: {}', 'rad, unit_out: "rad/s", inputs: {u: source.y}'
+    ) + (
+        "  sum: {kind: sum, inputs: {u1: speed.y, u2: source.y}}\n"
+        "  scope: {kind: scope, signals: [y], inputs: {y: speed.y}}\n"
+    )

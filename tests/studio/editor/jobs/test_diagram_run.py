@@ -1,0 +1,89 @@
+"""Runs of diagrams in worker processes: what is told meanwhile is what comes of it; orders are followed."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from symofros.studio.editor.editing.data_edits import EditError
+from symofros.studio.editor.jobs.processes import Job, Jobs
+
+TEXT = """symofros_diagram: 1
+simulation: {t_end: 1, dt: 0.01, record: 0.05, plots: [{title: Path, signals: [both], xy: true}, [wave.rate]]}
+blocks:
+  wave: {kind: sine, unit: rad}
+  both: {kind: join, inputs: {u1: wave.y, u2: wave.rate}}
+"""
+
+Told = list[tuple[str, dict[str, Any]]]
+
+
+@pytest.fixture
+def told() -> Told:
+    return []
+
+
+@pytest.fixture
+def jobs(told: Told) -> Iterator[Jobs]:
+    jobs = Jobs(lambda kind, data: told.append((kind, data)))
+    yield jobs
+    jobs.close()
+
+
+def started(jobs: Jobs, folder: Path, text: str = TEXT, **options: Any) -> Job:
+    return jobs.start("run", {"file": str(folder / "d.yaml"), "text": text, "options": options})
+
+
+def samples(told: Told) -> list[dict[str, Any]]:
+    return [data for kind, data in told if kind == "samples"]
+
+
+def paused(told: Told) -> bool:
+    return any(data["progress"].get("paused") for kind, data in told if kind == "job")
+
+
+@pytest.mark.parametrize(("order", "end"), [("resume", 1.0), ("stop", 0.5)])
+def test_a_run_waits_at_its_breakpoint_and_follows_the_order(
+    jobs: Jobs, told: Told, tmp_path: Path, order: str, end: float
+) -> None:
+    job = started(jobs, tmp_path, mode="interpreted", breakpoints=[0.5])
+    waiting = time.monotonic() + 60.0
+    while not paused(told) and time.monotonic() < waiting:
+        time.sleep(0.02)
+    first, *rest = samples(told)
+    assert [plot["title"] for plot in first["plots"]] == ["Path", "wave.rate"] and first["plots"][0]["xy"]
+    assert rest[-1]["t"][-1] == pytest.approx(0.5) and not job.over.is_set()
+    jobs.order(job.key, order)
+    assert job.over.wait(60.0)
+    assert job.state == "done" and job.result["outcome"]["ok"], job.error
+    assert job.result["t"][-1] == pytest.approx(end)
+    # What was told meanwhile is what comes of it.
+    assert [t for part in samples(told) for t in part["t"]] == job.result["t"]
+    curves = {curve["name"]: curve for plot in job.result["plots"] for curve in plot["curves"]}
+    names = list(dict.fromkeys(curve["name"] for plot in first["plots"] for curve in plot["curves"]))
+    for i, name in enumerate(names):
+        assert [x for part in rest_of(told) for x in part["values"][i]] == curves[name]["values"]
+    assert curves["wave.rate"]["unit"] == "rad/s"
+
+
+def rest_of(told: Told) -> list[dict[str, Any]]:
+    return samples(told)[1:]
+
+
+def test_what_can_not_run_says_so_in_four_parts(jobs: Jobs, tmp_path: Path) -> None:
+    job = started(jobs, tmp_path, TEXT.replace("u2: wave.rate", "u2: wave.fish"))
+    assert job.over.wait(60.0)
+    assert job.state == "failed" and job.error is not None
+    assert "no output 'fish'" in job.error["object"] and all(job.error.values())
+
+
+def test_orders_that_are_none_are_refused(jobs: Jobs, tmp_path: Path) -> None:
+    job = started(jobs, tmp_path)
+    with pytest.raises(EditError, match="no such order"):
+        jobs.order(job.key, "explode\nresume")
+    with pytest.raises(EditError, match="no job"):
+        jobs.order("77", "pause")
