@@ -83,7 +83,7 @@ def test_within_rounding_as_shipped(case: str) -> None:
 
 
 @pytest.mark.parametrize("width", WIDTHS)
-@pytest.mark.parametrize("case", sampled(("chain7", "friction_arm", "heavy_top"), ("friction_arm", "heavy_top")))
+@pytest.mark.parametrize("case", sampled(("chain7", "friction_arm", "heavy_top"), ("heavy_top",)))
 def test_any_number_of_states(case: str, width: str) -> None:
     if not HAS[width]:
         pytest.skip("a processor without these vectors")

@@ -53,8 +53,8 @@ def error(name: str, method: str, span: float, steps: int) -> float:
 @pytest.mark.parametrize(
     ("name", "method"),
     [
-        # Six legs are heavier work than four bars: in every run by one method.
-        pytest.param(scene, name, marks=[pytest.mark.slow] if scene == "stewart" and name != "rk4" else [])
+        # Six legs are heavier work than four bars.
+        pytest.param(scene, name, marks=[pytest.mark.slow] if scene == "stewart" else [])
         for scene in SCENES
         for name, method in METHODS.items()
         if method.order < 5 or (scene, name) in FIRST_OF

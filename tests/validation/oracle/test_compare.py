@@ -20,7 +20,7 @@ from validation.oracle.scope import NotDerivable
 # With parameters or numbers as axes, in trees, of joints and forces that other models show too: with --slow.
 SLOW = (
     *("axes by parameters", "constant axes", "universal", "branches", "general, by matrix", "massless between"),
-    *("cylindrical", "general, by angles", "connections"),
+    *("cylindrical", "planar", "general, by angles", "connections"),
 )
 # Each model by one of its derivations in every run, by the others with --slow.
 CASES = [

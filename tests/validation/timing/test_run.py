@@ -67,6 +67,7 @@ def test_a_model_is_timed_beside_engines_and_symbolic_peers() -> None:
     assert all(x["generation"] > 0 and x["text"] > 0 and x["code"] > 0 and x["memory"] > 0 for x in costs)
 
 
+@pytest.mark.slow  # In every run: a peer that disagrees is skipped, below.
 def test_a_model_that_is_too_large_for_sympy_is_skipped_loudly() -> None:
     said: list[tuple[str, object]] = []
     worker.work(Job("ur5", ("sympy",), ("bias",), 3, 64), lambda *what: said.append(what))
