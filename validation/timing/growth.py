@@ -1,33 +1,55 @@
-"""How times, operations, generation and compilation grow with the number of joints: exponents of power laws."""
+"""How times, operations, generation and compilation grow with the size of models: exponents of power laws."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from validation.timing.models import CHAINS
+from validation.timing.models import CHAINS, ROWS
 from validation.timing.record import Made, Record
 
-FUNCTIONS = ("dynamics", "forward_dynamics")
-# Shorter chains are mostly constants: an exponent is that of the upper part.
+# Smaller models are mostly constants: an exponent is that of the upper part.
 FROM = 7
 
 
 @dataclass(frozen=True)
-class Growth:
-    """One quantity over the lengths of chains.
+class Family:
+    """Models of one kind and many sizes.
 
     Attributes:
+        name: Name in tables.
+        models: Labels of the models by size.
+        functions: Functions that are timed of all of them.
+    """
+
+    name: str
+    models: Mapping[int, str]
+    functions: tuple[str, ...]
+
+
+FAMILIES = (
+    Family("joints of a chain", {n: f"chain{n}" for n in CHAINS}, ("dynamics", "forward_dynamics")),
+    Family("four-bars in a row", {n: f"four_bars{n}" for n in ROWS}, ("forward_dynamics",)),
+)
+
+
+@dataclass(frozen=True)
+class Growth:
+    """One quantity over the sizes of a family.
+
+    Attributes:
+        family: Name of the family.
         function: Generated function.
         quantity: Name of the growing quantity, with its unit.
         who: Generator or engine.
-        n: Numbers of joints.
+        n: Sizes.
         values: Values of the quantity.
-        exponent: Slope on logarithmic axes from FROM joints on; NaN where two points are not to be had.
+        exponent: Slope on logarithmic axes from FROM on; NaN where two points are not to be had.
     """
 
+    family: str
     function: str
     quantity: str
     who: str
@@ -47,21 +69,28 @@ def exponent(n: Sequence[float], values: Sequence[float]) -> float:
 
 
 def growth(record: Record) -> list[Growth]:
-    """Everything that was measured over at least two of the chains."""
-    curves = []
-    for function in FUNCTIONS:
-        own = {n: x for n in CHAINS for x in record.entries if (x.model, x.function) == (f"chain{n}", function)}
-        curves.append(_curve(function, "time [ns]", "symofros", {n: x.generated_time[1] for n, x in own.items()}))
-        in_batches = {n: x.batch[1] for n, x in own.items() if x.batch is not None}
-        curves.append(_curve(function, "time [ns]", "symofros, batch", in_batches))
-        for peer in ("pinocchio", "mujoco", "casadi"):
-            races = {n: record.best(f"chain{n}", function, peer) for n in CHAINS}
-            curves.append(_curve(function, "time [ns]", peer, {n: x.peer_time[1] for n, x in races.items() if x}))
-        for by in ("symofros", "casadi"):
-            made = {n: record.cost(f"chain{n}", function, by) for n in CHAINS}
-            for quantity, cost in _COSTS.items():
-                curves.append(_curve(function, quantity, by, {n: cost(x) for n, x in made.items() if x}))
+    """Everything that was measured over at least two models of a family."""
+    curves = [c for family in FAMILIES for function in family.functions for c in _of(record, family, function)]
     return [curve for curve in curves if len(curve.n) > 1]
+
+
+def _of(record: Record, family: Family, function: str) -> Iterator[Growth]:
+    def curve(quantity: str, who: str, values: Mapping[int, float]) -> Growth:
+        known = {n: value for n, value in values.items() if value}
+        n, y = tuple(known), tuple(known.values())
+        return Growth(family.name, function, quantity, who, n, y, exponent(n, y))
+
+    entries = {(x.model, x.function): x for x in record.entries}
+    own = {n: entries[model, function] for n, model in family.models.items() if (model, function) in entries}
+    yield curve("time [ns]", "symofros", {n: x.generated_time[1] for n, x in own.items()})
+    yield curve("time [ns]", "symofros, batch", {n: x.batch[1] for n, x in own.items() if x.batch is not None})
+    for peer in ("pinocchio", "mujoco", "casadi"):
+        races = {n: record.best(model, function, peer) for n, model in family.models.items()}
+        yield curve("time [ns]", peer, {n: x.peer_time[1] for n, x in races.items() if x})
+    for by in ("symofros", "casadi"):
+        made = {n: record.cost(model, function, by) for n, model in family.models.items()}
+        for quantity, cost in _COSTS.items():
+            yield curve(quantity, by, {n: cost(x) for n, x in made.items() if x})
 
 
 _COSTS: dict[str, Callable[[Made], float]] = {
@@ -70,9 +99,3 @@ _COSTS: dict[str, Callable[[Made], float]] = {
     "compilation [s]": lambda cost: cost.compilation,
     "machine code [bytes]": lambda cost: float(cost.code),
 }
-
-
-def _curve(function: str, quantity: str, who: str, values: Mapping[int, float]) -> Growth:
-    known = {n: value for n, value in values.items() if value}
-    n, y = tuple(known), tuple(known.values())
-    return Growth(function, quantity, who, n, y, exponent(n, y))

@@ -8,6 +8,7 @@ from functools import partial
 
 import reference_models
 import symofros as sf
+from reference_models.closed.four_bars import n_four_bar
 from reference_models.rigid.chain import chain
 from validation.inputs.cases import standard_set
 
@@ -47,6 +48,8 @@ _HUMANOID = tuple(name for name in FUNCTIONS if name != "forward_dynamics_deriva
 # Of chains: what exponents are fitted to. CasADi's C of the longest takes a minute a function to compile.
 _GROWTH = ("dynamics", "forward_dynamics")
 CHAINS = (2, 4, 7, 13, 22, 32, 52)
+# Windows of rows of four-bars: 2 n + 1 joints and 2 n conditions.
+ROWS = (5, 10, 20, 40, 80)
 
 
 @dataclass(frozen=True)
@@ -123,6 +126,7 @@ TIMED_MODELS: dict[str, TimedModel] = {
     "mss": TimedModel("MSS", partial(_reference, "mss")),
     "talos": TimedModel("Talos", partial(_robot, "talos"), _HUMANOID),
     "four_bar": TimedModel("four-bar, closed", partial(_reference, "four_bar"), ("forward_dynamics",)),
+    **{f"four_bars{n}": TimedModel(f"{n} four-bars", partial(n_four_bar, n), ("forward_dynamics",)) for n in ROWS},
     **{f"chain{n}": TimedModel(f"chain of {n}", partial(chain, n, symbolic=False), _GROWTH) for n in CHAINS[:-1]},
     f"chain{CHAINS[-1]}": TimedModel(
         f"chain of {CHAINS[-1]}",

@@ -48,11 +48,11 @@ _LIMITS = f"""{_MADE}; #mul = {{mul}}; #add = {{add}}; #div = {{div}}; #calls = 
     #limit [ns] = {{limit:compact}}; #distance = {{distance:.1f}}; #of batches = {{batches:.1f}};
     #memory [B] = {{memory}}; #its limit [ns] = {{copying:.2f}}"""
 _GROWTH_TEXT = (
-    "Over chains of generic bodies in space. The exponent is the slope on logarithmic axes, by least squares over "
-    "seven joints and more: time = c n^exponent."
+    "Over chains of generic bodies in space, and over four-bars in a row, each closed with its neighbours. An exponent "
+    "is the slope on logarithmic axes, by least squares over sizes of seven and more: time = c n^exponent."
 )
-_GROWTH = """function = {task}; quantity; by = {who}; joints = {n[0]} ... {longest}; #at the longest = {last:compact};
-    #exponent = {exponent:.2f}"""
+_GROWTH = """function = {task}; n = {family}; quantity; by = {who}; sizes = {n[0]} ... {largest};
+    #at the largest = {last:compact}; #exponent = {exponent:.2f}"""
 _NOTES = {
     "dynamics": "Ours is M + h + Q, in one function. Pinocchio's is crba, then nonLinearEffects; MuJoCo's shares its "
     "kinematics between both; CasADi's is one function, common subexpressions shared.",
@@ -168,24 +168,25 @@ def _limits(record: Record, made: Sequence[Made]) -> Section:
 
 def _growth(record: Record) -> Section:
     curves = growth(record)
-    figures = [_growth_figure(curves, function) for function in dict.fromkeys(c.function for c in curves)]
-    rows = [{**vars(c), "task": FUNCTIONS[c.function], "longest": c.n[-1], "last": c.values[-1]} for c in curves]
+    drawn = dict.fromkeys((c.family, c.function) for c in curves)
+    figures = [_growth_figure([c for c in curves if (c.family, c.function) == key], *key) for key in drawn]
+    rows = [{**vars(c), "task": FUNCTIONS[c.function], "largest": c.n[-1], "last": c.values[-1]} for c in curves]
     return Section("Growth", (_GROWTH_TEXT, Table.of(rows, _GROWTH), *figures), "growth")
 
 
-def _growth_figure(found: Sequence[Growth], function: str) -> Figure:
-    charts = [_chart(q, [c for c in found if (c.function, c.quantity) == (function, q)]) for q in _DRAWN]
+def _growth_figure(curves: Sequence[Growth], family: str, function: str) -> Figure:
+    charts = [_chart(quantity, family, [c for c in curves if c.quantity == quantity]) for quantity in _DRAWN]
     said = (
-        f"{_title(function)}: growth with the number of joints. Lower is cheaper; a steeper line grows faster, and the "
-        "legend gives its exponent. Where two lines cross, the cheaper side changes."
+        f"{_title(function)}: growth with the number of {family}. Lower is cheaper; a steeper line grows faster, and "
+        "the legend gives its exponent. Where two lines cross, the cheaper side changes."
     )
     return Figure(said, tuple(chart for chart in charts if chart.curves))
 
 
-def _chart(quantity: str, found: Sequence[Growth]) -> Chart:
-    drawn = tuple(Curve(f"{c.who}, n^{c.exponent:.1f}", c.n, c.values, COLORS[c.who], "joined") for c in found)
+def _chart(quantity: str, family: str, curves: Sequence[Growth]) -> Chart:
+    drawn = tuple(Curve(f"{c.who}, n^{c.exponent:.1f}", c.n, c.values, COLORS[c.who], "joined") for c in curves)
     axis = quantity if "[" in quantity else f"{quantity}  [1]"
-    return Chart(quantity.partition(" [")[0].capitalize(), "joints n  [1]", axis, drawn, log="xy")
+    return Chart(quantity.partition(" [")[0].capitalize(), f"{family} n  [1]", axis, drawn, log="xy")
 
 
 def _skipped(record: Record) -> Section:

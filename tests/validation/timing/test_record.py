@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from tests.validation.timing.records import cubic, entry, made
-from validation.timing.growth import CHAINS, exponent, growth
+from validation.timing.growth import exponent, growth
+from validation.timing.models import CHAINS
 from validation.timing.record import Record, as_data, read
 from validation.timing.targets import TARGETS, Target, Verdict, verdicts
 
