@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -49,6 +50,8 @@ class UnitCompiler:
         self._programs, self._record, self._options, self._toolchain = programs, record, options, toolchain
         # Dataclasses print every field, so that this states all that a text depends on besides the request.
         self._recipe = repr((programs.tree.system, options))
+        # Units may be asked for by several threads: C compilers run beside each other, graphs are formed in turn.
+        self._generating = threading.Lock()
 
     def functions(self, keys: Sequence[Key]) -> Unit:
         """A unit of the model's functions."""
@@ -96,7 +99,8 @@ class UnitCompiler:
         """The unit of a request, of functions of some names; its program is formed only where no library is known."""
         program = cache(form)
         if self._toolchain is None:
-            return InterpretedUnit(program())
+            with self._generating:
+                return InterpretedUnit(program())
         in_lanes = self._in_lanes(request, program) if self._options.batch == "vector" else None
         return self._compile((request, "one by one"), names, program, self._toolchain, None, in_lanes)
 
@@ -112,10 +116,11 @@ class UnitCompiler:
         progress = Progress(self._record.name, names)
 
         def source(build: Build) -> str:
-            progress.begin("generating")
-            # Of a unit on vectors, the code for one state is never called.
-            packs = build.packs and lanes is None
-            text = model_source(program(), self._record, GENERATOR, lanes, packs=packs)
+            with self._generating:
+                progress.begin("generating")
+                # Of a unit on vectors, the code for one state is never called.
+                packs = build.packs and lanes is None
+                text = model_source(program(), self._record, GENERATOR, lanes, packs=packs)
             progress.begin("compiling")
             return text
 

@@ -143,52 +143,10 @@ class Functions:
         """How many share a large batch."""
         return self._threads
 
-    def with_threads(self, threads: int) -> Self:
-        """The same compiled code, large batches of which so many threads share; results do not change by a bit.
-
-        Raises:
-            ValueError: Not a whole number above 0.
-        """
-        if not isinstance(threads, int) or threads < 1:
-            raise ValueError(
-                Problem(
-                    f"model '{self.record.name}': not a number of threads",
-                    repr(threads)[:80],
-                    "threads is a whole number, 1 or more",
-                    "os.cpu_count() at most pays",
-                )
-            )
-        return self._like(threads=threads)
-
     @property
     def precision(self) -> Precision:
         """Of what functions take and return: "double" or "single"."""
         return self._precision
-
-    def with_precision(self, precision: Precision) -> Self:
-        """The same model, whose functions take and return arrays of float64 ("double"), or of float32 ("single").
-
-        In single precision they run by vectors of twice as many states, at any size of a batch, and are right to about
-        seven digits of the largest term that makes up a result. Functions that a solver finishes (constraints,
-        derivatives of forward dynamics), interpreted models and those of `Options(batch="loop")` are evaluated in
-        double precision and rounded.
-        Parameters stay in double precision, and so do `bind`, exports and what solves or simulates: `sf.simulate`,
-        `sf.assemble`, `sf.equilibrium`, `sf.inverse_kinematics`, `sf.state_space` and what is made of it. Only
-        `sf.simulate_batch` takes accelerations in the precision of the model, of states in double precision.
-
-        Raises:
-            ValueError: Neither of them.
-        """
-        if precision not in ("double", "single"):
-            raise ValueError(
-                Problem(
-                    f"model '{self.record.name}': no such precision",
-                    repr(precision)[:80],
-                    "precision is 'double' or 'single'",
-                    "numpy.float32 is 'single'",
-                )
-            )
-        return self if precision == self._precision else self._like(precision=precision)
 
     def _like(self, par: Array | None = None, threads: int | None = None, precision: Precision | None = None) -> Self:
         """The same but for what is given."""

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from typing import Literal, overload
 
 import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arrays import numeric
+from symofros.base.functions import MODEL_FUNCTIONS, generated_with
 from symofros.runtime import linear, manifold
 from symofros.runtime.calls.bound import Bound, Layout, bind, bind_batch
 from symofros.runtime.calls.kernel import Array
@@ -57,6 +59,33 @@ class Model(ConstraintFunctions, CopyFunctions, FrameFunctions, ReactionFunction
     def difference(self, q0: ArrayLike, q1: ArrayLike) -> Array:
         """The dq (..., nv) that leads from q0 to q1 (..., nq)."""
         return manifold.difference(self.record.segments, self._array("q0", q0, self.nq), self._array("q1", q1, self.nq))
+
+    # Functions ahead of their first call.
+
+    def prepare(self, *names: str) -> None:
+        """Generate and compile functions of the whole model that are not there yet, several at the same time.
+
+        Each is made when it is first called, too; together they take about as long as the slowest. A model of chosen
+        functions (`Options(functions=...)`) has no others, and stays as it is.
+
+        Args:
+            names: Names of functions.
+
+        Raises:
+            UnknownNameError: There is no such function.
+            CompileError: The C compiler failed.
+        """
+        for name in names:
+            if name not in MODEL_FUNCTIONS:
+                rule = "functions of frames are made when they are called"
+                raise self._unknown("function", str(name)[:80], MODEL_FUNCTIONS, rule)
+        missing = [name for name in names if (name, "") not in self._kernels and self._build is not None]
+        units = dict.fromkeys(generated_with(name, self.nc > 0) for name in missing)
+        if not units:
+            return
+        with ThreadPoolExecutor(len(units)) as pool:
+            for made in [pool.submit(self._make, unit[0], "") for unit in units]:
+                made.result()
 
     # Calls without checks.
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
 
+from symofros.runtime.calls.binding import native_library
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.events import named_events
 from symofros.simulation.inputs import Inputs, plan_inputs
@@ -17,6 +19,7 @@ from symofros.simulation.results.diagnosis import diagnose
 from symofros.simulation.results.trajectory import Found, Statistics, Trajectory
 from symofros.simulation.settings import Settings, check_fit, check_start, vector
 from symofros.simulation.stepping.loops import run_own, run_sundials
+from symofros.simulation.stepping.methods import Method
 from symofros.simulation.stepping.stepper import Stepper
 
 
@@ -72,6 +75,7 @@ def simulate(
     looked_for = named_events(events)
     inputs = plan_inputs(model, u)
     check_fit(model, settings, inputs)
+    _prepare(model, settings.method)
     stepper = Stepper(model, settings.method, inputs, looked_for, values)
     settings.apply(stepper)
     check_start(model, settings, q, v, stepper.inputs_at(settings.t0, q, v), np.asarray(values))
@@ -86,6 +90,16 @@ def simulate(
     statistics = _statistics(stepper, seconds, worked)
     t, q_all, v_all, u_all = states
     return Trajectory(model, t, q_all, v_all, u_all, np.array(values), outcome, met, statistics, bendings)
+
+
+def _prepare(model: Model, method: Method) -> None:
+    """Compile what a run and its diagnosis call, all at the same time; the integrator is compiled once a machine."""
+    names = ["forward_dynamics", *method.family.functions, "kinetic_energy"]
+    names += ["project", "constraint"] if model.nc else []
+    with ThreadPoolExecutor(1) as pool:
+        integrator = pool.submit(native_library)
+        model.prepare(*names)
+        integrator.result()
 
 
 def _statistics(stepper: Stepper, seconds: float, worked: float) -> Statistics:

@@ -12,6 +12,8 @@ from typing import Self
 LOGGER = logging.getLogger("symofros")
 # What takes less is not worth a line [s].
 PATIENCE = 3.0
+# Held by the one that has the line on the terminal.
+_LINE = threading.Lock()
 
 
 class Progress:
@@ -35,7 +37,7 @@ class Progress:
         LOGGER.info("%s: %s", self._label, stage)
         if not self._began:
             self._began = time.perf_counter()
-            if sys.stderr is not None and sys.stderr.isatty():
+            if sys.stderr is not None and sys.stderr.isatty() and _LINE.acquire(blocking=False):
                 self._teller = threading.Thread(target=self._tell, daemon=True)
                 self._teller.start()
 
@@ -50,6 +52,7 @@ class Progress:
         self._over.set()
         if self._teller is not None:
             self._teller.join()
+            _LINE.release()
         if self._began:
             end = "done" if kind is None else "failed"
             LOGGER.info("%s: %s after %.1f s", self._label, end, time.perf_counter() - self._began)
