@@ -20,6 +20,8 @@ _CACHE = Path(__file__).parent.parent / ".pytest_cache"
 os.environ.setdefault("SYMOFROS_CACHE", str(_CACHE / "models"))
 # zig would use the home folder, which a machine of CI may lack; it does not end where it can't be made.
 os.environ.setdefault("ZIG_GLOBAL_CACHE_DIR", str(_CACHE / "zig"))
+# Nothing here is drawn by MuJoCo, whose import would look for a display in every process.
+os.environ.setdefault("MUJOCO_GL", "disable")
 
 # Tests start some hundred processes: each would translate the package's text again where bytecode is not kept.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)

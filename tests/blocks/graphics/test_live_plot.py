@@ -35,7 +35,7 @@ def told(shown: LivePlot) -> tuple[dict[str, Any], list[Any]]:
     """What the page knows of the run and its rows, once it knows that the run is over."""
     head: dict[str, Any] = {}
     rows: list[Any] = []
-    with urllib.request.urlopen(shown.url + "rows", timeout=10) as stream:
+    with urllib.request.urlopen(shown.url + "rows", timeout=60) as stream:
         for line in stream:
             if line.startswith(b"data: "):
                 message = json.loads(line.decode().removeprefix("data: "))
@@ -50,7 +50,7 @@ def test_the_page_tells_what_was_sent(shown: LivePlot) -> None:
     assert head["labels"] == ["a[0]", "a[1]", "b[0]", "b[1]"] and head["title"] == "A <b>run</b>" and head["done"]
     # What was sent before the page's program knew what it is, is not shown.
     assert len(rows) > 40 and rows[-1] == [0.5, [0.5, 1.0, 0.5, 1.0]]
-    with urllib.request.urlopen(shown.url, timeout=10) as page:
+    with urllib.request.urlopen(shown.url, timeout=60) as page:
         text = page.read().decode()
         assert "EventSource" in text and "frame-ancestors 'none'" in page.headers["Content-Security-Policy"]
 
@@ -59,11 +59,11 @@ def test_others_are_refused(shown: LivePlot) -> None:
     root = shown.url.rsplit("/", 2)[0]
     for path in ("/", "/guess/", "/guess/rows", "/favicon.ico"):
         with pytest.raises(urllib.error.HTTPError, match="403"):
-            urllib.request.urlopen(root + path, timeout=10)
+            urllib.request.urlopen(root + path, timeout=60)
     with pytest.raises(urllib.error.HTTPError, match="403"):
-        urllib.request.urlopen(urllib.request.Request(shown.url, headers={"Host": "evil.example"}), timeout=10)
+        urllib.request.urlopen(urllib.request.Request(shown.url, headers={"Host": "evil.example"}), timeout=60)
     with pytest.raises(urllib.error.HTTPError, match="404"):
-        urllib.request.urlopen(shown.url + "other", timeout=10)
+        urllib.request.urlopen(shown.url + "other", timeout=60)
 
 
 def test_packets_of_others_are_dropped(shown: LivePlot) -> None:

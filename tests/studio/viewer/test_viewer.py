@@ -39,7 +39,7 @@ def node(viewer: sf.Viewer, name: str) -> object:
 
 def test_it_is_seen_from_this_machine_alone(viewer: sf.Viewer) -> None:
     assert viewer.host == "127.0.0.1" and viewer.url.startswith(f"http://127.0.0.1:{viewer.port}/")
-    with socket.create_connection(("127.0.0.1", viewer.port), timeout=5):
+    with socket.create_connection(("127.0.0.1", viewer.port), timeout=60):
         pass
     # Every address of 127.0.0.0/8 is this machine; a server that is bound to all of them would answer on another, too.
     with socket.socket() as other:

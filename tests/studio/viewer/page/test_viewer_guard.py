@@ -23,7 +23,7 @@ def viewer() -> Iterator[sf.Viewer]:
 
 
 def status(viewer: sf.Viewer, path: str, **headers: str) -> tuple[int, bytes]:
-    connection = HTTPConnection(viewer.host, viewer.port, timeout=10)
+    connection = HTTPConnection(viewer.host, viewer.port, timeout=60)
     connection.request("GET", path, headers=headers)
     answer = connection.getresponse()
     assert answer.headers["Referrer-Policy"] == "no-referrer"
@@ -70,7 +70,7 @@ def test_its_own_page_is_served(viewer: sf.Viewer, origin: str | None) -> None:
     connect, version = import_module("websockets.sync.client").connect, import_module("viser").__version__
     own = f"http://127.0.0.1:{viewer.port}" if origin else None
     with connect(viewer.url.replace("http", "ws", 1), origin=own, subprotocols=[f"viser-v{version}"]) as socket:
-        assert len(socket.recv(timeout=10)) > 100
+        assert len(socket.recv(timeout=60)) > 100
 
 
 @pytest.mark.parametrize(
