@@ -76,9 +76,11 @@ IDENTITIES: dict[str, Identity] = {
     ),
     "J a + J' v = 0": Identity(
         ("constraint_jacobian", "constraint_velocity_products", "constrained_acceleration"),
+        # Both parts may be small beside what the constraints hold back.
         lambda f, s: (
-            f["constraint_jacobian"] @ f["constrained_acceleration"],
-            -f["constraint_velocity_products"],
+            (f["constraint_jacobian"] @ f["constrained_acceleration"] + f["constraint_velocity_products"])
+            / np.max(np.abs(f["constraint_jacobian"]) @ np.abs(f["constrained_acceleration"])),
+            np.zeros(len(f["constraint_velocity_products"])),
         ),
     ),
     "derivative of difference = that of integrate, inverted": Identity(
