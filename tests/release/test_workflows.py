@@ -77,6 +77,7 @@ def test_actions_are_pinned_to_commits(path: Path) -> None:
         assert re.fullmatch(r"actions/[\w-]+@[0-9a-f]{40}", action) and re.fullmatch(r" # v[\d.]+", comment)
 
 
+@pytest.mark.slow(0.5)  # Linters start slowly; .ci/build asks them.
 def test_linters_accept_the_workflows() -> None:
     pytest.importorskip("check_jsonschema", reason="needs the extra 'release', which 'dev' brings")
     files = [*map(str, WORKFLOWS), str(ROOT / "docs/ci/github.yml")]
