@@ -1,0 +1,33 @@
+"""Pictures of a run: curves over time, and paths in a plane."""
+
+from __future__ import annotations
+
+import pytest
+from numpy.testing import assert_array_equal
+
+import symofros as sf
+from symofros.blocks import Join, Sine
+from symofros.diagrams.settings import Plot, RunSettings
+from symofros.errors import DescriptionError
+
+
+def circle(plot: Plot) -> sf.Diagram:
+    """A sine with its rate."""
+    diagram = sf.Diagram("circle", simulation=RunSettings(t_end=0.5, plots=(plot,)))
+    diagram.add(Sine(name="wave"))
+    diagram.add(Join(name="both"), u1="wave.y", u2="wave.rate")
+    return diagram
+
+
+def test_a_plot_over_a_plane_draws_the_second_entry_over_the_first_at_one_scale() -> None:
+    pytest.importorskip("matplotlib")
+    run = sf.Simulation(circle(Plot("path", ("both",), xy=True))).run(dt=0.01, record=0.05)
+    (axis,) = run.plot().axes
+    (line,) = axis.get_lines()
+    assert_array_equal(line.get_xydata(), run["both"])
+    assert axis.get_aspect() == 1.0
+
+
+def test_what_has_no_two_entries_is_no_path_in_a_plane() -> None:
+    with pytest.raises(DescriptionError, match="over a plane"):
+        sf.Simulation(circle(Plot("path", ("wave.y",), xy=True)))
