@@ -25,13 +25,13 @@ from validation.reporting.record import (
 
 _TEXT = (
     "Each engine builds the same small trees by its own API and answers in its own conventions: coordinates, speeds, "
-    "frames. What is right is worked out in 130 digits from nothing but what the engine's coordinates and speeds mean "
-    "(`validation/engines/truth/charts.py`), by Newton's and Euler's equations and differences. An answer may be off "
-    "by what 2000 roundings of its inputs make of it. **wrong**: off by more, and by more than a millionth of the "
-    "largest entry. **imprecise**: off by more, but less than that. **refuses**: says in words that it can't. "
-    "**crashes**: takes its process with it. Empty: not offered. Each red cell stands for a script that imports the "
-    "engine alone, was shrunk to the plainest tree and state that still show it, and was run in a process of its own "
-    "to fail."
+    "frames. What is right is worked out in 130 digits from nothing but what the engine's coordinates and speeds mean"
+    " (`validation/engines/truth/charts.py`), by Newton's and Euler's equations and differences. An answer may be off"
+    " by what 2000 roundings of its inputs and of the forces between links make of it. **wrong**: off by more, and by"
+    " more than a millionth of the largest entry. **imprecise**: off by more, but less than that. **refuses**: says "
+    "in words that it can't. **crashes**: takes its process with it. Empty: not offered. Each red cell stands for a "
+    "script that imports the engine alone, was shrunk to the plainest tree and state that still show it, and was run "
+    "in a process of its own to fail."
 )
 _DECISION = (
     "**Which engine is wrong, against the truth in many digits:** {}; {} more lose digits beyond what rounding "

@@ -128,7 +128,7 @@ class Scene:
         system: Description.
         manifold: Its configurations.
         q: First configuration, on the constraints.
-        v: First speeds, likewise.
+        v: First speeds (nv).
         law: Inputs, as the reference evaluates them.
         u: The same inputs, as our runs are given them.
         gains: Baumgarte's gains, where constraints are kept by them.

@@ -22,8 +22,8 @@ from symofros.runtime.manifold import chart_rate, retract
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.stepping.tableaus import Tableau
 
-# How often an observer is told of records [s], and how much earlier than its stop an instant may be, by rounding [s].
-_TOLD_EVERY, _SLACK = 0.05, 1e-12
+# How often an observer gets records [s], and how much earlier than its stop an instant may be, by rounding [s].
+_SENT_EVERY, _SLACK = 0.05, 1e-12
 
 # An instant of a run: its time, what is due, whether to record.
 Instant = tuple[float, frozenset[str], bool]
@@ -138,11 +138,11 @@ def _project(blocks: Blocks, part: Part) -> None:
     blocks.q[part.q], blocks.v[part.v] = q_on, v_on
 
 
-class _Told:
+class _RecordFeed:
     """Records on their way to an observer.
 
     Args:
-        observer: Observer that is told.
+        observer: Observer that gets them.
         blocks: The diagram's blocks.
         rows: Records that grow: times first.
         kept: Signals that grow.
@@ -157,16 +157,16 @@ class _Told:
     ) -> None:
         self._observer, self._rows, self._kept = observer, rows, kept
         self._sources = {name: blocks.resolved.wired.output(name) for name in observer.signals}
-        self._told, self._when = 0, time.perf_counter()
+        self._sent, self._when = 0, time.perf_counter()
 
-    def tell(self, t: float, is_over: bool = False) -> bool:
-        """Tell what is new, at a stop or when it is time for it; whether the run goes on."""
-        is_due = t >= self._observer.stop() - _SLACK or time.perf_counter() - self._when >= _TOLD_EVERY
-        if not (is_over and self._told < len(self._rows)) and not (is_due and not is_over):
+    def send(self, t: float, is_over: bool = False) -> bool:
+        """Send what is new, at a stop or when it is time for it; whether the run goes on."""
+        is_due = t >= self._observer.stop() - _SLACK or time.perf_counter() - self._when >= _SENT_EVERY
+        if not (is_over and self._sent < len(self._rows)) and not (is_due and not is_over):
             return True
-        new = {name: np.array(self._kept[source][self._told :]) for name, source in self._sources.items()}
-        times = np.array([row[0] for row in self._rows[self._told :]])
-        self._told = len(self._rows)
+        new = {name: np.array(self._kept[source][self._sent :]) for name, source in self._sources.items()}
+        times = np.array([row[0] for row in self._rows[self._sent :]])
+        self._sent = len(self._rows)
         try:
             self._observer.see(t, times, new)
         except KeyboardInterrupt:
@@ -243,13 +243,13 @@ def run_interpreted(
         for source, array in blocks.out.items():
             kept[source].append(array.copy())
 
-    told, goes_on = _Told(observer, blocks, rows, kept), True
+    feed, goes_on = _RecordFeed(observer, blocks, rows, kept), True
     steps, within, failed = 0, watch.judge(blocks.q, float(blocks.t[0])), False
     with np.errstate(all="ignore"):  # What is not finite ends the run, and is named.
         for i, instant in enumerate(instants):
             _meet(blocks, called, instant, projects, record)
             show(instant[0])
-            goes_on = told.tell(instant[0])
+            goes_on = feed.send(instant[0])
             if not goes_on:
                 break
             until = min(instants[i + 1][0] if i + 1 < len(instants) else t_end, t_end)
@@ -272,7 +272,7 @@ def run_interpreted(
             blocks.t[0] = t_end if within else blocks.t[0]
             blocks.signals()
             record()
-    told.tell(float(blocks.t[0]), is_over=True)
+    feed.send(float(blocks.t[0]), is_over=True)
     outcome = _outcome(blocks, watch, steps, failed=failed, within=within)
     if not goes_on:
         outcome = Outcome("interrupted", outcome.t, "stopped; the part up to here is kept", notes=outcome.notes)

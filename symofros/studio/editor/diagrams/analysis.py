@@ -91,7 +91,7 @@ def _needs(diagram: Diagram, wired: Wired) -> dict[str, Needs]:
 
 
 def _identity(diagram: Diagram, wired: Wired, name: str) -> str:
-    """Everything that a block's formulas depend on, and the line that its faults are told at."""
+    """Everything that a block's formulas depend on, and the line that its faults are stated at."""
     block = wired.blocks[name]
     fed = [(port.name, port.shape, (name, port.name) in wired.sources) for port in wired.ports[name].inputs]
     model: Any = diagram.models.get(getattr(block, "model", ""))

@@ -1,4 +1,4 @@
-"""The operation "run" of worker processes: a diagram runs, and its plots are told while it does."""
+"""The operation "run" of worker processes: a diagram runs, and its plots are sent while it does."""
 
 from __future__ import annotations
 
@@ -84,12 +84,12 @@ class LiveObserver:
     Args:
         tell: Way to the page.
         wired: Diagram that runs.
-        plots: Plots whose curves are told.
+        plots: Plots whose curves are sent.
         t_end: End time [s].
         stops: Times at which the run waits until the page lets it go on [s].
 
     Attributes:
-        signals: Outputs that are told.
+        signals: Outputs that are sent.
         sources: The same as (block, output).
         shown: Each plot as the page has it, and its curves, without their values.
         ended: Whether the page ended the run.
