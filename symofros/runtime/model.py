@@ -22,10 +22,11 @@ from symofros.runtime.functions import Key as Key
 from symofros.runtime.linear import FrameDerivatives as FrameDerivatives
 from symofros.runtime.linear import Output as Output
 from symofros.runtime.linear import StateMatrices as StateMatrices
+from symofros.runtime.momentum_functions import MomentumFunctions
 from symofros.runtime.reaction_functions import ReactionFunctions
 
 
-class Model(ConstraintFunctions, CopyFunctions, FrameFunctions, ReactionFunctions):
+class Model(ConstraintFunctions, CopyFunctions, FrameFunctions, MomentumFunctions, ReactionFunctions):
     """The equations of one mechanism, ready to be evaluated.
 
     Every function takes float64 arrays with any leading batch dimensions, broadcasts them, and returns new arrays

@@ -1,4 +1,4 @@
-"""Runs of ours against the same runs retold: steps fixed and chosen, records, events, inputs, stabilisation."""
+"""Runs of ours against the same runs repeated: steps fixed and chosen, records, events, inputs, stabilisation."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import symofros as sf
 from symofros.tools import METHODS
 from validation.mechanics.geometry import Array
 from validation.procedures.scene import Cell, Scene, off
-from validation.procedures.steps import STEPS, Path, alpha_run, retold, variational_run
+from validation.procedures.steps import STEPS, Path, alpha_run, repeated_run, variational_run
 
 # Rounding of some ten steps; where a Jacobian is of finite differences, what these leave; where steps are chosen by an
 # estimate, a relative rounding of the estimate moves each end a little.
@@ -33,7 +33,7 @@ def fixed_steps(scene: Scene) -> Iterator[Cell]:
             scene.model, scene.q, scene.v, T_END, u=scene.u, method=name, dt=STEP, t0=T0, adaptive=adaptive
         )
         tolerance = DIFFERENCED if name in IMPLICIT else EXACT
-        yield Cell(f"steps by {name}", _off(scene, run, retold(scene, name, T0, T_END, STEP)), tolerance)
+        yield Cell(f"steps by {name}", _off(scene, run, repeated_run(scene, name, T0, T_END, STEP)), tolerance)
 
 
 def implicit_steps(scene: Scene) -> Iterator[Cell]:
@@ -54,7 +54,7 @@ def chosen_steps(scene: Scene) -> Iterator[Cell]:
         if name == "rodas4" and scene.manifold.nq != scene.manifold.nv:
             continue  # Its estimate by Jacobians of finite differences chooses other steps.
         both: dict[str, Any] = {"rtol": tolerance, "atol": 0.1 * tolerance}
-        path = retold(scene, name, T0, T_END, 0.0, (tolerance, 0.1 * tolerance))
+        path = repeated_run(scene, name, T0, T_END, 0.0, (tolerance, 0.1 * tolerance))
         given: dict[str, Any] = {"u": scene.u, "method": name, "t0": T0, **both}
         run = sf.simulate(scene.model, scene.q, scene.v, T_END, **given)
         bound = DIFFERENCED_STEPS if name in IMPLICIT else CHOSEN
@@ -67,7 +67,7 @@ def chosen_steps(scene: Scene) -> Iterator[Cell]:
 
 def records(scene: Scene) -> Iterator[Cell]:
     """Which steps are recorded, on a grid within fixed steps, and where a bound ends the run or the step."""
-    path = retold(scene, "rk4", T0, T_END, STEP)
+    path = repeated_run(scene, "rk4", T0, T_END, STEP)
     given: dict[str, Any] = {"u": scene.u, "method": "rk4", "dt": STEP, "t0": T0}
     run = sf.simulate(scene.model, scene.q, scene.v, T_END, every=3, **given)
     kept = sorted({*range(0, len(path.t), 3), len(path.t) - 1})
@@ -93,7 +93,7 @@ def events(scene: Scene, formulas: Mapping[str, sf.Event], values: Mapping[str, 
     """
     for method, tolerances in (("dopri5", (1e-4, 1e-5)), ("rk4", (0.0, 0.0))):
         t_end = 2.0
-        path = retold(scene, method, 0.0, t_end, 0.0 if tolerances[0] else 0.05, tolerances)
+        path = repeated_run(scene, method, 0.0, t_end, 0.0 if tolerances[0] else 0.05, tolerances)
         met = sorted(
             (t, name) for name, event in formulas.items() for t in _zeros(path, values[name], _level(name), event.sign)
         )
@@ -142,7 +142,7 @@ def stabilised(scene: Scene) -> Iterator[Cell]:
         freed = replace(scene, q=q, gains=gains, projects=False)
         run = sf.simulate(scene.model, q, scene.v, 0.1, u=scene.u, method="rk4", dt=h, stabilisation=kind, **given)
         name = f"stabilisation {kind} {'' if not given else given['gains']} at {h:g} s"
-        yield Cell(name, _off(freed, run, retold(freed, "rk4", 0.0, 0.1, h)), EXACT)
+        yield Cell(name, _off(freed, run, repeated_run(freed, "rk4", 0.0, 0.1, h)), EXACT)
 
 
 def multistep(scene: Scene, methods: tuple[str, ...]) -> Iterator[Cell]:
@@ -164,7 +164,7 @@ def small_turns(scene: Scene) -> Iterator[Cell]:
     for name in ("rk4", "dop853"):
         adaptive = False if METHODS[name].adaptive else None
         run = sf.simulate(scene.model, lying, at_rest.v, 3e-3, method=name, dt=3e-3, adaptive=adaptive)
-        yield Cell(f"small turns by {name}", _off(at_rest, run, retold(at_rest, name, 0.0, 3e-3, 3e-3)), 2e-14)
+        yield Cell(f"small turns by {name}", _off(at_rest, run, repeated_run(at_rest, name, 0.0, 3e-3, 3e-3)), 2e-14)
 
 
 def mirrored(scene: Scene) -> Iterator[Cell]:

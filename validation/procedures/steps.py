@@ -1,6 +1,6 @@
-"""Steps of every method, retold by coefficients of SciPy, by matrix exponentials and by general solvers.
+"""Steps of every method, repeated by coefficients of SciPy, by matrix exponentials and by general solvers.
 
-A run of ours is compared with a run of the same step sizes' rules: what chooses the steps is retold, too
+A run of ours is compared with a run of the same step sizes' rules: what chooses the steps is repeated_run, too
 (docs/theory/simulation.md, sections 1 to 5).
 """
 
@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.integrate import DOP853, RK45
-from scipy.optimize import fsolve
+from scipy.optimize import root
 
 from symofros.tools import METHODS
 from validation.mechanics.geometry import Array
@@ -20,7 +20,7 @@ from validation.procedures.scene import POSE, Scene, derivative, tangent
 # Of equation (4): safety, damping, bounds of a step's growth; the smallest error that steers the next step.
 SAFETY, DAMPING, GROWTH, SHRINK, LUCKY = 0.9, 0.04, 8.0, 0.2, 1e-4
 SPECTRAL_RADIUS = 0.8
-# Steps of a run retold: ours are some ten, or none.
+# Steps of a run repeated_run: ours are some ten, or none.
 MOST = 2000
 
 
@@ -168,7 +168,7 @@ STEPS: dict[str, Stepping] = {
 
 @dataclass(frozen=True)
 class Path:
-    """A run retold.
+    """A run repeated_run.
 
     Attributes:
         t: Ends of the steps (n); q, v: states there.
@@ -181,7 +181,7 @@ class Path:
     within: Callable[[float], tuple[Array, Array]]
 
 
-def retold(
+def repeated_run(
     scene: Scene, method: str, t0: float, t_end: float, h: float = 0.0, tolerances: tuple[float, float] = (0.0, 0.0)
 ) -> Path:
     """A run by one of STEPS, with fixed steps h, or with adaptive ones from h (0: by Hairer's rule) on.
@@ -263,6 +263,11 @@ def _first_step(scene: Scene, order: int, span: tuple[float, float], scale: Call
     return float(min(100 * h0, h1))
 
 
+def _solution(residual: Callable[[Array], Array], start: Array) -> Array:
+    """Root of equations, as close as rounding lets it come: the comparison judges how close that is."""
+    return np.asarray(root(residual, start, tol=1e-13).x)
+
+
 def alpha_run(scene: Scene, h: float, steps: int) -> tuple[Array, Array]:
     """Generalised alpha, (6) and (7), by MINPACK; q and v at the ends of the steps."""
     rho, nv = SPECTRAL_RADIUS, scene.model.nv
@@ -291,7 +296,7 @@ def alpha_run(scene: Scene, h: float, steps: int) -> tuple[Array, Array]:
             kept = model.constraint(q1) / h**2 if positions else model.constraint_rate(q1, v1) / h
             return np.concatenate([rows - model.constraint_jacobian(q1).T @ x[nv:], kept])
 
-        x = np.asarray(fsolve(residual, np.concatenate([a0, lam]), xtol=1e-13))
+        x = _solution(residual, np.concatenate([a0, lam]))
         q1, v1, smooth = end(x[:nv])
         a0, lam = x[:nv], x[nv:]
         q, v = scene.projected(t1, q1, v1)
@@ -326,7 +331,7 @@ def variational_run(scene: Scene, h: float, steps: int) -> tuple[Array, Array]:
     for n in range(steps):
         t = (n + 0.5) * h
         start = model.mass_matrix(q) @ v
-        theta = np.asarray(fsolve(lambda x, t=t, start=start: momenta(x, 1.0, t) - start, h * v, xtol=1e-13))
+        theta = _solution(lambda x, t=t, start=start: momenta(x, 1.0, t) - start, h * v)
         end = momenta(theta, -1.0, t)
         q = manifold.moved(q, theta, True)
         v = np.asarray(np.linalg.solve(model.mass_matrix(q), end), dtype=np.float64)

@@ -17,8 +17,10 @@ from symofros.mechanics.dynamics.acceleration import LinkMotion, Wrench, base_to
 from symofros.mechanics.dynamics.applied.forces import applied_wrenches, generalized_forces, stored_energy
 from symofros.mechanics.dynamics.bodies.inertia import LinkInertia, inertia_inputs, link_inertias
 from symofros.mechanics.dynamics.bodies.rotors import MovingRotor, rotors_of
+from symofros.mechanics.dynamics.centroidal import central_mass, centroidal_momentum, centroidal_rate
 from symofros.mechanics.dynamics.constraints.rows import Constraints, Row
 from symofros.mechanics.dynamics.constraints.wrenches import closure_wrenches, wrenches_on_links
+from symofros.mechanics.dynamics.coriolis import coriolis_matrix
 from symofros.mechanics.dynamics.derivatives import by_configuration, by_inputs
 from symofros.mechanics.dynamics.energy import kinetic_energy, potential_energy
 from symofros.mechanics.dynamics.forward.articulated import articulated_acceleration, is_local
@@ -343,6 +345,31 @@ class Equations:
         turning = coadjoint(self.kinematics, self.momentum)
         total = [g.sub(g.add(r, Q), g.add(h, c)) for r, Q, h, c in zip(rate, self.Q, self.h, turning, strict=True)]
         return total
+
+    @cached_property
+    def center_of_mass(self) -> list[Edge]:
+        """Position of the mass centre in the world (3)."""
+        return list(central_mass(self.kinematics).p_WG)
+
+    @cached_property
+    def centroidal_momentum(self) -> list[Edge]:
+        """Momentum about the mass centre, linear then angular (6)."""
+        return centroidal_momentum(self.kinematics, self.rotors)
+
+    @cached_property
+    def centroidal_momentum_matrix(self) -> Matrix:
+        """Matrix A_G of the momentum about the mass centre, which is linear in the speeds (6 x nv)."""
+        return self.by_v(self.centroidal_momentum)
+
+    @cached_property
+    def centroidal_momentum_rate(self) -> list[Edge]:
+        """Rate of the momentum about the mass centre (6)."""
+        return centroidal_rate(self.kinematics, self.rotors, self.v_rate)
+
+    @cached_property
+    def coriolis_matrix(self) -> Matrix:
+        """Coriolis matrix (nv x nv)."""
+        return coriolis_matrix(self.kinematics, self._inertias[0], self.rotors, self.M)
 
     @cached_property
     def regressor(self) -> list[list[Edge]]:

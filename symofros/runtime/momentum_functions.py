@@ -1,0 +1,49 @@
+"""Momentum of a model about its mass centre, and the matrix of its Coriolis terms."""
+
+from __future__ import annotations
+
+from symofros.runtime.calls.kernel import Array
+from symofros.runtime.functions import ArrayLike, Functions
+
+
+class MomentumFunctions(Functions):
+    """Methods of a model that tell of its momentum; arguments as in `Model`.
+
+    All that joints carry counts, beams and rotors included; what is fixed to the world does not.
+    """
+
+    def center_of_mass(self, q: ArrayLike, *, u: ArrayLike | None = None, par: ArrayLike | None = None) -> Array:
+        """Position p_WG of the mass centre G in the world (..., 3) [m].
+
+        Raises:
+            DescriptionError: Nothing that joints carry has a mass.
+        """
+        return self._one("center_of_mass", {"q": q, "u": u}, par)
+
+    def centroidal_momentum(
+        self, q: ArrayLike, v: ArrayLike, *, u: ArrayLike | None = None, par: ArrayLike | None = None
+    ) -> Array:
+        """Momentum about the mass centre, in world axes (..., 6): linear [kg m/s], then angular [kg m^2/s]."""
+        return self._one("centroidal_momentum", {"q": q, "v": v, "u": u}, par)
+
+    def centroidal_momentum_matrix(
+        self, q: ArrayLike, *, u: ArrayLike | None = None, par: ArrayLike | None = None
+    ) -> Array:
+        """A (..., 6, nv) with `centroidal_momentum` = A v: Pinocchio's `data.Ag`."""
+        return self._one("centroidal_momentum_matrix", {"q": q, "u": u}, par)
+
+    def centroidal_momentum_rate(
+        self, q: ArrayLike, v: ArrayLike, a: ArrayLike, *, u: ArrayLike | None = None, par: ArrayLike | None = None
+    ) -> Array:
+        """Rate of `centroidal_momentum` at v' = a (..., 6) [N, N m]: all external forces together, with the weight."""
+        return self._one("centroidal_momentum_rate", {"q": q, "v": v, "a": a, "u": u}, par)
+
+    def coriolis_matrix(
+        self, q: ArrayLike, v: ArrayLike, *, u: ArrayLike | None = None, par: ArrayLike | None = None
+    ) -> Array:
+        """C (..., nv, nv) with C v the Coriolis and centrifugal terms of `bias`, and dM/dt = C + C^T.
+
+        Christoffel's form: dM/dt - 2 C is skew-symmetric, as passivity-based control asks. Prescribed motions count as
+        at rest (docs/theory/rigid.md, section 13).
+        """
+        return self._one("coriolis_matrix", {"q": q, "v": v, "u": u}, par)

@@ -1,0 +1,138 @@
+"""Momentum about the mass centre: its matrix, its rate, what changes it, and Pinocchio's."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from tests.models import SAMPLE, model
+from validation.adapters.pinocchio import tree as trees
+from validation.contract.interface import Subject
+
+FUNCTIONS = (
+    "center_of_mass",
+    "centroidal_momentum",
+    "centroidal_momentum_matrix",
+    "centroidal_momentum_rate",
+    "forward_dynamics",
+)
+# Rotors that turn are none of Pinocchio's.
+IN_PINOCCHIO = ("double_pendulum", "space_arm", "heavy_top", "joint_zoo", "torque_free_body")
+
+
+@pytest.mark.parametrize("name", SAMPLE)
+def test_momentum_is_linear_in_the_speeds_and_moves_the_mass_centre(name: str, rng: np.random.Generator) -> None:
+    m = model(name, "interpreter")
+    q, v = m.random_state(rng)
+    a = rng.normal(size=m.nv)
+    A, h = m.centroidal_momentum_matrix(q), m.centroidal_momentum(q, v)
+    np.testing.assert_allclose(A @ v, h, rtol=0, atol=1e-12 * max(1.0, np.abs(h).max()))
+    # By differences along the motion: errors of 1e-10 from steps of 1e-5 and rounding.
+    step = 1e-5
+
+    def along(s: float) -> tuple[np.ndarray, np.ndarray]:
+        at = m.integrate(q, s * v + 0.5 * s * s * a)
+        return m.centroidal_momentum(at, v + s * a), m.center_of_mass(at)
+
+    (h1, c1), (h0, c0) = along(step), along(-step)
+    rate = m.centroidal_momentum_rate(q, v, a)
+    np.testing.assert_allclose((h1 - h0) / (2 * step), rate, rtol=0, atol=1e-7 * max(1.0, np.abs(rate).max()))
+    velocity = (c1 - c0) / (2 * step)
+    across = np.linalg.norm(np.cross(h[:3], velocity))
+    assert across <= 1e-7 * max(1.0, float(np.linalg.norm(h[:3]) * np.linalg.norm(velocity)))
+
+
+@pytest.mark.parametrize("gravity", [(0.0, 0.0, 0.0), (1.0, -2.0, -9.81)], ids=["no weight", "weight"])
+@pytest.mark.parametrize("name", ["space_arm", "torque_free_body", "free_boom"])
+def test_what_floats_has_the_momentum_that_its_weight_gives(
+    name: str, gravity: tuple[float, float, float], rng: np.random.Generator
+) -> None:
+    """Efforts of joints are internal; of a beam, deflections too."""
+    if name == "free_boom" and any(gravity):
+        pytest.skip("the weight of a beam's deflections counts one order further than its momentum")
+    system = replace(MODELS[name], gravity=gravity)
+    m = sf.compile(system, sf.Options(functions=FUNCTIONS, backend="interpreter"))
+    q, v = m.random_state(rng)
+    v[6:] *= 0.1
+    # The boom's only input is a thrust, from outside.
+    a = m.forward_dynamics(q, v, np.zeros(m.nu) if name == "free_boom" else rng.normal(size=m.nu))
+    rate = m.centroidal_momentum_rate(q, v, a)
+    # Along the base's own axes all moves alike: these columns are the mass times a rotation.
+    mass = np.cbrt(np.linalg.det(m.centroidal_momentum_matrix(q)[:3, :3]))
+    scale = max(1.0, np.abs(m.centroidal_momentum_matrix(q) @ a).max())
+    np.testing.assert_allclose(rate[:3], mass * np.array(gravity), rtol=0, atol=1e-9 * scale)
+    np.testing.assert_allclose(rate[3:], 0.0, rtol=0, atol=1e-9 * scale)
+
+
+@pytest.mark.parametrize("name", IN_PINOCCHIO)
+def test_pinocchio_has_the_same_momentum_and_rate(name: str, rng: np.random.Generator) -> None:
+    pin = pytest.importorskip("pinocchio")
+    engine = trees.build(Subject(name, MODELS[name]))
+    assert isinstance(engine, trees.PinocchioEngine)
+    m = model(name, "interpreter")
+    q, v = m.random_state(rng)
+    a = rng.normal(size=m.nv)
+    T, data = engine.chart.transform(q[None])[0], engine.model.createData()
+    q_e = engine.chart.coordinates(q[None])[0]
+    pin.computeCentroidalMomentumTimeVariation(
+        engine.model,
+        data,
+        q_e,
+        engine.chart.speeds(q[None], v[None])[0],
+        engine.chart.accelerations(q[None], v[None], a[None])[0],
+    )
+    rate = np.array(data.dhg)
+    pin.ccrba(engine.model, data, q_e, engine.chart.speeds(q[None], v[None])[0])
+    scale = max(1.0, np.abs(data.Ag).max())
+    np.testing.assert_allclose(m.centroidal_momentum_matrix(q), np.array(data.Ag) @ T, rtol=0, atol=1e-12 * scale)
+    np.testing.assert_allclose(m.center_of_mass(q), data.com[0], rtol=0, atol=1e-12)
+    np.testing.assert_allclose(
+        m.centroidal_momentum_rate(q, v, a), rate, rtol=0, atol=1e-11 * max(1.0, np.abs(rate).max())
+    )
+
+
+def test_c_is_the_interpreter(rng: np.random.Generator) -> None:
+    c, twin = model("joint_zoo"), model("joint_zoo", "interpreter")
+    q, v = c.random_state(rng)
+    a = rng.normal(size=c.nv)
+    for ours, expected in (
+        (c.center_of_mass(q), twin.center_of_mass(q)),
+        (c.centroidal_momentum_matrix(q), twin.centroidal_momentum_matrix(q)),
+        (c.centroidal_momentum_rate(q, v, a), twin.centroidal_momentum_rate(q, v, a)),
+        (c.coriolis_matrix(q, v), twin.coriolis_matrix(q, v)),
+    ):
+        np.testing.assert_allclose(ours, expected, rtol=0, atol=1e-12 * max(1.0, np.abs(expected).max()))
+
+
+def test_a_prescribed_base_brings_its_momentum(rng: np.random.Generator) -> None:
+    """A lump on a slide whose motion is prescribed: momentum m x', rate m x''."""
+    slide = sf.Joint("x", "prismatic", axis=(1, 0, 0), prescribed=True)
+    m = sf.compile(
+        sf.System("driven", [sf.RigidBody("lump", slide, sf.Inertia(3.0))]), sf.Options(backend="interpreter")
+    )
+    none, u = np.zeros(0), np.array([0.2, 0.5, -0.7])
+    assert m.center_of_mass(none, u=u) == pytest.approx([0.2, 0, 0])
+    assert m.centroidal_momentum(none, none, u=u)[:3] == pytest.approx([1.5, 0, 0])
+    assert m.centroidal_momentum_rate(none, none, none, u=u)[:3] == pytest.approx([-2.1, 0, 0])
+
+
+MOTOR = """\
+symofros: 1
+bodies:
+  shaft:
+    waive: [massless_tip]
+    joint: {name: q, kind: revolute, armature: 1}
+"""
+
+
+def test_without_mass_there_is_no_mass_centre(tmp_path: Path) -> None:
+    file = tmp_path / "motor.yaml"
+    file.write_text(MOTOR, encoding="utf-8")
+    m = sf.compile(sf.load(file))
+    with pytest.raises(sf.DescriptionError, match="no mass centre"):
+        m.center_of_mass([0.1])
