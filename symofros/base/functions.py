@@ -243,7 +243,7 @@ _ROWS = (
         "stepping",
         "p = M v, and F with p' = F + ad_v^T p",
     ),
-    _row("center_of_mass", "q", "p_WG (3) = center_of_mass", "dynamics", "mass centre of all that joints carry"),
+    _row("center_of_mass", "q", "p_WScm (3) = center_of_mass", "dynamics", "mass centre of all that joints carry"),
     _row(
         "centroidal_momentum",
         "q v",

@@ -13,7 +13,7 @@ class MomentumFunctions(Functions):
     """
 
     def center_of_mass(self, q: ArrayLike, *, u: ArrayLike | None = None, par: ArrayLike | None = None) -> Array:
-        """Position p_WG of the mass centre G in the world (..., 3) [m].
+        """Position p_WScm of the mass centre in the world (..., 3) [m].
 
         Raises:
             DescriptionError: Nothing that joints carry has a mass.

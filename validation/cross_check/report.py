@@ -50,7 +50,7 @@ _ELEMENTS = (
     "the third power of the deflection, rotary inertia by the second."
 )
 _PROCEDURES = (
-    "Steps of every method are repeated by coefficients of SciPy, matrix exponentials and general solvers; what chooses "
+    "Steps of every method are repeated by SciPy's coefficients, matrix exponentials and general solvers; what chooses "
     "them, records, events, projection, assembly, equilibria, modes, derivatives, inverse kinematics, batches and "
     "diagrams are compared with their definitions, central differences and closed forms, on a few small models."
 )

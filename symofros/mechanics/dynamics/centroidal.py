@@ -23,11 +23,11 @@ class CentralMass:
 
     Attributes:
         m: Mass [kg].
-        p_WG: Position of the mass centre [m].
+        p_WScm: Position of the mass centre [m].
     """
 
     m: Edge
-    p_WG: Vec3
+    p_WScm: Vec3
 
 
 def central_mass(kinematics: TreeKinematics) -> CentralMass:
@@ -79,7 +79,7 @@ def centroidal_rate(kinematics: TreeKinematics, rotors: list[MovingRotor], v_rat
         if link.parent == BASE:
             f = link.R_AL.apply(wrench.f)
             total = total + Wrench(f, link.R_AL.apply(wrench.n) + link.p_AL.cross(f))
-    about_G = total.n - central_mass(kinematics).p_WG.cross(total.f)
+    about_G = total.n - central_mass(kinematics).p_WScm.cross(total.f)
     return [*total.f, *about_G]
 
 

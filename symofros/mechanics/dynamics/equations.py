@@ -349,7 +349,7 @@ class Equations:
     @cached_property
     def center_of_mass(self) -> list[Edge]:
         """Position of the mass centre in the world (3)."""
-        return list(central_mass(self.kinematics).p_WG)
+        return list(central_mass(self.kinematics).p_WScm)
 
     @cached_property
     def centroidal_momentum(self) -> list[Edge]:
