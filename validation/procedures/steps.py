@@ -331,7 +331,11 @@ def variational_run(scene: Scene, h: float, steps: int) -> tuple[Array, Array]:
     for n in range(steps):
         t = (n + 0.5) * h
         start = model.mass_matrix(q) @ v
-        theta = _solution(lambda x, t=t, start=start: momenta(x, 1.0, t) - start, h * v)
+
+        def left(x: Array, t: float = t, start: Array = start) -> Array:
+            return momenta(x, 1.0, t) - start
+
+        theta = _solution(left, h * v)
         end = momenta(theta, -1.0, t)
         q = manifold.moved(q, theta, True)
         v = np.asarray(np.linalg.solve(model.mass_matrix(q), end), dtype=np.float64)
