@@ -46,12 +46,16 @@ def pytest_configure(config: pytest.Config) -> None:
         raise pytest.UsageError("--browser needs Playwright: pip install -e '.[dev]'")
 
 
-def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
-    """Workers of `-n auto`: one a core for folders; none for files and single tests, or where output is to be seen."""
+def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
+    """Workers of `-n auto`: three on two cores for folders, since tests wait for compilers and programs now and then.
+
+    None for files and single tests, or where output is to be seen.
+    """
     folders = any(Path(argument).is_dir() for argument in config.args)
     if not folders or config.getoption("capture") == "no" or config.getoption("benchmark_enable"):
         return 0
-    return None  # As xdist counts them.
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return cores + (cores + 1) // 2
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

@@ -1,4 +1,7 @@
-"""The site builds without a warning, its tutorial executed on the way, and leaves nothing public out."""
+"""The site builds without a warning, its tutorial executed on the way, and leaves nothing public out.
+
+What looks at the built site is slow; `.ci/run` runs all of it, each time.
+"""
 
 from __future__ import annotations
 
@@ -36,6 +39,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_every_step_of_the_tutorial_shows_what_it_printed(site: Path) -> None:
     steps = sorted((ROOT / "docs/tutorial").glob("*.md"))
     assert len(steps) == 7  # Six, and the index.
@@ -52,12 +56,14 @@ def test_lines_of_the_tutorial_fit_its_page(step: Path) -> None:
     assert max((len(line) for cell in cells for line in cell.splitlines()), default=0) <= 92
 
 
+@pytest.mark.slow
 def test_pages_load_nothing_from_the_network(site: Path) -> None:
     for page in site.rglob("*.html"):
         loaded = re.findall(r'<(?:script|link|img)[^>]*(?:src|href)="(https?:[^"]*)"', page.read_text(encoding="utf-8"))
         assert loaded == [], page
 
 
+@pytest.mark.slow
 def test_figures_come_from_the_reports(site: Path) -> None:
     gallery = (site / "gallery.html").read_text(encoding="utf-8")
     reports = set(re.findall(r'href="(reports/\w+\.html)"', gallery))
@@ -65,6 +71,7 @@ def test_figures_come_from_the_reports(site: Path) -> None:
     assert all((site / report).exists() for report in reports)
 
 
+@pytest.mark.slow
 def test_the_command_line_is_there_whole(site: Path) -> None:
     page = (site / "reference/commands.html").read_text(encoding="utf-8")
     headings = {re.sub("<[^>]+>", "", heading) for heading in re.findall(r"<h3>(.*?)<a ", page)}
