@@ -30,7 +30,9 @@ LINE = 40
 def shot(page: Page) -> np.ndarray:
     """What the frame shows, without what floats over the picture (height, width, 3)."""
     frame = page.frame_locator("iframe.view")
-    return np.asarray(Image.open(io.BytesIO(frame.locator("canvas").first.screenshot())).convert("RGB")).astype(int)
+    return np.asarray(
+        Image.open(io.BytesIO(frame.locator("canvas").first.screenshot(timeout=1000 * PATIENCE))).convert("RGB")
+    ).astype(int)
 
 
 def differing(a: np.ndarray, b: np.ndarray) -> int:
