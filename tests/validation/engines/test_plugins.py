@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from validation.engines.interface import Joint, Link, Tree, Unsupported
@@ -18,13 +20,18 @@ def _installed(engine: str) -> None:
 
 
 @pytest.mark.parametrize("engine", EXTRAS)
-def test_an_engine_is_right_about_hinges_between_oblique_links(engine: str) -> None:
+def test_an_engine_is_right_about_hinges_between_oblique_links(
+    engine: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """And writes no files where it runs."""
     _installed(engine)
+    monkeypatch.chdir(tmp_path)
     found = cells(OWN[engine], tree_of("revolute x"), ("mass_matrix", "bias", "gravity", "link_poses"))
     verdicts = {cell.verdict for cell in found}
     # PyBullet keeps poses in single precision.
     assert verdicts <= {"right", "imprecise"}
     assert engine == "pybullet" or verdicts == {"right"}
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("engine", ("dart", "drake"))

@@ -28,7 +28,9 @@ names = ("Position", "RotationMatrix", "Velocity", "AngularVelocity")
 sensors = [[sensor(link, name) for name in names] for link in links]
 mbs.Assemble()
 solver = exu.MainSolverImplicitSecondOrder()
-solver.InitializeSolver(mbs, exu.SimulationSettings())
+settings = exu.SimulationSettings()
+settings.solution.file.write, settings.solution.file.name = False, ""
+solver.InitializeSolver(mbs, settings)
 def state(q, v=None):
     now = exu.ConfigurationType.Current
     mbs.systemData.SetODE2Coordinates(q, configuration=now)
