@@ -157,8 +157,8 @@ def arrow(root: Carried, states: AllSpeeds, own: slice, curve: Curve) -> tuple[A
     partial = np.einsum("nab,nkbi->nkai", R, curve.partial)
     J = -skew(value) @ root.J_w
     J[..., own] += partial
-    rate = np.einsum("nkai,ni->nka", partial, states.v[:, own])
-    bend = np.einsum("nab,nkb->nka", R, curve.bend) + np.einsum("nkai,ni->nka", partial, states.a[:, own])
+    rate = _times(partial, states.v[:, own])
+    bend = np.einsum("nab,nkb->nka", R, curve.bend) + _times(partial, states.a[:, own])
     turned = np.cross(alpha, value) + np.cross(w, np.cross(w, value)) + 2.0 * np.cross(w, rate) + bend
     return value, J, turned
 
@@ -199,8 +199,8 @@ def about_axes(axis: Array, angles: Array) -> Array:
 
 
 def _times(J: Array, v: Array) -> Array:
-    """Jacobians (N, K, 3, n) times speeds (N, n)."""
-    return np.asarray(np.einsum("nkai,ni->nka", J, v))
+    """Jacobians (N, K, 3, n) times speeds (N, n); of no speeds, zeros, which NumPy's einsum leaves unset at times."""
+    return np.asarray((J @ v[:, None, :, None])[..., 0])
 
 
 def joined(frames: list[Carried]) -> Carried:
