@@ -9,10 +9,10 @@ from symofros.errors import DescriptionError, Problem
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.substitute import substitute
 from symofros.expr.vector import Vec3
-from symofros.mechanics.dynamics.acceleration import Wrench, base_to_tip, no_wrench
+from symofros.mechanics.dynamics.acceleration import base_to_tip, no_wrench
 from symofros.mechanics.dynamics.bodies.inertia import first_moment_change, stated_inertias
 from symofros.mechanics.dynamics.bodies.rotors import MovingRotor
-from symofros.mechanics.dynamics.jourdain import link_wrenches, subtree_wrenches
+from symofros.mechanics.dynamics.jourdain import link_wrenches, subtree_wrenches, wrench_in_parent
 from symofros.mechanics.kinematics.links import TreeKinematics
 from symofros.mechanics.topology.tree import BASE
 
@@ -37,8 +37,8 @@ def central_mass(kinematics: TreeKinematics) -> CentralMass:
         DescriptionError: No link has a mass.
     """
     g = kinematics.g
-    mass = [body.m for body in stated_inertias(kinematics)]
-    moment = [body.mp_LLcm for body in stated_inertias(kinematics)]
+    stated = stated_inertias(kinematics)
+    mass, moment = [body.m for body in stated], [body.mp_LLcm for body in stated]
     for beam in kinematics.beams:
         if beam.tip is not None:
             moment[beam.root] = moment[beam.root] + first_moment_change(kinematics, beam)
@@ -77,8 +77,7 @@ def centroidal_rate(kinematics: TreeKinematics, rotors: list[MovingRotor], v_rat
     for i, wrench in subtree_wrenches(kinematics, wrenches):
         link = kinematics.links[i]
         if link.parent == BASE:
-            f = link.R_AL.apply(wrench.f)
-            total = total + Wrench(f, link.R_AL.apply(wrench.n) + link.p_AL.cross(f))
+            total = total + wrench_in_parent(link, wrench)
     about_G = total.n - central_mass(kinematics).p_WScm.cross(total.f)
     return [*total.f, *about_G]
 

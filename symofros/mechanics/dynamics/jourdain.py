@@ -15,7 +15,7 @@ from symofros.mechanics.dynamics.bodies.beams import beam_forces
 from symofros.mechanics.dynamics.bodies.inertia import LinkInertia
 from symofros.mechanics.dynamics.bodies.rotors import MovingRotor
 from symofros.mechanics.kinematics.joint import PartialVelocity
-from symofros.mechanics.kinematics.links import TreeKinematics
+from symofros.mechanics.kinematics.links import MovingLink, TreeKinematics
 from symofros.mechanics.topology.tree import BASE
 
 
@@ -129,6 +129,11 @@ def subtree_wrenches(kinematics: TreeKinematics, wrenches: Sequence[Wrench]) -> 
         n_Lo_L = subtree_wrench[i].n.named(f"n_Lo_L[{link.name}]")
         yield i, Wrench(f_Lo_L, n_Lo_L)
         if link.parent != BASE:
-            f_Lo_A = link.R_AL.apply(f_Lo_L)
-            about_Ao = Wrench(f_Lo_A, link.R_AL.apply(n_Lo_L) + link.p_AL.cross(f_Lo_A))
+            about_Ao = wrench_in_parent(link, Wrench(f_Lo_L, n_Lo_L))
             subtree_wrench[link.parent] = subtree_wrench[link.parent] + about_Ao
+
+
+def wrench_in_parent(link: MovingLink, wrench: Wrench) -> Wrench:
+    """A wrench about a link's origin, in its frame, about its parent's origin, in the parent's frame."""
+    f_Lo_A = link.R_AL.apply(wrench.f)
+    return Wrench(f_Lo_A, link.R_AL.apply(wrench.n) + link.p_AL.cross(f_Lo_A))
