@@ -138,6 +138,8 @@ class Beam:
         frames: The one extremity frame, at the tip and turning with it.
         loads: Loads along the axis.
         waive: Names of checks that the beam is allowed to fail.
+        segments: Number of beams of equal length, each clamped to the tip of the last, that a system makes of it
+            (segments.py); each has the functions stated.
     """
 
     name: str
@@ -162,6 +164,7 @@ class Beam:
     frames: tuple[Frame, ...] = (Frame("tip"),)
     loads: tuple[BeamLoad, ...] = ()
     waive: tuple[str, ...] = ()
+    segments: int = 1
 
     def __post_init__(self) -> None:
         """Convert numbers, freeze collections, check the choices."""
@@ -196,16 +199,24 @@ class Beam:
                     )
                 )
         for direction in DIRECTIONS:
-            count = getattr(self, direction)
-            if isinstance(count, bool) or not isinstance(count, int) or count < 0:
+            if not _is_count(getattr(self, direction), 0):
                 raise DescriptionError(
                     Problem(
                         f"{what}: {direction} is not a number of functions",
-                        repr(count),
+                        repr(getattr(self, direction)),
                         "a whole number, 0 or more",
                         "0 makes the beam rigid in that direction",
                     )
                 )
+        if not _is_count(self.segments, 1):
+            raise DescriptionError(
+                Problem(
+                    f"{what}: segments is not a number of segments",
+                    repr(self.segments),
+                    "a whole number, 1 or more",
+                    "1 leaves the beam in one piece",
+                )
+            )
 
     @property
     def inertia(self) -> None:
@@ -233,3 +244,7 @@ class Beam:
 
 def _shape(stated: Any, what: str) -> UserShape:
     return stated if isinstance(stated, Samples) else as_value(stated, what)
+
+
+def _is_count(stated: Any, least: int) -> bool:
+    return isinstance(stated, int) and not isinstance(stated, bool) and stated >= least

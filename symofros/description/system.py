@@ -17,6 +17,7 @@ from symofros.description.entries import refuses_unknown_entries
 from symofros.description.forces import Connection, Load, Potential, VirtualPower
 from symofros.description.frames import Frame
 from symofros.description.joint import Joint
+from symofros.description.segments import TipAnchors, segment_names, segments_of
 from symofros.description.values import IDENTITY, ORIGIN, Rotation, Value, Vector, as_value, as_vector
 from symofros.description.visual import Visual
 from symofros.errors import DescriptionError, Problem, did_you_mean
@@ -164,7 +165,7 @@ class System:
 
     Attributes:
         name: Name of the model, from which C functions take theirs.
-        bodies: Bodies in the order of description.
+        bodies: Bodies in the order of description; a beam in segments becomes the beams that it stands for.
         parameters: Run-time parameters and constants.
         inputs: Named inputs, in order; actuated joints add theirs after these.
         gravity: Acceleration of gravity in the world frame [m/s^2].
@@ -203,12 +204,30 @@ class System:
             "notes",
         ):
             object.__setattr__(self, name, tuple(getattr(self, name)))
+        if any(isinstance(body, Beam) and body.segments > 1 for body in self.bodies):
+            self._divide_beams()
         # Those that bind coordinates come first, as they do in files.
         ordered = sorted(self.constraints, key=lambda item: not isinstance(item, (Closure, Rod)))
         object.__setattr__(self, "constraints", tuple(ordered))
         object.__setattr__(self, "gravity", as_vector(self.gravity, f"system '{self.name}': gravity"))
         object.__setattr__(self, "origin", MappingProxyType(dict(self.origin)))
         object.__setattr__(self, "visuals", MappingProxyType(dict(self.visuals)))
+
+    def _divide_beams(self) -> None:
+        """Put the segments of beams in their places, and what is fixed to a beam's tip on the last of them."""
+        divided = [body for body in self.bodies if isinstance(body, Beam) and body.segments > 1]
+        anchors, bodies, origin = TipAnchors(divided), list[Body](), dict(self.origin)
+        for body in self.bodies:
+            placed = body if body.joint is None else replace(body, joint=anchors.joint(body.joint))
+            if isinstance(placed, Beam) and placed.segments > 1:
+                bodies += segments_of(placed)
+                origin |= {("body", name): origin.get(("body", body.name), "") for name in segment_names(placed)}
+            else:
+                bodies.append(placed)
+        object.__setattr__(self, "bodies", tuple(bodies))
+        object.__setattr__(self, "origin", origin)
+        for label in ("connections", "constraints"):
+            object.__setattr__(self, label, tuple(map(anchors.anchored, getattr(self, label))))
 
     def __reduce__(self) -> Any:
         """Pickle without the read-only views, which can't be pickled."""

@@ -1,10 +1,11 @@
-"""What a number in a description may be: a float, a formula, or a SymPy expression; vectors and rotations of these."""
+"""What a number in a description may be: a float, a formula, or a SymPy expression; vectors, rotations, arithmetic."""
 
 from __future__ import annotations
 
 import math
 import numbers
-from collections.abc import Iterable, Iterator, Sequence
+import operator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -159,3 +160,76 @@ class Rotation:
 
 IDENTITY = Rotation()
 ORIGIN: Vector = (0.0, 0.0, 0.0)
+
+
+class Term:
+    """A number or a formula with the operators of arithmetic, for formulas that are written like equations.
+
+    Args:
+        value: Number or formula.
+    """
+
+    __slots__ = ("value",)
+
+    def __init__(self, value: Value) -> None:
+        self.value = value
+
+    def __add__(self, other: Term) -> Term:
+        return _combined("add", self, other)
+
+    def __sub__(self, other: Term) -> Term:
+        return _combined("sub", self, other)
+
+    def __mul__(self, other: Term) -> Term:
+        return _combined("mul", self, other)
+
+    def __truediv__(self, other: Term) -> Term:
+        return _combined("div", self, other)
+
+    def sqrt(self) -> Term:
+        """Square root."""
+        return _combined("sqrt", self)
+
+    def maximum(self, other: Term) -> Term:
+        """The larger of two."""
+        return _combined("max", self, other)
+
+    def absolute(self) -> Term:
+        """Absolute value."""
+        return _combined("abs", self)
+
+
+def _combined(kind: str, *terms: Term) -> Term:
+    values = [term.value for term in terms]
+    numbers = [value for value in values if not isinstance(value, Expression)]
+    if len(numbers) == len(values):
+        return Term(_ON_NUMBERS[kind](*numbers))
+    return Term(
+        Expression(kind, tuple(v if isinstance(v, Expression) else Expression("number", number=v) for v in values))
+    )
+
+
+_ON_NUMBERS: dict[str, Callable[..., float]] = {
+    "add": operator.add,
+    "sub": operator.sub,
+    "mul": operator.mul,
+    "div": operator.truediv,
+    "sqrt": math.sqrt,
+    "max": max,
+    "abs": abs,
+}
+
+
+def substituted(value: Value, name: str, replacement: Value) -> Value:
+    """A formula with a symbol replaced."""
+    if not isinstance(value, Expression) or name not in value.symbols():
+        return value
+    if value.kind == "symbol":
+        return replacement
+    args = (substituted(arg, name, replacement) for arg in value.args)
+    return Expression(
+        value.kind,
+        tuple(arg if isinstance(arg, Expression) else Expression("number", number=arg) for arg in args),
+        value.number,
+        value.name,
+    )

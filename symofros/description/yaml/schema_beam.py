@@ -36,5 +36,6 @@ class BeamEntry(NounEntry, noun=Beam, without=("name", "joint", "frames", "waive
     bend_y: Count = 0
     bend_z: Count = 0
     twist: Count = 0
+    segments: Annotated[int, Field(ge=1, le=200)] = 1
     shapes: dict[Direction, ShapeList] = {}
     loads: Annotated[list[BeamLoadEntry], Field(max_length=100)] = []

@@ -9,12 +9,12 @@ import numpy as np
 
 from symofros.base.rotations import Array
 from symofros.description.beam import SECTION, STATION, Beam
-from symofros.description.values import ORIGIN, Value, symbols
+from symofros.description.values import ORIGIN, Term, Value, substituted, symbols
 from symofros.errors import Problem
 from symofros.mechanics.beams.deformation import Deformation, deformation_of
 from symofros.mechanics.beams.piecewise import stations
 from symofros.mechanics.beams.shape_functions import FamilyError, Shape
-from symofros.mechanics.topology.conditions import Condition, Formulas, Sign, Term, substituted
+from symofros.mechanics.topology.conditions import Condition, Formulas, Sign
 from symofros.mechanics.topology.numbers import Numbers
 
 # Beyond this the mass matrix loses all but four of a double's sixteen digits.

@@ -10,9 +10,9 @@ import numpy as np
 from symofros.base.rotations import Array
 from symofros.description.beam import STATION, Beam
 from symofros.description.system import Body, Inertia, RigidBody, System
-from symofros.description.values import Value
+from symofros.description.values import Term, Value, substituted
 from symofros.errors import Problem
-from symofros.mechanics.topology.conditions import Condition, Formulas, Term, substituted, violations
+from symofros.mechanics.topology.conditions import Condition, Formulas, violations
 from symofros.mechanics.topology.numbers import Numbers
 
 # A thin rod or plate meets the triangle inequality with equality; its file's digits may miss it by rounding.
