@@ -23,6 +23,10 @@ _STRAIGHT = 1e-9
 _LARGEST = 1e100
 # Tangent stiffness over elastic stiffness below which an axial load counts as critical.
 _CRITICAL = 1e-9
+# Angle [rad] by which sections are turned for differences of forces.
+_TURN = 1e-4
+# Least share of the elastic work that the tangent stiffness of a motion counts with.
+_LEAST = 1e-9
 # Largest slope [rad] from which the number of beams that would do is no longer stated: true slopes stay below it.
 _LARGEST_SLOPE = math.pi
 
@@ -177,6 +181,12 @@ class ElasticBeam:
             error += contrast * twist * slope / (slope + twist)
         return error
 
+    def difference_step(self, elastic: Array) -> Array:
+        """Share of elastic coordinates (..., n) that turns sections by as little as differences of forces take (...)."""
+        turned = np.abs(elastic) @ self.reach
+        step: Array = np.divide(_TURN, turned, out=np.zeros_like(turned), where=turned > 0.0)
+        return step
+
     def amplification(self, elastic: Array, tangent: Array) -> float:
         """Elastic stiffness over the stiffness that loads leave, in the direction of a deformation (26).
 
@@ -197,6 +207,19 @@ class ElasticBeam:
             return 0.0
         energy = float(elastic @ stiffness @ elastic)
         return energy / float(elastic @ symmetric @ elastic) if energy > 0.0 else 1.0
+
+
+def amplification_of(work: Array, loaded: Array) -> float:
+    """Amplification of a beam's error in a motion (26a); one without deformation.
+
+    Args:
+        work: Work of the elastic stiffness in states of the motion (n).
+        loaded: Work of the tangent stiffness there (n).
+    """
+    elastic, total = float(work.sum()), float(loaded.sum())
+    if not (elastic > 0.0 and math.isfinite(total)):
+        return 1.0
+    return elastic / max(abs(total), _LEAST * elastic)
 
 
 def worst_bendings(

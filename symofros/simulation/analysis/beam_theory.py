@@ -8,16 +8,15 @@ from collections.abc import Sequence
 import numpy as np
 
 from symofros.errors import BeamTheoryError, Problem, SymofrosError
-from symofros.runtime.beams import BeamBending, ElasticBeam, largest_bending
+from symofros.runtime.beams import BeamBending, ElasticBeam, amplification_of, largest_bending
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
 
 # Error of the slope alone below which no axial load of a motion is looked for: to amplify it to a note, a load would
 # have to be within 0.03 % of the critical one.
 UNAMPLIFIED = 1e-5
-# States of a motion whose axial loads are looked at; angle [rad] by which sections are turned for differences of
-# forces; least share of the elastic work that the tangent stiffness counts with.
-_STATES, _ANGLE, _LEAST = 16, 1e-4, 1e-9
+# States of a motion whose axial loads are looked at.
+AMPLIFYING_STATES = 16
 
 
 def bendings_at(model: Model, q: Array, par: ArrayLike | None = None, t: float = math.nan) -> tuple[BeamBending, ...]:
@@ -53,50 +52,47 @@ def bendings_at_rest(model: Model, q: Array, K: Array, par: ArrayLike | None) ->
     )
 
 
-def amplifications(model: Model, states: Sequence[Array], par: ArrayLike | None = None) -> tuple[float, ...]:
+def amplifications(
+    model: Model, states: Sequence[Array], par: ArrayLike | None = None, inertia: str = "dynamics"
+) -> tuple[float, ...]:
     """Amplification of each beam's error by the axial loads of a motion, inertia among them (26a).
 
     Args:
         model: Model.
         states: Times (n), configurations (n, nq), speeds (n, nv) and inputs (n, nu) of the motion.
         par: Run-time parameters.
+        inertia: Function whose first output is the mass matrix.
     """
     beams = model.beams(par)
     good = np.flatnonzero(np.isfinite(states[1]).all(axis=1) & np.isfinite(states[2]).all(axis=1))
-    t, q, v, u = (array[good[:: -(-len(good) // _STATES) or 1]] for array in states)
+    t, q, v, u = (array[good[:: -(-len(good) // AMPLIFYING_STATES) or 1]] for array in states)
     if not len(t):
         return (1.0,) * len(beams)
     try:
-        a, lam = model.forward_dynamics(q, v, u, par=par, t=t, multipliers=True)
-        return tuple(_amplification(model, beam, (t, q, v, u, a, lam), par) for beam in beams)
+        M = model.evaluate(inertia, q=q, v=v, u=u, t=t, par=par)[0]
+        G = model.evaluate("constraint_jacobian", q=q, v=v, u=u, t=t, par=par)[0] if model.nc else None
+        return tuple(_amplification(model, beam, (t, q, v, u), M, G, par) for beam in beams)
     except SymofrosError:  # Options.functions left out what this takes.
         return (1.0,) * len(beams)
 
 
 def _amplification(
-    model: Model,
-    beam: ElasticBeam,
-    motion: tuple[Array, ...],
-    par: ArrayLike | None,
+    model: Model, beam: ElasticBeam, states: tuple[Array, ...], M: Array, G: Array | None, par: ArrayLike | None
 ) -> float:
     """Elastic work over that of the tangent stiffness in a motion, both summed over its states (26a)."""
-    t, q, v, u, a, lam = motion
-    step = _ANGLE / np.where(beam.reach > 0.0, beam.reach, 1.0)
-    moved = np.repeat(q[:, np.newaxis], 2 * beam.size, axis=1)
-    moved[:, :, beam.in_q] += np.concatenate([np.diag(step), -np.diag(step)])
-    inputs, times = u[:, np.newaxis], t[:, np.newaxis]
-    M, h, Q = model.dynamics(moved, v[:, np.newaxis], inputs, par=par, t=times)
-    residual = np.einsum("...ij,...j->...i", M, a[:, np.newaxis]) + h - Q
-    if model.nc:
-        G = model.constraint_jacobian(moved, u=inputs, par=par, t=times)
-        residual = residual - np.einsum("...ji,...j->...i", G, lam[:, np.newaxis])
-    residual = residual[:, :, beam.in_v]
-    columns = (residual[:, : beam.size] - residual[:, beam.size :]) / (2.0 * step[:, np.newaxis])
-    elastic, x = beam.elastic_stiffness(), q[:, beam.in_q]
-    work, total = float(np.einsum("ni,ij,nj->", x, elastic, x)), float(np.einsum("ni,nji,nj->", x, columns, x))
-    if not (work > 0.0 and math.isfinite(total)):
-        return 1.0
-    return work / max(abs(total), _LEAST * work)
+    t, q, v, u = states
+    x = q[:, beam.in_q]
+    step = beam.difference_step(x)
+    moved = np.repeat(q[:, np.newaxis], 2, axis=1)
+    moved[:, :, beam.in_q] += np.stack([step, -step], axis=1)[..., np.newaxis] * x[:, np.newaxis]
+    given = moved, v[:, np.newaxis], u[:, np.newaxis]
+    a, lam = model.forward_dynamics(*given, par=par, t=t[:, np.newaxis], multipliers=True)
+    changes = (a[:, 0] - a[:, 1], lam[:, 0] - lam[:, 1])
+    forces = np.einsum("ni,nij,nj->n", x, M[:, beam.in_v], changes[0])
+    if G is not None:
+        forces = forces - np.einsum("ni,nji,nj->n", x, G[..., beam.in_v], changes[1])
+    work = np.einsum("ni,ij,nj->n", x, beam.elastic_stiffness(), x)
+    return amplification_of(work, np.divide(-forces, 2.0 * step, out=np.zeros(len(t)), where=step > 0.0))
 
 
 def beyond_critical_load(beams: Sequence[ElasticBeam], q: Array, K: Array) -> tuple[str, ...]:
