@@ -69,11 +69,13 @@ class ForwardDynamics(Block):
         record, u = context.environment.model(self.model), context.inputs["u"]
         given = {"q": context.q, "v": context.v, "u": u, "t": context.t}
         if not record.nc and not self.perturbed:
-            return Terms(a=context.call(self.model, "forward_dynamics", **given)["a"])
+            a = context.call(self.model, "forward_dynamics", **given)["a"]
+            return Terms(a=a, M=self._mass_matrix(context))
         push = self._push(context)
         if not record.nc:
             outputs = context.call(self.model, "dynamics", **given)
-            return Terms(a=context.solved(outputs["M"], outputs["Q"] - outputs["h"] + push))
+            a = context.solved(outputs["M"], outputs["Q"] - outputs["h"] + push)
+            return Terms(a=a, M=self._mass_matrix(context))
         outputs = context.call(self.model, "forward_dynamics", gains=context.gains, **given)
         phi = context.call(self.model, "constraint", q=context.q, u=u, t=context.t)["phi"]
         rate = context.call(self.model, "constraint_rate", q=context.q, v=context.v, u=u, t=context.t)["phi_rate"]
@@ -82,6 +84,12 @@ class ForwardDynamics(Block):
             holds = self._holds(context)
             G, c, phi, rate = G * holds.reshape(-1, 1), c * holds, phi * holds, rate * holds
         return Terms(M=outputs["M"], r=outputs["r"] + push, G=G, c=c, phi=phi, rate=rate)
+
+    def _mass_matrix(self, context: EvaluationContext) -> Tensor | None:
+        """M of a mechanism with elastic beams (nv, nv)."""
+        if not context.environment.has_elastic_beams(self.model):
+            return None
+        return context.call(self.model, "mass_matrix", q=context.q, u=context.inputs["u"], t=context.t)["M"]
 
     def _push(self, context: EvaluationContext) -> Tensor:
         """Generalized forces of the external wrenches (nv)."""

@@ -95,6 +95,10 @@ class Environment(Protocol):
         """Which speeds (nv) of a model have friction."""
         ...
 
+    def has_elastic_beams(self, model: str) -> bool:
+        """Whether a model has beams that bend or twist."""
+        ...
+
 
 @dataclass(frozen=True)
 class Terms:
@@ -102,7 +106,7 @@ class Terms:
 
     Attributes:
         a: Accelerations v' (nv) of a mechanism without constraints.
-        M: Else M a = r + G^T lam, G a = c: (nv, nv).
+        M: Else M a = r + G^T lam, G a = c: (nv, nv). Beside accelerations it serves the judgement of elastic beams.
         r: (nv).
         G: (nc, nv).
         c: (nc), Baumgarte's terms with the gains of `EvaluationContext.gains` included.

@@ -108,6 +108,9 @@ class _Surroundings:
     def has_friction(self, model: str) -> list[bool]:
         return self._models.has_friction(model)
 
+    def has_elastic_beams(self, model: str) -> bool:
+        return self._models.has_elastic_beams(model)
+
 
 def surroundings(wired: Wired, block: str) -> _Surroundings:
     """What a block of a wired diagram knows."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -64,6 +64,14 @@ class BeamBending:
             f"beam '{self.beam}' bends by {self.slope:.2g} rad at x = {self.station:.3g} m{twisted}{instant}:"
             f" second-order theory errs by about {percent:.{0 if percent >= 10 else 1}f} % of the deflection"
         )
+
+    def amplified(self, amplification: float) -> BeamBending:
+        """The same under axial loads.
+
+        Args:
+            amplification: Elastic stiffness over the stiffness that axial loads leave (26).
+        """
+        return replace(self, error=self.error * 0.25 * (amplification + 3.0))
 
     @property
     def remedy(self) -> str:
@@ -167,9 +175,9 @@ class ElasticBeam:
             math.sqrt(slope[at]),
             math.sqrt(twist.max()),
             0.5 * float(np.trapezoid(slope, self.xi)),
-            error * 0.25 * (amplification + 3.0),
+            error,
             t,
-        )
+        ).amplified(amplification)
 
     def _error(self, yaw: float, pitch: float, slope: float, twist: float) -> float:
         """Estimated error from squares of the largest angles (24), (25)."""
@@ -182,7 +190,7 @@ class ElasticBeam:
         return error
 
     def difference_step(self, elastic: Array) -> Array:
-        """Share of elastic coordinates (..., n) that turns sections by as little as differences of forces take (...)."""
+        """Share of elastic coordinates (..., n) that turns sections by the angle of differences (...)."""
         turned = np.abs(elastic) @ self.reach
         step: Array = np.divide(_TURN, turned, out=np.zeros_like(turned), where=turned > 0.0)
         return step

@@ -177,10 +177,14 @@ class Fuser:
     # Motion of a part.
 
     def motion(self, part: Part) -> Program:
-        """A part's forward_dynamics, project where it has constraints, and "formulas" where zeros are located."""
+        """A part's functions of its motion.
+
+        They are forward_dynamics, project where it has constraints, mass_matrix where it has elastic beams (and
+        constraint_jacobian with both), "formulas" where zeros are located.
+        """
         g = Graph()
         at = self._at(g, part=part)
-        functions = self._constrained(at, part) if part.nc else [self._free(at, part)]
+        functions = self._constrained(at, part) if part.nc else self._free(at, part)
         values = [
             edge
             for name, which in watched(self._pieces)
@@ -190,7 +194,21 @@ class Fuser:
             functions.append(Function("formulas", "", AT, (_vector("value", values),)))
         return self._program(self._wired.name, g, functions, part)
 
-    def _free(self, at: Point, part: Part) -> Function:
+    def _judging(self, at: Point, part: Part) -> list[Function]:
+        """The mass matrix of a part with elastic beams, by which their axial loads are judged."""
+        nv, layout = part.nv, self._layout
+        M = [[ONE if i == k else ZERO for k in range(nv)] for i in range(nv)]
+        elastic = False
+        for name in part.blocks:
+            piece = self._pieces[name]
+            if piece.terms.M is not None:
+                elastic = elastic or self._wired.models.has_elastic_beams(piece.block.mechanism())
+                first = layout.v[name].start - part.v.start
+                for i, values in enumerate(at.write(piece, piece.terms.M).edges, first):
+                    M[i][first : first + layout.v[name].size] = values
+        return [Function("mass_matrix", "", AT, (_matrix("M", M, nv),))] if elastic else []
+
+    def _free(self, at: Point, part: Part) -> list[Function]:
         """Without constraints: accelerations of mechanisms, rates of states."""
         layout = self._layout
         a = [ZERO] * part.nv
@@ -203,7 +221,7 @@ class Fuser:
                 place = layout.states[name, key]
                 at_v = place.start - part.v.start
                 a[at_v : at_v + place.size] = rate.flat
-        return Function("forward_dynamics", "", AT, (_vector("a", a),))
+        return [Function("forward_dynamics", "", AT, (_vector("a", a),)), *self._judging(at, part)]
 
     def _constrained(self, at: Point, part: Part) -> list[Function]:
         """M a = r + G^T lam, G a = c for the part as a whole: blocks on the diagonal, rows side by side."""
@@ -243,7 +261,10 @@ class Fuser:
         move = Function("move", "", ("q", "step"), (_vector("q_moved", q_moved),))
         projected = (("q_on", (part.nq,)), ("v_on", (nv,)), ("residual", ()), ("rank", ()), ("energies", (2,)))
         outputs = (terms_of[0], terms_of[2], _vector("binds", binds), _vector("phi", phi), _vector("rate", rate))
-        return [forward, Function("project", "", AT, outputs, Solver("project", projected, (move,), measures))]
+        project = Function("project", "", AT, outputs, Solver("project", projected, (move,), measures))
+        judging = self._judging(at, part)
+        jacobian = [Function("constraint_jacobian", "", AT, (terms_of[2],))] if judging else []
+        return [forward, project, *judging, *jacobian]
 
     def _moved(self, at: Point, part: Part) -> list[Edge]:
         """The configuration that a step along the manifold leads to."""

@@ -211,6 +211,10 @@ class Models:
         rows = [list(row) for row in M.edges]
         return Tensor.of(M.g, Factors(M.g, rows).solve(r.flat), r.shape)
 
+    def has_elastic_beams(self, model: str) -> bool:
+        """Whether a model has beams that bend or twist."""
+        return any(link.tip_of is not None and link.tip_of.modes > 0 for link in self.tree(model).links)
+
     def has_friction(self, model: str) -> list[bool]:
         """Which speeds (nv) have friction."""
         tree, rubs = self.tree(model), [False] * len(self.record(model).v_names)

@@ -14,6 +14,7 @@ from symofros.diagrams.run.faults import fault_at
 from symofros.diagrams.run.loop import Loop
 from symofros.runtime.beams import BeamBending, bending_notes, largest_bending
 from symofros.runtime.calls.kernel import Array
+from symofros.simulation.analysis.beam_theory import UNAMPLIFIED, amplifications
 from symofros.simulation.results.outcome import Kind, Outcome
 from symofros.simulation.results.step_size import examine_steps, remedy, step_size_note
 from symofros.simulation.settings import Settings
@@ -69,13 +70,26 @@ class Ended:
 
     @property
     def bendings(self) -> tuple[BeamBending, ...]:
-        """Bending of each beam at the step where its theory errs most."""
-        return tuple(bending for part in self.loop.parts for bending in part.bendings)
+        """Bending of each beam at the step where its theory errs most, amplified by the axial loads of the motion."""
+        t, q, v, u = self.states
+        bendings: list[BeamBending] = []
+        for stepper, part in zip(self.loop.parts, self.layout.parts, strict=True):
+            bent = stepper.bendings
+            if max((bending.error for bending in bent), default=0.0) >= UNAMPLIFIED:
+                motion = t, q[:, part.q], v[:, part.v], u
+                bent = stepper.amplified_bendings(amplifications(stepper.model, motion, self.par, "mass_matrix"))
+            bendings += bent
+        return tuple(bendings)
 
 
-def diagnose(ended: Ended) -> tuple[Outcome, bool]:
-    """How a run ended, and whether its steps are evidently short enough, or adapt."""
-    loop, status, t, bendings = ended.loop, ended.status, ended.t, ended.bendings
+def diagnose(ended: Ended, bendings: Sequence[BeamBending]) -> tuple[Outcome, bool]:
+    """How a run ended, and whether its steps are evidently short enough, or adapt.
+
+    Args:
+        ended: The run.
+        bendings: Bending of its beams.
+    """
+    loop, status, t = ended.loop, ended.status, ended.t
     notes = (*bending_notes(bendings), *([loop.fault] if loop.fault else []))
     if ended.interrupted:
         return Outcome("interrupted", t, "Ctrl-C; the part up to here is kept", notes=notes), True
@@ -98,9 +112,8 @@ def diagnose(ended: Ended) -> tuple[Outcome, bool]:
             if failed and mode.amplified:
                 reason = f"the step is past the limit of stability of '{settings.method.name}'"
                 return Outcome("diverged", t, reason, remedy(mode, settings), notes), True
-    if status == Status.BEYOND_THEORY:
-        worst = largest_bending(bendings)
-        assert worst is not None
+    worst, limit = largest_bending(bendings), min((settings.beam_limit for settings in ended.settings), default=0.0)
+    if worst is not None and (status == Status.BEYOND_THEORY or (status >= 0 and worst.error > limit)):
         advice = f"{worst.remedy}; or move the limit, beam_limit=..."
         return Outcome("beyond theory", worst.t, str(worst), advice, notes[len(bending_notes(bendings)) :]), True
     if status == Status.FINISHED:

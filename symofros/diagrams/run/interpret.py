@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -15,18 +15,20 @@ from symofros.diagrams.run.block_functions import Blocks
 from symofros.diagrams.run.faults import first_fault
 from symofros.diagrams.run.python_blocks import Called
 from symofros.diagrams.wiring import Source
-from symofros.runtime.beams import BeamBending, ElasticBeam, bending_notes, largest_bending
+from symofros.runtime.beams import BeamBending, ElasticBeam, amplification_of, bending_notes, largest_bending
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import project
 from symofros.runtime.manifold import chart_rate, retract
+from symofros.simulation.analysis.beam_theory import UNAMPLIFIED, amplifying
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.stepping.tableaus import Tableau
 
 # How often an observer gets records [s], and how much earlier than its stop an instant may be, by rounding [s].
 _SENT_EVERY, _SLACK = 0.05, 1e-12
 
-# An instant of a run: its time, what is due, whether to record.
+# An instant of a run: its time, what is due, whether to record. A record: t, q, v.
 Instant = tuple[float, frozenset[str], bool]
+Row = tuple[float, Array, Array]
 
 
 @dataclass
@@ -114,7 +116,7 @@ def _project(blocks: Blocks, part: Part) -> None:
         blocks.signals()
         M, G, phi, rate, binds = np.eye(nv), np.zeros((nc, nv)), np.zeros(nc), np.zeros(nc), np.zeros(nc)
         for name in part.blocks:
-            if name not in layout.v or pieces[name].terms.M is None:
+            if name not in layout.v or pieces[name].terms.G is None:
                 continue
             call, outputs = blocks.calls[name, "motion"]
             call()
@@ -152,7 +154,7 @@ class _RecordFeed:
         self,
         observer: Observer,
         blocks: Blocks,
-        rows: Sequence[tuple[float, Array, Array]],
+        rows: Sequence[Row],
         kept: Mapping[Source, Sequence[Array]],
     ) -> None:
         self._observer, self._rows, self._kept = observer, rows, kept
@@ -182,21 +184,43 @@ class BeamWatch:
         resolved: The diagram.
         par: Run-time parameters (npar).
         limit: Estimated error beyond which the run ends.
+
+    Attributes:
+        limit: The same.
     """
 
     def __init__(self, resolved: Resolved, par: Array, limit: float) -> None:
-        self._limit = limit
+        self.limit = limit
         self._beams: list[tuple[ElasticBeam, slice]] = []
         for part in resolved.layout.parts:
             for beam in part_beams(resolved, part, par):
-                first = part.q.start + beam.q
-                self._beams.append((beam, slice(first, first + beam.size)))
+                whole = replace(beam, q=part.q.start + beam.q, v=part.v.start + beam.v)
+                self._beams.append((whole, whole.in_q))
         self._largest: list[BeamBending | None] = [None] * len(self._beams)
 
     @property
     def bendings(self) -> tuple[BeamBending, ...]:
         """The largest bending of each beam that was bent at all."""
         return tuple(bending for bending in self._largest if bending is not None)
+
+    def amplify(self, blocks: Blocks, rows: Sequence[Row], kept: Mapping[Source, Sequence[Array]]) -> None:
+        """Amplify the errors by the axial loads of the motion (docs/theory/beams.md, 26a).
+
+        Args:
+            blocks: The diagram's; they are moved.
+            rows: Records of the motion.
+            kept: Signals of each record.
+        """
+        if not rows or max((bending.error for bending in self.bendings), default=0.0) < UNAMPLIFIED:
+            return
+        works = [np.zeros((2, 0))] * len(self._beams)
+        for i in amplifying(*(np.array([row[k] for row in rows]) for k in (1, 2))):
+            blocks.t[0], blocks.q[:], blocks.v[:] = rows[i]
+            for source in blocks.resolved.layout.held:
+                blocks.out[source][...] = kept[source][i]
+            works = [np.column_stack([w, _works(blocks, *which)]) for w, which in zip(works, self._beams, strict=True)]
+        for k, bending in enumerate(self._largest):
+            self._largest[k] = bending and bending.amplified(amplification_of(*works[k]))
 
     def judge(self, q: Array, t: float) -> bool:
         """Judge a configuration of the diagram (nq); whether it lies within the limit."""
@@ -206,7 +230,31 @@ class BeamWatch:
                 bending = beam.bending(q[at], t)
                 if largest is None or bending.error > largest.error:
                     self._largest[i] = bending
-        return all(bending.error <= self._limit for bending in self.bendings)
+        return all(bending.error <= self.limit for bending in self.bendings)
+
+
+def _works(blocks: Blocks, beam: ElasticBeam, at: slice) -> tuple[float, float]:
+    """Work of a beam's elastic stiffness at the present point, and of its tangent stiffness there (26a)."""
+    layout, x = blocks.resolved.layout, blocks.q[at].copy()
+    name = next(name for name, place in layout.q.items() if place.start <= at.start < place.slice.stop)
+    step, along = float(beam.difference_step(x)), np.zeros(layout.v[name].size)
+    if not step > 0.0:
+        return 0.0, 0.0
+    along[beam.v - layout.v[name].start :][: beam.size] = x
+
+    def forces(share: float) -> tuple[Array, Array]:
+        blocks.q[at] = (1.0 + share) * x
+        blocks.signals()
+        blocks.accelerate()
+        return blocks.a[layout.v[name].slice].copy(), blocks.lam[layout.lam[name].slice].copy()
+
+    (a_more, lam_more), (a_less, lam_less) = forces(step), forces(-step)
+    forces(0.0)
+    terms = blocks.calls[name, "motion"][1]
+    change = along @ terms["t_M"] @ (a_more - a_less)
+    if len(lam_more):
+        change -= terms["t_G"] @ along @ (lam_more - lam_less)
+    return float(x @ beam.elastic_stiffness() @ x), float(-change / (2.0 * step))
 
 
 def run_interpreted(
@@ -235,7 +283,7 @@ def run_interpreted(
         show: Called with the time [s].
         observer: Receiver of the records, which may stop the run by time.
     """
-    rows: list[tuple[float, Array, Array]] = []
+    rows: list[Row] = []
     kept: dict[Source, list[Array]] = {source: [] for source in blocks.out}
 
     def record() -> None:
@@ -273,7 +321,9 @@ def run_interpreted(
             blocks.signals()
             record()
     feed.send(float(blocks.t[0]), is_over=True)
-    outcome = _outcome(blocks, watch, steps, failed=failed, within=within)
+    t_last, fault = float(blocks.t[0]), first_fault(blocks) if failed else ""
+    watch.amplify(blocks, rows, kept)
+    outcome = _outcome(watch, t_last, steps, fault, failed=failed, within=within)
     if not goes_on:
         outcome = Outcome("interrupted", outcome.t, "stopped; the part up to here is kept", notes=outcome.notes)
     t, q, v = (np.array(column) for column in zip(*rows, strict=True)) if rows else (np.zeros(0), blocks.q, blocks.v)
@@ -303,17 +353,16 @@ def _meet(blocks: Blocks, called: Called, instant: Instant, projects: bool, reco
         record()
 
 
-def _outcome(blocks: Blocks, watch: BeamWatch, steps: int, *, failed: bool, within: bool) -> Outcome:
+def _outcome(watch: BeamWatch, t: float, steps: int, fault: str, *, failed: bool, within: bool) -> Outcome:
     """How a run ended."""
-    t, notes = float(blocks.t[0]), bending_notes(watch.bendings)
+    notes = bending_notes(watch.bendings)
     if failed:
-        fault = first_fault(blocks)
         if fault:
             return Outcome("input failed", t, fault, "outputs that are finite at all samples", notes)
         return Outcome(
             "diverged", t, "a state is no longer finite", "a smaller dt; look for gains that are too high", notes
         )
     worst = largest_bending(watch.bendings)
-    if not within and worst is not None:
+    if worst is not None and not (within and worst.error <= watch.limit):
         return Outcome("beyond theory", t, str(worst), f"{worst.remedy}; or move the limit, beam_limit=...")
     return Outcome("finished", t, f"{steps} steps", notes=notes)

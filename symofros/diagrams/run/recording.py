@@ -14,6 +14,7 @@ from symofros.diagrams.block import Shape
 from symofros.diagrams.program.compiled import CompiledDiagram
 from symofros.diagrams.program.fused_functions import AFTER
 from symofros.diagrams.wiring import Source
+from symofros.runtime.beams import BeamBending
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.results.outcome import Outcome
 
@@ -129,12 +130,14 @@ class Recording(Records, Mapping[str, Array]):
         outcome: Outcome of the run.
         crossings: Crossings met, in the order of time.
         cost: Cost of the run.
+        bendings: Bending of each beam at the step where its theory errs most.
         kept: Block -> what it kept of the run by itself, by name: arrays at its own times "t", or counts.
     """
 
     outcome: Outcome
     crossings: tuple[Crossed, ...]
     cost: Cost
+    bendings: tuple[BeamBending, ...] = ()
     kept: Mapping[str, Mapping[str, Array]] = field(default_factory=dict)
 
     def __iter__(self) -> Iterator[str]:

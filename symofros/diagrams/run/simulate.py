@@ -179,7 +179,8 @@ def _drive(
     t, q, v, u = (np.concatenate(columns) for columns in zip(*portions, strict=True))
     settings = [options.settings(part.model, t_end) for part in loop.parts]
     ended = Ended(loop, compiled.resolved, par, settings, plan.spacing, (t, q, v, u), status, interrupted)
-    outcome, evident = diagnose(ended)
+    bendings = ended.bendings
+    outcome, evident = diagnose(ended, bendings)
     looked_for = watched(compiled.resolved.pieces)
     crossings = tuple(Crossed(*looked_for[which], when) for when, which in met)
     d = loop.diagram
@@ -192,4 +193,4 @@ def _drive(
         loop.lateness,
         plan.spacing / (realtime or 1.0),
     )
-    return DiagramRun(compiled, t, q, v, u, par, outcome, crossings, cost), evident
+    return DiagramRun(compiled, t, q, v, u, par, outcome, crossings, cost, bendings), evident

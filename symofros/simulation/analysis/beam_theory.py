@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 from symofros.errors import BeamTheoryError, Problem, SymofrosError
 from symofros.runtime.beams import BeamBending, ElasticBeam, amplification_of, largest_bending
@@ -16,7 +17,7 @@ from symofros.runtime.model import ArrayLike, Model
 # have to be within 0.03 % of the critical one.
 UNAMPLIFIED = 1e-5
 # States of a motion whose axial loads are looked at.
-AMPLIFYING_STATES = 16
+_STATES = 16
 
 
 def bendings_at(model: Model, q: Array, par: ArrayLike | None = None, t: float = math.nan) -> tuple[BeamBending, ...]:
@@ -64,8 +65,7 @@ def amplifications(
         inertia: Function whose first output is the mass matrix.
     """
     beams = model.beams(par)
-    good = np.flatnonzero(np.isfinite(states[1]).all(axis=1) & np.isfinite(states[2]).all(axis=1))
-    t, q, v, u = (array[good[:: -(-len(good) // AMPLIFYING_STATES) or 1]] for array in states)
+    t, q, v, u = (array[amplifying(*states[1:3])] for array in states)
     if not len(t):
         return (1.0,) * len(beams)
     try:
@@ -74,6 +74,12 @@ def amplifications(
         return tuple(_amplification(model, beam, (t, q, v, u), M, G, par) for beam in beams)
     except SymofrosError:  # Options.functions left out what this takes.
         return (1.0,) * len(beams)
+
+
+def amplifying(q: Array, v: Array) -> npt.NDArray[np.intp]:
+    """Which states (n) of a motion, from configurations and speeds, its axial loads are looked at in."""
+    good = np.flatnonzero(np.isfinite(q).all(axis=1) & np.isfinite(v).all(axis=1))
+    return good[:: -(-len(good) // _STATES) or 1]
 
 
 def _amplification(

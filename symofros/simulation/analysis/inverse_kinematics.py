@@ -15,7 +15,7 @@ from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import LARGEST_STEP, pseudo_inverse
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.assembly import Indices, free_speeds
-from symofros.simulation.analysis.beam_theory import bendings_at
+from symofros.simulation.analysis.beam_theory import bendings_in_motion
 from symofros.simulation.analysis.nearest_posture import OPTIMALITY, NearestPosture, coordinate_limits
 from symofros.simulation.analysis.targets import Target as Target
 from symofros.simulation.analysis.targets import Task, finite_array, rotations_checked
@@ -100,19 +100,21 @@ def inverse_kinematics(
     else:
         starts = [np.array(model.neutral() if resting is None else resting)]
     if resting is None:
-        return _judged(model, _reach(task, starts[0], free, tolerance, iterations), par, beam_limit)
+        return _judged(task, _reach(task, starts[0], free, tolerance, iterations), beam_limit)
     if q is not None and not held:
         starts.append(resting)
     nearest = min(
         (_reach_near(task, start, resting, free, tolerance, iterations) for start in starts),
         key=lambda reached: (not reached.converged, reached.distance if reached.converged else reached.error),
     )
-    return _judged(model, nearest, par, beam_limit)
+    return _judged(task, nearest, beam_limit)
 
 
-def _judged(model: Model, reached: Reached, par: ArrayLike | None, beam_limit: float) -> Reached:
-    """The same with what is to be said of the beams; not converged where one is bent beyond the limit."""
-    bendings = bendings_at(model, reached.q, par)
+def _judged(task: Task, reached: Reached, beam_limit: float) -> Reached:
+    """The same with its beams as they are when released there; not converged where one is bent beyond the limit."""
+    model, given = task.model, task.inputs["u"]
+    u = np.array(model.record.u_default if given is None else model.by_name("u", given), dtype=np.float64)
+    bendings = bendings_in_motion(model, reached.q, np.zeros(model.nv), u, task.inputs["par"])
     within = all(bending.error <= beam_limit for bending in bendings)
     return replace(reached, converged=reached.converged and within, bendings=bendings, notes=bending_notes(bendings))
 

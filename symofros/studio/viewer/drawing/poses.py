@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,8 +16,10 @@ from symofros.description.system import System
 from symofros.errors import AssemblyError, Problem, ShapeError
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.tree import SpanningTree, frame_of
+from symofros.runtime.beams import BeamBending
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.assembly import assemble
+from symofros.simulation.analysis.beam_theory import bendings_in_motion
 from symofros.studio.viewer.drawing.drawing import Drawing, DrawnBeam, DrawnConnector, LinkPoint
 from symofros.studio.viewer.drawing.geometry import draw, landmarks
 from symofros.studio.viewer.drawing.inertia_box import longest_edges
@@ -91,6 +94,18 @@ class Mechanism:
         for link in self.tree.links:
             if link.tip_of is not None:
                 self._elastic[link.q[0] : sum(link.q)] = True
+
+    def bendings(self, state: State) -> tuple[BeamBending, ...]:
+        """Bending of each beam in a state, amplified by the axial loads under which it starts to move from there."""
+        if not self.is_flexible:
+            return ()
+        q, u, par = state
+        return bendings_in_motion(self._moving, q, np.zeros(self._moving.nv), u, par)
+
+    @cached_property
+    def _moving(self) -> Model:
+        """The model with its dynamics, which are made when a beam is bent."""
+        return compile_system(self.system)
 
     @property
     def is_flexible(self) -> bool:

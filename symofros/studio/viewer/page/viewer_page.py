@@ -191,9 +191,7 @@ class ViewerPage:
 
     def _bending_notes(self) -> tuple[str, ...]:
         """Remarks on beams that the state, not its exaggerated picture, bends beyond a per cent of error."""
-        state = self._scene_state.state
-        beams = self.mechanism.model.beams(state.par)
-        return bending_notes([beam.bending(state.q[beam.in_q]) for beam in beams])
+        return bending_notes(self.mechanism.bendings(self._scene_state.state))
 
     def _new_panel(self) -> Panel:
         scene_state, mechanism = self._scene_state, self._scene_state.mechanism
