@@ -13,6 +13,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from symofros.base.options import Options as Options
+from symofros.description import sections as sections
 from symofros.description.beam import Beam as Beam
 from symofros.description.beam import BeamLoad as BeamLoad
 from symofros.description.beam import Samples as Samples

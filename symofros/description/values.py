@@ -190,6 +190,10 @@ class Term:
         """Square root."""
         return _combined("sqrt", self)
 
+    def tanh(self) -> Term:
+        """Hyperbolic tangent."""
+        return _combined("tanh", self)
+
     def maximum(self, other: Term) -> Term:
         """The larger of two."""
         return _combined("max", self, other)
@@ -215,6 +219,7 @@ _ON_NUMBERS: dict[str, Callable[..., float]] = {
     "mul": operator.mul,
     "div": operator.truediv,
     "sqrt": math.sqrt,
+    "tanh": math.tanh,
     "max": max,
     "abs": abs,
 }

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, model_validator
 
-from symofros.description.beam import Beam, BeamLoad, Direction, Samples
+from symofros.description.beam import SECTION, Beam, BeamLoad, Direction, Samples
 from symofros.description.yaml.derived import NounEntry
-from symofros.description.yaml.fields import Formula, Number
+from symofros.description.yaml.fields import Formula, Number, fault
+from symofros.description.yaml.schema_section import SectionEntry
+from symofros.errors import Problem
 
 Count = Annotated[int, Field(ge=0, le=40)]
 Sampled = Annotated[list[Number], Field(min_length=4, max_length=10_000)]
@@ -39,3 +41,22 @@ class BeamEntry(NounEntry, noun=Beam, without=("name", "joint", "frames", "waive
     segments: Annotated[int, Field(ge=1, le=200)] = 1
     shapes: dict[Direction, ShapeList] = {}
     loads: Annotated[list[BeamLoadEntry], Field(max_length=100)] = []
+    section: SectionEntry | None = None
+    """Material and shape, in place of rhoA, EI_y and the other properties of the section."""
+    rhoA: Formula | None = None
+
+    @model_validator(mode="after")
+    def _one_section(self) -> Self:
+        stated = [label for label in SECTION if label in self.model_fields_set]
+        if self.section is not None and stated:
+            rule = "a section gives all properties per length"
+            raise fault(Problem("a section and its properties", ", ".join(stated), rule, "keep the one or the other"))
+        if self.section is None and self.rhoA is None:
+            rule = "a beam has mass: rhoA, or a section"
+            raise fault(Problem("a beam without mass", "neither rhoA nor section", rule, "add one of them"))
+        return self
+
+    def stated(self) -> dict[str, Any]:
+        """The fields of the beam, those of its section among them."""
+        stated = super().stated()
+        return stated | (stated.pop("section") or {})

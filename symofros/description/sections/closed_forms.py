@@ -1,0 +1,118 @@
+"""Rectangle, circle, tube, ellipse in closed form; sizes as formulas too (docs/theory/beams.md, section 8)."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from symofros.description.sections.section import Material, Section
+from symofros.description.values import Term, as_value
+
+_PI = math.pi
+# The sum of 1/n^5 over odd n: 31/32 zeta(5).
+_ODD_FIFTHS = 31.0 / 32.0 * 1.0369277551433699
+
+
+def rectangle(material: Material, y: Any, z: Any) -> Section:
+    """A rectangle.
+
+    Args:
+        material: Material.
+        y: Size along y [m]; a number or a formula.
+        z: Size along z [m]; a number or a formula.
+    """
+    E, G, rho, a, b = _terms(material, y, z)
+    area = a * b
+    I_y, I_z = a * b * b * b / Term(12.0), b * a * a * a / Term(12.0)
+    shear = tuple(G * area / _rectangle_compliance(E / G, *sizes) for sizes in ((a, b), (b, a)))
+    return _homogeneous(E, rho, area, I_y, I_z, G * _rectangle_torsion(a, b), shear)
+
+
+def circle(material: Material, radius: Any) -> Section:
+    """A full circle.
+
+    Args:
+        material: Material.
+        radius: Radius [m]; a number or a formula.
+    """
+    E, G, rho, r = _terms(material, radius)
+    area = Term(_PI) * r * r
+    moment = area * r * r / Term(4.0)
+    # 6 (1 + nu)^2 / (7 + 14 nu + 8 nu^2) with E = 2 G (1 + nu).
+    ratio = E / G
+    shear = Term(1.5) * ratio * ratio / (Term(1.0) - ratio + Term(2.0) * ratio * ratio)
+    return _homogeneous(E, rho, area, moment, moment, Term(2.0) * G * moment, (G * area * shear,) * 2)
+
+
+def tube(material: Material, radius: Any, thickness: Any) -> Section:
+    """A circle with a concentric hole.
+
+    Args:
+        material: Material.
+        radius: Outer radius [m]; a number or a formula.
+        thickness: Thickness of the wall [m]; a number or a formula.
+    """
+    E, G, rho, outer, wall = _terms(material, radius, thickness)
+    inner = outer - wall
+    squares = outer * outer + inner * inner
+    area = Term(_PI) * wall * (outer + inner)
+    moment = area * squares / Term(4.0)
+    return _homogeneous(E, rho, area, moment, moment, Term(2.0) * G * moment)
+
+
+def ellipse(material: Material, y: Any, z: Any) -> Section:
+    """A full ellipse.
+
+    Args:
+        material: Material.
+        y: Semi-axis along y [m]; a number or a formula.
+        z: Semi-axis along z [m]; a number or a formula.
+    """
+    E, G, rho, a, b = _terms(material, y, z)
+    area = Term(_PI) * a * b
+    torsion = area * a * a * b * b / (a * a + b * b)
+    return _homogeneous(E, rho, area, area * b * b / Term(4.0), area * a * a / Term(4.0), G * torsion)
+
+
+def _terms(material: Material, *sizes: Any) -> list[Term]:
+    stated = [as_value(size, "section: size") for size in sizes]
+    return [Term(value) for value in (material.E, material.G, material.rho, *stated)]
+
+
+def _homogeneous(
+    E: Term, rho: Term, area: Term, I_y: Term, I_z: Term, GJ: Term, shear: tuple[Term, ...] = ()
+) -> Section:
+    GA_y, GA_z = (term.value for term in shear) if shear else (None, None)
+    return Section(
+        EA=(E * area).value,
+        GJ=GJ.value,
+        EI_y=(E * I_y).value,
+        EI_z=(E * I_z).value,
+        rhoA=(rho * area).value,
+        rhoI_y=(rho * I_y).value,
+        rhoI_z=(rho * I_z).value,
+        GA_y=GA_y,
+        GA_z=GA_z,
+    )
+
+
+def _rectangle_torsion(y: Term, z: Term) -> Term:
+    """J of Saint-Venant's torsion (eq. 27): the sum of 1/n^5 is known, and what is left of the series vanishes fast."""
+    a = y.maximum(z)
+    b = y * z / a
+    rest = Term(0.0)
+    for n in (1, 3, 5, 7):
+        rest = rest + (Term(1.0) - (Term(n * _PI / 2.0) * a / b).tanh()) / Term(float(n**5))
+    series = Term(192.0 / _PI**5) * (Term(_ODD_FIFTHS) - rest)
+    return a * b * b * b / Term(3.0) * (Term(1.0) - series * b / a)
+
+
+def _rectangle_compliance(ratio: Term, h: Term, b: Term) -> Term:
+    """A/A_s for a force along the side h of a rectangle of width b (eq. 28), where ratio = E/G = 2 (1 + nu)."""
+    lateral = Term(1.0) - Term(2.0) / ratio
+    rest = Term(_ODD_FIFTHS)
+    for n in (1, 3, 5, 7, 9):
+        rest = rest + (Term(1.0) / (Term(n * _PI / 2.0) * b / h).tanh() - Term(1.0)) / Term(float(n**5))
+    slenderness = b / h
+    warping = slenderness * slenderness / Term(144.0) + Term(1.0 / 120.0) - Term(4.0 / _PI**5) * slenderness * rest
+    return Term(1.2) + Term(144.0) * lateral * lateral * warping

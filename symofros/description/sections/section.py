@@ -1,0 +1,229 @@
+"""Section: stiffness and mass per length of a beam, of a material and a geometry (docs/theory/beams.md, section 8)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from symofros.description.entries import refuses_unknown_entries
+from symofros.description.values import Term, Value, as_value, symbols
+from symofros.errors import DescriptionError, Problem
+from symofros.expr.expression import evaluate
+
+# Relative to the section's size, what counts as on the axis: meshes of symmetric outlines are not symmetric, and their
+# shear centres err by some 1e-5; bending twists a beam by as much.
+_ON_AXIS = 1e-4
+
+
+@refuses_unknown_entries
+@dataclass(frozen=True)
+class Material:
+    """An isotropic elastic material.
+
+    Attributes:
+        E: Young's modulus [N/m^2].
+        G: Shear modulus [N/m^2].
+        rho: Density [kg/m^3].
+    """
+
+    E: Value
+    G: Value
+    rho: Value
+
+    def __post_init__(self) -> None:
+        """Convert the numbers."""
+        for item in fields(self):
+            object.__setattr__(self, item.name, as_value(getattr(self, item.name), f"material: {item.name}"))
+
+
+@refuses_unknown_entries
+@dataclass(frozen=True)
+class Section:
+    """What a cross-section brings to a beam, per length; y and z are axes of the beam, x is along it.
+
+    Entries are numbers or formulas of parameters and of the station x.
+
+    Attributes:
+        EA: Stiffness against stretching [N].
+        GJ: Stiffness against twist [N m^2].
+        EI_y: Stiffness against bending in the x-z plane, the integral of E z^2 about the tension centre [N m^2].
+        EI_z: Stiffness against bending in the x-y plane, the integral of E y^2 about the tension centre [N m^2].
+        rhoA: Mass [kg/m].
+        rhoI_y: Moment of inertia about y through the mass centre [kg m].
+        rhoI_z: Moment of inertia about z through the mass centre [kg m].
+        GA_y: Stiffness against shear along y, by the energy of the shear stress [N]; None where it is not known.
+        GA_z: Stiffness against shear along z, by the energy of the shear stress [N]; None where it is not known.
+        EI_yz: Integral of E y z about the tension centre [N m^2].
+        rhoI_yz: Integral of rho y z about the mass centre [kg m].
+        tension_center: Point (y, z) where a force along x does not bend [m].
+        shear_center: Point (y, z) where a force across does not twist [m].
+        mass_center: Mass centre (y, z) [m].
+    """
+
+    EA: Value
+    GJ: Value
+    EI_y: Value
+    EI_z: Value
+    rhoA: Value
+    rhoI_y: Value
+    rhoI_z: Value
+    GA_y: Value | None = None
+    GA_z: Value | None = None
+    EI_yz: Value = 0.0
+    rhoI_yz: Value = 0.0
+    tension_center: tuple[Value, Value] = (0.0, 0.0)
+    shear_center: tuple[Value, Value] = (0.0, 0.0)
+    mass_center: tuple[Value, Value] = (0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        """Convert the numbers."""
+        for item in fields(self):
+            stated: Any = getattr(self, item.name)
+            if isinstance(stated, tuple):
+                y, z = (as_value(value, f"section: {item.name}") for value in stated)
+                object.__setattr__(self, item.name, (y, z))
+            elif stated is not None:
+                object.__setattr__(self, item.name, as_value(stated, f"section: {item.name}"))
+
+    @property
+    def rhoJ(self) -> Value:
+        """Polar moment of inertia, about x through the mass centre [kg m]."""
+        return (Term(self.rhoI_y) + Term(self.rhoI_z)).value
+
+    def beam_properties(self) -> dict[str, Value]:
+        """The section properties of a Beam: `Beam(name, joint, length, **section.beam_properties())`.
+
+        Raises:
+            DescriptionError: The axis does not go through all three centres, or y and z are no principal axes.
+        """
+        for label, value, size in self._off_axis():
+            known = isinstance(value, float) and (
+                value == 0.0 or isinstance(size, float) and abs(value) <= _ON_AXIS * size
+            )
+            if not known:
+                raise DescriptionError(
+                    Problem(
+                        f"section: {label} is not zero",
+                        f"{value:g}" if isinstance(value, float) else str(value),
+                        "a Beam has its mass centre, tension centre and shear centre on its axis, and y and z are"
+                        " principal axes",
+                        "for axes that are not principal ones turn the section (`turned`); a section whose centres"
+                        " differ couples bending and twist, which a Beam can't represent",
+                    )
+                )
+        labels = ("rhoA", "EI_z", "EI_y", "GJ", "rhoJ", "rhoI_y", "rhoI_z")
+        return {label: getattr(self, label) for label in labels}
+
+    def _off_axis(self) -> list[tuple[str, Value, Value]]:
+        """What a beam has no entry for, with the size that it is small beside."""
+        height = (Term(self.EI_y) + Term(self.EI_z)) / Term(self.EA)
+        size = height.sqrt().value
+        centers = [
+            (f"{label}'s {axis}", value, size)
+            for label in ("tension_center", "shear_center", "mass_center")
+            for axis, value in zip("yz", getattr(self, label), strict=True)
+        ]
+        return [*centers, ("EI_yz", self.EI_yz, self.EI_z), ("rhoI_yz", self.rhoI_yz, self.rhoI_z)]
+
+    @property
+    def principal_angle(self) -> float:
+        """Angle about x to the axes for which EI_yz is zero and EI_z not smaller than EI_y [rad], in (-pi/2, pi/2]."""
+        EI_y, EI_z, EI_yz = self._numbers(("EI_y", "EI_z", "EI_yz"))
+        return 0.5 * float(np.arctan2(2.0 * EI_yz, EI_z - EI_y))
+
+    def turned(self, angle: float) -> Section:
+        """The same section with components along axes that are turned about x.
+
+        Args:
+            angle: Angle from the present y axis to the new one [rad].
+        """
+        c, s = float(np.cos(angle)), float(np.sin(angle))
+        new: dict[str, Any] = {item.name: getattr(self, item.name) for item in fields(self)}
+        for name in ("EI", "rhoI"):
+            yy, zz, yz = self._numbers((f"{name}_z", f"{name}_y", f"{name}_yz"))  # Integrals of y^2, z^2, y z.
+            new[f"{name}_z"] = c * c * yy + 2.0 * c * s * yz + s * s * zz
+            new[f"{name}_y"] = s * s * yy - 2.0 * c * s * yz + c * c * zz
+            new[f"{name}_yz"] = (c * c - s * s) * yz - c * s * (yy - zz)
+        for name in ("tension_center", "shear_center", "mass_center"):
+            y, z = self._point(name)
+            new[name] = (c * y + s * z, c * z - s * y)
+        # Shear along axes that are not principal ones of shear is coupled: unknown, unless the angle is a right one.
+        quarter = round(angle / (0.5 * np.pi))
+        if abs(angle - quarter * 0.5 * np.pi) > 1e-12:
+            new["GA_y"] = new["GA_z"] = None
+        elif quarter % 2:
+            new["GA_y"], new["GA_z"] = self.GA_z, self.GA_y
+        return Section(**new)
+
+    def stiffness_matrix(self, values: Mapping[str, float] | None = None) -> npt.NDArray[np.float64]:
+        """Stiffness about the axis: (force, moment) = K (stretch and shears, twist rate and curvatures), (6, 6).
+
+        Args:
+            values: Number of each parameter and of the station.
+
+        Raises:
+            DescriptionError: The stiffness against shear is not known.
+        """
+        if self.GA_y is None or self.GA_z is None:
+            raise DescriptionError(
+                Problem(
+                    "section: stiffness against shear is not known",
+                    "GA_y or GA_z is None",
+                    "a stiffness matrix has it",
+                    "give GA_y and GA_z",
+                )
+            )
+        EA, GA_y, GA_z, GJ, EI_y, EI_z, EI_yz = self._numbers(
+            ("EA", "GA_y", "GA_z", "GJ", "EI_y", "EI_z", "EI_yz"), values
+        )
+        (y_t, z_t), (y_s, z_s) = self._point("tension_center", values), self._point("shear_center", values)
+        K = np.diag([EA, GA_y, GA_z, GJ, EI_y, EI_z])
+        K[4, 5] = K[5, 4] = -EI_yz
+        # Strains at the centres by those of the axis.
+        T = np.eye(6)
+        T[0, 4], T[0, 5], T[1, 3], T[2, 3] = z_t, -y_t, -z_s, y_s
+        return np.asarray(T.T @ K @ T)
+
+    def mass_matrix(self, values: Mapping[str, float] | None = None) -> npt.NDArray[np.float64]:
+        """Mass about the axis: (momentum, angular momentum) per length = M (velocity, angular velocity), (6, 6).
+
+        Args:
+            values: Number of each parameter and of the station.
+        """
+        m, I_y, I_z, I_yz = self._numbers(("rhoA", "rhoI_y", "rhoI_z", "rhoI_yz"), values)
+        y, z = self._point("mass_center", values)
+        M = np.diag([m, m, m, I_y + I_z, I_y, I_z])
+        M[4, 5] = M[5, 4] = -I_yz
+        T = np.eye(6)
+        T[0, 4], T[0, 5], T[1, 3], T[2, 3] = z, -y, -z, y
+        return np.asarray(T.T @ M @ T)
+
+    def _numbers(self, labels: tuple[str, ...], values: Mapping[str, float] | None = None) -> list[float]:
+        return [number_of(getattr(self, label), label, values or {}) for label in labels]
+
+    def _point(self, label: str, values: Mapping[str, float] | None = None) -> tuple[float, float]:
+        y, z = (number_of(value, label, values or {}) for value in getattr(self, label))
+        return y, z
+
+
+def number_of(value: Value, label: str, values: Mapping[str, float]) -> float:
+    """The number of a formula.
+
+    Raises:
+        DescriptionError: It depends on what has no value.
+    """
+    missing = symbols(value) - values.keys()
+    if missing:
+        raise DescriptionError(
+            Problem(
+                f"section: {label} has no number",
+                f"it depends on {', '.join(sorted(missing))}",
+                "this needs numbers: of outlines by finite elements, of angles, of matrices",
+                "give numbers, or the values of the parameters where they are asked for",
+            )
+        )
+    return float(evaluate(value, values))
