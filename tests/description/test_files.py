@@ -12,7 +12,7 @@ import symofros as sf
 from reference_models import MODELS
 from reference_models.rigid.random_tree import MORE_KINDS, random_tree
 from symofros.description.yaml.files import MAX_BYTES, read_yaml
-from symofros.description.yaml.yaml_nodes import compose_text
+from symofros.description.yaml.yaml_pieces import compose_text
 from symofros.description.yaml.yaml_writer import write_yaml
 
 HEAD = "symofros: 1\nsystem: {name: arm}\n"

@@ -17,7 +17,8 @@ from symofros.description.reading import in_order, kind_of, read_bytes, refuse_s
 from symofros.description.system import Body, Input, Parameter, System
 from symofros.description.yaml.faults import line_of, path_of, problem_of
 from symofros.description.yaml.schema import BodyEntry, InputEntry, NativeFile, SystemEntry, default_joint_name
-from symofros.description.yaml.yaml_nodes import Node, YamlFault, compose
+from symofros.description.yaml.yaml_nodes import Node, YamlFault
+from symofros.description.yaml.yaml_pieces import compose
 from symofros.description.yaml.yaml_writer import write_yaml as write_yaml
 from symofros.errors import DescriptionError, Problem, did_you_mean, first_of
 

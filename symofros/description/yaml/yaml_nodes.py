@@ -91,22 +91,6 @@ class YamlFault(SymofrosError):
     """A problem of a YAML document after which reading can't go on."""
 
 
-def compose(data: bytes, file: str) -> tuple[Node, list[Problem]]:
-    """Read one YAML document.
-
-    Args:
-        data: The file's content.
-        file: File name, for the problems.
-
-    Returns:
-        The root, and the duplicate keys that were found (the first of each counts).
-
-    Raises:
-        YamlFault: Not UTF-8, not YAML, or something the format does without.
-    """
-    return compose_text(decoded(data, file), file)
-
-
 def decoded(data: bytes, file: str) -> str:
     """A file's text, without a byte order mark.
 
@@ -123,8 +107,15 @@ def decoded(data: bytes, file: str) -> str:
         ) from None
 
 
-def compose_text(text: str, file: str) -> tuple[Node, list[Problem]]:
-    """The same from text.
+def compose_whole(text: str, file: str) -> tuple[Node, list[Problem]]:
+    """Read one YAML document; see `yaml_pieces.compose_text`.
+
+    Args:
+        text: Text of the document.
+        file: File name, for the problems.
+
+    Returns:
+        The root, and the duplicate keys that were found (the first of each counts).
 
     Raises:
         YamlFault: Not YAML, or something the format does without.

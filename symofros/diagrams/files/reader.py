@@ -12,7 +12,8 @@ from typing import Any
 from symofros.description.reading import in_order, read_bytes
 from symofros.description.system import System
 from symofros.description.yaml.files import DIAGRAM
-from symofros.description.yaml.yaml_nodes import Node, YamlFault, compose
+from symofros.description.yaml.yaml_nodes import Node, YamlFault
+from symofros.description.yaml.yaml_pieces import compose
 from symofros.diagrams.block import Block, ModelFile
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.files.entries import Entries

@@ -79,6 +79,11 @@ class Formulas:
             self.steps.append(step)
         return self._places[key]
 
+    @property
+    def symbols(self) -> frozenset[str]:
+        """Names that the formulas depend on."""
+        return frozenset(step for step in self.steps if isinstance(step, str))
+
     def __call__(self, values: Mapping[str, Array | float]) -> list[Array | float]:
         """The values; NaN or infinite outside a formula's domain.
 
@@ -129,7 +134,9 @@ class Conditions:
 
 def violations(conditions: Iterable[Condition], numbers: Numbers) -> Iterator[Problem]:
     """The problems of conditions that do not hold; those of names that have no value are passed over."""
-    judged = Conditions(c for c in conditions if c.symbols <= numbers.parameters.keys())
+    judged = Conditions(conditions)
+    if not judged.formulas.symbols <= numbers.parameters.keys():
+        judged = Conditions(c for c in judged.conditions if c.symbols <= numbers.parameters.keys())
     for condition, violated in zip(judged.conditions, judged.violated(numbers.parameters), strict=True):
         if violated[0]:
             yield condition.problem(numbers)

@@ -10,7 +10,8 @@ from typing import Any, TypeVar
 
 from symofros.description.reading import read_bytes
 from symofros.description.values import as_value
-from symofros.description.yaml.yaml_nodes import Node, YamlFault, compose
+from symofros.description.yaml.yaml_nodes import Node, YamlFault
+from symofros.description.yaml.yaml_pieces import compose
 from symofros.errors import DescriptionError, Problem, ShapeError, did_you_mean
 from symofros.simulation.inputs import Signal
 from symofros.studio.advice.scene import KINDS, Output, Scene

@@ -21,7 +21,7 @@ class Drawing:
         data: Document as plain data, whatever is in it.
         read: As much of the diagram as could be read.
         drafted: As much of it as holds together.
-        loop: Signals along an algebraic loop.
+        loops: Signals along each algebraic loop.
         problems: Problems as the page shows them.
     """
 
@@ -30,12 +30,12 @@ class Drawing:
         data: Any,
         read: Diagram | None,
         drafted: Draft | None,
-        loop: Sequence[Source],
+        loops: Sequence[Sequence[Source]],
         problems: Sequence[Json],
     ) -> None:
         self.data = data if isinstance(data, dict) else {}
         self.read, self.drafted = read, drafted
-        self.loop = set(zip(loop, loop[1:], strict=False))
+        self.loops = {pair for loop in loops for pair in zip(loop, loop[1:], strict=False)}
         self.problems = problems
         self.nodes: dict[str, Json] = {}
         self.wires: list[Json] = []
@@ -140,9 +140,9 @@ class Drawing:
         )
 
     def _closes(self, source: tuple[str, str], target: str) -> bool:
-        """Whether a wire is part of the algebraic loop."""
+        """Whether a wire is part of an algebraic loop."""
         start = (source[0].partition("/")[2], source[1])
-        return any(a == start and f"blocks/{b[0]}" == target for a, b in self.loop)
+        return any(a == start and f"blocks/{b[0]}" == target for a, b in self.loops)
 
     def _source(self, text: str) -> tuple[str, str] | None:
         """The node and the output that a source's text names; None if there is no such node."""

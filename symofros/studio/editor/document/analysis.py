@@ -32,7 +32,7 @@ def analyse(file: Path, text: str) -> Analysis:
     if isinstance(source.root.value, dict) and DIAGRAM in source.root.value:
         return analyse_diagram(file, source)
     problems, system = _checked(file, source)
-    exact = schema_problems(source, str(file))
+    exact = schema_problems(source, str(file)) if problems else {}
     shown_problems = [placed(problem, source, str(file), exact) for problem in problems]
     data = as_json(source.root.plain())
     graph = diagram(data)

@@ -6,7 +6,8 @@ import re
 from functools import lru_cache
 from typing import NamedTuple
 
-from symofros.description.yaml.yaml_nodes import Node, compose_text
+from symofros.description.yaml.yaml_nodes import Node
+from symofros.description.yaml.yaml_pieces import compose_text
 from symofros.studio.editor.editing.data_edits import Path
 
 _BREAK = re.compile(r"\r\n|\n|\r")

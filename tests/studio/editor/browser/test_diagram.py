@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Locator, Page, expect
+from playwright.sync_api import Locator, Page, Position, expect
 
 from tests.studio.editor.browser import steps
 from tests.studio.editor.browser.conftest import Server
@@ -16,6 +16,7 @@ pytestmark = pytest.mark.browser
 
 MODELS = Path(__file__).parents[4] / "reference_models"
 JOB = 60_000
+MIDDLE: Position = {"x": 60, "y": 12}
 DRAWN = """symofros_diagram: 1
 name: drawn   # a comment that stays
 blocks:
@@ -142,6 +143,19 @@ def test_a_diagram_is_checked_as_it_is_drawn_and_saved_with_every_other_byte_as_
     expect(page.locator(".react-flow__edge.loop")).to_have_count(1)
     expect(page.locator(".wire-label")).to_have_text("algebraic loop")
     picture("diagram-loop")
+
+    # Blocks are copied with the wires between them, as text; the loops show though the copies are not fed.
+    for name in ("speed", "sum"):
+        steps.block(page, f"blocks/{name}").click(modifiers=["Control"] if name == "sum" else [], position=MIDDLE)
+    page.keyboard.press("Control+c")
+    page.keyboard.press("Control+v")
+    expect(steps.wire(page, "blocks/sum2/inputs/u1")).to_have_count(1)
+    expect(steps.block(page, "blocks/speed2")).to_be_visible()
+    steps.problems(page, 3)
+    expect(page.locator(".react-flow__edge.loop")).to_have_count(2)
+    assert '"symofros_blocks"' in page.evaluate("navigator.clipboard.readText()")
+    page.keyboard.press("Control+z")
+    expect(steps.block(page, "blocks/sum2")).to_have_count(0)
 
     # Fed by another signal, by the keyboard alone; a scope on a signal; then it runs.
     steps.open_window(page, "blocks/sum")

@@ -97,6 +97,17 @@ def test_an_algebraic_loop_is_marked_at_its_wires_and_at_no_others() -> None:
     assert marked == {"blocks/a/inputs/u1", "blocks/b/inputs/u"}
 
 
+def test_algebraic_loops_are_marked_while_other_things_are_wrong() -> None:
+    other = "  d: {kind: gain, unit_in: m, inputs: {u: f}}\n  e: {kind: sum, inputs: {u1: c}}\n"
+    other += "  f: {kind: constant, value: 1, unit: rad}\n  g: {kind: gian}\n"
+    second = "  h: {kind: sum, inputs: {u1: h, u2: c}}\n"
+    found = drawn(LOOP + other + second)
+    assert found.diagram is not None and {problem["node"] for problem in found.problems} >= {"blocks/e", "blocks/g"}
+    marked = {wire["id"] for wire in found.diagram["wires"] if wire["loop"]}
+    assert marked == {"blocks/a/inputs/u1", "blocks/b/inputs/u", "blocks/h/inputs/u1"}
+    assert sum("algebraic loop" in problem["object"] for problem in found.problems) == 2
+
+
 @pytest.mark.parametrize("text", ["symofros_diagram: 1\n", "symofros_diagram: 2\nblocks: 3\nmodels: [a]\n"])
 def test_a_diagram_without_anything_to_draw_is_a_diagram(text: str) -> None:
     assert drawn(text).diagram == {"nodes": [], "wires": [], "models": {}}

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from symofros.description.yaml import yaml_nodes
+from symofros.description.yaml import yaml_pieces
 from symofros.studio.editor.document.analysis import analyse
 from symofros.studio.editor.document.diagram import diagram
 from symofros.studio.editor.document.expressions import check_field
@@ -139,13 +139,13 @@ def test_a_parameter_that_can_not_be_read_stays_in_the_table(value: str) -> None
 def test_a_text_is_read_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """Reading is what takes long: a text that was edited is not read again to be checked."""
     texts = []
-    compose_text = yaml_nodes.compose_text
+    compose_text = yaml_pieces.compose_text
 
     def counted(text: str, file: str) -> object:
         texts.append(text)
         return compose_text(text, file)
 
-    monkeypatch.setattr(yaml_nodes, "compose_text", counted)
+    monkeypatch.setattr(yaml_pieces, "compose_text", counted)
     monkeypatch.setattr(yaml_spans, "compose_text", counted)
     text = TEXTS["four_bar"] + "# once\n"
     now = analyse(FILES["four_bar"], text)

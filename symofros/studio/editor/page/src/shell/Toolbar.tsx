@@ -44,12 +44,9 @@ function EditMenu() {
     <Menu
       title="Edit"
       items={[
-        ...(isDiagram
-          ? [{ title: "Remove", keys: "Delete", act: () => void remove(now().selected) }]
-          : [
-              { title: "Copy", keys: "Ctrl C", act: copy },
-              { title: "Paste", keys: "Ctrl V", act: () => void paste() },
-            ]),
+        { title: "Copy", keys: "Ctrl C", act: copy },
+        { title: "Paste", keys: "Ctrl V", act: () => void paste() },
+        { title: "Remove", keys: "Delete", act: () => void remove(now().selected) },
         { title: "Find…", keys: "Ctrl K", act: () => show({ kind: "search" }) },
         ...(isDiagram
           ? [{ title: "Simulation: end, step, plots…", act: () => show({ kind: "properties", path: ["simulation"] }) }]

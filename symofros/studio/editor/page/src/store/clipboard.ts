@@ -3,50 +3,86 @@
 import { get, post } from "../api/client";
 import type { JsonMap, LibraryPart, Part, Point } from "../api/types";
 import { extract, insertion } from "../model/clipboard";
+import { type BlockPart, blockInsertion, extractBlocks } from "../model/diagram_clipboard";
 import { bodyNames } from "../model/names";
 import { isMap } from "../model/paths";
 import { carrier, selectedBodies } from "./bodies";
 import { change, edit, place } from "./edits";
 import { ordered } from "./requests";
-import { now, update } from "./store";
+import { notify, now, update } from "./store";
 
-const KEY = "symofros_part";
+// What a copy in the clipboard is called: bodies of a mechanism, blocks of a diagram.
+const KEYS = { bodies: "symofros_part", blocks: "symofros_blocks" } as const;
+const SECTIONS = {
+  bodies: ["bodies", "closures", "parameters", "inputs"],
+  blocks: ["models", "blocks", "parts", "wires", "places"],
+} as const;
+const SHIFT = 40;
+
+type Copied = { kind: "bodies"; part: Part } | { kind: "blocks"; part: BlockPart };
+
 // The system's clipboard can be closed to us; a copy within the page always works.
-let copied: Part | null = null;
+let copied: Copied | null = null;
+// How often it has been put in: copies do not lie upon each other.
+let pasted = 0;
 
 export function copy(): void {
-  const document = now().document;
-  const bodies = selectedBodies();
-  if (document === null || bodies.length === 0) return;
-  copied = extract(document.data, bodies);
-  void navigator.clipboard?.writeText(JSON.stringify({ [KEY]: copied }, null, 1)).catch(() => undefined);
+  const { document, selected, places } = now();
+  if (document === null || selected.length === 0) return;
+  if (document.diagram !== null) copied = { kind: "blocks", part: extractBlocks(document.data, selected, places) };
+  else if (selectedBodies().length > 0) copied = { kind: "bodies", part: extract(document.data, selectedBodies()) };
+  else return;
+  pasted = 0;
+  const text = JSON.stringify({ [KEYS[copied.kind]]: copied.part }, null, 1);
+  void navigator.clipboard?.writeText(text).catch(() => undefined);
 }
 
-const SECTIONS = ["bodies", "closures", "parameters", "inputs"] as const;
-
-/** A part out of text from the clipboard, which anybody may have written. */
-function parsed(text: string): Part | null {
+/** A copy out of text from the clipboard, which anybody may have written. */
+function parsed(text: string): Copied | null {
   let value: unknown;
   try {
     value = JSON.parse(text);
   } catch {
     return null;
   }
-  const part = isMap(value as JsonMap) ? (value as JsonMap)[KEY] : undefined;
-  return isMap(part) && SECTIONS.every((section) => isMap(part[section])) ? (part as unknown as Part) : null;
+  for (const kind of ["bodies", "blocks"] as const) {
+    const part = isMap(value as JsonMap) ? (value as JsonMap)[KEYS[kind]] : undefined;
+    if (!isMap(part) || !SECTIONS[kind].every((section) => isMap(part[section]))) continue;
+    if (kind === "bodies" || Array.isArray(part["chosen"])) return { kind, part } as unknown as Copied;
+  }
+  return null;
 }
 
 export async function paste(): Promise<void> {
   const text = (await navigator.clipboard?.readText().catch(() => "")) ?? "";
-  const part = parsed(text) ?? copied;
-  if (part !== null) await insert(part);
+  const document = now().document;
+  const given = parsed(text) ?? copied;
+  if (given === null || document === null) return;
+  if ((given.kind === "blocks") !== (document.diagram !== null)) {
+    const [theirs, ours] = given.kind === "blocks" ? ["blocks", "a mechanism"] : ["bodies", "a diagram"];
+    notify({
+      object: "paste",
+      found: `${theirs} for ${ours}`,
+      rule: "bodies go into mechanisms, blocks into diagrams",
+      remedy: "open a document of the other kind",
+    });
+  } else if (given.kind === "blocks") await insertBlocks(given.part);
+  else await insert(given.part);
 }
 
 async function insert(part: Part): Promise<void> {
-  const document = now().document;
-  if (document === null) return;
-  const { edits, bodies } = insertion(document.data, part);
+  const { edits, bodies } = insertion(now().document?.data ?? {}, part);
   if (await edit(`insert ${part.name}`, edits)) choose([...bodies.values()]);
+}
+
+async function insertBlocks(part: BlockPart): Promise<void> {
+  pasted += 1;
+  const { edits, places } = blockInsertion(now().document?.data ?? {}, part, SHIFT * pasted);
+  const ids = edits.filter(({ path }) => path[0] !== "wires").map(({ path }) => path.join("/"));
+  update((state) => ({ places: { ...state.places, ...places } }));
+  if (!(await edit(`paste ${ids.length === 1 ? ids[0]?.split("/")[1] : `${ids.length} blocks`}`, edits))) return;
+  if (Object.keys(places).length > 0) await place(places);
+  update({ selected: ids, sight: ids[0] === undefined ? null : { id: ids[0] } });
 }
 
 function choose(bodies: readonly string[]): void {

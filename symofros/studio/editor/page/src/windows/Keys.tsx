@@ -7,7 +7,7 @@ const KEYS = [
   ["Arrows", "move the chosen blocks"],
   ["Delete", "remove what is chosen"],
   ["Ctrl Z, Ctrl Y", "undo, redo"],
-  ["Ctrl C, Ctrl V", "copy, paste bodies"],
+  ["Ctrl C, Ctrl X, Ctrl V", "copy, cut, paste bodies or blocks, also in another document"],
   ["Ctrl A", "choose all blocks"],
   ["Ctrl K or /", "find by name"],
   ["Ctrl S, Ctrl O", "save, open"],
