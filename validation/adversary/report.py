@@ -7,7 +7,7 @@ import json
 from validation.adversary.catalogue import ATTACKS
 from validation.adversary.measure import measure
 from validation.reporting.numbers import counted
-from validation.reporting.record import Bullets, Data, Fact, Report, Section, Table, Topic
+from validation.reporting.record import Bullets, Data, Fact, Report, Section, Table, Topic, verdict
 
 _TEXT = (
     "Each attack draws scenes over many decades of size, mass, stiffness and step, and compares what we claim of our "
@@ -15,26 +15,25 @@ _TEXT = (
     "error in words, that there is no good answer, **undecided** where the independent route has none. A find is an "
     "answer called good that is not: it is shrunk to the plainest scene and written as a test."
 )
-_COLUMNS = """attack; #scenes = {tried}; #refused; #undecided; #agreed; #largest error over bound = {largest:.2g};
-    #finds ? no finds; #CPU time [s] = {seconds:.0f}"""
+_HEAD = "attack | scenes | refused | undecided | agreed | largest error over bound | finds | CPU time [s]"
+_ROW = "{} | {tried} | {refused} | {undecided} | {agreed} | {largest:.2g} | {} | {seconds:.0f}"
 
 
 def compose(data: Data) -> Report:
     """The report of its JSON."""
-    finds, attacks = data["finds"], data["attacks"].items()
-    rows = [
-        {"attack": name, **tally, "finds": sum(find["attack"] == name for find in finds)} for name, tally in attacks
-    ]
-    tried, refused, seconds = (sum(row[name] for row in rows) for name in ("tried", "refused", "seconds"))
+    finds, attacks = data["finds"], data["attacks"]
+    by_attack = {name: sum(find["attack"] == name for find in finds) for name in attacks}
+    rows = (_ROW.format(name, verdict(n, not n), **attacks[name]) for name, n in by_attack.items())
+    tried, refused, seconds = (sum(row[name] for row in attacks.values()) for name in ("tried", "refused", "seconds"))
     listed = tuple(f"{find['attack']}: {find['said']}: `{json.dumps(find['scene'])}`" for find in finds)
-    claims = Table.of(ATTACKS.values(), "attack = {name}; claim; route")
+    claims = Table.of("attack | claim | route", ((one.name, one.claim, one.route) for one in ATTACKS.values()))
     return Report(
         "Adversary",
         f"{counted(tried, 'scene')}: {counted(len(finds), 'answer')} called good that independent routes contradict.",
         bool(data["ok"]),
         (_TEXT,),
         (
-            Section("By attack", (Table.of(rows, _COLUMNS),)),
+            Section("By attack", (Table.of(_HEAD, rows),)),
             Section("Finds", (Bullets(listed),)),
             Section("Claims and routes", (claims,), page_only=True),
         ),

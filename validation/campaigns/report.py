@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from validation.reporting.numbers import counted, digits, short
-from validation.reporting.record import Bullets, Data, Fact, Report, Section, Table, Topic
+from validation.reporting.numbers import counted, digits, formatted, short
+from validation.reporting.record import Bullets, Data, Fact, Report, Section, Table, Topic, verdict
 
 _SHOWN = 20
-_WORST = """quantity; #comparisons; #largest error = {error:digits} ? all_agree; #tolerance = {tolerance:.1e};
-    of = {model}; against = {engine}; #batch, state = {batch}, {worst_state}"""
+_HEAD = "quantity | comparisons | largest error | tolerance | of | against | batch, state"
 
 
 def compose(data: Data) -> Report:
@@ -22,27 +21,28 @@ def _checked(data: Data) -> Report:
     groups, spent, failed = data["groups"], data["effort"], data["failed"]
     wrong = [row for row in groups if not row["agree"]]
     cut = f"; {counted(len(failed), 'comparison')} could not be made" if failed else ""
-    verdict = f"{len(wrong)} do not agree" if wrong else "all agree" if data["ok"] else "not all agree"
-    bad = [
-        f"disagrees: {row['model']}, {row['engine']}, {row['quantity']}: {digits(row['error'])} in batch "
-        f"{row['batch']}, {'-' if row['worst_state'] is None else row['worst_state']}"
-        for row in wrong[:_SHOWN]
-    ]
+    stated = f"{len(wrong)} do not agree" if wrong else "all agree" if data["ok"] else "not all agree"
+    disagreeing = "disagrees: {model}, {engine}, {quantity}: {} in batch {batch}, {}"
+    bad = [disagreeing.format(digits(row["error"]), _state(row), **row) for row in wrong[:_SHOWN]]
     bad += [f"failed: batch {row['batch']}, {row['model']}: {row['note']}" for row in failed[:_SHOWN]]
     share = max(map(_share, groups), default=0.0)
-    worst = [_worst(data, quantity) for quantity in dict.fromkeys(row["quantity"] for row in groups)]
-    blocks = (Table.of(worst, _WORST), Bullets(tuple(bad)) if bad else "Nothing disagrees.")
+    worst = (_worst([row for row in groups if row["quantity"] == q]) for q in {row["quantity"]: 0 for row in groups})
+    blocks = (Table.of(_HEAD, worst), Bullets(tuple(bad)) if bad else "Nothing disagrees.")
     said = "The largest error of each quantity over all models, engines and states, relative to its scale."
-    apart = Table.of(data.get("unsupported", ()), "engine; model; quantity; reason = {note}")
+    apart = ((row["engine"], row["model"], row["quantity"], row["note"]) for row in data.get("unsupported", ()))
     return Report(
         "Campaign",
         f"{counted(data['states'], 'state')} of {counted(data['models'], 'model')}, "
-        f"{counted(len(groups), 'comparison')}: {verdict}{cut}.",
+        f"{counted(len(groups), 'comparison')}: {stated}{cut}.",
         bool(data["ok"]),
         (),
         (
             Section("How close", (said, *blocks)),
-            Section("What an engine could not represent", (apart,), page_only=True),
+            Section(
+                "What an engine could not represent",
+                (Table.of("engine | model | quantity | reason", apart),),
+                page_only=True,
+            ),
             _effort(data),
         ),
         facts=(
@@ -54,36 +54,34 @@ def _checked(data: Data) -> Report:
     )
 
 
-def _worst(data: Data, quantity: str) -> dict[str, Any]:
+def _worst(rows: list[dict[str, Any]]) -> tuple[str, ...]:
     """The comparison of a quantity that takes most of its tolerance; how many there are, and whether all agree."""
-    rows = [row for row in data["groups"] if row["quantity"] == quantity]
-    counts = {"comparisons": len(rows), "all_agree": all(row["agree"] for row in rows)}
     worst = max(rows, key=_share)
-    return {
-        "model": "",
-        "engine": "",
-        **worst,
-        **counts,
-        "error": math.nan if worst["error"] is None else worst["error"],
-    }
+    error = verdict(digits(worst["error"]), all(row["agree"] for row in rows))
+    place = worst["model"], worst["engine"], f"{worst['batch']}, {_state(worst)}"
+    return worst["quantity"], str(len(rows)), error, f"{worst['tolerance']:.1e}", *place
+
+
+def _state(row: Data) -> str:
+    return "-" if row["worst_state"] is None else str(row["worst_state"])
 
 
 def _share(row: Data) -> float:
     """How much of its tolerance an error takes."""
-    return float("inf") if row["error"] is None else row["error"] / (row["tolerance"] or 1.0)
+    return math.inf if row["error"] is None else row["error"] / (row["tolerance"] or 1.0)
 
 
 def _swept(data: Data) -> Report:
-    plan = data["plan"]
+    plan, ranges = data["plan"], data["ranges"].items()
     rest = "" if data["ok"] else f"; {data['points'] - data['done']} could not be evaluated"
     reasons = Bullets(tuple(f"{number} points: {why}" for why, number in data["failed"].items()))
-    ranges = Table.of(data["ranges"].items(), "result = {0}; #smallest = {1[min]:.6g}; #largest = {1[max]:.6g}")
+    rows = ((name, *(formatted(one[end], ".6g") for end in ("min", "max"))) for name, one in ranges)
     return Report(
         "Campaign",
         f"{plan['model']}, {plan['quantity'].replace('_', ' ')}: {data['done']} of {data['points']} points{rest}.",
         bool(data["ok"]),
         (),
-        (Section("Range of each result", (ranges, reasons)), _effort(data)),
+        (Section("Range of each result", (Table.of("result | smallest | largest", rows), reasons)), _effort(data)),
         facts=(Fact(_rate(data, "points"), f"points, {counted(data['effort']['sessions'], 'session')}"),),
     )
 
@@ -104,5 +102,5 @@ def _effort(data: Data) -> Section:
 
 
 # What writes it at the everyday size.
-_ARGUMENTS = tuple("campaign run --models all --report reports -o campaign".split())
+_ARGUMENTS = "campaign run --models all --report reports -o campaign"
 TOPIC = Topic("campaign", "Correctness", "And over a hundred thousand states?", compose, arguments=_ARGUMENTS)

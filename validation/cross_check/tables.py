@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from typing import Any
+from dataclasses import dataclass
 
 from validation.adapters import ROUTES
 from validation.check import ModelResult
@@ -13,19 +13,14 @@ from validation.contract.quantities import MOTION_ENERGY, QUANTITIES
 from validation.cross_check.record import Record
 from validation.procedures.catalogue import ENGINE as FORMULAS
 from validation.reporting.numbers import counted, digits
-from validation.reporting.record import Cell, Column, Table
+from validation.reporting.record import Cell, Table, verdict
 
-
-def _columns() -> dict[str, tuple[str, ...]]:
-    """Titles of columns -> quantities that share one, in their order, and the drift of our own free motion."""
-    columns: dict[str, tuple[str, ...]] = {}
-    for quantity in (*QUANTITIES.values(), MOTION_ENERGY):
-        title = quantity.column or quantity.symbol
-        columns[title] = (*columns.get(title, ()), quantity.name)
-    return columns | {"drift": ("energy_drift",)}
-
-
-COLUMNS = _columns()
+COMPARED = (*QUANTITIES.values(), MOTION_ENERGY)
+# Titles of columns -> quantities that share one, in their order, and the drift of our own free motion.
+COLUMNS = {
+    title: tuple(q.name for q in COMPARED if (q.column or q.symbol) == title)
+    for title in dict.fromkeys(q.column or q.symbol for q in COMPARED)
+} | {"drift": ("energy_drift",)}
 # Engines of rows that no other engine is behind: our own drift, and what was asked of any of them.
 _OURS = ("symofros", "any", FORMULAS)
 # Statuses with a verdict on numbers.
@@ -34,100 +29,98 @@ _JUDGED = ("agree", "disagree")
 _DEEPEST = 0.55
 
 
-Line = tuple[ModelResult, str, Sequence[Comparison]]
-
-
 def by_model(record: Record) -> Table:
     """One line a model, the worst over all engines in each cell."""
-    return _table(_models(record), "#engines")
+    return _table("engines", ((model, _engines(model), model.comparisons) for model in record.models))
 
 
 def by_engine(record: Record, engine: str) -> Table:
     """One line a model that an engine has something to say of."""
-    return _table(_engines(record, (engine,)), "engine")
+    return _table("engine", ((model, engine, rows) for model in record.models if (rows := _of(model, engine))))
 
 
 def nearest(record: Record, each: bool) -> Table:
     """The comparison that is nearest to its tolerance, of each model, or of each engine of each model."""
-
-    def shown(line: Line) -> tuple[str | Cell, ...]:
-        row = worst(line[2])
-        error: tuple[str | Cell, ...] = ("", "", "")
-        if row is not None:
-            place = row.words if each else f"{row.words}, {row.engine}"
-            error = Cell(digits(row.error, 1), row.ok), digits(row.tolerance, 1), place
-        return line[0].label, line[1], *error, _verdict(line[2])
-
-    lines = _engines(record, (*ROUTES, *_OURS)) if each else _models(record)
-    head = ("model", "engine" if each else "#engines", "#error", "#of", "in", "verdict")
-    return Table(head, tuple(map(shown, lines)))
+    lines: list[tuple[str, ...]] = []
+    for model in record.models:
+        engines = [(name, _of(model, name)) for name in (*ROUTES, *_OURS)]
+        for name, rows in engines if each else [(_engines(model), list(model.comparisons))]:
+            error: tuple[str, ...] = ("", "", "")
+            if (row := worst(rows)) is not None:
+                place = row.words if each else f"{row.words}, {row.engine}"
+                error = verdict(digits(row.error, 1), row.ok), digits(row.tolerance, 1), place
+            lines += [(model.label, name, *error, _result(rows))] if rows or not each else []
+    return Table.of(f"model | {'engine' if each else 'engines'} | error | of | in | verdict", lines)
 
 
-def _models(record: Record) -> list[Line]:
-    compared = ({row.engine for row in m.comparisons if row.status in _JUDGED} - {*_OURS} for m in record.models)
-    return [(m, str(len(names)), m.comparisons) for m, names in zip(record.models, compared, strict=True)]
+def _engines(model: ModelResult) -> str:
+    """How many engines a model is compared with."""
+    return str(len({row.engine for row in model.comparisons if row.status in _JUDGED} - {*_OURS}))
 
 
-def _engines(record: Record, engines: Sequence[str]) -> list[Line]:
-    lines = [(m, name, [row for row in m.comparisons if row.engine == name]) for m in record.models for name in engines]
-    return [line for line in lines if line[2]]
+def _of(model: ModelResult, engine: str) -> list[Comparison]:
+    return [row for row in model.comparisons if row.engine == engine]
 
 
-def opinions(record: Record) -> Table:
-    """One line an engine: whether it agrees, and if not, whether it is alone in that, against other engines."""
-    against, witnesses = (
-        {
-            (row.model, row.quantity, row.engine)
-            for row in rows
-            if row.engine in ROUTES and ROUTES[row.engine].independent
-        }
-        for rows in (record.rows("disagree"), record.rows("agree"))
+@dataclass(frozen=True)
+class Opinion:
+    """Whether an engine agrees with our C.
+
+    Attributes:
+        engine: Name of the engine.
+        models: Number of models; comparisons: of comparisons; disagree: of those that disagree.
+        alone: Number of comparisons in which it disagrees and all other engines, one or more, agree.
+        nearest: Comparison that takes most of its tolerance.
+    """
+
+    engine: str
+    models: int
+    comparisons: int
+    disagree: int
+    alone: int
+    nearest: Comparison | None
+
+    @property
+    def verdict(self) -> str:
+        """Who is suspect."""
+        return "agrees" if not self.disagree else "suspect" if 2 * self.alone > self.disagree else "against our C"
+
+
+def opinion(record: Record, engine: str) -> Opinion:
+    """Whether an engine agrees, and if not, whether it is alone in that, against other independent engines."""
+    independent = [row for row in record.compared if row.engine in ROUTES and ROUTES[row.engine].independent]
+    others: dict[tuple[str, str], set[str]] = {}
+    for row in independent:
+        if row.engine != engine:
+            others.setdefault((row.model, row.quantity), set()).add(row.status)
+    rows = [row for row in record.compared if row.engine == engine]
+    disagreeing = [row for row in rows if row.status == "disagree"]
+    alone = sum(others.get((row.model, row.quantity)) == {"agree"} for row in disagreeing)
+    return Opinion(engine, len({row.model for row in rows}), len(rows), len(disagreeing), alone, worst(rows))
+
+
+def of_opinions(opinions: Iterable[Opinion]) -> Table:
+    """One line an engine."""
+    rows = []
+    for one in opinions:
+        near, kind = one.nearest, "independent" if ROUTES[one.engine].independent else "our own"
+        used = "nan" if near is None or near.error is None else f"{near.error / near.tolerance:.2g}"
+        place, result = f"{near.words} of {near.model}" if near else "", verdict(one.verdict, not one.disagree)
+        counts = one.models, one.comparisons, one.disagree, one.alone
+        rows.append((one.engine, kind, *map(str, counts), used, place, result))
+    return Table.of(
+        "engine | opinion | models | comparisons | disagree | alone | largest error / tolerance | of | verdict", rows
     )
 
-    def is_alone(row: Comparison) -> bool:
-        place = row.model, row.quantity
-        others = [name for name in ROUTES if name != row.engine]
-        return any((*place, name) in witnesses for name in others) and all(
-            (*place, name) not in against for name in others
-        )
 
-    def line(engine: str) -> dict[str, Any]:
-        rows = [row for row in record.compared if row.engine == engine]
-        disagreeing = [row for row in rows if row.status == "disagree"]
-        alone = sum(map(is_alone, disagreeing))
-        nearest = worst(rows)
-        used = nearest.error / nearest.tolerance if nearest and nearest.error is not None else math.nan
-        return {
-            "engine": engine,
-            "opinion": "independent" if ROUTES[engine].independent else "our own",
-            "models": len({row.model for row in rows}),
-            "comparisons": len(rows),
-            "disagree": len(disagreeing),
-            "alone": alone,
-            "used": used,
-            "where": f"{nearest.words} of {nearest.model}" if nearest else "",
-            "verdict": "agrees" if not disagreeing else "suspect" if 2 * alone > len(disagreeing) else "against our C",
-        }
-
-    columns = """engine; opinion; #models; #comparisons; #disagree; #alone; #largest error / tolerance = {used:.2g};
-        of = {where}; verdict ? no disagree"""
-    return Table.of((line(name) for name in ROUTES if any(row.engine == name for row in record.compared)), columns)
-
-
-def _table(lines: Sequence[Line], middle: str) -> Table:
+def _table(middle: str, lines: Iterable[tuple[ModelResult, str, Sequence[Comparison]]]) -> Table:
     """A line each: the model, whom it is compared with, the worst comparison in each column, the verdict."""
-
-    def cell(quantities: tuple[str, ...]) -> Column:
-        return lambda line: _cell(worst(row for row in line[2] if row.quantity in quantities))
-
-    shown: dict[str, Column] = {
-        "model": lambda line: Cell(line[0].label, None if _status(line[2]) in ("agree", "unsupported") else False),
-        "#nv": lambda line: str(line[0].sizes.get("nv", "")),
-        middle: lambda line: line[1],
-        **{f"#{title}": cell(quantities) for title, quantities in COLUMNS.items()},
-        "verdict": lambda line: _verdict(line[2]),
-    }
-    return Table.of(lines, shown).without_empty()
+    rows = []
+    for model, compared, found in lines:
+        cells = [_cell(worst(row for row in found if row.quantity in names)) for names in COLUMNS.values()]
+        label = verdict(model.label, _status(found) in ("agree", "unsupported"))
+        rows.append((label, str(model.sizes.get("nv", "")), compared, *cells, _result(found)))
+    return Table(("model", "nv", middle, *COLUMNS, "verdict"), tuple(rows)).without_empty()
 
 
 def _status(rows: Sequence[Comparison]) -> str:
@@ -136,16 +129,15 @@ def _status(rows: Sequence[Comparison]) -> str:
     return next((status for status in ("failed", "disagree", "agree") if status in statuses), "unsupported")
 
 
-def _verdict(rows: Sequence[Comparison]) -> Cell:
-    status = _status(rows)
-    return Cell(status, False if status in ("failed", "disagree") else None)
+def _result(rows: Sequence[Comparison]) -> str:
+    return verdict(_status(rows), _status(rows) not in ("failed", "disagree"))
 
 
 def _cell(row: Comparison | None) -> str | Cell:
     if row is None:
         return ""
     hint = f"{row.quantity}, {row.engine}; median {digits(row.median)}"
-    return Cell(digits(row.error), row.ok, _DEEPEST * margin_used(row) if row.ok else 0.0, hint)
+    return Cell(verdict(digits(row.error), row.ok), _DEEPEST * margin_used(row) if row.ok else 0.0, hint)
 
 
 def margin_used(row: Comparison) -> float:
@@ -160,11 +152,8 @@ def margin_used(row: Comparison) -> float:
 
 def worst(rows: Iterable[Comparison]) -> Comparison | None:
     """The row nearest to its tolerance, or farthest beyond; one without a number is worst of all."""
-
-    def badness(row: Comparison) -> float:
-        return float("inf") if row.error is None else row.error / row.tolerance
-
-    return max((row for row in rows if row.status in _JUDGED), key=badness, default=None)
+    judged = (row for row in rows if row.status in _JUDGED)
+    return max(judged, key=lambda row: math.inf if row.error is None else row.error / row.tolerance, default=None)
 
 
 def failures(record: Record) -> list[tuple[str, str, str]]:
@@ -186,16 +175,11 @@ def unsupported(record: Record) -> list[tuple[str, str, str]]:
     grouped: dict[tuple[str, str], list[Comparison]] = {}
     for row in record.rows("unsupported"):
         grouped.setdefault((row.engine, row.note), []).append(row)
-    return [
-        (", ".join(dict.fromkeys(row.model for row in rows)), engine, _quantities(rows) + reason)
-        for (engine, reason), rows in grouped.items()
-    ]
-
-
-def _quantities(rows: Sequence[Comparison]) -> str:
-    """Which quantities, where it is not all."""
-    names = dict.fromkeys(row.quantity for row in rows if row.quantity != "all")
-    return f"{', '.join(names)}: " if names else ""
+    told = []
+    for (engine, reason), rows in grouped.items():
+        names = ", ".join(dict.fromkeys(row.quantity for row in rows if row.quantity != "all"))
+        told.append((", ".join(dict.fromkeys(row.model for row in rows)), engine, f"{names}: " * bool(names) + reason))
+    return told
 
 
 def headline(record: Record) -> str:

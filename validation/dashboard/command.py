@@ -93,15 +93,12 @@ def _all_anew(folder: Path) -> bool:
 
 
 def regenerate(topic: Topic, folder: Path) -> str:
-    """Run the command of a report in a process of its own: one that crashes takes no other with it.
-
-    Returns:
-        How it ended, with the last lines of what it complained of if it wrote no report.
-    """
+    """How the command of a report ended; in a process of its own, so that one that crashes takes no other with it."""
     start, ends = time.perf_counter(), {0: "written", 1: "written; something in it is missed"}
-    command = [sys.executable, "-m", *topic.words, "--output", str(folder)]
+    command = [sys.executable, *topic.command.split()[1:], "--output", str(folder)]
     run = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False)
     end = ends.get(run.returncode, f"failed ({run.returncode})")
+    # The last lines of what it complained of, if it wrote no report.
     complaint = [] if run.returncode in ends else run.stderr.strip().splitlines()[-5:]
     return "\n".join([f"{topic.name}: {end}, {time.perf_counter() - start:.0f} s", *complaint])
 

@@ -23,8 +23,7 @@ class Entry:
     Attributes:
         topic: Topic of the report.
         report: Report; None if it is not there or can't be read.
-        data: JSON of the report.
-        provenance: Origin of its numbers.
+        data: JSON of the report, with the provenance of its numbers.
         remarks: Remarks for a reader who relies on it.
         page: Full page in the same folder; empty if there is none.
     """
@@ -48,13 +47,7 @@ class Entry:
 
 
 def gather(folder: Path, installed: Mapping[str, str], today: datetime.date) -> dict[str, Entry]:
-    """Every report that is known of.
-
-    Args:
-        folder: Folder of the reports.
-        installed: Versions of now, with which those of a report are compared.
-        today: Date from which their age counts.
-    """
+    """Every report that is known of; its versions are compared with those `installed`, its age counts from `today`."""
     return {name: _entry(folder, topic, installed, today) for name, topic in TOPICS.items()}
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -12,14 +11,12 @@ from validation.dashboard.gather import Entry
 from validation.dashboard.history import history
 from validation.reporting import html, markdown
 from validation.reporting.figures import Figure
-from validation.reporting.record import Block, Bullets, Cell, Report, Section, Table, Text
+from validation.reporting.record import Block, Bullets, Report, Section, Table, Text, verdict
 
 BEGIN, END = "<!-- reports/summary.md begins -->", "<!-- reports/summary.md ends -->"
 
 # Verdict of an entry -> whether what was asked for is met.
 _VERDICTS = {"good": True, "missed": False, "measured": None, "absent": None}
-
-
 _TREND = "What the summaries of earlier commits said otherwise, the latest change first."
 # Reports whose decisions the index shows, in this order.
 _DECIDING = ("pareto", "check", "engines")
@@ -30,39 +27,32 @@ class QuoteError(ValueError):
 
 
 def write_index(entries: Mapping[str, Entry], folder: Path, date: str) -> Path:
-    """Write index.html and summary.md.
-
-    Returns:
-        The page.
+    """Write index.html, which is returned, and summary.md.
 
     Raises:
         OSError: The folder can't be written to.
     """
     report = index(entries)
-    trend = history(folder / "summary.md", tuple(entries))
-    if trend is not None:
-        report = replace(report, sections=(Section("What changed", (_TREND, trend), "history"), *report.sections))
+    trend = Section("What changed", (_TREND, history(folder / "summary.md", tuple(entries))), "history")
     closing = f"Gathered {date} by `python -m validation dashboard`; `--regenerate` writes the reports anew before."
-    write_atomically(folder / "index.html", html.page(report, closing=closing, listed=False))
-    said = [f"**{report.summary}** (gathered {date})", markdown.table(summary_table(entries)), origins(entries)]
+    page = html.page(replace(report, sections=(trend, *report.sections)), closing=closing, listed=False)
+    said = f"**{report.summary}** (gathered {date})", markdown.table(summary_table(entries)), origins(entries)
+    write_atomically(folder / "index.html", page)
     write_atomically(folder / "summary.md", "\n\n".join(said) + "\n")
     return folder / "index.html"
 
 
 def index(entries: Mapping[str, Entry]) -> Report:
     """The report over all reports: a line each, then what each says in short."""
-    ok = all(entry.verdict != "missed" for entry in entries.values())
-    table = summary_table(entries, linked=True)
-    sections = tuple(_section(name, entry) for name, entry in entries.items())
     reports = {name: entry.report for name, entry in entries.items() if entry.report}
     return Report(
         "What the harness found",
-        re.sub(r"(?<=missed: )[^;]*", lambda names: re.sub(r"\w+", r"[\g<0>](#\g<0>)", names[0]), headline(entries)),
-        ok,
-        (table,),
-        sections,
+        headline(entries),
+        all(entry.verdict != "missed" for entry in entries.values()),
+        (summary_table(entries, linked=True),),
+        tuple(_section(name, entry) for name, entry in entries.items()),
         decisions=_decisions([reports[name].decisions for name in _DECIDING if name in reports]),
-        missed=tuple(f"[{name}](#{name}): {line}" for name, report in reports.items() for line in report.shortfalls),
+        missed=tuple(f"[{name}](#{name}): {line}" for name, report in reports.items() for line in report.missed),
     )
 
 
@@ -77,31 +67,33 @@ def _decisions(groups: Sequence[tuple[Block, ...]]) -> tuple[Block, ...]:
 def headline(entries: Mapping[str, Entry]) -> str:
     """How the reports stand."""
     named = {verdict: [n for n, e in entries.items() if e.verdict == verdict] for verdict in _VERDICTS}
-    judged = len(named["good"]) + len(named["missed"])
-    said = [f"{len(named['good'])} of {judged} reports with a verdict are good"]
-    said += [f"missed: {', '.join(named['missed'])}"] if named["missed"] else []
-    said += [f"{len(named['measured'])} measure without one"] if named["measured"] else []
-    said += [f"absent: {', '.join(named['absent'])}"] if named["absent"] else []
+    good, missed, measured, absent = named.values()
+    said = [f"{len(good)} of {len(good) + len(missed)} reports with a verdict are good"]
+    said += [f"missed: {', '.join(missed)}"] if missed else []
+    said += [f"{len(measured)} measure without one"] if measured else []
+    said += [f"absent: {', '.join(absent)}"] if absent else []
     return "; ".join(said) + "."
 
 
 def summary_table(entries: Mapping[str, Entry], linked: bool = False) -> Table:
-    """A line a report."""
-    name = "[{0}](#{0})" if linked else "{0}"
-    return Table.of(
-        entries.items(),
-        f"report = {name}; what it found = {{1.said}}; verdict = verdict(); made (UTC) = made()",
-        verdict=lambda row: Cell(row[1].verdict, not (linked and row[1].verdict == "missed")),
-        made=lambda row: row[1].provenance.date.removesuffix(" UTC") or "-",
+    """A line a report; `linked`: its name leads to what the page says of it, and a miss is marked."""
+    rows = (
+        (
+            f"[{name}](#{name})" if linked else name,
+            entry.said,
+            verdict(entry.verdict, not linked or entry.verdict != "missed"),
+            entry.provenance.date.removesuffix(" UTC") or "-",
+        )
+        for name, entry in entries.items()
     )
+    return Table.of("report | what it found | verdict | made (UTC)", rows)
 
 
 def origins(entries: Mapping[str, Entry]) -> str:
     """The machines that numbers come from, and the versions."""
-    machines = dict.fromkeys(entry.provenance.machine for entry in entries.values() if entry.provenance.machine)
-    versions: dict[str, str] = {}
-    for entry in entries.values():
-        versions |= entry.provenance.versions
+    stated = [entry.provenance for entry in entries.values()]
+    machines = dict.fromkeys(origin.machine for origin in stated if origin.machine)
+    versions = {name: version for origin in stated for name, version in origin.versions.items()}
     return ";\n".join([*machines, ", ".join(f"{name} {version}" for name, version in sorted(versions.items()))]) + "."
 
 
@@ -109,8 +101,7 @@ def _section(name: str, entry: Entry) -> Section:
     blocks: list[Block] = []
     if entry.report is not None:
         facts = tuple(f"**{fact.value}** {fact.label}" for fact in entry.report.facts)
-        blocks += [f"**{entry.report.summary}**", Bullets(facts)]
-        blocks += [Figure("", entry.report.telling)]
+        blocks += [f"**{entry.report.summary}**", Bullets(facts), Figure("", entry.report.first_chart)]
     for remark in entry.remarks:
         doubtful = any(word in remark for word in ("stale", "can't", "layout"))
         blocks.append(Text(f"This report {remark}.", "bad" if doubtful else "soft"))
@@ -122,10 +113,7 @@ def _section(name: str, entry: Entry) -> Section:
 
 
 def quote(readme: Path, summary: str) -> bool:
-    """Put the summary between the marks of a README.
-
-    Returns:
-        Whether there is such a file.
+    """Put the summary between the marks of a README; whether there is such a file.
 
     Raises:
         QuoteError: It has no marks, or they are out of order.
@@ -139,8 +127,3 @@ def quote(readme: Path, summary: str) -> bool:
         raise QuoteError(f"{readme.name}: no '{BEGIN}' with '{END}' after it, between which the summary would go")
     write_atomically(readme, f"{before}{BEGIN}\n{summary}{END}{after}")
     return True
-
-
-def quoted(readme: Path) -> str:
-    """What stands between the marks."""
-    return readme.read_text(encoding="utf-8").partition(f"{BEGIN}\n")[2].partition(END)[0]

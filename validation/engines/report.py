@@ -8,37 +8,18 @@ from typing import Any
 
 from validation.engines.study import RED, measure
 from validation.reporting.numbers import counted
-from validation.reporting.record import (
-    Bullets,
-    Cell,
-    Code,
-    Column,
-    Data,
-    Fact,
-    Fold,
-    Report,
-    Section,
-    Table,
-    Text,
-    Topic,
-)
+from validation.reporting.record import Bullets, Cell, Code, Data, Fact, Report, Section, Table, Text, Topic, verdict
 
-_TEXT = (
-    "Each engine builds the same small trees by its own API and answers in its own conventions: coordinates, speeds, "
-    "frames. What is right is worked out in 130 digits from nothing but what the engine's coordinates and speeds mean"
-    " (`validation/engines/truth/charts.py`), by Newton's and Euler's equations and differences. An answer may be off"
-    " by what 2000 roundings of its inputs and of the forces between links make of it. **wrong**: off by more, and by"
-    " more than a millionth of the largest entry. **imprecise**: off by more, but less than that. **refuses**: says "
-    "in words that it can't. **crashes**: takes its process with it. Empty: not offered. Each red cell stands for a "
-    "script that imports the engine alone, was shrunk to the plainest tree and state that still show it, and was run "
-    "in a process of its own to fail."
-)
-_DECISION = (
-    "**Which engine is wrong, against the truth in many digits:** {}; {} more lose digits beyond what rounding "
-    "explains. {} prove it. Where: [the matrix](engines.html#overview)."
-)
-_OVERVIEW = """engine = [{name}](#engine-{name}); version; #right; #wrong ? no wrong; #imprecise; #crashes; #refuses;
-    #faults proven = {proofs}"""
+_TEXT = """Each engine builds the same small trees by its own API and answers in its own conventions: coordinates,
+speeds, frames. What is right is worked out in 130 digits from nothing but what the engine's coordinates and speeds mean
+(`validation/engines/truth/charts.py`), by Newton's and Euler's equations and differences. An answer may be off by what
+2000 roundings of its inputs and of the forces between links make of it. **wrong**: off by more, and by more than a
+millionth of the largest entry. **imprecise**: off by more, but less than that. **refuses**: says in words that it
+can't. **crashes**: takes its process with it. Empty: not offered. Each red cell stands for a script that imports the
+engine alone, was shrunk to the plainest tree and state that still show it, and was run in a process of its own to
+fail."""
+_DECISION = """**Which engine is wrong, against the truth in many digits:** {}; {} more lose digits beyond what rounding
+explains. {} prove it. Where: [the matrix](engines.html#overview)."""
 Row = Mapping[str, Any]
 
 
@@ -46,14 +27,17 @@ def compose(data: Data) -> Report:
     """The report of its JSON."""
     cells, proofs, identities = data["cells"], data["proofs"], data["identities"]
     tally = Counter(cell["verdict"] for cell in cells)
-    red = sum(tally[verdict] for verdict in RED)
+    red = sum(tally[name] for name in RED)
     wrong = Counter(cell["engine"] for cell in cells if cell["verdict"] in ("wrong", "crashes"))
     listed = ", ".join(f"{engine} in {counted(number, 'cell')}" for engine, number in wrong.most_common()) or "none"
     scripts = counted(sum(proof["proven"] for proof in proofs), "script")
     all_proven, held = all(proof["proven"] for proof in proofs), sum(row["ok"] for row in identities)
-    overview = Table.of((_tally(engine, data) for engine in data["engines"]), _OVERVIEW)
+    head = "engine | version | right | wrong | imprecise | crashes | refuses | faults proven"
+    overview = Table.of(head, (_tally(engine, data) for engine in data["engines"]))
     absent = "; ".join(f"{name}: {why}" for name, why in data["absent"].items())
+    missing = (Text(f"Not installed here: {absent}.", "soft"),) if absent else ()
     conventions = ((engine["name"], *row) for engine in data["engines"] for row in engine["conventions"])
+    stated = Table.of("engine | what | convention", conventions)
     return Report(
         "Which engine is wrong where",
         f"{counted(len(data['engines']), 'engine')}, {counted(len(data['models']), 'tree')}, "
@@ -62,17 +46,10 @@ def compose(data: Data) -> Report:
         all_proven,
         (_TEXT,),
         (
-            Section(
-                "Engines", (overview, *([Text(f"Not installed here: {absent}.", "soft")] if absent else ())), "overview"
-            ),
+            Section("Engines", (overview, *missing), "overview"),
             *(_matrix(engine, data) for engine in data["engines"]),
             Section("Identities of engines with themselves", (_identities(data),), "identities"),
-            Section(
-                "Conventions",
-                (Table.of(conventions, "engine = {0}; what = {1}; convention = {2}"),),
-                "conventions",
-                page_only=True,
-            ),
+            Section("Conventions", (stated,), "conventions", page_only=True),
             Section("Proofs", tuple(map(_proof, proofs)), "proofs", all_proven, page_only=True),
         ),
         facts=(
@@ -87,63 +64,57 @@ def compose(data: Data) -> Report:
     )
 
 
-def _tally(engine: Row, data: Data) -> Row:
+def _tally(engine: Row, data: Data) -> tuple[str, ...]:
     """A line of the overview."""
-    verdicts = Counter(cell["verdict"] for cell in data["cells"] if cell["engine"] == engine["name"])
-    proofs = sum(proof["engine"] == engine["name"] for proof in data["proofs"])
-    counts = {name: verdicts[name] for name in ("right", "wrong", "imprecise", "crashes", "refuses")}
-    return {**engine, **counts, "proofs": proofs if any(verdicts[name] for name in RED) else ""}
+    name, tally = engine["name"], Counter(cell["verdict"] for cell in data["cells"] if cell["engine"] == engine["name"])
+    proofs = sum(proof["engine"] == name for proof in data["proofs"]) if any(tally[red] for red in RED) else ""
+    counts = verdict(tally["wrong"], not tally["wrong"]), tally["imprecise"], tally["crashes"], tally["refuses"], proofs
+    return f"[{name}](#engine-{name})", engine["version"], str(tally["right"]), *map(str, counts)
 
 
 def _matrix(engine: Row, data: Data) -> Section:
     """Functions by trees, those that the engine has; red cells lead to their proofs."""
-    name = engine["name"]
+    name, names = engine["name"], engine["functions"]
     own = {(cell["function"], cell["model"]): cell for cell in data["cells"] if cell["engine"] == name}
-    anchors = {
-        (proof["function"], model): proof["file"].removesuffix(".py")
-        for proof in data["proofs"]
-        for model in proof["models"]
-        if proof["engine"] == name
-    }
+    proofs = [proof for proof in data["proofs"] if proof["engine"] == name]
+    anchors = {(proof["function"], model): _anchor(proof) for proof in proofs for model in proof["models"]}
+    models = [model for model in data["models"] if any(model == known for _, known in own)]
 
-    def verdict(model: str) -> Column:
-        def cell(function: str) -> str | Cell:
-            one, anchor = own.get((function, model)), anchors.get((function, model))
-            if one is None:
-                return ""
-            sign = one["verdict"].replace("right", "ok")
-            hint = one["words"] or f"error {one['error']:.1e}, tolerance {one['tolerance']:.1e}"
-            return Cell(f"[{sign}](#{anchor})" if anchor else sign, False if one["verdict"] in RED else None, hint=hint)
+    def cell(place: tuple[str, str]) -> str | Cell:
+        if place not in own:
+            return ""
+        one, anchor = own[place], anchors.get(place)
+        sign = one["verdict"].replace("right", "ok")
+        hint = one["words"] or f"error {one['error']:.1e}, tolerance {one['tolerance']:.1e}"
+        return Cell(verdict(f"[{sign}](#{anchor})" if anchor else sign, one["verdict"] not in RED), hint=hint)
 
-        return cell
-
-    columns: dict[str, Column] = {
-        "function": lambda function: Cell(f"`{function}`", hint=data["functions"][function]),
-        "its name": lambda function: engine["functions"][function],
-        **{model: verdict(model) for model in data["models"] if any(model == known for _, known in own)},
-    }
-    table = Table.of((function for function in data["functions"] if function in engine["functions"]), columns)
+    rows = [
+        (Cell(f"`{function}`", hint=what), names[function], *(cell((function, model)) for model in models))
+        for function, what in data["functions"].items()
+        if function in names
+    ]
+    table = Table(("function", "its name", *models), tuple(rows))
     return Section(f"{name} {engine['version']}", (table,), f"engine-{name}", page_only=True)
 
 
 def _identities(data: Data) -> Table:
-    def held(engine: str) -> Column:
-        def cell(identity: str) -> Cell:
-            own = [row for row in data["identities"] if (row["identity"], row["engine"]) == (identity, engine)]
-            broken = [row["model"] for row in own if not row["ok"]]
-            text = f"{len(own) - len(broken)} of {len(own)}" if own else ""
-            return Cell(text, False if broken else None, hint=", ".join(broken))
+    def held(identity: str, engine: str) -> Cell:
+        own = [row for row in data["identities"] if (row["identity"], row["engine"]) == (identity, engine)]
+        broken = [row["model"] for row in own if not row["ok"]]
+        text = f"{len(own) - len(broken)} of {len(own)}" if own else ""
+        return Cell(verdict(text, not broken), hint=", ".join(broken))
 
-        return cell
-
-    columns: dict[str, Column] = {engine["name"]: held(engine["name"]) for engine in data["engines"]}
-    return Table.of(
-        dict.fromkeys(row["identity"] for row in data["identities"]),
-        {"identity: trees on which it holds": str, **columns},
-    )
+    engines = [engine["name"] for engine in data["engines"]]
+    identities = dict.fromkeys(row["identity"] for row in data["identities"])
+    rows = tuple((identity, *(held(identity, engine) for engine in engines)) for identity in identities)
+    return Table(("identity: trees on which it holds", *engines), rows)
 
 
-def _proof(proof: Row) -> Fold:
+def _anchor(proof: Row) -> str:
+    return str(proof["file"].removesuffix(".py"))
+
+
+def _proof(proof: Row) -> Section:
     """A red cell: where it is red, who knows it, the script, what it prints."""
     facts = (
         f"`{proof['function']}` is {proof['verdict']}: error {proof['error']:.1e} of the largest entry, "
@@ -153,8 +124,7 @@ def _proof(proof: Row) -> Fold:
         f"Script: `reports/engines/{proof['file']}`.",
     )
     title = f"{proof['engine']}: {proof['native']}, {proof['model']}"
-    blocks = (Bullets(facts), Code(proof["text"]), Code(proof["output"]))
-    return Fold(title, blocks, page_only=True, anchor=proof["file"].removesuffix(".py"))
+    return Section(title, (Bullets(facts), Code(proof["text"]), Code(proof["output"])), _anchor(proof), page_only=True)
 
 
 TOPIC = Topic("engines", "Correctness", "Which engine is wrong where?", compose, measure)

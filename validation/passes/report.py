@@ -6,26 +6,22 @@ from collections.abc import Sequence
 
 from symofros.tools import ABLATIONS
 from validation.passes.measure import ALL, APART, measure
-from validation.reporting.numbers import counted, times
-from validation.reporting.record import Column, Data, Fact, Report, Section, Table, Topic
+from validation.reporting.numbers import counted, formatted, times
+from validation.reporting.record import Data, Fact, Report, Section, Table, Topic
 
 _APART = "M, h and Q are one function with one set of kinematics; without: three functions."
-_INTRO = (
-    'M, h and Q in one generated function, with all passes, and with each left out in turn. "More" is what leaving it '
-    "out adds: to the operations of a call, and to the median time of a state. One thread on one processor, loops in C "
-    "over the same random states, all variants of a model in turn; results agree within rounding, which is checked "
-    "first. What the placement of code in memory makes is seen in the row of a copy: the same library, loaded from "
-    "another file. Smaller gains are none."
-)
-_LEFT_OUT = (
-    "Passes that were tried and left out, because they gained nothing where it was measured: common factors, "
-    "`a b + a c` as `a (b + c)` (11 of 949 operations of panda7, 124 of 6944 of talos; a fused multiply-add takes the "
-    "first form in as many instructions); balanced sums for latency (the longest path of panda7 is 37 ns of 95, of "
-    "talos 56 of 830: what limits is the number of instructions); `-ffast-math` (between 0.75 and 1.1 times as fast, "
-    "and it costs the bits)."
-)
-_COLUMNS = """without; #operations; #more operations = operations(); #ns (min, median) = {minimum:.0f}, {median:.0f};
-    #more time = median(); #C text [KiB] = {text:9.765625e-4*.0f}; #made and compiled [s] = {compilation:.2f}"""
+_INTRO = """M, h and Q in one generated function, with all passes, and with each left out in turn. "More" is what
+leaving it out adds: to the operations of a call, and to the median time of a state. One thread on one processor, loops
+in C over the same random states, all variants of a model in turn; results agree within rounding, which is checked
+first. What the placement of code in memory makes is seen in the row of a copy: the same library, loaded from another
+file. Smaller gains are none."""
+_LEFT_OUT = """Passes that were tried and left out, because they gained nothing where it was measured: common factors,
+`a b + a c` as `a (b + c)` (11 of 949 operations of panda7, 124 of 6944 of talos; a fused multiply-add takes the first
+form in as many instructions); balanced sums for latency (the longest path of panda7 is 37 ns of 95, of talos 56 of 830:
+what limits is the number of instructions); `-ffast-math` (between 0.75 and 1.1 times as fast, and it costs the
+bits)."""
+_HEAD = """without | operations | more operations | ns (min, median) | more time | C text [KiB] |
+    made and compiled [s]"""
 
 
 def compose(data: Data) -> Report:
@@ -41,7 +37,7 @@ def compose(data: Data) -> Report:
         None,
         (_INTRO,),
         (
-            Section("What each pass does", (Table.of(what.items(), "pass = {0}; what it does = {1}"),)),
+            Section("What each pass does", (Table.of("pass | what it does", what.items()),)),
             *tables,
             Section("What was tried and left out", (_LEFT_OUT,)),
         ),
@@ -52,12 +48,14 @@ def compose(data: Data) -> Report:
 
 def _section(base: Data, rows: Sequence[Data]) -> Section:
     """One model; gains are what leaving a pass out costs."""
-
-    def more(quantity: str, form: str) -> Column:
-        return lambda row: "" if row is base else format(row[quantity] / base[quantity] - 1.0, form)
-
-    table = Table.of(rows, _COLUMNS, operations=more("operations", "+.1%"), median=more("median", "+.0%"))
-    return Section(f"{base['model']}, {base['nv']} degrees of freedom", (table,))
+    lines = []
+    for row in rows:
+        operations, median = (row[name] / base[name] - 1.0 for name in ("operations", "median"))
+        more = (f"{operations:+.1%}", f"{median:+.0%}") if row is not base else ("", "")
+        spans = formatted((row["minimum"], row["median"]), ".0f")
+        made = f"{row['text'] / 1024:.0f} | {formatted(row['compilation'], '.2f')}"
+        lines.append(f"{row['without']} | {row['operations']} | {more[0]} | {spans} | {more[1]} | {made}")
+    return Section(f"{base['model']}, {base['nv']} degrees of freedom", (Table.of(_HEAD, lines),))
 
 
 TOPIC = Topic("passes", "Speed", "What does each pass of the generator gain?", compose, measure)

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from html import escape
 from importlib.resources import files
 
 from validation.reporting.charts import PALETTE, draw
 from validation.reporting.figures import Chart, Drawing, Figure
 from validation.reporting.provenance import Provenance
-from validation.reporting.record import Block, Bullets, Cell, Code, Fact, Fold, Report, Section, Table, Text
+from validation.reporting.record import MISSED, Block, Bullets, Cell, Code, Fact, Report, Section, Table, Text
 
 _PAGE = """<!doctype html>
 <html lang="en">
@@ -31,7 +30,7 @@ _PAGE = """<!doctype html>
 # Tones of verdicts in the style sheet.
 _TONE = {True: "good", False: "bad", None: "soft"}
 # Where a table is too wide, and from which width on [px]: on any page, or on a phone.
-_PAGES = ("wide", 1052.0), ("phone", 360.0)
+_PAGES = {"wide": 1052.0, "phone": 360.0}
 # Tables of more columns are set closer.
 _MANY_COLUMNS = 11
 
@@ -45,16 +44,16 @@ def page(report: Report, provenance: Provenance | None = None, closing: str = ""
         closing: Last line.
         listed: Whether links to the sections come before them.
     """
-    links = [section for section in report.shown if section.anchor]
+    links = [section for section in report.sections if section.anchor] if listed else []
     parts = [
         f"<h1>{escape(report.title)}</h1>",
         f'<p class="verdict {_TONE[report.ok]}">{prose(report.summary)}</p>',
         *(f'<div class="decisions">{block(one)}</div>' for one in report.decisions),
-        block(Text("**Missed:**", "bad")) + block(Bullets(report.shortfalls)) if report.shortfalls else "",
-        facts(report.facts),
+        block(Text("**Missed:**", "bad")) + block(Bullets(report.missed)) if report.missed else "",
+        f'<div class="tiles">{"".join(map(tile, report.facts))}</div>' if report.facts else "",
         *map(block, report.blocks),
-        contents(links) if listed and len(links) > 1 else "",
-        *(section(one, k + 1) for k, one in enumerate(report.shown)),
+        f"<ol>{''.join(map(link, links))}</ol>" if len(links) > 1 else "",
+        *(section(one, k + 1) for k, one in enumerate(report.sections)),
     ]
     if provenance is not None:
         parts += ["<h2>Versions and machine</h2>", table(Table(("what", "value"), provenance.rows))]
@@ -62,8 +61,7 @@ def page(report: Report, provenance: Provenance | None = None, closing: str = ""
     style = files("validation.reporting").joinpath("style.css").read_text(encoding="utf-8")
     light, dark = (" ".join(f"--{name}: {pair[k]};" for name, pair in PALETTE.items()) for k in (0, 1))
     style = f":root {{ {light} }}\n@media (prefers-color-scheme: dark) {{ :root {{ {dark} }} }}\n{style}"
-    body = "\n".join(filter(None, parts))
-    return _PAGE.format(title=escape(report.title), style=style, body=body)
+    return _PAGE.format(title=escape(report.title), style=style, body="\n".join(filter(None, parts)))
 
 
 def prose(text: str) -> str:
@@ -73,38 +71,30 @@ def prose(text: str) -> str:
     return re.sub(r"\[([^\]]+)\]\(([#\w][\w.#/-]*)\)", r'<a href="\2">\1</a>', text)
 
 
-def facts(facts: Sequence[Fact]) -> str:
-    """Key numbers as tiles."""
-    tiles = [
-        f'<div class="tile"><b class="{_TONE[fact.ok] if fact.ok is not None else ""}">{escape(fact.value)}</b>'
-        f"<span>{prose(fact.label)}</span></div>"
-        for fact in facts
-    ]
-    return f'<div class="tiles">{"".join(tiles)}</div>' if tiles else ""
+def tile(fact: Fact) -> str:
+    """A key number."""
+    tone = "" if fact.ok is None else _TONE[fact.ok]
+    return f'<div class="tile"><b class="{tone}">{escape(fact.value)}</b><span>{prose(fact.label)}</span></div>'
 
 
-def contents(sections: Sequence[Section]) -> str:
-    """Links to sections, with those that miss something marked."""
-    items = [
-        f'<li><a href="#{escape(one.anchor)}">{prose(one.title)}</a>'
-        f"{' <b class=bad>missed</b>' if one.ok is False else ''}</li>"
-        for one in sections
-    ]
-    return f"<ol>{''.join(items)}</ol>"
+def link(one: Section) -> str:
+    """A link to a section, marked where it misses something."""
+    mark = " <b class=bad>missed</b>" if one.ok is False else ""
+    return f'<li><a href="#{escape(one.anchor)}">{prose(one.title)}</a>{mark}</li>'
 
 
 def section(one: Section, number: int) -> str:
     """A section; its figures are numbered within it."""
     anchor = f' id="{escape(one.anchor)}"' if one.anchor else ""
     badge = f' <span class="badge {_TONE[one.ok]}">{escape(one.badge)}</span>' if one.badge else ""
-    parts, figures = [], 0
-    for item in one.blocks:
-        figures += isinstance(item, Figure)
-        parts.append(block(item, f"Figure {number}.{figures}."))
-    return f"<h2{anchor}>{prose(one.title)}{badge}</h2>\n" + "\n".join(parts)
+    figures = [item for item in one.blocks if isinstance(item, Figure)]
+    numbers = {id(figure): f"Figure {number}.{k + 1}." for k, figure in enumerate(figures)}
+    return "\n".join(
+        [f"<h2{anchor}>{prose(one.title)}{badge}</h2>", *(block(b, numbers.get(id(b))) for b in one.blocks)]
+    )
 
 
-def block(item: Block, figure_name: str = "") -> str:
+def block(item: Block, figure_name: str | None = None) -> str:
     """Any block."""
     match item:
         case str():
@@ -123,11 +113,11 @@ def block(item: Block, figure_name: str = "") -> str:
             name = f"<b>{figure_name}</b> " if figure_name else ""
             said = f"<figcaption>{name}{prose(caption)}</figcaption>" if caption else ""
             return f'<figure><div class="charts">{"".join(map(chart, charts))}</div>{said}</figure>'
-        case Fold(summary, blocks, opened, _, anchor):
-            inner = "\n".join(block(one, figure_name) for one in blocks)
-            # Within the fold, so that a link to it opens it.
+        case Section(title, blocks, anchor, ok):
+            inner = "\n".join(map(block, blocks))
+            # The anchor is within the fold, so that a link to it opens it.
             inner = f'<div id="{escape(anchor)}">{inner}</div>' if anchor else inner
-            return f"<details{' open' if opened else ''}><summary>{prose(summary)}</summary>\n{inner}</details>"
+            return f"<details{' open' if ok is False else ''}><summary>{prose(title)}</summary>\n{inner}</details>"
 
 
 def chart(item: Chart | Drawing) -> str:
@@ -141,35 +131,29 @@ def chart(item: Chart | Drawing) -> str:
 
 def table(item: Table) -> str:
     """A table that scrolls by itself where it is wider than the page."""
-    numeric = [name.startswith("#") for name in item.head]
-    many = len(item.head) > _MANY_COLUMNS
-    names = [(Cell(name.removeprefix("#")), "th") for name in item.head]
-    rows = [names, *([(one if isinstance(one, Cell) else Cell(one), "td") for one in row] for row in item.rows)]
-    lines = ["".join(cell(*one, n) for one, n in zip(row, numeric, strict=True)) for row in rows]
+    dense, numeric = len(item.head) > _MANY_COLUMNS, item.numeric
+    rows = [[one if isinstance(one, Cell) else Cell(one) for one in row] for row in (item.head, *item.rows)]
+    tags = ["th"] + ["td"] * len(item.rows)
+    lines = [
+        "".join(cell(*one, tag) for one in zip(row, numeric, strict=True)) for row, tag in zip(rows, tags, strict=True)
+    ]
     body = "\n".join(f"<tr>{line}</tr>" for line in lines)
-    width = sum(_width(column, n, many) for column, n in zip(zip(*rows, strict=True), numeric, strict=True))
-    cue = next(
-        (
-            f'<p class="cue {kind}">Wider than the page: scroll it sideways.</p>'
-            for kind, page in _PAGES
-            if width > page
-        ),
-        "",
-    )
-    return f'{cue}<div class="scroll" tabindex="0"><table{" class=dense" if many else ""}>\n{body}\n</table></div>'
-
-
-def _width(column: Sequence[tuple[Cell, str]], is_number: bool, dense: bool) -> float:
-    """About how wide a column is [px]: numbers stay on a line, other texts break between words."""
-    words = (word for one, tag in column for word in (one.text.split() if tag == "th" or not is_number else [one.text]))
+    # About how wide a column is: numbers stay on a line, other texts break between words.
     letter, padding = (6.4, 6.0) if dense else (7.2, 16.0)
-    return padding + letter * max(3, *map(len, words))
+    columns = [
+        [one.text if n and k else max(one.text.split(), key=len, default="") for k, one in enumerate(column)]
+        for column, n in zip(zip(*rows, strict=True), numeric, strict=True)
+    ]
+    width = sum(padding + letter * max(3, *map(len, column)) for column in columns)
+    kind = next((kind for kind, room in _PAGES.items() if width > room), "")
+    cue = f'<p class="cue {kind}">Wider than the page: scroll it sideways.</p>' if kind else ""
+    return f'{cue}<div class="scroll" tabindex="0"><table{" class=dense" if dense else ""}>\n{body}\n</table></div>'
 
 
-def cell(item: Cell, tag: str, is_number: bool) -> str:
+def cell(item: Cell, is_number: bool, tag: str) -> str:
     """A cell of a table: of its head (th) or of its body (td)."""
-    kinds = " ".join(kind for kind, applies in (("n", is_number), ("wrong", item.ok is False)) if applies)
+    kinds = " ".join(["n"] * is_number + ["wrong"] * item.text.startswith(MISSED))
     attributes = f' class="{kinds}"' if kinds else ""
     attributes += f' style="background: rgba(var(--shade), {item.shade:.2f})"' if item.shade else ""
     attributes += f' title="{escape(item.hint)}"' if item.hint else ""
-    return f"<{tag}{attributes}>{prose(item.text)}</{tag}>"
+    return f"<{tag}{attributes}>{prose(item.text.removeprefix(MISSED))}</{tag}>"

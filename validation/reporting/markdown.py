@@ -2,25 +2,19 @@
 
 from __future__ import annotations
 
-from validation.reporting.figures import Figure
 from validation.reporting.provenance import Provenance
-from validation.reporting.record import Block, Bullets, Cell, Code, Fold, Report, Table, Text
+from validation.reporting.record import Block, Bullets, Cell, Code, Report, Section, Table, Text
 
 
 def page(report: Report, provenance: Provenance, closing: str) -> str:
     """The summary of a report."""
-    parts = [f"# {report.title}", f"**{report.summary}**", *map(block, report.decisions)]
-    if report.shortfalls:
-        parts += ["**Missed:**", block(Bullets(report.shortfalls))]
-    if report.facts:
-        parts.append(block(Bullets(tuple(f"{fact.value} {fact.label}" for fact in report.facts))))
-    parts += map(block, report.blocks)
-    for section in report.shown:
-        if not section.page_only:
-            parts += [f"## {section.title}", *map(block, section.blocks)]
+    missed = ("**Missed:**", Bullets(report.missed)) if report.missed else ()
+    facts = Bullets(tuple(f"{fact.value} {fact.label}" for fact in report.facts))
+    blocks = [f"**{report.summary}**", *report.decisions, *missed, facts, *report.blocks]
+    for section in report.sections:
+        blocks += () if section.page_only else (f"## {section.title}", *section.blocks)
     told = "; ".join(f"{name} {value}" for name, value in provenance.rows)
-    parts += [f"{told}.", closing]
-    return "\n\n".join(filter(None, parts)) + "\n"
+    return "\n\n".join(filter(None, (f"# {report.title}", *map(block, blocks), f"{told}.", closing))) + "\n"
 
 
 def block(item: Block) -> str:
@@ -36,21 +30,15 @@ def block(item: Block) -> str:
             return table(item)
         case Bullets(items):
             return "\n".join(f"- {' '.join(one.split())}" for one in items)
-        case Figure():
-            return ""
-        case Fold(summary, blocks, _, page_only, _):
-            return "" if page_only else "\n\n".join(filter(None, [f"{summary}:", *map(block, blocks)]))
+        case Section(title, blocks, page_only=False):
+            return "\n\n".join(filter(None, [f"{title}:", *map(block, blocks)]))
+    return ""
 
 
 def table(item: Table) -> str:
-    """A table."""
-    head = "| " + " | ".join(name.removeprefix("#") for name in item.head) + " |"
-    rule = "|" + "|".join("---:" if name.startswith("#") else "---" for name in item.head) + "|"
-    return "\n".join([head, rule, *("| " + " | ".join(map(cell, row)) + " |" for row in item.rows)])
-
-
-def cell(item: str | Cell) -> str:
-    """A text that can't end the cell it stands in; what is wrong says so."""
-    text = item.text if isinstance(item, Cell) else item
-    wrong = "**missed** " if isinstance(item, Cell) and item.ok is False else ""
-    return wrong + " ".join(text.replace("|", "\\|").split())
+    """A table, in which no text ends the cell that it stands in."""
+    texts = ((one.text if isinstance(one, Cell) else one for one in row) for row in item.rows)
+    rows = [item.head, *((" ".join(text.replace("|", "\\|").split()) for text in row) for row in texts)]
+    lines = [f"| {' | '.join(row)} |" for row in rows]
+    rule = "".join("---:|" if is_number else "---|" for is_number in item.numeric)
+    return "\n".join([lines[0], f"|{rule}", *lines[1:]])

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-import string
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -35,19 +34,16 @@ def times(x: float) -> str:
 def counted(number: int, noun: str) -> str:
     """A number with its noun: "1 model", "2 models", "2 studies"."""
     figures = f"{number:,}".replace(",", " ") if number >= 10_000 else str(number)
-    if number == 1:
-        return f"{figures} {noun}"
-    return f"{figures} {noun[:-1]}ies" if noun.endswith("dy") else f"{figures} {noun}s"
+    plural = f"{noun[:-1]}ies" if noun.endswith("dy") else f"{noun}s"
+    return f"{figures} {noun if number == 1 else plural}"
 
 
 def duration(seconds: float) -> str:
     """A time in the unit that suits it."""
     if not math.isfinite(seconds):
         return "-"
-    for unit, size in (("s", 1.0), ("ms", 1e-3)):
-        if seconds >= size:
-            return f"{seconds / size:.3g} {unit}"
-    return f"{seconds / 1e-6:.3g} µs"
+    size, unit = next((pair for pair in ((1.0, "s"), (1e-3, "ms")) if seconds >= pair[0]), (1e-6, "µs"))
+    return f"{seconds / size:.3g} {unit}"
 
 
 def compact(x: float) -> str:
@@ -55,40 +51,12 @@ def compact(x: float) -> str:
     return f"{x:.1f}" if x < 100 else f"{x:.0f}"
 
 
-class Form(string.Formatter):
-    """Formats of columns over the fields of a row (a mapping, a record, a tuple).
-
-    They are Python's, "time", "short", "times", "compact" and "digits" as above, and scaled ones, "1e3*.2f". What is
-    missing is "-"; several numbers are listed.
-    """
-
-    NAMED: Mapping[str, Callable[[Any], str]] = {
-        f.__name__.replace("duration", "time"): f for f in (duration, short, times, compact, digits)
-    }
-
-    def of(self, text: str, row: Any) -> str:
-        """The text with the fields of a row."""
-        return self.vformat(text, (row,), {})
-
-    def field(self, row: Any, name: str) -> Any:
-        """A field of a row by its name, as in formats: "error", "target.model"."""
-        return self.get_field(name, (row,), {})[0]
-
-    def get_value(self, key: int | str, args: Sequence[Any], kwargs: Mapping[str, Any]) -> Any:
-        """A field of the row."""
-        (row,) = args
-        return row[key] if isinstance(row, Mapping) or isinstance(key, int) else getattr(row, key)
-
-    def format_field(self, value: Any, format_spec: str) -> str:
-        """One field."""
-        if value is None:
-            return "-"
-        if isinstance(value, list | tuple):
-            return ", ".join(self.format_field(one, format_spec) for one in value)
-        if format_spec in self.NAMED:
-            return self.NAMED[format_spec](value)
-        factor, star, spec = format_spec.rpartition("*")
-        return format(float(factor) * value, spec) if star else format(value, spec)
+def formatted(value: float | Iterable[float] | None, form: str | Callable[[float], str]) -> str:
+    """A number, or several, by a format; "-" where there is none."""
+    if value is None:
+        return "-"
+    values = [value] if isinstance(value, int | float) else value
+    return ", ".join(format(x, form) if isinstance(form, str) else form(x) for x in values)
 
 
 def named(values: Mapping[str, object], separator: str) -> str:

@@ -9,12 +9,9 @@ import typer
 
 from validation.reporting.command import Quick, Run, known
 from validation.reporting.findings import Finding, Question, Study
-from validation.reporting.numbers import counted
+from validation.reporting.numbers import counted, short
 from validation.reporting.plain import plain, restored
-from validation.reporting.record import Block, Compose, Data, Fact, Fold, Report, Section, Table, Text
-
-# Numbers beside their bounds.
-_BOUNDS = "number = {quantity}; #found = {value:short} ? ok; #at least = {low:short}; #at most = {high:short}"
+from validation.reporting.record import Block, Compose, Data, Fact, Report, Section, Table, Text, verdict
 
 
 def measuring(studies: Mapping[str, Question], doc: str) -> Callable[..., Data]:
@@ -47,12 +44,7 @@ def data_of(study: Study) -> dict[str, Any]:
 
 
 def composing(title: str, theory: str) -> Compose:
-    """What makes the report of its JSON.
-
-    Args:
-        title: Title of the report.
-        theory: Page of docs/ that it rests on.
-    """
+    """What makes the report of its JSON; `theory` is the page of docs/ that it rests on."""
     intro = (
         "Each section asks a question, answers it from what this run measured, shows it, and lists the numbers with "
         f"the bounds they must keep. The theory is in `{theory}`."
@@ -70,9 +62,9 @@ def composing(title: str, theory: str) -> Compose:
 
 
 def _section(name: str, study: Study) -> Section:
-    blocks: list[Block] = [study.answer, *study.figures, findings_fold(study.findings, "number")]
-    blocks += [Text(f"Reference numbers: {'; '.join(study.sources)}.", "soft")] if study.sources else []
-    return Section(study.title, tuple(blocks), name, study.ok)
+    sources = (Text(f"Reference numbers: {'; '.join(study.sources)}.", "soft"),) if study.sources else ()
+    blocks = (study.answer, *study.figures, findings_fold(study.findings, "number"), *sources)
+    return Section(study.title, blocks, name, study.ok)
 
 
 def judged(draft: Report, data: Data, findings: Mapping[str, Sequence[Finding]], part: str, number: str) -> Report:
@@ -86,39 +78,39 @@ def judged(draft: Report, data: Data, findings: Mapping[str, Sequence[Finding]],
         number: What a number is called.
     """
     rows = [(name, finding) for name, group in findings.items() for finding in group]
-    wrong = [(name, finding) for name, finding in rows if not finding.ok]
+    missed = tuple(f"{name}: {one.quantity} is {one.bounds}" for name, one in rows if not one.ok)
     failures, unfinished = data.get("failures", {}), tuple(data.get("unfinished", ()))
-    kept = f"{len(wrong)} miss their bounds" if wrong else "all within their bounds"
+    kept = f"{len(missed)} miss their bounds" if missed else "all within their bounds"
     failed = f"; {counted(len(failures), part)} could not be done" if failures else ""
     quick = " (quick variant: fewer points, shorter motions)" if data.get("quick") else ""
     cut = f" Interrupted: {', '.join(unfinished)} not done." if unfinished else ""
     ok, reasons = bool(data["ok"]), failure_texts(failures)
-    lines = ({part: name, "ok": finding.ok, **vars(finding)} for name, finding in rows)
     return replace(
         draft,
         summary=f"{counted(len(rows), number)} {draft.summary}: {kept}{failed}{quick}.{cut}",
         ok=ok,
         blocks=(*draft.blocks, *reasons),
         facts=(*draft.facts, Fact(str(len(rows)), f"{number}s, {kept}", ok)),
-        digest=(Table.of(lines, f"{part}; {_BOUNDS}"), *reasons),
+        digest=(Table.of(f"{part} | {_BOUNDS}", ((name, *_bounds(finding)) for name, finding in rows)), *reasons),
         unfinished=unfinished,
-        missed=tuple(f"{name}: {finding.quantity} is {finding.bounds}" for name, finding in wrong),
+        missed=missed,
     )
 
 
-def findings_fold(findings: Sequence[Finding], noun: str, more: str = "", *blocks: Block) -> Fold:
-    """The numbers, and blocks that belong to them, open where one misses its bounds.
+_BOUNDS = "number | found | at least | at most"
 
-    Args:
-        findings: Numbers.
-        noun: What a number is called.
-        more: What else the line says is there.
-        blocks: Blocks after the numbers.
-    """
+
+def _bounds(finding: Finding) -> tuple[str, ...]:
+    """A number beside its bounds, for a table."""
+    return finding.quantity, verdict(short(finding.value), finding.ok), short(finding.low), short(finding.high)
+
+
+def findings_fold(findings: Sequence[Finding], noun: str, more: str = "", *blocks: Block) -> Section:
+    """The numbers, called `noun`, and blocks that the title names by `more`; open where one misses its bounds."""
     missed = sum(not finding.ok for finding in findings)
     said = f"{counted(len(findings), noun)} and their bounds" + (f": **{missed} missed**" if missed else "") + more
-    table = Table.of(findings, f"{_BOUNDS}; reason of the bound = {{reason}}")
-    return Fold(said, (table, *blocks), opened=bool(missed))
+    table = Table.of(f"{_BOUNDS} | reason of the bound", ((*_bounds(finding), finding.reason) for finding in findings))
+    return Section(said, (table, *blocks), ok=not missed)
 
 
 def failure_texts(failures: Mapping[str, str]) -> tuple[Text, ...]:

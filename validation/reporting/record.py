@@ -6,15 +6,20 @@ Texts may hold `code`, **bold** and [links](#anchor), as in Markdown, and nothin
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
-from functools import partial
 from typing import Any, Literal
 
 from validation.reporting.figures import Chart, Drawing, Figure
-from validation.reporting.numbers import Form
 
-Tone = Literal["plain", "soft", "bad", "advice"]
+MISSED = "**missed** "
+_BAR = re.compile(r"\s*(?<!\S)\|(?!\S)\s*")
+_NUMBER = re.compile(r"[-+−]?\d([-+−\d., ]|e[-+]?\d| of \d)*( ?[%×]| [a-zA-Zµ]{1,3})?|NaN|-?")
+
+
+def verdict(text: object, ok: bool | None) -> str:
+    """A text for a cell, which says so where what is asked for is missed."""
+    return f"{MISSED if ok is False else ''}{text}"
 
 
 @dataclass(frozen=True)
@@ -22,7 +27,7 @@ class Text:
     """A paragraph that is not plain: a remark, a warning, advice."""
 
     text: str
-    tone: Tone = "plain"
+    tone: Literal["plain", "soft", "bad", "advice"] = "plain"
 
 
 @dataclass(frozen=True)
@@ -33,74 +38,6 @@ class Code:
 
 
 @dataclass(frozen=True)
-class Cell:
-    """A cell of a table.
-
-    Attributes:
-        text: Content.
-        ok: Verdict; None where nothing was asked.
-        shade: Depth of its background, 0 to 1.
-        hint: Text shown when the pointer rests on it.
-    """
-
-    text: str
-    ok: bool | None = None
-    shade: float = 0.0
-    hint: str = ""
-
-
-_FORM = Form()
-# What stands in a column: a function of the row.
-Column = Callable[[Any], str | Cell]
-Columns = Mapping[str, Column]
-_COLUMN = re.compile(r"(?P<title>.+?)(?: = (?P<text>.+?))?(?: \? (?P<no>no )?(?P<verdict>\w+))?")
-
-
-def columns(stated: str, **computed: Column) -> dict[str, Column]:
-    """Columns as "model; #error [m] = {error:.1e} ? ok; place = place()" states them.
-
-    Args:
-        stated: Titles, each with its text, in which fields of the row are formatted (`Form`); a title alone is the
-            name of its field. Behind "?" stands the field that is the verdict on the cell ("no" turns it round).
-        computed: Functions of the row, which texts name with "()".
-    """
-
-    def column(part: re.Match[str]) -> Column:
-        text, verdict = part["text"] or f"{{{part['title'].removeprefix('#')}}}", part["verdict"]
-        cell = computed[text.removesuffix("()")] if text.endswith("()") else partial(_FORM.of, text)
-        if verdict is None:
-            return cell
-        return lambda row: Cell(str(cell(row)), bool(_FORM.field(row, verdict)) is not bool(part["no"]))
-
-    parts = filter(None, map(_COLUMN.fullmatch, " ".join(stated.split()).split("; ")))
-    return {part["title"]: column(part) for part in parts}
-
-
-@dataclass(frozen=True)
-class Table:
-    """A table.
-
-    Attributes:
-        head: Names of the columns; those that begin with "#" hold numbers.
-        rows: Cells.
-    """
-
-    head: tuple[str, ...]
-    rows: tuple[tuple[str | Cell, ...], ...]
-
-    @classmethod
-    def of(cls, rows: Iterable[Any], stated: Columns | str, **computed: Column) -> Table:
-        """A line for each row; columns as in `columns`."""
-        named = columns(stated, **computed) if isinstance(stated, str) else stated
-        return cls(tuple(named), tuple(tuple(column(row) for column in named.values()) for row in rows))
-
-    def without_empty(self) -> Table:
-        """The table without the columns in which nothing is stated."""
-        kept = [k for k in range(len(self.head)) if any(row[k] not in ("", "-") for row in self.rows)]
-        return Table(tuple(self.head[k] for k in kept), tuple(tuple(row[k] for k in kept) for row in self.rows))
-
-
-@dataclass(frozen=True)
 class Bullets:
     """A list."""
 
@@ -108,36 +45,49 @@ class Bullets:
 
 
 @dataclass(frozen=True)
-class Fold:
-    """Blocks under a line that opens and shuts them.
+class Cell:
+    """A text in a table with a background of some depth, 0 to 1, and a hint for the pointer that rests on it."""
 
-    Attributes:
-        summary: The line.
-        blocks: Blocks that are folded.
-        opened: Whether it is open at first.
-        page_only: Whether the Markdown summary leaves it out.
-        anchor: Name for links, which open it; "" for none.
-    """
-
-    summary: str
-    blocks: tuple[Block, ...]
-    opened: bool = False
-    page_only: bool = False
-    anchor: str = ""
+    text: str
+    shade: float = 0.0
+    hint: str = ""
 
 
-Block = str | Text | Code | Table | Bullets | Figure | Fold
+@dataclass(frozen=True)
+class Table:
+    """Cells under the names of their columns."""
+
+    head: tuple[str, ...]
+    rows: tuple[tuple[str | Cell, ...], ...]
+
+    @classmethod
+    def of(cls, head: str, rows: Iterable[str | Sequence[str | Cell]]) -> Table:
+        """A table as in Markdown: names and cells between " | "; texts from outside come as sequences of cells."""
+        cells = (_BAR.split(row) if isinstance(row, str) else row for row in rows)
+        return cls(tuple(_BAR.split(head)), tuple(map(tuple, cells)))
+
+    def without_empty(self) -> Table:
+        """The table without the columns in which nothing is stated."""
+        kept = [k for k in range(len(self.head)) if any(row[k] not in ("", "-") for row in self.rows)]
+        return Table(tuple(self.head[k] for k in kept), tuple(tuple(row[k] for k in kept) for row in self.rows))
+
+    @property
+    def numeric(self) -> list[bool]:
+        """Which columns hold numbers only."""
+        texts = [[one.text if isinstance(one, Cell) else one for one in row] for row in self.rows]
+        plain = [[one.removeprefix(MISSED).strip("*") for one in row] for row in texts]
+        return [all(map(_NUMBER.fullmatch, column)) for column in zip(*plain, strict=True)] or [False] * len(self.head)
 
 
 @dataclass(frozen=True)
 class Section:
-    """Blocks under a heading.
+    """Blocks under a heading; within a section, under a line that opens and shuts them.
 
     Attributes:
         title: The heading.
         blocks: Content.
         anchor: Name for links; "" for none.
-        ok: Verdict; None where nothing was asked.
+        ok: Verdict; None where nothing was asked. What misses it is open.
         page_only: Whether the Markdown summary leaves it out.
         badge: The verdict in a word, beside the heading.
     """
@@ -156,25 +106,22 @@ class Section:
         return any(map(is_filled, shown)) if shown else bool(self.blocks)
 
 
+Block = str | Text | Code | Bullets | Table | Figure | Section
+
+
 def is_filled(block: Block) -> bool:
     """Whether a block has any content."""
     match block:
         case Table(_, content) | Figure(_, content) | Bullets(content):
             return bool(content)
-        case Fold():
-            return any(map(is_filled, block.blocks))
+        case Section():
+            return block.shows
     return True
 
 
 @dataclass(frozen=True)
 class Fact:
-    """One key number with its meaning.
-
-    Attributes:
-        value: Value as shown.
-        label: Label, with unit and bound.
-        ok: Verdict; None where nothing was asked.
-    """
+    """One key number as shown; its label, with unit and bound; its verdict, None where nothing was asked."""
 
     value: str
     label: str
@@ -190,13 +137,13 @@ class Report:
         summary: Result in one sentence.
         ok: Verdict; None for a measurement of which nothing was asked.
         blocks: Blocks before the first section.
-        sections: Parts under headings.
+        sections: Parts under headings; those in which nothing is shown are left out.
         facts: Key numbers, for the top of the page and for the index of reports.
         digest: Blocks that a terminal shows; by default the tables and lists of the summary.
         unfinished: Names of parts that an interrupt cut.
         refused: Inputs that could not be read, where nothing else is wrong.
         decisions: What readers decide by, first on the page and on the index of reports.
-        missed: What is missed, a line each, with its numbers.
+        missed: What is missed, a line each, with its numbers; by default the key numbers that miss something.
     """
 
     title: str
@@ -212,32 +159,24 @@ class Report:
     decisions: tuple[Block, ...] = ()
     missed: tuple[str, ...] = ()
 
+    def __post_init__(self) -> None:
+        missed = tuple(f"{fact.value} {fact.label}" for fact in self.facts if fact.ok is False)
+        sections = tuple(section for section in self.sections if section.shows)
+        stated = (block for section in sections if not section.page_only for block in section.blocks)
+        digest = self.digest or tuple(block for block in stated if isinstance(block, Table | Bullets))
+        for name, value in {"missed": self.missed or missed, "sections": sections, "digest": digest}.items():
+            object.__setattr__(self, name, value)
+
     @property
     def verdict(self) -> str:
         """The verdict in a word."""
         return {True: "good", False: "missed", None: "measured"}[self.ok]
 
     @property
-    def shortfalls(self) -> tuple[str, ...]:
-        """What is missed: as stated, or the key numbers that miss something."""
-        return self.missed or tuple(f"{fact.value} {fact.label}" for fact in self.facts if fact.ok is False)
-
-    @property
-    def shown(self) -> tuple[Section, ...]:
-        """Sections that have something to show."""
-        return tuple(section for section in self.sections if section.shows)
-
-    @property
-    def telling(self) -> tuple[Chart | Drawing, ...]:
+    def first_chart(self) -> tuple[Chart | Drawing, ...]:
         """The first chart, for the index of reports."""
         figures = (block for section in self.sections for block in section.blocks if isinstance(block, Figure))
         return next((figure.charts[:1] for figure in figures if figure.charts), ())
-
-    @property
-    def brief(self) -> tuple[Block, ...]:
-        """Blocks that a terminal shows."""
-        stated = (block for section in self.shown if not section.page_only for block in section.blocks)
-        return self.digest or tuple(block for block in stated if isinstance(block, Table | Bullets))
 
 
 # The JSON of a report, and what makes a report of it.
@@ -265,15 +204,10 @@ class Topic:
     question: str
     compose: Compose
     measure: Callable[..., Data] | None = None
-    arguments: tuple[str, ...] | None = None
+    arguments: str | None = None
     printed: tuple[str, ...] = ()
-
-    @property
-    def words(self) -> tuple[str, ...]:
-        """What writes it, after `python -m`."""
-        return ("validation", *((self.name,) if self.arguments is None else self.arguments))
 
     @property
     def command(self) -> str:
         """What writes it."""
-        return " ".join(("python -m", *self.words))
+        return f"python -m validation {self.name if self.arguments is None else self.arguments}".strip()

@@ -24,6 +24,6 @@ def output() -> Console:
 def show(report: Report) -> None:
     """Print the digest and the summary."""
     console = output()
-    for block in report.brief:
+    for block in report.digest:
         console.print(Markdown(markdown.block(block), hyperlinks=False))
     console.print(Text(report.summary, style=_STYLE[report.ok]), soft_wrap=True)

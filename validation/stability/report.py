@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from typing import Any
 
 import numpy as np
 
@@ -17,35 +16,27 @@ from validation.reporting.record import Bullets, Data, Fact, Report, Section, Te
 from validation.stability import heatmap
 from validation.stability.catalogue import STUDIES
 from validation.stability.measure import measure
-from validation.stability.study import FINISHED, Cell, Grid, Map, ParameterStudy
+from validation.stability.study import FINISHED, Cell, Map, ParameterStudy
 
-INTRO = (
-    "Where simulations fail, and what to use instead. Each map runs one study over two parameters: a cell is a run, "
-    "blue where it meets the criterion, orange where it comes to its end and misses it, red where it ended before "
-    "with an outcome in words, grey where it was refused before it began. The black line is the edge between good "
-    "and bad as measured; a dashed line is a closed form. Numbers in cells are decades. Every claim comes back with "
-    "the command under its study."
-)
+INTRO = """Where simulations fail, and what to use instead. Each map runs one study over two parameters: a cell is a
+run, blue where it meets the criterion, orange where it comes to its end and misses it, red where it ended before with
+an outcome in words, grey where it was refused before it began. The black line is the edge between good and bad as
+measured; a dashed line is a closed form. Numbers in cells are decades. Every claim comes back with the command under
+its study."""
 
 
 def maps_of(study: ParameterStudy, data: Data) -> dict[str, Map]:
     """The maps that a report holds, with the closed forms of the study's subjects."""
-    subjects = {subject.name: subject for subject in study.subjects}
-    return {
-        name: Map(subjects[name], _values(study.x, one["x"]), _values(study.y, one["y"]), _cells(one), study.bound)
-        for name, one in data["maps"].items()
-    }
-
-
-def _cells(one: Data) -> tuple[tuple[Cell, ...], ...]:
-    return tuple(
-        tuple(Cell(math.nan if value is None else value, ended) for value, ended in zip(*row, strict=True))
-        for row in zip(one["values"], one["ended"], strict=True)
-    )
-
-
-def _values(grid: Grid, stated: list[Any]) -> np.ndarray:
-    return np.array([grid.labels.index(value) if grid.labels else value for value in stated], float)
+    subjects, maps = {subject.name: subject for subject in study.subjects}, {}
+    for name, one in data["maps"].items():
+        x, y = (
+            np.array([grid.labels.index(value) if grid.labels else value for value in stated], float)
+            for grid, stated in ((study.x, one["x"]), (study.y, one["y"]))
+        )
+        rows = (zip(*row, strict=True) for row in zip(one["values"], one["ended"], strict=True))
+        cells = tuple(tuple(Cell(math.nan if at is None else at, ended) for at, ended in row) for row in rows)
+        maps[name] = Map(subjects[name], x, y, cells, study.bound)
+    return maps
 
 
 def compose(data: Data) -> Report:

@@ -16,26 +16,27 @@ from validation.timing.tables import TARGETS_TEXT, ratios, sections, targets_tab
 from validation.timing.targets import verdicts
 
 LIMITS = (
-    "One thread, pinned to one processor, whose time on it is what is measured. All sides of a function run in one "
-    "process, in turns of 10 ms or more, each a loop in C over the same random states; before, each side's results "
-    "are compared with ours, to 1e-12 of the largest entry (1e-9 where a system is solved), and sides that differ are "
-    "not timed. Cells hold minimum and median over the repeats, in nanoseconds a state; ratios are of medians, theirs "
-    "to ours. Machines are noisy: quote a ratio rather than a time.",
-    "Ours is generated C, one state after the other, in the fastest of its builds by gcc and clang "
-    "(Options(tune=True)), and by vectors in calls of 64 states, or of as many as keep their results within 384 KiB: "
-    "by rows, by columns, and by columns of floats (checked to 5e-4). Copies of our library, of CasADi's and of "
-    "SymPy's compute in turn, because where code happens to lie matters. Pinocchio is its own headers, compiled in the "
-    "run by gcc and by clang, in the faster of its two conventions; MuJoCo is its wheel's library; CasADi is the C of "
-    "its composite-rigid-body, Newton-Euler and articulated-body recursions, SymPy Kane's equations with common "
-    "subexpressions, both in the best of four builds (gcc and clang, -O3 with and without -ffast-math). Friction and "
-    "springs in joints are taken out.",
+    """One thread, pinned to one processor, whose time on it is what is measured. All sides of a function run in one
+    process, in turns of 10 ms or more, each a loop in C over the same random states; before, each side's results are
+    compared with ours, to 1e-12 of the largest entry (1e-9 where a system is solved), and sides that differ are not
+    timed. Cells hold minimum and median over the repeats, in nanoseconds a state; ratios are of medians, theirs to
+    ours. Machines are noisy: quote a ratio rather than a time.""",
+    """Ours is generated C, one state after the other, in the fastest of its builds by gcc and clang
+    (Options(tune=True)), and by vectors in calls of 64 states, or of as many as keep their results within 384 KiB: by
+    rows, by columns, and by columns of floats (checked to 5e-4). Copies of our library, of CasADi's and of SymPy's
+    compute in turn, because where code happens to lie matters. Pinocchio is its own headers, compiled in the run by gcc
+    and by clang, in the faster of its two conventions; MuJoCo is its wheel's library; CasADi is the C of its
+    composite-rigid-body, Newton-Euler and articulated-body recursions, SymPy Kane's equations with common
+    subexpressions, both in the best of four builds (gcc and clang, -O3 with and without -ffast-math). Friction and
+    springs in joints are taken out.""",
 )
 
 
 def compose(data: Data) -> Report:
     """The report of its JSON."""
     record = restored(Record, data)
-    judged, best, table = verdicts(record), record.fastest(), targets_table(record)
+    judged, best = verdicts(record), record.fastest()
+    table = targets_table(judged)
     measured = [verdict for verdict in judged if verdict.entry is not None]
     met = sum(verdict.met for verdict in measured)
     said = f"{met} of {len(judged)} targets are met"

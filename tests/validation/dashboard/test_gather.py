@@ -125,5 +125,5 @@ def test_the_reports_that_are_here_are_understood(entries: Mapping[str, Entry], 
     found = entries[name]
     assert found.report is not None, found.remarks
     assert found.report.summary.endswith(".") and found.page
-    for chart in found.report.telling:
+    for chart in found.report.first_chart:
         assert not isinstance(chart, Chart) or any(len(curve.x) for curve in chart.curves)

@@ -14,9 +14,13 @@ from validation.__main__ import app
 from validation.dashboard import command as dashboard
 from validation.dashboard.catalogue import TOPICS
 from validation.dashboard.gather import gather
-from validation.dashboard.index import BEGIN, END, QuoteError, headline, quote, quoted, write_index
+from validation.dashboard.index import BEGIN, END, QuoteError, headline, quote, write_index
 
 ROOT = Path(__file__).parents[3]
+
+
+def quoted(readme: Path) -> str:
+    return readme.read_text(encoding="utf-8").partition(f"{BEGIN}\n")[2].partition(END)[0]
 
 
 def test_the_readme_quotes_the_summary() -> None:

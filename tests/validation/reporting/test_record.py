@@ -16,7 +16,7 @@ from validation.reporting.numbers import counted
 from validation.reporting.plain import plain, restored
 from validation.reporting.provenance import Provenance
 from validation.reporting.questions import findings_fold
-from validation.reporting.record import Bullets, Cell, Fact, Fold, Report, Section, Table, Text, Topic
+from validation.reporting.record import Bullets, Cell, Fact, Report, Section, Table, Text, Topic, verdict
 
 LIMIT = Mark("limit", 2.0, "x")
 CHART = Chart("t < u", "x  [m]", "y  [s]", (Curve("a", np.array([1.0, np.nan]), np.ones(2), 3),), (LIMIT,))
@@ -27,10 +27,10 @@ SECTION = Section(
         "It is `so`, see [there](#other).",
         Text("Beware.", "bad"),
         Bullets(("one", "two")),
-        Table(("who|what", "#n"), (("a|b", Cell("3", False, hint="h")),)),
+        Table(("who|what", "n"), (("a|b", Cell(verdict(3, False), hint="h")),)),
         Figure("Look.", (CHART,)),
         findings_fold(FINDINGS, "number"),
-        Fold("Only there", ("hidden",), page_only=True),
+        Section("Only there", ("hidden",), page_only=True),
     ),
     "how",
     False,
@@ -87,7 +87,7 @@ def test_what_readers_decide_by_and_what_is_missed_come_first() -> None:
 
 @pytest.mark.parametrize(("columns", "cue"), [(2, ""), (9, "phone"), (40, "wide")])
 def test_a_table_wider_than_the_page_says_so(columns: int, cue: str) -> None:
-    drawn = html.table(Table(("#n",) * columns, (("1.0e-10",) * columns,)))
+    drawn = html.table(Table(("n",) * columns, (("1.0e-10",) * columns,)))
     assert re.findall('class="cue ([a-z]*)"', drawn) == ([cue] if cue else [])
 
 
@@ -98,27 +98,33 @@ def test_numbers_are_read_with_ease(number: int, says: str) -> None:
     assert counted(number, "run") == says
 
 
-def test_columns_format_mappings_records_and_tuples_alike() -> None:
-    stated = "gap = {quantity}; #value = {value:.1f} ? ok; #half = half()"
-    table = Table.of(FINDINGS, stated, half=lambda row: str(row.value / 2))
-    assert table.head == ("gap", "#value", "#half")
-    assert table.rows[0] == ("gap [m]", Cell("2.0", False), "1.0")
-    assert Table.of([{"quantity": "rate", "value": 1}], "quantity; #n = {value}").rows == (("rate", "1"),)
-    assert Table.of([("a", [1e-3, None])], "who = {0}; #ms = {1:1e3*.2f}").rows == (("a", "1.00, -"),)
+@pytest.mark.parametrize("row", ["a |  | |x| b | ", ("a", "", "|x| b", "")])
+def test_a_row_is_a_line_of_markdown_or_its_cells(row: str | tuple[str, ...]) -> None:
+    assert Table.of("who | \n what | where | n", [row]) == Table(
+        ("who", "what", "where", "n"), (("a", "", "|x| b", ""),)
+    )
 
 
-@pytest.mark.parametrize(("finds", "good"), [(0, True), (3, False)])
-def test_a_count_of_what_may_not_be_is_a_verdict(finds: int, good: bool) -> None:
-    assert Table.of([{"finds": finds}], "#finds ? no finds").rows == ((Cell(str(finds), good),),)
+@pytest.mark.parametrize(
+    "text", ["3", "-1.5e-12", "12, 40", "10 000", "+50.0%", "3 ms", "1.2×", "**7**", "7 of 9", "-", "NaN"]
+)
+def test_columns_of_numbers_are_set_as_such(text: str) -> None:
+    assert Table.of("n | who", [f"{verdict(text, False)} | a", "2 | 3"]).numeric == [True, False]
+
+
+@pytest.mark.parametrize("text", ["7 joints", "planar 2R", "x1", "[3](#a)", "2026-11-22 4f984ee5"])
+def test_columns_of_words_are_no_numbers(text: str) -> None:
+    assert Table.of("who", [[text], ["3"]]).numeric == [False]
 
 
 def test_a_section_without_content_is_left_out() -> None:
-    empty = Section("Finds", ("These were found:", Table.of([], "#finds"), Figure("", ()), Fold("All", (Bullets(()),))))
+    folded = Section("All", (Bullets(()),))
+    empty = Section("Finds", ("These were found:", Table.of("finds", ()), Figure("", ()), folded))
     report = Report("T", "s", True, (), (empty, Section("Words", ("alone.",)), SECTION))
-    assert report.shown == report.sections[1:] and report.telling == (CHART,)
+    assert [one.title for one in report.sections] == ["Words", "How | wide?"] and report.first_chart == (CHART,)
     assert "Finds" not in html.page(report) + markdown.page(report, NOWHERE, "")
 
 
 def test_a_column_in_which_nothing_is_stated_is_left_out() -> None:
-    table = Table(("model", "#a", "#b"), (("x", "-", "1"), ("y", "", "-")))
-    assert table.without_empty() == Table(("model", "#b"), (("x", "1"), ("y", "-")))
+    table = Table(("model", "a", "b"), (("x", "-", "1"), ("y", "", "-")))
+    assert table.without_empty() == Table(("model", "b"), (("x", "1"), ("y", "-")))

@@ -3,30 +3,32 @@
 from __future__ import annotations
 
 from validation.reporting.numbers import counted
-from validation.reporting.record import Bullets, Data, Fact, Report, Section, Table, Topic
+from validation.reporting.record import Bullets, Data, Fact, Report, Section, Table, Topic, verdict
 from validation.studies.mutation import measure
 
-_COLUMNS = "#planted; #caught; #silent; #too small = {too_small}"
+_TEXT = """A fault replaces one operation of the generated program. It is caught if any output then differs from the
+independent engine's by more than the cross-check's own tolerance over 60 random states. {} are silent: the program with
+the fault computes the same outputs to 40 digits, so there is nothing to catch. {} are too small: they change no output
+by more than its tolerance (largest change {:.1e}, which only forward dynamics tolerates)."""
+_COUNTS = "{planted} | {caught} | {silent} | {too_small}"
 
 
 def compose(data: Data) -> Report:
     """The report of its JSON."""
-    models = [{"alive": len(row["survived"]), **row} for row in data["models"]]
+    models = data["models"]
     alive = [(row["model"], fault) for row in models for fault in row["survived"]]
     silent, small = (sum(row[fate] for row in models) for fate in ("silent", "too_small"))
     matter = data["planted"] - silent - small
     caught = matter - len(alive)
-    kinds = [{"kind": kind} | numbers for kind, numbers in data["kinds"].items()]
-    text = (
-        "A fault replaces one operation of the generated program. It is caught if any output then differs from the "
-        "independent engine's by more than the cross-check's own tolerance over 60 random states. "
-        f"{silent} are silent: the program with the fault computes the same outputs to 40 digits, so there is nothing "
-        f"to catch. {small} are too small: they change no output by more than its tolerance (largest change "
-        f"{max((row.get('largest_too_small', 0.0) for row in models), default=0.0):.1e}, which only forward dynamics "
-        "tolerates)."
-    )
+    text = _TEXT.format(silent, small, max((row.get("largest_too_small", 0.0) for row in models), default=0.0))
     listed = tuple(f"{model}: {f['kind']} at node {f['node']}: {f['error']:.1e}" for model, f in alive[:99])
-    by_model = Table.of(models, f"model; reference = {{engine}}; {_COLUMNS}; #survived = {{alive}} ? no alive")
+    by_model = (
+        f"{row['model']} | {row['engine']} | {_COUNTS.format_map(row)} | "
+        f"{verdict(len(row['survived']), not row['survived'])}"
+        for row in models
+    )
+    kinds = (f"{kind} | {_COUNTS.format_map(row)}" for kind, row in data["kinds"].items())
+    counts = "planted | caught | silent | too small"
     return Report(
         "Mutation test of the cross-check",
         f"{caught} of {matter} faults that matter are caught ({100.0 * caught / max(1, matter):.6g} %), "
@@ -34,8 +36,8 @@ def compose(data: Data) -> Report:
         bool(data["ok"]),
         (text,),
         (
-            Section("By model", (by_model,)),
-            Section("By kind of fault", (Table.of(kinds, f"kind of fault = {{kind}}; {_COLUMNS}"),)),
+            Section("By model", (Table.of(f"model | reference | {counts} | survived", by_model),)),
+            Section("By kind of fault", (Table.of(f"kind of fault | {counts}", kinds),)),
             Section("What survived", (Bullets(listed),)),
         ),
         facts=(

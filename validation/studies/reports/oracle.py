@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from validation.reporting.numbers import counted
-from validation.reporting.record import Cell, Column, Data, Fact, Report, Section, Table, Topic
+from validation.reporting.record import Data, Fact, Report, Section, Table, Topic, verdict
 from validation.studies.oracle import measure
+
+_TEXT = """Decimal digits that agree at the worst of the points, relative to the largest entry: our generated equations
+and those that SymPy derives by Lagrange's or Kane's method, at {points} rational points a model (seed {seed}), both in
+extended precision."""
 
 
 def compose(data: Data) -> Report:
@@ -14,25 +18,19 @@ def compose(data: Data) -> Report:
     required = min((row["required"] for row in rows), default=0.0)
     failed = [row for row in rows if min(row["digits"].values()) < row["required"]]
     names = ", ".join(f"{row['model']} ({row['derivation']})" for row in failed)
-    text = (
-        "Decimal digits that agree at the worst of the points, relative to the largest entry: our generated equations "
-        f"and those that SymPy derives by Lagrange's or Kane's method, at {data['points']} rational points a model "
-        f"(seed {data['seed']}), both in extended precision."
-    )
-
-    def digits(function: str) -> Column:
-        return lambda row: Cell(f"{row['digits'][function]:.0f}", row["digits"][function] >= row["required"])
-
-    functions = dict.fromkeys(function for row in rows for function in row["digits"])
-    titles = "".join(f"#{name.replace('_', ' ')} = {name}(); " for name in functions)
-    columns = f"model; derivation; {titles}#required = {{required:.0f}}"
+    functions = list(dict.fromkeys(function for row in rows for function in row["digits"]))
+    lines = []
+    for row in rows:
+        digits = (verdict(f"{row['digits'][name]:.0f}", row["digits"][name] >= row["required"]) for name in functions)
+        lines.append((row["model"], row["derivation"], *digits, f"{row['required']:.0f}"))
+    head = " | ".join(["model | derivation", *(name.replace("_", " ") for name in functions), "required"])
     return Report(
         "Generated equations against SymPy's",
         f"{counted(len(rows), 'derivation')} by SymPy of {counted(len({row['model'] for row in rows}), 'model')}: "
         f"{'all agree' if ok else f'not all agree: {names}'}.",
         ok,
         (),
-        (Section("Digits that agree", (text, Table.of(rows, columns, **{name: digits(name) for name in functions}))),),
+        (Section("Digits that agree", (_TEXT.format_map(data), Table.of(head, lines))),),
         facts=(Fact(f"{least:.0f}", f"digits agree at the least; {required:.0f} and more are asked for", ok),),
     )
 

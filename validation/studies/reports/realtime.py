@@ -8,21 +8,15 @@ from validation.reporting.figures import Chart, Curve, Figure, Mark
 from validation.reporting.record import Data, Fact, Report, Section, Table, Topic
 from validation.studies.realtime import measure
 
-_LIMITS = (
-    "Each diagram runs in real time in the C loop, which sleeps until an instant is due; how late an instant began is "
-    "read off the clock afterwards, so it is the operating system's waking plus whatever the instant before took too "
-    "long. No core is set apart, and other programs run beside; what the machine does for a loop with nothing in it is "
-    "the first row. Ordinary: a thread as any other. First: it comes before those of ordinary programs (SCHED_FIFO, as "
-    "by `chrt -f 20 symofros simulate`), where the system permits that. An instant is missed if it began when the next "
-    "one was due already. Busy is the loop's processor time an instant, motion included."
-)
-_SEE = (
-    "The further left a curve falls, the more punctual. The body of each lies at tens of microseconds; the tail to the "
-    "right is the operating system doing other things. Right of a dashed line the next instant of a loop of that rate "
-    "was due already."
-)
-_COLUMNS = """diagram = {what}; thread; #least = {minimum:1e6*.1f}; #median = {median:1e6*.1f}; 
-    #99.9 % = {p999:1e6*.1f}; #worst = {maximum:1e6*.1f}; #missed = {missed} of {instants}; #busy = {busy:1e6*.1f}"""
+_LIMITS = """Each diagram runs in real time in the C loop, which sleeps until an instant is due; how late an instant
+began is read off the clock afterwards, so it is the operating system's waking plus whatever the instant before took too
+long. No core is set apart, and other programs run beside; what the machine does for a loop with nothing in it is the
+first row. Ordinary: a thread as any other. First: it comes before those of ordinary programs (SCHED_FIFO, as by `chrt
+-f 20 symofros simulate`), where the system permits that. An instant is missed if it began when the next one was due
+already. Busy is the loop's processor time an instant, motion included."""
+_SEE = """The further left a curve falls, the more punctual. The body of each lies at tens of microseconds; the tail to
+the right is the operating system doing other things. Right of a dashed line the next instant of a loop of that rate was
+due already."""
 
 
 def compose(data: Data) -> Report:
@@ -33,12 +27,18 @@ def compose(data: Data) -> Report:
     medians = sorted(1e6 * row["median"] for row in best)
     charts = tuple(_chart(rows, thread) for thread in dict.fromkeys(row["thread"] for row in rows if "late" in row))
     said = f"{data['length']:g} s each, {machine}; late by, in microseconds:"
+    lines = []
+    for row in rows:
+        late = " | ".join(f"{1e6 * row[name]:.1f}" for name in ("minimum", "median", "p999", "maximum"))
+        missed = f"{row['missed']} of {row['instants']}"
+        lines.append(f"{row['what']} | {row['thread']} | {late} | {missed} | {1e6 * row['busy']:.1f}")
+    table = Table.of("diagram | thread | least | median | 99.9 % | worst | missed | busy", lines)
     return Report(
         "Diagrams in real time",
         f"Instants of diagrams begin {medians[0]:.0f} to {medians[-1]:.0f} µs late (medians), {machine}.",
         None,
         (_LIMITS,),
-        (Section("How late instants begin", (said, Table.of(rows, _COLUMNS), Figure(_SEE, charts))),),
+        (Section("How late instants begin", (said, table, Figure(_SEE, charts))),),
         facts=tuple(
             Fact(f"{1e6 * row['median']:.0f} µs", f"median: {row['what']}; {row['missed']} of {row['instants']} missed")
             for row in best

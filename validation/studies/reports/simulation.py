@@ -2,40 +2,30 @@
 
 from __future__ import annotations
 
-from validation.reporting.numbers import counted, times
-from validation.reporting.record import Data, Fact, Report, Section, Table, Topic
+from collections.abc import Iterable
+
+from validation.reporting.numbers import counted, formatted, times
+from validation.reporting.record import Data, Fact, Report, Section, Table, Topic, verdict
 from validation.studies.simulation import measure
 
-_LIMITS = (
-    "Loops in C on both sides, one thread, in turn; seconds are those of the stepping alone for us and for MuJoCo, and "
-    "of building and solving for Exudyn, whose models take milliseconds to build. Errors are against the reference "
-    "named. Exudyn has the coarsest mesh and longest step, of those tried, that err no more than ours; MuJoCo and we "
-    "step the arm by the same method, and the four-bar by steps that leave ours the more accurate. The ratio is the "
-    "median over interleaved repeats."
-)
-_IFTOMM = (
-    "Thresholds: the library's for A01 (5e-5 J) and A02 (0.1 J); eight digits of the IVP test set for A03; for A04 and "
-    "A05 what the references are asked for. Whole motions are compared in tests/reference/test_iftomm.py. Milliseconds "
-    "are the least of the repeats, of the stepping alone."
-)
-_RACES = """motion; #seconds of motion = {span:g}; error of = {measure}; ours = {generated[how]};
-    #error = {generated[error]:.1e}; #ms (min, median) = {generated[seconds]:1e3*.3g};
-    #times real time = **{real_time:.0f}**; engine = {by}; its method = {other[how]}; #its error = {other[error]:.1e};
-    #its ms = {other[seconds]:1e3*.3g}; #ratio = **{ratio:.1f}**"""
-_BENCHMARKS = """benchmark = {name}; #seconds of motion = {span:g}; ours = {how}; error of = {measure};
-    #error = {error:.1e} ? ok; #threshold = {threshold:.0e}; #ms = {seconds:1e3*.3g}"""
+_LIMITS = """Loops in C on both sides, one thread, in turn; seconds are those of the stepping alone for us and for
+MuJoCo, and of building and solving for Exudyn, whose models take milliseconds to build. Errors are against the
+reference named. Exudyn has the coarsest mesh and longest step, of those tried, that err no more than ours; MuJoCo and
+we step the arm by the same method, and the four-bar by steps that leave ours the more accurate. The ratio is the median
+over interleaved repeats."""
+_IFTOMM = """Thresholds: the library's for A01 (5e-5 J) and A02 (0.1 J); eight digits of the IVP test set for A03; for
+A04 and A05 what the references are asked for. Whole motions are compared in tests/reference/test_iftomm.py.
+Milliseconds are the least of the repeats, of the stepping alone."""
+_RACES = """motion | seconds of motion | error of | ours | error | ms (min, median) | times real time | engine |
+    its method | its error | its ms | ratio"""
+_BENCHMARKS = "benchmark | seconds of motion | ours | error of | error | threshold | ms"
 
 
 def compose(data: Data) -> Report:
     """The report of its JSON."""
-    raced = [row for row in data["races"] if row["engine_run"]]
-    nobody = {"how": None, "error": None, "seconds": None}
-    races = [
-        row | {"by": row["engine"] or "-", "other": row["engine_run"] or nobody, "ratio": row["ratio"] or None}
-        for row in data["races"]
-    ]
-    benchmarks = [{"ok": row["error"] <= row["threshold"], **row} for row in data["iftomm"]]
-    missed = [row for row in benchmarks if not row["ok"]]
+    races, benchmarks = data["races"], data["iftomm"]
+    raced = [row for row in races if row["engine_run"]]
+    missed = [row for row in benchmarks if row["error"] > row["threshold"]]
     beyond = f"; {len(missed)} of the IFToMM benchmarks are beyond their thresholds" if missed else ""
     fastest = max(row["real_time"] for row in races)
     facts = [Fact(times(row["ratio"]), f"{row['engine']}'s time over ours: {row['motion']}") for row in raced]
@@ -48,11 +38,39 @@ def compose(data: Data) -> Report:
         not missed if benchmarks else None,
         (f"{data['repeats']} repeats.",) if "repeats" in data else (),
         (
-            Section("Times real time, and against engines at equal accuracy", (_LIMITS, Table.of(races, _RACES))),
-            Section("Multibody benchmarks of the IFToMM library", (_IFTOMM, Table.of(benchmarks, _BENCHMARKS))),
+            Section(
+                "Times real time, and against engines at equal accuracy",
+                (_LIMITS, Table.of(_RACES, map(_race, races))),
+            ),
+            Section(
+                "Multibody benchmarks of the IFToMM library",
+                (_IFTOMM, Table.of(_BENCHMARKS, map(_benchmark, benchmarks))),
+            ),
         ),
         facts=tuple(facts),
     )
+
+
+def _race(row: Data) -> str:
+    ours, other = (_run(run) for run in (row["generated"], row["engine_run"]))
+    ratio = f"**{formatted(row['ratio'] or None, '.1f')}**"
+    motion = f"{row['motion']} | {row['span']:g} | {row['measure']}"
+    return f"{motion} | {ours} | **{row['real_time']:.0f}** | {row['engine'] or '-'} | {other} | {ratio}"
+
+
+def _benchmark(row: Data) -> str:
+    error = verdict(f"{row['error']:.1e}", row["error"] <= row["threshold"])
+    motion = f"{row['name']} | {row['span']:g} | {row['how']} | {row['measure']}"
+    return f"{motion} | {error} | {row['threshold']:.0e} | {_milliseconds(row['seconds'])}"
+
+
+def _run(run: Data | None) -> str:
+    """Method, error and time of one side."""
+    return f"{run['how']} | {run['error']:.1e} | {_milliseconds(run['seconds'])}" if run else "- | - | -"
+
+
+def _milliseconds(seconds: Iterable[float] | float) -> str:
+    return formatted(seconds, lambda one: f"{1e3 * one:.3g}")
 
 
 TOPIC = Topic("simulation", "Speed", "How fast are motions at equal accuracy?", compose, measure)
