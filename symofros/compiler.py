@@ -18,7 +18,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterable
+from collections.abc import Callable, Collection, Iterable, Sequence
 from functools import cache, cached_property, partial
 from pathlib import Path
 
@@ -38,7 +38,8 @@ from symofros.mechanics.topology.graph import check
 from symofros.mechanics.topology.run_time import RunTimeCheck
 from symofros.mechanics.topology.tree import SpanningTree, build_tree
 from symofros.runtime.build.toolchain import NO_COMPILER, Toolchain, find_toolchain
-from symofros.runtime.calls.kernel import LaneOptions, Precision
+from symofros.runtime.calls.kernel import LaneOptions, Precision, Unit
+from symofros.runtime.functions import Key
 from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord
 
@@ -170,12 +171,28 @@ class Compilation:
         """The requested functions, callable; others are generated when first called, unless the options name some."""
         requests = self.requests
         _warn_inconsistent(self.system)
-        units = UnitCompiler(self.programs, self.record, self.options, _choose_toolchain(self.options))
+        units = self._units(_choose_toolchain(self.options))
         on_demand = units.functions if self.options.functions is None else None
+        return self._model(units, on_demand, units.functions(requests))
+
+    def model_by_vectors(self, functions: Collection[str]) -> Model:
+        """Some of the requested functions, which C evaluates for several states at a time, in one library."""
+        units = self._units(find_toolchain(self.options.compiler))
+        return self._model(units, None, units.by_vectors(self.requests, functions))
+
+    def interpreted_model(self) -> Model:
+        """The requested functions on the NumPy interpreter, by the program that C is written of."""
+        units = self._units(None)
+        return self._model(units, None, units.functions(self.requests))
+
+    def _units(self, toolchain: Toolchain | None) -> UnitCompiler:
+        return UnitCompiler(self.programs, self.record, self.options, toolchain)
+
+    def _model(self, units: UnitCompiler, on_demand: Callable[[Sequence[Key]], Unit] | None, unit: Unit) -> Model:
         return Model(
             self.record,
             on_demand,
-            (units.functions(requests),),
+            (unit,),
             formulas=units.formulas,
             beams=beams_at(self.tree),
             parameter_check=RunTimeCheck(self.system, self.record.par_names).problems,
@@ -187,7 +204,7 @@ class Compilation:
         toolchain = find_toolchain(self.options.compiler)
         if toolchain is None:
             raise CompileError(NO_COMPILER)
-        units = UnitCompiler(self.programs, self.record, self.options, toolchain)
+        units = self._units(toolchain)
         lanes = LaneOptions(precision=precision) if self.options.batch == "vector" else None
         return units.library(self.requests, lanes), units.symbol
 

@@ -8,6 +8,7 @@ notice. Each name has its reason:
 | Graph, Edge, OPS, ADD, MUL, Program, Function, needed_nodes | programs whose nodes are replaced: planted faults |
 | evaluate_edges, evaluate_precisely | programs evaluated without C, in doubles or in as many digits as wanted |
 | count_program | operations of a program |
+| Evaluators | one program state by state, by vectors, by the interpreter, against each other |
 | ABLATIONS, Ablation | programs generated without one pass |
 | DEFAULT_FLAGS, find_toolchain, cpu_identity | provenance of a measurement, builds of peers by the same compiler |
 | CODE_IDENTITY, source_digest | results that only the same code may continue: campaigns |
@@ -20,9 +21,16 @@ notice. Each name has its reason:
 
 from __future__ import annotations
 
+from collections.abc import Collection
+from dataclasses import replace
+from functools import cached_property
+
 import numpy as np
 
 from symofros.base.atomic import write_atomically as write_atomically
+from symofros.base.options import Options
+from symofros.compiler import Compilation
+from symofros.description.system import System
 from symofros.diagrams.run.jitter import Jitter as Jitter
 from symofros.diagrams.run.jitter import jitter_of as jitter_of
 from symofros.expr.edges import Edge as Edge
@@ -69,3 +77,33 @@ def fixed_step_loop(model: Model, method: str, dt: float, steps: int, t_end: flo
     stepper = Stepper(model, settings.method, plan_inputs(model, None), [], np.asarray(model.parameter_values))
     settings.apply(stepper)
     return stepper
+
+
+class Evaluators:
+    """One program of a system evaluated in three ways, each made when it is first asked for.
+
+    Args:
+        system: System as the user stated it.
+        options: Options: what to generate and how; large batches are evaluated as the ways have it.
+
+    Raises:
+        DescriptionError: The system can't be a mechanism.
+        CompileError: There is no C compiler, or it failed.
+    """
+
+    def __init__(self, system: System, options: Options) -> None:
+        self._compilation = Compilation(system, replace(options, batch="loop"))
+
+    @cached_property
+    def by_states(self) -> Model:
+        """C that evaluates one state at a time, batches too."""
+        return self._compilation.model()
+
+    @cached_property
+    def interpreted(self) -> Model:
+        """The NumPy interpreter."""
+        return self._compilation.interpreted_model()
+
+    def by_vectors(self, functions: Collection[str]) -> Model:
+        """C that evaluates several states of a batch at a time, of some of the functions."""
+        return self._compilation.model_by_vectors(functions)

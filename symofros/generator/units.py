@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import cache
@@ -26,9 +26,9 @@ from symofros.mechanics.dynamics.functions import Request
 from symofros.native import native_text
 from symofros.runtime.build.build import build_library, recall_library
 from symofros.runtime.build.progress import Progress
-from symofros.runtime.build.toolchain import Toolchain
+from symofros.runtime.build.toolchain import NO_COMPILER, Toolchain
 from symofros.runtime.build.tuning import Build, builds, fastest
-from symofros.runtime.calls.kernel import LaneOptions, Unit
+from symofros.runtime.calls.kernel import SHARED_PARAMETERS, LaneOptions, Unit
 from symofros.runtime.calls.library import CompiledKernel, CompiledUnit
 from symofros.runtime.functions import Key, Rate
 from symofros.runtime.record import ModelRecord
@@ -58,6 +58,23 @@ class UnitCompiler:
         requests = tuple(Request(*key) for key in keys)
         names = ", ".join(f"{name}({frame})" if frame else name for name, frame in keys)
         return self._unit(requests, names, lambda: self._programs.program(requests))
+
+    def by_vectors(self, keys: Sequence[Key], functions: Collection[str]) -> Unit:
+        """A unit of some functions of a program that evaluates several states at a time.
+
+        Raises:
+            CompileError: There is no C compiler, or it failed.
+        """
+        if self._toolchain is None:
+            raise CompileError(NO_COMPILER)
+        requests, chosen = tuple(Request(*key) for key in keys), tuple(functions)
+
+        def program() -> Program:
+            whole = self._programs.program(requests)
+            return replace(whole, functions=tuple(f for f in whole.functions if f.name in chosen))
+
+        names, lanes = f"{', '.join(chosen)} by vectors", SHARED_PARAMETERS
+        return self._compile((requests, lanes, chosen), names, program, self._toolchain, lanes)
 
     def formulas(self, formulas: Sequence[Any], derivatives: bool) -> Unit:
         """A unit of one function, "formulas": numbers, texts or SymPy expressions over the model's names."""

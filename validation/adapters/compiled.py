@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 
 import symofros as sf
+from symofros.tools import Evaluators
 from validation.adapters.reach import stores_energy
 from validation.contract.conventions import times
 from validation.contract.interface import States, Subject
@@ -129,12 +130,25 @@ class SymofrosEngine:
 
 
 def build(subject: Subject) -> SymofrosEngine:
-    """Generate, compile and load everything that is compared, in one C file.
+    """Generate, compile and load everything that is compared, in one C file, evaluated state by state.
 
     Raises:
         DescriptionError: The system can't be a mechanism.
     """
-    return SymofrosEngine(NAME, sf.compile(subject.system, options(subject, "c")), subject.frames)
+    return SymofrosEngine(NAME, evaluators(subject).by_states, subject.frames)
+
+
+# The subjects of one check: as described, every term of its beams kept, without their rotary inertia, with rotors.
+_LATEST: deque[tuple[Subject, Evaluators]] = deque(maxlen=4)
+
+
+def evaluators(subject: Subject) -> Evaluators:
+    """The ways to evaluate one program of just the functions and frames that are compared; the latest are kept."""
+    for known, made in _LATEST:
+        if known is subject:
+            return made
+    _LATEST.append((subject, Evaluators(subject.system, options(subject))))
+    return _LATEST[-1][1]
 
 
 def build_verbatim(subject: Subject) -> SymofrosEngine:
@@ -175,10 +189,10 @@ def build_weightless(subject: Subject) -> sf.Model | None:
     return sf.compile(weightless, sf.Options(functions=("potential_energy",), batch="loop"))
 
 
-def options(subject: Subject, backend: Literal["c", "interpreter"]) -> sf.Options:
-    """Just the functions and frames that are compared, state by state: vectors take many times as long to compile."""
+def options(subject: Subject) -> sf.Options:
+    """Just the functions and frames that are compared."""
     absent = (frozenset() if subject.frames else FRAME_QUANTITIES) | (
         frozenset() if subject.system.constraints else CONSTRAINED
     )
     functions = tuple(f for f in _FUNCTIONS if f not in absent)
-    return sf.Options(functions=functions, frames=subject.frames, backend=backend, batch="loop")
+    return sf.Options(functions=functions, frames=subject.frames)

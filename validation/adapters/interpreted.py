@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import symofros as sf
-from validation.adapters.compiled import SymofrosEngine, options
+from validation.adapters.compiled import SymofrosEngine, evaluators
 from validation.contract.interface import Subject
 
 NAME = "interpreted"
@@ -11,4 +10,4 @@ NAME = "interpreted"
 
 def build(subject: Subject) -> SymofrosEngine:
     """The model on the interpreter."""
-    return SymofrosEngine(NAME, sf.compile(subject.system, options(subject, "interpreter")), subject.frames)
+    return SymofrosEngine(NAME, evaluators(subject).interpreted, subject.frames)

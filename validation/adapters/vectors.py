@@ -5,8 +5,7 @@ Both come from one program, and tests hold them to the same bits; a few function
 
 from __future__ import annotations
 
-import symofros as sf
-from validation.adapters.compiled import SymofrosEngine
+from validation.adapters.compiled import SymofrosEngine, evaluators
 from validation.contract.interface import Subject
 
 NAME = "vectors"
@@ -14,6 +13,5 @@ FUNCTIONS = ("mass_matrix", "bias", "inverse_dynamics")
 
 
 def build(subject: Subject) -> SymofrosEngine:
-    """The model's C by vectors, of a few functions: each is compiled by itself."""
-    model = sf.compile(subject.system, sf.Options(functions=FUNCTIONS, batch="vector"))
-    return SymofrosEngine(NAME, model, subject.frames, frozenset(FUNCTIONS))
+    """The model's C by vectors, of a few functions: it takes long to compile."""
+    return SymofrosEngine(NAME, evaluators(subject).by_vectors(FUNCTIONS), subject.frames, frozenset(FUNCTIONS))

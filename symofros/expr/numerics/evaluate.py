@@ -20,16 +20,17 @@ def needed_nodes(graph: Graph, edges: Sequence[Edge], given: Collection[int] = (
         edges: Edges to evaluate.
         given: Nodes whose values are available.
     """
-    args, slot, value = graph.args, graph.slot, graph.value
-    needed: set[int] = set()
-    stack = [abs(edge) for edge in edges]
+    args = graph.args
+    seen = {abs(edge) for edge in edges}
+    stack = list(seen.difference(given))
     while stack:
-        node = stack.pop()
-        if node in needed or node == 0 or node in slot or node in value or node in given:
-            continue
-        needed.add(node)
-        stack.extend(abs(arg) for arg in args[node])
-    return sorted(needed)
+        for arg in args[stack.pop()]:
+            node = abs(arg)
+            if node not in seen:
+                seen.add(node)
+                if node not in given:
+                    stack.append(node)
+    return sorted(node for node in seen.difference(given) if args[node])  # Inputs and numbers have no operands.
 
 
 def interpret(program: Program, function: Function, inputs: Mapping[str, Array], n: int) -> list[Array]:

@@ -20,6 +20,12 @@ def test_the_standard_set_is_robots_reference_models_and_files() -> None:
     assert labels == [*ROBOTS, *reference_models.MODELS, *FILES] and len(labels) == len(set(labels))
 
 
+def test_what_takes_longest_is_begun_early() -> None:
+    labels = [case.label for case in sorted(standard_set(), key=lambda case: -case.weight)]
+    assert labels.index("flexible_mss") < len(labels) // 4  # The longest of all.
+    assert {"heavy_top", "pendulum", "sampler"} <= set(labels[-6:])
+
+
 def test_a_package_that_is_not_there(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("validation.inputs.cases.ROBOT_PACKAGE", "no-such-package")
     with pytest.raises(FileNotFoundError, match="pip install no-such-package"):
