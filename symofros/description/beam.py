@@ -18,9 +18,14 @@ Family = Literal["spline", "polynomial", "legendre", "clamped_free", "hermite", 
 FAMILIES: tuple[Family, ...] = get_args(Family)
 Retain = Literal["zeroth_order", "first_order", "all"]
 RETAIN: tuple[Retain, ...] = get_args(Retain)
+Theory = Literal["second_order", "strain"]
+THEORIES: tuple[Theory, ...] = get_args(Theory)
+MOST_SECTIONS = 64
 
 # What may depend on the station x, and so taper.
 SECTION = ("rhoA", "EI_y", "EI_z", "GJ", "rhoJ", "rhoI_y", "rhoI_z")
+# Strains of a rod without stress: functions of the station as well.
+PRE_STRAINS = ("twist_rate", "curvature_y", "curvature_z")
 STATION = "x"
 
 
@@ -135,6 +140,13 @@ class Beam:
         rotary_inertia: Whether sections resist being turned by bending.
         retain: How far elastic terms are kept: "zeroth_order" (linear elastic terms only, no stiffening or softening
             by motion), "first_order" (consistent to first order) or "all" (everything the second-order field gives).
+        theory: "second_order" in the displacements (docs/theory/beams.md), or "strain": a geometrically exact rod whose
+            curvatures and twist rate are sums of shape functions (docs/theory/rods.md). Of a rod, `bend_y`, `bend_z`
+            and `twist` count those functions, `family` is theirs, and `retain` and `foreshortening` have no meaning.
+        sections: Number of sections of a rod at which its motion is integrated, an interval between knots; 0: chosen.
+        curvature_y: Curvature about y of a rod without stress [1/m].
+        curvature_z: Curvature about z of a rod without stress [1/m].
+        twist_rate: Twist rate of a rod without stress [rad/m].
         frames: The one extremity frame, at the tip and turning with it.
         loads: Loads along the axis.
         waive: Names of checks that the beam is allowed to fail.
@@ -161,6 +173,11 @@ class Beam:
     foreshortening: bool = True
     rotary_inertia: bool = False
     retain: Retain = "first_order"
+    theory: Theory = "second_order"
+    sections: int = 0
+    curvature_y: Value = 0.0
+    curvature_z: Value = 0.0
+    twist_rate: Value = 0.0
     frames: tuple[Frame, ...] = (Frame("tip"),)
     loads: tuple[BeamLoad, ...] = ()
     waive: tuple[str, ...] = ()
@@ -169,7 +186,7 @@ class Beam:
     def __post_init__(self) -> None:
         """Convert numbers, freeze collections, check the choices."""
         what = f"beam '{self.name}'"
-        for label in ("length", "damping", *SECTION):
+        for label in ("length", "damping", *SECTION, *PRE_STRAINS):
             object.__setattr__(self, label, as_value(getattr(self, label), f"{what}: {label}"))
         for label in ("frames", "loads", "waive"):
             object.__setattr__(self, label, tuple(getattr(self, label)))
@@ -178,7 +195,12 @@ class Beam:
             (key, tuple(_shape(x, f"{what}: {key}") for x in given[key])) for key in DIRECTIONS if key in given
         )
         object.__setattr__(self, "shapes", shapes)
-        for label, choice, known in (("family", self.family, FAMILIES), ("retain", self.retain, RETAIN)):
+        choices = (
+            ("family", self.family, FAMILIES),
+            ("retain", self.retain, RETAIN),
+            ("theory", self.theory, THEORIES),
+        )
+        for label, choice, known in choices:
             if choice not in known:
                 raise DescriptionError(
                     Problem(
@@ -188,6 +210,7 @@ class Beam:
                         did_you_mean(str(choice), known),
                     )
                 )
+        self._check_theory(what)
         for key in given:
             if key not in DIRECTIONS:
                 raise DescriptionError(
@@ -217,6 +240,34 @@ class Beam:
                     "1 leaves the beam in one piece",
                 )
             )
+
+    def _check_theory(self, what: str) -> None:
+        """Entries that one theory has and the other lacks."""
+        if not _is_count(self.sections, 0) or self.sections > MOST_SECTIONS:
+            raise DescriptionError(
+                Problem(
+                    f"{what}: sections is not a number of sections",
+                    repr(self.sections),
+                    f"a whole number from 0, which leaves the choice to the generator, to {MOST_SECTIONS}",
+                    "leave it out",
+                )
+            )
+        if self.theory == "strain":
+            plain: dict[str, Any] = {"retain": "first_order", "foreshortening": True}
+            theory, lacking = "a geometrically exact rod (theory 'strain')", "keeps every term, and shortens by itself"
+        else:
+            plain = {"sections": 0} | dict.fromkeys(PRE_STRAINS, 0.0)
+            theory, lacking = "a beam of second order in its displacements", "is straight without stress"
+        for label, value in plain.items():
+            if getattr(self, label) != value:
+                raise DescriptionError(
+                    Problem(
+                        f"{what}: {label} = {getattr(self, label)}",
+                        f"theory '{self.theory}'",
+                        f"{theory} {lacking}: it has no entry {label}",
+                        f"leave {label} out, or state the other theory",
+                    )
+                )
 
     @property
     def inertia(self) -> None:

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import fields, replace
 from typing import Any
 
-from symofros.description.beam import SECTION, STATION, Beam, BeamLoad
+from symofros.description.beam import PRE_STRAINS, SECTION, STATION, Beam, BeamLoad
 from symofros.description.forces import Anchor
 from symofros.description.frames import Frame
 from symofros.description.joint import Joint
@@ -54,7 +54,9 @@ def segments_of(beam: Beam) -> tuple[Beam, ...]:
     for k, name in enumerate(names):
         station = _station(beam.length, k, n)
         clamp = Joint(f"{name}.clamp", "fixed", names[k - 1], END)
-        section: dict[str, Any] = {label: substituted(getattr(beam, label), STATION, station) for label in SECTION}
+        section: dict[str, Any] = {
+            label: substituted(getattr(beam, label), STATION, station) for label in (*SECTION, *PRE_STRAINS)
+        }
         segments.append(
             replace(
                 beam,

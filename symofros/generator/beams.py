@@ -15,12 +15,17 @@ from symofros.expr.graph import Graph
 from symofros.mechanics.beams.deformation import deformation_of
 from symofros.mechanics.beams.elastic import beam_forms
 from symofros.mechanics.beams.integrals import at_station
+from symofros.mechanics.beams.rod import rod_of
+from symofros.mechanics.beams.rod_shape import IntegrationError
+from symofros.mechanics.beams.strains import strains_of
 from symofros.mechanics.topology.tree import SpanningTree
-from symofros.runtime.beams import ElasticBeam
+from symofros.runtime.beams import ElasticBeam, ElasticRod
 from symofros.runtime.calls.kernel import Array
 
 # Sets of parameters whose beams are kept, with their stiffness.
 _KEPT = 8
+# Intervals between the stations at which a rod's turn is judged.
+_INTERVALS = 16
 
 
 def beams_at(tree: SpanningTree) -> Callable[[Array], tuple[ElasticBeam, ...]]:
@@ -37,6 +42,8 @@ def beams_at(tree: SpanningTree) -> Callable[[Array], tuple[ElasticBeam, ...]]:
 
 
 def _numbers(beam: Beam, q: int, v: int, values: dict[str, float]) -> ElasticBeam:
+    if beam.theory == "strain":
+        return _rod(beam, q, v, values)
     shape = deformation_of(beam)
     xi, angles = (np.array(numbers) for numbers in shape.station_angles)
     length = evaluate(beam.length, values)
@@ -62,6 +69,32 @@ def _numbers(beam: Beam, q: int, v: int, values: dict[str, float]) -> ElasticBea
     )
 
 
+def _rod(beam: Beam, q: int, v: int, values: dict[str, float]) -> ElasticRod:
+    strains = strains_of(beam)
+    xi = [k / _INTERVALS for k in range(_INTERVALS + 1)]
+    return ElasticRod(
+        name=beam.name,
+        length=evaluate(beam.length, values),
+        q=q,
+        v=v,
+        counts=strains.counts,
+        xi=np.array(xi),
+        angles=ElasticRod.REDUCED * np.abs(np.array(strains.turns(xi))),
+        scale=np.ones(beam.modes),
+        elastic_stiffness=cache(partial(_stiffness, beam, values)),
+        EI_z=0.0,
+        EI_y=0.0,
+        sections=len(strains.stations[0]),
+        integration_error=_integration_error(beam, values),
+    )
+
+
+def _integration_error(beam: Beam, values: dict[str, float]) -> Callable[[Array], float]:
+    """What gives the error of a rod's shape; formed when it is first asked for."""
+    shapes = cache(partial(IntegrationError, beam, values))
+    return lambda elastic: shapes()(elastic)
+
+
 def _stiffness(beam: Beam, values: dict[str, float]) -> Array:
     """Elastic stiffness (n, n): second derivatives of the quadratic strain energy (7)."""
     g = Graph()
@@ -69,7 +102,8 @@ def _stiffness(beam: Beam, values: dict[str, float]) -> Array:
     def lower(value: Value) -> Edge:
         return g.constant(evaluate(value, values))
 
-    energy = beam_forms(g, lower, beam, tuple(g.input("q", i) for i in range(beam.modes))).strain_energy
+    make = rod_of if beam.theory == "strain" else beam_forms
+    energy = make(g, lower, beam, tuple(g.input("q", i) for i in range(beam.modes))).strain_energy
     stiffness = np.zeros((beam.modes, beam.modes))
     for monomial, coefficient in energy.terms.items():
         if len(monomial) == 2:

@@ -1,4 +1,4 @@
-"""How far a state bends the beams, and what second-order theory errs there (docs/theory/beams.md, section 6)."""
+"""How far a state bends the beams, and what their theory errs there (docs/theory/beams.md, 6; rods.md, 6)."""
 
 from __future__ import annotations
 
@@ -43,6 +43,8 @@ class BeamBending:
         foreshortening: Share of the length by which bending draws the tip towards the root.
         error: Estimated error of the deflection relative to its exact value; infinite past a critical load.
         t: Instant [s]; NaN where the result has none.
+        sections: Number of sections of a geometrically exact rod, whose error is that of its shape's integration over
+            the length; zero of a beam of second order.
     """
 
     beam: str
@@ -52,6 +54,7 @@ class BeamBending:
     foreshortening: float
     error: float
     t: float = math.nan
+    sections: int = 0
 
     def __str__(self) -> str:
         """One sentence."""
@@ -60,22 +63,29 @@ class BeamBending:
             return f"beam '{self.beam}' is loaded past its critical load{instant}: second-order theory has no bent rest"
         percent = 100.0 * self.error
         twisted = f" and is twisted by {self.twist:.2g} rad" if self.twist > 0.01 else ""
+        if self.sections:
+            return (
+                f"rod '{self.beam}' bends by {self.slope:.2g} rad{twisted}{instant}: its {self.sections} sections place"
+                f" it to about {percent:.1g} % of its length"
+            )
         return (
             f"beam '{self.beam}' bends by {self.slope:.2g} rad at x = {self.station:.3g} m{twisted}{instant}:"
             f" second-order theory errs by about {percent:.{0 if percent >= 10 else 1}f} % of the deflection"
         )
 
     def amplified(self, amplification: float) -> BeamBending:
-        """The same under axial loads.
+        """The same under axial loads, which amplify no error of a rod.
 
         Args:
             amplification: Elastic stiffness over the stiffness that axial loads leave (26).
         """
-        return replace(self, error=self.error * 0.25 * (amplification + 3.0))
+        return self if self.sections else replace(self, error=self.error * 0.25 * (amplification + 3.0))
 
     @property
     def remedy(self) -> str:
         """A model that would do: the error falls with the square of the number of beams that share the slope."""
+        if self.sections:
+            return f"state more sections, such as sections: {2 * self.sections}"
         countable = self.slope < _LARGEST_SLOPE and math.isfinite(self.error)
         count = f"{max(2, math.ceil(math.sqrt(self.error / NOTED_ERROR)))}" if countable else "many"
         return f"divide it into {count} beams joined end to end, or use a geometrically exact beam, such as Exudyn's"
@@ -215,6 +225,41 @@ class ElasticBeam:
             return 0.0
         energy = float(elastic @ stiffness @ elastic)
         return energy / float(elastic @ symmetric @ elastic) if energy > 0.0 else 1.0
+
+
+@dataclass(frozen=True)
+class ElasticRod(ElasticBeam):
+    """A geometrically exact rod: only the integration over its sections errs (docs/theory/rods.md, section 6).
+
+    Angles are those by which each coordinate alone turns sections, made small: runs keep the state that turns a rod
+    most, and no such angle reaches a limit, which is one of second-order theory.
+
+    Attributes:
+        sections: Number of sections.
+        integration_error: Gives the error of the shape over the length for elastic coordinates.
+    """
+
+    sections: int
+    integration_error: Callable[[Array], float]
+
+    # Factor of the angles.
+    REDUCED = 1e-4
+
+    def bending(self, elastic: Array, t: float = math.nan, amplification: float = 1.0) -> BeamBending:
+        """Judge a deformation; axial loads amplify no error of a rod."""
+        bent = super().bending(elastic, t)
+        finite = bool(np.isfinite(elastic).all())
+        error = self.integration_error(elastic) if finite else math.inf
+        slope, twist = bent.slope / self.REDUCED, bent.twist / self.REDUCED
+        return replace(bent, slope=slope, twist=twist, foreshortening=math.nan, error=error, sections=self.sections)
+
+    def difference_step(self, elastic: Array) -> Array:
+        """Share of elastic coordinates (..., n) that turns sections by the angle of differences (...)."""
+        return self.REDUCED * super().difference_step(elastic)
+
+    def amplification(self, elastic: Array, tangent: Array) -> float:
+        """One: a rod has its rest positions beyond critical loads as well."""
+        return 1.0
 
 
 def amplification_of(work: Array, loaded: Array) -> float:

@@ -165,8 +165,14 @@ def build_verbatim(subject: Subject) -> SymofrosEngine:
 
 
 def untruncated(system: sf.System) -> sf.System:
-    """The system with every term of its beams kept (`retain = "all"`); equal to it if they are kept already."""
-    bodies = [replace(body, retain="all") if isinstance(body, sf.Beam) else body for body in system.bodies]
+    """The system with every term of its beams kept (`retain = "all"`); equal to it if they are kept already.
+
+    Geometrically exact rods keep every term.
+    """
+    bodies = [
+        replace(body, retain="all") if isinstance(body, sf.Beam) and body.theory == "second_order" else body
+        for body in system.bodies
+    ]
     return replace(system, bodies=tuple(bodies))
 
 

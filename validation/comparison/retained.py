@@ -34,7 +34,8 @@ STATES = 50
 
 def omitted_orders(system: sf.System) -> list[str]:
     """The orders below "all" of beams that deform, lowest first."""
-    retained = {body.retain for body in system.bodies if isinstance(body, sf.Beam) and body.modes}
+    beams = [body for body in system.bodies if isinstance(body, sf.Beam) and body.theory == "second_order"]
+    retained = {body.retain for body in beams if body.modes}
     return [order for order in POWERS if order in retained]
 
 

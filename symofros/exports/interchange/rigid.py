@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.rotations import skew
-from symofros.description.beam import STATION, Beam
+from symofros.description.beam import PRE_STRAINS, STATION, Beam
 from symofros.description.forces import Damper
 from symofros.description.joint import WORLD, Joint
 from symofros.description.system import Body, Inertia, RigidBody, System
@@ -90,6 +90,20 @@ def rigid_links(system: System, form: Literal["URDF", "MJCF"]) -> tuple[list[Rig
                 listed,
                 "a file without formulas holds turns and slides, and joints made of them",
                 "export the model as an FMU, or replace these joints",
+            )
+        )
+    curved = [
+        body.name
+        for body in system.bodies
+        if isinstance(body, Beam) and any(getattr(body, label) != 0.0 for label in PRE_STRAINS)
+    ]
+    if curved:
+        raise ExportError(
+            Problem(
+                f"system '{system.name}': rods that {form} can't hold",
+                ", ".join(curved),
+                "a beam becomes a straight rigid body; a rod with curvature or twist without stress is not straight",
+                "export the model as an FMU, or replace these rods by rigid bodies",
             )
         )
     names = {body.name for body in system.bodies}

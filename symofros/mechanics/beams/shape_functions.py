@@ -121,7 +121,16 @@ def _hermite(bending: bool, count: int) -> tuple[Shape, ...]:
 
 def _splines(bending: bool, count: int) -> list[Piecewise]:
     """Clamped cubic B-splines on uniform knots, without those that move or turn the root."""
-    dropped = 2 if bending else 1
+    return b_splines(2 if bending else 1, count)
+
+
+def b_splines(dropped: int, count: int) -> list[Piecewise]:
+    """B-splines on uniform knots without the first ones: cubic, or of a lower degree where they are few.
+
+    Args:
+        dropped: Number of the first ones that are left out.
+        count: Number of the others.
+    """
     degree = min(3, count + dropped - 1)
     spans = count + dropped - degree
     knots = [Fraction(0)] * degree + [Fraction(k, spans) for k in range(spans + 1)] + [Fraction(1)] * degree
@@ -211,7 +220,7 @@ def _integrated(derivative: ExtendedFunction, times: int, pieces: int) -> Piecew
 
 def _user(shape: UserShape, bending: bool) -> Piecewise:
     if isinstance(shape, Expression | float):
-        phi = fitted(_formula(shape), _FORMULA_PIECES)
+        phi = fitted(formula_of_station(shape), _FORMULA_PIECES)
     else:
         phi = _through(shape.xi, shape.values, bending)
     slope = phi.derivative()
@@ -237,7 +246,9 @@ def _root_correction(knots: tuple[Number, ...], root: list[float]) -> Piecewise:
     return Piecewise(knots, (cubic, *((0.0,) for _ in knots[2:])))
 
 
-def _formula(formula: Expression | float) -> ExtendedFunction:
+def formula_of_station(formula: Expression | float) -> ExtendedFunction:
+    """A user's formula of xi as a function of extended numbers, which raises FamilyError where it has no value."""
+
     def value(xi: Extended) -> Extended:
         try:
             return evaluate_extended(formula, {"xi": xi})

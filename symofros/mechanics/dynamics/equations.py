@@ -392,7 +392,7 @@ class Equations:
     @cached_property
     def frames(self) -> FrameKinematics:
         """Kinematics of the frames, at their deflected places."""
-        is_deflected = all(beam.forms.order > 0 for beam in self.kinematics.beams)
+        is_deflected = all(beam.order > 0 for beam in self.kinematics.beams)
         return FrameKinematics(
             self.kinematics if is_deflected else tree_kinematics(self.g, self.tree, deflected_tips=True)
         )

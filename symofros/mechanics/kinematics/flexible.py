@@ -12,8 +12,15 @@ from symofros.expr.edges import ZERO, Edge
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Vec3
 from symofros.mechanics.beams.elastic import BeamForms, Vector
-from symofros.mechanics.kinematics.joint import AcrossJoint, PartialVelocity, across_rotations, rotation_about
-from symofros.mechanics.kinematics.rotations import RotationProduct
+from symofros.mechanics.beams.rod import Rod
+from symofros.mechanics.kinematics.joint import (
+    AcrossJoint,
+    PartialVelocity,
+    across_rotations,
+    rotation_about,
+    with_rates,
+)
+from symofros.mechanics.kinematics.rotations import AxisRotation, MatrixRotation, RotationProduct
 
 
 def across_beam(forms: BeamForms, q: tuple[Edge, ...], speeds: Sequence[Edge], deformed: bool) -> AcrossJoint:
@@ -37,6 +44,27 @@ def across_beam(forms: BeamForms, q: tuple[Edge, ...], speeds: Sequence[Edge], d
         if angle != ZERO
     ]
     return across_rotations(g, q, speeds, _values(g, point), rotations)
+
+
+def across_rod(rod: Rod, speeds: Sequence[Edge]) -> AcrossJoint:
+    """The motion of a geometrically exact rod's tip in the root frame B (docs/theory/rods.md, section 3).
+
+    Args:
+        rod: The rod.
+        speeds: Rates of the strain coordinates.
+    """
+    g, R_BT = rod.g, rod.tip.R_BS
+    if rod.axis is None:
+        factor: AxisRotation | MatrixRotation = MatrixRotation(R_BT)
+    else:
+        i, j = (rod.axis + 1) % 3, (rod.axis + 2) % 3
+        factor = AxisRotation(rod.axis, R_BT.at(i, i), R_BT.at(j, i))
+    R = RotationProduct(g, (factor,))
+    partials = tuple(
+        with_rates(g, rod.coordinates, speeds, R.apply_inverse(spin), R.apply_inverse(rod.partial_position(1.0, i)))
+        for i, spin in enumerate(rod.tip.spins)
+    )
+    return AcrossJoint(R, rod.position(1.0), partials)
 
 
 def _values(g: Graph, forms: Vector, upto: float = float("inf")) -> Vec3:

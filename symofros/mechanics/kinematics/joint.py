@@ -123,7 +123,7 @@ def across_rotations(
     """
     R = RotationProduct(g, tuple(rotation.factor for rotation in rotations))
     partials = _partial_velocities(g, q, p_PD, R, rotations)
-    return AcrossJoint(R, p_PD, tuple(_with_rates(g, q, speeds, w, v) for w, v in partials))
+    return AcrossJoint(R, p_PD, tuple(with_rates(g, q, speeds, w, v) for w, v in partials))
 
 
 @dataclass(frozen=True)
@@ -252,7 +252,8 @@ def _angular_velocity(g: Graph, rotation: JointRotation, seeds: dict[Edge, Edge]
     return Vec3(g, columns[2].dot(rates[1]), columns[0].dot(rates[2]), columns[1].dot(rates[0]))
 
 
-def _with_rates(g: Graph, q: tuple[Edge, ...], speeds: Sequence[Edge], w: Vec3, v: Vec3) -> PartialVelocity:
+def with_rates(g: Graph, q: tuple[Edge, ...], speeds: Sequence[Edge], w: Vec3, v: Vec3) -> PartialVelocity:
+    """A partial velocity with its derivative along q' = speeds."""
     seeds = dict(zip(q, speeds, strict=True))
     w_rate, v_rate = (Vec3(g, *directional(g, list(x), seeds)) for x in (w, v))
     return PartialVelocity(w, v, w_rate, v_rate)

@@ -13,8 +13,10 @@ from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Vec3
 from symofros.mechanics.beams.elastic import BeamForms, beam_forms
-from symofros.mechanics.kinematics.flexible import across_beam
-from symofros.mechanics.kinematics.joint import Axis, PartialVelocity, across_joint
+from symofros.mechanics.beams.fields import EVERY_DEGREE
+from symofros.mechanics.beams.rod import Rod, rod_of
+from symofros.mechanics.kinematics.flexible import across_beam, across_rod
+from symofros.mechanics.kinematics.joint import AcrossJoint, Axis, PartialVelocity, across_joint
 from symofros.mechanics.kinematics.lowering import Lowering
 from symofros.mechanics.kinematics.rotations import (
     RotationProduct,
@@ -78,12 +80,18 @@ class MovingBeam:
     Attributes:
         root: Index of the link at its root.
         tip: Index of the link at its tip, which its elastic coordinates move; None for a rigid beam.
-        forms: Inertia, strain energy and displacements of the beam as functions of the elastic coordinates.
+        forms: Inertia, strain energy and displacements of the beam as functions of the elastic coordinates; of a
+            geometrically exact rod its sections.
     """
 
     root: int
     tip: int | None
-    forms: BeamForms
+    forms: BeamForms | Rod
+
+    @property
+    def order(self) -> float:
+        """Degree in elastic coordinates and speeds up to which terms of the equations of motion are kept."""
+        return EVERY_DEGREE if isinstance(self.forms, Rod) else self.forms.order
 
 
 @dataclass(frozen=True)
@@ -158,12 +166,12 @@ def tree_kinematics(g: Graph, tree: SpanningTree, deflected_tips: bool = False) 
         rates = tuple(lowering.symbol(name) for name in rate_symbols(link.joint)) if link.joint.prescribed else None
         if link.beam is not None:
             elastic = tuple(map(lowering.symbol, link.beam.coordinates))
-            forms = beam_forms(g, lowering.value, link.beam, elastic)
-            beams.append(MovingBeam(i, i + 1 if elastic else None, forms))
+            make = rod_of if link.beam.theory == "strain" else beam_forms
+            beams.append(MovingBeam(i, i + 1 if elastic else None, make(g, lowering.value, link.beam, elastic)))
         if link.tip_of is None:
             across = across_joint(lowering, link.joint, q, speeds, axis)
         else:
-            across = across_beam(beams[-1].forms, q, speeds, deflected_tips or link.tip_of.retain != "zeroth_order")
+            across = _across_deformation(beams[-1], q, speeds, deflected_tips)
         constant = constant_rotation(snapped(R_AP @ R_BL))
         links.append(
             MovingLink(
@@ -181,6 +189,13 @@ def tree_kinematics(g: Graph, tree: SpanningTree, deflected_tips: bool = False) 
             )
         )
     return TreeKinematics(g, lowering, tree, tuple(links), len(tree.coordinates.v), tuple(beams))
+
+
+def _across_deformation(beam: MovingBeam, q: tuple[Edge, ...], speeds: Sequence[Edge], deflected: bool) -> AcrossJoint:
+    """The motion of a beam's tip in the frame of its root."""
+    if isinstance(beam.forms, Rod):
+        return across_rod(beam.forms, speeds)
+    return across_beam(beam.forms, q, speeds, deflected or beam.order > 0)
 
 
 def _aligned(lowering: Lowering, link: Link) -> tuple[Mat3, Axis]:

@@ -8,12 +8,13 @@ from functools import lru_cache, partial
 import numpy as np
 
 from symofros.base.rotations import Array
-from symofros.description.beam import SECTION, STATION, Beam
+from symofros.description.beam import DIRECTIONS, PRE_STRAINS, SECTION, STATION, Beam
 from symofros.description.values import ORIGIN, Term, Value, substituted, symbols
 from symofros.errors import Problem
-from symofros.mechanics.beams.deformation import Deformation, deformation_of
-from symofros.mechanics.beams.piecewise import stations
-from symofros.mechanics.beams.shape_functions import FamilyError, Shape
+from symofros.mechanics.beams.deformation import deformation_of
+from symofros.mechanics.beams.piecewise import Piecewise, stations
+from symofros.mechanics.beams.shape_functions import FamilyError
+from symofros.mechanics.beams.strains import strains_of
 from symofros.mechanics.topology.conditions import Condition, Formulas, Sign
 from symofros.mechanics.topology.numbers import Numbers
 
@@ -48,12 +49,12 @@ def beam_problems(beam: Beam, where: str) -> Iterator[Problem]:
                 where,
             )
     try:
-        deformation_of(beam)
+        _functions(beam)
     except FamilyError as error:
         yield Problem(
             f"{what}: family '{beam.family}' can't give its functions",
             str(error),
-            "each family has its own functions (docs/theory/beams.md, section 2)",
+            "each family has its own functions (docs/theory/beams.md, section 2; rods.md, section 1)",
             "change the number of functions, or the family",
             where,
         )
@@ -129,7 +130,7 @@ class _Section:
 
     def quadrature_problems(self, numbers: Numbers) -> Iterator[Problem]:
         """Properties whose integral is not determined by their values at stations."""
-        for label in SECTION:
+        for label in (*SECTION, *PRE_STRAINS):
             error = float(quadrature_error(self.beam, label, numbers.parameters)[0])
             if not error <= QUADRATURE_TOLERANCE:
                 yield Problem(
@@ -160,7 +161,7 @@ def quadrature_error(beam: Beam, label: str, values: Mapping[str, Array | float]
     """Relative difference of a property's total by two quadratures, which is the error of the coarser one (states)."""
     if STATION not in symbols(getattr(beam, label)):
         return np.zeros(1)
-    knots = sorted({float(k) for f in deformation_of(beam).functions for k in f.phi.knots} or {0.0, 1.0})
+    knots = sorted({float(k) for f in _functions(beam) for k in f.knots} or {0.0, 1.0})
     totals = []
     for points in _POINTS:
         xi, w = stations(knots, points)
@@ -169,12 +170,21 @@ def quadrature_error(beam: Beam, label: str, values: Mapping[str, Array | float]
     return np.asarray(np.abs(totals[0] - totals[1]) / np.where(scale > 0.0, scale, 1.0))
 
 
+def _functions(beam: Beam) -> list[Piecewise]:
+    """Shape functions of a beam's displacements, or a rod's strains."""
+    if beam.theory == "strain":
+        return list(strains_of(beam).functions)
+    return [shape.phi for shape in deformation_of(beam).functions]
+
+
 def _conditioning(beam: Beam, where: str) -> Iterator[Problem]:
-    """The condition of the modal mass matrix, direction by direction, each coordinate scaled to unit mass."""
-    shape: Deformation = deformation_of(beam)
-    start = 0
-    for direction, count in zip(("bend_y", "bend_z", "twist"), shape.counts, strict=True):
-        functions = shape.functions[start : start + count]
+    """The condition of the modal mass matrix, direction by direction, each coordinate scaled to unit mass.
+
+    Of a rod it is that of the strain functions themselves: that of the strain energy.
+    """
+    start, every = 0, _functions(beam)
+    for direction, count in zip(DIRECTIONS, (beam.bend_y, beam.bend_z, beam.twist), strict=True):
+        functions = tuple(every[start : start + count])
         start += count
         if not count:
             continue
@@ -190,8 +200,8 @@ def _conditioning(beam: Beam, where: str) -> Iterator[Problem]:
 
 
 @lru_cache(maxsize=256)
-def _condition(functions: tuple[Shape, ...]) -> float:
+def _condition(functions: tuple[Piecewise, ...]) -> float:
     """Condition of the mass matrix of some shape functions; cached, because an editor checks the same ones often."""
-    M = np.array([[float((a.phi * b.phi).integral()) for b in functions] for a in functions])
+    M = np.array([[float((a * b).integral()) for b in functions] for a in functions])
     scale = 1.0 / np.sqrt(np.diag(M))
     return float(np.linalg.cond(M * np.outer(scale, scale)))

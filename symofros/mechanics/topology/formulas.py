@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, fields
 from typing import Literal, NamedTuple
 
-from symofros.description.beam import DIRECTIONS, SECTION, STATION, Beam, Samples
+from symofros.description.beam import DIRECTIONS, PRE_STRAINS, SECTION, STATION, Beam, Samples
 from symofros.description.constraints import Constraint, Nonholonomic
 from symofros.description.joint import Joint
 from symofros.description.joint_kinds import CONSTANT_ENTRIES
@@ -118,7 +118,7 @@ def _beam_values(beam: Beam) -> Iterator[Stated]:
     what, key = f"beam '{beam.name}'", ("body", beam.name)
     for label in ("length", "damping"):
         yield Stated(f"{what}: {label}", getattr(beam, label), key)
-    for label in SECTION:
+    for label in (*SECTION, *PRE_STRAINS):
         yield Stated(f"{what}: {label}", getattr(beam, label), key, "section")
     for load in beam.loads:
         for value in (*load.force, *load.torque):

@@ -9,7 +9,7 @@ from functools import cached_property, partial, reduce
 import numpy as np
 
 from symofros.base.rotations import Array
-from symofros.description.beam import SECTION, STATION, Beam
+from symofros.description.beam import PRE_STRAINS, SECTION, STATION, Beam
 from symofros.description.joint import Joint
 from symofros.description.system import Body, System
 from symofros.description.values import Rotation, Value, symbols
@@ -110,13 +110,13 @@ class RunTimeCheck:
     def _section_problems(self, par: Array, values: Mapping[str, Array | float]) -> list[Problem]:
         """Section properties that parameters have made too abrupt for the quadrature."""
         for beam in self._sections:
-            errors = [quadrature_error(beam, label, values) for label in SECTION]
+            errors = [quadrature_error(beam, label, values) for label in (*SECTION, *PRE_STRAINS)]
             abrupt = np.flatnonzero(~(reduce(np.maximum, errors) <= QUADRATURE_TOLERANCE))
             if abrupt.size:
                 lane = int(abrupt[0])
                 where = self.system.origin.get(("body", beam.name), "")
                 problems = beam_number_problems(beam, Numbers(self.system, self._at(par, lane)), where)
-                names = self._names_in(*(getattr(beam, label) for label in (*SECTION, "length")))
+                names = self._names_in(*(getattr(beam, label) for label in (*SECTION, *PRE_STRAINS, "length")))
                 return [self._of_lane(problem, names, par, lane) for problem in problems]
         return []
 
@@ -161,7 +161,7 @@ class RunTimeCheck:
     def _sections(self) -> list[Beam]:
         """Beams whose section properties depend on parameters and change along the beam."""
         beams = [body for body in self.system.bodies if isinstance(body, Beam)]
-        stated = {beam.name: [getattr(beam, label) for label in SECTION] for beam in beams}
+        stated = {beam.name: [getattr(beam, label) for label in (*SECTION, *PRE_STRAINS)] for beam in beams}
         return [b for b in beams if any(STATION in symbols(v) and self._names_in(v) for v in stated[b.name])]
 
     def _names_in(self, *values: Value) -> tuple[str, ...]:

@@ -229,6 +229,16 @@ def _all(some: Sequence[Reduction], system: System) -> System:
 
 
 def _check(system: System, scene: Scene) -> None:
+    rods = [body.name for body in system.bodies if isinstance(body, Beam) and body.theory == "strain" and body.modes]
+    if rods:
+        raise DescriptionError(
+            Problem(
+                f"system '{system.name}': advice on a geometrically exact rod",
+                ", ".join(rods),
+                "what beams lose by approximations is estimated for theory 'second_order' alone",
+                "state theory: second_order for the search, or compare models of your own by simulation",
+            )
+        )
     names = [parameter.name for parameter in system.parameters]
     for name in scene.keep:
         if name not in names:

@@ -13,7 +13,9 @@ def coordinate_units(tree: SpanningTree) -> dict[str, str]:
         start, size = link.q
         names = tree.coordinates.q[start : start + size]
         if link.tip_of is not None:
-            units = ["m" if length else "rad" for length in deformation_of(link.tip_of).lengths]
+            is_rod = link.tip_of.theory == "strain"
+            lengths = (False,) * link.tip_of.modes if is_rod else deformation_of(link.tip_of).lengths
+            units = ["m" if length else "rad" for length in lengths]
         elif link.joint.traits.user_defined:
             units = [""] * size
         else:

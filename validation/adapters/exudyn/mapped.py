@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 import symofros as sf
+from validation.adapters import rods
 from validation.adapters.compiled import untruncated, without_rotary
 from validation.adapters.exudyn.elements import Elements, Terms, elements
 from validation.adapters.exudyn.solids import Nodal, Solids, inertial, solids
@@ -172,6 +173,9 @@ def engine(subject: Subject, name: str) -> MappedEngine | Unsupported:
         subject: Subject, with or without beams.
         name: Name of the engine in tables.
     """
+    exact = rods(subject.system)
+    if exact:
+        return Unsupported(f"beam '{exact[0]}': a geometrically exact rod; elements are compared with displacements")
     assembly = assemble(subject.system)
     for mover in assembly.movers:
         if mover.kind not in carried.KINDS:

@@ -1,4 +1,4 @@
-"""Terms that the deformation of beams adds to the equations of motion (docs/theory/beams.md, section 4).
+"""Terms that the deformation of beams adds to the equations of motion (docs/theory/beams.md, section 4; rods.md, 4).
 
 A beam is one body in the recursion: a wrench on its root, and one force for each elastic coordinate. Everything
 follows from its kinetic energy by Boltzmann and Hamel's equations, so the same forms give M, h and T.
@@ -11,8 +11,10 @@ from collections.abc import Sequence
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Vec3
-from symofros.mechanics.beams.elastic import PAIRS
+from symofros.mechanics.beams.elastic import PAIRS, BeamForms
 from symofros.mechanics.beams.fields import Form
+from symofros.mechanics.beams.rod import Rod
+from symofros.mechanics.beams.rod_inertia import rod_energy_twice, rod_forces, rod_modal_mass, rod_momentum
 from symofros.mechanics.dynamics.acceleration import LinkMotion, Wrench, inertia_wrench
 from symofros.mechanics.dynamics.bodies.inertia import deformed
 from symofros.mechanics.kinematics.links import MovingBeam, TreeKinematics
@@ -22,12 +24,17 @@ Triple = tuple[Form, Form, Form]
 
 def modal_mass(beam: MovingBeam, i: int, j: int) -> Edge:
     """M_ij of two elastic coordinates of one beam (eq. 11)."""
-    return beam.forms.modal_mass[min(i, j), max(i, j)].value(beam.forms.order)
+    if isinstance(beam.forms, Rod):
+        return rod_modal_mass(beam.forms, i, j)
+    return _form_mass(beam.forms, i, j)
 
 
 def added_momentum(kinematics: TreeKinematics, beam: MovingBeam, i: int) -> tuple[Vec3, Vec3]:
     """Linear momentum and angular momentum about the root, in the link frame, per unit rate of coordinate i."""
-    order, R_LB = beam.forms.order, kinematics.links[beam.root].R_LB
+    order, R_LB = beam.order, kinematics.links[beam.root].R_LB
+    if isinstance(beam.forms, Rod):
+        p, n = rod_momentum(beam.forms, i)
+        return R_LB.times(p), R_LB.times(n)
     linear = Vec3(kinematics.g, *(form.gradient[i].value(order) for form in beam.forms.first_moment))
     return R_LB.times(linear), R_LB.times(_vector(kinematics.g, beam.forms.angular[i], order))
 
@@ -49,15 +56,18 @@ def beam_forces(
     """
     R_LB = kinematics.links[beam.root].R_LB
     w, alpha, a = (R_LB.T.times(x) for x in (state.w_WL_L, state.alpha_WL_L, state.a_WLo_L))
-    relative = _relative_wrench(beam, w, speeds, rates)
+    if isinstance(beam.forms, Rod):
+        f, n, forces = rod_forces(beam.forms, w, alpha, a, speeds, rates)
+        return Wrench(R_LB.times(f), R_LB.times(n)), forces
+    relative = _relative_wrench(beam.forms, w, speeds, rates)
     straight = inertia_wrench(deformed(kinematics, beam), state)
     wrench = straight + Wrench(R_LB.times(relative.f), R_LB.times(relative.n))
-    return wrench, [_modal_force(beam, i, w, alpha, a, speeds, rates) for i in range(len(speeds))]
+    return wrench, [_modal_force(beam.forms, i, w, alpha, a, speeds, rates) for i in range(len(speeds))]
 
 
-def _relative_wrench(beam: MovingBeam, w: Vec3, speeds: Sequence[Edge], rates: Sequence[Edge]) -> Wrench:
+def _relative_wrench(forms: BeamForms, w: Vec3, speeds: Sequence[Edge], rates: Sequence[Edge]) -> Wrench:
     """Force and moment of the motion relative to B, and of Coriolis' acceleration (eqs. 15, 16)."""
-    g, order, forms = w.g, beam.forms.order, beam.forms
+    g, order = w.g, forms.order
     S_rate = Vec3(g, *(form.rate(speeds, order) for form in forms.first_moment))
     twice = w + w
     f = twice.cross(S_rate) + Vec3(g, *(form.second_rate(speeds, order) for form in forms.first_moment))
@@ -74,20 +84,20 @@ def _relative_wrench(beam: MovingBeam, w: Vec3, speeds: Sequence[Edge], rates: S
 
 
 def _modal_force(
-    beam: MovingBeam, i: int, w: Vec3, alpha: Vec3, a: Vec3, speeds: Sequence[Edge], rates: Sequence[Edge]
+    forms: BeamForms, i: int, w: Vec3, alpha: Vec3, a: Vec3, speeds: Sequence[Edge], rates: Sequence[Edge]
 ) -> Edge:
     """The inertia force on elastic coordinate i (eq. 17)."""
-    g, order, forms = w.g, beam.forms.order, beam.forms
+    g, order = w.g, forms.order
     linear = Vec3(g, *(form.gradient[i].value(order) for form in forms.first_moment))
     total = g.add(linear.dot(a), _vector(g, forms.angular[i], order).dot(alpha))
-    total = g.add(total, g.sum(g.mul(modal_mass(beam, i, j), rate) for j, rate in enumerate(rates)))
+    total = g.add(total, g.sum(g.mul(_form_mass(forms, i, j), rate) for j, rate in enumerate(rates)))
     total = g.add(total, _centrifugal(g, w, [form.gradient[i].value(order) for form in forms.second_moment]))
     curl = Vec3(g)
     for j, speed in enumerate(speeds):
         there = _vector(g, _slopes(forms.angular[i], j), order - 1)
         back = _vector(g, _slopes(forms.angular[j], i), order - 1)
         curl = curl + (there - back).scaled(speed)
-    return g.add(g.add(total, w.dot(curl)), _convective(beam, i, speeds))
+    return g.add(g.add(total, w.dot(curl)), _convective(forms, i, speeds))
 
 
 def _centrifugal(g: Graph, w: Vec3, E: Sequence[Edge]) -> Edge:
@@ -102,9 +112,13 @@ def _centrifugal(g: Graph, w: Vec3, E: Sequence[Edge]) -> Edge:
     return total
 
 
-def _convective(beam: MovingBeam, i: int, speeds: Sequence[Edge]) -> Edge:
+def _form_mass(forms: BeamForms, i: int, j: int) -> Edge:
+    return forms.modal_mass[min(i, j), max(i, j)].value(forms.order)
+
+
+def _convective(forms: BeamForms, i: int, speeds: Sequence[Edge]) -> Edge:
     """The sum over j, k of (d_k M_ij - 1/2 d_i M_jk) v_j v_k."""
-    g, order, M = beam.forms.along.g, beam.forms.order, beam.forms.modal_mass
+    g, order, M = forms.along.g, forms.order, forms.modal_mass
     half, total = g.constant(0.5), ZERO
     for j, speed in enumerate(speeds):
         total = g.add(total, g.mul(M[min(i, j), max(i, j)].rate(speeds, order - 1), speed))
@@ -128,6 +142,9 @@ def kinetic_energy_twice(
         speeds: Rates of the elastic coordinates.
     """
     g = kinematics.g
+    if isinstance(beam.forms, Rod):
+        R_LB = kinematics.links[beam.root].R_LB
+        return rod_energy_twice(beam.forms, R_LB.T.times(w_WL_L), R_LB.T.times(v_WLo_L), speeds)
     change = deformed(kinematics, beam)
     crossed = w_WL_L.cross(change.mp_LLcm)
     total = g.add(v_WLo_L.dot(crossed + crossed), w_WL_L.dot(change.I_LLo_L.times(w_WL_L)))

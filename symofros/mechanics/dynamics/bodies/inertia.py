@@ -14,7 +14,10 @@ from symofros.description.system import Inertia
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Sym3, Vec3
+from symofros.mechanics.beams.elastic import BeamForms
 from symofros.mechanics.beams.fields import Form
+from symofros.mechanics.beams.rod import Rod
+from symofros.mechanics.beams.rod_inertia import rod_moments
 from symofros.mechanics.kinematics.links import MovingBeam, MovingLink, TreeKinematics
 from symofros.mechanics.kinematics.rotations import MatrixRotation
 from symofros.mechanics.topology.tree import BASE
@@ -152,32 +155,45 @@ def _stated(kinematics: TreeKinematics, index: int) -> LinkInertia:
 
 
 def undeformed(kinematics: TreeKinematics, beam: MovingBeam) -> LinkInertia:
-    """The inertia of a straight beam; what deformation adds changes with time and is not regrouped."""
-    return _from_forms(kinematics, beam, lambda form: form.terms.get((), ZERO), beam.forms.mass)
+    """The inertia of a straight beam; what deformation adds changes with time and is not regrouped.
+
+    A rod's mass is put at its root: nothing else of it is constant.
+    """
+    if isinstance(beam.forms, Rod):
+        return LinkInertia(beam.forms.mass, Vec3(kinematics.g), Sym3(kinematics.g))
+    return _from_forms(kinematics, beam.root, beam.forms, lambda form: form.terms.get((), ZERO), beam.forms.mass)
 
 
 def deformed(kinematics: TreeKinematics, beam: MovingBeam) -> LinkInertia:
-    """Change of a beam's inertia by deformation, to the beam's order."""
-    order = beam.forms.order
+    """Change of a beam's inertia by deformation, to the beam's order; of a rod all but its mass."""
+    if isinstance(beam.forms, Rod):
+        R_LB = kinematics.links[beam.root].R_LB
+        S, J = rod_moments(beam.forms)
+        return LinkInertia(ZERO, R_LB.times(S), _rotated(R_LB, J))
+    order = beam.order
 
     def change(form: Form) -> Edge:
         return form.without_constant().value(order)
 
-    return _from_forms(kinematics, beam, change, ZERO)
+    return _from_forms(kinematics, beam.root, beam.forms, change, ZERO)
 
 
 def first_moment_change(kinematics: TreeKinematics, beam: MovingBeam) -> Vec3:
     """Change of a beam's first moment by deformation, one order further: its gradient is the weight's force."""
-    upto = beam.forms.order + 1
+    if isinstance(beam.forms, Rod):
+        return kinematics.links[beam.root].R_LB.times(beam.forms.first_moment(beam.forms.tangents))
+    upto = beam.order + 1
     S = Vec3(kinematics.g, *(form.without_constant().value(upto) for form in beam.forms.first_moment))
     return kinematics.links[beam.root].R_LB.times(S)
 
 
-def _from_forms(kinematics: TreeKinematics, beam: MovingBeam, value: Callable[[Form], Edge], m: Edge) -> LinkInertia:
+def _from_forms(
+    kinematics: TreeKinematics, root: int, forms: BeamForms, value: Callable[[Form], Edge], m: Edge
+) -> LinkInertia:
     """Moments of a beam about its root, from its frame B to the link frame."""
-    g, R = kinematics.g, kinematics.links[beam.root].R_LB
-    S = R.times(Vec3(g, *map(value, beam.forms.first_moment)))
-    xx, yy, zz, xy, xz, yz = map(value, beam.forms.second_moment)
+    g, R = kinematics.g, kinematics.links[root].R_LB
+    S = R.times(Vec3(g, *map(value, forms.first_moment)))
+    xx, yy, zz, xy, xz, yz = map(value, forms.second_moment)
     J = Sym3(g, g.add(yy, zz), g.add(xx, zz), g.add(xx, yy), -xy, -xz, -yz)
     return LinkInertia(m, S, _rotated(R, J))
 

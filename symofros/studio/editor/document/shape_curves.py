@@ -10,6 +10,7 @@ from symofros.description.beam import Direction, Family, Samples, UserShape
 from symofros.description.values import as_value
 from symofros.errors import DescriptionError, Problem, did_you_mean
 from symofros.mechanics.beams.shape_functions import MAX_MODES, FamilyError, shapes
+from symofros.mechanics.beams.strains import strain_functions
 from symofros.studio.editor.editing.data_edits import EditError
 
 POINTS = 65
@@ -30,8 +31,13 @@ def curves(body: dict[str, Any]) -> dict[str, Any]:
         raise _wrong("modes", count, f"0 to {MAX_MODES}", "give a number")
     stations = np.linspace(0.0, 1.0, POINTS).tolist()
     try:
-        functions = shapes(family, direction, count, _user(body.get("shapes")))
-        lines = [{"values": shape.phi.rounded(stations), "length": shape.length} for shape in functions]
+        stated = _user(body.get("shapes"))
+        if body.get("theory") == "strain":
+            strains = strain_functions(family, count, stated)
+            lines = [{"values": function.rounded(stations), "length": False} for function in strains]
+        else:
+            functions = shapes(family, direction, count, stated)
+            lines = [{"values": shape.phi.rounded(stations), "length": shape.length} for shape in functions]
     except FamilyError as error:
         raise _wrong(
             f"family '{family}'",

@@ -11,6 +11,7 @@ import numpy as np
 from symofros.description.beam import Beam
 from symofros.mechanics.beams.deformation import Deformation, deformation_of
 from symofros.mechanics.beams.fields import Field, Monomial
+from symofros.mechanics.beams.rod_shape import RodShape
 from symofros.studio.viewer.drawing.meshes import Array
 
 STATIONS = 17  # Of a beam, ends included: four an arch of the fourth mode. Each costs two messages a picture.
@@ -35,6 +36,27 @@ class _Sampled:
             factor = length ** self.powers[mono] * np.prod(q[..., list(mono)], axis=-1)
             total = total + np.asarray(factor)[..., None] * values
         return total
+
+
+class RodLine:
+    """Where the sections of a geometrically exact rod are, for given strain coordinates.
+
+    Args:
+        beam: Rod as the user stated it.
+        values: Number of each parameter.
+    """
+
+    def __init__(self, beam: Beam, values: Mapping[str, float]) -> None:
+        self.modes = beam.modes
+        self._shape = RodShape(beam, values, [k / (STATIONS - 1) for k in range(STATIONS)])
+
+    def points(self, length: float, q: Array) -> Array:
+        """p_BS of the stations, in the axes of the root (..., S, 3) [m]."""
+        return length * self._shape.sections(q)[0]
+
+    def axes(self, length: float, q: Array) -> Array:
+        """R_BS of the sections (..., S, 3, 3)."""
+        return self._shape.sections(q)[1]
 
 
 class CentreLine:

@@ -7,7 +7,7 @@ from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 
-from symofros.studio.viewer.drawing.centre_line import CentreLine
+from symofros.studio.viewer.drawing.centre_line import CentreLine, RodLine
 from symofros.studio.viewer.drawing.meshes import Array, Mesh
 
 Kind = Literal["bodies", "inertias", "joints", "constraints", "paths", "visuals"]
@@ -58,7 +58,7 @@ class DrawnBeam:
     name: str
     link: int
     q: tuple[int, int]
-    line: CentreLine
+    line: CentreLine | RodLine
     length: float
     outline: Array
     color: Color

@@ -23,7 +23,7 @@ from symofros.description.forces import Anchor
 from symofros.description.system import RigidBody
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.tree import BASE, Link, NamedFrame, Placement, SpanningTree, frame_of
-from symofros.studio.viewer.drawing.centre_line import CentreLine
+from symofros.studio.viewer.drawing.centre_line import CentreLine, RodLine
 from symofros.studio.viewer.drawing.drawing import (
     Color,
     Drawing,
@@ -228,11 +228,14 @@ class _DrawingBuilder:
                     link.name,
                     i,
                     tip.q if tip else (0, 0),
-                    CentreLine(link.beam),
+                    self._line(link.beam),
                     self.numbers.value(link.beam.length),
                     self._outline(link.beam),
                     self._color(i),
                 )
+
+    def _line(self, beam: Beam) -> CentreLine | RodLine:
+        return RodLine(beam, self.values) if beam.theory == "strain" else CentreLine(beam)
 
     def _outline(self, beam: Beam) -> Array:
         """The section at mid-length: that of its rotary inertia, or a guess with the proportions of its stiffnesses."""

@@ -1,0 +1,390 @@
+"""A geometrically exact rod in a graph: its sections' frames and their partial velocities (docs/theory/rods.md)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from symofros.description.beam import PRE_STRAINS, STATION, Beam
+from symofros.description.values import Value, symbols
+from symofros.expr.edges import ONE, ZERO, Edge
+from symofros.expr.expression import Expression
+from symofros.expr.graph import Graph
+from symofros.expr.vector import Mat3, Vec3
+from symofros.mechanics.beams.fields import Form, no_form
+from symofros.mechanics.beams.integrals import LengthIntegrator, Lower, at_station
+from symofros.mechanics.beams.piecewise import gauss
+from symofros.mechanics.beams.strains import Rows, Strains, strains_of
+
+# Gauss nodes for the integral of a pre-strain between two sections.
+_PRE_STRAIN_POINTS = 4
+
+
+@dataclass(frozen=True)
+class Section:
+    """One section S of a rod, seen from the root's frame B.
+
+    Attributes:
+        R_BS: Rotation.
+        spins: Partial angular velocities in B, one a coordinate.
+    """
+
+    R_BS: Mat3
+    spins: tuple[Vec3, ...]
+
+
+@dataclass(frozen=True)
+class InertiaAxis:
+    """One axis about which one section has inertia.
+
+    Attributes:
+        section: Index of the section.
+        inertia: Moment of inertia about the axis, of the section's share of the rod [kg m^2].
+        direction: Unit vector of the axis, in B.
+    """
+
+    section: int
+    inertia: Edge
+    direction: Vec3
+
+
+@dataclass(frozen=True)
+class Step:
+    """The turn from one section to the next, in the axes of the first (5)-(8).
+
+    Attributes:
+        zeroth: Integral of the strains over the step.
+        first: First moment of the strains about the middle, over the length of the step.
+        tables: Derivatives of both by each coordinate, about the coordinate's own axis.
+        vector: Rotation vector of the turn.
+        half: Half the ratio of the tangent of half the angle to half the angle, and its first two derivatives by the
+            square of the angle.
+        gibbs: Gibbs vector of the turn, `half` times the rotation vector.
+        factor: Factor 2/(1 + a.a) of the turn's angular velocity, a the Gibbs vector.
+    """
+
+    zeroth: Vec3
+    first: Vec3
+    tables: tuple[tuple[float, ...], tuple[float, ...]]
+    vector: Vec3
+    half: tuple[Edge, Edge, Edge]
+    gibbs: Vec3
+    factor: Edge
+
+
+@dataclass(frozen=True, eq=False)
+class Rod:
+    """What the equations of motion need of one rod.
+
+    Attributes:
+        beam: The rod as described.
+        along: Integration over its length.
+        strains: Strain fields, with their tables at the sections.
+    """
+
+    beam: Beam
+    along: LengthIntegrator
+    strains: Strains
+
+    @property
+    def g(self) -> Graph:
+        """The graph."""
+        return self.along.g
+
+    @property
+    def coordinates(self) -> tuple[Edge, ...]:
+        """Edges of the strain coordinates."""
+        return self.along.coordinates
+
+    @cached_property
+    def axis(self) -> int | None:
+        """The one axis that all sections turn about, if there is one: the turn is then a sine and a cosine."""
+        pre = {k for k, label in enumerate(PRE_STRAINS) if getattr(self.beam, label) != 0.0}
+        axes = pre | {k for k, _ in self.strains.axes}
+        return axes.pop() if len(axes) == 1 else None
+
+    # Sections.
+
+    @cached_property
+    def root(self) -> Section:
+        """The section at the root."""
+        return Section(Mat3.identity(self.g), tuple(Vec3(self.g) for _ in self.coordinates))
+
+    @cached_property
+    def sections(self) -> tuple[Section, ...]:
+        """The sections at which the motion is integrated, root to tip."""
+        if self.axis is not None:
+            return tuple(map(self.section_at, self.strains.stations[0]))
+        chain = [self.root]
+        for step in self._steps:
+            chain.append(self._after(chain[-1], step))
+        return tuple(chain[1:])
+
+    def section_at(self, xi: float) -> Section:
+        """The section at any station."""
+        if self.axis is not None:
+            return self._turned(self.axis, xi)
+        stations = self.strains.stations[0]
+        before = sum(station <= xi for station in stations)
+        start, section = (stations[before - 1], self.sections[before - 1]) if before else (0.0, self.root)
+        return self._after(section, self._step(start, xi)) if xi > start else section
+
+    @cached_property
+    def tip(self) -> Section:
+        """The section at the tip."""
+        return self.section_at(1.0)
+
+    def _turned(self, axis: int, xi: float) -> Section:
+        """The section at a station of a rod whose sections turn about one axis (4)."""
+        g = self.g
+        (row,) = self.strains.turns([xi])
+        angle = self._pre_moments(axis, 0.0, xi)[0]
+        for q, turn in zip(self.coordinates, row, strict=True):
+            angle = g.add(angle, g.mul(g.constant(turn), q))
+        c, s = g.call("cos", angle), g.call("sin", angle)
+        i, j = (axis + 1) % 3, (axis + 2) % 3
+        entries = list(Mat3.identity(g).entries)
+        entries[3 * i + i] = entries[3 * j + j] = c
+        entries[3 * i + j], entries[3 * j + i] = -s, s
+        spins = tuple(Vec3.unit(g, axis).scaled(g.constant(turn)) for turn in row)
+        return Section(Mat3(g, tuple(entries)), spins)
+
+    @cached_property
+    def _steps(self) -> tuple[Step, ...]:
+        ends = (0.0, *self.strains.stations[0])
+        return tuple(self._step(a, b) for a, b in zip(ends, ends[1:], strict=False))
+
+    def _step(self, a: float, b: float) -> Step:
+        """The turn between two stations, by Magnus's series to fourth order (5)-(7)."""
+        g = self.g
+        tables = self.strains.moments(a, b)
+        pre = [self._pre_moments(axis, a, b) for axis in range(3)]
+        zeroth, first = (
+            Vec3(g, *(self._superposition(axis, table, self.coordinates, pre[axis][k]) for axis in range(3)))
+            for k, table in enumerate(tables)
+        )
+        vector = zeroth + zeroth.cross(first)
+        half = _half_tangent(g, vector.dot(vector))
+        gibbs = vector.scaled(half[0])
+        factor = g.div(g.constant(2.0), g.add(ONE, gibbs.dot(gibbs)))
+        return Step(zeroth, first, tables, vector, half, gibbs, factor)
+
+    def _superposition(self, axis: int, table: Sequence[float], values: Sequence[Edge], start: Edge = ZERO) -> Edge:
+        """The sum of coordinates or their rates about one axis, with weights."""
+        g = self.g
+        for (k, _), value, number in zip(self.strains.axes, values, table, strict=True):
+            if k == axis:
+                start = g.add(start, g.mul(g.constant(number), value))
+        return start
+
+    def _pre_moments(self, axis: int, a: float, b: float) -> tuple[Edge, Edge]:
+        """Integral of a pre-strain over an interval and its first moment about the middle, as of the functions (5)."""
+        g, stated = self.g, getattr(self.beam, PRE_STRAINS[axis])
+        if STATION not in symbols(stated):
+            return g.mul(g.constant(b - a), g.mul(self.along.lower(stated), self.along.L)), ZERO
+        assert isinstance(stated, Expression)
+        zeroth, first = ZERO, ZERO
+        for node, weight in zip(*gauss(_PRE_STRAIN_POINTS), strict=True):
+            value = self.along.lower(at_station(stated, self.along.length, a + (b - a) * node))
+            share = g.mul(g.constant(weight * (b - a)), g.mul(value, self.along.L))
+            zeroth = g.add(zeroth, share)
+            first = g.add(first, g.mul(g.constant(node - 0.5), share))
+        return zeroth, first
+
+    def _after(self, section: Section, step: Step) -> Section:
+        """The section at the end of a step (8), (9)."""
+        g, a = self.g, step.gibbs
+        units = [Vec3.unit(g, k) for k in range(3)]
+        turned, spinning = [], []
+        # c ([a] + [a]^2), and c ([a] h + h + 2 h' x x^T) with a = h x: by columns.
+        along = g.mul(g.mul(g.constant(2.0), step.half[1]), step.factor)
+        across = g.mul(step.half[0], step.factor)
+        for k, unit in enumerate(units):
+            over = a.cross(unit)
+            turned.append(unit + (over + a.cross(over)).scaled(step.factor))
+            spinning.append((unit + over).scaled(across) + step.vector.scaled(g.mul(along, tuple(step.vector)[k])))
+        T = section.R_BS @ Mat3.from_columns(g, spinning)
+        spins = list(section.spins)
+        by_axis = {
+            axis: (T.times(units[axis] + units[axis].cross(step.first)), T.times(units[axis].cross(step.zeroth)))
+            for axis, _ in self.strains.axes
+        }
+        for i, ((axis, _), z, m) in enumerate(zip(self.strains.axes, *step.tables, strict=True)):
+            whole, moment = by_axis[axis]
+            spins[i] = spins[i] + (whole.scaled(g.constant(z)) - moment.scaled(g.constant(m)))
+        return Section(section.R_BS @ Mat3.from_columns(g, turned), tuple(spins))
+
+    # Positions: sums of tangents, with weights that are numbers.
+
+    @cached_property
+    def tangents(self) -> tuple[Vec3, ...]:
+        """Tangents of the axis at the sections, in B."""
+        return tuple(section.R_BS.column(0) for section in self.sections)
+
+    @cached_property
+    def partial_tangents(self) -> tuple[tuple[Vec3, ...], ...]:
+        """Derivatives of the tangents at the sections by each coordinate: one row a coordinate."""
+        return tuple(
+            tuple(s.spins[i].cross(t) for s, t in zip(self.sections, self.tangents, strict=True))
+            for i in range(len(self.coordinates))
+        )
+
+    def combined(self, row: Sequence[float], vectors: Sequence[Vec3]) -> Vec3:
+        """A sum of vectors with weights."""
+        total = Vec3(self.g)
+        for weight, vector in zip(row, vectors, strict=True):
+            if weight:
+                total = total + vector.scaled(self.g.constant(weight))
+        return total
+
+    def position(self, xi: float) -> Vec3:
+        """Position p_BS of the section at a station (10)."""
+        return self.combined(self.strains.from_root(xi), self.tangents).scaled(self.along.L)
+
+    def partial_position(self, xi: float, i: int) -> Vec3:
+        """Derivative of the position at a station by a coordinate."""
+        return self.combined(self.strains.from_root(xi), self.partial_tangents[i]).scaled(self.along.L)
+
+    def angular_rates(self, speeds: Sequence[Edge]) -> list[tuple[Vec3, Vec3]]:
+        """Angular velocity of each section in B, and its rate at constant speeds (11)."""
+        g = self.g
+        if self.axis is not None:
+            return [(self.spin(section, speeds), Vec3(g)) for section in self.sections]
+        rates, w, alpha, section = [], Vec3(g), Vec3(g), self.root
+        for step, following in zip(self._steps, self.sections, strict=True):
+            relative, relative_rate = (section.R_BS.times(x) for x in self._step_rates(step, speeds))
+            alpha = alpha + (w.cross(relative) + relative_rate)
+            w, section = w + relative, following
+            rates.append((w, alpha))
+        return rates
+
+    def _step_rates(self, step: Step, speeds: Sequence[Edge]) -> tuple[Vec3, Vec3]:
+        """Angular velocity of a step's end relative to its start, and its rate at constant speeds (11)."""
+        g, x, a = self.g, step.vector, step.gibbs
+        two, (h, slope, bend) = g.constant(2.0), step.half
+        zeroth, first = (
+            Vec3(g, *(self._superposition(axis, table, speeds) for axis in range(3))) for table in step.tables
+        )
+        x1 = zeroth + zeroth.cross(step.first) + step.zeroth.cross(first)
+        both = zeroth.cross(first)
+        x2 = both + both
+        square1 = g.mul(two, x.dot(x1))
+        square2 = g.mul(two, g.add(x1.dot(x1), x.dot(x2)))
+        h1 = g.mul(slope, square1)
+        h2 = g.add(g.mul(bend, g.mul(square1, square1)), g.mul(slope, square2))
+        a1 = x1.scaled(h) + x.scaled(h1)
+        a2 = x2.scaled(h) + x1.scaled(g.add(h1, h1)) + x.scaled(h2)
+        relative = (a1 + a.cross(a1)).scaled(step.factor)
+        rate = (a2 + a.cross(a2) - relative.scaled(a.dot(a1))).scaled(step.factor)
+        return relative, rate
+
+    def spin(self, section: Section, speeds: Sequence[Edge]) -> Vec3:
+        """Angular velocity of a section in B."""
+        total = Vec3(self.g)
+        for spin, speed in zip(section.spins, speeds, strict=True):
+            total = total + spin.scaled(speed)
+        return total
+
+    # Mass and stiffness.
+
+    @cached_property
+    def mass_points(self) -> tuple[Rows, tuple[Edge, ...]]:
+        """Points that have the second moments of the rod: rows of their positions over L, and masses times L^2 (12)."""
+        g, L = self.g, self.along.L
+        if STATION not in symbols(self.beam.rhoA):
+            whole = g.mul(self.along.lower(self.beam.rhoA), g.mul(L, g.mul(L, L)))
+            return self.strains.mass_points, (whole,)
+        return self.strains.positions, tuple(g.mul(share, g.mul(L, L)) for share in self.shares(self.beam.rhoA))
+
+    def shares(self, weight: Value) -> tuple[Edge, ...]:
+        """Integral of a property of the section over the length, by sections."""
+        g, shares = self.g, []
+        for xi, w in zip(*self.strains.stations, strict=True):
+            value = at_station(weight, self.along.length, xi) if isinstance(weight, Expression) else weight
+            shares.append(g.mul(g.constant(w), g.mul(self.along.lower(value), self.along.L)))
+        return tuple(shares)
+
+    @cached_property
+    def point_positions(self) -> tuple[Vec3, ...]:
+        """Positions of the mass points over the length, in B."""
+        return tuple(self.combined(row, self.tangents) for row in self.mass_points[0])
+
+    @cached_property
+    def point_partials(self) -> tuple[tuple[Vec3, ...], ...]:
+        """Derivatives of these positions by each coordinate: one row a coordinate."""
+        rows = self.mass_points[0]
+        return tuple(tuple(self.combined(row, partial) for row in rows) for partial in self.partial_tangents)
+
+    @cached_property
+    def inertia_axes(self) -> tuple[InertiaAxis, ...]:
+        """Axes about which the sections have inertia: their own x axis, with rotary inertia all three."""
+        beam = self.beam
+        stated = (beam.rhoJ, beam.rhoI_y, beam.rhoI_z) if beam.rotary_inertia else (beam.rhoJ,)
+        return tuple(
+            InertiaAxis(k, share, section.R_BS.column(axis))
+            for axis, per_length in enumerate(stated)
+            if per_length != 0.0
+            for k, (section, share) in enumerate(zip(self.sections, self.shares(per_length), strict=True))
+        )
+
+    @cached_property
+    def mass(self) -> Edge:
+        """The rod's mass."""
+        if STATION not in symbols(self.beam.rhoA):
+            return self.g.mul(self.along.lower(self.beam.rhoA), self.along.L)
+        return self.g.sum(self.shares(self.beam.rhoA))
+
+    def first_moment(self, vectors: Sequence[Vec3]) -> Vec3:
+        """Mass times the position that vectors in place of the tangents give to the mass centre, S of section 4."""
+        g, L = self.g, self.along.L
+        if STATION not in symbols(self.beam.rhoA):
+            scale = g.mul(self.along.lower(self.beam.rhoA), g.mul(L, L))
+            return self.combined(self.strains.first_moments, vectors).scaled(scale)
+        total = Vec3(g)
+        for row, share in zip(self.strains.positions, self.shares(self.beam.rhoA), strict=True):
+            total = total + self.combined(row, vectors).scaled(g.mul(share, L))
+        return total
+
+    @cached_property
+    def strain_energy(self) -> Form:
+        """Strain energy: half the integral of GJ k1^2 + EI_y k2^2 + EI_z k3^2, k the changes of strain (2)."""
+        total = no_form(self.g, self.coordinates)
+        for axis, stiffness in enumerate((self.beam.GJ, self.beam.EI_y, self.beam.EI_z)):
+            strain = self.strains.strain(axis)
+            if strain.terms:
+                total = total + self.along.integral(strain.times(strain), stiffness)
+        return total.scaled(self.g.constant(0.5))
+
+    def damping_energy(self, speeds: tuple[Edge, ...]) -> Form:
+        """Rayleigh's dissipation function: damping times the strain energy of the rates (section 2)."""
+        quadratic = self.strain_energy.scaled(self.along.lower(self.beam.damping))
+        return Form(self.g, speeds, quadratic.terms)
+
+
+def _half_tangent(g: Graph, square: Edge) -> tuple[Edge, Edge, Edge]:
+    """tan(theta/2)/theta as a rational function of theta^2, and its first two derivatives by theta^2 (7)."""
+    s = g.mul(g.constant(0.25), square)
+    below = g.add(g.constant(210.0), g.mul(s, g.sub(g.add(s, s), g.constant(90.0))))
+    inverse = g.div(ONE, below)
+    value = g.mul(g.sub(g.constant(105.0), g.mul(g.constant(10.0), s)), inverse)
+    # Of value * below = 105 - 10 s, with below' = 4 s - 90.
+    below_rate = g.sub(g.mul(g.constant(4.0), s), g.constant(90.0))
+    slope = g.mul(g.sub(g.constant(-10.0), g.mul(value, below_rate)), inverse)
+    twice = g.add(slope, slope)
+    bend = -g.mul(g.add(g.mul(twice, below_rate), g.mul(g.constant(4.0), value)), inverse)
+    return value, g.mul(g.constant(0.25), slope), g.mul(g.constant(0.0625), bend)
+
+
+def rod_of(g: Graph, lower: Lower, beam: Beam, coordinates: tuple[Edge, ...]) -> Rod:
+    """A rod in a graph.
+
+    Args:
+        g: The graph that operations are added to.
+        lower: Lowering of values of the description to edges.
+        beam: The rod as described.
+        coordinates: Edges of the strain coordinates.
+    """
+    strains = strains_of(beam)
+    along = LengthIntegrator(g, lower, beam.length, lower(beam.length), coordinates, strains.knots)
+    return Rod(beam, along, strains)

@@ -1,0 +1,134 @@
+"""Inertia of a geometrically exact rod: sums over its sections (docs/theory/rods.md, section 4).
+
+Positions are sums of tangents with weights that are numbers, so that every integral over the mass is a quadratic form
+of the tangents: it is taken over points with the same second moments.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from symofros.expr.edges import Edge
+from symofros.expr.vector import Sym3, Vec3
+from symofros.mechanics.beams.elastic import PAIRS
+from symofros.mechanics.beams.rod import Rod
+
+
+def _weighted(rod: Rod, terms: Sequence[Edge]) -> Edge:
+    """A sum over the mass points, each weighted by its mass."""
+    g, masses = rod.g, rod.mass_points[1]
+    if len(masses) == 1:
+        return g.mul(masses[0], g.sum(terms))
+    return g.sum(g.mul(mass, term) for mass, term in zip(masses, terms, strict=True))
+
+
+def _weighted_vector(rod: Rod, terms: Sequence[Vec3]) -> Vec3:
+    return Vec3(rod.g, *(_weighted(rod, component) for component in zip(*terms, strict=True)))
+
+
+def rod_moments(rod: Rod) -> tuple[Vec3, Sym3]:
+    """First moment and inertia tensor about the root, in B (13), (14)."""
+    g, points = rod.g, rod.point_positions
+    E = [_weighted(rod, [g.mul(tuple(y)[a], tuple(y)[b]) for y in points]) for a, b in PAIRS]
+    J = Sym3(g, g.add(E[1], E[2]), g.add(E[0], E[2]), g.add(E[0], E[1]), -E[3], -E[4], -E[5])
+    for axis in rod.inertia_axes:
+        c = axis.direction
+        J = J + Sym3(g, *(g.mul(axis.inertia, g.mul(tuple(c)[a], tuple(c)[b])) for a, b in PAIRS))
+    return rod.first_moment(rod.tangents), J
+
+
+def rod_modal_mass(rod: Rod, i: int, j: int) -> Edge:
+    """M_ij of two strain coordinates (13), (14)."""
+    g = rod.g
+    total = _weighted(rod, [a.dot(b) for a, b in zip(rod.point_partials[i], rod.point_partials[j], strict=True)])
+    for axis in rod.inertia_axes:
+        spins = rod.sections[axis.section].spins
+        both = g.mul(axis.direction.dot(spins[i]), axis.direction.dot(spins[j]))
+        total = g.add(total, g.mul(axis.inertia, both))
+    return total
+
+
+def rod_momentum(rod: Rod, i: int) -> tuple[Vec3, Vec3]:
+    """Linear momentum and angular momentum about the root, in B, per unit rate of a coordinate (13), (14)."""
+    g = rod.g
+    angular = _weighted_vector(
+        rod, [y.cross(d) for y, d in zip(rod.point_positions, rod.point_partials[i], strict=True)]
+    )
+    for axis in rod.inertia_axes:
+        spin = axis.direction.dot(rod.sections[axis.section].spins[i])
+        angular = angular + axis.direction.scaled(g.mul(axis.inertia, spin))
+    return rod.first_moment(rod.partial_tangents[i]), angular
+
+
+def rod_forces(
+    rod: Rod, w: Vec3, alpha: Vec3, a: Vec3, speeds: Sequence[Edge], rates: Sequence[Edge]
+) -> tuple[Vec3, Vec3, list[Edge]]:
+    """Inertia forces of a rod but for that of its mass at the root (15), (16).
+
+    Args:
+        rod: The rod.
+        w: Angular velocity of the root, in B.
+        alpha: Angular acceleration of the root, in B.
+        a: Acceleration of the root with gravity as one of the base, in B.
+        speeds: Rates of the strain coordinates.
+        rates: Second derivatives of the strain coordinates.
+
+    Returns:
+        Force and moment on the root, in B, and the force on each coordinate.
+    """
+    g, n = rod.g, len(rod.coordinates)
+    turning = rod.angular_rates(speeds)
+    spins, accelerations, curves = [], [], []
+    for section, t, (own, own_rate) in zip(rod.sections, rod.tangents, turning, strict=True):
+        # The section turns in the world with w + own, seen from B; the rate of that in the world, too.
+        total, total_rate = w + own, alpha + own_rate + w.cross(own)
+        for spin, rate in zip(section.spins, rates, strict=True):
+            total_rate = total_rate + spin.scaled(rate)
+        spins.append(total)
+        accelerations.append(total_rate)
+        curves.append(total_rate.cross(t) + total.cross(total.cross(t)))
+    rows, masses = rod.mass_points
+    points = [rod.combined(row, curves) for row in rows]
+    if len(masses) > 1:
+        points = [point.scaled(mass) for point, mass in zip(points, masses, strict=True)]
+    # Force per unit change of each tangent.
+    arms = [rod.combined(column, points) for column in zip(*rows, strict=True)]
+    if len(masses) == 1:
+        arms = [arm.scaled(masses[0]) for arm in arms]
+    first = rod.first_moment(rod.tangents)
+    f, moment = rod.first_moment(curves), first.cross(a)
+    for t, arm in zip(rod.tangents, arms, strict=True):
+        moment = moment + t.cross(arm)
+    forces = [g.add(rod.first_moment(rod.partial_tangents[i]).dot(a), _power(rod, i, arms)) for i in range(n)]
+    for axis in rod.inertia_axes:
+        k, c = axis.section, axis.direction
+        H = c.scaled(g.mul(axis.inertia, c.dot(spins[k])))
+        torque = c.scaled(g.mul(axis.inertia, c.dot(accelerations[k]))) + spins[k].cross(H)
+        moment = moment + torque
+        forces = [g.add(x, torque.dot(rod.sections[k].spins[i])) for i, x in enumerate(forces)]
+    return f, moment, forces
+
+
+def _power(rod: Rod, i: int, arms: Sequence[Vec3]) -> Edge:
+    return rod.g.sum(d.dot(arm) for d, arm in zip(rod.partial_tangents[i], arms, strict=True))
+
+
+def rod_energy_twice(rod: Rod, w: Vec3, v: Vec3, speeds: Sequence[Edge]) -> Edge:
+    """Twice the kinetic energy but for that of the mass at the root (17).
+
+    Args:
+        rod: The rod.
+        w: Angular velocity of the root, in B.
+        v: Velocity of the root, in B.
+        speeds: Rates of the strain coordinates.
+    """
+    g = rod.g
+    spins = [w + rod.spin(section, speeds) for section in rod.sections]
+    moved = [spin.cross(t) for spin, t in zip(spins, rod.tangents, strict=True)]
+    points = [rod.combined(row, moved) for row in rod.mass_points[0]]
+    linear = rod.first_moment(moved).dot(v)
+    total = g.add(g.add(linear, linear), _weighted(rod, [p.dot(p) for p in points]))
+    for axis in rod.inertia_axes:
+        spin = axis.direction.dot(spins[axis.section])
+        total = g.add(total, g.mul(axis.inertia, g.mul(spin, spin)))
+    return total

@@ -1,0 +1,76 @@
+"""The sections of a geometrically exact rod in numbers, from the frames that its equations come from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from symofros.description.beam import Beam
+from symofros.description.values import Value
+from symofros.expr.edges import Edge
+from symofros.expr.expression import evaluate
+from symofros.expr.graph import Graph
+from symofros.expr.numerics.evaluate import evaluate_edges
+from symofros.expr.program import Program
+from symofros.mechanics.beams.rod import rod_of
+from symofros.mechanics.beams.strains import strains_of
+
+Array = npt.NDArray[np.float64]
+
+# Stations at which the shapes of a rod by its own sections and by twice as many are compared.
+_COMPARED = tuple(k / 8 for k in range(1, 9))
+
+
+class RodShape:
+    """Where sections of a rod are, for given strain coordinates (docs/theory/rods.md, section 3).
+
+    Args:
+        beam: The rod as described.
+        values: Number of each parameter.
+        stations: Stations x/L (S).
+    """
+
+    def __init__(self, beam: Beam, values: Mapping[str, float], stations: Sequence[float]) -> None:
+        g = Graph()
+
+        def lower(value: Value) -> Edge:
+            return g.constant(evaluate(value, values))
+
+        rod = rod_of(g, lower, beam, tuple(g.input("q", i) for i in range(beam.modes)))
+        inverse = g.div(g.constant(1.0), rod.along.L)
+        self._edges: list[Edge] = []
+        for xi in stations:
+            self._edges += [*rod.position(xi).scaled(inverse), *rod.section_at(xi).R_BS.entries]
+        self._program, self._stations = Program(beam.name, g, {"q": beam.modes}, ()), len(stations)
+
+    def sections(self, q: Array) -> tuple[Array, Array]:
+        """Positions over the length (..., S, 3) and rotations R_BS (..., S, 3, 3) for coordinates (..., n)."""
+        flat = np.reshape(q, (-1, q.shape[-1]))
+        values = evaluate_edges(self._program, self._edges, {"q": flat}, {})
+        table = np.empty((len(flat), len(values)))
+        for k, value in enumerate(values):
+            table[:, k] = value
+        table = table.reshape(*q.shape[:-1], self._stations, 12)
+        return table[..., :3], table[..., 3:].reshape(*q.shape[:-1], self._stations, 3, 3)
+
+
+class IntegrationError:
+    """Error of a rod's shape by its number of sections, as the difference to that of twice as many.
+
+    Args:
+        beam: The rod as described.
+        values: Number of each parameter.
+    """
+
+    def __init__(self, beam: Beam, values: Mapping[str, float]) -> None:
+        points = strains_of(beam).points
+        self._own = RodShape(beam, values, _COMPARED)
+        self._finer = RodShape(replace(beam, sections=2 * points), values, _COMPARED)
+
+    def __call__(self, q: Array) -> float:
+        """Largest error of a position over the length, for coordinates (n)."""
+        (own, _), (finer, _) = (shape.sections(np.asarray(q, dtype=np.float64)) for shape in (self._own, self._finer))
+        return float(np.linalg.norm(own - finer, axis=-1).max())

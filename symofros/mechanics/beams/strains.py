@@ -1,0 +1,223 @@
+"""Strain fields of a geometrically exact rod, and their tables at its sections (docs/theory/rods.md, sections 1 and 4).
+
+Numbers alone, formed by sums, products, quotients and square roots of doubles, or by fractions that are rounded once:
+the same on every machine.
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property, lru_cache
+from itertools import pairwise
+
+from symofros.description.beam import DIRECTIONS, Beam, Family, Samples, UserShape
+from symofros.mechanics.beams.fields import Field, Monomial
+from symofros.mechanics.beams.piecewise import Number, Piecewise, fitted, gauss, polynomial, stations
+from symofros.mechanics.beams.shape_functions import MAX_MODES, FamilyError, b_splines, formula_of_station
+
+# Axis that a direction's strain turns the sections about, and the sign with which its coordinates count: a positive
+# coordinate bends the rod towards positive y or z.
+TURNS = {"bend_y": (2, 1), "bend_z": (1, -1), "twist": (0, 1)}
+# Sections an interval beyond the number of functions, and the fewest: what the elastica and a full circle ask for.
+_MORE_SECTIONS, _FEWEST_SECTIONS = 3, 5
+# Sections an interval where knots divide the rod: the cubic between them is smooth.
+_SECTIONS_A_SPAN = 4
+# Largest angle [rad] by which the strains of one direction turn the tip in random states.
+_LARGEST_TURN = 0.5 * math.pi
+
+Rows = tuple[tuple[float, ...], ...]
+
+
+@dataclass(frozen=True)
+class Strains:
+    """The strain fields of one rod over xi = x/L: each function, times its coordinate over L, is a curvature.
+
+    Attributes:
+        functions: Strain functions, one a coordinate: those of bend_y, then bend_z, then twist.
+        counts: Number of functions of bend_y, bend_z and twist.
+        points: Number of sections an interval between knots.
+    """
+
+    functions: tuple[Piecewise, ...]
+    counts: tuple[int, int, int]
+    points: int
+
+    @cached_property
+    def axes(self) -> tuple[tuple[int, int], ...]:
+        """Axis about which each coordinate turns the sections, and the sign of the turn."""
+        return tuple(TURNS[d] for d, count in zip(DIRECTIONS, self.counts, strict=True) for _ in range(count))
+
+    @cached_property
+    def knots(self) -> tuple[Number, ...]:
+        """Ends of the intervals on which all functions are smooth."""
+        return tuple(sorted({Fraction(0), Fraction(1), *(k for f in self.functions for k in f.knots)}))
+
+    @cached_property
+    def stations(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Stations xi of the sections, rising, and their weights."""
+        xi, w = stations(self.knots, self.points)
+        return tuple(xi), tuple(w)
+
+    def strain(self, axis: int) -> Field:
+        """Change of the twist rate (axis 0) or of a curvature as a field of the coordinates (1)."""
+        terms: dict[Monomial, Piecewise] = {
+            (i,): f.scaled(s) for i, (f, (k, s)) in enumerate(zip(self.functions, self.axes, strict=True)) if k == axis
+        }
+        return Field(-1, (False,) * len(self.functions), terms)
+
+    def turns(self, xi: Sequence[float]) -> Rows:
+        """Angle about its own axis by which a unit of each coordinate turns the section at stations (s, n)."""
+        columns = [
+            f.antiderivative().scaled(s).rounded(xi) for f, (_, s) in zip(self.functions, self.axes, strict=True)
+        ]
+        return tuple(zip(*columns, strict=True)) if columns else tuple(() for _ in xi)
+
+    def moments(self, start: float, end: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Integral of each strain function over an interval; its first moment about the middle, over the length (5)."""
+        zeroth, first = [], []
+        a, b = Fraction(start), Fraction(end)
+        middle = (a + b) / 2
+        for f, (_, s) in zip(self.functions, self.axes, strict=True):
+            whole = f.antiderivative()
+            moment = (f * polynomial(-middle, 1)).antiderivative()
+            zeroth.append(float(s * (whole(b) - whole(a))))
+            first.append(float(s * (moment(b) - moment(a)) / (b - a)))
+        return tuple(zeroth), tuple(first)
+
+    def from_root(self, xi: float) -> tuple[float, ...]:
+        """Weights of the sections in the integral from the root to a station, by the polynomials through them (10)."""
+        p = self.points
+        nodes, weights = gauss(p)
+        row = [0.0] * (p * (len(self.knots) - 1))
+        last = min(max(bisect_right([float(k) for k in self.knots], xi) - 1, 0), len(self.knots) - 2)
+        for m, (a, b) in enumerate(pairwise(map(float, self.knots))):
+            if m > last:
+                break
+            upto = (xi - a) / (b - a) if m == last else 1.0
+            for k in range(p):
+                row[m * p + k] = (b - a) * weights[k] * _partial_weight(p, nodes[k], upto)
+        return tuple(row)
+
+    @cached_property
+    def positions(self) -> Rows:
+        """Rows of `from_root` at the sections themselves (N, N)."""
+        return tuple(self.from_root(xi) for xi in self.stations[0])
+
+    @cached_property
+    def first_moments(self) -> tuple[float, ...]:
+        """Weights of the tangents in the integral of the position, for a section that does not change (N)."""
+        w = self.stations[1]
+        return tuple(sum(a * row[k] for a, row in zip(w, self.positions, strict=True)) for k in range(len(w)))
+
+    @cached_property
+    def mass_points(self) -> Rows:
+        """Rows C, upper triangular, of points with C^T C the second moment of the positions: of a uniform rod (12)."""
+        w, n = self.stations[1], len(self.stations[1])
+        second = [
+            [sum(a * row[i] * row[j] for a, row in zip(w, self.positions, strict=True)) for j in range(n)]
+            for i in range(n)
+        ]
+        rows = [[0.0] * n for _ in range(n)]
+        for i in range(n):
+            rows[i][i] = math.sqrt(second[i][i] - sum(rows[k][i] ** 2 for k in range(i)))
+            for j in range(i + 1, n):
+                rows[i][j] = (second[i][j] - sum(rows[k][i] * rows[k][j] for k in range(i))) / rows[i][i]
+        return tuple(map(tuple, rows))
+
+    @cached_property
+    def sizes(self) -> tuple[float, ...]:
+        """Sizes of the coordinates with which no direction turns a section by more than a right angle."""
+        rows = self.turns([k / 16 for k in range(17)])
+        largest = [max(abs(row[i]) for row in rows) for i in range(len(self.functions))]
+        return tuple(
+            _LARGEST_TURN / (size * self.counts[DIRECTIONS.index(_direction(axis))])
+            for size, (axis, _) in zip(largest, self.axes, strict=True)
+        )
+
+
+def _direction(axis: int) -> str:
+    return next(d for d, (k, _) in TURNS.items() if k == axis)
+
+
+def _partial_weight(points: int, node: float, upto: float) -> float:
+    """The integral from 0 to a station of a Gauss node's polynomial of Lagrange, over the node's weight.
+
+    It is the sum of (2 n + 1) P_n(node) P_n over n < points, and the integral of P_n is a difference of neighbours.
+    """
+    at, end = _legendre(points + 1, 2.0 * node - 1.0), _legendre(points + 1, 2.0 * upto - 1.0)
+    return upto + sum(at[n] * 0.5 * (end[n + 1] - end[n - 1]) for n in range(1, points))
+
+
+def _legendre(count: int, z: float) -> list[float]:
+    values = [1.0, z]
+    for k in range(2, count + 1):
+        values.append(((2 * k - 1) * z * values[-1] - (k - 1) * values[-2]) / k)
+    return values
+
+
+def strains_of(beam: Beam) -> Strains:
+    """The strain fields of a rod; rods with equal functions and sections share one.
+
+    Raises:
+        FamilyError: The family has no such functions.
+    """
+    counts = (beam.bend_y, beam.bend_z, beam.twist)
+    user = tuple(beam.user_shapes(direction) for direction in DIRECTIONS)
+    return _shared_strains(beam.family, counts, user, beam.sections)
+
+
+@lru_cache(maxsize=64)
+def _shared_strains(
+    family: Family, counts: tuple[int, int, int], user: tuple[tuple[UserShape, ...], ...], sections: int
+) -> Strains:
+    functions: list[Piecewise] = []
+    for count, stated in zip(counts, user, strict=True):
+        functions += strain_functions(family, count, stated)
+    is_divided = any(len(f.pieces) > 1 for f in functions)
+    chosen = _SECTIONS_A_SPAN if is_divided else max(_FEWEST_SECTIONS, max(counts) + _MORE_SECTIONS)
+    return Strains(tuple(functions), counts, sections or chosen)
+
+
+def strain_functions(family: Family, count: int, user: tuple[UserShape, ...] = ()) -> list[Piecewise]:
+    """The first strain functions of a family, of any value at root and tip.
+
+    Args:
+        family: Name of the family.
+        count: Number of functions.
+        user: Functions stated by the user, for family "user".
+
+    Raises:
+        FamilyError: The family has none, or not as many.
+    """
+    if not 0 <= count <= MAX_MODES:
+        raise FamilyError(f"{count} functions asked for; 0 to {MAX_MODES} can be had")
+    if family == "spline":
+        return b_splines(0, count) if count else []
+    if family == "polynomial":
+        return [polynomial(*([0] * k), 1) for k in range(count)]
+    if family == "legendre":
+        return _shifted_legendre(count)
+    if family == "user":
+        if len(user) != count:
+            raise FamilyError(f"{count} functions asked for, {len(user)} given")
+        return [_stated(shape) for shape in user]
+    raise FamilyError(f"family '{family}' is one of displacements; strains are of spline, legendre, polynomial or user")
+
+
+def _stated(shape: UserShape) -> Piecewise:
+    if isinstance(shape, Samples):
+        raise FamilyError("samples are of displacements; a strain is stated by a formula of xi")
+    return fitted(formula_of_station(shape), 1)
+
+
+def _shifted_legendre(count: int) -> list[Piecewise]:
+    """P_k(2 xi - 1)."""
+    z, functions = polynomial(-1, 2), [polynomial(1), polynomial(-1, 2)]
+    for k in range(2, count):
+        following = (z * functions[-1]).scaled(Fraction(2 * k - 1, k)) + functions[-2].scaled(Fraction(1 - k, k))
+        functions.append(following)
+    return functions[:count]

@@ -1,0 +1,161 @@
+"""Geometrically exact rods: sections, equations of motion, loads (docs/theory/rods.md)."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from symofros.mechanics.beams.rod_shape import RodShape
+from tests.mechanics.beams.rods import integrated, rod
+
+GRAVITY = (1.0, -2.0, -9.5)
+FUNCTIONS = ("mass_matrix", "bias", "generalized_force", "kinetic_energy", "potential_energy", "coriolis_matrix")
+BODY = sf.Inertia(0.7, (0.1, -0.05, 0.08), (0.02, 0.03, 0.025))
+HUB = sf.Joint("hub", "revolute", axis=(1, 1, 0), position=(0.1, 0.2, 0.0))
+ALL: dict[str, Any] = {"rotary_inertia": True, "curvature_y": 0.3, "twist_rate": "0.2*x", "damping": 0.03}
+CASES: dict[str, tuple[sf.Beam, bool]] = {
+    "clamped, in a plane": (rod((3, 0, 0)), False),
+    "in the other plane, at a hub, with a body": (rod((0, 2, 0), HUB, rhoA="2 + x"), True),
+    "free in space, curved and twisted without stress": (rod((1, 1, 1), sf.Joint("base", "free"), **ALL), False),
+    "in space, with a body": (rod((2, 1, 1), HUB), True),
+    "a shaft": (rod((0, 0, 2), HUB), True),
+}
+
+
+@cache
+def model(name: str) -> sf.Model:
+    stated, loaded = CASES[name]
+    body = sf.RigidBody("body", sf.Joint("wrist", "revolute", "rod", "tip", axis=(0, 1, 0)), BODY)
+    system = sf.System("s", (stated, body) if loaded else (stated,), gravity=GRAVITY)
+    return sf.compile(system, sf.Options(FUNCTIONS, backend="interpreter"))
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_energy_is_kept_and_coriolis_matrix_gives_the_rate_of_mass(name: str, rng: np.random.Generator) -> None:
+    m = model(name)
+    q = m.integrate(m.neutral(), 0.5 * rng.standard_normal(m.nv))
+    v = rng.standard_normal(m.nv)
+    M, C = m.mass_matrix(q), m.coriolis_matrix(q, v)
+    assert m.kinetic_energy(q, v) == pytest.approx(0.5 * v @ M @ v, rel=1e-13)
+    eps = 1e-5
+    ahead, behind = m.integrate(q, eps * v), m.integrate(q, -eps * v)
+    rate = (m.mass_matrix(ahead) - m.mass_matrix(behind)) / (2 * eps)
+    assert np.abs(rate - C - C.T).max() < 1e-8 * np.abs(M).max()
+    # Without damping's power, that of the forces is the loss of potential energy.
+    still = m.generalized_force(q, 0 * v, ())
+    stored = (m.potential_energy(ahead) - m.potential_energy(behind)) / (2 * eps)
+    a = np.linalg.solve(M, still - m.bias(q, v))
+    moved = (m.kinetic_energy(ahead, v + eps * a) - m.kinetic_energy(behind, v - eps * a)) / (2 * eps)
+    assert moved + stored == pytest.approx(0.0, abs=1e-7 * (abs(stored) + 1.0))
+
+
+@pytest.mark.parametrize(
+    ("counts", "sections", "error"), [((3, 0, 0), 12, 1e-10), ((0, 3, 0), 12, 1e-10), ((2, 2, 2), 24, 2e-7)]
+)
+def test_sections_are_those_of_an_integrated_frame(
+    counts: tuple[int, int, int], sections: int, error: float, rng: np.random.Generator
+) -> None:
+    stations = np.array([0.3, 0.75, 1.0])
+    q = 0.5 * rng.standard_normal(sum(counts))
+    p, R = RodShape(rod(counts, sections=sections), {}, stations.tolist()).sections(q)
+    expected_p, expected_R = integrated(counts, q, stations)
+    assert np.abs(p - expected_p).max() < error
+    assert np.abs(R - expected_R).max() < error
+    assert np.abs(np.swapaxes(R, -1, -2) @ R - np.eye(3)).max() < 1e-14
+
+
+def test_turns_converge_with_the_fourth_power_of_the_number_of_sections() -> None:
+    q = np.array([0.9, -0.7, 0.8, 0.5, -0.6, 0.4])
+    _, (expected,) = integrated((2, 2, 2), q, np.array([1.0]))
+    errors = [
+        np.abs(RodShape(rod((2, 2, 2), sections=n), {}, [1.0]).sections(q)[1][0] - expected).max() for n in (8, 16)
+    ]
+    assert 3.6 < np.log2(errors[0] / errors[1]) < 5.5
+
+
+@pytest.mark.parametrize("direction", ["bend_y", "bend_z"])
+def test_a_constant_curvature_closes_to_a_circle(direction: str) -> None:
+    counts = (1, 0, 0) if direction == "bend_y" else (0, 1, 0)
+    p, R = RodShape(rod(counts, sections=10), {}, [0.5, 1.0]).sections(np.array([2 * np.pi]))
+    across = 1 if direction == "bend_y" else 2
+    assert p[0, across] == pytest.approx(1 / np.pi, abs=1e-5)
+    assert np.abs(p[1]).max() < 1e-12
+    assert pytest.approx(np.eye(3), abs=1e-14) == R[1]
+
+
+def test_small_strains_are_those_of_the_beam_of_second_order(rng: np.random.Generator) -> None:
+    """Displacement functions whose second derivatives are 1 and xi, over L, as a user states them.
+
+    Without twist, displacements and strains are the same coordinates up to terms of third degree. Sections that spin do
+    so about axes that bending turns in one theory alone.
+    """
+    shapes = {"bend_y": ("xi^2/2", "xi^3/6"), "bend_z": ("xi^2/2",)}
+    plain: dict[str, Any] = {"family": "user", "shapes": shapes, "theory": "second_order", "retain": "all"}
+    functions = FUNCTIONS[:5]
+    second = sf.compile(
+        sf.System("s", (rod((2, 1, 0), HUB, rhoJ=0.0, **plain),)), sf.Options(functions, backend="interpreter")
+    )
+    exact = sf.compile(
+        sf.System("s", (rod((2, 1, 0), HUB, rhoJ=0.0, family="polynomial", sections=12),)),
+        sf.Options(functions, backend="interpreter"),
+    )
+    # Coordinates of displacements are those of strains times the length.
+    scale = np.array([1.0, 1.3, 1.3, 1.3])
+    direction, v = rng.standard_normal(4), rng.standard_normal(4)
+
+    def differences(eps: float) -> np.ndarray:
+        q = direction * np.array([1.0, eps, eps, eps])
+        w = v * np.array([1.0, eps, eps, eps])
+        ours, theirs = exact.bias(q, w), second.bias(scale * q, scale * w) * scale
+        M = exact.mass_matrix(q) - second.mass_matrix(scale * q) * np.outer(scale, scale)
+        Q = exact.generalized_force(q, w, ()) - second.generalized_force(scale * q, scale * w, ()) * scale
+        return np.array([np.abs(ours - theirs).max(), np.abs(M).max(), np.abs(Q).max()])
+
+    coarse, fine = differences(1e-2), differences(1e-3)
+    # Strain forces are the same; M and h differ by terms of second degree.
+    assert fine[2] < 1e-14
+    assert np.all(0.0099 * coarse[:2] < fine[:2]) and np.all(fine[:2] < 0.0101 * coarse[:2])
+
+
+def test_a_load_between_sections_and_one_along_the_rod_do_their_work(rng: np.random.Generator) -> None:
+    loads = (
+        sf.BeamLoad((1.0, -2.0, 0.5), (0.3, 0.2, -0.1), at=0.37, axes="world"),
+        sf.BeamLoad(("0.2*x", -0.4, 0.3), axes="world"),
+    )
+    plain, loaded = (rod((2, 1, 1), rhoJ=0.04, loads=given) for given in ((), loads))
+    forces = []
+    for stated in (plain, loaded):
+        m = sf.compile(sf.System("s", (stated,)), sf.Options(("generalized_force",), backend="interpreter"))
+        forces.append(lambda q, m=m: m.generalized_force(q, 0 * q, ()))
+    q, eps = 0.4 * rng.standard_normal(4), 1e-5
+    xi, w = np.polynomial.legendre.leggauss(12)
+    stations = np.concatenate([(xi + 1) / 2, [0.37]])
+    shape = RodShape(rod((2, 1, 1)), {}, stations.tolist())
+    work = np.zeros(4)
+    for i, step in enumerate(eps * np.eye(4)):
+        (ahead, R_ahead), (behind, R_behind) = shape.sections(q + step), shape.sections(q - step)
+        moved = 1.3 * (ahead - behind) / (2 * eps)
+        spread = np.stack([0.2 * 1.3 * stations[:-1], 0 * xi - 0.4, 0 * xi + 0.3], axis=-1)
+        turn = R_ahead[-1] @ R_behind[-1].T / (2 * eps)
+        spin = 0.5 * np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]])
+        work[i] = 0.65 * np.sum(w[:, None] * spread * moved[:-1]) + moved[-1] @ (1.0, -2.0, 0.5)
+        work[i] += spin @ (0.3, 0.2, -0.1)
+    # Five sections sum up what is spread; twelve nodes do here.
+    assert np.abs(forces[1](q) - forces[0](q) - work).max() < 1e-5
+
+
+def test_entries_that_the_theory_lacks_are_refused_in_words() -> None:
+    for entry in ({"retain": "all"}, {"foreshortening": False}):
+        with pytest.raises(sf.DescriptionError, match="theory 'strain'"):
+            rod((1, 0, 0), **entry)
+    with pytest.raises(sf.DescriptionError, match="theory 'second_order'"):
+        rod((1, 0, 0), theory="second_order", curvature_z=0.1)
+    with pytest.raises(sf.DescriptionError, match="sections"):
+        rod((1, 0, 0), sections=1000)
+    for family in ("hermite", "clamped_free"):
+        with pytest.raises(sf.DescriptionError, match="one of displacements"):
+            sf.compile(sf.System("s", (rod((2, 0, 0), family=family),)))
