@@ -18,6 +18,7 @@ SECTION: dict[str, Any] = {
     "rhoI_y": 0.03,
     "rhoI_z": 0.02,
 }
+GRAVITY = (1.0, -2.0, -9.5)
 TURNS = ((2, 1.0), (1, -1.0), (0, 1.0))
 
 
@@ -49,3 +50,22 @@ def integrated(counts: tuple[int, int, int], q: np.ndarray, stations: np.ndarray
     start = np.concatenate([np.zeros(3), np.eye(3).ravel()])
     run = solve_ivp(slope, (0, 1), start, method="DOP853", t_eval=stations, rtol=1e-12, atol=1e-13)
     return run.y[:3].T, run.y[3:].T.reshape(-1, 3, 3)
+
+
+BODY = sf.Inertia(0.7, (0.1, -0.05, 0.08), (0.02, 0.03, 0.025))
+HUB = sf.Joint("hub", "revolute", axis=(1, 1, 0), position=(0.1, 0.2, 0.0))
+ALL: dict[str, Any] = {"rotary_inertia": True, "curvature_y": 0.3, "twist_rate": "0.2*x", "damping": 0.03}
+CASES: dict[str, tuple[sf.Beam, bool]] = {
+    "clamped, in a plane": (rod((3, 0, 0)), False),
+    "in the other plane, at a hub, with a body": (rod((0, 2, 0), HUB, rhoA="2 + x"), True),
+    "free in space, curved and twisted without stress": (rod((1, 1, 1), sf.Joint("base", "free"), **ALL), False),
+    "in space, with a body": (rod((2, 1, 1), HUB), True),
+    "a shaft": (rod((0, 0, 2), HUB), True),
+}
+
+
+def rod_system(name: str) -> sf.System:
+    """A case, with a body on the tip where it has one."""
+    stated, loaded = CASES[name]
+    body = sf.RigidBody("body", sf.Joint("wrist", "revolute", "rod", "tip", axis=(0, 1, 0)), BODY)
+    return sf.System("s", (stated, body) if loaded else (stated,), gravity=GRAVITY)

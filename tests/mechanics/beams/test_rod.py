@@ -10,28 +10,14 @@ import pytest
 
 import symofros as sf
 from symofros.mechanics.beams.rod_shape import RodShape
-from tests.mechanics.beams.rods import integrated, rod
+from tests.mechanics.beams.rods import CASES, HUB, integrated, rod, rod_system
 
-GRAVITY = (1.0, -2.0, -9.5)
 FUNCTIONS = ("mass_matrix", "bias", "generalized_force", "kinetic_energy", "potential_energy", "coriolis_matrix")
-BODY = sf.Inertia(0.7, (0.1, -0.05, 0.08), (0.02, 0.03, 0.025))
-HUB = sf.Joint("hub", "revolute", axis=(1, 1, 0), position=(0.1, 0.2, 0.0))
-ALL: dict[str, Any] = {"rotary_inertia": True, "curvature_y": 0.3, "twist_rate": "0.2*x", "damping": 0.03}
-CASES: dict[str, tuple[sf.Beam, bool]] = {
-    "clamped, in a plane": (rod((3, 0, 0)), False),
-    "in the other plane, at a hub, with a body": (rod((0, 2, 0), HUB, rhoA="2 + x"), True),
-    "free in space, curved and twisted without stress": (rod((1, 1, 1), sf.Joint("base", "free"), **ALL), False),
-    "in space, with a body": (rod((2, 1, 1), HUB), True),
-    "a shaft": (rod((0, 0, 2), HUB), True),
-}
 
 
 @cache
 def model(name: str) -> sf.Model:
-    stated, loaded = CASES[name]
-    body = sf.RigidBody("body", sf.Joint("wrist", "revolute", "rod", "tip", axis=(0, 1, 0)), BODY)
-    system = sf.System("s", (stated, body) if loaded else (stated,), gravity=GRAVITY)
-    return sf.compile(system, sf.Options(FUNCTIONS, backend="interpreter"))
+    return sf.compile(rod_system(name), sf.Options(FUNCTIONS, backend="interpreter"))
 
 
 @pytest.mark.parametrize("name", CASES)

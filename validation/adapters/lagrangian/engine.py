@@ -15,7 +15,6 @@ import casadi as ca
 import numpy as np
 
 import symofros as sf
-from validation.adapters import rods
 from validation.adapters.description import StatedForces
 from validation.adapters.lagrangian.model import Translation
 from validation.adapters.lagrangian.motion import GROUND, Pose
@@ -165,9 +164,6 @@ def build(subject: Subject) -> TreeEngine | Unsupported:
     system = subject.system
     if not any(isinstance(body, sf.Beam) for body in system.bodies):
         return Unsupported("no beams: rigid trees are left to faster engines")
-    exact = rods(system)
-    if exact:
-        return Unsupported(f"beam '{exact[0]}': a geometrically exact rod")
     assembly = assemble(system)
     obstacle = _obstacle(assembly)
     if obstacle is not None:

@@ -11,8 +11,10 @@ import numpy as np
 
 import symofros as sf
 from validation.adapters.description import evaluate
+from validation.adapters.lagrangian import rod as rods
 from validation.adapters.lagrangian.beam import POINTS, SX, Flexible, Line, rotation_about
 from validation.adapters.lagrangian.motion import Manifold, quaternion_rotation
+from validation.adapters.lagrangian.rod import ExactRod, Strain
 from validation.adapters.lagrangian.tree import WORLD, Node, Rotor, Solid, Symbols
 from validation.mechanics import shape_functions as families
 from validation.mechanics.assembly import Assembly, Mover
@@ -46,6 +48,10 @@ _CASADI: Mapping[str, Callable[..., SX]] = {
     "max": ca.fmax,
 }
 
+SECTION = ("rhoA", "EI_z", "EI_y", "GJ", "rhoJ", "rhoI_y", "rhoI_z")
+# Axis and sign by which a rod's strains of a direction turn its sections.
+TURNS = ((2, 1.0), (1, -1.0), (0, 1.0))
+
 
 class Translation:
     """From a description to nodes, one for each mover of its assembly, in the same order.
@@ -66,7 +72,7 @@ class Translation:
         values = self._values(symbols)
         for i, mover in enumerate(self.assembly.movers):
             beam = nodes[i].body
-            if isinstance(beam, Flexible):
+            if isinstance(beam, Flexible | ExactRod):
                 nodes[i] = replace(nodes[i], body=replace(beam, loads=self._loads(mover, beam.length, values)))
         return nodes, symbols
 
@@ -81,7 +87,7 @@ class Translation:
             assert isinstance(beam, sf.Beam)
             return Node(
                 mover.parent,
-                self._flexible(beam),
+                self._rod(beam) if beam.theory == "strain" else self._flexible(beam),
                 motion=lambda _: _constant(mover.X_AP),
                 tip=solid,
                 at=self._first(mover),
@@ -163,10 +169,7 @@ class Translation:
             shapes, ends = self._shapes(beam, direction, count, L) if count else ((), ())
             functions.append(shapes)
             breaks |= set(ends)
-        sections: dict[str, Any] = {
-            name: self._section(getattr(beam, name))
-            for name in ("rhoA", "EI_z", "EI_y", "GJ", "rhoJ", "rhoI_y", "rhoI_z")
-        }
+        sections: dict[str, Any] = {name: self._section(getattr(beam, name)) for name in SECTION}
         # The square of u is the highest power in T; for n polynomials of degree n + 1 it has degree 4 n + 2.
         points = max(POINTS, 2 * max(counts) + 6)
         return Flexible(
@@ -181,6 +184,39 @@ class Translation:
             points=points,
             **sections,
         )
+
+    def _rod(self, beam: sf.Beam) -> ExactRod:
+        L = self.number(beam.length)
+        strains: list[Strain] = []
+        breaks: set[float] = set()
+        counts = beam.bend_y, beam.bend_z, beam.twist
+        for direction, count, (axis, sign) in zip(("bend_y", "bend_z", "twist"), counts, TURNS, strict=True):
+            if beam.family == "user":
+                functions = [self._strain(stated) for stated in beam.user_shapes(direction)]  # type: ignore[arg-type]
+            elif count:
+                functions, ends = rods.family(beam.family, count)
+                breaks |= {L * end for end in ends}
+            else:
+                functions = []
+            strains += [Strain(axis, sign, value) for value in functions]
+        sections: dict[str, Any] = {name: self._section(getattr(beam, name)) for name in SECTION}
+        return ExactRod(
+            L,
+            strains=tuple(strains),
+            unstressed=(
+                self._section(beam.twist_rate),
+                self._section(beam.curvature_y),
+                self._section(beam.curvature_z),
+            ),
+            breaks=tuple(sorted(breaks)),
+            points=beam.sections or rods.sections_chosen(counts, bool(breaks)),
+            damping=self.number(beam.damping),
+            rotary_inertia=beam.rotary_inertia,
+            **sections,
+        )
+
+    def _strain(self, stated: Any) -> Callable[[Array], Array]:
+        return lambda xi: np.array([float(evaluate(stated, self._numbers | {"xi": at})) for at in xi.tolist()])
 
     def _section(self, value: sf.Expression | float) -> float | Callable[[float], float]:
         if not isinstance(value, sf.Expression):

@@ -15,8 +15,10 @@ import casadi as ca
 import numpy as np
 
 from validation.adapters.lagrangian import beam as beams
+from validation.adapters.lagrangian import rod as rods
 from validation.adapters.lagrangian.beam import SX, Flexible
 from validation.adapters.lagrangian.motion import GROUND, Manifold, Pose, displaced
+from validation.adapters.lagrangian.rod import ExactRod
 from validation.mechanics.geometry import Array
 
 WORLD = -1
@@ -64,7 +66,7 @@ class Node:
     """
 
     parent: int
-    body: Flexible | Solid | None
+    body: Flexible | ExactRod | Solid | None
     count: int = 0
     motion: Callable[[SX], tuple[SX, SX]] = _clamped
     prescribed: bool = False
@@ -81,7 +83,7 @@ class Node:
     @property
     def modes(self) -> int:
         """Number of elastic coordinates, after the joint's."""
-        return self.body.modes if isinstance(self.body, Flexible) else 0
+        return self.body.modes if isinstance(self.body, Flexible | ExactRod) else 0
 
 
 class Terms(NamedTuple):
@@ -166,7 +168,7 @@ class Lagrangian:
             at[node.prescribed] = i + node.coordinates, k + node.count
             own = self._joint(node, i, k)
             speeds.append((x.ds if node.prescribed else x.v)[k : k + node.count])
-            if isinstance(node.body, Flexible):
+            if isinstance(node.body, Flexible | ExactRod):
                 i, k = (i + node.coordinates, k + node.count) if not node.prescribed else at[False]
                 at[False] = i + node.modes, k + node.modes
                 self.shown.append(self._beam(node.body, own, i, k))
@@ -227,9 +229,10 @@ class Lagrangian:
             turning = ca.dot(ca.SX(np.array(rotor.axis)), self.shown[rotor.carrier].spin())
         self.T += 0.5 * rotor.inertia * ((turning + spin) ** 2 - turning**2)
 
-    def _beam(self, beam: Flexible, pose: Pose, i: int, k: int) -> Pose:
+    def _beam(self, beam: Flexible | ExactRod, pose: Pose, i: int, k: int) -> Pose:
         """Add a beam's energies; return its tip."""
         x = self.symbols
+        theory: Any = rods if isinstance(beam, ExactRod) else beams
         e, rates = x.e[k : k + beam.modes], x.v[k : k + beam.modes]
         q = x.q[i : i + beam.modes] + e
 
@@ -238,22 +241,22 @@ class Lagrangian:
 
         at, weight = beams.stations(beam.length, beam.breaks, beam.points)
         rhoA = ca.SX(beams.at_stations(beam.rhoA, at) * weight)
-        r = beams.centroids(beam, at, q)
+        r = theory.centroids(beam, at, q)
         places, velocities = pose.place(r, rate(r))
-        self.T += 0.5 * ca.dot(rhoA, ca.sum1(velocities**2).T) + beams.turning_energy(beam, q, rate, pose.spin())
+        self.T += 0.5 * ca.dot(rhoA, ca.sum1(velocities**2).T) + theory.turning_energy(beam, q, rate, pose.spin())
         self.weight -= ca.dot(rhoA, (self.gravity.T @ places).T)
-        self.strain += beams.strain_energy(beam, q)
-        self.viscous += beams.dissipation(beam, rates)
+        self.strain += theory.strain_energy(beam, q)
+        self.viscous += theory.dissipation(beam, rates)
 
         def section(at: float) -> Pose:
-            p, R = beams.section(beam, at, q)
+            p, R = theory.section(beam, at, q)
             return pose.carried(p, R, rate(p), rate(R))
 
         for line in beam.loads:
             self._load(beam, line, pose, section)
         return section(beam.length)
 
-    def _load(self, beam: Flexible, line: beams.Line, pose: Pose, section: Callable[[float], Pose]) -> None:
+    def _load(self, beam: Flexible | ExactRod, line: beams.Line, pose: Pose, section: Callable[[float], Pose]) -> None:
         """The power of a load: of its force on the centroid, of its moment on the section, which turns exactly."""
         x, weight = ([line.at], [1.0]) if line.at is not None else beams.stations(beam.length, beam.breaks, beam.points)
         axes = ca.SX.eye(3) if line.world else pose.R

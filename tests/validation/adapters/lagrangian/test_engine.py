@@ -11,6 +11,8 @@ import pytest
 import reference_models
 import symofros as sf
 from tests.mechanics.beams.cases import CASES
+from tests.mechanics.beams.rods import CASES as RODS
+from tests.mechanics.beams.rods import rod_system
 from tests.models import sampled
 from tests.validation.subjects import UNIT, every_kind, floating_arm, states_of, subject_of
 from validation.adapters import compiled
@@ -46,14 +48,19 @@ def beam(name: str, joint: sf.Joint, **more: Any) -> sf.Beam:
 @pytest.mark.parametrize(
     "name",
     sampled(
-        ("planar_robot", "spinning_beam", "flexible_pendulum", "free_boom", "flexible_slider_crank"),
-        ("spinning_beam", "flexible_slider_crank"),
+        ("planar_robot", "spinning_beam", "flexible_pendulum", "free_boom", "flexible_slider_crank", "soft_pendulum"),
+        ("spinning_beam", "flexible_slider_crank", "soft_pendulum"),
     ),
 )
 def test_reference_models_agree(name: str) -> None:
     result = checked(reference_models.MODELS[name])
     agreeing = {row.quantity for row in result.comparisons if row.engine == "lagrangian" and row.status == "agree"}
     assert TREE_QUANTITIES <= agreeing
+
+
+@pytest.mark.parametrize("name", sampled(tuple(RODS), ("a shaft",)))
+def test_geometrically_exact_rods_agree(name: str) -> None:
+    checked(rod_system(name), replace(SETTINGS, states=10))
 
 
 def test_every_kind_of_joint_agrees_with_pinocchio() -> None:

@@ -1,0 +1,212 @@
+"""Energies of one geometrically exact rod for the Lagrangian engine: sections of docs/theory/rods.md, section 3.
+
+Rotations from section to section and positions as sums of tangents are stated as there; velocities, spins and forces are
+CasADi's derivatives of them. Tables are quadratures by NumPy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import casadi as ca
+import numpy as np
+from scipy.interpolate import BSpline
+
+from validation.adapters.lagrangian.beam import Line, Section, at_stations, rotation_about, stations
+from validation.mechanics.geometry import Array
+
+SX = Any  # CasADi has no types.
+
+# Gauss nodes of an interval's moments and energies: exact for strains of degree 15.
+NODES = 16
+# Sections an interval that the description leaves to the generator: beyond the functions, at least; between knots.
+MORE, FEWEST, A_SPAN = 3, 5, 4
+
+
+@dataclass(frozen=True)
+class Strain:
+    """One strain function of xi = x/L, about an axis of the section, with the sign of the turn."""
+
+    axis: int
+    sign: float
+    value: Callable[[Array], Array]
+
+
+@dataclass(frozen=True)
+class ExactRod:
+    """A rod along x, clamped to its frame; `breaks` are where its functions are not smooth, `points` an interval."""
+
+    length: float
+    rhoA: Section
+    strains: tuple[Strain, ...]
+    unstressed: tuple[Section, Section, Section]
+    breaks: tuple[float, ...]
+    points: int
+    EI_z: Section = 0.0
+    EI_y: Section = 0.0
+    GJ: Section = 0.0
+    rhoJ: Section = 0.0
+    rhoI_y: Section = 0.0
+    rhoI_z: Section = 0.0
+    damping: float = 0.0
+    rotary_inertia: bool = False
+    loads: tuple[Line, ...] = ()
+
+    @property
+    def modes(self) -> int:
+        """How many strain coordinates it has."""
+        return len(self.strains)
+
+    @cached_property
+    def ends(self) -> tuple[float, ...]:
+        """Ends of the intervals between knots [m]."""
+        return (0.0, *(b for b in sorted(self.breaks) if 0.0 < b < self.length), self.length)
+
+    @cached_property
+    def at(self) -> Array:
+        """Stations of the sections [m]."""
+        return stations(self.length, self.breaks, self.points)[0]
+
+    @cached_property
+    def axes(self) -> set[int]:
+        """Axes that anything turns about."""
+        stressless = {k for k, value in enumerate(self.unstressed) if callable(value) or value != 0.0}
+        return stressless | {strain.axis for strain in self.strains}
+
+    def table(self, x: Array) -> Array:
+        """Strains of unit coordinates at stations (K, 3, n) [1/m]."""
+        values = np.zeros((len(x), 3, self.modes))
+        for i, strain in enumerate(self.strains):
+            values[:, strain.axis, i] = strain.sign * strain.value(x / self.length) / self.length
+        return values
+
+    def moments(self, a: float, b: float, q: SX) -> tuple[SX, SX]:
+        """Integral of the strains over an interval, and their first moment about its middle, over its length (5)."""
+        node, w = np.polynomial.legendre.leggauss(NODES)
+        # Pieces between knots: the moment of a spline is not that of one polynomial.
+        inner = [a, *(end for end in self.ends if a < end < b), b]
+        zeroth, first = ca.SX.zeros(3), ca.SX.zeros(3)
+        for left, right in zip(inner, inner[1:], strict=False):
+            x, weight = left + (right - left) * (node + 1) / 2, (right - left) * w / 2
+            stressless = np.stack([at_stations(value, x) for value in self.unstressed], axis=1)
+            for k, share in enumerate(weight):
+                strain = ca.SX(stressless[k]) + ca.SX(self.table(x[k : k + 1])[0]) @ q
+                zeroth += share * strain
+                first += share * (x[k] - (a + b) / 2) / (b - a) * strain
+        return zeroth, first
+
+
+def family(name: str, count: int) -> tuple[list[Callable[[Array], Array]], Sequence[float]]:
+    """Strain functions of a family over xi, and where they are not smooth."""
+    if name == "legendre":
+        return [np.polynomial.Legendre.basis(k, domain=[0, 1]) for k in range(count)], ()
+    if name == "polynomial":
+        return [np.polynomial.Polynomial.basis(k) for k in range(count)], ()
+    degree = min(3, count - 1)
+    spans = count - degree
+    knots = np.concatenate([np.zeros(degree), np.linspace(0, 1, spans + 1), np.ones(degree)])
+    splines = [BSpline(knots, row, degree) for row in np.eye(count)]
+    return splines, np.linspace(0, 1, spans + 1)[1:-1].tolist()
+
+
+def sections_chosen(counts: Sequence[int], divided: bool) -> int:
+    """Number of sections an interval between knots where the description states none."""
+    return A_SPAN if divided else max(FEWEST, max(counts) + MORE)
+
+
+def rotation(rod: ExactRod, x: float, q: SX) -> SX:
+    """R_BS at a station."""
+    if len(rod.axes) == 1:
+        (axis,) = rod.axes
+        total, _ = rod.moments(0.0, x, q)
+        return rotation_about(np.eye(3)[axis].tolist(), total[axis])
+    before = [at for at in rod.at.tolist() if at <= x]
+    R, start = ca.SX.eye(3), 0.0
+    for end in [*before, x]:
+        if end > start:
+            R, start = R @ _turn(*rod.moments(start, end, q)), end
+    return R
+
+
+def _turn(zeroth: SX, first: SX) -> SX:
+    """The turn of one step (6)-(8)."""
+    X = zeroth + ca.cross(zeroth, first)
+    s = ca.dot(X, X) / 4
+    a = (105 - 10 * s) / (210 - 90 * s + 2 * s**2) * X
+    K = ca.skew(a)
+    return ca.SX.eye(3) + 2 / (1 + ca.dot(a, a)) * (K + K @ K)
+
+
+def rotations(rod: ExactRod, q: SX) -> list[SX]:
+    """R_BS of all sections."""
+    if len(rod.axes) == 1:
+        return [rotation(rod, x, q) for x in rod.at.tolist()]
+    turned, R, start = [], ca.SX.eye(3), 0.0
+    for end in rod.at.tolist():
+        R, start = R @ _turn(*rod.moments(start, end, q)), end
+        turned.append(R)
+    return turned
+
+
+def _weights(rod: ExactRod, x: float) -> Array:
+    """Weights of the sections' tangents in the position at a station (10) [m]."""
+    node, w = np.polynomial.legendre.leggauss(rod.points)
+    weights = []
+    for m, (a, b) in enumerate(zip(rod.ends, rod.ends[1:], strict=False)):
+        own = rod.at[m * rod.points : (m + 1) * rod.points]
+        upto = min(max(x, a), b)
+        inner = a + (upto - a) * (node + 1) / 2
+        for k in range(rod.points):
+            others = np.delete(own, k)
+            lagrange = np.prod((inner[:, None] - others) / (own[k] - others), axis=1)
+            weights.append((upto - a) / 2 * w @ lagrange)
+    return np.array(weights)
+
+
+def centroids(rod: ExactRod, x: Array, q: SX) -> SX:
+    """Places of the axis at stations, in B (3, n)."""
+    tangents = ca.horzcat(*(R[:, 0] for R in rotations(rod, q)))
+    return tangents @ ca.SX(np.stack([_weights(rod, at) for at in x.tolist()], axis=1))
+
+
+def section(rod: ExactRod, x: float, q: SX) -> tuple[SX, SX]:
+    """Place and rotation of one section in B."""
+    return centroids(rod, np.array([x]), q), rotation(rod, x, q)
+
+
+def strain_energy(rod: ExactRod, q: SX) -> SX:
+    """1/2 the integral of GJ k1^2 + EI_y k2^2 + EI_z k3^2, of the changes of strain."""
+    x, weight = stations(rod.length, rod.breaks, NODES)
+    table, total = rod.table(x), ca.SX(0)
+    for axis, stiffness in enumerate((rod.GJ, rod.EI_y, rod.EI_z)):
+        K = np.einsum("k,ki,kj->ij", weight * at_stations(stiffness, x), table[:, axis], table[:, axis])
+        total += 0.5 * ca.dot(q, ca.SX(K) @ q)
+    return total
+
+
+def dissipation(rod: ExactRod, rates: SX) -> SX:
+    """Rayleigh's function: the strain energy of the rates, times the retardation time."""
+    return rod.damping * strain_energy(rod, rates)
+
+
+def turning_energy(rod: ExactRod, q: SX, rate: Callable[[SX], SX], w_B: SX) -> SX:
+    """Kinetic energy of sections that turn: about their own x axis, or about all three of their own axes.
+
+    Args:
+        rod: The rod.
+        q: Its coordinates.
+        rate: The rate of an expression of them.
+        w_B: Angular velocity of its frame, along its axes.
+    """
+    x, weight = stations(rod.length, rod.breaks, rod.points)
+    stated = (rod.rhoJ, rod.rhoI_y, rod.rhoI_z) if rod.rotary_inertia else (rod.rhoJ,)
+    inertias = [at_stations(value, x) * weight for value in stated]
+    total = ca.SX(0)
+    for k, R in enumerate(rotations(rod, q)):
+        spin = ca.inv_skew(R.T @ rate(R)) + R.T @ w_B
+        for axis, inertia in enumerate(inertias):
+            total += 0.5 * inertia[k] * spin[axis] ** 2
+    return total
