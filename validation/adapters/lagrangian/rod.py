@@ -1,7 +1,7 @@
 """Energies of one geometrically exact rod for the Lagrangian engine: sections of docs/theory/rods.md, section 3.
 
-Rotations from section to section and positions as sums of tangents are stated as there; velocities, spins and forces are
-CasADi's derivatives of them. Tables are quadratures by NumPy.
+Rotations from section to section and positions as sums of tangents are stated as there; velocities, spins and forces
+are derivatives of them by CasADi. Tables are quadratures by NumPy.
 """
 
 from __future__ import annotations
