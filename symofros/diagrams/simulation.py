@@ -11,13 +11,13 @@ import numpy as np
 
 from symofros.base.options import Options
 from symofros.diagrams.diagram import Diagram
-from symofros.diagrams.observer import NoObserver, Observer
+from symofros.diagrams.observer import Observer
 from symofros.diagrams.program.compiled import CompiledDiagram, Resolved, compile_diagram, rates_of, resolve
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.result import DiagramRun
 from symofros.diagrams.run.block_functions import Blocks
-from symofros.diagrams.run.halved_steps import STEPS, halved_steps_note
-from symofros.diagrams.run.interpret import BeamWatch, InterpretedRun, run_interpreted
+from symofros.diagrams.run.examination.interpreted import notes_on_steps
+from symofros.diagrams.run.interpret import BeamWatch, Course, InterpretedRun, run_interpreted
 from symofros.diagrams.run.loop import RECORD
 from symofros.diagrams.run.python_blocks import begun
 from symofros.diagrams.run.simulate import run_compiled
@@ -121,25 +121,15 @@ class Simulation:
         interval = record_interval(record, t0, t_end, dt)
         plan = schedule([*rates_of(resolved.pieces), (RECORD, interval, 0.0)], resolved.wired.name)
         instants = list(_instants(plan, t0, t_end))
-        tableau = METHODS[method].tableau
-
-        def once(h: float, observer: Observer | None) -> InterpretedRun:
-            blocks = Blocks(resolved, par, gains or (0.0, 0.0), toolchain)
-            watch = BeamWatch(resolved, par, beam_limit)
-            with begun(resolved.wired) as called, bar(progress and observer is not None, t0, t_end) as show:
-                stepping = (instants, t_end, h, tableau, gains is None)
-                return run_interpreted(blocks, called, *stepping, watch, show, observer or NoObserver())
-
-        run = once(dt, observer or NoObserver())
-        external = any(piece.is_external for piece in resolved.pieces.values())
-        if run.outcome.ok and 0 < run.steps <= STEPS and resolved.layout.v and not external:
-            h = min(dt, plan.spacing)
-            half = once(0.5 * h, None)
-            finer = (half.t, half.q, half.v) if half.outcome.ok else None
-            note = halved_steps_note(resolved.layout, (run.t, run.q, run.v), finer, h)
-            outcome = replace(run.outcome, notes=(*run.outcome.notes, *([note] if note else [])))
-            run = replace(run, outcome=outcome)
-        return run
+        course = Course(instants, t_end, dt, plan.spacing, METHODS[method].tableau, gains is None)
+        blocks = Blocks(resolved, par, gains or (0.0, 0.0), toolchain)
+        watch = BeamWatch(resolved, par, beam_limit)
+        with begun(resolved.wired) as called, bar(progress, t0, t_end) as show:
+            run = run_interpreted(blocks, called, course, watch, show, observer)
+        if not run.outcome.ok:
+            return run
+        notes = notes_on_steps(run, blocks, course, called, METHODS[method])
+        return replace(run, outcome=replace(run.outcome, notes=(*run.outcome.notes, *notes)))
 
 
 def _end(diagram: Diagram, t_end: float | None) -> float:

@@ -133,6 +133,10 @@ class CompiledDiagram:
     sources: tuple[str, ...] = ()
     _signals: dict[tuple[Source, ...], Kernel] = field(default_factory=dict)
 
+    def energies(self, name: str) -> Model:
+        """A model of a mechanism that has its energies only."""
+        return self.resolved.wired.models.energies(name, self.options)
+
     def signals(self, sources: Sequence[Source]) -> Kernel:
         """A function of q, v, u, t, a, lam that gives some outputs."""
         key = tuple(sources)

@@ -30,6 +30,7 @@ from symofros.mechanics.kinematics.links import tree_kinematics
 from symofros.mechanics.topology.run_time import RunTimeCheck
 from symofros.mechanics.topology.tree import SpanningTree
 from symofros.runtime.calls.kernel import Array
+from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord
 from symofros.simulation.analysis.assembly import assemble
 from symofros.simulation.analysis.state_space import StateSpace, state_space
@@ -55,6 +56,7 @@ class Models:
         self._records: dict[str, ModelRecord] = {}
         self._builders: dict[str, ProgramBuilder] = {}
         self._equations: dict[str, Equations] = {}
+        self._energies: dict[tuple[str, str], Model] = {}
         self._programs: dict[tuple[str, str, str], Program] = {}
 
     @property
@@ -133,6 +135,14 @@ class Models:
                 speed = key.removeprefix("d") if key not in record.v_names else key
                 v[self._index(name, "coordinate or speed", speed, record.v_names)] = value
         return q, v
+
+    def energies(self, name: str, options: Options) -> Model:
+        """A model of a mechanism that has its energies only."""
+        key = name, options.backend
+        if key not in self._energies:
+            functions = "kinetic_energy", "potential_energy"
+            self._energies[key] = compile_system(self.system(name), replace(options, functions=functions))
+        return self._energies[key]
 
     def linear(self, name: str, u: Array) -> StateSpace:
         """A model linearised about its first state and inputs u (nu), on its constraints, which are closed first.

@@ -29,11 +29,14 @@ class Blocks:
         par: Run-time parameters (npar).
         gains: Baumgarte's, one pair for all conditions.
         toolchain: Compiles each block by itself; None: NumPy interprets it.
+
+    Attributes:
+        par: Run-time parameters (npar).
     """
 
     def __init__(self, resolved: Resolved, par: Array, gains: tuple[float, float], toolchain: Toolchain | None) -> None:
         self.resolved = resolved
-        self._par, self._gains, self._toolchain = par, gains, toolchain
+        self.par, self._gains, self._toolchain = par, gains, toolchain
         layout = resolved.layout
         self.t = np.zeros(1)
         self.q, self.v = np.array(layout.q0, dtype=np.float64), np.array(layout.v0, dtype=np.float64)
@@ -91,9 +94,9 @@ class Blocks:
         if group.startswith(MEMORY):
             return self.memory[name, group.removeprefix(MEMORY)].reshape(-1)
         if group.startswith(PARAMETER):
-            return self._par[layout.parameters[name, group.removeprefix(PARAMETER)].slice]
+            return self.par[layout.parameters[name, group.removeprefix(PARAMETER)].slice]
         model = next(model for model in wired.models.names if parameter_group(model) == group)
-        return self._par[layout.parameters["", model].slice]
+        return self.par[layout.parameters["", model].slice]
 
     def signals(self, due: frozenset[str] = frozenset(), called: Called | None = None) -> None:
         """Continuous outputs at the present point, in order; those of sampled blocks that are due, too.

@@ -8,11 +8,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from symofros.diagrams.observer import Observer
+from symofros.diagrams.observer import NoObserver, Observer
 from symofros.diagrams.program.compiled import Resolved, part_beams
 from symofros.diagrams.program.layout import Part
 from symofros.diagrams.run.block_functions import Blocks
-from symofros.diagrams.run.faults import first_fault
+from symofros.diagrams.run.examination.faults import first_fault
 from symofros.diagrams.run.python_blocks import Called
 from symofros.diagrams.wiring import Source
 from symofros.runtime.beams import BeamBending, ElasticBeam, amplification_of, bending_notes, largest_bending
@@ -39,6 +39,7 @@ class InterpretedRun:
         resolved: Diagram that ran.
         t: Times (n) [s].
         values: (block, output) -> its signal.
+        memory: (block, memory) -> its values.
         q: Configurations of all mechanisms (n, nq).
         v: Speeds and continuous states (n, nv).
         outcome: Outcome of the run.
@@ -50,6 +51,7 @@ class InterpretedRun:
     resolved: Resolved
     t: Array
     values: dict[Source, Array]
+    memory: dict[tuple[str, str], Array]
     q: Array
     v: Array
     outcome: Outcome
@@ -257,41 +259,63 @@ def _works(blocks: Blocks, beam: ElasticBeam, at: slice) -> tuple[float, float]:
     return float(x @ beam.elastic_stiffness() @ x), float(-change / (2.0 * step))
 
 
+@dataclass(frozen=True)
+class Course:
+    """What is run, and how.
+
+    Attributes:
+        instants: Instants in order; the first is the start.
+        t_end: End time [s].
+        dt: Step [s]; steps also end at instants.
+        spacing: Shortest time between two instants [s].
+        tableau: Tableau of the method.
+        projects: Whether constraints are met again after each step.
+    """
+
+    instants: Sequence[Instant]
+    t_end: float
+    dt: float
+    spacing: float
+    tableau: Tableau
+    projects: bool
+
+    @property
+    def step(self) -> float:
+        """The step that is taken [s]."""
+        return min(self.dt, self.spacing)
+
+
 def run_interpreted(
     blocks: Blocks,
     called: Called,
-    instants: Sequence[Instant],
-    t_end: float,
-    dt: float,
-    tableau: Tableau,
-    projects: bool,
+    course: Course,
     watch: BeamWatch,
-    show: Callable[[float], None],
-    observer: Observer,
+    show: Callable[[float], None] = lambda t: None,
+    observer: Observer | None = None,
 ) -> InterpretedRun:
-    """Run from the first state.
+    """Run from the state that the blocks are at.
 
     Args:
         blocks: The diagram's.
         called: Python blocks, started.
-        instants: Instants in order; the first is the start.
-        t_end: End time [s].
-        dt: Step [s]; steps also end at instants.
-        tableau: Tableau of the method.
-        projects: Whether constraints are met again after each step.
+        course: What is run.
         watch: Watch on the beams.
         show: Called with the time [s].
         observer: Receiver of the records, which may stop the run by time.
     """
     rows: list[Row] = []
     kept: dict[Source, list[Array]] = {source: [] for source in blocks.out}
+    memory: dict[tuple[str, str], list[Array]] = {key: [] for key in blocks.memory}
 
     def record() -> None:
         rows.append((float(blocks.t[0]), blocks.q.copy(), blocks.v.copy()))
         for source, array in blocks.out.items():
             kept[source].append(array.copy())
+        for key, array in blocks.memory.items():
+            memory[key].append(array.copy())
 
-    feed, goes_on = _RecordFeed(observer, blocks, rows, kept), True
+    instants, t_end, dt, projects = course.instants, course.t_end, course.dt, course.projects
+    feed, goes_on = _RecordFeed(observer or NoObserver(), blocks, rows, kept), True
     steps, within, failed = 0, watch.judge(blocks.q, float(blocks.t[0])), False
     with np.errstate(all="ignore"):  # What is not finite ends the run, and is named.
         for i, instant in enumerate(instants):
@@ -305,7 +329,7 @@ def run_interpreted(
                 now = float(blocks.t[0])
                 last = now + dt >= until - 1e-9 * dt
                 try:
-                    step(blocks, tableau, (until if last else now + dt) - now, projects)
+                    step(blocks, course.tableau, (until if last else now + dt) - now, projects)
                 except NotFiniteError:
                     failed = True
                     break
@@ -327,8 +351,8 @@ def run_interpreted(
     if not goes_on:
         outcome = Outcome("interrupted", outcome.t, "stopped; the part up to here is kept", notes=outcome.notes)
     t, q, v = (np.array(column) for column in zip(*rows, strict=True)) if rows else (np.zeros(0), blocks.q, blocks.v)
-    values = {source: np.array(values) for source, values in kept.items()}
-    return InterpretedRun(blocks.resolved, t, values, q, v, outcome, steps, watch.bendings, called.kept())
+    values, memories = ({key: np.array(one) for key, one in by.items()} for by in (kept, memory))
+    return InterpretedRun(blocks.resolved, t, values, memories, q, v, outcome, steps, watch.bendings, called.kept())
 
 
 def _meet(blocks: Blocks, called: Called, instant: Instant, projects: bool, record: Callable[[], None]) -> None:

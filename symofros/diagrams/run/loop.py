@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
-from bisect import bisect_left
+from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -51,7 +51,7 @@ class Loop:
         tasks: Tasks of each set of the schedule.
         crossings: Task of each crossing.
         par: Run-time parameters (npar).
-        u0: Initial inputs (nu).
+        u0: Initial inputs, with all that is held between samples (nu).
         external: Calls of the external blocks.
         reads_accelerations: Whether tasks read accelerations and multipliers of the instant.
 
@@ -157,8 +157,19 @@ class Loop:
             return 1
         return 0
 
-    def start(self, t0: float, t_end: float, realtime: float, threads: int, instants: int) -> None:
-        """Place the run at its start, with memory for the lateness of `instants` instants in real time."""
+    def start(
+        self, t0: float, t_end: float, realtime: float, threads: int, instants: int, after: float | None = None
+    ) -> None:
+        """Place the run at its start, with memory for the lateness of `instants` instants in real time.
+
+        Args:
+            t0: Time from which instants are counted [s].
+            t_end: End time [s].
+            realtime: Seconds of motion a second; 0: as fast as possible.
+            threads: Number of threads that share the parts.
+            instants: Number of instants in all.
+            after: Time of an instant that is over, from which the run goes on [s].
+        """
         d = self.diagram
         d.t0, d.t_end = t0, t_end
         d.realtime_scale = 1.0 / realtime if realtime else 0.0
@@ -168,6 +179,12 @@ class Loop:
         if threads > 1 and d.n_parts > 1 and not d.n_crossings:
             self.native.sym_diagram_start_threads(d, min(threads, d.n_parts))
         self.native.sym_diagram_start(d)
+        if after is not None:
+            ticks = [int(d.instant_tick[i]) for i in range(d.n_instants)]
+            d.cycle, rest = divmod(round((after - t0) * float(d.base_denominator / d.base_numerator)), d.cycle_ticks)
+            d.next_instant, d.t[0] = bisect_right(ticks, rest), after
+            if d.next_instant == len(ticks):
+                d.next_instant, d.cycle = 0, d.cycle + 1
 
     def close(self) -> None:
         """Stop the threads."""

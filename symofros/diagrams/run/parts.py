@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from symofros.diagrams.program.compiled import CompiledDiagram, Resolved
-from symofros.diagrams.program.layout import Part
 from symofros.diagrams.program.lowered_block import watched
-from symofros.diagrams.run.faults import fault_at
+from symofros.diagrams.run.examination.faults import fault_at
 from symofros.errors import AssemblyError, Problem, SymofrosError
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
@@ -21,6 +20,29 @@ from symofros.simulation.inputs import InputPlan
 from symofros.simulation.settings import CLOSED, Settings
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
+
+
+@dataclass(frozen=True)
+class Start:
+    """The state that a run begins with, or goes on from.
+
+    Attributes:
+        t: Time [s].
+        q: Configuration (nq).
+        v: Speeds and continuous states (nv).
+        u: Inputs, with all that is held between samples (nu).
+    """
+
+    t: float
+    q: Array
+    v: Array
+    u: Array
+
+    @classmethod
+    def of(cls, resolved: Resolved, t0: float) -> Start:
+        """The first state of a diagram."""
+        layout = resolved.layout
+        return cls(t0, *(np.array(values, dtype=np.float64) for values in (layout.q0, layout.v0, layout.u0)))
 
 
 @dataclass(frozen=True)
@@ -38,13 +60,16 @@ class Placed:
     v: Array
 
 
-def place_parts(compiled: CompiledDiagram, settings_of: Callable[[Model], Settings], par: Array) -> list[Placed]:
+def place_parts(
+    compiled: CompiledDiagram, settings_of: Callable[[Model], Settings], par: Array, begin: Start
+) -> list[Placed]:
     """A stepper for each part.
 
     Args:
         compiled: The diagram.
         settings_of: Settings of a part's steps, by its model.
         par: Run-time parameters.
+        begin: State of the diagram that they begin with.
 
     Raises:
         SymofrosError: The method is implicit.
@@ -52,7 +77,6 @@ def place_parts(compiled: CompiledDiagram, settings_of: Callable[[Model], Settin
     """
     resolved = compiled.resolved
     layout, pieces, name = resolved.layout, resolved.pieces, resolved.wired.name
-    u0 = np.array(layout.u0, dtype=np.float64)
     events = [
         Event(f"{block}.{which}", pieces[block].crossings[which].direction, True, f"{block}.{which}")
         for block, which in watched(pieces)
@@ -69,25 +93,25 @@ def place_parts(compiled: CompiledDiagram, settings_of: Callable[[Model], Settin
                     "use rk4, dopri5 or dop853",
                 )
             )
-        stepper = Stepper(model, settings.method, InputPlan(u0.copy(), list(layout.signals)), events, par)
-        settings.apply(stepper)
+        stepper = Stepper(model, settings.method, InputPlan(begin.u.copy(), list(layout.signals)), events, par)
+        replace(settings, t0=begin.t).apply(stepper)
         if layout.driven:
             stepper.run.loss_limit = math.inf
         stepper.run.record_every = 0  # Instants are recorded by the diagram's own loop.
-        placed.append(Placed(stepper, *_first(layout.q0, layout.v0, part)))
+        placed.append(Placed(stepper, begin.q[part.q], begin.v[part.v]))
         if model.nc and settings.stabilisation != "baumgarte":
-            placed[-1] = Placed(stepper, *_close(model, name, settings.t0, placed[-1], u0, par))
+            placed[-1] = Placed(stepper, *_close(model, name, begin.t, placed[-1], begin.u, par))
     return placed
 
 
-def start(parts: list[Placed], resolved: Resolved, par: Array, t0: float) -> None:
+def start_parts(parts: list[Placed], resolved: Resolved, par: Array, begin: Start) -> None:
     """Evaluate the first accelerations.
 
     Args:
         parts: Parts, which are placed at their first states.
         resolved: The diagram.
         par: Run-time parameters (npar).
-        t0: Start time [s].
+        begin: State of the diagram that they begin with.
 
     Raises:
         SymofrosError: They are not finite.
@@ -98,8 +122,7 @@ def start(parts: list[Placed], resolved: Resolved, par: Array, t0: float) -> Non
         if status == Status.BEYOND_THEORY:
             refuse_beyond(stepper.model, stepper.bendings, float(stepper.run.beam_limit), "the first state")
         if status < 0:
-            layout = resolved.layout
-            fault = fault_at(resolved, par, (t0, np.array(layout.q0), np.array(layout.v0)), np.array(layout.u0))
+            fault = fault_at(resolved, par, (begin.t, begin.q, begin.v), begin.u)
             raise SymofrosError(
                 Problem(
                     f"diagram '{resolved.wired.name}': the first accelerations are not finite",
@@ -108,10 +131,6 @@ def start(parts: list[Placed], resolved: Resolved, par: Array, t0: float) -> Non
                     "look for a mass of zero or a first state that is not a number",
                 )
             )
-
-
-def _first(q0: list[float], v0: list[float], part: Part) -> tuple[Array, Array]:
-    return np.array(q0[part.q], dtype=np.float64), np.array(v0[part.v], dtype=np.float64)
 
 
 def _close(model: Model, name: str, t0: float, placed: Placed, u: Array, par: Array) -> tuple[Array, Array]:

@@ -17,6 +17,9 @@ from symofros.diagrams.wiring import Wired, surroundings
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.calls.kernel import Array
 
+# Calls whose outputs are kept for the parts of a run that are made once more.
+_KEPT_CALLS = 100_000
+
 
 class Called:
     """The blocks of Python's of a diagram in one run.
@@ -24,10 +27,14 @@ class Called:
     Args:
         wired: The diagram.
         running: Block -> what it holds in this run.
+
+    Attributes:
+        given: Outputs of the first calls, by block and time.
     """
 
     def __init__(self, wired: Wired, running: Mapping[str, Running]) -> None:
         self._wired, self._running = wired, running
+        self.given: dict[tuple[str, float], dict[str, Array]] = {}
 
     def call(self, name: str, t: float, inputs: Mapping[str, Array]) -> dict[str, Array]:
         """Call one.
@@ -50,8 +57,11 @@ class Called:
             else np.broadcast_to(np.asarray(port.default, dtype=np.float64), port.shape or ())
             for port in ports.inputs
         }
-        outputs = self._running[name].call(t, signals)
-        return {port.name: _output(name, outputs, port.name, port.shape or ()) for port in ports.outputs}
+        stated = self._running[name].call(t, signals)
+        outputs = {port.name: _output(name, stated, port.name, port.shape or ()) for port in ports.outputs}
+        if len(self.given) < _KEPT_CALLS:
+            self.given[name, t] = {port: value.copy() for port, value in outputs.items()}
+        return outputs
 
     def ports(self, name: str) -> tuple[Port, ...]:
         """Outputs of a block, in order."""
@@ -64,6 +74,33 @@ class Called:
     def kept(self) -> dict[str, dict[str, Array]]:
         """What each block kept of the run, those left out that keep nothing."""
         return {name: dict(kept) for name, one in self._running.items() if (kept := one.kept())}
+
+
+class NotKeptError(Exception):
+    """The outputs of a call are not kept."""
+
+
+class CalledBefore(Called):
+    """The blocks of Python's as they answered in a run: none of them is called again.
+
+    Args:
+        wired: The diagram.
+        given: Outputs by block and time.
+    """
+
+    def __init__(self, wired: Wired, given: dict[tuple[str, float], dict[str, Array]]) -> None:
+        super().__init__(wired, {})
+        self.given = given
+
+    def call(self, name: str, t: float, inputs: Mapping[str, Array]) -> dict[str, Array]:
+        """What it gave then.
+
+        Raises:
+            NotKeptError: That is not known.
+        """
+        if (name, t) not in self.given:
+            raise NotKeptError
+        return self.given[name, t]
 
 
 def _output(name: str, outputs: Mapping[str, object], port: str, shape: tuple[int, ...]) -> Array:

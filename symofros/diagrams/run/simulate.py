@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import closing
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -15,17 +15,23 @@ from symofros.diagrams.program.compiled import CompiledDiagram, rates_of
 from symofros.diagrams.program.lowered_block import watched
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.result import DiagramRun
-from symofros.diagrams.run.diagnosis import Ended, diagnose
-from symofros.diagrams.run.halved_steps import STEPS, halved_steps_note
+from symofros.diagrams.run.examination.diagnosis import Ended, diagnose
+from symofros.diagrams.run.examination.energy_balance import Energies
+from symofros.diagrams.run.examination.remarks import Examined, remarks
 from symofros.diagrams.run.loop import RECORD, Loop, Task
 from symofros.diagrams.run.options import DiagramOptions
-from symofros.diagrams.run.parts import place_parts, start
-from symofros.diagrams.run.python_blocks import Called, ExternalCalls, begun
+from symofros.diagrams.run.parts import Start, place_parts, start_parts
+from symofros.diagrams.run.python_blocks import Called, CalledBefore, ExternalCalls, NotKeptError, begun
 from symofros.diagrams.run.recording import Cost, Crossed, Records
 from symofros.diagrams.run.values import parameter_values, record_interval
+from symofros.errors import SymofrosError
+from symofros.runtime.beams import BeamBending
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.calls.library import CompiledKernel
+from symofros.runtime.model import Model
 from symofros.simulation.progress import bar
+from symofros.simulation.results.outcome import Outcome
+from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.time_slice import TimeSlice
 
@@ -61,49 +67,83 @@ def run_compiled(
     par = parameter_values(resolved, parameters or {})
     interval = record_interval(options.record, options.t0, t_end, options.dt)
     plan = schedule([*rates_of(resolved.pieces), (RECORD, interval, 0.0)], name)
+    task = _Run(compiled, plan, options, t_end, par)
     with begun(resolved.wired) as called:
-        run, evident = _once(compiled, plan, options, t_end, par, called, progress, observer)
-        run = replace(run, kept=called.kept())
-    external = any(piece.is_external for piece in resolved.pieces.values())
-    steps = run.cost.steps // max(1, len(compiled.parts))
-    if run.outcome.kind != "finished" or evident or not 0 < steps <= STEPS or external or not resolved.layout.v:
-        return run
-    h = min(options.settings(compiled.parts[0], t_end).dt, plan.spacing)
-    with begun(resolved.wired) as called:
-        half, _ = _once(compiled, plan, replace(options, dt=0.5 * h, realtime=False), t_end, par, called)
-    finer = (half.t, half.q, half.v) if half.outcome.ok else None
-    note = halved_steps_note(resolved.layout, (run.t, run.q, run.v), finer, h)
-    return replace(run, outcome=replace(run.outcome, notes=(*run.outcome.notes, *([note] if note else []))))
+        ended = _drive(task, Start.of(resolved, options.t0), called, progress, observer)
+        kept = called.kept()
+    bendings = ended.bendings
+    outcome, modes = diagnose(ended, bendings)
+    if outcome.kind == "finished" and not options.realtime:
+        notes = remarks(_examined(task, ended, called.given), modes)
+        outcome = replace(outcome, notes=(*outcome.notes, *notes))
+    return _recorded(task, ended, outcome, bendings, kept)
 
 
-def _once(
-    compiled: CompiledDiagram,
-    plan: Schedule,
-    options: DiagramOptions,
-    t_end: float,
-    par: Array,
-    called: Called,
-    progress: bool = False,
-    observer: Observer | None = None,
-) -> tuple[DiagramRun, bool]:
-    """A run from the first state, and whether its steps evidently resolve it."""
-    resolved = compiled.resolved
-    parts = place_parts(compiled, lambda model: options.settings(model, t_end), par)
-    external = ExternalCalls(resolved, called)
-    loop = Loop(
-        resolved.layout,
-        [part.stepper for part in parts],
-        plan,
-        _tasks(compiled, plan, external),
-        [Task(_kernel(compiled, f"crossed_{i}")) for i in range(len(watched(resolved.pieces)))],
-        par,
-        np.array(resolved.layout.u0, dtype=np.float64),
-        external,
-        compiled.reads_accelerations,
-    )
-    with closing(loop):
-        start(parts, resolved, par, options.t0)
-        return _drive(compiled, loop, plan, options, t_end, par, progress, observer or NoObserver())
+@dataclass(frozen=True)
+class _Run:
+    """What is run.
+
+    Attributes:
+        compiled: Diagram.
+        plan: Schedule of the instants.
+        options: Options.
+        t_end: End time [s].
+        par: Run-time parameters (npar).
+    """
+
+    compiled: CompiledDiagram
+    plan: Schedule
+    options: DiagramOptions
+    t_end: float
+    par: Array
+
+    def settings(self, model: Model) -> Settings:
+        """Settings of a part."""
+        return self.options.settings(model, self.t_end)
+
+
+def _examined(task: _Run, ended: Ended, given: dict[tuple[str, float], dict[str, Array]]) -> Examined:
+    """A run as its steps are judged."""
+    layout, parts, par, states = ended.layout, task.compiled.parts, task.par, ended.states
+    settings = ended.settings[0] if ended.settings else None
+    h = 0.0 if settings is None or settings.adaptive else min(settings.dt, ended.spacing)
+
+    def repeat(i: int, t_end: float, finer: bool) -> Sequence[Array] | None:
+        o = task.options
+        once = replace(o, realtime=False, threads=1)
+        if finer:
+            once = replace(once, dt=0.5 * h) if h else replace(once, rtol=0.01 * o.rtol, atol=0.01 * o.atol)
+        return _resumed(replace(task, options=once, t_end=t_end), states, given, i)
+
+    def accelerations(rows: Array) -> Array:
+        t, q, v, u = (array[rows] for array in states)
+        a = np.zeros_like(v)
+        for part, model in zip(layout.parts, parts, strict=True):
+            a[:, part.v] = model.forward_dynamics(q[:, part.q], v[:, part.v], u, par=par, t=t)
+        return np.asarray(a)
+
+    steps = int(ended.loop.diagram.steps) // max(1, len(parts))
+    energies = Energies(ended.resolved, par, task.compiled.energies)
+    return Examined(energies, states, h, task.options.atol, steps, repeat, accelerations)
+
+
+def _resumed(
+    task: _Run, states: Sequence[Array], given: dict[tuple[str, float], dict[str, Array]], i: int
+) -> Sequence[Array] | None:
+    """The records of a run that goes on from a record; None where it does not come to its end.
+
+    Raises:
+        NotKeptError: What external blocks gave is not known.
+    """
+    begin = Start(float(states[0][i]), *(array[i].copy() for array in states[1:]))
+    try:
+        ended = _drive(task, begin, CalledBefore(task.compiled.resolved.wired, given), resumed=True)
+    except SymofrosError:  # The record does not move.
+        return None
+    if isinstance(ended.loop.failure, NotKeptError):
+        raise ended.loop.failure
+    joined = [np.concatenate([x[i : i + 1], y]) for x, y in zip(states, ended.states, strict=True)]
+    return joined if ended.status == Status.FINISHED else None
 
 
 def _tell(observer: Observer, compiled: CompiledDiagram, loop: Loop, states: list[Array], par: Array) -> None:
@@ -142,55 +182,71 @@ def _tasks(compiled: CompiledDiagram, plan: Schedule, external: ExternalCalls) -
 
 
 def _drive(
-    compiled: CompiledDiagram,
-    loop: Loop,
-    plan: Schedule,
-    options: DiagramOptions,
-    t_end: float,
-    par: Array,
-    progress: bool,
-    observer: Observer,
-) -> tuple[DiagramRun, bool]:
+    task: _Run,
+    begin: Start,
+    called: Called,
+    progress: bool = False,
+    observer: Observer | None = None,
+    *,
+    resumed: bool = False,
+) -> Ended:
+    """Run from a state; from one that is recorded, with the instants after it."""
+    compiled, plan, options, t_end, par = task.compiled, task.plan, task.options, task.t_end, task.par
+    resolved, watcher = compiled.resolved, observer or NoObserver()
+    parts = place_parts(compiled, task.settings, par, begin)
+    external = ExternalCalls(resolved, called)
+    loop = Loop(
+        resolved.layout,
+        [part.stepper for part in parts],
+        plan,
+        _tasks(compiled, plan, external),
+        [Task(_kernel(compiled, f"crossed_{i}")) for i in range(len(watched(resolved.pieces)))],
+        par,
+        begin.u,
+        external,
+        compiled.reads_accelerations,
+    )
     t0, realtime = options.t0, float(options.realtime)
-    span = float(plan.base) * plan.cycle
-    instants = int((t_end - t0) / span + 2) * len(plan.instants)
-    loop.start(t0, t_end, realtime, options.threads, instants)
+    instants = int((t_end - t0) / (float(plan.base) * plan.cycle) + 2) * len(plan.instants)
     portions: list[list[Array]] = []
     met: list[tuple[float, int]] = []
     status, interrupted = int(Status.RUNNING), False
     time_slice = TimeSlice()
-    began, worked = time.perf_counter(), time.thread_time()
-    with bar(progress, t0, t_end) as show:
-        try:
-            while status in (Status.RUNNING, Status.RECORDS_FULL):
-                instants = min(time_slice.steps, loop.instants_until(observer.stop()))
-                status = time_slice.measure(loop.advance, instants)
-                states, crossed = loop.take()
-                portions.append(states)
-                met += crossed
-                show(float(loop.diagram.t[0]))
-                _tell(observer, compiled, loop, states, par)
-        except KeyboardInterrupt:
-            interrupted = True
-            portions.append(loop.take()[0])
-    seconds, worked = time.perf_counter() - began, time.thread_time() - worked
-    if isinstance(loop.failure, KeyboardInterrupt):
-        interrupted = True
-    t, q, v, u = (np.concatenate(columns) for columns in zip(*portions, strict=True))
-    settings = [options.settings(part.model, t_end) for part in loop.parts]
-    ended = Ended(loop, compiled.resolved, par, settings, plan.spacing, (t, q, v, u), status, interrupted)
-    bendings = ended.bendings
-    outcome, evident = diagnose(ended, bendings)
-    looked_for = watched(compiled.resolved.pieces)
-    crossings = tuple(Crossed(*looked_for[which], when) for when, which in met)
-    d = loop.diagram
-    cost = Cost(
-        int(d.steps),
-        int(d.rejected),
-        int(d.evaluations),
-        seconds,
-        worked,
-        loop.lateness,
-        plan.spacing / (realtime or 1.0),
-    )
-    return DiagramRun(compiled, t, q, v, u, par, outcome, crossings, cost, bendings), evident
+    with closing(loop):
+        start_parts(parts, resolved, par, begin)
+        loop.start(t0, t_end, realtime, options.threads, instants, begin.t if resumed else None)
+        began, worked = time.perf_counter(), time.thread_time()
+        with bar(progress, t0, t_end) as show:
+            try:
+                while status in (Status.RUNNING, Status.RECORDS_FULL):
+                    instants = min(time_slice.steps, loop.instants_until(watcher.stop()))
+                    status = time_slice.measure(loop.advance, instants)
+                    states, crossed = loop.take()
+                    portions.append(states)
+                    met += crossed
+                    show(float(loop.diagram.t[0]))
+                    _tell(watcher, compiled, loop, states, par)
+            except KeyboardInterrupt:
+                interrupted = True
+                portions.append(loop.take()[0])
+        spent = time.perf_counter() - began, time.thread_time() - worked
+    interrupted = interrupted or isinstance(loop.failure, KeyboardInterrupt)
+    states = [np.concatenate(columns) for columns in zip(*portions, strict=True)]
+    settings = [task.settings(part.model) for part in loop.parts]
+    return Ended(loop, resolved, par, settings, plan.spacing, states, tuple(met), spent, status, interrupted)
+
+
+def _recorded(
+    task: _Run,
+    ended: Ended,
+    outcome: Outcome,
+    bendings: tuple[BeamBending, ...],
+    kept: Mapping[str, Mapping[str, Array]],
+) -> DiagramRun:
+    """The records of a run, and what it took."""
+    d, (seconds, worked), looked_for = ended.loop.diagram, ended.spent, watched(ended.resolved.pieces)
+    crossings = tuple(Crossed(*looked_for[which], when) for when, which in ended.crossings)
+    clock = ended.spacing / (float(task.options.realtime) or 1.0)
+    cost = Cost(int(d.steps), int(d.rejected), int(d.evaluations), seconds, worked, ended.loop.lateness, clock)
+    t, q, v, u = ended.states
+    return DiagramRun(task.compiled, t, q, v, u, ended.par, outcome, crossings, cost, bendings, kept)

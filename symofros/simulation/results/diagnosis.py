@@ -98,7 +98,7 @@ def _outcome(
         )
     if failed and mode is not None and mode.amplified:
         reason = f"the step is past the limit of stability of '{settings.method.name}'; {_largest(stepper, q, v)}"
-        return outcome("diverged", reason, remedy(mode, settings))
+        return outcome("diverged", reason, remedy(mode, settings.method))
     massless = _massless(stepper, start, q, v) if status == Status.DIVERGED else ""
     if massless:
         return outcome("singular", massless, ADVICE)

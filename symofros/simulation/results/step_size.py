@@ -12,7 +12,16 @@ from symofros.simulation.results.energy_balance import EXPLODED, energy_note, en
 from symofros.simulation.results.energy_norm import metrics, norms_in
 from symofros.simulation.results.repetition import halved_step_note, tolerance_note
 from symofros.simulation.settings import Settings
-from symofros.simulation.stepping.resolution import Mode, Resolution, largest_stable_step, resolution, states_to_examine
+from symofros.simulation.stepping.methods import Method
+from symofros.simulation.stepping.resolution import (
+    Mode,
+    Resolution,
+    Spectrum,
+    directions,
+    largest_stable_step,
+    resolution,
+    states_to_examine,
+)
 from symofros.simulation.stepping.stepper import Stepper
 
 # Records, about, among which the fastest is looked for.
@@ -42,7 +51,11 @@ def examine_run(
     """
     resolution = examine_steps(stepper, settings, start, states, steps)
     mode = resolution.worst
-    notes = [step_size_note(mode, stepper, settings, () if failed else states)] if mode else []
+    notes = []
+    if mode is not None:
+        with np.errstate(all="ignore"):  # What overflows is left out.
+            energy = energy_that_appeared(stepper, settings, states) if mode.amplified and not failed else ""
+        notes.append(step_size_note(mode, settings.method, settings.dt, energy))
     if ended_well and not resolution.evident and mode is None:
         notes.append(halved_step_note(stepper, settings, start, states, steps))
     if ended_well:
@@ -72,17 +85,22 @@ def examine_steps(
     good = _finite_rows(q, v)
     wanted = states_to_examine(steps, stepper.method.tableau.stages, stepper.model.nv)
     later = sorted({good * k // (wanted - 1) - 1 for k in range(1, wanted)}) if good else []
-    examined = [(settings.t0, *start), *((float(t[i]), q[i], v[i]) for i in later)]
+    examined = [(settings.t0, *start, u[0]), *((float(t[i]), q[i], v[i], u[i]) for i in later)]
     stride = max(1, good // _SPEEDS)
     q_all, v_all = (np.concatenate([x[np.newaxis], y[:good:stride]]) for x, y in zip(start, (q, v), strict=True))
     u_all = np.concatenate([u[:1], u[:good:stride]])
-    places = np.stack([where for _, where, _ in examined])
+    places = np.stack([where for _, where, *_ in examined])
     rows = len(places)
     metric = metrics(stepper, np.concatenate([places, q_all]), np.concatenate([np.repeat(u_all[:1], rows, 0), u_all]))
     metric, norms = metric[:rows], norms_in(metric[rows:], v_all)
     speeds = [_speed_of_motion(norms, i // stride + 2) for i in (0, *later)]
+
+    def spectrum(i: int) -> Spectrum | None:
+        return stepper.spectrum(*examined[i], settings.dt, directions(stepper.model.nv))
+
     with stepper.preserved(), np.errstate(all="ignore"):  # States that have exploded overflow.
-        return resolution(stepper, settings.dt, steps, examined, speeds, metric)
+        times = [when for when, *_ in examined]
+        return resolution(stepper.method, settings.dt, steps, times, spectrum, speeds, metric)
 
 
 def _speed_of_motion(norms: Array, at: int) -> float:
@@ -107,16 +125,15 @@ def _finite_rows(q: Array, v: Array) -> int:
     return int(bad[0]) if len(bad) else len(q)
 
 
-def step_size_note(mode: Mode, stepper: Stepper, settings: Settings, states: Sequence[Array]) -> str:
+def step_size_note(mode: Mode, method: Method, h: float, energy: str = "") -> str:
     """What a mode that is not resolved means for a run, in words.
 
     Args:
         mode: Mode that the run resolves worst.
-        stepper: Stepper of the run.
-        settings: Settings of the run.
-        states: States of the run: t (n), q, v, u; none where its energy means nothing.
+        method: Stepping method.
+        h: Step [s].
+        energy: Energy that appeared, in words that end in a semicolon.
     """
-    method, h = settings.method, settings.dt
     motion = f"{_rate(mode.rate)} (seen at t = {mode.t:.4g} s)"
     if not mode.amplified:
         return (
@@ -125,17 +142,15 @@ def step_size_note(mode: Mode, stepper: Stepper, settings: Settings, states: Seq
         )
     limit = largest_stable_step(method, mode.rate)
     allowed = f"stable up to {limit:.4g} s" if limit > 0.0 else "stable at no step"
-    with np.errstate(all="ignore"):  # What overflows is left out.
-        energy = energy_that_appeared(stepper, settings, states) if states else ""
     return (
         f"the step of {h:.4g} s is past the limit of stability: '{method.name}' is {allowed} for the mode that"
-        f" {motion}, and multiplies it by {abs(mode.factor):.4g} each step; {energy}{remedy(mode, settings)}"
+        f" {motion}, and multiplies it by {abs(mode.factor):.4g} each step; {energy}{remedy(mode, method)}"
     )
 
 
-def remedy(mode: Mode, settings: Settings) -> str:
+def remedy(mode: Mode, method: Method) -> str:
     """What makes a run stable."""
-    limit = largest_stable_step(settings.method, mode.rate)
+    limit = largest_stable_step(method, mode.rate)
     if limit > 0.0:
         return f"dt below {limit:.3g} s, or an implicit method"
     return "another method, such as rk4"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 
@@ -12,7 +12,6 @@ import numpy.typing as npt
 
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.stepping.methods import METHODS, Method, stability_limit
-from symofros.simulation.stepping.stepper import Stepper
 
 # Relative error of a mode, by its share of the motion, from which a run is remarked upon.
 TOLERANCE = 0.1
@@ -30,6 +29,11 @@ _GROWTH = 3.0
 _FARTHEST = 1e8
 # Exponents of the powers of factors, which do not overflow.
 _LARGEST = 300.0
+
+
+# Orthonormal basis (m, 2 nv) of changes (theta, h v), h times the derivative in that basis (m, m), components of the
+# motion of one step (m).
+Spectrum = tuple[Array, Array, Array]
 
 
 @dataclass(frozen=True)
@@ -71,34 +75,41 @@ class Mode:
 
 def states_to_examine(steps: int, stages: int, nv: int) -> int:
     """Number of states whose spectrum costs a small share of a run of so many steps; two at least."""
-    each = min(2 * nv, _DIRECTIONS) + 2
+    each = directions(nv) + 2
     return int(min(max(_SHARE * steps * stages / each, 2), _STATES))
 
 
+def directions(nv: int) -> int:
+    """Number of directions of the subspace."""
+    return min(2 * nv, _DIRECTIONS)
+
+
 def resolution(
-    stepper: Stepper,
+    method: Method,
     h: float,
     steps: int,
-    states: Sequence[tuple[float, Array, Array]],
+    times: Sequence[float],
+    spectrum_at: Callable[[int], Spectrum | None],
     speeds: Sequence[float],
     metric: Array,
 ) -> Resolution:
     """How well a run resolves the modes about some of its states; one is named where they err beyond TOLERANCE.
 
     Args:
-        stepper: Stepper of the run, within `preserved`.
+        method: Stepping method.
         h: Step [s].
         steps: Number of steps.
-        states: States of the run (t, q, v); each stands for an equal part of the run.
+        times: Times of the states [s]; each stands for an equal part of the run.
+        spectrum_at: Linearised motion about a state, by its number.
         speeds: Largest speed of the motion about each state, in its metric.
         metric: Mass matrix at each state (number of states, nv, nv).
     """
     if max(speeds) == 0.0:  # Rest is kept exactly.
         return Resolution()
-    method, part = stepper.method, max(1, steps // len(states))
+    part = max(1, steps // len(times))
     total, worst, evident = 0.0, None, True
-    for (t, q, v), speed, M in zip(states, speeds, metric, strict=True):
-        spectrum = stepper.spectrum(t, q, v, h, min(2 * stepper.model.nv, _DIRECTIONS))
+    for i, (t, speed, M) in enumerate(zip(times, speeds, metric, strict=True)):
+        spectrum = spectrum_at(i)
         if spectrum is None:
             evident = False
             continue

@@ -262,7 +262,13 @@ class Stepper:
         """Within, states may be placed and functions evaluated; afterwards the run is where it was."""
         run, system, model, failure = self.run, self.system, self.model, self.failure
         sizes = [(run.q, model.nq), (run.v, model.nv), (system.q, model.nq), (system.v, model.nv), (system.t, 1)]
-        sizes += [(system.u, model.nu), (system.a, model.nv), (system.lam, model.nc), (system.rank, 1)]
+        sizes += [
+            (system.u, model.nu),
+            (system.u_constant, model.nu),
+            (system.a, model.nv),
+            (system.lam, model.nc),
+            (system.rank, 1),
+        ]
         views = [self.memory.view(pointer, size) for pointer, size in sizes]
         kept, t, evaluations = [view.copy() for view in views], run.t, run.evaluations
         try:
@@ -272,13 +278,16 @@ class Stepper:
                 view[:] = values
             run.t, run.evaluations, self.failure = t, evaluations, failure
 
-    def spectrum(self, t: float, q: Array, v: Array, h: float, dimension: int) -> tuple[Array, Array, Array] | None:
+    def spectrum(
+        self, t: float, q: Array, v: Array, u: Array, h: float, dimension: int
+    ) -> tuple[Array, Array, Array] | None:
         """The linearised motion about a state, in a subspace of its first directions; within `preserved`.
 
         Args:
             t: Time [s].
             q: Configuration (nq).
             v: Speeds (nv).
+            u: Inputs (nu); those that are held stay so about the state.
             h: Step [s].
             dimension: Most directions m, at most 2 nv.
 
@@ -288,6 +297,7 @@ class Stepper:
         """
         basis, matrix = np.zeros((dimension + 4, 2 * self.model.nv)), np.zeros((dimension, dimension))
         motion, m = np.zeros(dimension), int(Status.DIVERGED)
+        self.memory.view(self.system.u_constant, self.model.nu)[:] = u
         if self.place(t, np.concatenate([q, v])) == Status.RUNNING:
             arrays = (self._pointer(basis), self._pointer(matrix), self._pointer(motion))
             m = int(self.native.sym_run_spectrum(self.run, h, dimension, *arrays))

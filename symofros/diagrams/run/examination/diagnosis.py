@@ -10,7 +10,7 @@ import numpy as np
 from symofros.base.user_functions import raised_where
 from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.program.layout import Layout
-from symofros.diagrams.run.faults import fault_at
+from symofros.diagrams.run.examination.faults import fault_at
 from symofros.diagrams.run.loop import Loop
 from symofros.runtime.beams import BeamBending, bending_notes, largest_bending
 from symofros.runtime.calls.kernel import Array
@@ -45,6 +45,8 @@ class Ended:
         settings: Settings of each part.
         spacing: Shortest time between two instants, where steps end [s].
         states: All that it recorded: t (n), q, v, u.
+        crossings: Time and index of each crossing.
+        spent: Wall time in the loop, processor time by the calling thread [s].
         status: Last status.
         interrupted: Whether Ctrl-C ended the run.
     """
@@ -55,6 +57,8 @@ class Ended:
     settings: Sequence[Settings]
     spacing: float
     states: Sequence[Array]
+    crossings: Sequence[tuple[float, int]]
+    spent: tuple[float, float]
     status: int
     interrupted: bool
 
@@ -82,8 +86,8 @@ class Ended:
         return tuple(bendings)
 
 
-def diagnose(ended: Ended, bendings: Sequence[BeamBending]) -> tuple[Outcome, bool]:
-    """How a run ended, and whether its steps are evidently short enough, or adapt.
+def diagnose(ended: Ended, bendings: Sequence[BeamBending]) -> tuple[Outcome, Resolution]:
+    """How a run ended, and how well its fixed steps resolve the modes of its parts.
 
     Args:
         ended: The run.
@@ -92,34 +96,35 @@ def diagnose(ended: Ended, bendings: Sequence[BeamBending]) -> tuple[Outcome, bo
     loop, status, t = ended.loop, ended.status, ended.t
     notes = (*bending_notes(bendings), *([loop.fault] if loop.fault else []))
     if ended.interrupted:
-        return Outcome("interrupted", t, "Ctrl-C; the part up to here is kept", notes=notes), True
+        return Outcome("interrupted", t, "Ctrl-C; the part up to here is kept", notes=notes), Resolution()
     if status == Status.CALLBACK_FAILED:
         raised = raised_where(loop.failure) if loop.failure else "an exception"
         reason, advice = f"block '{loop.failed_block}' raised {raised}", "call it by itself; outcome.failure"
-        return Outcome("input failed", t, reason, advice, notes, loop.failure), True
+        return Outcome("input failed", t, reason, advice, notes, loop.failure), Resolution()
     fault = (loop.fault or _signal_fault(ended)) if status in _ENDS else ""
     if fault:
         return Outcome(
             "input failed", t, fault, "outputs that are finite at all samples", bending_notes(bendings)
-        ), True
-    failed, evident = status in (Status.DIVERGED, Status.BEYOND_THEORY), True
+        ), Resolution()
+    failed, modes = status in (Status.DIVERGED, Status.BEYOND_THEORY), Resolution()
     for i, settings in enumerate(ended.settings):
         steps = _resolution(ended, i, failed)
-        mode, evident = steps.worst, evident and steps.evident
+        mode = steps.worst
+        is_worse = modes.worst is None or (mode is not None and mode.amplified)
+        modes = Resolution(mode if is_worse else modes.worst, modes.evident and steps.evident)
         if mode is not None:
-            notes = (*notes, step_size_note(mode, loop.parts[i], _stepped(ended, settings), ()))
-            evident = True  # It is remarked upon as it is.
+            notes = (*notes, step_size_note(mode, settings.method, _stepped(ended, settings).dt))
             if failed and mode.amplified:
                 reason = f"the step is past the limit of stability of '{settings.method.name}'"
-                return Outcome("diverged", t, reason, remedy(mode, settings), notes), True
+                return Outcome("diverged", t, reason, remedy(mode, settings.method), notes), modes
     worst, limit = largest_bending(bendings), min((settings.beam_limit for settings in ended.settings), default=0.0)
     if worst is not None and (status == Status.BEYOND_THEORY or (status >= 0 and worst.error > limit)):
         advice = f"{worst.remedy}; or move the limit, beam_limit=..."
-        return Outcome("beyond theory", worst.t, str(worst), advice, notes[len(bending_notes(bendings)) :]), True
+        return Outcome("beyond theory", worst.t, str(worst), advice, notes[len(bending_notes(bendings)) :]), modes
     if status == Status.FINISHED:
-        return Outcome("finished", float(loop.diagram.t_end), f"{int(loop.diagram.steps)} steps", notes=notes), evident
+        return Outcome("finished", float(loop.diagram.t_end), f"{int(loop.diagram.steps)} steps", notes=notes), modes
     kind, reason, advice = _ENDS[status]
-    return Outcome(kind, t, reason, advice, notes), True
+    return Outcome(kind, t, reason, advice, notes), modes
 
 
 def _stepped(ended: Ended, settings: Settings) -> Settings:
@@ -128,7 +133,7 @@ def _stepped(ended: Ended, settings: Settings) -> Settings:
 
 
 def _resolution(ended: Ended, part: int, failed: bool) -> Resolution:
-    """How well the fixed steps of a part resolve its modes, under the inputs held at the end."""
+    """How well the fixed steps of a part resolve its modes, under the inputs held at each state."""
     settings, place = _stepped(ended, ended.settings[part]), ended.layout.parts[part]
     t, q, v, u = ended.states
     if not len(t) or settings.adaptive:

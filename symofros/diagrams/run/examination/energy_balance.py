@@ -1,0 +1,121 @@
+"""The energies of a diagram's mechanisms against the work done on them (docs/theory/diagrams.md, section 7)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from symofros.diagrams.program.compiled import Resolved
+from symofros.diagrams.run.examination.step_check import Repeat, States
+from symofros.runtime.calls.kernel import Array
+from symofros.runtime.manifold import retract
+from symofros.runtime.model import Model
+
+# Change of energy without work, over the largest kinetic energy, that is worth a note.
+_NOTED = 0.05
+# Records whose power is asked for: this share of the steps, within these numbers; fewer than are evaluated by vectors,
+# which is code that would be compiled for this.
+_SHARE, _FEWEST, _MOST = 0.005, 64, 500
+# A power is a difference of energies over this share of the time between records, or of the time in which the largest
+# speed arises where that is shorter.
+_MOMENT = 1e-3
+# Share of the work that a change of power within an interval may hide, (5).
+_SMOOTH = 0.5
+# Intervals, those with most energy that is not explained, that are made once more; share of that energy by which they
+# must then change: what a contact between two records takes or gives stays the same.
+_REPEATED, _CHANGED = 4, 0.3
+
+# Accelerations (n, nv) at some of the records, by number.
+Accelerations = Callable[[Array], Array]
+
+
+@dataclass(frozen=True)
+class Energies:
+    """The energies of the mechanisms of a diagram.
+
+    Attributes:
+        resolved: Diagram.
+        par: Run-time parameters (npar).
+        model_of: Name of a mechanism's description -> a model that has its energies.
+    """
+
+    resolved: Resolved
+    par: Array
+    model_of: Callable[[str], Model]
+
+    def of(self, name: str, t: Array, q: Array, v: Array) -> tuple[Array, Array]:
+        """Kinetic and total energy (n) [J] of a block's mechanism at states of the diagram (n, nq), (n, nv)."""
+        layout, mechanism = self.resolved.layout, self.resolved.pieces[name].block.mechanism()
+        model, par = self.model_of(mechanism), self.par[layout.parameters["", mechanism].slice]
+        q, v = (np.ascontiguousarray(x[:, places[name].slice]) for x, places in ((q, layout.q), (v, layout.v)))
+        kinetic = model.kinetic_energy(q, v, par=par)
+        return kinetic, kinetic + model.potential_energy(q, par=par, t=t)
+
+    def powers(self, name: str, states: States, a: Array) -> Array:
+        """Power of all forces without a potential (n) [W]: the rate of the energy along the motion.
+
+        Args:
+            name: Block of the mechanism.
+            states: States of the diagram: t (n), q (n, nq), v (n, nv).
+            a: Accelerations (n, nv).
+        """
+        (t, q, v), at = states[:3], self.resolved.layout.v[name].slice
+        fastest = np.linalg.norm(v[:, at], axis=1).max(initial=0.0)
+        pace = fastest / np.maximum(np.linalg.norm(a[:, at], axis=1), 1e-300)
+        moment = _MOMENT * np.minimum(pace, np.diff(t).max())
+        ends = []
+        for s in (moment, -moment):
+            q_s = retract(self.resolved.layout.segments, q, s[:, np.newaxis] * v)
+            ends.append(self.of(name, t + s, q_s, v + s[:, np.newaxis] * a)[1])
+        return np.asarray((ends[0] - ends[1]) / np.maximum(2.0 * moment, 1e-300))
+
+
+def energy_note(energies: Energies, states: States, steps: int, accelerations: Accelerations, repeat: Repeat) -> str:
+    """Energy that came or went without work (4), (5), in words; nothing where it is little or a contact's work.
+
+    Args:
+        energies: Energies of the diagram's mechanisms.
+        states: Records of the run: t (n), q (n, nq), v (n, nv), u (n, nu).
+        steps: Number of steps.
+        accelerations: Accelerations at records.
+        repeat: Makes a part of the run once more.
+    """
+    layout = energies.resolved.layout
+    few = min(len(states[0]), int(min(max(_SHARE * steps, _FEWEST), _MOST)))
+    if layout.driven or few < 3:
+        return ""
+    rows = np.unique(np.linspace(0, len(states[0]) - 1, few).astype(int))
+    some = [x[rows] for x in states]
+    with np.errstate(all="ignore"):  # What has exploded overflows.
+        a = accelerations(rows)
+        locks = some[3][:, layout.lock_inputs]
+        engages = (np.diff(locks, axis=0) != 0.0).any(axis=1)  # Constraints that engage take energy.
+        for name in layout.q:
+            kinetic, energy = energies.of(name, *some[:3])
+            power, spans = energies.powers(name, some, a), np.diff(some[0])
+            gained = np.where(engages, 0.0, np.diff(energy) - 0.5 * (power[1:] + power[:-1]) * spans)
+            unexplained, uncertain = np.abs(np.cumsum(gained)), np.cumsum(0.5 * np.abs(np.diff(power)) * spans)
+            if not np.any(unexplained - _SMOOTH * uncertain > _NOTED * kinetic.max()):
+                continue
+            if _is_numerical(energies, name, states, rows, gained, repeat):
+                return (
+                    f"the energy of '{name}' changes by {unexplained.max():.3g} J beside the work done on it, where its"
+                    f" motion has {kinetic.max():.3g} J at most: finer steps change that; a smaller dt or tighter"
+                    " tolerances"
+                )
+    return ""
+
+
+def _is_numerical(energies: Energies, name: str, states: States, rows: Array, gained: Array, repeat: Repeat) -> bool:
+    """Whether finer steps change what the intervals with most unexplained energy gain."""
+    share = changed = 0.0
+    for i in np.argsort(-np.abs(gained))[:_REPEATED]:
+        first, last = int(rows[i]), int(rows[i + 1])
+        finer = repeat(first, float(states[0][last]), True)
+        if finer is None:
+            return True
+        _, energy = energies.of(name, *(np.stack([x[last], y[-1]]) for x, y in zip(states[:3], finer[:3], strict=True)))
+        share, changed = share + abs(float(gained[i])), changed + abs(float(energy[1] - energy[0]))
+    return changed >= _CHANGED * share

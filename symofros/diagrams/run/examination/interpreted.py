@@ -1,0 +1,149 @@
+"""An interpreted run as its steps are judged: parts of it made once more, accelerations and modes at its records."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from symofros.base.options import Options
+from symofros.diagrams.run.block_functions import Blocks
+from symofros.diagrams.run.examination.energy_balance import Energies
+from symofros.diagrams.run.examination.remarks import Examined, remarks
+from symofros.diagrams.run.interpret import BeamWatch, Course, InterpretedRun, run_interpreted
+from symofros.diagrams.run.python_blocks import Called, CalledBefore
+from symofros.runtime.calls.kernel import Array
+from symofros.runtime.manifold import chart_rate, retract
+from symofros.runtime.model import Model
+from symofros.simulation.results.step_size import step_size_note
+from symofros.simulation.stepping.methods import Method
+from symofros.simulation.stepping.resolution import Resolution, Spectrum, resolution
+
+# States whose modes are looked at, as far as their evaluations are below this share of the run's.
+_STATES, _SHARE = 4, 0.05
+
+
+def notes_on_steps(run: InterpretedRun, blocks: Blocks, course: Course, called: Called, method: Method) -> list[str]:
+    """Notes on the steps of an interpreted run that has come to its end.
+
+    Args:
+        run: Run.
+        blocks: Its blocks, which are placed at other states.
+        course: What was run.
+        called: Blocks of Python's, as they were called.
+        method: Stepping method.
+    """
+    seen = _Revisited(run, blocks, course, called)
+    steps = seen.resolution(method)
+    notes = [step_size_note(steps.worst, method, course.step)] if steps.worst else []
+    return [*notes, *remarks(seen.examined, steps)]
+
+
+class _Revisited:
+    """An interpreted run and the blocks that made it.
+
+    Args:
+        run: Run.
+        blocks: Its blocks.
+        course: What was run.
+        called: Blocks of Python's, as they were called.
+    """
+
+    def __init__(self, run: InterpretedRun, blocks: Blocks, course: Course, called: Called) -> None:
+        self._run, self._blocks, self._course = run, blocks, course
+        self._called = CalledBefore(run.resolved.wired, called.given)
+
+    @property
+    def examined(self) -> Examined:
+        """The run as its steps are judged."""
+        run, locks = self._run, self._run.resolved.layout.lock_inputs
+        u = np.zeros((len(run.t), len(run.resolved.layout.u0)))
+        for i in range(len(run.t)) if locks else ():
+            self._place(i)
+            u[i, locks] = self._blocks.engaged()
+        states = run.t, run.q, run.v, u
+        return Examined(
+            Energies(run.resolved, self._blocks.par, self._energies_of),
+            states,
+            self._course.step,
+            0.0,
+            run.steps,
+            self._repeat,
+            self._accelerations,
+        )
+
+    def resolution(self, method: Method) -> Resolution:
+        """How well the steps resolve the modes about a few records."""
+        run, nv, h = self._run, self._run.v.shape[1], self._course.step
+        wanted = int(min(_STATES, _SHARE * run.steps * method.tableau.stages / (2 * nv + 1)))
+        if wanted < 1 or not len(run.t):
+            return Resolution(None, evident=False)
+        rows = np.unique(np.linspace(0, len(run.t) - 1, wanted).astype(int))
+        sizes = np.linalg.norm(run.v, axis=1)
+        metric = np.broadcast_to(np.eye(nv), (len(rows), nv, nv))
+        with np.errstate(all="ignore"):  # States that have exploded overflow.
+            return resolution(
+                method,
+                h,
+                run.steps,
+                [float(run.t[i]) for i in rows],
+                lambda k: self._spectrum(int(rows[k]), h),
+                [float(sizes.max())] * len(rows),
+                metric,
+            )
+
+    def _spectrum(self, i: int, h: float) -> Spectrum | None:
+        """The linearised motion about a record, by differences of the size of one step's motion."""
+        nv = self._run.v.shape[1]
+        motion = self._scaled_slope(i, h, np.zeros(2 * nv))
+        change = float(np.linalg.norm(motion)) or 1e-6
+        matrix = np.empty((2 * nv, 2 * nv))
+        for k in range(2 * nv):
+            moved = self._scaled_slope(i, h, change * np.eye(2 * nv)[k])
+            matrix[:, k] = (moved - motion) / change
+        return (np.eye(2 * nv), matrix, motion) if np.isfinite(matrix).all() else None
+
+    def _scaled_slope(self, i: int, h: float, x: Array) -> Array:
+        """H (theta', h v') at changes x = (theta, h v) of a record."""
+        blocks, nv, segments = self._blocks, len(self._blocks.v), self._run.resolved.layout.segments
+        self._place(i)
+        blocks.q[:], blocks.v[:] = retract(segments, blocks.q.copy(), x[:nv]), blocks.v + x[nv:] / h
+        blocks.signals()
+        blocks.accelerate()
+        return h * np.concatenate([chart_rate(segments, x[:nv], blocks.v), h * blocks.a])
+
+    def _accelerations(self, rows: Array) -> Array:
+        a = np.empty((len(rows), self._run.v.shape[1]))
+        for k, i in enumerate(rows):
+            self._place(int(i))
+            self._blocks.signals()
+            self._blocks.accelerate()
+            a[k] = self._blocks.a
+        return a
+
+    def _energies_of(self, name: str) -> Model:
+        return self._run.resolved.wired.models.energies(name, Options(backend="interpreter"))
+
+    def _place(self, i: int) -> None:
+        """The blocks at a record, with all that they held then."""
+        blocks, run = self._blocks, self._run
+        blocks.t[0], blocks.q[:], blocks.v[:] = run.t[i], run.q[i], run.v[i]
+        for source, values in run.values.items():
+            blocks.out[source][...] = values[i]
+        for key, values in run.memory.items():
+            blocks.memory[key][...] = values[i]
+
+    def _repeat(self, i: int, t_end: float, finer: bool) -> Sequence[Array] | None:
+        course, slack = self._course, 1e-9 * self._course.dt
+        later = [instant for instant in course.instants if self._run.t[i] + slack < instant[0] <= t_end + slack]
+        again = replace(
+            course,
+            instants=[(float(self._run.t[i]), frozenset(), True), *later],
+            t_end=t_end,
+            dt=0.5 * course.step if finer else course.dt,
+        )
+        self._place(i)
+        watch = BeamWatch(self._run.resolved, self._blocks.par, np.inf)
+        run = run_interpreted(self._blocks, self._called, again, watch)
+        return (run.t, run.q, run.v) if run.outcome.ok else None

@@ -1,0 +1,112 @@
+"""Runs of diagrams whose steps do not follow the motion say so, short or long, compiled or interpreted."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from symofros.blocks import Formula, ForwardDynamics, PythonBlock
+from symofros.diagrams.run import simulate
+from tests.models import sampled
+from tests.simulation.oscillator import oscillator_system
+
+
+def pushed(law: str, force: str, **start: float) -> sf.Simulation:
+    """A mass of 1 kg under a continuous force and a sampled one of zero, by a formula or a function of Python's."""
+    diagram = sf.Diagram("pushed")
+    diagram.add_model("plant", oscillator_system(k=1e-6), start=start)
+    if law == "formula":
+        diagram.add(Formula(name="law", formulas={"force": ["0*t"]}, period=0.1))
+    else:
+        calls: list[float] = []
+
+        def push(t: float, _: object) -> dict[str, list[float]]:
+            """No run goes back: only a new one begins at zero."""
+            assert t == 0.0 or t > calls[-1]
+            calls.append(t)
+            return {"force": [0.0]}
+
+        diagram.add(PythonBlock(name="law", function=push, outputs={"force": (1,)}, period=0.1))
+    diagram.add(
+        Formula(name="all", formulas={"force": [f"{force} + u[0] + 0*v[0]"]}), x="plant.q", v="plant.v", u="law.force"
+    )
+    diagram.add(ForwardDynamics(name="plant", model="plant"), u="all.force")
+    return sf.Simulation(diagram)
+
+
+def bounce(law: str, damping: float) -> sf.Simulation:
+    """A ball on a floor that it touches for 10 ms at a time."""
+    return pushed(law, f"-9.81 + max(0, -1e5*x[0] - {damping}*v[0])*(0.5 - 0.5*sign(x[0]))", x=1.0)
+
+
+@pytest.mark.parametrize("law", ["formula", "python"])
+@pytest.mark.parametrize("t_end", [5.0, 40.0])
+def test_a_spring_that_hardens_is_not_followed_by_long_steps(law: str, t_end: float) -> None:
+    simulation = pushed(law, "-2000*x[0]^3", dx=2.0)
+    assert len(simulation.run(t_end, dt=0.05, record=0.05).outcome.notes) == 1
+    assert not simulation.run(0.5 * t_end, dt=1e-3, record=0.05).outcome.notes
+
+
+@pytest.mark.parametrize("law", ["formula", "python"])
+@pytest.mark.parametrize("damping", [0.0, 100.0])
+@pytest.mark.parametrize("record", [0.01, 0.25])
+def test_a_contact_that_steps_leap_over_is_told_and_one_that_they_follow_is_not(
+    law: str, damping: float, record: float
+) -> None:
+    """No mode at the few states examined knows of the floor; a contact between two records does work unseen."""
+    simulation = bounce(law, damping)
+    coarse, fine = (simulation.run(10.0, dt=dt, record=record) for dt in (1e-2, 2e-4))
+    assert coarse.outcome.notes and not fine.outcome.notes, (coarse.outcome, fine.outcome)
+    assert np.abs(coarse.v - fine.v).max() > 0.3 * np.abs(fine.v).max()
+
+
+def test_interpreted_runs_are_judged_alike() -> None:
+    simulation = bounce("python", 0.0)
+    assert simulation.interpret(2.0, dt=1e-2, record=0.1, compiled=False).outcome.notes
+    simulation = pushed("formula", "-2000*x[0]^3", dx=2.0)
+    assert simulation.interpret(5.0, dt=0.05, record=0.05, compiled=False).outcome.notes
+    assert not simulation.interpret(2.0, dt=2e-3, record=0.05, compiled=False).outcome.notes
+
+
+def test_an_interpreted_step_past_the_limit_of_stability_is_told_with_the_mode() -> None:
+    diagram = sf.Diagram("stiff")
+    diagram.add_model("plant", oscillator_system(k=1e6), start={"x": 1e-3})
+    diagram.add(ForwardDynamics(name="plant", model="plant"))
+    simulation = sf.Simulation(diagram)
+    (note,) = simulation.interpret(0.3, dt=3e-3, record=3e-3, compiled=False).outcome.notes
+    assert "past the limit of stability" in note and "oscillates at 1000 rad/s" in note
+    assert not simulation.interpret(0.1, dt=1e-4, record=1e-3, compiled=False).outcome.notes
+
+
+@pytest.mark.parametrize("scale", sampled((1e-6, 1.0, 1e6), (1e-6, 1e6)))
+def test_work_of_dampers_and_sampled_efforts_is_no_fault_at_any_scale(scale: float) -> None:
+    joint = sf.Joint("q", "revolute", axis=(0, -1, 0), elements=(sf.Damper(0.2 * scale),), actuated=True)
+    bar = sf.RigidBody("bar", joint, sf.Inertia(scale, (1.0, 0, 0), (0.01 * scale,) * 3))
+    diagram = sf.Diagram("swing")
+    diagram.add_model("plant", sf.System("swing", (bar,)), start={"q": 1.0})
+    diagram.add(Formula(name="push", formulas={"effort": [f"{0.5 * scale}*sin(3*t)"]}, period=0.1))
+    diagram.add(ForwardDynamics(name="plant", model="plant"), u="push.effort")
+    for record in (0.01, 0.1):
+        run = sf.Simulation(diagram).run(30.0, dt=0.01, record=record)
+        assert run.outcome.ok and not run.outcome.notes, run.outcome
+
+
+def test_a_window_goes_on_from_a_record_as_the_run_did(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Made once more by the same steps, with memory, delays and outputs of Python's as they were, it is bit for bit."""
+    compared = []
+    sound = simulate._resumed
+
+    def resumed(task: Any, states: Any, given: Any, i: int) -> Any:
+        again = sound(replace(task, options=replace(task.options, dt=1e-2)), states, given, i)
+        t, q, v, u = again
+        rows = slice(i, i + len(t))
+        compared.append([np.array_equal(x, y[rows]) for x, y in zip((t, q, v), states[:3], strict=True)])
+        return again
+
+    monkeypatch.setattr(simulate, "_resumed", resumed)
+    bounce("python", 0.0).run(10.0, dt=1e-2, record=1e-2)
+    assert compared and np.all(compared)
