@@ -100,3 +100,15 @@ def test_without_its_packages_the_harness_says_what_to_install(
     monkeypatch.setenv("PYTHONPATH", f"{tmp_path}{os.pathsep}{ROOT}")  # Of the process that runs the harness.
     status, said = invoke(*arguments).exit_code, capfd.readouterr().err
     assert status == 2 and "Traceback" not in said and "pip install 'symofros[validation]'" in said
+
+
+def test_the_first_command_of_the_readme_brings_all_that_the_harness_starts_with(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """As after `pip install -e '.[validation]'`: what other extras bring can't be imported."""
+    others = "pytest dask distributed pyarrow fmpy viser starlette uvicorn websockets zenoh sksundae jsonschema ziglang"
+    names = repr(others.split())
+    (tmp_path / "sitecustomize.py").write_text(f"import sys\nsys.modules.update(dict.fromkeys({names}))\n")
+    monkeypatch.setenv("PYTHONPATH", f"{tmp_path}{os.pathsep}{ROOT}")  # Of the process that runs the harness.
+    status, said = invoke("validation", "pareto", "--help").exit_code, "".join(capfd.readouterr())
+    assert status == 0 and "--problem" in said, said

@@ -141,7 +141,7 @@ def test_first_steps_of_the_readme_from_the_wheel(base: Environment) -> None:
     ],
 )
 def test_the_base_installation_says_which_extra_is_missing(base: Environment, command: str, extra: str) -> None:
-    corpus = ROOT / "validation/corpus/arm.urdf", ROOT / "reference_models/rigid/cart_pole.yaml"
+    corpus = ROOT / "reference_models/arm.urdf", ROOT / "reference_models/rigid/cart_pole.yaml"
     for source, name in zip(corpus, ("robot.urdf", "arm.yaml"), strict=True):
         (base.folder / name).write_text(source.read_text())
     told = base.run("bash", "-c", command, fails=2)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -40,6 +41,8 @@ def measure(
     ] = None,
 ) -> Data:
     """Plant single faults in the source, Python and C: `check` or the tests must see each that changes a result."""
+    if find_spec("pytest") is None:
+        raise typer.BadParameter("the tests are one of the judges: pip install 'symofros[test]'")
     study = Study.begun(_ROOT, work.absolute(), faults, seed, cache, lambda module: run.advance(module))
     unfinished: list[str] = []
     run.expect(len(study.faults), "planting faults")

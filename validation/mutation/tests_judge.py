@@ -10,10 +10,9 @@ import ast
 import os
 import signal
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 from typing import Any
-
-import pytest
 
 # Folders of tests, and files, of what the study plants faults in.
 FOLDERS = (
@@ -71,6 +70,8 @@ class _Listener:
 
 def _run(files: list[str], options: list[str], listener: _Listener) -> int:
     stated = ["-q", "-n0", "-p", "no:cacheprovider", "-o", "addopts=", "--benchmark-disable", "--tb=short"]
+    # In a process of its own, and part of the extra `test`: the harness starts without it.
+    pytest: Any = import_module("pytest")
     return int(pytest.main([*stated, *options, *files], plugins=[listener]))
 
 
