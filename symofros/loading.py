@@ -8,20 +8,17 @@ from dataclasses import replace
 from pathlib import Path
 
 from symofros.base.atomic import write_atomically
-from symofros.description.mjcf.reader import read_mjcf
-from symofros.description.reading import Reading, in_order
+from symofros.description.reading import YAML_SUFFIXES, Reading, in_order
 from symofros.description.remarks import note
 from symofros.description.system import WAIVERS, System
 from symofros.description.urdf.reader import SNAP_TOL, read_urdf
-from symofros.description.yaml import files
-from symofros.description.yaml.files import read_yaml, write_yaml
 from symofros.errors import DescriptionError, Problem, did_you_mean
 from symofros.mechanics.topology.graph import find_problems
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.physics import has_physical_inertia
 
 _PATHS = "check the path; a relative one starts at the current folder"
-_READABLE = (*files.SUFFIXES, ".urdf", ".xml")
+_READABLE = (*YAML_SUFFIXES, ".urdf", ".xml")
 
 
 def load(
@@ -84,8 +81,13 @@ def _read(file: Path, floating_base: bool, snap_tol: float) -> Reading:
                 "give the base a free joint in the file",
             )
         )
+    # A reader of another format is not loaded with the one that is asked for: pydantic alone takes a fifth of a second.
     if file.suffix.lower() == ".xml":
+        from symofros.description.mjcf.reader import read_mjcf
+
         return _accept_inertias(read_mjcf(file, snap_tol=snap_tol))
+    from symofros.description.yaml.files import read_yaml
+
     return read_yaml(file)
 
 
@@ -101,7 +103,9 @@ def save(system: System, path: str | os.PathLike[str]) -> None:
         OSError: The folder can't be written to.
     """
     file = Path(path)
-    _refuse_suffix(file, files.SUFFIXES, "written")
+    _refuse_suffix(file, YAML_SUFFIXES, "written")
+    from symofros.description.yaml.yaml_writer import write_yaml
+
     write_atomically(file, write_yaml(system))
 
 

@@ -9,6 +9,9 @@ from pathlib import Path
 from symofros.description.system import System
 from symofros.errors import DescriptionError, Problem
 
+# Of native descriptions; stated here, where no parser of YAML is loaded for it.
+YAML_SUFFIXES = (".yaml", ".yml")
+
 
 @dataclass(frozen=True)
 class Reading:

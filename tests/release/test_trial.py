@@ -167,7 +167,7 @@ def tutorial_extras() -> list[str]:
     return re.findall(r"symofros(\[[\w,]+\])'", page)
 
 
-@pytest.mark.parametrize(("extras", "steps"), zip(tutorial_extras(), (TUTORIAL[:-1], TUTORIAL[-1:]), strict=True))
+@pytest.mark.parametrize(("extras", "steps"), [*zip(tutorial_extras(), (TUTORIAL[:-1], TUTORIAL[-1:]), strict=True)])
 def test_the_tutorial_from_the_wheel(extras: str, steps: tuple[str, ...], wheel: Path, tmp_path: Path) -> None:
     outside = Environment(tmp_path)
     outside.run("pip", "install", "-q", f"{wheel}{extras}")

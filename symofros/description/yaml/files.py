@@ -12,8 +12,8 @@ from pydantic import ValidationError
 
 from symofros.description.constraints import Constraint
 from symofros.description.forces import Connection, Potential, VirtualPower
+from symofros.description.reading import YAML_SUFFIXES, in_order, kind_of, read_bytes, refuse_size
 from symofros.description.reading import Reading as Reading
-from symofros.description.reading import in_order, kind_of, read_bytes, refuse_size
 from symofros.description.system import Body, Input, Parameter, System
 from symofros.description.yaml.faults import line_of, path_of, problem_of
 from symofros.description.yaml.schema import BodyEntry, InputEntry, NativeFile, SystemEntry, default_joint_name
@@ -25,7 +25,6 @@ from symofros.errors import DescriptionError, Problem, did_you_mean, first_of
 MAX_BYTES = 4 << 20
 MAX_INCLUDE_DEPTH = 10
 MAX_FILES = 100
-SUFFIXES = (".yaml", ".yml")
 # The entry that diagrams' files begin with (symofros/diagrams/files).
 DIAGRAM = "symofros_diagram"
 
@@ -170,11 +169,11 @@ class _Merger:
                 "included files lie in that folder or below, links followed",
                 "copy the file there",
             )
-        if target.suffix not in SUFFIXES:
+        if target.suffix not in YAML_SUFFIXES:
             return Problem(
                 f"{what} is not a native description",
                 target.suffix or "no suffix",
-                f"included files end in {' or '.join(SUFFIXES)}",
+                f"included files end in {' or '.join(YAML_SUFFIXES)}",
                 "rename it, or load it by itself",
             )
         if target in here:

@@ -13,7 +13,7 @@ from pathlib import Path
 from symofros.errors import Problem, SymofrosError
 
 # Names of the folder's own files, a compiled model each with all of its suffixes; no other file is ever removed.
-_OWN = re.compile(r"(timing-)?[0-9a-f]{32}\.(so|dylib|dll|pyd|c|digest|known|fastest|json)")
+_OWN = re.compile(r"(timing-)?[0-9a-f]{32}\.(so|dylib|dll|pyd|py|c|digest|known|fastest|json)")
 LIMIT_VARIABLE = "SYMOFROS_CACHE_LIMIT"
 DEFAULT_LIMIT = 4000.0  # [MB]; a robot's model takes 1 to 3.
 _MEGABYTE = 1e6

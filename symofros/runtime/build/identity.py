@@ -3,17 +3,23 @@
 from __future__ import annotations
 
 import hashlib
+import os
 from pathlib import Path
 
-_SUFFIXES = {".py", ".in", ".h", ".c"}
+_SUFFIXES = (".py", ".in", ".h", ".c")
 
 
 def source_digest(package: Path) -> str:
     """Digest of all source files of a package, Python and C, and of their places in its folder."""
     digest = hashlib.sha256()
-    for path in sorted(path for path in package.rglob("*") if path.suffix in _SUFFIXES):
-        digest.update(f"{path.relative_to(package)}\0".encode())
-        digest.update(hashlib.sha256(path.read_bytes()).digest())
+    for folder, folders, files in os.walk(package):
+        folders.sort()
+        digest.update(f"{os.path.relpath(folder, package)}\0".encode())
+        for name in sorted(name for name in files if name.endswith(_SUFFIXES)):
+            with open(os.path.join(folder, name), "rb") as stream:
+                content = stream.read()
+            digest.update(f"{name}\0{len(content)}\0".encode())
+            digest.update(content)
     return digest.hexdigest()
 
 

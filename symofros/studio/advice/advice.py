@@ -10,8 +10,9 @@ from typing import Any, Literal
 
 from symofros.base.atomic import write_atomically
 from symofros.base.options import Options
+from symofros.description.reading import YAML_SUFFIXES
 from symofros.description.system import System
-from symofros.description.yaml.files import SUFFIXES, write_yaml
+from symofros.description.yaml.files import write_yaml
 from symofros.errors import DescriptionError, Problem, did_you_mean
 from symofros.studio.advice.scene import Scene
 from symofros.studio.advice.scene_runner import Cost, Stepping
@@ -118,13 +119,13 @@ class Advice:
             DescriptionError: Another suffix, or something that the format can't hold.
         """
         file = Path(path)
-        if file.suffix.lower() not in SUFFIXES:
+        if file.suffix.lower() not in YAML_SUFFIXES:
             raise DescriptionError(
                 Problem(
                     f"'{file}' can't be written: unknown format",
                     file.suffix or "no suffix",
-                    f"the suffix is one of {', '.join(SUFFIXES)}",
-                    did_you_mean(file.suffix.lower(), SUFFIXES),
+                    f"the suffix is one of {', '.join(YAML_SUFFIXES)}",
+                    did_you_mean(file.suffix.lower(), YAML_SUFFIXES),
                 )
             )
         head = [f"Reduced from '{self.full.name}' for one scene of {self.scene.t_end:g} s.", *self.summary()]

@@ -13,7 +13,8 @@ from typing import Literal
 import uvicorn
 
 import symofros
-from symofros.description.yaml.files import SUFFIXES, write_yaml
+from symofros.description.reading import YAML_SUFFIXES
+from symofros.description.yaml.files import write_yaml
 from symofros.errors import Problem
 from symofros.studio.editor.document.session import Session
 from symofros.studio.editor.document.workspace import FileError, Workspace
@@ -67,7 +68,7 @@ def _opened(file: Path | None) -> Session:
     if not path.parent.is_dir():
         raise FileError(Problem(f"'{file}' can't be opened", "no such folder", "its folder exists", "make it first"))
     workspace = Workspace(path.parent)
-    if path.suffix.lower() in SUFFIXES:
+    if path.suffix.lower() in YAML_SUFFIXES:
         return Session(workspace, path)
     text = write_yaml(symofros.load(path))
     session = Session(workspace)

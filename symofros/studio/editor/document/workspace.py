@@ -9,13 +9,14 @@ from pathlib import Path
 from typing import Any
 
 from symofros.base.atomic import write_atomically
-from symofros.description.yaml.files import MAX_BYTES, SUFFIXES
+from symofros.description.reading import YAML_SUFFIXES
+from symofros.description.yaml.files import MAX_BYTES
 from symofros.diagrams.files.kind import is_diagram
 from symofros.errors import Problem, SymofrosError
 
 MAX_LISTED = 1000
 MAX_SCANNED = 20_000
-READABLE = (*SUFFIXES, ".urdf", ".xml")
+READABLE = (*YAML_SUFFIXES, ".urdf", ".xml")
 
 
 class FileError(SymofrosError):
@@ -37,7 +38,7 @@ class Workspace:
     def __init__(self, root: Path) -> None:
         self.root = root.resolve()
 
-    def inside(self, text: str, suffixes: tuple[str, ...] = SUFFIXES) -> Path:
+    def inside(self, text: str, suffixes: tuple[str, ...] = YAML_SUFFIXES) -> Path:
         """The file of a path that the page named.
 
         Args:

@@ -1,0 +1,70 @@
+"""The C interface in Python: parsed once a machine, and the same wherever it comes from."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from symofros.native import native_text
+from symofros.runtime.calls.declarations import constants, interface
+
+interface_anew = interface.__wrapped__
+STRUCTS = ("sym_model", "sym_function", "sym_lanes", "sym_strided")
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path))
+    return tmp_path
+
+
+def test_a_kept_interface_is_that_of_the_headers(folder: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    parsed, kept = interface_anew(), interface_anew()
+    assert [path.suffix for path in sorted(folder.iterdir())] == [".digest", ".py"]
+    for struct in STRUCTS:
+        assert parsed.sizeof(struct) == kept.sizeof(struct) > 0
+        assert [name for name, _ in kept.typeof(struct).fields] == [name for name, _ in parsed.typeof(struct).fields]
+    assert "".join(capfd.readouterr()) == ""
+
+
+def test_a_damaged_one_is_parsed_anew(folder: Path) -> None:
+    interface_anew()
+    (kept,) = folder.glob("*.py")
+    sound = kept.read_text()
+    kept.write_text("raise SystemExit('damaged')\n")
+    assert interface_anew().sizeof("sym_model") > 0 and kept.read_text() == sound
+
+
+def test_without_a_folder_to_write_to_it_is_parsed_each_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path / "file" / "below"))
+    assert interface_anew().sizeof("sym_model") > 0
+
+
+def test_constants_are_those_of_the_headers() -> None:
+    enums = re.findall(r"typedef enum (?:.|\n)*?}", native_text("stepping/symofros_stepper.h"))
+    stated = re.findall(r"\b(SYM_\w+) *= *(-?\d+)", "".join(enums))
+    assert len(stated) > 2
+    assert {name: constants()[name] for name, _ in stated} == {name: int(value) for name, value in stated}
+
+
+WARM = """
+import sys
+import symofros as sf
+model = sf.compile(sf.load(sys.argv[1]))
+print(model.mass_matrix(model.neutral()).shape)
+loaded = {name.split(".")[0] for name in sys.modules}
+slow = loaded & {"pydantic", "ruamel", "pycparser", "http", "ssl", "sympy", "scipy"}
+print(*sorted(slow), file=sys.stderr)
+"""
+
+
+def test_a_compiled_urdf_loads_no_parser_of_yaml_nor_of_c() -> None:
+    """The first second of a user: each of those takes a twentieth to a fifth of it."""
+    arm = Path(__file__).parents[3] / "reference_models/arm.urdf"
+    for _ in range(2):
+        done = subprocess.run([sys.executable, "-c", WARM, str(arm)], capture_output=True, text=True)
+        assert done.returncode == 0 and done.stdout == "(3, 3)\n", done.stderr
+    assert done.stderr.strip() == ""
