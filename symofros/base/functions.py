@@ -44,7 +44,7 @@ class OutputArray:
     source: str
 
     def sizes(self, known: Mapping[str, int]) -> tuple[int, ...]:
-        """Shape in numbers, from the sizes nq, nv, nu, nc, npar, nw, nj, ns and npi."""
+        """Shape in numbers, from the sizes nq, nv, nu, nc, npar, nw, nj, ns, nb and npi."""
         return tuple(size_of(text, known) for text in self.shape)
 
 
@@ -242,6 +242,14 @@ _ROWS = (
         "p (nv) = momentum; F (nv) = momentum_force; M (nv, nv)",
         "stepping",
         "p = M v, and F with p' = F + ad_v^T p",
+    ),
+    _row(
+        "beam_stiffness",
+        "",
+        "L (nb) = beam_lengths; EI (nb, 2) = bending_stiffnesses; K (nv, nv) = elastic_stiffness",
+        "dynamics",
+        "of elastic beams: lengths, EI_z and EI_y at mid-length (rods: 0), and stiffness of the elastic coordinates",
+        by_solver=True,
     ),
     _row("center_of_mass", "q", "p_WScm (3) = center_of_mass", "dynamics", "mass centre of all that joints carry"),
     _row(

@@ -25,6 +25,7 @@ from symofros.diagrams.wiring import Source
 from symofros.errors import ExportError, Problem
 from symofros.exports.c.c_package import INTEGRATOR_HEADERS
 from symofros.exports.c.c_text import comment, doubles, integers, strings
+from symofros.exports.c.parameter_check import Judged
 from symofros.exports.c.plant import plant_text
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.material import Stepping
@@ -53,6 +54,7 @@ class PartMaterial:
     q_start: tuple[float, ...]
     v_start: tuple[float, ...]
     beams: tuple[ElasticBeam, ...]
+    judged: tuple[Judged, ...]
     generator: str
 
 
@@ -95,6 +97,8 @@ def write_diagram(
     name = identifier(wired.name)
     sources = [wired.output(text) for text in outputs]
     write, stepping = fuser(resolved), Stepping(METHODS[method], dt, 1e-6, 1e-9)
+    models = wired.models
+    stated = [(model, place) for (block, model), place in layout.parameters.items() if not block]
     files: dict[str, str] = {f"{name}.h": _header(name, wired.name, generator)}
     for i, part in enumerate(layout.parts):
         record, c_name = record_of(resolved, part), f"{name}_part{i}"
@@ -107,6 +111,7 @@ def write_diagram(
             tuple(layout.q0[part.q]),
             tuple(layout.v0[part.v]),
             part_beams(resolved, part, np.array(layout.par)),
+            tuple(Judged(models.system(model), models.record(model).par_names, place.start) for model, place in stated),
             generator,
         )
         files |= {f"{c_name}.c": text, f"{c_name}.h": _part_header(c_name), f"{c_name}_plant.c": plant_text(material)}

@@ -168,6 +168,8 @@ def _material(
     """What an export is made of: C packages have reactions, FMUs derivatives of outputs by prescribed motions."""
     _refuse_variational(system, stepping)
     needs = (*stepping.method.family.functions, *(_reactions(system) if target == "c" else ()))
+    if any(isinstance(body, Beam) and body.modes for body in system.bodies):
+        needs = (*needs, "beam_stiffness")
     functions = tuple(dict.fromkeys((*exported(bool(system.constraints)), *needs)))
     compilation = Compilation(system, Options(functions, None if frames is None else tuple(frames)))
     record = compilation.record
@@ -195,7 +197,7 @@ def _material(
         shown,
         GENERATOR,
         target == "c",
-        system.notes + _variable_lengths(system),
+        system.notes,
     )
 
 
@@ -203,16 +205,6 @@ def _reactions(system: System) -> tuple[str, ...]:
     """Names of the functions of reactions: efforts of drives only where a motion is prescribed."""
     prescribed = any(body.joint is not None and body.joint.prescribed for body in system.bodies)
     return ("joint_wrenches", "prescribed_efforts") if prescribed else ("joint_wrenches",)
-
-
-def _variable_lengths(system: System) -> tuple[str, ...]:
-    """Remarks on beams whose length can be changed in the package, while what judges them is a constant there."""
-    at_run_time = {parameter.name for parameter in system.parameters if not parameter.constant}
-    return tuple(
-        f"beam '{body.name}': its bending is judged at the default of its length, which is a run-time parameter"
-        for body in system.bodies
-        if isinstance(body, Beam) and body.modes and symbols(body.length) & at_run_time
-    )
 
 
 def _refuse_variational(system: System, stepping: Stepping) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from symofros.description.system import System
+from symofros.exports.c.parameter_check import Judged
 from symofros.runtime.beams import BEAM_LIMIT, ElasticBeam
 from symofros.runtime.record import ModelRecord
 from symofros.simulation.stepping.methods import Method
@@ -79,6 +80,11 @@ class Material:
     generator: str
     reactions: bool
     notes: tuple[str, ...] = field(default=())
+
+    @property
+    def judged(self) -> tuple[Judged, ...]:
+        """The description, by which run-time parameters are judged."""
+        return (Judged(self.system, self.record.par_names),)
 
     @property
     def frames(self) -> tuple[str, ...]:

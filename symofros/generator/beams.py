@@ -7,14 +7,14 @@ from functools import cache, lru_cache, partial
 
 import numpy as np
 
-from symofros.description.beam import STATION, Beam
-from symofros.description.values import Value, symbols
+from symofros.description.beam import Beam
+from symofros.description.values import Value
 from symofros.expr.edges import Edge
-from symofros.expr.expression import Expression, evaluate
+from symofros.expr.expression import evaluate
 from symofros.expr.graph import Graph
 from symofros.mechanics.beams.deformation import deformation_of
 from symofros.mechanics.beams.elastic import beam_forms
-from symofros.mechanics.beams.integrals import at_station
+from symofros.mechanics.beams.integrals import at_middle
 from symofros.mechanics.beams.rod import rod_of
 from symofros.mechanics.beams.rod_shape import IntegrationError
 from symofros.mechanics.beams.strains import strains_of
@@ -48,12 +48,6 @@ def _numbers(beam: Beam, q: int, v: int, values: dict[str, float]) -> ElasticBea
     xi, angles = (np.array(numbers) for numbers in shape.station_angles)
     length = evaluate(beam.length, values)
 
-    def at_middle(stiffness: Value) -> float:
-        if STATION in symbols(stiffness):
-            assert isinstance(stiffness, Expression)
-            stiffness = at_station(stiffness, beam.length, 0.5)
-        return evaluate(stiffness, values)
-
     return ElasticBeam(
         name=beam.name,
         length=length,
@@ -62,10 +56,10 @@ def _numbers(beam: Beam, q: int, v: int, values: dict[str, float]) -> ElasticBea
         counts=shape.counts,
         xi=xi,
         angles=angles,
-        scale=np.array([1.0 / length if displacement else 1.0 for displacement in shape.lengths]),
+        displacements=np.array(shape.lengths, dtype=bool),
         elastic_stiffness=cache(partial(_stiffness, beam, values)),
-        EI_z=at_middle(beam.EI_z),
-        EI_y=at_middle(beam.EI_y),
+        EI_z=evaluate(at_middle(beam.EI_z, beam), values),
+        EI_y=evaluate(at_middle(beam.EI_y, beam), values),
     )
 
 
@@ -80,7 +74,7 @@ def _rod(beam: Beam, q: int, v: int, values: dict[str, float]) -> ElasticRod:
         counts=strains.counts,
         xi=np.array(xi),
         angles=ElasticRod.REDUCED * np.abs(np.array(strains.turns(xi))),
-        scale=np.ones(beam.modes),
+        displacements=np.zeros(beam.modes, dtype=bool),
         elastic_stiffness=cache(partial(_stiffness, beam, values)),
         EI_z=0.0,
         EI_y=0.0,
@@ -96,7 +90,7 @@ def _integration_error(beam: Beam, values: dict[str, float]) -> Callable[[Array]
 
 
 def _stiffness(beam: Beam, values: dict[str, float]) -> Array:
-    """Elastic stiffness (n, n): second derivatives of the quadratic strain energy (7)."""
+    """Elastic stiffness (n, n)."""
     g = Graph()
 
     def lower(value: Value) -> Edge:
@@ -104,12 +98,4 @@ def _stiffness(beam: Beam, values: dict[str, float]) -> Array:
 
     make = rod_of if beam.theory == "strain" else beam_forms
     energy = make(g, lower, beam, tuple(g.input("q", i) for i in range(beam.modes))).strain_energy
-    stiffness = np.zeros((beam.modes, beam.modes))
-    for monomial, coefficient in energy.terms.items():
-        if len(monomial) == 2:
-            i, j = monomial
-            number = g.number(coefficient)
-            assert number is not None, "a graph of constants folds"
-            stiffness[i, j] += number
-            stiffness[j, i] += number
-    return stiffness
+    return np.array([[g.number(edge) for edge in row] for row in energy.second_derivatives()], dtype=np.float64)

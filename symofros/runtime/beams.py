@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import numpy.typing as npt
 
 from symofros.native import native_number
 from symofros.runtime.calls.kernel import Array
@@ -103,7 +104,7 @@ class ElasticBeam:
         counts: Number of coordinates of bend_y, bend_z and twist.
         xi: Stations x/L (s).
         angles: Yaw, pitch and twist of the section at each station per scaled coordinate (s, n).
-        scale: Factor of each coordinate (n): 1/L of a displacement, else 1.
+        displacements: Whether each coordinate is a displacement (n), which counts by the length.
         elastic_stiffness: Forms the elastic stiffness (n, n).
         EI_z: Stiffness against bending in the x-y plane at mid-length [N m^2].
         EI_y: Stiffness against bending in the x-z plane at mid-length [N m^2].
@@ -116,7 +117,7 @@ class ElasticBeam:
     counts: tuple[int, int, int]
     xi: Array
     angles: Array
-    scale: Array
+    displacements: npt.NDArray[np.bool_]
     elastic_stiffness: Callable[[], Array]
     EI_z: float
     EI_y: float
@@ -125,6 +126,11 @@ class ElasticBeam:
     def size(self) -> int:
         """Number of elastic coordinates."""
         return sum(self.counts)
+
+    @property
+    def scale(self) -> Array:
+        """Factor of each coordinate (n): 1/L of a displacement, else 1."""
+        return np.where(self.displacements, 1.0 / self.length, 1.0)
 
     @property
     def in_q(self) -> slice:
@@ -152,10 +158,15 @@ class ElasticBeam:
         return abs(self.EI_z - self.EI_y) / min(self.EI_z, self.EI_y)
 
     @property
+    def scaled_reach(self) -> Array:
+        """Largest yaw, pitch or twist at the stations by each scaled coordinate (n)."""
+        largest: Array = np.abs(self.angles).max(axis=0)
+        return largest
+
+    @property
     def reach(self) -> Array:
         """Largest yaw, pitch or twist at the stations by each coordinate (n)."""
-        largest: Array = np.abs(self.angles).max(axis=0) * self.scale
-        return largest
+        return self.scaled_reach * self.scale
 
     def error_bound(self, elastic: Array) -> float:
         """An upper bound of the error of a deformation that costs little: each coordinate's largest angle counts."""

@@ -5,7 +5,10 @@ from __future__ import annotations
 import math
 from functools import cache
 
+import numpy as np
+
 import symofros as sf
+from symofros import blocks
 
 NAMES = {"L": 1.0, "EI": 1.0, "rho": 1.0, "g": 0.0, "P": 0.0, "F": 0.0}
 
@@ -30,3 +33,20 @@ def cantilever_system() -> sf.System:
 def critical_load() -> float:
     """Euler's load of the column of length and stiffness one."""
     return math.pi**2 / 4
+
+
+def at_rest(share: float, L: float) -> tuple[sf.Model, sf.Equilibrium]:
+    """A column under a share of its critical load, and where it rests."""
+    P, F = share * critical_load() / L**2, 0.2 * (1.0 - share) / L**2
+    model = cantilever().with_parameters(P=P, F=F, L=L)
+    return model, sf.equilibrium(model)
+
+
+def column_diagram(model: sf.Model, q: np.ndarray) -> sf.Diagram:
+    """Two of these columns as a diagram."""
+    diagram = sf.Diagram("bench")
+    start = dict(zip(model.names.q, q.tolist(), strict=True))
+    diagram.add_model("plant", cantilever_system(), start=start, parameters=dict(model.parameters))
+    diagram.add(blocks.ForwardDynamics(name="first", model="plant"))
+    diagram.add(blocks.ForwardDynamics(name="second", model="plant"))
+    return diagram

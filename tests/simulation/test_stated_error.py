@@ -4,39 +4,21 @@ from __future__ import annotations
 
 from functools import cache
 
-import numpy as np
 import pytest
 
 import symofros as sf
 from symofros import blocks
 from symofros.studio.viewer.drawing.poses import Mechanism
-from tests.simulation.beam_models import cantilever, cantilever_system, critical_load
+from tests.simulation.beam_models import at_rest, cantilever_system, column_diagram
 
 SHARES = [-5.0, -2.0, -0.5, 0.0, 0.5, 0.8, 0.9, 0.95]
-
-
-def at_rest(share: float, L: float) -> tuple[sf.Model, sf.Equilibrium]:
-    """A column under a share of its critical load, and where it rests."""
-    P, F = share * critical_load() / L**2, 0.2 * (1.0 - share) / L**2
-    model = cantilever().with_parameters(P=P, F=F, L=L)
-    return model, sf.equilibrium(model)
-
-
-def diagram_of(model: sf.Model, q: np.ndarray) -> sf.Simulation:
-    """Two of these columns as a diagram."""
-    diagram = sf.Diagram("bench")
-    start = dict(zip(model.names.q, q.tolist(), strict=True))
-    diagram.add_model("plant", cantilever_system(), start=start, parameters=dict(model.parameters))
-    diagram.add(blocks.ForwardDynamics(name="first", model="plant"))
-    diagram.add(blocks.ForwardDynamics(name="second", model="plant"))
-    return sf.Simulation(diagram)
 
 
 @pytest.mark.parametrize("share", SHARES)
 @pytest.mark.parametrize("L", [1e-3, 30.0])
 def test_diagrams_state_the_error_of_rest(share: float, L: float) -> None:
     model, rest = at_rest(share, L)
-    simulation, span = diagram_of(model, rest.q), 0.05 * L**2
+    simulation, span = sf.Simulation(column_diagram(model, rest.q)), 0.05 * L**2
     given = {"dt": span / 20, "record": span / 4}
     runs = simulation.run(span, **given), simulation.interpret(span, **given)
     for run in runs:
@@ -47,7 +29,7 @@ def test_diagrams_state_the_error_of_rest(share: float, L: float) -> None:
 
 def test_a_diagram_ends_beyond_theory_by_its_axial_loads() -> None:
     model, rest = at_rest(0.95, 1.0)
-    simulation, given = diagram_of(model, rest.q), {"dt": 0.01, "record": 0.02, "beam_limit": 0.02}
+    simulation, given = sf.Simulation(column_diagram(model, rest.q)), {"dt": 0.01, "record": 0.02, "beam_limit": 0.02}
     assert rest.bendings[0].error > 0.02 > model.beams()[0].bending(rest.q).error
     for outcome in (simulation.run(0.1, **given).outcome, simulation.interpret(0.1, **given).outcome):
         assert outcome.kind == "beyond theory" and not outcome.ok

@@ -195,18 +195,41 @@ class Fuser:
         return self._program(self._wired.name, g, functions, part)
 
     def _judging(self, at: Point, part: Part) -> list[Function]:
-        """The mass matrix of a part with elastic beams, by which their axial loads are judged."""
-        nv, layout = part.nv, self._layout
+        """What a part with elastic beams is judged by: mass_matrix, and beam_stiffness as models have it."""
+        nv, layout, models = part.nv, self._layout, self._wired.models
         M = [[ONE if i == k else ZERO for k in range(nv)] for i in range(nv)]
-        elastic = False
+        K = [[ZERO] * nv for _ in range(nv)]
+        lengths, stiffnesses = list[Edge](), list[list[Edge]]()
         for name in part.blocks:
             piece = self._pieces[name]
             if piece.terms.M is not None:
-                elastic = elastic or self._wired.models.has_elastic_beams(piece.block.mechanism())
+                model = piece.block.mechanism()
                 first = layout.v[name].start - part.v.start
                 for i, values in enumerate(at.write(piece, piece.terms.M).edges, first):
                     M[i][first : first + layout.v[name].size] = values
-        return [Function("mass_matrix", "", AT, (_matrix("M", M, nv),))] if elastic else []
+                if models.has_elastic_beams(model):
+                    terms = self._of_parameters(at.g, model, "beam_stiffness")
+                    lengths.extend(terms["L"].flat)
+                    stiffnesses.extend(terms["EI"].edges)
+                    for i, values in enumerate(terms["K"].edges, first):
+                        K[i][first : first + layout.v[name].size] = values
+        if not lengths:
+            return []
+        numbers = _vector("L", lengths), _matrix("EI", stiffnesses, 2), _matrix("K", K, nv)
+        return [
+            Function("mass_matrix", "", AT, (_matrix("M", M, nv),)),
+            Function("beam_stiffness", "", (), numbers),
+        ]
+
+    def _of_parameters(self, g: Graph, model: str, function: str) -> dict[str, Tensor]:
+        """A function of a model's run-time parameters alone, of the diagram's parameters."""
+        own, place = Graph(), self._layout.parameters["", model]
+        group = parameter_group(model)
+        replacement = {own.input(group, i): g.input("par", place.start + i) for i in range(place.size)}
+        outputs = self._wired.models.call(own, model, function)
+        return {
+            key: Tensor.of(g, copy_into(g, own, value.flat, replacement), value.shape) for key, value in outputs.items()
+        }
 
     def _free(self, at: Point, part: Part) -> list[Function]:
         """Without constraints: accelerations of mechanisms, rates of states."""

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import NamedTuple
+
 from symofros.description.system import System
-from symofros.exports.c.c_text import strings
 from symofros.expr.ops import OPS
 from symofros.generator.codegen.names import c_string
 from symofros.mechanics.topology.conditions import Condition
@@ -14,19 +16,52 @@ _C = {"sub": "{0} - {1}", "neg": "-{0}"}
 _HOLDS = {"positive": " && {0} > 0.0", "not negative": " && {0} >= 0.0", "any": ""}
 
 
-def parameter_check_text(system: System, names: tuple[str, ...]) -> list[str]:
-    """Lines of C: `sym_fmu_violated`, the number of the first condition that does not hold, and what each asks for.
+class Judged(NamedTuple):
+    """A description whose run-time parameters are judged.
+
+    Attributes:
+        system: A sound system.
+        names: Run-time parameters, in the order of their values.
+        first: Index of the first one among all parameters in C.
+    """
+
+    system: System
+    names: tuple[str, ...]
+    first: int = 0
+
+
+def parameter_check_text(name: str, judged: Sequence[Judged]) -> list[str]:
+    """Lines of C: `NAME_violated`, the number of the first condition that does not hold, and what each asks for.
 
     Checks without a margin (rotations, axes and smooth sections that depend on parameters) are not among them.
 
     Args:
-        system: A sound system.
-        names: Run-time parameters, in the order of their values.
+        name: Prefix of the names in C.
+        judged: Descriptions.
     """
+    lines = [f"static int32_t {name}_violated(const double *par) {{ /* -1: all conditions hold */"]
+    says: list[str] = []
+    for one in judged:
+        if one.names:
+            text, rules = _conditions_text(one, len(says))
+            lines += ["    {", *text, "    }"]
+            says += rules
+    return [
+        *lines,
+        "    (void)par;",
+        "    return -1;",
+        "}",
+        f"static const char *const {name}_conditions[] = {{{', '.join(says) or 'NULL'}}};",
+    ]
+
+
+def _conditions_text(judged: Judged, offset: int) -> tuple[list[str], list[str]]:
+    """Lines that judge one description, whose conditions are numbered from an offset on, and what each asks for."""
+    system, names, first = judged
     conditions = RunTimeCheck(system, names).conditions
-    known = {name: f"par[{i}]" for i, name in enumerate(names)}
+    known = {name: f"par[{i}]" for i, name in enumerate(names, first)}
     fixed = {name: value for name, value in system.parameter_values().items() if name not in known}
-    lines = ["static int sym_fmu_violated(const double *par) { /* -1: all conditions hold */"]
+    lines = [f"    if (!isfinite({place})) return {offset};" for place in known.values()]
     places: list[str] = []
     for step in conditions.formulas.steps:
         if isinstance(step, tuple):
@@ -38,19 +73,14 @@ def parameter_check_text(system: System, names: tuple[str, ...]) -> list[str]:
             number = fixed.get(step, 0.0) if isinstance(step, str) else step
             places.append(known[step] if isinstance(step, str) and step in known else f"({number!r})")
     results = iter(conditions.formulas.results)
-    for i, condition in enumerate(conditions.conditions):
+    for i, condition in enumerate(conditions.conditions, offset + 1):
         margins = [places[next(results)] for _ in condition.margins]
         holds = " && ".join(f"isfinite({x}){_HOLDS[condition.sign].format(x)}" for x in margins)
         lines.append(f"    if (!({holds})) return {i};")
     numbers = Numbers(system)
-    says = [c_string(_rule(condition, numbers)) for condition in conditions.conditions]
-    return [
-        *lines,
-        "    (void)par;",
-        "    return -1;",
-        "}",
-        f"static const char *const sym_fmu_conditions[] = {{{', '.join(says) or strings([])}}};",
-    ]
+    rules = ["run-time parameters: a parameter is one finite number"]
+    rules += [_rule(condition, numbers) for condition in conditions.conditions]
+    return lines, [c_string(rule) for rule in rules]
 
 
 def _rule(condition: Condition, numbers: Numbers) -> str:

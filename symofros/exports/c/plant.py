@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Protocol
 
 from symofros.exports.c.c_text import comment, doubles, integers, strings
+from symofros.exports.c.parameter_check import Judged, parameter_check_text
 from symofros.exports.material import Material, Stepping
 from symofros.generator.codegen.names import c_string
 from symofros.runtime.beams import ElasticBeam
@@ -115,6 +116,11 @@ class Moving(Protocol):
         ...
 
     @property
+    def judged(self) -> tuple[Judged, ...]:
+        """Descriptions whose run-time parameters are judged."""
+        ...
+
+    @property
     def generator(self) -> str:
         """Name and version of what wrote it."""
         ...
@@ -141,12 +147,14 @@ def plant_text(material: Moving) -> str:
         f"static const double {name}_u_start[] = {{{doubles(record.u_default)}}};",
         *_tableau(name, step.method.tableau),
         *_beams(name, material.beams),
+        *parameter_check_text(name, material.judged),
         f"static const sym_plant {name}_plant_struct = {{",
         f"    {name}_model, {len(record.segments)}, {name}_segments, {name}_on_speeds, {name}_constraint_names,",
         f"    {name}_q_start, {name}_v_start, {name}_u_start, {len(frames)}, {name}_frame_names,",
         f"    {c_string(step.method.name)}, {step.method.constant}, {int(step.method.adaptive)},",
         f"    &{name}_tableau, {step.dt!r}, {step.rtol!r}, {step.atol!r},",
-        f"    {_beam_fields(name, material.beams)}, {_limit(step.beam_limit)}",
+        f"    {_beam_fields(name, material.beams)}, {_limit(step.beam_limit)},",
+        f"    {name}_violated, {name}_conditions",
         "};",
         "",
         f"SYM_EXPORT const sym_plant *{name}_plant(void);",
@@ -166,15 +174,16 @@ def _beams(name: str, beams: Sequence[ElasticBeam]) -> list[str]:
         lines.append(f"static const double {name}_beam{i}_angles[] = {{{doubles(blocks.ravel().tolist())}}};")
         numbers = f"{beam.EI_z!r}, {beam.EI_y!r}, {beam.contrast!r}"
         structs.append(
-            f"{{{beam.q}, {first}, {integers(beam.counts)}, {len(blocks)}, {name}_beam{i}_angles, {numbers}}}"
+            f"{{{beam.q}, {beam.v}, {first}, {integers(beam.counts)}, {len(blocks)}, {name}_beam{i}_angles, {numbers}}}"
         )
         first += beam.size
-    scale, reach = ([x for beam in beams for x in getattr(beam, key).tolist()] for key in ("scale", "reach"))
+    displacements = [int(counts) for beam in beams for counts in beam.displacements]
+    reach = [angle for beam in beams for angle in beam.scaled_reach.tolist()]
     return [
         *lines,
         f"static const sym_beam {name}_beams[] = {{{', '.join(structs)}}};",
         f"static const char *const {name}_beam_names[] = {{{strings([beam.name for beam in beams])}}};",
-        f"static const double {name}_beam_scale[] = {{{doubles(scale)}}};",
+        f"static const int32_t {name}_beam_displacements[] = {{{integers(displacements)}}};",
         f"static const double {name}_beam_reach[] = {{{doubles(reach)}}};",
     ]
 
@@ -184,7 +193,7 @@ def _beam_fields(name: str, beams: Sequence[ElasticBeam]) -> str:
     if not beams:
         return "0, 0, NULL, NULL, NULL, NULL"
     size = sum(beam.size for beam in beams)
-    arrays = ", ".join(f"{name}_{key}" for key in ("beams", "beam_names", "beam_scale", "beam_reach"))
+    arrays = ", ".join(f"{name}_{key}" for key in ("beams", "beam_names", "beam_displacements", "beam_reach"))
     return f"{len(beams)}, {size}, {arrays}"
 
 

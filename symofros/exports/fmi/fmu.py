@@ -16,7 +16,6 @@ from symofros.errors import ExportError, Problem
 from symofros.exports.c.c_package import model_files
 from symofros.exports.c.c_text import comment, strings
 from symofros.exports.c.compiling import shared_library
-from symofros.exports.c.parameter_check import parameter_check_text
 from symofros.exports.c.unity import unity
 from symofros.exports.fmi.fmu_description import build_xml, description_xml
 from symofros.exports.fmi.fmu_variables import variables
@@ -96,7 +95,6 @@ def _glue(material: Material, version: int, token: str) -> str:
             f"#define SYM_FMU_TOKEN {c_string(token)}",
             f"#define SYM_FMU_FRAMES {len(material.outputs)}",
             f"static const char *const sym_fmu_frames[] = {{{frames}}};",
-            *parameter_check_text(material.system, material.record.par_names),
             *(f'#include "{file}"' for file in _HEADERS),
         ],
         [f'#include "fmi{version}Functions.h"', *(f'#include "{file}"' for file in _INTERFACE[version])],

@@ -142,6 +142,17 @@ class Form:
                 terms[mono[:at] + mono[at + 1 :]] = g.mul(g.constant(float(mono.count(i))), edge)
         return Form(g, self.coordinates, terms)
 
+    def second_derivatives(self) -> list[list[Edge]]:
+        """The second derivatives where all coordinates are zero."""
+        n, g = len(self.coordinates), self.g
+        matrix = [[ZERO] * n for _ in range(n)]
+        for mono, edge in self.terms.items():
+            if len(mono) == 2:
+                i, j = mono
+                matrix[i][j] = g.add(matrix[i][j], edge)
+                matrix[j][i] = g.add(matrix[j][i], edge)
+        return matrix
+
     def without_constant(self) -> Form:
         """The form without its term of degree 0."""
         return Form(self.g, self.coordinates, {mono: edge for mono, edge in self.terms.items() if mono})

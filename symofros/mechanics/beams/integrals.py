@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from symofros.description.beam import STATION
+from symofros.description.beam import STATION, Beam
 from symofros.description.values import Value, symbols
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.expression import Expression
@@ -99,6 +99,11 @@ def points_for(functions: Sequence[Piecewise]) -> int:
     if any(len(phi.pieces) > 1 for phi in functions):
         return POINTS
     return max(POINTS, 2 * max((phi.degree for phi in functions), default=0) + 7)
+
+
+def at_middle(section: Value, beam: Beam) -> Value:
+    """A section property at mid-length."""
+    return at_station(section, beam.length, 0.5) if isinstance(section, Expression) else section
 
 
 def at_station(formula: Expression, length: Value, xi: float) -> Expression:

@@ -11,6 +11,7 @@ from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.ops import STOP_GRADIENT
 from symofros.expr.packs.pack import WIDTH
 from symofros.expr.program import Function, Output, Program, Solver
+from symofros.mechanics.beams.integrals import at_middle
 from symofros.mechanics.dynamics.constraints.measures import measures_of
 from symofros.mechanics.dynamics.constraints.rows import retracted
 from symofros.mechanics.dynamics.constraints.wrenches import acts_on_bodies
@@ -85,6 +86,7 @@ def _sizes(e: Equations) -> dict[str, int]:
         "nw": len(acts_on_bodies(constraints)),
         "nj": len(e.tree.links),
         "ns": len(prescribed_speeds(e.tree)),
+        "nb": sum(link.tip_of is not None and link.tip_of.modes > 0 for link in e.tree.links),
         "npi": 10 * len(e.tree.links),
     }
 
@@ -193,10 +195,28 @@ def _project(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[
     )
 
 
+def _beam_stiffness(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[str, int]) -> Function:
+    """Lengths and stiffnesses of the elastic beams, by the run-time parameters alone."""
+    lower, K = e.kinematics.lowering.value, [[ZERO] * e.nv for _ in range(e.nv)]
+    lengths, stiffnesses = [], []
+    for moving in e.kinematics.beams:
+        if moving.tip is None:
+            continue
+        beam, first = moving.forms.beam, e.kinematics.links[moving.tip].first_speed
+        lengths.append(lower(beam.length))
+        judged = beam.theory != "strain"  # A rod does not err by its bending.
+        stiffnesses.append([lower(at_middle(EI, beam)) if judged else ZERO for EI in (beam.EI_z, beam.EI_y)])
+        for i, stiffness in enumerate(moving.forms.strain_energy.second_derivatives(), first):
+            K[i][first : first + beam.modes] = stiffness
+    outputs = _vector("L", lengths), _matrix("EI", (len(lengths), 2), stiffnesses), _matrix("K", (e.nv, e.nv), K)
+    return Function(row.name, "", row.inputs, outputs)
+
+
 _Builder = Callable[[Equations, ModelFunction, Methods, Mapping[str, int]], Function]
 _BUILDERS: dict[str, _Builder] = {
     "forward_dynamics": _forward_dynamics,
     "forward_dynamics_derivatives": _forward_slopes,
     "forward_dynamics_by_par": _forward_slopes,
     "project": _project,
+    "beam_stiffness": _beam_stiffness,
 }

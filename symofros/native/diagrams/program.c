@@ -111,15 +111,16 @@ SYM_EXPORT size_t sym_program_size(const sym_program *program) {
     return (sym_doubles(sizeof draft) + arena.used) * sizeof(double);
 }
 
-SYM_EXPORT void sym_program_prepare(sym_program_instance *instance) {
-    int32_t i;
+SYM_EXPORT int32_t sym_program_prepare(sym_program_instance *instance) {
+    int32_t i, status = 0;
     instance->program->instants()->init(instance->par, instance->pre);
     for (i = 0; i < instance->program->n_parts; ++i) {
         sym_instance *part = instance->parts[i];
         memcpy(part->par, instance->par, (size_t)part->model->npar * sizeof(double));
-        sym_instance_prepare(part);
+        if (sym_instance_prepare(part) != 0) status = SYM_PARAMETERS_REFUSED;
         part->run.slope_valid = 0;
     }
+    return status;
 }
 
 /* signals <- outputs at the present time; accelerations and multipliers are those under the inputs held now. Returns 0 or
@@ -155,7 +156,7 @@ SYM_EXPORT sym_program_instance *sym_program_init(void *memory, size_t size, con
     memcpy(instance->par, program->instants()->par_default, (size_t)program->instants()->npar * sizeof(double));
     for (i = 0; i < program->n_parts; ++i)
         if (instance->parts[i] == NULL) return NULL;
-    sym_program_prepare(instance);
+    if (sym_program_prepare(instance) != 0) return NULL;
     for (i = 0; i < program->n_parts; ++i) {
         if (instance->parts[i]->project && sym_instance_project(instance->parts[i]) != 0) return NULL;
         if (sym_run_start(&instance->parts[i]->run) < 0) return NULL;
@@ -166,7 +167,9 @@ SYM_EXPORT sym_program_instance *sym_program_init(void *memory, size_t size, con
 
 SYM_EXPORT int32_t sym_program_advance(sym_program_instance *instance, double t) {
     sym_diagram *d = &instance->diagram;
-    int32_t status = SYM_RUNNING;
+    int32_t i, status = SYM_RUNNING;
+    for (i = 0; i < instance->program->n_parts; ++i)
+        if (instance->parts[i]->refused >= 0) return SYM_PARAMETERS_REFUSED;
     d->t_end = t, d->finished = 0;
     while (status == SYM_RUNNING || status == SYM_RECORDS_FULL) {
         d->n_records = d->n_event_records = 0;

@@ -116,7 +116,10 @@ static void mdlStart(SimStruct *S) {
     }
     if (mxGetNumberOfElements(par) != 0) {
         memcpy(instance->par, mxGetPr(par), (size_t)instance->model->npar * sizeof(double));
-        sym_instance_prepare(instance);
+        if (sym_instance_prepare(instance) != 0) {
+            ssSetErrorStatus(S, plant->conditions[instance->refused]);
+            return;
+        }
     }
     for (i = 0; i < 2 * instance->model->nc; ++i) instance->gains[i] = GAIN;
 }

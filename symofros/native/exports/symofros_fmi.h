@@ -4,7 +4,7 @@
  */
 
 static const char *fmi_message(int found) {
-    if (found >= FMU_PARAMETERS) return sym_fmu_conditions[found - FMU_PARAMETERS];
+    if (found >= FMU_PARAMETERS) return SYM_FMU_PLANT()->conditions[found - FMU_PARAMETERS];
     switch (found) {
     case FMU_UNKNOWN: return "no such variable, or not one for this call";
     case FMU_SINGULAR: return "no finite acceleration, or constraints that can't be met";

@@ -2,7 +2,7 @@
  *
  * Value references run through, in this order: time, q, v, rates of q, rates of v, u, par, lam, kinetic and potential
  * energy, then x, y, z of each output frame. Included by the file that names the model: it defines SYM_FMU_PLANT,
- * SYM_FMU_TOKEN, SYM_FMU_FRAMES, sym_fmu_frames[], sym_fmu_violated() and sym_fmu_conditions[].
+ * SYM_FMU_TOKEN, SYM_FMU_FRAMES and sym_fmu_frames[].
  */
 
 typedef enum { FMU_INSTANTIATED, FMU_INITIALISING, FMU_EVENT, FMU_CONTINUOUS, FMU_STEPPING, FMU_TERMINATED } fmu_phase;
@@ -131,11 +131,9 @@ static void fmu_reset(fmu *f) {
 
 /* What depends on parameters alone, for the present ones, if the description allows them. */
 static int fmu_prepare(fmu *f) {
-    int violated;
     if (f->parameters_valid) return FMU_OK;
-    violated = sym_fmu_violated(f->instance->par);
-    if (violated >= 0) return FMU_PARAMETERS + violated;
-    sym_instance_prepare(f->instance), f->parameters_valid = 1;
+    if (sym_instance_prepare(f->instance) != 0) return FMU_PARAMETERS + f->instance->refused;
+    f->parameters_valid = 1;
     return FMU_OK;
 }
 
@@ -215,11 +213,13 @@ static int fmu_note_bending(fmu *f) {
     const sym_plant *plant = f->instance->plant;
     const sym_run *r = &f->instance->run;
     int32_t b, worst = 0;
+    double error;
     for (b = 1; b < plant->n_beams; ++b)
-        if (r->beam_error[b] > r->beam_error[worst]) worst = b;
-    if (plant->n_beams == 0 || !(r->beam_error[worst] > FMU_NOTED_ERROR)) return 0;
+        if (sym_run_beam_error(r, b) > sym_run_beam_error(r, worst)) worst = b;
+    error = plant->n_beams > 0 ? sym_run_beam_error(r, worst) : 0.0;
+    if (!(error > FMU_NOTED_ERROR)) return 0;
     sprintf(f->message, "beam '%.60s' bends at t = %.6g s: second-order theory errs by about %.2g %% of the deflection",
-            plant->beam_names[worst], r->beam_t[worst], 100.0 * r->beam_error[worst]);
+            plant->beam_names[worst], r->beam_t[worst], 100.0 * error);
     return !f->bending_noted++;
 }
 

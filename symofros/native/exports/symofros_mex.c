@@ -69,9 +69,10 @@ static void place(int count, const mxArray *const *given, int from, int with_tim
     memcpy(instance->v, x + m->nq, (size_t)m->nv * sizeof *x);
     take(count, given, from, "U", m->nu, instance->u, instance->plant->u_start);
     take(count, given, from + 1, "Parameters", m->npar, par, m->par_default);
-    if (memcmp(par, instance->par, (size_t)m->npar * sizeof *par) != 0) {
+    if (instance->refused >= 0 || memcmp(par, instance->par, (size_t)m->npar * sizeof *par) != 0) {
         memcpy(instance->par, par, (size_t)m->npar * sizeof *par);
-        sym_instance_prepare(instance);
+        if (sym_instance_prepare(instance) != 0)
+            refuse("parameters", "Parameters", instance->plant->conditions[instance->refused]);
     }
     instance->t = 0.0;
     if (with_time) take(count, given, from + 2, "t", 1, &instance->t, &instance->t);

@@ -7,6 +7,49 @@ static int32_t sym_instance_bind(sym_instance *instance, sym_arena *arena, sym_c
     return sym_bind_function(arena, call, function, instance->pre, instance->work, &point);
 }
 
+/* Lay out what judges the beams. Returns 0 where the model lacks a function for that. */
+static int32_t sym_instance_allocate_beams(sym_instance *instance, sym_arena *arena) {
+    const sym_plant *p = instance->plant;
+    const size_t n = (size_t)p->n_beams, coordinates = (size_t)p->n_beam_coordinates;
+    sym_system *s = &instance->system;
+    sym_run *r = &instance->run;
+    int32_t has_stiffness, has_mass, has_jacobian;
+    if (n == 0) return 1;
+    instance->beams = sym_allocate_bytes(arena, n * sizeof *instance->beams);
+    instance->beam_scale = sym_allocate(arena, coordinates), instance->beam_reach = sym_allocate(arena, coordinates);
+    if (arena->base != NULL) memcpy(instance->beams, p->beams, n * sizeof *instance->beams);
+    s->n_beams = p->n_beams, s->beams = instance->beams;
+    r->beam_limit = p->beam_limit, r->beam_scale = instance->beam_scale, r->beam_reach = instance->beam_reach;
+    r->beam_error = sym_allocate(arena, n), r->beam_t = sym_allocate(arena, n), r->beam_q = sym_allocate(arena, coordinates);
+    r->beam_works = sym_allocate(arena, 2 * SYM_BEAM_STATES * n);
+    r->beam_change = sym_allocate(arena, (size_t)s->nv + (size_t)s->nc);
+    has_stiffness = sym_instance_bind(instance, arena, &instance->beam_stiffness, "beam_stiffness");
+    has_mass = sym_instance_bind(instance, arena, &s->mass_matrix, "mass_matrix");
+    has_jacobian = s->nc == 0 || sym_instance_bind(instance, arena, &s->constraint_jacobian, "constraint_jacobian");
+    r->elastic_stiffness = instance->beam_stiffness.out[2];
+    return has_stiffness && has_mass && has_jacobian;
+}
+
+/* Numbers of the beams at the present parameters. */
+static void sym_instance_prepare_beams(sym_instance *instance) {
+    const sym_plant *p = instance->plant;
+    const double *L = instance->beam_stiffness.out[0], *EI = instance->beam_stiffness.out[1];
+    int32_t b, i;
+    if (p->n_beams == 0) return;
+    sym_evaluate(&instance->beam_stiffness);
+    for (b = 0; b < p->n_beams; ++b) {
+        sym_beam *beam = &instance->beams[b];
+        const int32_t end = beam->first + beam->n_y + beam->n_z + beam->n_twist;
+        const double EI_z = EI[2 * b], EI_y = EI[2 * b + 1], least = EI_z < EI_y ? EI_z : EI_y;
+        beam->EI_z = EI_z, beam->EI_y = EI_y;
+        beam->contrast = beam->n_y > 0 && beam->n_z > 0 && least > 0.0 ? fabs(EI_z - EI_y) / least : 0.0;
+        for (i = beam->first; i < end; ++i) {
+            instance->beam_scale[i] = p->beam_displacements[i] ? 1.0 / L[b] : 1.0;
+            instance->beam_reach[i] = p->beam_reach[i] * instance->beam_scale[i];
+        }
+    }
+}
+
 /* Lay out every array of the instance. Returns 0 where the model lacks a function that its method calls. */
 static int32_t sym_instance_allocate(sym_instance *instance, sym_arena *arena) {
     const sym_model *m = instance->model;
@@ -14,17 +57,14 @@ static int32_t sym_instance_allocate(sym_instance *instance, sym_arena *arena) {
     sym_system *s = &instance->system;
     sym_run *r = &instance->run;
     const size_t nq = (size_t)m->nq, nv = (size_t)m->nv, nu = (size_t)m->nu, nc = (size_t)m->nc;
-    int32_t has_forward_dynamics, has_project, has_terms, has_residual, has_momentum;
+    int32_t has_forward_dynamics, has_project, has_terms, has_residual, has_momentum, has_beams;
     memset(s, 0, sizeof *s), memset(r, 0, sizeof *r);
+    memset(&instance->beam_stiffness, 0, sizeof instance->beam_stiffness);
     s->nq = m->nq, s->nv = m->nv, s->nu = m->nu, s->nc = m->nc;
     s->n_segments = p->n_segments, s->segments = p->segments, s->on_speeds = p->on_speeds;
     sym_run_set_defaults(r);
     r->system = s, r->method = p->method, r->adaptive = p->adaptive, r->tableau = *p->tableau;
     r->rtol = p->rtol, r->atol = p->atol;
-    s->n_beams = p->n_beams, s->beams = p->beams;
-    r->beam_limit = p->beam_limit, r->beam_scale = p->beam_scale, r->beam_reach = p->beam_reach;
-    r->beam_error = sym_allocate(arena, (size_t)p->n_beams), r->beam_t = sym_allocate(arena, (size_t)p->n_beams);
-    r->beam_q = sym_allocate(arena, (size_t)p->n_beam_coordinates);
     instance->par = sym_allocate(arena, (size_t)m->npar), instance->pre = sym_allocate(arena, (size_t)m->npre);
     instance->work = sym_allocate(arena, sym_work(m));
     s->q = sym_allocate(arena, nq), s->v = sym_allocate(arena, nv);
@@ -42,7 +82,8 @@ static int32_t sym_instance_allocate(sym_instance *instance, sym_arena *arena) {
     has_terms = sym_instance_bind(instance, arena, &s->implicit_terms, "implicit_terms");
     has_residual = sym_instance_bind(instance, arena, &s->residual, "residual");
     has_momentum = sym_instance_bind(instance, arena, &s->momentum, "momentum");
-    return has_forward_dynamics && has_project && (has_terms || p->method <= SYM_METHOD_SEMI_IMPLICIT) &&
+    has_beams = sym_instance_allocate_beams(instance, arena);
+    return has_forward_dynamics && has_project && has_beams && (has_terms || p->method <= SYM_METHOD_SEMI_IMPLICIT) &&
            (has_residual || p->method != SYM_METHOD_ALPHA) && (has_momentum || p->method != SYM_METHOD_VARIATIONAL);
 }
 
@@ -77,11 +118,18 @@ SYM_EXPORT void sym_instance_reset(sym_instance *instance) {
     memcpy(instance->par, m->par_default, (size_t)m->npar * sizeof(double));
     memset(instance->gains, 0, 2 * (size_t)m->nc * sizeof(double));
     if (p->n_beams > 0) memset(instance->run.beam_error, 0, (size_t)p->n_beams * sizeof(double));
-    instance->project = m->nc > 0;
-    sym_instance_prepare(instance);
+    sym_clear_axial_loads(&instance->run);
+    instance->project = m->nc > 0, instance->check_parameters = 1;
+    (void)sym_instance_prepare(instance); /* the defaults are allowed */
 }
 
-SYM_EXPORT void sym_instance_prepare(sym_instance *instance) { instance->model->init(instance->par, instance->pre); }
+SYM_EXPORT int32_t sym_instance_prepare(sym_instance *instance) {
+    instance->refused = instance->check_parameters ? instance->plant->violated(instance->par) : -1;
+    if (instance->refused >= 0) return SYM_PARAMETERS_REFUSED;
+    instance->model->init(instance->par, instance->pre);
+    sym_instance_prepare_beams(instance);
+    return 0;
+}
 
 /* Evaluation point <- the present state, its quaternions normalised. */
 static void sym_instance_load_state(sym_instance *instance) {
@@ -91,17 +139,25 @@ static void sym_instance_load_state(sym_instance *instance) {
 }
 
 SYM_EXPORT int32_t sym_instance_project(sym_instance *instance) {
+    if (instance->refused >= 0) return SYM_PARAMETERS_REFUSED;
     if (instance->model->nc == 0) return 0;
     instance->run.t = instance->t;
     return sym_project_state(&instance->run);
 }
 
 SYM_EXPORT int32_t sym_instance_judge_beams(sym_instance *instance) {
+    int32_t status;
     instance->run.t = instance->t;
-    return sym_run_judge_beams(&instance->run);
+    status = sym_run_judge_beams(&instance->run);
+    return status != 0 ? status : sym_judge_axial_loads(&instance->run);
+}
+
+SYM_EXPORT double sym_instance_beam_error(const sym_instance *instance, int32_t beam) {
+    return sym_run_beam_error(&instance->run, beam);
 }
 
 SYM_EXPORT int32_t sym_instance_accelerate(sym_instance *instance) {
+    if (instance->refused >= 0) return SYM_PARAMETERS_REFUSED;
     sym_instance_load_state(instance);
     return sym_evaluate_acceleration(&instance->run);
 }
@@ -109,7 +165,7 @@ SYM_EXPORT int32_t sym_instance_accelerate(sym_instance *instance) {
 SYM_EXPORT int32_t sym_instance_call(sym_instance *instance, const sym_function *function, double *const *out) {
     sym_call call;
     int32_t i;
-    if (function == NULL || function->n_out > SYM_MAX_OUTPUTS) return 0;
+    if (function == NULL || function->n_out > SYM_MAX_OUTPUTS || instance->refused >= 0) return 0;
     call.function = function, call.pre = instance->pre, call.work = instance->work;
     for (i = 0; i < function->n_out; ++i) call.out[i] = out[i];
     if (!sym_system_bind(&instance->system, &call)) return 0;
@@ -124,6 +180,7 @@ SYM_EXPORT int32_t sym_instance_advance(sym_instance *instance, double t_end, do
     const double span = t_end - instance->t, longest = h > 0.0 ? h : instance->plant->h;
     double count = 1.0;
     int32_t status;
+    if (instance->refused >= 0) return SYM_PARAMETERS_REFUSED;
     if (!(span > 0.0)) return span == 0.0 ? SYM_FINISHED : SYM_DIVERGED;
     r->t0 = r->t = instance->t, r->t_end = t_end, r->project = instance->project && instance->model->nc > 0;
     if (r->adaptive) {

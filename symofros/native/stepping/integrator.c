@@ -16,6 +16,7 @@
 #include "second_order.c"
 #include "real_time.c"
 #include "beams.c"
+#include "axial_loads.c"
 #include "dense_output.c"
 #include "events.c"
 #include "diagnostic.c"

@@ -165,6 +165,7 @@ static int32_t sym_accept_step(sym_run *r, sym_workspace *w, double h, double t1
         if (status != 0) return status;
     }
     sym_keep_diagnostic_state(r, r->t >= r->t_end || stopped);
+    if (beyond == 0) beyond = sym_judge_axial_loads(r);
     if (r->realtime_scale > 0.0) sym_wait_for_clock(r);
     return beyond != 0 ? beyond : stopped ? SYM_TERMINAL_EVENT : 0;
 }

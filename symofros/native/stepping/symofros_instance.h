@@ -7,7 +7,7 @@
  *     status = sym_instance_advance(arm, t_end, 1e-3);         // arm->t, arm->q, arm->v move on
  *
  * After sym_instance_init nothing allocates, and nothing is shared between instances: each may live in a thread of its
- * own. A status below zero is one of SYM_DIVERGED ... SYM_BEYOND_THEORY (symofros_stepper.h).
+ * own. A status below zero is one of SYM_DIVERGED ... SYM_PARAMETERS_REFUSED (symofros_stepper.h).
  */
 #ifndef SYMOFROS_INSTANCE_H
 #define SYMOFROS_INSTANCE_H
@@ -34,8 +34,12 @@ typedef struct sym_plant { /* constants that a package generates besides the mod
     int32_t n_beams, n_beam_coordinates;
     const sym_beam *beams;                /* (n_beams) what judges their bending: sym_run_judge_beams */
     const char *const *beam_names;
-    const double *beam_scale, *beam_reach; /* (n_beam_coordinates) at the default parameters */
+    const int32_t *beam_displacements;    /* (n_beam_coordinates) whether each counts by the beam's length */
+    const double *beam_reach;             /* (n_beam_coordinates) largest angle, of a displacement by the length */
     double beam_limit;
+    /* The first condition that parameters (npar) violate, -1: none; what each condition asks for, in words. */
+    int32_t (*violated)(const double *par);
+    const char *const *conditions;
 } sym_plant;
 
 typedef struct sym_instance {
@@ -44,10 +48,15 @@ typedef struct sym_instance {
     double t, *q, *v;   /* the present state: (nq), (nv) */
     double *u;          /* (nu) inputs */
     double *par;        /* (npar) parameters: call sym_instance_prepare after a change */
+    int32_t check_parameters; /* 1, the default: sym_instance_prepare judges them; 0: it takes them as they come */
+    int32_t refused;    /* index in plant->conditions of the condition that they violate; -1: none is known of */
     double *a, *lam;    /* (nv), (nc) of sym_instance_accelerate */
     double *gains;      /* (2 nc) Baumgarte's: alpha of each, then beta of each [1/s]; zero by default */
     int32_t project;    /* 1: project onto the constraints after each step; the default of models that have some */
     double *pre, *work; /* for calls of the model's functions: (npre), and scratch for any of them */
+    sym_beam *beams;    /* (n_beams) at the present parameters, as are scale, reach and stiffness in `run` */
+    double *beam_scale, *beam_reach;
+    sym_call beam_stiffness;
     sym_system system;
     sym_run run;
 } sym_instance;
@@ -58,19 +67,21 @@ size_t sym_instance_size(const sym_plant *plant);
 sym_instance *sym_instance_init(void *memory, size_t size, const sym_plant *plant);
 /* Parameters, state and inputs as at the start. */
 void sym_instance_reset(sym_instance *instance);
-/* Evaluate what depends on parameters alone. */
-void sym_instance_prepare(sym_instance *instance);
+/* Evaluate what depends on parameters alone. Returns 0, or SYM_PARAMETERS_REFUSED where they violate a condition of the
+ * description (instance->refused): nothing moves then until this is called with parameters that are allowed. */
+int32_t sym_instance_prepare(sym_instance *instance);
 /* Project the state onto the constraints. Returns 0 or a status. */
 int32_t sym_instance_project(sym_instance *instance);
-/* Judge how far the beams of the present state bend: run.beam_error is the largest of each since the reset, as
- * sym_instance_advance keeps it. Returns 0 or SYM_BEYOND_THEORY. */
+/* Judge how far the beams of the present state bend, as sym_instance_advance does. Returns 0 or SYM_BEYOND_THEORY. */
 int32_t sym_instance_judge_beams(sym_instance *instance);
+/* Estimated error of a beam's theory since the reset, relative to its deflection, axial loads included. */
+double sym_instance_beam_error(const sym_instance *instance, int32_t beam);
 /* Accelerations and multipliers at the present state. Returns 0 or a status. */
 int32_t sym_instance_accelerate(sym_instance *instance);
 /* Integrate to t_end by steps of at most h (0: the plant's). Returns SYM_FINISHED or a status below zero. */
 int32_t sym_instance_advance(sym_instance *instance, double t_end, double h);
 /* Evaluate one function of the model at the present state; out: its outputs in order. Returns 0 where it is absent, or
- * asks for an input that an instance does not hold. */
+ * asks for an input that an instance does not hold, or parameters are refused. */
 int32_t sym_instance_call(sym_instance *instance, const sym_function *function, double *const *out);
 /* Rates of q and v (nq + nv) at the present state. Returns 0 or a status. */
 int32_t sym_instance_rates(sym_instance *instance, double *rates);

@@ -23,7 +23,8 @@ typedef enum sym_status {
     SYM_NO_CONVERGENCE = -5,     /* the equations of an implicit step were not solved */
     SYM_PROJECTION_FAILED = -6,  /* the state could not be projected onto the constraints */
     SYM_BEYOND_THEORY = -7,      /* a beam is bent beyond second-order theory */
-    SYM_ENERGY_LOST = -8         /* projection onto the constraints has taken the motion's energy */
+    SYM_ENERGY_LOST = -8,        /* projection onto the constraints has taken the motion's energy */
+    SYM_PARAMETERS_REFUSED = -9  /* parameters violate a condition of the description; of instances only */
 } sym_status;
 
 typedef enum sym_method {
@@ -40,7 +41,7 @@ typedef enum sym_segment_kind {
     SYM_SEGMENT_POSE = 2         /* position, then quaternion; 6 speeds: linear, then angular, in body axes */
 } sym_segment_kind;
 
-enum { SYM_MAX_BEAM_COORDINATES = 120 };
+enum { SYM_MAX_BEAM_COORDINATES = 120, SYM_BEAM_STATES = 16 };
 enum { SYM_MAX_INPUTS = 10, SYM_MAX_OUTPUTS = 10 }; /* of a model function that is called here; "pre" is an input */
 
 typedef struct sym_segment {
@@ -56,7 +57,7 @@ typedef struct sym_signal { /* one input, sampled over time */
 } sym_signal;
 
 typedef struct sym_beam { /* one elastic body: angles of its sections are linear in its elastic coordinates */
-    int32_t q, first;            /* first index in q; first index in beam_scale and beam_q */
+    int32_t q, v, first;         /* first index in q, in v, in beam_scale and beam_q */
     int32_t n_y, n_z, n_twist;   /* number of coordinates by direction */
     int32_t blocks;              /* number of blocks of four stations */
     const double *angles;        /* (blocks, n_y + n_z + n_twist, 4): yaw, pitch and twist per scaled coordinate [rad] */
@@ -102,7 +103,7 @@ typedef struct sym_system {
     /* Inputs by a function of the caller's; not 0 stops the run. NULL: none. */
     int32_t (*callback)(void *data, double t, const double *q, const double *v, double *u);
     void *data;
-    sym_call forward_dynamics, law, events, project, implicit_terms, residual, momentum;
+    sym_call forward_dynamics, law, events, project, implicit_terms, residual, momentum, mass_matrix, constraint_jacobian;
     const int32_t *on_speeds; /* (nc) whether a constraint binds speeds only (nonholonomic) */
     /* The evaluation point: inputs and outputs of the calls above. */
     double *q, *v, *u, *t, *gains, *a, *lam, *rank;
@@ -144,6 +145,13 @@ typedef struct sym_run {
     const double *beam_scale;  /* 1/L of coordinates that are displacements, else 1 */
     const double *beam_reach;  /* largest angle per coordinate */
     double *beam_error, *beam_t, *beam_q;
+    /* Axial loads of the beams, in states of the motion that are kept as those for the diagnosis are: the work of the
+     * elastic stiffness (nv, nv) and of the tangent stiffness. NULL: nothing is known of them here. */
+    const double *elastic_stiffness;
+    double *beam_works;     /* (SYM_BEAM_STATES, n_beams, 2) */
+    double *beam_change;    /* (nv + nc) scratch */
+    int64_t beam_steps, beam_stride;
+    int32_t beam_states;
     /* Records, row after row; full at capacity, which is n_grid at least. */
     int64_t capacity, n_records;
     double *record_t, *record_q, *record_v, *record_u;
@@ -169,6 +177,8 @@ int32_t sym_run_start(sym_run *run);
 int32_t sym_run_advance(sym_run *run, int64_t max_steps);
 /* Compare the present state's beams with the limit, and keep the largest error of each. Returns 0 or SYM_BEYOND_THEORY. */
 int32_t sym_run_judge_beams(sym_run *run);
+/* Estimated error of a beam's theory, the largest so far, amplified by its axial loads. */
+double sym_run_beam_error(const sym_run *run, int32_t beam);
 /* For external integrators, whose states are y = (q, v) with quaternions of any length; each returns a status. */
 /* The present state becomes y, normalised, and the system's inputs those of that state. */
 int32_t sym_run_set_state(sym_run *run, double t, const double *y);

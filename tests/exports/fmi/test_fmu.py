@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import math
+import re
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -23,6 +24,7 @@ import symofros as sf
 from reference_models import MODELS as REFERENCE
 from symofros.exports.c import compiling
 from tests.exports.cases import MODELS, STARTS, STEP, first_state, relative, run, system_of, trajectory
+from tests.simulation.beam_models import at_rest, cantilever_system
 from tests.models import sampled
 
 SAME = 1e-12
@@ -466,3 +468,38 @@ def test_beams_beyond_their_theory_are_told(limp: Any, version: int, kind: str) 
     assert not remarks[0.2] and ends[0.2] == pytest.approx(1.0)
     assert len(remarks[0.5]) == 1 and "'blade'" in remarks[0.5][0] and ends[0.5] == pytest.approx(1.0)
     assert remarks[60.0] and not ends[60.0] == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("version", ONE_VERSION)
+@pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
+def test_logs_state_the_error_of_rest(column: Any, version: int, kind: str) -> None:
+    """Axial loads count, at the present length."""
+    for share, L in ((0.95, 1.0), (0.9, 0.1), (0.8, 1.0), (-5.0, 10.0)):
+        model, rest = at_rest(share, L)
+        log: list[str] = []
+
+        def logger(*given: Any, log: list[str] = log) -> None:
+            log.append(" ".join(x.decode() if isinstance(x, bytes) else str(x) for x in given))
+
+        start = {f"par.{name}": value for name, value in model.parameters.items()}
+        start |= {f"q.{name}": value for name, value in zip(model.names.q, rest.q.tolist(), strict=True)}
+        span = 0.1 * L**2
+        fmpy.simulate_fmu(
+            column(version), fmi_type=kind, stop_time=span, output_interval=span / 20, start_values=start, logger=logger
+        )
+        stated = [re.search(r"errs by about ([\d.]+) %", line) for line in log if "second-order theory errs" in line]
+        wanted = [100.0 * rest.bendings[0].error] if rest.bendings[0].error > 0.01 else []
+        assert [float(match[1]) for match in stated if match] == pytest.approx(wanted, rel=0.05)
+
+
+@pytest.fixture(scope="module")
+def column(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """Version -> path of a column under axial load; each made once."""
+
+    @cache
+    def make(version: int) -> str:
+        target: Any = f"fmu{version}"
+        with quickly():
+            return str(sf.export(cantilever_system(), target, tmp_path_factory.mktemp("column") / "out").files[0])
+
+    return make

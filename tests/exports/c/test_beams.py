@@ -1,0 +1,103 @@
+"""Packages judge beams as Python does: at the present parameters, under axial loads, for allowed parameters only."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from tests.exports.cases import build, sources
+from tests.simulation.beam_models import NAMES, at_rest, cantilever_system, column_diagram
+
+SHARES = [-5.0, -2.0, -0.5, 0.0, 0.5, 0.8, 0.9, 0.95]
+# Lines of parameters, coordinates and a time to lines of status, error and the words of a refusal.
+DRIVER = """
+#include <stdio.h>
+#include <stdlib.h>
+#include "cantilever.h"
+int main(void) {
+    const size_t size = sym_instance_size(cantilever_plant());
+    sym_instance *it = sym_instance_init(malloc(size), size, cantilever_plant());
+    double t_end;
+    int i, checks;
+    while (scanf("%d", &checks) == 1) {
+        sym_instance_reset(it);
+        it->check_parameters = checks;
+        for (i = 0; i < CANTILEVER_NPAR; ++i) if (scanf("%lf", &it->par[i]) != 1) return 2;
+        for (i = 0; i < CANTILEVER_NQ; ++i) if (scanf("%lf", &it->q[i]) != 1) return 2;
+        if (scanf("%lf", &t_end) != 1) return 2;
+        (void)sym_instance_prepare(it);
+        const int status = sym_instance_advance(it, t_end, t_end / 200);
+        printf("%d %.17g %s\\n", status, sym_instance_beam_error(it, 0),
+               it->refused < 0 ? "" : it->plant->conditions[it->refused]);
+    }
+    free(it);
+    return 0;
+}
+"""
+
+
+@pytest.fixture(scope="module")
+def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The program of a package of the column."""
+    folder = tmp_path_factory.mktemp("column") / "c"
+    sf.export(cantilever_system(), "c", folder)
+    (folder / "main.c").write_text(DRIVER)
+    return build(folder, "../judge")
+
+
+def judged(program: Path, rows: list[tuple[int, np.ndarray, np.ndarray, float]]) -> list[list[str]]:
+    """What the program says of each row."""
+    lines = [" ".join(map(repr, [checks, *par.tolist(), *q.tolist(), t])) for checks, par, q, t in rows]
+    done = subprocess.run([program], input="\n".join(lines), capture_output=True, text=True, check=True)
+    return [line.split(" ", 2) for line in done.stdout.splitlines()]
+
+
+def test_packages_state_the_error_of_rest_at_their_parameters(package: Path) -> None:
+    rests = [at_rest(share, L) for share in SHARES for L in (1e-3, 1.0, 30.0)]
+    rows = [(1, model.parameter_values, rest.q, 0.2 * model.parameters["L"] ** 2) for model, rest in rests]
+    said = judged(package, rows)
+    assert [int(line[0]) for line in said] == [1] * len(rows)
+    assert [float(line[1]) for line in said] == pytest.approx([rest.bendings[0].error for _, rest in rests], rel=1e-6)
+
+
+@pytest.mark.parametrize("name", ["L", "EI", "rho"])
+@pytest.mark.parametrize("value", [0.0, -1.0])
+def test_packages_refuse_parameters_that_descriptions_do(package: Path, name: str, value: float) -> None:
+    par = np.array([value if key == name else default for key, default in NAMES.items()])
+    checked, taken = judged(package, [(checks, par, np.zeros(3), 0.1) for checks in (1, 0)])
+    assert int(checked[0]) == -9 and "beam 'blade'" in checked[2]
+    assert int(taken[0]) != -9
+    with pytest.raises(sf.ParameterError, match="beam 'blade'"):
+        at_rest(0.0, 1.0)[0].with_parameters(**{name: value})
+
+
+def test_exported_diagrams_state_the_error_of_rest(tmp_path: Path) -> None:
+    model, rest = at_rest(0.9, 2.0)
+    diagram = column_diagram(model, rest.q)
+    sf.export(diagram, "c", tmp_path, method="rk4", dt=1e-3, outputs=["first.q"])
+    (tmp_path / "main.c").write_text("""
+#include <stdio.h>
+#include <stdlib.h>
+#include "bench.h"
+int main(void) {
+    const size_t size = sym_program_size(bench_program());
+    sym_program_instance *it = sym_program_init(malloc(size), size, bench_program());
+    int i, j;
+    if (it == NULL || sym_program_advance(it, 0.1) < 0) return 1;
+    for (i = 0; i < it->program->n_parts; ++i)
+        for (j = 0; j < it->parts[i]->plant->n_beams; ++j) printf("%.17g\\n", sym_instance_beam_error(it->parts[i], j));
+    it->par[0] = 0.0;
+    i = sym_program_prepare(it);
+    printf("%d %d\\n", i, sym_program_advance(it, 0.2));
+    free(it);
+    return 0;
+}
+""")
+    program = build(tmp_path, "judge", *sources(tmp_path))
+    *errors, refusal = subprocess.run([program], capture_output=True, text=True, check=True).stdout.splitlines()
+    assert [float(error) for error in errors] == pytest.approx([rest.bendings[0].error] * 2, rel=1e-6)
+    assert refusal == "-9 -9"
