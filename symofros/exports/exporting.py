@@ -15,7 +15,6 @@ from symofros.base.options import Options
 from symofros.compiler import GENERATOR, Compilation, compile_system, plan
 from symofros.description.beam import Beam
 from symofros.description.system import System
-from symofros.description.values import symbols
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.program.compiled import resolve
 from symofros.errors import AssemblyError, ExportError, Problem, UnknownNameError, did_you_mean

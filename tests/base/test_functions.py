@@ -44,7 +44,12 @@ def test_functions_have_the_inputs_and_shapes_of_the_table(name: str, function: 
     bound = m.bind(function, FRAME[name] if row.of_frame else "")
     sizes = {"nq": m.nq, "nv": m.nv, "nu": m.nu, "nc": m.nc, "npar": m.npar, "nw": len(m.record.wrench_names)}
     tree = Compilation(MODELS[name]).tree
-    sizes |= {"npi": 10 * len(tree.links), "nj": len(m.names.joints), "ns": len(m.names.prescribed), "nb": len(m.beams())}
+    sizes |= {
+        "npi": 10 * len(tree.links),
+        "nj": len(m.names.joints),
+        "ns": len(m.names.prescribed),
+        "nb": len(m.beams()),
+    }
     inputs = [group for group in row.inputs if group != "gains" or m.nc]
     assert [group for group in bound.inputs if group in row.inputs] == inputs
     assert all(array.shape == (size_of(INPUTS[group][0], sizes),) for group, array in bound.inputs.items())

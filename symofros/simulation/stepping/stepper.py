@@ -96,7 +96,17 @@ class Stepper:
         system.beams = memory.own(
             "sym_beam[]",
             [
-                (beam.q, beam.v, first, *beam.counts, len(blocks), memory.doubles(blocks), beam.EI_z, beam.EI_y, beam.contrast)
+                (
+                    beam.q,
+                    beam.v,
+                    first,
+                    *beam.counts,
+                    len(blocks),
+                    memory.doubles(blocks),
+                    beam.EI_z,
+                    beam.EI_y,
+                    beam.contrast,
+                )
                 for beam, first in zip(self.beams, firsts.tolist(), strict=False)
                 for blocks in (beam.angle_blocks,)
             ],

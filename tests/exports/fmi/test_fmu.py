@@ -24,8 +24,8 @@ import symofros as sf
 from reference_models import MODELS as REFERENCE
 from symofros.exports.c import compiling
 from tests.exports.cases import MODELS, STARTS, STEP, first_state, relative, run, system_of, trajectory
-from tests.simulation.beam_models import at_rest, cantilever_system
 from tests.models import sampled
+from tests.simulation.beam_models import at_rest, cantilever_system
 
 SAME = 1e-12
 # CVODE's own tolerance, over the run.
@@ -482,7 +482,7 @@ def test_logs_state_the_error_of_rest(column: Any, version: int, kind: str) -> N
             log.append(" ".join(x.decode() if isinstance(x, bytes) else str(x) for x in given))
 
         start = {f"par.{name}": value for name, value in model.parameters.items()}
-        start |= {f"q.{name}": value for name, value in zip(model.names.q, rest.q.tolist(), strict=True)}
+        start |= {f"q.'{name}'": value for name, value in zip(model.names.q, rest.q.tolist(), strict=True)}
         span = 0.1 * L**2
         fmpy.simulate_fmu(
             column(version), fmi_type=kind, stop_time=span, output_interval=span / 20, start_values=start, logger=logger
