@@ -38,15 +38,13 @@ def dashboard(
 
     Exit code: 0 no report misses anything, 1 one does, 2 bad input, 130 interrupted while reports were written anew.
     """
-    _existing(output)
-    interrupted = anew and not _all_anew(output)
-    entries = gather(output, provenance.versions_now(), datetime.date.today())
+    interrupted = anew and not _all_anew(_existing(output))
+    entries = _gathered(output, list(TOPICS))
     page = write_index(entries, output, provenance.now())
     try:
         quote(readme, (output / "summary.md").read_text(encoding="utf-8"))
     except QuoteError as error:
         raise typer.BadParameter(str(error), param_hint="--readme") from None
-    _show(entries)
     typer.echo(f"{headline(entries)} Page: {page}")
     missed = any(entry.verdict == "missed" for entry in entries.values())
     raise typer.Exit(Exit.INTERRUPTED if interrupted else Exit.MISSED if missed else Exit.GOOD)
@@ -60,20 +58,25 @@ def render(
 
     Exit code: 0 all could be read, 1 one could not, 2 bad input.
     """
-    _existing(output)
-    chosen = known(names, TOPICS, "NAME", "report")
-    entries = gather(output, provenance.versions_now(), datetime.date.today())
-    for name in chosen:
-        if (report := entries[name].report) is not None:
-            render_report(TOPICS[name], entries[name].data, output, report)
-    _show({name: entries[name] for name in chosen})
-    unread = any(entries[name].report is None for name in chosen)
-    raise typer.Exit(Exit.MISSED if unread else Exit.GOOD)
+    entries = _gathered(output, known(names, TOPICS, "NAME", "report"))
+    for name, entry in entries.items():
+        if entry.report is not None:
+            render_report(TOPICS[name], entry.data, output, entry.report)
+    raise typer.Exit(Exit.GOOD if all(entry.report for entry in entries.values()) else Exit.MISSED)
 
 
-def _existing(folder: Path) -> None:
+def _existing(folder: Path) -> Path:
     if not folder.is_dir():
         raise typer.BadParameter(f"no folder {folder}; `--regenerate` fills one that is there", param_hint="--output")
+    return folder
+
+
+def _gathered(folder: Path, names: list[str]) -> dict[str, Entry]:
+    """What the reports in a folder say, a line each on the terminal."""
+    entries = gather(_existing(folder), provenance.versions_now(), datetime.date.today(), names)
+    for name, entry in entries.items():
+        typer.echo(f"{name:11}{entry.verdict:10}{entry.said}")
+    return entries
 
 
 def _all_anew(folder: Path) -> bool:
@@ -101,8 +104,3 @@ def regenerate(topic: Topic, folder: Path) -> str:
     # The last lines of what it complained of, if it wrote no report.
     complaint = [] if run.returncode in ends else run.stderr.strip().splitlines()[-5:]
     return "\n".join([f"{topic.name}: {end}, {time.perf_counter() - start:.0f} s", *complaint])
-
-
-def _show(entries: dict[str, Entry]) -> None:
-    for name, entry in entries.items():
-        typer.echo(f"{name:11}{entry.verdict:10}{entry.said}")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import datetime
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -46,9 +46,11 @@ class Entry:
         return self.report.summary if self.report else "; ".join(self.remarks)
 
 
-def gather(folder: Path, installed: Mapping[str, str], today: datetime.date) -> dict[str, Entry]:
-    """Every report that is known of; its versions are compared with those `installed`, its age counts from `today`."""
-    return {name: _entry(folder, topic, installed, today) for name, topic in TOPICS.items()}
+def gather(
+    folder: Path, installed: Mapping[str, str], today: datetime.date, names: Iterable[str] = TOPICS
+) -> dict[str, Entry]:
+    """Reports of a folder; their versions are compared with those `installed`, their age counts from `today`."""
+    return {name: _entry(folder, TOPICS[name], installed, today) for name in names}
 
 
 def _entry(folder: Path, topic: Topic, installed: Mapping[str, str], today: datetime.date) -> Entry:
@@ -72,16 +74,13 @@ def _entry(folder: Path, topic: Topic, installed: Mapping[str, str], today: date
 
 def doubts(origin: Provenance, installed: Mapping[str, str], today: datetime.date) -> list[str]:
     """Why a report may be out of date, or can't say."""
-    asked = {
-        "when it was made": origin.date,
-        "on which machine": origin.machine,
-        "with which versions": origin.versions,
-    }
-    said = [f"does not say {what}" for what, value in asked.items() if not value]
+    asked = "when it was made", "on which machine", "with which versions"
+    stated = zip(asked, (origin.date, origin.machine, origin.versions), strict=True)
+    said = [f"does not say {what}" for what, value in stated if not value]
     changed = [
         f"{name} {version}, now {installed[name]}"
         for name, version in origin.versions.items()
-        if name in installed and installed[name] != version
+        if installed.get(name, version) != version
     ]
     said += [f"stale: made with {', '.join(changed)}"] if changed else []
     try:

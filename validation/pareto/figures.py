@@ -15,6 +15,7 @@ from validation.reporting.charts import BAD, INK, LINE, SERIES, SOFT, logarithmi
 from validation.reporting.figures import Curve, Drawing, Figure
 
 TIME = "time of the processor  [s]"
+SIZE = (310.0, 330.0)
 # Series of a figure: each has a colour and a mark that no other has.
 MOST = 8
 _COLORS = (0, 1, 5, 6, 11, 8, 9, 7)
@@ -32,68 +33,54 @@ def method(point: Point) -> str:
 def figure(problem: BenchmarkProblem, result: Result) -> Figure:
     """All runs with the front; and each method on the model with which it is fastest at the smallest target error."""
     points = charted(problem, result.points)
-    names = tuple(dict.fromkeys([*map(method, front(points)), *ranking(problem, points)]))
-    hidden = f" Not drawn: {', '.join(names[MOST:])}; the table of methods has them." if names[MOST:] else ""
-    caption = (
-        "Down is more accurate, left is faster. First: the front, which no run beats in both, and what its runs are, "
-        "from the fastest to the most accurate; runs that are beaten are grey (crosses: other engines). Second: each "
-        f"method on its best model.{hidden}"
-    )
-    return Figure(caption, (front_drawing(problem, result), _methods_drawing(problem, result, points, names[:MOST])))
-
-
-def ranking(problem: BenchmarkProblem, points: Sequence[Point]) -> list[str]:
-    """Methods, the fastest at the smallest target error first; those that miss it by their least error."""
-    groups = grouped(points, method)
+    best, methods = front(points), grouped(points, method)
     error = min((target.error for target in problem.targets), default=0.0)
-    return sorted(groups, key=lambda name: (seconds_at(groups[name], error), min(p.error for p in groups[name])))
 
+    def rank(some: Sequence[Point]) -> tuple[float, float]:
+        """The fastest at the smallest target error first; those that miss it by their least error."""
+        return seconds_at(some, error), min(p.error for p in some)
 
-def grouped(points: Sequence[Point], name: Callable[[Point], Any]) -> dict[Any, list[Point]]:
-    """Points by a name."""
-    groups: dict[Any, list[Point]] = {}
-    for p in points:
-        groups.setdefault(name(p), []).append(p)
-    return groups
+    names = tuple(dict.fromkeys([*map(method, best), *sorted(methods, key=lambda name: rank(methods[name]))]))
+    fronted = [name for name in names[:MOST] if any(method(p) == name for p in best)]
+    floors = [(1.0, value, name, BAD) for name, value in result.floors.items()]
 
-
-def front_drawing(problem: BenchmarkProblem, result: Result) -> Drawing:
-    """Every run, grey but for those of the front, which are named in the margin."""
-    points = charted(problem, result.points)
-    best = front(points)
-    names = list(dict.fromkeys(map(method, best)))[:MOST]
-
-    def paint(axes: Any) -> None:
+    def paint_front(axes: Any) -> None:
         _frame(axes, problem, points)
         for ours, mark in ((True, "o"), (False, "x")):
             beaten = [p for p in points if p not in best and (p.who == OURS) is ours]
             axes.plot(*_xy(beaten), mark, color=SOFT, alpha=0.3, markersize=4, markeredgewidth=1)
         stairs = [(b.seconds, a.error) for a, b in pairwise(best)] + [(p.seconds, p.error) for p in best]
         axes.plot(*zip(*sorted(stairs, key=lambda at: (at[0], -at[1])), strict=True), color=SOFT, linewidth=1)
-        for k, name in enumerate(names):
+        for k, name in enumerate(fronted):
             axes.plot(*_xy([p for p in best if method(p) == name]), **_style(name, k, "points"), zorder=3)
-        colors = {name: SERIES[_COLORS[k]] for k, name in enumerate(names)}
+        colors = {name: SERIES[_COLORS[k]] for k, name in enumerate(fronted)}
         runs = [(p.seconds, p.error, f"{p.model}, {p.setting}", colors.get(method(p), LINE)) for p in best]
-        _margin(
-            axes, runs + [(1.0, value, f"floor of our beams, {name}", BAD) for name, value in result.floors.items()]
-        )
+        _margin(axes, runs + [(x, y, f"floor of our beams, {name}", color) for x, y, name, color in floors])
 
-    return Drawing(f"{problem.title}: the front and its runs", TIME, problem.axis, paint, size=(310.0, 330.0))
-
-
-def _methods_drawing(problem: BenchmarkProblem, result: Result, points: list[Point], names: Sequence[str]) -> Drawing:
-    groups = grouped(points, method)
-    error = min((target.error for target in problem.targets), default=0.0)
-
-    def paint(axes: Any) -> None:
+    def paint_methods(axes: Any) -> None:
         _frame(axes, problem, points)
-        for k, name in enumerate(names):
-            series = grouped(groups[name], lambda p: p.series).values()
-            best = min(series, key=lambda some: (seconds_at(some, error), min(p.error for p in some)))
-            axes.plot(*_xy(sorted(best, key=lambda p: p.seconds)), **_style(name, k, "joined"))
-        _margin(axes, [(1.0, value, f"floor, {name}", BAD) for name, value in result.floors.items()])
+        for k, name in enumerate(names[:MOST]):
+            series = min(grouped(methods[name], lambda p: p.series).values(), key=rank)
+            axes.plot(*_xy(sorted(series, key=lambda p: p.seconds)), **_style(name, k, "joined"))
+        _margin(axes, [(x, y, f"floor, {name}", color) for x, y, name, color in floors])
 
-    return Drawing("methods, each on its best model", TIME, problem.axis, paint, size=(310.0, 330.0))
+    hidden = f" Not drawn: {', '.join(names[MOST:])}; the table of methods has them." if names[MOST:] else ""
+    caption = f"""Down is more accurate, left is faster. First: the front, which no run beats in both, and what its runs
+    are, from the fastest to the most accurate; runs that are beaten are grey (crosses: other engines). Second: each
+    method on its best model.{hidden}"""
+    title = f"{problem.title}: the front and its runs"
+    return Figure(
+        caption,
+        (
+            Drawing(title, TIME, problem.axis, paint_front, size=SIZE),
+            Drawing("methods, each on its best model", TIME, problem.axis, paint_methods, size=SIZE),
+        ),
+    )
+
+
+def grouped(points: Sequence[Point], name: Callable[[Point], Any]) -> dict[Any, list[Point]]:
+    """Points by a name."""
+    return {key: [p for p in points if name(p) == key] for key in dict.fromkeys(map(name, points))}
 
 
 def _style(name: str, k: int, kind: Any) -> dict[str, Any]:
@@ -128,20 +115,12 @@ def _margin(axes: Any, rows: Sequence[tuple[float, float, str, str]]) -> None:
     places = [(np.log10(row[1]) - low) / (high - low) for row in rows]
     for k in range(1, len(places)):
         places[k] = min(places[k], places[k - 1] - _LINE)
-    for k in range(len(places)):
-        places[k] = max(places[k], (len(places) - 1 - k) * _LINE)
+    places = [max(place, (len(places) - 1 - k) * _LINE) for k, place in enumerate(places)]
     for (x, y, name, color), place in zip(rows, places, strict=True):
         limit = color == BAD
         if limit:
             axes.axhline(y, color=BAD, linewidth=1.2, linestyle=(0, (6, 2)), zorder=1.5)
-        axes.annotate(
-            name,
-            (x, y),
-            (1.03, place),
-            axes.get_yaxis_transform() if limit else "data",
-            "axes fraction",
-            {"arrowstyle": "-", "color": color, "linewidth": 0.6, "shrinkA": 1, "relpos": (0.0, 0.5), "shrinkB": 2},
-            color=BAD if limit else INK,
-            va="center",
-            fontsize=9.5,
-        )
+        coordinates = axes.get_yaxis_transform() if limit else "data"
+        arrow = {"arrowstyle": "-", "color": color, "linewidth": 0.6, "shrinkA": 1, "relpos": (0, 0.5), "shrinkB": 2}
+        text = {"color": BAD if limit else INK, "va": "center", "fontsize": 9.5}
+        axes.annotate(name, (x, y), (1.03, place), coordinates, "axes fraction", arrow, **text)

@@ -37,19 +37,12 @@ _FOLDER = typer.Option("--output", "-o", "--report", help=f"Folder of the report
 Output = Annotated[Path, _FOLDER]
 AsJson = Annotated[bool, typer.Option("--json", help="Print the result as JSON, nothing else.")]
 Quick = Annotated[bool, typer.Option("--quick", help="A short way to the same questions: fewer points and runs.")]
-
 _CODES = "Exit code: 0 everything asked for is met, 1 something is not, 2 bad input, 130 interrupted."
 
 
 @dataclass
 class Done:
-    """What became of several parts.
-
-    Attributes:
-        results: Name -> result.
-        failures: Name -> reason why it could not be done.
-        unfinished: Names that Ctrl-C cut.
-    """
+    """Results of several parts by their names, reasons why others failed, and names that Ctrl-C cut."""
 
     results: dict[str, Any] = field(default_factory=dict)
     failures: dict[str, str] = field(default_factory=dict)
@@ -57,23 +50,19 @@ class Done:
 
     def head(self, ok: bool, quick: bool) -> dict[str, Any]:
         """How they went, for JSON; `ok`: whether the results are what was asked for."""
-        return {
-            "ok": ok and bool(self.results) and not self.failures and not self.unfinished,
-            "quick": quick,
-            "failures": self.failures,
-            "unfinished": self.unfinished,
-        }
+        good = ok and bool(self.results) and not self.failures and not self.unfinished
+        return {"ok": good, "quick": quick, "failures": self.failures, "unfinished": self.unfinished}
 
 
 def progress_bar(console: Console) -> Progress:
     """A bar for eyes, with names and what is left; a file or a pipe gets lines (`Run.advance`)."""
+    left = TextColumn("left"), TimeRemainingColumn()
     columns = (
         TextColumn("{task.description}"),
         BarColumn(bar_width=16),
         MofNCompleteColumn(),
         TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
+        *left,
     )
     return Progress(*columns, console=console, transient=True, disable=not console.is_terminal)
 
@@ -93,8 +82,7 @@ class Run:
 
     def __init__(self, topic: Topic, folder: Path | None = None) -> None:
         self.topic, self.folder, self.asked, self.writes = topic, folder or REPORTS, folder is not None, True
-        self.start = time.perf_counter()
-        self._done, self._total = 0, 0
+        self.start, self._done, self._total = time.perf_counter(), 0, 0
         self._console = Console(stderr=True)
         self.bar = progress_bar(self._console)
         self._task = self.bar.add_task(topic.name, total=None)
@@ -103,19 +91,18 @@ class Run:
         """So many steps are to be done."""
         self._done, self._total = 0, total
         self.bar.reset(self._task, total=total, description=doing or self.topic.name)
-        if self.bar.disable:
-            self._tell(f"{doing or self.topic.name}: {total} in all")
+        self._tell(f"{doing or self.topic.name}: {total} in all")
 
     def advance(self, doing: str | None = None, steps: int = 1) -> None:
         """Steps are done; `doing` says what comes next, or came out."""
         self._done += steps
         self.bar.update(self._task, advance=steps, description=doing)
-        if self.bar.disable and doing is not None:
-            self._tell(f"[{self._done}/{self._total}] {doing}")
+        self._tell(doing and f"[{self._done}/{self._total}] {doing}")
 
-    def _tell(self, text: str) -> None:
+    def _tell(self, text: str | None) -> None:
         """A line of progress where no bar can be drawn, with the time since the start."""
-        self._console.print(f"{self.seconds:7.1f} s  {text}", markup=False, highlight=False, soft_wrap=True)
+        if self.bar.disable and text:
+            self._console.print(f"{self.seconds:7.1f} s  {text}", markup=False, highlight=False, soft_wrap=True)
 
     def reached(self, number: int) -> None:
         """So many steps are done in all."""
@@ -126,12 +113,9 @@ class Run:
         self._console.print(text, style="bold red" if bad else "yellow", markup=False)
 
     def each(self, names: Sequence[str], work: Callable[[str], Any], after: Callable[[Done], object] = id) -> Done:
-        """Do parts one by one: one that fails does not keep the others from being done, Ctrl-C ends them.
+        """Results of `work` on names, one by one: one that fails does not keep the others from being done.
 
-        Args:
-            names: The parts.
-            work: Name -> result.
-            after: Told after each of what is done so far.
+        `after` is told after each what is done so far; Ctrl-C ends them.
         """
         done = Done()
         for position, name in enumerate(names):
@@ -167,12 +151,6 @@ def composed(topic: Topic, data: Data) -> Report:
 def write(topic: Topic, data: Data, folder: Path, report: Report | None = None) -> Report:
     """Write NAME.json (everything), NAME.md (texts and tables), NAME.html (one self-contained page).
 
-    Args:
-        topic: The report.
-        data: JSON of the report.
-        folder: Folder of the files.
-        report: What is made of the data, where that is known.
-
     Raises:
         OSError: The folder can't be written to.
     """
@@ -193,20 +171,12 @@ def code(report: Report) -> Exit:
     """The exit code of a report."""
     if report.unfinished:
         return Exit.INTERRUPTED
-    if report.ok is False and report.refused:
-        return Exit.BAD_INPUT
-    return Exit.MISSED if report.ok is False else Exit.GOOD
+    missed = Exit.BAD_INPUT if report.refused else Exit.MISSED
+    return missed if report.ok is False else Exit.GOOD
 
 
 def execute(topic: Topic, folder: Path | None, as_json: bool, **options: Any) -> None:
-    """Measure, write, print, exit.
-
-    Args:
-        topic: The report.
-        folder: Folder of the files, if one was asked for.
-        as_json: Whether data is printed, and nothing else.
-        options: Options of what measures.
-    """
+    """Measure with the options of what measures, write, print (data alone if `as_json`), exit."""
     run = Run(topic, folder)
     try:
         with run.bar:
@@ -214,26 +184,25 @@ def execute(topic: Topic, folder: Path | None, as_json: bool, **options: Any) ->
     except KeyboardInterrupt:
         run.say(f"{topic.name}: interrupted, nothing is written", bad=True)
         raise typer.Exit(Exit.INTERRUPTED) from None
-    report = composed(topic, data)
-    kept = _keeps_whole(run, report)
-    if run.writes and not kept:
+    report, page = composed(topic, data), f"{run.folder / topic.name}.html"
+    said = f"Report: {page}"
+    if not run.writes:
+        said = "--report FOLDER writes the whole report"
+    elif _keeps_whole(run, report):
+        said = f"{page} stays that of a whole run; --report FOLDER writes this one"
+    else:
         write(topic, data, run.folder, report)
     if as_json:
         typer.echo(json.dumps({name: data[name] for name in topic.printed or data}, allow_nan=False))
     else:
         terminal.show(report)
-        if kept:
-            typer.echo(f"{run.folder / topic.name}.html stays that of a whole run; --report FOLDER writes this one")
-        elif run.writes:
-            typer.echo(f"Report: {run.folder / topic.name}.html")
-        else:
-            typer.echo("--report FOLDER writes the whole report")
+        typer.echo(said)
     raise typer.Exit(code(report))
 
 
 def _keeps_whole(run: Run, report: Report) -> bool:
     """Whether a run that was cut short leaves a whole one of the same name as it is."""
-    if not (run.writes and report.unfinished):
+    if not report.unfinished:
         return False
     try:
         stored = json.loads((run.folder / f"{run.topic.name}.json").read_text(encoding="utf-8"))
@@ -247,7 +216,7 @@ def add_command(app: typer.Typer, topic: Topic) -> None:
     if topic.measure is None:
         return
     keyword = inspect.Parameter.KEYWORD_ONLY
-    own = list(inspect.signature(topic.measure, eval_str=True).parameters.values())[1:]
+    _, *own = inspect.signature(topic.measure, eval_str=True).parameters.values()
     options = [
         *(parameter.replace(kind=keyword) for parameter in own),
         inspect.Parameter("folder", keyword, default=None, annotation=Annotated[Path | None, _FOLDER]),

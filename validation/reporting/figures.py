@@ -14,19 +14,15 @@ from validation.reporting.plain import as_array
 
 Values = Annotated[Array | Sequence[float], PlainValidator(as_array)]
 Kind = Literal["line", "dashed", "dotted", "points", "joined"]
-Logarithmic = Literal["", "x", "y", "xy"]
 # Marks of points: so many series have a colour and a mark of their own.
 SHAPES = 8
 
 
 @dataclass(frozen=True)
 class Curve:
-    """One set of points.
+    """Points (x, y) under a label of the legend; what is not finite, or no logarithm, leaves a gap.
 
     Attributes:
-        label: Name in the legend.
-        x: Abscissae (n).
-        y: Ordinates (n); what is not finite, or not positive on a logarithmic axis, leaves a gap.
         color: Index of a colour of series.
         kind: Style; "joined" is points on a line.
         shape: Index of the mark of points, counted from that of the colour.
@@ -52,13 +48,7 @@ def curves(
 
 @dataclass(frozen=True)
 class Mark:
-    """A straight line across the chart, named in the legend.
-
-    Attributes:
-        label: Name in the legend.
-        at: Value of the axis.
-        axis: The axis that `at` is a value of.
-    """
+    """A straight line across the chart at a value of an axis, named in the legend."""
 
     label: str
     at: float
@@ -67,12 +57,9 @@ class Mark:
 
 @dataclass(frozen=True)
 class Chart:
-    """Curves over one pair of axes.
+    """Curves over one pair of axes, `x` and `y` by name and unit.
 
     Attributes:
-        title: Title of the figure.
-        x: Name and unit of the abscissa; y: of the ordinate.
-        curves: Curves in the order of the legend.
         marks: Limits and thresholds.
         log: Names of the logarithmic axes.
         range_y: Part of the ordinate that is shown; None for all.
@@ -84,18 +71,16 @@ class Chart:
     y: str
     curves: tuple[Curve, ...]
     marks: tuple[Mark, ...] = ()
-    log: Logarithmic = ""
+    log: Literal["", "x", "y", "xy"] = ""
     range_y: tuple[float, float] | None = None
     equal: bool = False
 
 
 @dataclass(frozen=True)
 class Drawing:
-    """A picture that is no set of curves.
+    """A picture that is no set of curves, over axes `x` and `y` by name and unit.
 
     Attributes:
-        title: Title of the figure.
-        x: Name and unit of the abscissa; y: of the ordinate.
         paint: Draws it into Matplotlib's axes; labelled artists make the legend.
         note: Line above the legend.
         size: Width and height of the axes [px].

@@ -22,15 +22,7 @@ _Low = Annotated[float, BeforeValidator(lambda x: -math.inf if x is None else x)
 
 @dataclass(frozen=True)
 class Finding:
-    """A number and the bounds it must keep.
-
-    Attributes:
-        quantity: Name of the number, in words, with its unit.
-        value: The number.
-        high: Upper bound, allowed itself.
-        low: Lower bound, allowed itself.
-        reason: Origin of the bounds.
-    """
+    """A number, named by a quantity with its unit, the bounds it must keep, both allowed, and the reason of these."""
 
     quantity: str
     value: Number
@@ -52,15 +44,7 @@ class Finding:
 
 @dataclass(frozen=True)
 class Study:
-    """The answer to one question.
-
-    Attributes:
-        title: The question.
-        answer: The answer in words, with the numbers found.
-        figures: Figures that show it.
-        findings: Numbers with their bounds.
-        sources: Origins of the reference numbers.
-    """
+    """A question, the answer in words, figures that show it, numbers with bounds, and sources of references."""
 
     title: str
     answer: str

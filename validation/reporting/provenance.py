@@ -25,14 +25,7 @@ _ALIASES = {"pinocchio": "pin", "pinocchio-urdf": "pin", "mujoco-urdf": "mujoco"
 
 @dataclass(frozen=True)
 class Provenance:
-    """The origin of a report's numbers; empty where it does not say.
-
-    Attributes:
-        date: Time when it was made (UTC).
-        machine: Processor, cores, system.
-        versions: Package -> version.
-        rows: Everything for people: pairs of what, and its value.
-    """
+    """The origin of a report's numbers; empty where it does not say. `rows` has everything for people, in pairs."""
 
     date: str = ""
     machine: str = ""
@@ -44,7 +37,7 @@ class Provenance:
         """From the top of a report, and from what it says of the machine, which may be of several compilers."""
         stated = {**data, **data.get("machine", {})}
         flags, cores = stated.get("flags", ""), stated.get("cores", "")
-        parts = (stated.get("processor"), f"{cores} cores" if cores else "", stated.get("system"))
+        parts = stated.get("processor"), cores and f"{cores} cores", stated.get("system")
         machine = ", ".join(filter(None, parts))
         pairs = {
             "made": stated.get("date", ""),

@@ -13,17 +13,12 @@ from validation.reporting.record import Report
 
 # Wide enough for every column when the output is not a terminal, which has a width of its own.
 PLAIN_WIDTH = 140
-_STYLE = {True: "bold green", False: "bold red", None: "bold"}
-
-
-def output() -> Console:
-    """Where results go."""
-    return Console(width=None if sys.stdout.isatty() else PLAIN_WIDTH, highlight=False)
 
 
 def show(report: Report) -> None:
     """Print the digest and the summary."""
-    console = output()
+    console = Console(width=None if sys.stdout.isatty() else PLAIN_WIDTH, highlight=False)
     for block in report.digest:
         console.print(Markdown(markdown.block(block), hyperlinks=False))
-    console.print(Text(report.summary, style=_STYLE[report.ok]), soft_wrap=True)
+    style = {True: "bold green", False: "bold red", None: "bold"}[report.ok]
+    console.print(Text(report.summary, style=style), soft_wrap=True)

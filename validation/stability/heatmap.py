@@ -26,14 +26,7 @@ _FEW = 14
 
 
 def draw(mapped: Map, x: Grid, y: Grid, quantity: str) -> Drawing:
-    """The map as a drawing with its legend.
-
-    Args:
-        mapped: Runs of one subject.
-        x: The parameter along.
-        y: The parameter across.
-        quantity: Quantity of the criterion, with its unit.
-    """
+    """The map of a subject, x along and y across, with its legend; `quantity` is that of the criterion, with unit."""
 
     def paint(axes: Any) -> None:
         columns, rows = borders(mapped.x, x), borders(mapped.y, y)
@@ -43,10 +36,8 @@ def draw(mapped: Map, x: Grid, y: Grid, quantity: str) -> Drawing:
         lines = edge(mapped.good, columns, rows)
         axes.add_collection(library("matplotlib.collections").LineCollection(lines, colors=INK, linewidths=1.8))
         for k, limit in enumerate(mapped.subject.limits):
-            color = (GOOD, SERIES[6])[k % 2]
-            axes.plot(
-                limit.x, limit.form(limit.x), color=color, linewidth=2, linestyle=(0, (5, 2.5)), label=limit.label
-            )
+            dashed = {"color": (GOOD, SERIES[6])[k % 2], "linewidth": 2, "linestyle": (0, (5, 2.5))}
+            axes.plot(limit.x, limit.form(limit.x), label=limit.label, **dashed)
         axes.plot([], [], color=INK, linewidth=1.8, label="edge as measured")
 
     return Drawing(mapped.subject.name, x.name, y.name, paint, f"numbers: decade of the {quantity}", SIZE)
@@ -77,49 +68,35 @@ def _scaled(axes: Any, name: str, values: Array, grid: Grid, ends: Array) -> Non
 
 def _cells(axes: Any, mapped: Map, columns: Array, rows: Array) -> None:
     """The cells, those of one colour and depth as one path; then what is written into them."""
-    strides = [
-        math.ceil(apart * (len(ends) - 1) / size)
-        for apart, ends, size in zip(_APART, (columns, rows), SIZE, strict=True)
-    ]
-    areas: dict[tuple[str, float], list[Array]] = {}
-    for j, line in enumerate(mapped.cells):
-        for i, one in enumerate(line):
-            kind, depth, sign = cell(one, mapped.bound)
-            (left, right), (low, high) = columns[i : i + 2], rows[j : j + 2]
-            areas.setdefault((kind, depth), []).append(
-                np.array([(left, low), (right, low), (right, high), (left, high)])
-            )
-            if i % strides[0] == 0 and j % strides[1] == 0:
-                place = {"ha": "center", "va": "center", "color": PAPER if depth > _DARK else INK}
-                axes.text(
-                    _middle(left, right, axes.xaxis),
-                    _middle(low, high, axes.yaxis),
-                    sign,
-                    fontsize=7,
-                    in_layout=False,
-                    **place,
-                )
+    ends = zip(_APART, (columns, rows), SIZE, strict=True)
+    strides = [math.ceil(apart * (len(values) - 1) / size) for apart, values, size in ends]
+    middles = _middles(columns, axes.xaxis), _middles(rows, axes.yaxis)
+    areas: dict[tuple[str, float], list[list[tuple[float, float]]]] = {}
+    for j, i in np.ndindex(len(rows) - 1, len(columns) - 1):
+        kind, depth, sign = cell(mapped.cells[j][i], mapped.bound)
+        (left, right), (low, high) = columns[i : i + 2], rows[j : j + 2]
+        areas.setdefault((kind, depth), []).append([(left, low), (right, low), (right, high), (left, high)])
+        if i % strides[0] == 0 and j % strides[1] == 0:
+            ink = {"color": PAPER if depth > _DARK else INK, "fontsize": 7, "in_layout": False}
+            axes.text(middles[0][i], middles[1][j], sign, ha="center", va="center", **ink)
     for (kind, depth), boxes in areas.items():
         path = library("matplotlib.path").Path.make_compound_path_from_polys(np.array(boxes))
-        axes.add_patch(
-            library("matplotlib.patches").PathPatch(
-                path, facecolor=COLORS[kind], alpha=depth, edgecolor=PAPER, linewidth=0.3
-            )
-        )
-    meaning = {
+        filled = {"facecolor": COLORS[kind], "alpha": depth, "edgecolor": PAPER, "linewidth": 0.3}
+        axes.add_patch(library("matplotlib.patches").PathPatch(path, **filled))
+    named = {
         "good": f"at most {mapped.bound:.3g}",
         "bad": "more",
         "ended": "ended before (×)",
         "refused": "refused (r)",
     }
-    kinds = {"good", "bad", *(kind for kind, _ in areas)}
-    for kind, label in meaning.items():
-        if kind in kinds:
-            axes.plot([], [], "s", color=COLORS[kind], alpha=0.7, markersize=8, label=label)
+    for kind in (kind for kind in named if kind in {"good", "bad", *(kind for kind, _ in areas)}):
+        axes.plot([], [], "s", color=COLORS[kind], alpha=0.7, markersize=8, label=named[kind])
 
 
-def _middle(low: float, high: float, axis: Any) -> float:
-    return math.sqrt(low * high) if axis.get_scale() == "log" else (low + high) / 2
+def _middles(ends: Array, axis: Any) -> Array:
+    """The middles of cells as drawn."""
+    low, high = ends[:-1], ends[1:]
+    return np.sqrt(low * high) if axis.get_scale() == "log" else (low + high) / 2
 
 
 def cell(one: Cell, bound: float) -> tuple[str, float, str]:
