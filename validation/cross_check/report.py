@@ -13,7 +13,7 @@ from validation.cross_check.record import Record
 from validation.procedures.catalogue import ENGINE as FORMULAS
 from validation.reporting.figures import Figure
 from validation.reporting.numbers import counted, digits
-from validation.reporting.record import Block, Bullets, Data, Fact, Report, Section, Table, Text, Topic, verdict
+from validation.reporting.record import MISSED, Block, Bullets, Data, Fact, Report, Section, Table, Text, Topic, verdict
 
 # Up to so many models, each engine has a line of its own on a terminal.
 _DETAILED = 2
@@ -59,9 +59,9 @@ def compose(data: Data) -> Report:
     record = Record.of(data)
     engines = [name for name in ROUTES if any(row.engine == name for row in record.compared)]
     baseline, worse = _against_baseline(data), len(data.get("baseline", {}).get("regressions", ()))
-    failed, opinions = tables.failures(record), {name: tables.opinion(record, name) for name in engines}
-    wrong = ", ".join(f"{name} ({one.verdict})" for name, one in opinions.items() if one.disagree)
-    decided = _DECISION.format(wrong or f"none of {len(opinions)}"), tables.of_opinions(opinions.values())
+    failed, opinions = tables.failures(record), [tables.opinion(record, name) for name in engines]
+    wrong = ", ".join(f"{name} ({said.removeprefix(MISSED)})" for name, *_, said in opinions if said != "agrees")
+    decided = _DECISION.format(wrong or f"none of {len(opinions)}"), Table.of(tables.OPINION, opinions)
     marked = ((model, engine, verdict(text, False)) for model, engine, text in failed)
     apart = ((engine, models, reason) for models, engine, reason in tables.unsupported(record))
     speeds = (

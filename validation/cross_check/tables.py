@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
 from validation.adapters import ROUTES
 from validation.check import ModelResult
@@ -21,6 +20,7 @@ COLUMNS = {
     title: tuple(q.name for q in COMPARED if (q.column or q.symbol) == title)
     for title in dict.fromkeys(q.column or q.symbol for q in COMPARED)
 } | {"drift": ("energy_drift",)}
+OPINION = "engine | opinion | models | comparisons | disagree | alone | largest error / tolerance | of | verdict"
 # Engines of rows that no other engine is behind: our own drift, and what was asked of any of them.
 _OURS = ("symofros", "any", FORMULAS)
 # Statuses with a verdict on numbers.
@@ -62,55 +62,24 @@ def _of(model: ModelResult, engine: str) -> list[Comparison]:
     return [row for row in model.comparisons if row.engine == engine]
 
 
-@dataclass(frozen=True)
-class Opinion:
-    """Whether an engine agrees with our C.
+def opinion(record: Record, engine: str) -> tuple[str, ...]:
+    """What an engine says of our C, as a row under `OPINION`.
 
-    Attributes:
-        engine: Name of the engine.
-        models: Number of models; comparisons: of comparisons; disagree: of those that disagree.
-        alone: Number of comparisons in which it disagrees and all other engines, one or more, agree.
-        nearest: Comparison that takes most of its tolerance.
+    One that disagrees is suspect itself where it is alone in that, in most cases, against other independent engines.
     """
-
-    engine: str
-    models: int
-    comparisons: int
-    disagree: int
-    alone: int
-    nearest: Comparison | None
-
-    @property
-    def verdict(self) -> str:
-        """Who is suspect."""
-        return "agrees" if not self.disagree else "suspect" if 2 * self.alone > self.disagree else "against our C"
-
-
-def opinion(record: Record, engine: str) -> Opinion:
-    """Whether an engine agrees, and if not, whether it is alone in that, against other independent engines."""
-    independent = [row for row in record.compared if row.engine in ROUTES and ROUTES[row.engine].independent]
     others: dict[tuple[str, str], set[str]] = {}
-    for row in independent:
-        if row.engine != engine:
+    for row in record.compared:
+        if row.engine != engine and row.engine in ROUTES and ROUTES[row.engine].independent:
             others.setdefault((row.model, row.quantity), set()).add(row.status)
     rows = [row for row in record.compared if row.engine == engine]
-    disagreeing = [row for row in rows if row.status == "disagree"]
-    alone = sum(others.get((row.model, row.quantity)) == {"agree"} for row in disagreeing)
-    return Opinion(engine, len({row.model for row in rows}), len(rows), len(disagreeing), alone, worst(rows))
-
-
-def of_opinions(opinions: Iterable[Opinion]) -> Table:
-    """One line an engine."""
-    rows = []
-    for one in opinions:
-        near, kind = one.nearest, "independent" if ROUTES[one.engine].independent else "our own"
-        used = "nan" if near is None or near.error is None else f"{near.error / near.tolerance:.2g}"
-        place, result = f"{near.words} of {near.model}" if near else "", verdict(one.verdict, not one.disagree)
-        counts = one.models, one.comparisons, one.disagree, one.alone
-        rows.append((one.engine, kind, *map(str, counts), used, place, result))
-    return Table.of(
-        "engine | opinion | models | comparisons | disagree | alone | largest error / tolerance | of | verdict", rows
-    )
+    wrong = [row for row in rows if row.status == "disagree"]
+    alone, near = sum(others.get((row.model, row.quantity)) == {"agree"} for row in wrong), worst(rows)
+    used = "nan" if near is None or near.error is None else f"{near.error / near.tolerance:.2g}"
+    place = f"{near.words} of {near.model}" if near else ""
+    said = "agrees" if not wrong else "suspect" if 2 * alone > len(wrong) else "against our C"
+    kind, models = "independent" if ROUTES[engine].independent else "our own", len({row.model for row in rows})
+    counts = map(str, (models, len(rows), len(wrong), alone))
+    return engine, kind, *counts, used, place, verdict(said, not wrong)
 
 
 def _table(middle: str, lines: Iterable[tuple[ModelResult, str, Sequence[Comparison]]]) -> Table:

@@ -66,7 +66,7 @@ def _decisions(groups: Sequence[tuple[Block, ...]]) -> tuple[Block, ...]:
 
 def headline(entries: Mapping[str, Entry]) -> str:
     """How the reports stand."""
-    named = {verdict: [n for n, e in entries.items() if e.verdict == verdict] for verdict in _VERDICTS}
+    named = {word: [n for n, e in entries.items() if e.verdict == word] for word in _VERDICTS}
     good, missed, measured, absent = named.values()
     said = [f"{len(good)} of {len(good) + len(missed)} reports with a verdict are good"]
     said += [f"missed: {', '.join(missed)}"] if missed else []

@@ -84,7 +84,7 @@ def grouped(points: Sequence[Point], name: Callable[[Point], Any]) -> dict[Any, 
 
 
 def _style(name: str, k: int, kind: Any) -> dict[str, Any]:
-    return style(Curve(name, (), (), _COLORS[k], kind, k - _COLORS[k])) | {"markersize": 7 if kind == "points" else 6}
+    return style(Curve(name, (), (), _COLORS[k], kind, k - _COLORS[k]), 7.0 if kind == "points" else 6.0)
 
 
 def _xy(points: Sequence[Point]) -> tuple[list[float], list[float]]:

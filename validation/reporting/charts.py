@@ -35,6 +35,7 @@ PALETTE = {
     **{f"e{k}": pair for k, pair in enumerate(zip(SERIES, _DARK_SERIES, strict=True))},
 }
 MARKS = "osD^vPX*"
+_GROWN = {"P": 1.3, "X": 1.3, "*": 1.8}
 _DASHES = {"dashed": (4, 2.5), "dotted": (1.2, 2)}
 _LIMITS = ((6, 2), (2, 2), (8, 2, 2, 2))
 _RC = {
@@ -56,7 +57,6 @@ _RC = {
     "xtick.major.size": 0,
     "ytick.major.size": 0,
     "lines.linewidth": 1.6,
-    "lines.markersize": 5,
     "legend.frameon": False,
     "legend.handlelength": 2.2,
 }
@@ -117,14 +117,15 @@ def power(value: float) -> str:
     return f"10{raised}" if mantissa == "1" else f"{mantissa}·10{raised}"
 
 
-def style(curve: Curve) -> dict[str, Any]:
-    """Colour, line and mark of a curve."""
-    dashes = _DASHES.get(curve.kind, ())
+def style(curve: Curve, size: float = 5.0) -> dict[str, Any]:
+    """Colour, line and mark of a curve; marks that cover little are drawn larger than `size`."""
+    dashes, mark = _DASHES.get(curve.kind, ()), MARKS[(curve.color + curve.shape) % SHAPES]
     return {
         "label": curve.label,
         "color": SERIES[curve.color % len(SERIES)],
         "linestyle": "none" if curve.kind == "points" else (0, dashes) if dashes else "-",
-        "marker": MARKS[(curve.color + curve.shape) % SHAPES] if curve.kind in ("points", "joined") else "",
+        "marker": mark if curve.kind in ("points", "joined") else "",
+        "markersize": _GROWN.get(mark, 1.0) * size,
         "markeredgecolor": PAPER,
         "markeredgewidth": 0.5,
     }

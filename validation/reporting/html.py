@@ -87,14 +87,14 @@ def section(one: Section, number: int) -> str:
     """A section; its figures are numbered within it."""
     anchor = f' id="{escape(one.anchor)}"' if one.anchor else ""
     badge = f' <span class="badge {_TONE[one.ok]}">{escape(one.badge)}</span>' if one.badge else ""
-    figures = [item for item in one.blocks if isinstance(item, Figure)]
-    numbers = {id(figure): f"Figure {number}.{k + 1}." for k, figure in enumerate(figures)}
-    return "\n".join(
-        [f"<h2{anchor}>{prose(one.title)}{badge}</h2>", *(block(b, numbers.get(id(b))) for b in one.blocks)]
-    )
+    parts, figures = [f"<h2{anchor}>{prose(one.title)}{badge}</h2>"], 0
+    for item in one.blocks:
+        figures += isinstance(item, Figure)
+        parts.append(block(item, f"Figure {number}.{figures}."))
+    return "\n".join(parts)
 
 
-def block(item: Block, figure_name: str | None = None) -> str:
+def block(item: Block, figure_name: str = "") -> str:
     """Any block."""
     match item:
         case str():

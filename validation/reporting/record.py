@@ -14,7 +14,7 @@ from validation.reporting.figures import Chart, Drawing, Figure
 
 MISSED = "**missed** "
 _BAR = re.compile(r"\s*(?<!\S)\|(?!\S)\s*")
-_NUMBER = re.compile(r"[-+−]?\d([-+−\d., ]|e[-+]?\d| of \d)*( ?[%×]| [a-zA-Zµ]{1,3})?|NaN|-?")
+_NUMBER = re.compile(r"([<>] )?[-+−]?\d([-+−\d.,: ]|e[-+]?\d| of \d)*( ?[%×]| [a-zA-Zµ]{1,3})?( \(\w+\))?|NaN|-?")
 
 
 def verdict(text: object, ok: bool | None) -> str:

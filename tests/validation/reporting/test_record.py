@@ -106,7 +106,22 @@ def test_a_row_is_a_line_of_markdown_or_its_cells(row: str | tuple[str, ...]) ->
 
 
 @pytest.mark.parametrize(
-    "text", ["3", "-1.5e-12", "12, 40", "10 000", "+50.0%", "3 ms", "1.2×", "**7**", "7 of 9", "-", "NaN"]
+    "text",
+    [
+        "3",
+        "-1.5e-12",
+        "12, 40",
+        "10 000",
+        "+50.0%",
+        "3 ms",
+        "1.2×",
+        "**7**",
+        "7 of 9",
+        "< 0.1 % (floor)",
+        "2026-11-22 17:48",
+        "-",
+        "NaN",
+    ],
 )
 def test_columns_of_numbers_are_set_as_such(text: str) -> None:
     assert Table.of("n | who", [f"{verdict(text, False)} | a", "2 | 3"]).numeric == [True, False]
