@@ -84,6 +84,26 @@ def test_a_wrong_selftest_fails(four_bar: Path) -> None:
     assert last_state(done.stdout)["selftest"][0] > 1e-3
 
 
+def test_a_model_that_lacks_what_its_method_calls_is_refused(four_bar: Path) -> None:
+    """By one function after the other, for every method; what the package lacks of itself makes no difference."""
+    text = Template((HERE / "partial.c.in").read_text()).substitute(name="four_bar")
+    (four_bar / "partial.c").write_text(text)
+    build(four_bar, "partial", *(name for name in sources(four_bar) if name != "example.c" and name != "main.c"))
+    written = set(re.findall(r'^    \{"(\w+)", NULL, \d', (four_bar / "four_bar.c").read_text(), re.MULTILINE))
+    called = {  # SYM_METHOD_... of symofros_stepper.h -> what its steps call
+        0: {"forward_dynamics", "project"},
+        1: {"forward_dynamics", "project"},
+        2: {"forward_dynamics", "project", "implicit_terms"},
+        3: {"forward_dynamics", "project", "implicit_terms", "residual"},
+        4: {"forward_dynamics", "project", "implicit_terms", "momentum"},
+    }
+    for method, functions in called.items():
+        absent = functions - written
+        for name in ("", "forward_dynamics", "project", "implicit_terms", "residual", "momentum"):
+            wanted = "refused" if absent or name in functions else "made"
+            assert run("./partial", str(method), name, cwd=four_bar).split() == [wanted], (method, name)
+
+
 def test_nothing_is_written_to_between_calls(four_bar: Path) -> None:
     """No globals: neither data nor zeroed memory in any part but the example."""
     for source in sources(four_bar):

@@ -11,7 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import symofros as sf
-from symofros.simulation.analysis.targets import ROTATION_TOLERANCE, rotation_vector
+from reference_models import MODELS
+from symofros.simulation.analysis.targets import ROTATION_TOLERANCE, Task, rotation_vector
 
 
 @cache
@@ -123,3 +124,16 @@ def test_arrays_of_a_motion_fit_each_other() -> None:
         sf.joint_motion(wrist(), "tip", p, np.zeros((2, 6)), np.zeros((2, 6)), np.eye(3))
     with pytest.raises(sf.SymofrosError, match="sample 1 is not a rotation"):
         sf.joint_motion(wrist(), "tip", p, np.zeros((2, 6)), np.zeros((2, 6)), [np.eye(3), 2 * np.eye(3)])
+
+
+@pytest.mark.parametrize("rotated", [False, True])
+def test_rows_share_sizes_within_one_target_or_one_constraint(rotated: bool) -> None:
+    """Rows of the error: three a position, three a rotation, then those of the constraints in groups of their own."""
+    model = sf.compile(MODELS["parallelogram"], sf.Options(backend="interpreter"))
+    rotation = np.eye(3) if rotated else None
+    wanted = Task(model, {model.names.frames[-1]: sf.Target(np.zeros(3), rotation)}, None, None)
+    rows, of = wanted.measures, model.record.measures.of_rows(wanted.coordinates)
+    first = 6 if rotated else 3
+    assert len(wanted.coordinates) > 2 and len(set(of.group)) > 1
+    assert rows.group == (*((0,) * 3), *((3,) * 3 if rotated else ()), *(first + row for row in of.group))
+    assert len(rows.group) == len(rows.unit) == len(wanted.error(model.neutral()))
