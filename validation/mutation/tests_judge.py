@@ -16,13 +16,13 @@ from typing import Any
 
 # Folders of tests, and files, of what the study plants faults in.
 FOLDERS = (
-    "description expr mechanics generator identities runtime simulation native diagrams blocks reference"
+    "description expr mechanics generator identities runtime simulation native diagrams blocks reference exports"
     " test_derived_once.py test_end_to_end.py"
 ).split()
 LIMIT = 300  # Of one test [s]: one that takes longer with a fault than this hangs.
 HUNG = 77
 MOST = 8  # Files of tests a module: all of them are imported before the first one runs.
-# The tests of C lie with what calls it.
+# The tests of C lie with what calls it: folders of tests of a folder, files of tests of a file.
 _MIRRORS = {
     "symofros/native/model": (
         "tests/mechanics/dynamics/constraints",
@@ -31,6 +31,9 @@ _MIRRORS = {
         "tests/mechanics/dynamics/forward",
     ),
     "symofros/native/stepping": ("tests/simulation/stepping", "tests/simulation", "tests/native"),
+    # What packages alone call.
+    "symofros/native/stepping/instance.c": ("tests/exports/c/test_c_package.py", "tests/exports/fmi/test_fmu.py"),
+    "symofros/native/stepping/linearize.c": ("tests/exports/fmi/test_fmu.py",),
     "symofros/native/diagrams": ("tests/diagrams/run", "tests/blocks/generic", "tests/diagrams/program"),
 }
 # What watches the whole of the mechanics, of motions.
@@ -129,12 +132,12 @@ def chosen(root: Path, module: str) -> list[str]:
     path = Path(module)
     folder_of_tests = Path("tests", *path.parts[1:-1])
     mirror = (folder_of_tests if (root / folder_of_tests).is_dir() else folder_of_tests.parent).as_posix()
-    mirrors = _MIRRORS.get(path.parent.as_posix(), (mirror,))
+    mirrors = _MIRRORS.get(module, _MIRRORS.get(path.parent.as_posix(), (mirror,)))
     general = _GENERAL["/".join(path.parts[:2])]
     ranked = []
     for file in test_files(root):
         folder = file.rpartition("/")[0]
-        if file in (f"{mirror}/test_{path.stem}.py", f"{mirror}/test_{path.parent.name}.py"):
+        if file in (f"{mirror}/test_{path.stem}.py", f"{mirror}/test_{path.parent.name}.py", *mirrors):
             rank = 0
         elif module.removesuffix(".py") in _imports(root / file):
             rank = 1 if file.split("/")[1] == mirrors[0].split("/")[1] else 7
