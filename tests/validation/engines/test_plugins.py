@@ -11,7 +11,19 @@ from validation.engines.matrix import cells
 from validation.engines.models.kinds import tree_of
 from validation.engines.plugins import OWN
 
-EXTRAS = ("adam", "dart", "drake", "dynibo", "exudyn", "frax", "idyntree", "pybullet", "pykdl", "roboticstoolbox")
+EXTRAS = (
+    "adam",
+    "casadi",
+    "dart",
+    "drake",
+    "dynibo",
+    "exudyn",
+    "frax",
+    "idyntree",
+    "pybullet",
+    "pykdl",
+    "roboticstoolbox",
+)
 
 
 def _installed(engine: str) -> None:
@@ -34,7 +46,7 @@ def test_an_engine_is_right_about_hinges_between_oblique_links(
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("engine", ("dart", "drake"))
+@pytest.mark.parametrize("engine", ("casadi", "dart", "drake"))
 @pytest.mark.parametrize("kind", ("ball", "planar", "helical oblique", "free", "universal"))
 def test_joints_of_several_coordinates_mean_what_their_charts_say(engine: str, kind: str) -> None:
     _installed(engine)
@@ -56,3 +68,10 @@ def test_an_engine_refuses_in_words_what_it_has_no_joint_for(engine: str) -> Non
     assert isinstance(answer, Unsupported)
     assert not answer.offered
     assert answer.reason
+
+
+@pytest.mark.parametrize("kind", ("euler xyz", "mimic oblique", "revolute unbounded", "ball"))
+def test_casadi_differentiates_and_solves_right(kind: str) -> None:
+    """All its functions: derivatives of forces by coordinates and speeds, along quaternions, too."""
+    plugin = OWN["casadi"]
+    assert {cell.verdict for cell in cells(plugin, tree_of(kind), tuple(plugin.functions))} <= {"right", "not offered"}

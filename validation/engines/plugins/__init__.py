@@ -5,6 +5,7 @@ from __future__ import annotations
 from validation.engines.interface import EnginePlugin
 from validation.engines.plugins import (
     adam,
+    casadi,
     dart,
     drake,
     dynibo,
@@ -25,6 +26,7 @@ _MODULES = (
     mujoco,
     exudyn,
     adam,
+    casadi,
     dart,
     drake,
     dynibo,
