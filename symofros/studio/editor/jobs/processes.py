@@ -4,24 +4,19 @@ from __future__ import annotations
 
 import contextlib
 import json
-import os
-import signal
-import subprocess
-import sys
 import threading
 from collections.abc import Callable
-from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
-import symofros
 from symofros.studio.editor.editing.data_edits import refusal
 from symofros.studio.editor.jobs.request import ORDERS
+from symofros.studio.editor.jobs.worker_process import WorkerProcess
 
 Json = dict[str, Any]
 
-MAX_ANSWER = 256 << 20
-MAX_COMPLAINT = 2000
 KEPT = 20
+# Workers that wait for the next request: what they have imported and compiled is there already.
+IDLE = 2
 
 
 class Job:
@@ -33,7 +28,7 @@ class Job:
         self.progress: Json = {"done": 0, "total": 0, "text": "starting"}
         self.result: Any = None
         self.error: Json | None = None
-        self.process: subprocess.Popen[bytes] | None = None
+        self.worker: WorkerProcess | None = None
         self.over = threading.Event()
 
     def as_json(self, whole: bool = True) -> Json:
@@ -55,8 +50,16 @@ class Jobs:
     def __init__(self, publish: Callable[[str, Json], None]) -> None:
         self.publish = publish
         self._jobs: dict[str, Job] = {}
+        self._idle: list[WorkerProcess] = []
+        self._closed = False
         self._lock = threading.Lock()
         self._count = 0
+
+    def warm(self) -> None:
+        """Have a worker wait, if none does and none is at work."""
+        with self._lock:
+            if not self._closed and not self._idle and all(job.worker is None for job in self._jobs.values()):
+                self._idle.append(WorkerProcess())
 
     def start(self, kind: str, request: Json, revision: int = 0) -> Job:
         """Start a worker.
@@ -84,7 +87,7 @@ class Jobs:
             over = [key for key, old in self._jobs.items() if old.state != "running"]
             for key in over[: max(0, len(self._jobs) - KEPT)]:
                 del self._jobs[key]
-            job.process = _worker()
+            job.worker = self._free_worker()
         threading.Thread(target=self._follow, args=(job, {"kind": kind, **request}), daemon=True).start()
         return job
 
@@ -114,10 +117,9 @@ class Jobs:
             raise refusal("no such order", f"{order!r:.50}", f"one of {', '.join(ORDERS)}", "choose one of them")
         with self._lock:
             # Before its first progress a worker has not read its request, behind which the order would be lost.
-            if job.state == "running" and job.progress["total"] and job.process is not None and job.process.stdin:
+            if job.state == "running" and job.progress["total"] and job.worker is not None:
                 with contextlib.suppress(OSError):  # It ends at this moment.
-                    job.process.stdin.write(order.encode() + b"\n")
-                    job.process.stdin.flush()
+                    job.worker.send(order)
         return job
 
     def cancel(self, key: str) -> Job:
@@ -126,39 +128,67 @@ class Jobs:
         with self._lock:
             if job.state == "running":
                 job.state = "cancelled"
-                if job.process is not None and job.process.poll() is None:
-                    _kill(job.process)
+                if job.worker is not None:
+                    job.worker.kill()
         job.over.wait(10.0)
         return job
 
     def close(self) -> None:
-        """Kill whatever runs."""
+        """Kill whatever runs or waits."""
+        with self._lock:
+            self._closed = True
+            waiting, self._idle = self._idle, []
+        for worker in waiting:
+            worker.end()
         for key in list(self._jobs):
             self.cancel(key)
 
+    def _free_worker(self) -> WorkerProcess:
+        """A worker that waits, or a new one; the caller holds the lock."""
+        while self._idle:
+            worker = self._idle.pop()
+            if worker.is_alive:
+                return worker
+            worker.end()
+        return WorkerProcess()
+
     def _follow(self, job: Job, request: Json) -> None:
-        """Give a worker its request, and take what it says until it ends."""
-        process = job.process
-        assert process is not None and process.stdin and process.stdout and process.stderr
-        complaint: list[bytes] = []
-        reader = threading.Thread(target=_tail, args=(process.stderr, complaint), daemon=True)
-        reader.start()
-        with contextlib.suppress(OSError):  # It has died already; that is found below.
-            process.stdin.write(json.dumps(request).encode() + b"\n")
-            process.stdin.flush()
-        for line in iter(lambda: process.stdout.readline(MAX_ANSWER), b""):  # type: ignore[union-attr]
-            self._take(job, line)
-        _kill(process)
-        code = process.wait()
-        reader.join(5.0)
-        for stream in (process.stdin, process.stdout, process.stderr):
-            with contextlib.suppress(OSError):
-                stream.close()
+        """Give a worker its request, and take what it says until it answers or ends."""
+        worker = job.worker
+        assert worker is not None
+        heard = self._listen(job, worker, request)
+        if not heard and worker.served and job.state == "running":
+            # One that had waited ended before it could begin; that says nothing about this job.
+            worker.end()
+            with self._lock:
+                job.worker = worker = WorkerProcess()
+            self._listen(job, worker, request)
+        is_answered = job.result is not None or job.error is not None
+        code, complaint = (0, "") if is_answered else worker.end()
         with self._lock:
+            is_kept = is_answered and job.state == "running" and len(self._idle) < IDLE and not self._closed
+            if is_kept:
+                worker.served += 1
+                self._idle.append(worker)
             if job.state == "running":
-                self._end(job, code, b"".join(complaint).decode(errors="replace"))
+                self._end(job, code, complaint)
+            job.worker = None
+        if is_answered and not is_kept:
+            worker.end()
         job.over.set()
         self.publish("job", job.as_json(whole=False))
+
+    def _listen(self, job: Job, worker: WorkerProcess, request: Json) -> bool:
+        """Take what a worker says of a request; whether it said anything."""
+        heard = False
+        with contextlib.suppress(OSError):  # It has died already; that is found below.
+            worker.send(json.dumps(request))
+        for line in worker.lines():
+            heard = True
+            self._take(job, line)
+            if job.result is not None or job.error is not None:
+                break
+        return heard
 
     def _take(self, job: Job, line: bytes) -> None:
         try:
@@ -184,33 +214,3 @@ class Jobs:
                 "remedy": "the editor goes on; please report it",
             }
         job.state = "failed" if job.error is not None else "done"
-
-
-def _worker() -> subprocess.Popen[bytes]:
-    """A Python that waits for its request; nothing is imported from the folder that it works in."""
-    home = str(Path(symofros.__file__).parents[1])
-    path = os.pathsep.join(filter(None, (home, os.environ.get("PYTHONPATH"))))
-    return subprocess.Popen(
-        [sys.executable, "-P", "-m", "symofros.studio.editor.jobs.worker"],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        start_new_session=True,
-        env={**os.environ, "PYTHONPATH": path},
-    )
-
-
-def _kill(process: subprocess.Popen[bytes] | None) -> None:
-    """End a worker and whatever it has started: they share a process group of their own."""
-    if process is None:
-        return
-    with contextlib.suppress(ProcessLookupError, PermissionError):
-        os.killpg(process.pid, signal.SIGKILL)
-
-
-def _tail(stream: IO[bytes], kept: list[bytes]) -> None:
-    """Keep the end of what a worker complains about."""
-    text = b""
-    for line in iter(lambda: stream.readline(MAX_COMPLAINT), b""):
-        text = (text + line)[-MAX_COMPLAINT:]
-    kept.append(text)

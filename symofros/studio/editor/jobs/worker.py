@@ -1,8 +1,8 @@
-"""What a worker process does: reads one request, says how far it is, answers, ends.
+"""What a worker process does: reads a request, says how far it is, answers, waits for the next one.
 
 Lines of JSON: in comes the request, and after it orders, a word each; out go {"progress": …}, {"samples": …}, and at
-last {"result": …} or {"error": …}. When the server is gone, the request's pipe ends, and so
-does the worker with all that it started.
+last {"result": …} or {"error": …}. What was imported and compiled for one request is there for the next. When the
+server is gone, the pipe of requests ends, and so does the worker with all that it started.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import threading
 import traceback
 from collections.abc import Callable
 from dataclasses import replace
+from queue import SimpleQueue
 from typing import Any
 
 from symofros.errors import Problem, SymofrosError
@@ -32,26 +33,31 @@ def error_of(error: Exception) -> Json:
 
 
 def main() -> None:
-    """Serve one request."""
+    """Serve one request after the other."""
     # Whatever writes to the standard output, a compiler or a library, must not garble the answer.
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)
-    request = json.loads(sys.stdin.readline())
 
     def say(message: Json) -> None:
         answers.write(json.dumps(message) + "\n")
         answers.flush()
 
-    tell = Tell(say)
-    threading.Thread(target=_follow_the_server, args=(tell,), daemon=True).start()
+    requests: SimpleQueue[tuple[Json, Tell]] = SimpleQueue()
+    threading.Thread(target=_follow_the_server, args=(say, requests), daemon=True).start()
+    task("simulate")  # Its imports take longer than most requests.
+    while True:
+        _serve(*requests.get())
 
+
+def _serve(request: Json, tell: Tell) -> None:
+    """Answer one request."""
     try:
-        say({"result": task(request["kind"])(request, tell)})
+        tell.say({"result": task(request["kind"])(request, tell)})
     except (SymofrosError, ValueError, OSError) as error:
-        say({"error": error_of(error)})
+        tell.say({"error": error_of(error)})
     except Exception as error:
         traceback.print_exc()
-        say({"error": {**error_of(error), "rule": "this should not happen", "remedy": "please report it"}})
+        tell.say({"error": {**error_of(error), "rule": "this should not happen", "remedy": "please report it"}})
 
 
 def task(kind: str) -> Callable[[Json, Tell], Any]:
@@ -65,12 +71,20 @@ def task(kind: str) -> Callable[[Json, Tell], Any]:
     return operations.TASKS[kind]
 
 
-def _follow_the_server(tell: Tell) -> None:
-    """Pass the server's orders on, a line each, and end with it."""
+def _follow_the_server(say: Callable[[Json], None], requests: SimpleQueue[tuple[Json, Tell]]) -> None:
+    """Pass the server's lines on, requests and the orders to each, and end with the server."""
+    orders: SimpleQueue[str] = SimpleQueue()
+    line = b""
     # By the descriptor: a buffered read would hold a lock that the end of the interpreter waits for.
-    while data := os.read(0, 4096):
-        for order in data.decode(errors="replace").split():
-            tell.orders.put(order)
+    while data := os.read(0, 65536):
+        *lines, line = (line + data).split(b"\n")
+        for text in (each.decode(errors="replace") for each in lines):
+            if text.startswith("{"):
+                tell = Tell(say)
+                orders = tell.orders  # What the last request did not follow is not for this one.
+                requests.put((json.loads(text), tell))
+            else:
+                orders.put(text)
     os.killpg(0, signal.SIGKILL)
 
 

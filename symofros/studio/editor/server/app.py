@@ -196,7 +196,8 @@ class Editor:
         return JSONResponse((await run_sync(self.jobs.cancel, request.path_params["key"])).as_json())
 
     async def listen(self, _: Request) -> Response:
-        """Tell whatever happens, as it happens."""
+        """Tell whatever happens, as it happens; to a page, whose first job shall not wait for a worker's imports."""
+        await run_sync(self.jobs.warm)
         return StreamingResponse(self.events.join(), media_type="text/event-stream")
 
     async def look(self, _: Request) -> Response:

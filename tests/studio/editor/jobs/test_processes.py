@@ -14,7 +14,7 @@ from starlette.testclient import TestClient
 
 from symofros.errors import DescriptionError, Problem, SymofrosError
 from symofros.studio.editor.editing.data_edits import EditError
-from symofros.studio.editor.jobs import processes
+from symofros.studio.editor.jobs import processes, worker_process
 from symofros.studio.editor.jobs.processes import Jobs
 from symofros.studio.editor.jobs.worker import error_of
 from tests.studio.editor.conftest import finished, over
@@ -187,9 +187,9 @@ def test_an_error_is_taken_apart(error: Exception, expected: tuple[str, ...]) ->
 
 def run(monkeypatch: pytest.MonkeyPatch, code: str) -> tuple[Jobs, Any, list[tuple[str, Any]]]:
     """A job whose worker runs some code."""
-    real = processes.subprocess.Popen
+    real = worker_process.subprocess.Popen
     told: list[tuple[str, Any]] = []
-    monkeypatch.setattr(processes.subprocess, "Popen", lambda command, **k: real([sys.executable, "-c", code], **k))
+    monkeypatch.setattr(worker_process.subprocess, "Popen", lambda command, **k: real([sys.executable, "-c", code], **k))
     jobs = Jobs(lambda kind, data: told.append((kind, data)))
     return jobs, jobs.start("x", {}), told
 
@@ -250,6 +250,27 @@ def test_children_of_a_worker_end_with_it(monkeypatch: pytest.MonkeyPatch, tmp_p
         time.sleep(0.02)
     os.kill(child, signal.SIGKILL)
     raise AssertionError("a child outlives its worker")
+
+
+def test_a_worker_serves_one_job_after_the_other_and_orders_to_one_do_not_reach_the_next(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    code = """if True:
+        import json, os, sys
+        for line in sys.stdin:
+            if line.startswith("{"):
+                print(json.dumps({"progress": {"done": 1, "total": 2, "text": "x"}}), flush=True)
+                print(json.dumps({"result": os.getpid()}), flush=True)
+    """
+    jobs, first, _ = run(monkeypatch, code)
+    assert first.over.wait(30)
+    second = jobs.start("x", {})
+    assert second.over.wait(30) and second.result == first.result
+    jobs.order(second.key, "stop")
+    os.kill(second.result, signal.SIGKILL)  # While it waits: the next job gets another one.
+    third = jobs.start("x", {})
+    assert third.over.wait(30) and third.state == "done" and third.result != first.result
+    jobs.close()
 
 
 def test_few_jobs_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
