@@ -165,7 +165,7 @@ def simulate(request: Json, tell: Tell) -> Json:
         progress=progress,
         **chosen,
     )
-    return {**_motion(run, plan(system)), "wall_s": time.perf_counter() - began}
+    return {**_motion(run, plan(system)), "par": par.tolist(), "wall_s": time.perf_counter() - began}
 
 
 def _motion(run: sf.Trajectory, tree: SpanningTree) -> Json:
@@ -175,7 +175,8 @@ def _motion(run: sf.Trajectory, tree: SpanningTree) -> Json:
         for i, name in enumerate(group):
             own = units.get(name, "")
             unit = own if kind == "q" else (f"{own}/s" if own else "") if kind == "v" else ""
-            label = f"d{name}" if kind == "v" and name in names.q else name
+            prefix = {"v": "d", "u": "u."}.get(kind, "")  # As in files of trajectories.
+            label = f"{prefix}{name}" if name in names.q else name
             series.append({"name": label, "kind": kind, "unit": unit, "values": _numbers(values[:, i])})
     cost, end = run.statistics, run.outcome
     return {

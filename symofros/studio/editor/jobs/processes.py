@@ -43,6 +43,21 @@ class Job:
         }
         return {**summary, "result": self.result} if whole else summary
 
+    def simulated(self) -> Json:
+        """The result of a simulation.
+
+        Raises:
+            EditError: It is another job, or has no result.
+        """
+        if self.kind != "simulate" or not isinstance(self.result, dict):
+            raise refusal(
+                f"job {self.key} has no motion",
+                f"{self.kind}, {self.state}",
+                "a motion is the result of a simulation",
+                "simulate first",
+            )
+        return self.result
+
 
 class Jobs:
     """What is running, and what was."""

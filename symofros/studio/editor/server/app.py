@@ -31,6 +31,7 @@ from symofros.studio.editor.document.storage import ConflictError
 from symofros.studio.editor.document.workspace import FileError
 from symofros.studio.editor.editing.data_edits import EditError, refusal
 from symofros.studio.editor.jobs.processes import Jobs
+from symofros.studio.editor.jobs.run_table import MEDIA_TYPES, table_of
 from symofros.studio.editor.server.document_viewer import DocumentViewer
 from symofros.studio.editor.server.events import Events
 from symofros.studio.editor.server.guard import Guard, error_body
@@ -85,6 +86,7 @@ class Editor:
             Route("/api/import", self.import_text, methods=["POST"]),
             Route("/api/jobs", self.start_job, methods=["POST"]),
             Route("/api/jobs/{key}", self.job),
+            Route("/api/jobs/{key}/table.{suffix}", self.table),
             Route("/api/jobs/{key}", self.order_job, methods=["POST"]),
             Route("/api/jobs/{key}", self.cancel_job, methods=["DELETE"]),
             Route("/api/events", self.listen),
@@ -208,8 +210,19 @@ class Editor:
         return JSONResponse({"address": self.relay.address, **shown})
 
     async def pose(self, request: Request) -> Response:
-        """Move the 3-D view."""
-        return JSONResponse(await run_sync(partial(self.view.pose, await body_of(request))))
+        """Move the 3-D view; with "run" and "t", to the state of a simulation at a time."""
+        body = await body_of(request)
+        if "run" in body:
+            run = self.jobs.get(str(body["run"])).simulated()
+            return JSONResponse(await run_sync(partial(self.view.seek, run, body.get("t"))))
+        return JSONResponse(await run_sync(partial(self.view.pose, body)))
+
+    async def table(self, request: Request) -> Response:
+        """A run's columns over time as a file: CSV or Parquet."""
+        job = self.jobs.get(request.path_params["key"])
+        suffix = request.path_params["suffix"]
+        content = await run_sync(partial(table_of, job.kind, job.result, suffix))
+        return Response(content, media_type=MEDIA_TYPES[suffix])
 
     async def watch(self) -> None:
         """Tell when somebody else has written the file: once a time that it changes."""

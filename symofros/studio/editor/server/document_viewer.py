@@ -15,6 +15,7 @@ from symofros.errors import Problem, SymofrosError
 from symofros.studio.editor.editing.data_edits import EditError, four_parts, refusal
 from symofros.studio.editor.jobs.worker import error_of
 from symofros.studio.editor.units import coordinate_units
+from symofros.studio.viewer.playing.motion import PlayedMotion, States, motion_of
 from symofros.studio.viewer.viewer import Viewer
 
 Json = dict[str, Any]
@@ -43,6 +44,7 @@ class DocumentViewer:
         self._turn = Lock()
         self._viewer: Viewer | None = None
         self._page: bytes | None = None
+        self._motion: tuple[Json, PlayedMotion] | None = None
         self._fault: Json | None = None
 
     @property
@@ -98,12 +100,7 @@ class DocumentViewer:
         with self._turn:
             viewer = self._viewer
             if viewer is None:
-                raise refusal(
-                    "nothing is shown",
-                    "no view",
-                    "a pose is of the mechanism that is shown",
-                    "open the 3-D pane first",
-                )
+                raise _nothing_shown()
             if body.get("reset") is True:
                 viewer.reset()
             if factor is not None:
@@ -113,6 +110,44 @@ class DocumentViewer:
             except SymofrosError as error:
                 raise EditError(_problem(error_of(error))) from None
             return {**_stand(viewer), "why": why and why.partition("\n")[0]}
+
+    def seek(self, run: Json, time: Any) -> Json:
+        """Show the state of a run at a time.
+
+        Args:
+            run: Result of the simulation, as `operations.simulate` gives it.
+            time: Time [s]; the first or the last of the run if it is outside.
+
+        Returns:
+            Where everything stands then.
+
+        Raises:
+            EditError: Nothing is shown, the run is of another mechanism, or the time is none.
+        """
+        if not _finite(time):
+            raise _malformed("t", time, "a finite number of seconds")
+        with self._turn:
+            viewer = self._viewer
+            if viewer is None:
+                raise _nothing_shown()
+            model = viewer.mechanism.model
+            names = tuple(series["name"] for series in run["series"] if series["kind"] == "q")
+            if names != model.names.q:
+                raise refusal(
+                    "the run does not fit the model that is shown",
+                    f"coordinates {', '.join(names[:12])}",
+                    f"the model has {', '.join(model.names.q[:12])}",
+                    "simulate again",
+                )
+            if self._motion is None or self._motion[0] is not run or self._motion[1].model is not model:
+                try:
+                    self._motion = run, motion_of(model, _states(run))
+                except SymofrosError as error:
+                    raise EditError(_problem(error_of(error))) from None
+            motion = self._motion[1]
+            q, u = motion.at(float(np.clip(time, motion.start, motion.end)))
+            viewer.show(q, u=u, par=motion.par)
+            return {**_stand(viewer), "why": ""}
 
     def _as_json(self, viewer: Viewer) -> Json:
         units = coordinate_units(viewer.mechanism.tree)
@@ -163,6 +198,16 @@ def _stand(viewer: Viewer) -> Json:
     }
 
 
+def _states(run: Json) -> States:
+    """The states of a run, whose values are null where it diverged."""
+
+    def columns(kind: str) -> np.ndarray:
+        values = [series["values"] for series in run["series"] if series["kind"] == kind]
+        return np.array(values, dtype=np.float64).T.reshape(len(run["t"]), len(values))
+
+    return States(np.array(run["t"], dtype=np.float64), columns("q"), columns("u"), run["par"])
+
+
 def _finite(number: Any) -> bool:
     return type(number) in (int, float) and abs(number) < 1e300 and math.isfinite(number)
 
@@ -172,6 +217,11 @@ def _numbers(body: Json, key: str) -> dict[str, float]:
     if not isinstance(given, dict) or not all(map(_finite, given.values())):
         raise _malformed(key, given, "a mapping of names to finite numbers")
     return {str(name): float(value) for name, value in given.items()}
+
+
+def _nothing_shown() -> EditError:
+    rule = "a pose is of the mechanism that is shown"
+    return refusal("nothing is shown", "no view", rule, "open the 3-D pane first")
 
 
 def _malformed(what: str, found: Any, rule: str) -> EditError:

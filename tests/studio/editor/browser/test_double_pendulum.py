@@ -70,7 +70,7 @@ def test_a_double_pendulum_from_an_empty_canvas(
     plot = steps.results(page).get_by_role("img", name="q1, q2 over time")
     expect(plot).to_be_visible(timeout=JOB)
     plot.hover()
-    expect(steps.results(page).get_by_text("t = 0.9")).to_be_visible()
+    expect(steps.results(page).get_by_text("t = 0.9").first).to_be_visible()
     picture("simulated")
 
     steps.saved(page)

@@ -189,7 +189,9 @@ def run(monkeypatch: pytest.MonkeyPatch, code: str) -> tuple[Jobs, Any, list[tup
     """A job whose worker runs some code."""
     real = worker_process.subprocess.Popen
     told: list[tuple[str, Any]] = []
-    monkeypatch.setattr(worker_process.subprocess, "Popen", lambda command, **k: real([sys.executable, "-c", code], **k))
+    monkeypatch.setattr(
+        worker_process.subprocess, "Popen", lambda command, **k: real([sys.executable, "-c", code], **k)
+    )
     jobs = Jobs(lambda kind, data: told.append((kind, data)))
     return jobs, jobs.start("x", {}), told
 

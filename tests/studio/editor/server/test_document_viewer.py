@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import pyarrow.parquet as parquet
 import pytest
 from starlette.testclient import TestClient, WebSocketTestSession
 from starlette.websockets import WebSocketDisconnect
@@ -15,11 +17,12 @@ from starlette.websockets import WebSocketDisconnect
 from symofros.studio.editor.document.session import Session
 from symofros.studio.editor.server.app import application
 from symofros.studio.editor.server.relay import MAX_SOCKETS
-from tests.studio.editor.conftest import BASE, PORT, TOKEN
+from tests.studio.editor.conftest import BASE, PORT, TOKEN, finished
 from tests.studio.editor.texts import FILES
 
 Json = dict[str, Any]
 PROTOCOL = "viser-v1.1.1"
+JSON = {"Content-Type": "application/json"}
 OWN = f"127.0.0.1:{PORT}"
 
 
@@ -235,3 +238,34 @@ def test_the_guard_goes_on_after_sockets(bare: TestClient, address: str) -> None
     for _ in range(MAX_SOCKETS + 2):
         with socket_at(bare, address[:-1]) as socket:
             socket.receive_bytes()
+
+
+def test_a_run_is_shown_at_a_time_and_kept_as_a_file(client: TestClient, folder: Path) -> None:
+    job = finished(client, "simulate", t_end=0.2, points=20, q0={"q1": 1.2, "q2": -1.2, "q3": 1.2})
+    run, series = job["id"], {item["name"]: item["values"] for item in job["result"]["series"]}
+    assert client.post("/api/pose", json={"run": run, "t": 0.1}).status_code == 422  # Nothing is shown yet.
+    look(client)
+    for t, i in ((-1, 0), (0.1, 10), (5, 20)):
+        shown = pose(client, run=run, t=t)["q"]
+        assert shown["q1"] == pytest.approx(series["q1"][i], abs=1e-6)
+    for body in ({"run": run, "t": "soon"}, {"run": run, "t": float("inf")}, {"run": "99", "t": 0}):
+        content = json.dumps(body)
+        assert client.post("/api/pose", content=content, headers=JSON).status_code == 422
+
+    # The same columns as a trajectory's file, which the viewer reads.
+    file = folder / "run.csv"
+    for suffix in ("csv", "parquet"):
+        answer = client.get(f"/api/jobs/{run}/table.{suffix}")
+        assert answer.status_code == 200
+        file.with_suffix(f".{suffix}").write_bytes(answer.content)
+    head, *rows = file.read_text().splitlines()
+    assert head.startswith("t,q1,q2,") and len(rows) == 21
+    table = parquet.read_table(file.with_suffix(".parquet"))
+    assert table["q1"].to_pylist() == series["q1"] and table.schema.field("q1").metadata == {b"unit": b"rad"}
+    assert client.get(f"/api/jobs/{run}/table.exe").status_code == 422
+
+    # Of another mechanism it can't be shown.
+    edit(client, "bodies", "crank", "joint", "name", value="angle")
+    look(client)
+    refused = client.post("/api/pose", json={"run": run, "t": 0})
+    assert refused.status_code == 422 and "does not fit" in refused.json()["error"]["object"]

@@ -3,6 +3,7 @@ import "./style/controls.css";
 import "./style/shell.css";
 import "./style/canvas.css";
 import "./style/diagram.css";
+import "./style/runs.css";
 import "./style/windows.css";
 import "./style/panels.css";
 

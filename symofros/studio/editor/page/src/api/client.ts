@@ -52,6 +52,19 @@ const UNEXPLAINED: Fault = {
   remedy: "look at what `symofros edit` printed",
 };
 
+/** The content of a file. */
+export async function download(address: string): Promise<Blob> {
+  let answer: Response;
+  try {
+    answer = await fetch(address, { headers: { Authorization: `Bearer ${token}` } });
+  } catch {
+    throw new Unreachable(address);
+  }
+  if (answer.ok) return answer.blob();
+  const refusal = (await answer.json().catch(() => ({}))) as Refusal;
+  throw new Refused(answer.status, refusal.error ?? UNEXPLAINED, refusal);
+}
+
 async function request<T>(method: string, address: string, body?: unknown): Promise<T> {
   const headers: Record<string, string> = { Authorization: `Bearer ${token}` };
   if (body !== undefined) headers["Content-Type"] = "application/json";

@@ -256,6 +256,9 @@ export interface Pose {
   par?: Record<string, number>;
   exaggeration?: number;
   reset?: boolean;
+  /** A simulation, whose state at a time is shown. */
+  run?: string;
+  t?: number;
 }
 
 export interface Posed extends Stand {

@@ -73,6 +73,18 @@ export function line(
   return path;
 }
 
+/** The place of the value that is nearest to one, in a list that rises. */
+export function nearest(values: readonly (number | null)[], value: number): number {
+  let [low, high] = [0, values.length - 1];
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if ((values[middle] ?? Infinity) <= value) low = middle;
+    else high = middle;
+  }
+  const [before, after] = [values[low] ?? NaN, values[high] ?? NaN];
+  return after - value < value - before ? high : low;
+}
+
 /** Four figures, short. */
 export function brief(value: number): string {
   if (value === 0) return "0";

@@ -1,7 +1,9 @@
 import type { Ran, RunCurve, RunPlot } from "../api/jobs";
 import { brief } from "../model/plot";
-import type { Live } from "../store/store";
+import { type KeptRun, overlaid } from "../model/runs";
+import { type Live, useStore } from "../store/store";
 import { Plot, type PlotCurve } from "./Plot";
+import { Runs } from "./Runs";
 
 type Values = (curve: RunCurve) => readonly (number | null)[];
 
@@ -14,15 +16,40 @@ function inPlane(curves: readonly RunCurve[], values: Values): PlotCurve[] {
   });
 }
 
-function OnePlot({ plot, t, values }: { plot: RunPlot; t: readonly number[]; values: Values }) {
+/** Curves of an earlier run beside those of a plot. */
+const beside = (curves: readonly PlotCurve[], run: KeptRun, past: readonly PlotCurve[]): PlotCurve[] =>
+  past
+    .filter(({ name }) => curves.some((curve) => curve.name === name))
+    .map((curve) => ({ ...curve, name: `${curve.name}, ${run.name}`, beside: curve.name }));
+
+const drawn = (plot: RunPlot, t: readonly number[], values: Values): PlotCurve[] =>
+  plot.xy ? inPlane(plot.curves, values) : plot.curves.map((curve) => ({ name: curve.name, x: t, y: values(curve) }));
+
+const valuesOf = (result: Ran): Values => {
+  const known = new Map(
+    result.plots.flatMap(({ curves }) => curves.map(({ name, values }) => [name, values] as const)),
+  );
+  return ({ name }) => known.get(name) ?? [];
+};
+
+interface OfPlot {
+  plot: RunPlot;
+  t: readonly number[];
+  values: Values;
+  others?: readonly KeptRun[];
+}
+
+function OnePlot({ plot, t, values, others = [] }: OfPlot) {
   const units = [...new Set(plot.curves.map(({ unit }) => unit))].filter(Boolean);
   const unit = units.map((each) => `[${each}]`).join(", ");
-  const curves = plot.xy
-    ? inPlane(plot.curves, values)
-    : plot.curves.map((curve) => ({ name: curve.name, x: t, y: values(curve) }));
-  const label = `${plot.title}: ${curves.map(({ name }) => name).join(", ")}${plot.xy ? " in a plane" : " over time"}`;
+  const newest = drawn(plot, t, values);
+  const past = others.flatMap((run) => {
+    const result = run.result as Ran;
+    return beside(newest, run, drawn(plot, result.t, valuesOf(result)));
+  });
+  const label = `${plot.title}: ${newest.map(({ name }) => name).join(", ")}${plot.xy ? " in a plane" : " over time"}`;
   const titles = plot.xy ? { xTitle: `x ${unit}`, unit: `y ${unit}` } : { xTitle: "t [s]", unit };
-  return <Plot curves={curves} label={label} title={plot.title} plane={plot.xy} {...titles} />;
+  return <Plot curves={[...newest, ...past]} label={label} title={plot.title} plane={plot.xy} {...titles} />;
 }
 
 /** The curves of a run that goes on. */
@@ -41,9 +68,9 @@ export function LiveRun({ live }: { live: Live }) {
 /** What a diagram's run left. */
 export function Run({ result }: { result: Ran }) {
   const { ok, t, reason, advice, notes } = result.outcome;
-  const known = new Map(
-    result.plots.flatMap(({ curves }) => curves.map(({ name, values }) => [name, values] as const)),
-  );
+  const runs = useStore((state) => state.runs);
+  const job = useStore((state) => state.jobs.run?.id);
+  const others = overlaid(runs, "run", job);
   return (
     <div className="results">
       <p className="quiet">
@@ -60,9 +87,10 @@ export function Run({ result }: { result: Ran }) {
           {note}
         </p>
       ))}
+      <Runs kind="run" />
       <div className="plots of-run">
         {result.plots.map((plot, i) => (
-          <OnePlot key={i} plot={plot} t={result.t} values={({ name }) => known.get(name) ?? []} />
+          <OnePlot key={i} plot={plot} t={result.t} values={valuesOf(result)} others={others} />
         ))}
       </div>
     </div>

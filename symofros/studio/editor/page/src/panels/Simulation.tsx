@@ -1,11 +1,26 @@
 import type { Series, Simulated } from "../api/jobs";
 import { brief } from "../model/plot";
-import { Plot } from "./Plot";
+import { overlaid } from "../model/runs";
+import { useStore } from "../store/store";
+import { PlayBar } from "./PlayBar";
+import { Plot, type PlotCurve } from "./Plot";
+import { Runs } from "./Runs";
 
-function OfUnit({ t, series, unit }: { t: number[]; series: Series[]; unit: string }) {
+/** All curves of a simulation, energies too. */
+function allSeries(result: Simulated): Series[] {
+  const energies = Object.entries(result.energy).map(([name, values]): Series => ({
+    name,
+    kind: "energy",
+    unit: "J",
+    values,
+  }));
+  return [...result.series, ...energies];
+}
+
+function OfUnit({ t, series, unit, others }: { t: number[]; series: Series[]; unit: string; others: PlotCurve[] }) {
   return (
     <Plot
-      curves={series.map(({ name, values }) => ({ name, x: t, y: values }))}
+      curves={[...series.map(({ name, values }) => ({ name, x: t, y: values })), ...others]}
       label={`${series.map(({ name }) => name).join(", ")} over time`}
       xTitle="t [s]"
       unit={unit}
@@ -15,13 +30,16 @@ function OfUnit({ t, series, unit }: { t: number[]; series: Series[]; unit: stri
 
 /** Results of a simulation: curves of one unit share a plot. */
 export function Simulation({ result }: { result: Simulated }) {
-  const energies = Object.entries(result.energy).map(([name, values]): Series => ({
-    name,
-    kind: "energy",
-    unit: "J",
-    values,
-  }));
-  const all = [...result.series, ...energies];
+  const runs = useStore((state) => state.runs);
+  const newest = useStore((state) => state.jobs.simulate?.id);
+  const all = allSeries(result);
+  const others = (unit: string): PlotCurve[] =>
+    overlaid(runs, "simulate", newest).flatMap((run) => {
+      const past = run.result as Simulated;
+      return allSeries(past)
+        .filter((each) => each.unit === unit && all.some(({ name }) => name === each.name))
+        .map(({ name, values }) => ({ name: `${name}, ${run.name}`, x: past.t, y: values, beside: name }));
+    });
   const units = [...new Set(all.map((each) => each.unit))];
   const { ok, reason, advice } = result.outcome;
   return (
@@ -34,9 +52,17 @@ export function Simulation({ result }: { result: Simulated }) {
           {reason} {advice}
         </p>
       )}
+      <PlayBar t={result.t} />
+      <Runs kind="simulate" />
       <div className="plots">
         {units.map((unit) => (
-          <OfUnit key={unit} t={result.t} series={all.filter((each) => each.unit === unit)} unit={unit} />
+          <OfUnit
+            key={unit}
+            t={result.t}
+            series={all.filter((each) => each.unit === unit)}
+            unit={unit}
+            others={others(unit)}
+          />
         ))}
       </div>
     </div>

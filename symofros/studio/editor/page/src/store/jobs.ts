@@ -2,6 +2,7 @@
 
 import { get, post, remove } from "../api/client";
 import type { Job, JobKind, Samples } from "../api/jobs";
+import { withRun } from "../model/runs";
 import { explain, ordered } from "./requests";
 import { now, update } from "./store";
 
@@ -44,7 +45,7 @@ async function fetchJob(id: string): Promise<Job | undefined> {
 }
 
 function take(job: Job): void {
-  update((state) => ({ jobs: { ...state.jobs, [job.kind]: job } }));
+  update((state) => ({ jobs: { ...state.jobs, [job.kind]: job }, runs: withRun(state.runs, job) }));
 }
 
 /** Asks now and then; the server tells too, but a stream of events can break. */

@@ -25,6 +25,9 @@ export function accept(document: Document): void {
     selected: fresh ? [] : state.selected.filter((id) => ids.has(id)),
     jobs: fresh ? {} : state.jobs,
     live: fresh ? null : state.live,
+    runs: fresh ? [] : state.runs,
+    time: fresh ? null : state.time,
+    playing: fresh ? false : state.playing,
     bottom: fresh && state.bottom !== "problems" ? null : state.bottom,
   }));
 }

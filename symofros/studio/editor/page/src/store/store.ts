@@ -5,6 +5,7 @@ import { create } from "zustand";
 import type { Job, JobKind, RunPlot } from "../api/jobs";
 import type { Catalogue, Document, Fault, FileEntry, Json, LibraryPart, Path, Point, View } from "../api/types";
 import { isMap } from "../model/paths";
+import type { KeptRun } from "../model/runs";
 
 export type Link = "ok" | "lost" | "expired";
 export type RightPane = "parameters" | "text" | "view";
@@ -54,6 +55,13 @@ export interface State {
   dialog: Dialog | null;
   jobs: Partial<Record<JobKind, Job>>;
   live: Live | null;
+  /** Runs of this document, the newest last. */
+  runs: readonly KeptRun[];
+  /** Where the cursor of the plots and the motion in the 3-D view stand [s]; null before anybody has put it. */
+  time: number | null;
+  playing: boolean;
+  /** Seconds of the motion a second. */
+  speed: number;
   link: Link;
   notices: Notice[];
   /** What the 3-D view shows, while its pane is open; a fault: why it shows nothing. */
@@ -74,6 +82,10 @@ export const useStore = create<State>(() => ({
   dialog: null,
   jobs: {},
   live: null,
+  runs: [],
+  time: null,
+  playing: false,
+  speed: 1,
   link: "ok",
   notices: [],
   view: null,

@@ -35,9 +35,17 @@ export function lookAway(): void {
 let next: Pose | null = null;
 let moving = false;
 
+/** Shows a simulation's state at a time. */
+export function seek(run: string, t: number): void {
+  // What waits to be moved is of another state.
+  next = null;
+  void move({ run, t });
+}
+
 /** Moves the view; while one request is on its way, the newest of each value waits. */
 export async function move(pose: Pose): Promise<void> {
-  next = { ...next, ...pose, q: { ...next?.q, ...pose.q }, par: { ...next?.par, ...pose.par } };
+  const waiting = next?.run === undefined || pose.run !== undefined ? next : null;
+  next = { ...waiting, ...pose, q: { ...waiting?.q, ...pose.q }, par: { ...waiting?.par, ...pose.par } };
   if (moving) return;
   moving = true;
   try {

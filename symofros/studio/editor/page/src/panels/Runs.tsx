@@ -1,0 +1,50 @@
+import type { JobKind } from "../api/jobs";
+import { draw, forget, rename, saveTable } from "../store/runs";
+import { useDocument, useStore } from "../store/store";
+
+/** The kept runs of a kind: their names, which are drawn with the newest, and their files. */
+export function Runs({ kind }: { kind: JobKind }) {
+  const { revision } = useDocument();
+  const runs = useStore((state) => state.runs);
+  const newest = useStore((state) => state.jobs[kind]?.id);
+  const kept = runs.filter((run) => run.kind === kind);
+  if (kept.length === 0) return null;
+  return (
+    <ul className="runs" aria-label="Kept runs">
+      {kept.map((run) => (
+        <li key={run.id}>
+          <input
+            type="checkbox"
+            aria-label={`Draw ${run.name}`}
+            checked={run.shown || run.id === newest}
+            disabled={run.id === newest}
+            onChange={(event) => draw(run.id, event.target.checked)}
+          />
+          <input
+            className="run-name"
+            aria-label={`Name of ${run.name}`}
+            value={run.name}
+            maxLength={60}
+            onChange={(event) => rename(run.id, event.target.value)}
+          />
+          {run.revision === revision ? null : (
+            <span className="past-mark" title="The document has changed since">
+              outdated
+            </span>
+          )}
+          <button type="button" className="small" onClick={() => void saveTable(run, "csv")}>
+            CSV
+          </button>
+          <button type="button" className="small" onClick={() => void saveTable(run, "parquet")}>
+            Parquet
+          </button>
+          {run.id === newest ? null : (
+            <button type="button" className="small" aria-label={`Forget ${run.name}`} onClick={() => forget(run.id)}>
+              Forget
+            </button>
+          )}
+        </li>
+      ))}
+    </ul>
+  );
+}

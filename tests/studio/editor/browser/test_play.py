@@ -1,0 +1,82 @@
+"""A simulated motion plays in the 3-D pane, at the time of the plots' cursor; runs are kept, compared, saved."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Page, Request, expect
+
+from tests.studio.editor.browser import steps
+from tests.studio.editor.browser.conftest import Server
+
+pytestmark = pytest.mark.browser
+
+MODELS = Path(__file__).parents[4] / "reference_models"
+JOB = 60_000
+
+
+def simulate(page: Page, q1: str) -> None:
+    steps.run(page, "Simulate…")
+    steps.fill(page, "Start of q1", q1)
+    steps.fill(page, "Duration", "0.8")
+    steps.window(page).get_by_role("button", name="Simulate").click()
+    expect(steps.results(page).get_by_text("s of computing")).to_be_visible(timeout=JOB)
+
+
+def is_seek(request: Request) -> bool:
+    return request.url.endswith("/api/pose") and "run" in (request.post_data or "")
+
+
+def test_a_motion_plays_at_the_cursor_of_the_plots_and_runs_are_compared(
+    serve: Callable[..., Server], page: Page, picture: Callable[[str], None]
+) -> None:
+    server = serve("pendulum.yaml", source=MODELS / "rigid" / "double_pendulum.yaml")
+    steps.open_editor(page, server.url)
+    simulate(page, "1.2")
+    results = steps.results(page)
+    motion = results.get_by_role("group", name="Motion")
+
+    # It plays: the 3-D pane opens, and stands at the end where the slider does.
+    motion.get_by_role("button", name="Play").click()
+    angle = page.get_by_role("slider", name="q1 [rad]")
+    expect(angle).to_be_visible(timeout=JOB)
+    expect(motion.get_by_role("button", name="Play")).to_be_visible(timeout=JOB)
+    expect(motion.get_by_role("status")).to_have_text("0.8 s")
+    # The slider's time is the cursor's of every plot and the view's.
+    with page.expect_request_finished(is_seek):
+        motion.get_by_role("slider", name="Time [s]").fill("0")
+    expect(angle).to_have_value(re.compile(r"^1\.20"))  # In steps of 0.01.
+    expect(results.locator(".cursor")).to_have_count(results.locator("figure.plot").count())
+    expect(results.locator(".legend").get_by_text("1.2", exact=True)).to_have_count(1)
+    box = results.get_by_role("img", name="q1, q2 over time").bounding_box()
+    assert box is not None
+    with page.expect_request_finished(is_seek):
+        page.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + box["height"] / 2)
+    expect(motion.get_by_role("status")).not_to_have_text("0 s")
+    picture("play")
+
+    # A second run beside the first, which keeps the name that it was given.
+    results.get_by_label("Name of run 1").fill("from 1.2")
+    simulate(page, "0.7")
+    curves = results.get_by_role("img", name="q1, q2 over time").locator("path.series")
+    expect(curves).to_have_count(2)
+    results.get_by_label("Draw from 1.2").check()
+    expect(curves).to_have_count(4)
+    expect(results.get_by_text("q1, from 1.2")).to_have_count(3)  # Angle, speed, input.
+    picture("runs")
+
+    # Once the model has changed both are of an earlier state; they can be saved all the same.
+    steps.open_window(page, "bodies/upper")
+    steps.tab(page, "Inertia")
+    steps.fill(page, "Mass", "3")
+    steps.accept(page)
+    expect(results.get_by_text("outdated")).to_have_count(2)
+    with page.expect_download() as saved:
+        results.get_by_label("Kept runs").get_by_role("button", name="CSV").first.click()
+    assert saved.value.suggested_filename == "from_1_2.csv"
+    rows = list(csv.DictReader(saved.value.path().read_text().splitlines()))
+    assert float(rows[0]["q1"]) == 1.2 and float(rows[-1]["t"]) == pytest.approx(0.8)
