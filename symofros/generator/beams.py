@@ -73,7 +73,7 @@ def _rod(beam: Beam, q: int, v: int, values: dict[str, float]) -> ElasticRod:
         v=v,
         counts=strains.counts,
         xi=np.array(xi),
-        angles=ElasticRod.REDUCED * np.abs(np.array(strains.turns(xi))),
+        angles=ElasticRod.REDUCED * np.array(strains.turns(xi)),
         displacements=np.zeros(beam.modes, dtype=bool),
         elastic_stiffness=cache(partial(_stiffness, beam, values)),
         EI_z=0.0,

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from validation.accuracy.frequencies import conditioning, convergence, modes_needed, outboard, spinning
 from validation.accuracy.motion import damping, energy, pendulum, spinup
-from validation.accuracy.statics import buckling, elastica, estimate, princeton
+from validation.accuracy.motion import rods as rods_in_motion
+from validation.accuracy.statics import buckling, elastica, estimate, princeton, rods
 from validation.reporting.findings import Question
 from validation.reporting.questions import composing, measuring
 from validation.reporting.record import Topic
@@ -19,6 +20,8 @@ STUDIES: dict[str, Question] = {
     "princeton": princeton.study,
     "estimate": estimate.study,
     "buckling": buckling.study,
+    "rods": rods.study,
+    "rods_in_motion": rods_in_motion.study,
     "pendulum": pendulum.study,
     "energy": energy.study,
     "damping": damping.study,

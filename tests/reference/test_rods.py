@@ -1,0 +1,41 @@
+"""Geometrically exact rods at rest and in motion against exact solutions, as the report on accuracy has them."""
+
+from __future__ import annotations
+
+import pytest
+
+from validation.accuracy.motion import rods as in_motion
+from validation.accuracy.statics import rods
+
+
+@pytest.mark.parametrize("functions", rods.ELASTICA)
+def test_the_tip_converges_to_that_of_the_elastica(functions: int) -> None:
+    error = rods.elastica(functions)
+    assert 0.5 * rods.ELASTICA[functions] < error < rods.ELASTICA[functions]
+
+
+def test_a_moment_rolls_a_cantilever_up_to_a_circle() -> None:
+    assert rods.circle(8) < 1e-9
+
+
+@pytest.mark.slow
+def test_the_spin_up_has_no_floor() -> None:
+    assert in_motion.spun_up(4, 8.0) < in_motion.SPIN_UP[4] < 0.2 * in_motion.spinup.FLOOR
+
+
+def test_a_soft_pendulum_keeps_its_energy_through_large_angles() -> None:
+    drift, slope = in_motion.swing(1.0)
+    assert drift < in_motion.ENERGY
+    assert slope > 0.5
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("functions", rods.BATHE)
+def test_a_curved_cantilever_bends_out_of_its_plane_as_the_exact_rod(functions: int) -> None:
+    assert rods.bathe(functions) < rods.BATHE[functions]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("functions", rods.PRINCETON)
+def test_a_strip_bends_and_twists_as_the_exact_rod(functions: int) -> None:
+    assert rods.strip(functions, 45.0) < rods.PRINCETON[functions]
