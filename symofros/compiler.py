@@ -54,7 +54,8 @@ def compile_system(system: System, options: Options | None = None) -> Model:
     Raises:
         DescriptionError: The system can't be a mechanism; every problem is listed.
         UnknownNameError: `options` names a function or frame that does not exist.
-        CompileError: The C compiler failed.
+        CompileError: The C compiler failed on functions that `options` names, or there is none of its name; that of
+            others is raised when they are first called.
     """
     return Compilation(system, options).model()
 
@@ -168,12 +169,13 @@ class Compilation:
         return model_source(self.program, self.record, GENERATOR, c_name=c_name)
 
     def model(self) -> Model:
-        """The requested functions, callable; others are generated when first called, unless the options name some."""
-        requests = self.requests
+        """The functions that the options name, callable; where they name none, each is generated when first called."""
+        chosen = self.requests  # A description that can't be a mechanism is refused here, not at the first call.
         _warn_inconsistent(self.system)
         units = self._units(_choose_toolchain(self.options))
-        on_demand = units.functions if self.options.functions is None else None
-        return self._model(units, on_demand, units.functions(requests))
+        if self.options.functions is None:
+            return self._model(units, units.functions)
+        return self._model(units, None, units.functions(chosen))
 
     def model_by_vectors(self, functions: Collection[str]) -> Model:
         """Some of the requested functions, which C evaluates for several states at a time, in one library."""
@@ -188,11 +190,11 @@ class Compilation:
     def _units(self, toolchain: Toolchain | None) -> UnitCompiler:
         return UnitCompiler(self.programs, self.record, self.options, toolchain)
 
-    def _model(self, units: UnitCompiler, on_demand: Callable[[Sequence[Key]], Unit] | None, unit: Unit) -> Model:
+    def _model(self, units: UnitCompiler, on_demand: Callable[[Sequence[Key]], Unit] | None, *made: Unit) -> Model:
         return Model(
             self.record,
             on_demand,
-            (unit,),
+            made,
             formulas=units.formulas,
             beams=beams_at(self.tree),
             parameter_check=RunTimeCheck(self.system, self.record.par_names).problems,

@@ -45,12 +45,14 @@ def work(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Counter[str]:
 
 
 def test_compiling_an_arm_derives_it_once(work: Counter[str]) -> None:
-    sf.compile(MODELS["puma560"])
+    sf.compile(MODELS["puma560"]).prepare("dynamics")
     assert work["derivations"] == work["programs"] == work["compilations"] == 1
 
 
 def test_a_model_that_is_known_is_not_derived(work: Counter[str]) -> None:
-    q = sf.compile(MODELS["puma560"]).neutral()
+    model = sf.compile(MODELS["puma560"])
+    q = model.neutral()
+    model.prepare("dynamics")
     work.clear()
     sf.compile(MODELS["puma560"]).dynamics(q, q, q)
     assert work["derivations"] == work["programs"] == work["compilations"] == 0

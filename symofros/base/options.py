@@ -12,8 +12,8 @@ class Options:
 
     Attributes:
         functions: What to generate, in one C file; a call of anything else is then an error. None (the default):
-            `dynamics` at once, any other function when it is first called, by itself or with those that go with it
-            (`symofros/base/functions.py`: names, inputs, outputs, units).
+            each function when it is first called, by itself or with those that go with it
+            (`symofros/base/functions.py`: names, inputs, outputs, units); `Model.prepare` makes some before.
         frames: Frames that frame functions in `functions` are generated for; None: all.
         backend: "c", or "interpreter" (NumPy; slow, needs no compiler, the reference for the C code).
         flags: Flags of the C compiler, in place of the default.

@@ -16,8 +16,8 @@ from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.dynamics.functions import Methods, Request, form_program, forward_methods
 from symofros.mechanics.topology.tree import SpanningTree
 
-# What is generated at once where the options name no functions.
-_EAGER = (Request("dynamics"),)
+# What a C text or a library holds where the options name no functions.
+_DEFAULT = (Request("dynamics"),)
 _FORWARD = Request("forward_dynamics")
 
 
@@ -92,14 +92,14 @@ class ProgramBuilder:
 
 
 def requested(tree: SpanningTree, options: Options) -> tuple[Request, ...]:
-    """The functions that options ask for at once.
+    """The functions that options ask for.
 
     Raises:
         UnknownNameError: No such function or frame.
         DescriptionError: The options ask for nothing.
     """
     if options.functions is None:
-        return _EAGER
+        return _DEFAULT
     for name in options.functions:
         if name not in FUNCTIONS:
             raise UnknownNameError(

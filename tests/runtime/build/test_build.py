@@ -27,6 +27,14 @@ print(repr(float(m.mass_matrix(m.neutral()).sum())))
 """
 
 
+def compiled(system: sf.System, options: sf.Options | None = None) -> sf.Model:
+    """A model with one function that is made: the options', or the mass matrix."""
+    model = sf.compile(system, options)
+    if options is None or options.functions is None:
+        model.prepare("mass_matrix")
+    return model
+
+
 @pytest.fixture
 def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path / "cache"))
@@ -38,12 +46,12 @@ def libraries(cache: Path) -> list[Path]:
 
 
 def test_equal_content_compiles_once(cache: Path) -> None:
-    sf.compile(random_tree(31))
+    compiled(random_tree(31))
     first = {path: path.stat().st_mtime_ns for path in libraries(cache)}
-    sf.compile(random_tree(31))
+    compiled(random_tree(31))
     assert {path: path.stat().st_mtime_ns for path in libraries(cache)} == first and len(first) == 1
-    sf.compile(random_tree(32))
-    sf.compile(random_tree(31), sf.Options(flags=("-O1",)))
+    compiled(random_tree(32))
+    compiled(random_tree(31), sf.Options(flags=("-O1",)))
     assert len(libraries(cache)) == 3
 
 
@@ -54,7 +62,7 @@ def test_concurrent_processes_agree(cache: Path) -> None:
     ]
     printed = {process.communicate(timeout=120)[0] for process in started}
     assert len(printed) == 1 and printed != {""}
-    assert len(libraries(cache)) == 2  # dynamics, and the mass matrix
+    assert len(libraries(cache)) == 1
 
 
 def test_a_killed_compilation_leaves_nothing_broken(cache: Path, tmp_path: Path) -> None:
@@ -72,12 +80,12 @@ def test_a_killed_compilation_leaves_nothing_broken(cache: Path, tmp_path: Path)
     process.wait()
     assert list(cache.glob(".*/started")), "the compilation was under way"
     assert not libraries(cache)
-    m = sf.compile(random_tree(31))
+    m = compiled(random_tree(31))
     assert np.isfinite(m.mass_matrix(m.neutral())).all()
 
 
 def test_a_library_that_does_not_load_is_named(cache: Path) -> None:
-    sf.compile(random_tree(31))
+    compiled(random_tree(31))
     (library,) = libraries(cache)
     library.unlink()
     (cache / "text").write_bytes(b"whole, but not a library")
@@ -100,7 +108,7 @@ def test_a_compile_error_shows_command_and_words(cache: Path) -> None:
 
 def test_a_named_compiler_must_exist(cache: Path) -> None:
     with pytest.raises(sf.CompileError, match="'nosuchcc'.*not found"):
-        sf.compile(random_tree(31), sf.Options(compiler="nosuchcc"))
+        compiled(random_tree(31), sf.Options(compiler="nosuchcc"))
 
 
 def test_an_unwritable_cache_is_explained(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -108,7 +116,7 @@ def test_an_unwritable_cache_is_explained(tmp_path: Path, monkeypatch: pytest.Mo
     blocked.write_text("")
     monkeypatch.setenv("SYMOFROS_CACHE", str(blocked / "cache"))
     with pytest.raises(sf.CompileError, match="SYMOFROS_CACHE"):
-        sf.compile(random_tree(31))
+        compiled(random_tree(31))
 
 
 @pytest.fixture
@@ -125,7 +133,7 @@ def test_without_any_compiler_the_interpreter_serves(
     without_compilers.setattr(toolchain.importlib.util, "find_spec", lambda name: None)
     try:
         with pytest.warns(sf.CompilerMissingWarning, match="interpreter"):
-            m = sf.compile(random_tree(31))
+            m = compiled(random_tree(31))
         assert np.isfinite(m.mass_matrix(m.random_state(rng)[0])).all()
         assert not cache.exists()
     finally:
@@ -139,9 +147,9 @@ def test_the_ziglang_package_serves_as_compiler(
     pytest.importorskip("ziglang", reason="needs the extra 'zig', which 'dev' brings")
     try:
         with pytest.warns(sf.CompilerMissingWarning, match="ziglang"):
-            m = sf.compile(random_tree(33))
+            m = compiled(random_tree(33))
         q = m.random_state(rng)[0]
-        twin = sf.compile(random_tree(33), sf.Options(backend="interpreter"))
+        twin = compiled(random_tree(33), sf.Options(backend="interpreter"))
         np.testing.assert_allclose(m.mass_matrix(q), twin.mass_matrix(q), atol=1e-13)
     finally:
         find_toolchain.cache_clear()
