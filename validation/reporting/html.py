@@ -66,7 +66,7 @@ def page(report: Report, provenance: Provenance | None = None, closing: str = ""
 
 def prose(text: str) -> str:
     """Escaped, with `code`, **bold** and [links](#anchor) set as such."""
-    text = re.sub("`([^`]+)`", r"<code>\1</code>", escape(text, quote=False))
+    text = re.sub("`([^`]+)`", r"<code>\1</code>", escape(" ".join(text.split()), quote=False))
     text = re.sub(r"\*\*([^*]+)\*\*", r"<b>\1</b>", text)
     return re.sub(r"\[([^\]]+)\]\(([#\w][\w.#/-]*)\)", r'<a href="\2">\1</a>', text)
 

@@ -21,7 +21,7 @@ def block(item: Block) -> str:
     """Any block; nothing of a figure."""
     match item:
         case str():
-            return item
+            return " ".join(item.split())
         case Text(text, tone):
             return f"**{text}**" if tone == "bad" else text
         case Code(text):
