@@ -15,6 +15,10 @@ from symofros.runtime.calls.kernel import Array
 # by d [m or rad] differs by about d, and would ask for accelerations that contradict the others: so the share is above
 # what integration drifts by, and below what distinguishes a posture from a singular one. SYM_RANK in C.
 RANK = 1e-6
+# Smaller entries of a row that counts are no rounding above this share of their size: the mass that they move may be so
+# small that they are the pivot. How much more they must be worth, and the share of sizes that they carry on. In C
+# SYM_WEAK_LEAST and so on.
+WEAK_LEAST, WEAK_WORTH, WEAK_SIZE = 1e-14, 1e-3, 1e-8
 # An entry of a row with a unit: a smaller one is rounding; SYM_LEAST_SIZE in C.
 LEAST_SIZE = 1e-9
 # Rows of G of larger ratios are brought to one size before a least-squares problem is solved: an SVD would lose digits.
@@ -112,11 +116,14 @@ def eliminate(G: Array, measures: Measures, inertia: Array) -> Eliminated:
         open_rows &= significant.any(axis=1)
         if not open_rows.any():
             break
-        values = np.where(significant, np.abs(left) * worth / np.where(own > 0.0, own, 1.0)[:, None], 0.0)
+        weak = (np.abs(left) > WEAK_LEAST * size) & open_rows[:, None] & (inertia > 0.0)
+        counts = np.where(significant, 1.0, np.where(weak, WEAK_WORTH, 0.0))
+        values = counts * np.abs(left) * worth / np.where(own > 0.0, own, 1.0)[:, None]
         p, d = np.unravel_index(int(np.argmax(values)), values.shape)
         open_rows[p] = False
         factor = np.where(open_rows, left[:, d] / left[p, d], 0.0)
-        size = np.maximum(size, np.abs(factor)[:, None] * size[p])
+        of_pivot = size[p] if significant[p, d] else np.maximum(np.abs(left[p]), WEAK_SIZE * size[p])
+        size = np.maximum(size, np.abs(factor)[:, None] * of_pivot)
         U, rows, columns = np.vstack([U, left[p]]), [*rows, int(p)], [*columns, int(d)]
         left = left - np.outer(factor, left[p])
         left[open_rows, d] = 0.0
