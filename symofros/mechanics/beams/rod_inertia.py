@@ -43,8 +43,8 @@ def rod_modal_mass(rod: Rod, i: int, j: int) -> Edge:
     total = _weighted(rod, [a.dot(b) for a, b in zip(rod.point_partials[i], rod.point_partials[j], strict=True)])
     for axis in rod.inertia_axes:
         spins = rod.sections[axis.section].spins
-        both = g.mul(axis.direction.dot(spins[i]), axis.direction.dot(spins[j]))
-        total = g.add(total, g.mul(axis.inertia, both))
+        momentum = g.mul(axis.inertia, axis.direction.dot(spins[i]))  # One for all j.
+        total = g.add(total, g.mul(momentum, axis.direction.dot(spins[j])))
     return total
 
 

@@ -23,7 +23,7 @@ from symofros.mechanics.beams.shape_functions import MAX_MODES, FamilyError, b_s
 # coordinate bends the rod towards positive y or z.
 TURNS = {"bend_y": (2, 1), "bend_z": (1, -1), "twist": (0, 1)}
 # Sections an interval beyond the number of functions, and the fewest: what the elastica and a full circle ask for.
-_MORE_SECTIONS, _FEWEST_SECTIONS = 3, 5
+_MORE_SECTIONS, _FEWEST_SECTIONS = 2, 4
 # Sections an interval where knots divide the rod: the cubic between them is smooth.
 _SECTIONS_A_SPAN = 4
 # Largest angle [rad] by which the strains of one direction turn the tip in random states.

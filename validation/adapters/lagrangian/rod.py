@@ -23,7 +23,7 @@ SX = Any  # CasADi has no types.
 # Gauss nodes of an interval's moments and energies: exact for strains of degree 15.
 NODES = 16
 # Sections an interval that the description leaves to the generator: beyond the functions, at least; between knots.
-MORE, FEWEST, A_SPAN = 3, 5, 4
+MORE, FEWEST, A_SPAN = 2, 4, 4
 
 
 @dataclass(frozen=True)
