@@ -74,7 +74,7 @@ def opinion(record: Record, engine: str) -> tuple[str, ...]:
     rows = [row for row in record.compared if row.engine == engine]
     wrong = [row for row in rows if row.status == "disagree"]
     alone, near = sum(others.get((row.model, row.quantity)) == {"agree"} for row in wrong), worst(rows)
-    used = "nan" if near is None or near.error is None else f"{near.error / near.tolerance:.2g}"
+    used = "NaN" if near is None or near.error is None else f"{near.error / near.tolerance:.2g}"
     place = f"{near.words} of {near.model}" if near else ""
     said = "agrees" if not wrong else "suspect" if 2 * alone > len(wrong) else "against our C"
     kind, models = "independent" if ROUTES[engine].independent else "our own", len({row.model for row in rows})
@@ -85,10 +85,10 @@ def opinion(record: Record, engine: str) -> tuple[str, ...]:
 def _table(middle: str, lines: Iterable[tuple[ModelResult, str, Sequence[Comparison]]]) -> Table:
     """A line each: the model, whom it is compared with, the worst comparison in each column, the verdict."""
     rows = []
-    for model, compared, found in lines:
-        cells = [_cell(worst(row for row in found if row.quantity in names)) for names in COLUMNS.values()]
-        label = verdict(model.label, _status(found) in ("agree", "unsupported"))
-        rows.append((label, str(model.sizes.get("nv", "")), compared, *cells, _result(found)))
+    for model, compared, comparisons in lines:
+        cells = [_cell(worst(row for row in comparisons if row.quantity in names)) for names in COLUMNS.values()]
+        label = verdict(model.label, _status(comparisons) in ("agree", "unsupported"))
+        rows.append((label, str(model.sizes.get("nv", "")), compared, *cells, _result(comparisons)))
     return Table(("model", "nv", middle, *COLUMNS, "verdict"), tuple(rows)).without_empty()
 
 

@@ -60,6 +60,11 @@ class Table:
     head: tuple[str, ...]
     rows: tuple[tuple[str | Cell, ...], ...]
 
+    def __post_init__(self) -> None:
+        for row in self.rows:
+            if len(row) != len(self.head):
+                raise ValueError(f"a row of {len(row)} cells, {row}, under {len(self.head)} names, {self.head}")
+
     @classmethod
     def of(cls, head: str, rows: Iterable[str | Sequence[str | Cell]]) -> Table:
         """A table as in Markdown: names and cells between " | "; texts from outside come as sequences of cells."""

@@ -81,8 +81,8 @@ def targets_table(verdicts: Sequence[Verdict]) -> Table:
         target, variant = one.target, one.entry.variant if one.entry else ""
         peer = ", ".join(filter(None, (target.peer, target.family)))
         ratio = verdict(f"{one.ratio:.2f}", one.met) if one.entry else "-"
-        found = f"{ratio} | {formatted(one.by_rows, '.2f')} | {target.least:g} | {one.statement} | {variant}"
-        rows.append(f"{target.title} | {target.task} | {target.how} | {peer} | {found}")
+        reached = f"{ratio} | {formatted(one.by_rows, '.2f')} | {target.least:g} | {one.statement} | {variant}"
+        rows.append(f"{target.title} | {target.task} | {target.how} | {peer} | {reached}")
     return Table.of(_TARGETS, rows)
 
 

@@ -127,6 +127,11 @@ def test_columns_of_numbers_are_set_as_such(text: str) -> None:
     assert Table.of("n | who", [f"{verdict(text, False)} | a", "2 | 3"]).numeric == [True, False]
 
 
+def test_a_row_that_misses_a_cell_is_refused() -> None:
+    with pytest.raises(ValueError, match="a row of 1 cells"):
+        Table.of("who | what", ["a | b", "a"])
+
+
 @pytest.mark.parametrize("text", ["7 joints", "planar 2R", "x1", "[3](#a)", "2026-11-22 4f984ee5"])
 def test_columns_of_words_are_no_numbers(text: str) -> None:
     assert Table.of("who", [[text], ["3"]]).numeric == [False]
