@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Mapping
 from typing import Any
 
+from validation.engines import parts
 from validation.engines.study import RED, measure
 from validation.reporting.numbers import counted
 from validation.reporting.record import Bullets, Cell, Code, Data, Fact, Report, Section, Table, Text, Topic, verdict
@@ -25,6 +26,11 @@ Row = Mapping[str, Any]
 
 def compose(data: Data) -> Report:
     """The report of its JSON."""
+    data = {
+        **data,
+        "cells": parts.unnested(data["cells"], parts.CELLS),
+        "identities": parts.unnested(data["identities"], parts.IDENTITIES),
+    }
     cells, proofs, identities = data["cells"], data["proofs"], data["identities"]
     tally = Counter(cell["verdict"] for cell in cells)
     red = sum(tally[name] for name in RED)
@@ -32,7 +38,7 @@ def compose(data: Data) -> Report:
     listed = ", ".join(f"{engine} in {counted(number, 'cell')}" for engine, number in wrong.most_common()) or "none"
     scripts = counted(sum(proof["proven"] for proof in proofs), "script")
     all_proven, held = all(proof["proven"] for proof in proofs), sum(row["ok"] for row in identities)
-    head = "engine | version | right | wrong | imprecise | crashes | refuses | faults proven"
+    head = "engine | version | right | wrong | imprecise | crashes | refuses | faults proven | measured"
     overview = Table.of(head, (_tally(engine, data) for engine in data["engines"]))
     absent = "; ".join(f"{name}: {why}" for name, why in data["absent"].items())
     missing = (Text(f"Not installed here: {absent}.", "soft"),) if absent else ()
@@ -69,7 +75,9 @@ def _tally(engine: Row, data: Data) -> tuple[str, ...]:
     name, tally = engine["name"], Counter(cell["verdict"] for cell in data["cells"] if cell["engine"] == engine["name"])
     proofs = sum(proof["engine"] == name for proof in data["proofs"]) if any(tally[red] for red in RED) else ""
     counts = verdict(tally["wrong"], not tally["wrong"]), tally["imprecise"], tally["crashes"], tally["refuses"], proofs
-    return f"[{name}](#engine-{name})", engine["version"], str(tally["right"]), *map(str, counts)
+    measured = {name: data.get(name, "") for name in parts.ORIGIN} | engine.get("measured", {})
+    when = f"{measured['date']}, {measured['revision'][:8]}"
+    return f"[{name}](#engine-{name})", engine["version"], str(tally["right"]), *map(str, counts), when
 
 
 def _matrix(engine: Row, data: Data) -> Section:

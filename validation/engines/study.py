@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from validation.engines import parts
 from validation.engines.functions import FUNCTIONS
 from validation.engines.identities import held
 from validation.engines.interface import EnginePlugin, Tree
@@ -132,11 +133,27 @@ def measure(
     models: Annotated[list[str] | None, typer.Option("--kinds", help="Only this kind of joint, or tree.")] = None,
     prove: Annotated[bool, typer.Option(help="Shrink red cells, write their scripts and run them.")] = True,
     tries: Annotated[int, typer.Option(min=0, help="Cases tried to shrink each fault.")] = TRIES,
+    part: Annotated[
+        list[Path] | None, typer.Option(help="Take over the engines of a stored engines.json; repeatable.")
+    ] = None,
 ) -> Data:
-    """Hold engines against thirty digits of truth: every kind of joint, every function that they offer."""
+    """Hold engines against thirty digits of truth: every kind of joint, every function that they offer.
+
+    A run may be made in parts: --engine for some engines, into a folder of their own; then once more with --part for
+    each folder's engines.json, which measures the engines that no part has, and writes one report of all.
+    """
+    try:
+        stored = parts.load(part or ())
+    except parts.PartsDisagree as error:
+        raise typer.BadParameter(str(error), param_hint="--part") from None
     plugins = registry().plugins
     present = {name: plugin for name, plugin in plugins.items() if plugin.version()}
+    left = [name for name in present if name not in parts.engines_of(stored)]
+    for name in engines or ():
+        if name in parts.engines_of(stored):
+            raise typer.BadParameter(f"engine '{name}' is in a stored part, too", param_hint="--engine")
     chosen = {name: present[name] for name in known(engines, present, "--engine", "engine present")}
+    chosen = {name: plugin for name, plugin in chosen.items() if name in left}
     all_trees, files = trees(), readings() | formats()
     names_wanted = known(models, [*all_trees, *files], "--kinds", "kind")
     wanted = [all_trees[name] for name in names_wanted if name in all_trees]
@@ -149,16 +166,24 @@ def measure(
             if prove
             else []
         )
-    return {
+    own: Data = {
+        "question": parts.question(),
         "engines": [_engine(plugin) for plugin in chosen.values()],
         "absent": {name: plugin.extra for name, plugin in plugins.items() if name not in present} | registry().failures,
         "models": names_wanted,
         "functions": {name: FUNCTIONS[name.partition(":")[0]].text for name in names(chosen)},
         # What an engine does not offer is what is left: a third of all.
-        "cells": [asdict(one.cell) for one in cells if one.cell.verdict != "not offered"],
-        "identities": [asdict(one) for one in held(cells)],
+        "cells": parts.nested((asdict(one.cell) for one in cells if one.cell.verdict != "not offered"), parts.CELLS),
+        "identities": parts.nested(map(asdict, held(cells)), parts.IDENTITIES),
         "proofs": [asdict(proof) | {"models": models} for proof, models in proven],
     }
+    try:
+        whole = parts.merged(own, stored)
+    except parts.PartsDisagree as error:
+        raise typer.BadParameter(str(error), param_hint="--part") from None
+    for one in stored:
+        parts.write_scripts(one["proofs"], run.folder / "engines")
+    return whole
 
 
 def _engine(plugin: EnginePlugin) -> Data:

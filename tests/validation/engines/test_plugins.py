@@ -70,7 +70,7 @@ def test_an_engine_refuses_in_words_what_it_has_no_joint_for(engine: str) -> Non
     assert answer.reason
 
 
-@pytest.mark.parametrize("kind", ("euler xyz", "mimic oblique", "revolute unbounded", "ball"))
+@pytest.mark.parametrize("kind", ("euler xyz", "mimic prismatic", "revolute unbounded", "ball"))
 def test_casadi_differentiates_and_solves_right(kind: str) -> None:
     """All its functions: derivatives of forces by coordinates and speeds, along quaternions, too."""
     plugin = OWN["casadi"]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any, NamedTuple
 
@@ -204,10 +204,10 @@ def in_series(tree: Tree, charts: Mapping[tuple[str, str], str]) -> tuple[tuple[
         for joint in link.joints:
             if joint.kind == "fixed":
                 continue
-            if joint.mimics:
-                own.append(slots[joint.mimics][0])
-                continue
             chart = charts[joint.kind, joint.form]
+            if joint.mimics:
+                own.append(replace(slots[joint.mimics][0], chart=chart))
+                continue
             size = CHARTS[chart]
             own.append(Slot(chart, tuple(range(nq, nq + size.nq)), tuple(range(nv, nv + size.nv))))
             nq, nv = nq + size.nq, nv + size.nv

@@ -1,0 +1,128 @@
+"""The matrix measured in parts, some engines at a time: stored parts are taken over if they answer the same question.
+
+Cells and identities are stored as nested tables, which say names once: a fifth of the text of rows that repeat them.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from validation.reporting.record import Data
+
+Row = dict[str, Any]
+# What rows of a stored table are found by, in its nesting, and what is kept of each.
+CELLS = ("engine", "function", "model"), ("verdict", "error", "tolerance", "words")
+IDENTITIES = ("engine", "identity", "model"), ("error", "ok")
+# Whoever measured says when, of which source, and by which versions.
+ORIGIN = ("revision", "date", "versions")
+# What an answer is held to: trees, truths, tolerances. Parts by other plug-ins or proofs answer the same question.
+_ASKED = ("functions.py", "identities.py", "matrix.py", "verdicts.py", "models/*.py", "truth/*.py")
+
+
+class PartsDisagree(ValueError):
+    """Stored parts can't be one report."""
+
+
+@cache
+def question() -> str:
+    """Digest of what engines are asked and held to."""
+    folder = Path(__file__).parent
+    digest = hashlib.sha256()
+    for path in sorted(path for pattern in _ASKED for path in folder.glob(pattern)):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def nested(rows: Iterable[Row], layout: tuple[Sequence[str], Sequence[str]]) -> Data:
+    """Rows as a nested table; empty text at the end of a row is left out."""
+    keys, kept = layout
+    table: Row = {}
+    for row in rows:
+        place = table
+        for key in keys[:-1]:
+            place = place.setdefault(row[key], {})
+        values = [row[name] for name in kept]
+        place[row[keys[-1]]] = values[:-1] if values[-1] == "" else values
+    return table
+
+
+def unnested(table: Data, layout: tuple[Sequence[str], Sequence[str]]) -> list[Row]:
+    """The rows of a nested table."""
+    keys, kept = layout
+    places: list[tuple[tuple[str, ...], Any]] = [((), table)]
+    for _ in keys:
+        places = [((*names, name), inner) for names, outer in places for name, inner in outer.items()]
+    return [
+        dict(zip(keys, names, strict=True)) | dict.fromkeys(kept, "") | dict(zip(kept, values, strict=False))
+        for names, values in places
+    ]
+
+
+def load(paths: Iterable[Path]) -> list[Data]:
+    """Stored parts, none of which has an engine of another.
+
+    Raises:
+        PartsDisagree: A file is no part, was asked something else, or has an engine that another has, too.
+    """
+    parts: list[Data] = []
+    owners: dict[str, Path] = {}
+    for path in paths:
+        try:
+            part = json.loads(path.read_text(encoding="utf-8"))
+            names = [engine["name"] for engine in part["engines"]]
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            raise PartsDisagree(f"{path} is no stored engines.json: {type(error).__name__}: {error}") from None
+        if part.get("question") != question():
+            stated = f"question {part['question']}" if "question" in part else "no question: it is of an older version"
+            raise PartsDisagree(f"{path} was held to other trees or truths: it states {stated}, now it is {question()}")
+        for name in names:
+            if name in owners:
+                raise PartsDisagree(f"engine '{name}' is in {owners[name]} and in {path}: leave one out")
+            owners[name] = path
+        parts.append(part)
+    return parts
+
+
+def engines_of(parts: Iterable[Data]) -> set[str]:
+    """Names of the engines of stored parts."""
+    return {engine["name"] for part in parts for engine in part["engines"]}
+
+
+def merged(own: Data, parts: Sequence[Data]) -> Data:
+    """What was measured now with what stored parts have; each engine of theirs bears the origin of its numbers.
+
+    Args:
+        own: What was measured now.
+        parts: Stored parts (`load`).
+
+    Raises:
+        PartsDisagree: A part was asked about other trees than the others.
+    """
+    models = [own["models"]] if own["engines"] else []
+    models += [part["models"] for part in parts]
+    if any(set(one) != set(models[0]) for one in models):
+        raise PartsDisagree("the parts were asked about different trees: --kinds must be the same for all")
+    result = dict(own) | {"models": models[0]}
+    for part in parts:
+        origin = {name: part[name] for name in ORIGIN}
+        result["engines"] = [*result["engines"], *({"measured": origin} | engine for engine in part["engines"])]
+        result["functions"] = part["functions"] | result["functions"]
+        result["absent"] = result["absent"] | part["absent"]
+        result["proofs"] = [*result["proofs"], *part["proofs"]]
+        for table in ("cells", "identities"):
+            result[table] = result[table] | part[table]
+    present = {engine["name"] for engine in result["engines"]}
+    result["absent"] = {name: why for name, why in result["absent"].items() if name not in present}
+    return result
+
+
+def write_scripts(proofs: Iterable[Mapping[str, Any]], folder: Path) -> None:
+    """The scripts of stored proofs, beside those that were written now."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for proof in proofs:
+        (folder / Path(proof["file"]).name).write_text(proof["text"], encoding="utf-8")
