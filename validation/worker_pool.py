@@ -22,7 +22,7 @@ Report = Callable[[ModelResult], None]
 
 def _preloaded(settings: Settings) -> list[str]:
     """Modules loaded once into the process that the workers are forked from: no engine that is not asked for."""
-    return ["validation.worker_pool", *(ROUTES[name].module for name in settings.routes())]
+    return ["validation.worker_pool", "validation.inputs.readers", *(ROUTES[name].module for name in settings.routes())]
 
 
 def run_case(case: Case, settings: Settings) -> ModelResult:
