@@ -70,7 +70,7 @@ class Viewer(ViewerPage):
         exaggeration = finite("exaggeration", exaggeration)
         mechanism = Mechanism(system, tracks_of(paths))
         self._token = secrets.token_urlsafe(16)
-        server = start_server(host, port, self._token)
+        server = start_server(host, port, self._token, f"{system.name} - SYMOFROS")
         self._wake = threading.Condition()  # Guards what is wanted; held for moments only, never while painting.
         self._wanted: _Wanted | None = None
         self._closing = False

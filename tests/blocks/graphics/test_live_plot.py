@@ -60,8 +60,9 @@ def test_others_are_refused(shown: LivePlot) -> None:
     for path in ("/", "/guess/", "/guess/rows", "/favicon.ico"):
         with pytest.raises(urllib.error.HTTPError, match="403"):
             urllib.request.urlopen(root + path, timeout=60)
-    with pytest.raises(urllib.error.HTTPError, match="403"):
-        urllib.request.urlopen(urllib.request.Request(shown.url, headers={"Host": "evil.example"}), timeout=60)
+    for headers in ({"Host": "evil.example"}, {"Origin": "http://evil.example"}, {"Origin": "null"}):
+        with pytest.raises(urllib.error.HTTPError, match="403"):
+            urllib.request.urlopen(urllib.request.Request(shown.url, headers=headers), timeout=60)
     with pytest.raises(urllib.error.HTTPError, match="404"):
         urllib.request.urlopen(shown.url + "other", timeout=60)
 

@@ -85,7 +85,7 @@ class DocumentViewer:
             self._viewer.set_system(system)
 
     def pose(self, body: Json) -> Json:
-        """Move it: `q` {coordinate: value}, `par` {parameter: value}, `exaggeration`, `reset`; all may be left out.
+        """Move it: `q` {coordinate: value}, `par` {parameter: value}, `exaggeration`, `dark`, `reset`; all may be left out.
 
         Returns:
             Where everything stands then, and why loops could not be closed.
@@ -103,6 +103,8 @@ class DocumentViewer:
                 raise _nothing_shown()
             if body.get("reset") is True:
                 viewer.reset()
+            if isinstance(body.get("dark"), bool):
+                viewer.set_dark(body["dark"])
             if factor is not None:
                 viewer.exaggeration = float(factor)
             try:

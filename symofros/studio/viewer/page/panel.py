@@ -49,6 +49,9 @@ class Controls(Protocol):
     def reset(self) -> None:
         """Show the configuration that was shown first."""
 
+    def set_dark(self, dark: bool) -> None:
+        """Show page and picture in dark colours, or in light ones."""
+
 
 class Panel:
     """The controls of one mechanism, in place of those of the one before.
@@ -62,6 +65,7 @@ class Panel:
         exaggeration: Exaggeration of the elastic ones; None where there are none.
         player: Player of the motion, if there is one.
         controls_shown: Whether there are any; the panel is empty and minimized otherwise.
+        dark: Whether colours are dark.
     """
 
     def __init__(
@@ -74,6 +78,7 @@ class Panel:
         exaggeration: float | None,
         player: Player | None,
         controls_shown: bool = True,
+        dark: bool = False,
     ) -> None:
         self._gui = gui = server.gui
         self._controls = controls
@@ -83,7 +88,7 @@ class Panel:
         self._boxes: dict[str, Any] = {}
         self._sliders: list[Any] = []
         gui.reset()
-        gui.configure_theme(show_logo=False, show_share_button=False)
+        self.set_dark(dark)
         gui.set_panel_label(drawing.name)
         self._status = gui.add_markdown("")
         self._warning = gui.add_markdown("")
@@ -94,6 +99,7 @@ class Panel:
         if player is not None:
             self._add_player(player)
         self._add_layers(layers, exaggeration)
+        self._on(gui.add_checkbox("dark", dark), controls.set_dark)
         self._add_sliders(sliders)
 
     def _add_layers(self, layers: frozenset[str], exaggeration: float | None) -> None:
@@ -141,6 +147,10 @@ class Panel:
         if sliders:
             gui.add_button("Reset").on_click(lambda _: self._controls.reset())
         self._sliders = [handles[i] for i in range(len(sliders))]
+
+    def set_dark(self, dark: bool) -> None:
+        """Show page and picture in dark colours, or in light ones."""
+        self._gui.configure_theme(show_logo=False, show_share_button=False, dark_mode=dark)
 
     def say(self, text: str) -> None:
         """Show a line of text above the controls."""

@@ -6,7 +6,9 @@ in Host, a foreign page in Origin, and neither knows the token.
 
 from __future__ import annotations
 
+import gzip
 import hmac
+import html
 from collections.abc import Callable
 from dataclasses import replace
 from http import HTTPStatus
@@ -33,13 +35,14 @@ class ViewerGuard:
     Args:
         host: Address that the server is bound to.
         token: First part of the path of every address.
+        title: Title of the page.
 
     Attributes:
         is_asked: Whether the server asks it.
     """
 
-    def __init__(self, host: str, token: str) -> None:
-        self.token = token
+    def __init__(self, host: str, token: str, title: str = "SYMOFROS") -> None:
+        self.token, self.title = token, title
         # Bound to another address, the server is known by names that it can't tell itself.
         self._names = LOOPBACK_NAMES | {host.lower()} if is_loopback(host) else None
         self.is_asked = False
@@ -55,6 +58,7 @@ class ViewerGuard:
             path = request.path.partition("?")[0].removeprefix(f"/{self.token}") or "/"
             response = answer(connection, replace(request, path=path)) if answer is not None else None
             if response is not None:
+                _put_title(response, self.title)
                 response.headers.update(_HEADERS)
             return response
 
@@ -88,6 +92,19 @@ class ViewerGuard:
         except ValueError:
             return False
         return name is not None and (self._names is None or name in self._names)
+
+
+def _put_title(response: Any, title: str) -> None:
+    """Put a title in the place of viser's own, if the response is its page."""
+    is_packed = response.headers.get("Content-Encoding") == "gzip"
+    if not response.body or "text/html" not in response.headers.get("Content-Type", ""):
+        return
+    page = gzip.decompress(response.body) if is_packed else response.body
+    page = page.replace(b"<title>Viser</title>", f"<title>{html.escape(title)}</title>".encode(), 1)
+    response.body = gzip.compress(page, 6, mtime=0) if is_packed else page
+    if "Content-Length" in response.headers:
+        del response.headers["Content-Length"]
+        response.headers["Content-Length"] = str(len(response.body))
 
 
 def is_loopback(host: str) -> bool:

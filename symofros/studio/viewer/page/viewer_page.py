@@ -37,6 +37,7 @@ class ViewerPage:
         self._painting = threading.RLock()  # Guards the picture, the player and the controls.
         self._player: Player | None = None
         self._followed = -_FOLLOWED
+        self._dark = False
         self.painted = 0
         self._scene_state = SceneState(server, mechanism, exaggeration)
         self._panel = self._new_panel()
@@ -105,6 +106,12 @@ class ViewerPage:
             self._scene_state.exaggeration = finite("exaggeration", factor)
             self._paint(self._scene_state.state)
             self._panel.show(self._scene_state.scene.layers, self._scene_state.exaggeration)
+
+    def set_dark(self, dark: bool) -> None:
+        """Show page and picture in dark colours, or in light ones."""
+        with self._painting:
+            self._dark = dark
+            self._panel.set_dark(dark)
 
     def slide(self, index: int, value: float) -> None:
         """Move one degree of freedom, by the index of its speed; loops close around it where they can."""
@@ -204,6 +211,7 @@ class ViewerPage:
             scene_state.exaggeration if mechanism.is_flexible else None,
             self._player,
             self._controls,
+            self._dark,
         )
         panel.follow(scene_state.values, self._player)
         panel.warn(self._bending_notes())

@@ -33,13 +33,14 @@ def load_viser() -> Any:
         raise SymofrosError(missing) from None
 
 
-def start_server(host: str, port: int, token: str) -> Any:
+def start_server(host: str, port: int, token: str, title: str = "SYMOFROS") -> Any:
     """A viser server that serves, to whoever knows the token.
 
     Args:
         host: Address to bind to; LOOPBACK is seen from this machine only.
         port: 0 for any free one. One that is taken is an error: browsers would be sent to what else is there.
         token: First part of the path of its page and of its socket.
+        title: Title of the page, which its tab shows.
 
     Raises:
         SymofrosError: viser is not installed, or the address can't be bound to.
@@ -55,7 +56,7 @@ def start_server(host: str, port: int, token: str) -> Any:
             _refuse(host, port, error.strerror or str(error), "the address is one of this machine's, the port is free")
     # It logs every connection that ends before its handshake, such as a browser's spare ones.
     logging.getLogger("websockets.server").setLevel(logging.CRITICAL)
-    guard = ViewerGuard(host, token)
+    guard = ViewerGuard(host, token, title)
     with _quiet(), _guarded(guard):
         server = viser.ViserServer(host=host, port=port, verbose=False)
     if not guard.is_asked:

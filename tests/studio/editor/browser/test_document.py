@@ -355,4 +355,6 @@ def test_a_new_file_is_no_fault_and_fits_a_narrow_page(serve: Callable[..., Serv
     page.goto(server.url)
     button = page.get_by_role("banner").get_by_role("button", name="1 problem")
     expect(button).to_have_class("check")
-    assert page.evaluate("document.documentElement.scrollWidth") <= 640
+    for width in (640, 390):
+        page.set_viewport_size({"width": width, "height": 760})
+        assert page.evaluate("document.documentElement.scrollWidth") <= width

@@ -59,6 +59,14 @@ def test_a_motion_plays_at_the_cursor_of_the_plots_and_runs_are_compared(
     expect(motion.get_by_role("status")).not_to_have_text("0 s")
     picture("play")
 
+    # The picture takes the page's colours.
+    scheme = page.frame_locator("iframe.view").locator("html")
+    for colours in ("dark", "light"):
+        page.get_by_role("button", name="Dark or light").click()
+        expect(scheme).to_have_attribute("data-mantine-color-scheme", colours)
+        if colours == "dark":
+            picture("play-dark")
+
     # A second run beside the first, which keeps the name that it was given.
     results.get_by_label("Name of run 1").fill("from 1.2")
     simulate(page, "0.7")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -68,6 +68,31 @@ def test_a_run_waits_at_its_breakpoint_and_follows_the_order(
     for i, name in enumerate(names):
         assert [x for part in rest_of(told) for x in part["values"][i]] == curves[name]["values"]
     assert curves["wave.rate"]["unit"] == "rad/s"
+
+
+def test_a_run_in_pace_with_the_clock_pauses_and_stops_when_it_is_told(jobs: Jobs, told: Told, tmp_path: Path) -> None:
+    job = started(jobs, tmp_path, TEXT.replace("t_end: 1", "t_end: 60"), realtime=1.0)
+
+    def wait_until(holds: Callable[[], bool]) -> None:
+        end = time.monotonic() + 60.0
+        while not holds():
+            assert time.monotonic() < end and not job.over.is_set(), job.error
+            time.sleep(0.02)
+
+    wait_until(lambda: any(part["t"] for part in samples(told)))
+    jobs.order(job.key, "pause")
+    wait_until(lambda: paused(told))
+    before = samples(told)[-1]["t"][-1]
+    time.sleep(0.3)
+    assert samples(told)[-1]["t"][-1] == before  # Time stands still.
+    jobs.order(job.key, "resume")
+    wait_until(lambda: samples(told)[-1]["t"][-1] > before)
+    # Not made up for: the motion goes on from where it stood.
+    assert samples(told)[-1]["t"][-1] < before + 20.0
+    jobs.order(job.key, "stop")
+    assert job.over.wait(30.0) and job.state == "done"
+    assert job.result["outcome"]["reason"] == "stopped where you said"
+    assert before < job.result["t"][-1] < 60.0
 
 
 def rest_of(told: Told) -> list[dict[str, Any]]:

@@ -35,7 +35,7 @@ def test_its_page_is_at_the_address_with_the_token(viewer: sf.Viewer) -> None:
     assert len(path) > 20
     for host in (f"127.0.0.1:{viewer.port}", f"localhost:{viewer.port}", "localhost:9000"):  # The last: by a tunnel.
         code, page = status(viewer, path, Host=host)
-        assert code == 200 and b"<title>Viser</title>" in page
+        assert code == 200 and b"<title>pendulum - SYMOFROS</title>" in page and b"<title>Viser" not in page
 
 
 @pytest.mark.parametrize("cut", ["/", "", "/index.html", "/wrong/", "/../"])

@@ -6,11 +6,15 @@ import "./style/diagram.css";
 import "./style/runs.css";
 import "./style/windows.css";
 import "./style/panels.css";
+import "./style/narrow.css";
 
 import { createRoot } from "react-dom/client";
 
 import { App } from "./App";
 import { begin } from "./store/session";
+import { update } from "./store/store";
 
+// Where there is little room the diagram has it; panes open when they are asked for.
+if (window.innerWidth < 900) update({ right: null });
 void begin();
 createRoot(window.document.getElementById("root") as HTMLElement).render(<App />);

@@ -256,6 +256,7 @@ export interface Pose {
   par?: Record<string, number>;
   exaggeration?: number;
   reset?: boolean;
+  dark?: boolean;
   /** A simulation, whose state at a time is shown. */
   run?: string;
   t?: number;

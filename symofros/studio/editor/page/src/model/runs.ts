@@ -21,7 +21,7 @@ export function withRun(runs: readonly KeptRun[], job: Job): readonly KeptRun[] 
   if (job.state !== "done" || (job.kind !== "simulate" && job.kind !== "run")) return runs;
   if (runs.some(({ id }) => id === job.id)) return runs;
   const numbers = runs.map(({ name }) => Number(/^run (\d+)$/.exec(name)?.[1] ?? 0));
-  const name = `run ${Math.max(0, ...numbers) + 1}`;
+  const name = `run ${Math.max(runs.length, ...numbers) + 1}`;
   const run = { id: job.id, kind: job.kind, name, revision: job.revision, shown: false, result: job.result };
   return [...runs, run].slice(-MOST);
 }

@@ -2,6 +2,7 @@ import { useEffect, useState } from "react";
 
 import type { Coordinate, Fault, View } from "../api/types";
 import { useDocument, useStore } from "../store/store";
+import { useTheme } from "../store/theme";
 import { look, lookAway, move } from "../store/view";
 import { ParameterSlider } from "./ParameterSlider";
 
@@ -140,6 +141,11 @@ export function ViewPane() {
   const view = useStore((state) => state.view);
   useEffect(() => void look(), [revision, path]);
   useEffect(() => lookAway, []);
+  const theme = useTheme();
+  const isShown = view !== null && "address" in view;
+  useEffect(() => {
+    if (isShown) void move({ dark: theme === "dark" });
+  }, [isShown, theme]);
   if (view === null) return <p className="pane quiet">Deriving the picture…</p>;
   if (!("address" in view)) return <Why fault={view} />;
   return (

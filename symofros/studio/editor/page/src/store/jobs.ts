@@ -3,6 +3,7 @@
 import { get, post, remove } from "../api/client";
 import type { Job, JobKind, Samples } from "../api/jobs";
 import { withRun } from "../model/runs";
+import { setTime } from "./playing";
 import { explain, ordered } from "./requests";
 import { now, update } from "./store";
 
@@ -45,7 +46,10 @@ async function fetchJob(id: string): Promise<Job | undefined> {
 }
 
 function take(job: Job): void {
+  const isNew = job.kind === "simulate" && job.state === "done" && now().jobs.simulate?.state !== "done";
   update((state) => ({ jobs: { ...state.jobs, [job.kind]: job }, runs: withRun(state.runs, job) }));
+  const { time } = now();
+  if (isNew && time !== null) setTime(time);
 }
 
 /** Asks now and then; the server tells too, but a stream of events can break. */
