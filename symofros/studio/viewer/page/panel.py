@@ -21,6 +21,7 @@ _LAYER_NAMES = {
     "visuals": "visual shapes",
     "ground": "ground and gravity",
 }
+_DARK = "dark"
 _MOST_EXAGGERATION = 50.0
 _STEPS = 500  # Of a slider.
 
@@ -99,7 +100,8 @@ class Panel:
         if player is not None:
             self._add_player(player)
         self._add_layers(layers, exaggeration)
-        self._on(gui.add_checkbox("dark", dark), controls.set_dark)
+        self._boxes[_DARK] = gui.add_checkbox(_DARK, dark)
+        self._on(self._boxes[_DARK], controls.set_dark)
         self._add_sliders(sliders)
 
     def _add_layers(self, layers: frozenset[str], exaggeration: float | None) -> None:
@@ -151,6 +153,8 @@ class Panel:
     def set_dark(self, dark: bool) -> None:
         """Show page and picture in dark colours, or in light ones."""
         self._gui.configure_theme(show_logo=False, show_share_button=False, dark_mode=dark)
+        if _DARK in self._boxes:
+            self._boxes[_DARK].value = dark
 
     def say(self, text: str) -> None:
         """Show a line of text above the controls."""
@@ -164,8 +168,9 @@ class Panel:
 
     def show(self, layers: frozenset[str], exaggeration: float) -> None:
         """Let the controls say what is shown."""
-        for layer, box in self._boxes.items():
-            box.value = layer in layers
+        for layer in LAYERS:
+            if layer in self._boxes:
+                self._boxes[layer].value = layer in layers
         if self._exaggeration is not None:
             self._exaggeration.value = float(np.clip(exaggeration, 0.0, self._exaggeration.max))
 

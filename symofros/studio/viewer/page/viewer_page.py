@@ -16,6 +16,7 @@ from symofros.studio.viewer.playing.motion import finite, positive
 from symofros.studio.viewer.playing.player import Player
 from symofros.studio.viewer.playing.sliders import Slider
 
+_DARK_LIGHT = 2.5  # Before a dark ground viser's own light is too weak for the bodies' colours.
 _FOLLOWED = 0.1  # Seconds between updates of the controls: they cost more than the picture.
 
 
@@ -38,6 +39,7 @@ class ViewerPage:
         self._player: Player | None = None
         self._followed = -_FOLLOWED
         self._dark = False
+        self._light: Any = None  # Beside viser's own, in the dark.
         self.painted = 0
         self._scene_state = SceneState(server, mechanism, exaggeration)
         self._panel = self._new_panel()
@@ -110,6 +112,11 @@ class ViewerPage:
     def set_dark(self, dark: bool) -> None:
         """Show page and picture in dark colours, or in light ones."""
         with self._painting:
+            if dark and self._light is None:
+                self._light = self._server.scene.add_light_ambient("/ambient", intensity=_DARK_LIGHT)
+            elif not dark and self._light is not None:
+                self._light.remove()
+                self._light = None
             self._dark = dark
             self._panel.set_dark(dark)
 
