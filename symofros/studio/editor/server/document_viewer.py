@@ -85,7 +85,7 @@ class DocumentViewer:
             self._viewer.set_system(system)
 
     def pose(self, body: Json) -> Json:
-        """Move it: `q` {coordinate: value}, `par` {parameter: value}, `exaggeration`, `dark`, `reset`; all may be left out.
+        """Move it: `q` {coordinate: value}, `par` {parameter: value}, `exaggeration`, `dark`, `reset`; any of them.
 
         Returns:
             Where everything stands then, and why loops could not be closed.

@@ -16,7 +16,7 @@ from symofros.studio.viewer.playing.motion import finite, positive
 from symofros.studio.viewer.playing.player import Player
 from symofros.studio.viewer.playing.sliders import Slider
 
-_DARK_LIGHT = 2.5  # Before a dark ground viser's own light is too weak for the bodies' colours.
+_DARK_LIGHT = 5.0  # Before a dark ground viser's own light is too weak for the bodies' colours.
 _FOLLOWED = 0.1  # Seconds between updates of the controls: they cost more than the picture.
 
 
