@@ -66,7 +66,8 @@ class Page(BaseHTTPRequestHandler):
         hosts = (f"127.0.0.1:{self.port}", f"localhost:{self.port}")
         first, _, rest = self.path.removeprefix("/").partition("/")
         foreign = {*self.headers.get_all("Origin", [])} - {f"http://{host}" for host in hosts}
-        if foreign or self.headers.get("Host") not in hosts or not hmac.compare_digest(first.encode(), self.token.encode()):
+        is_own = not foreign and self.headers.get("Host") in hosts
+        if not is_own or not hmac.compare_digest(first.encode(), self.token.encode()):
             self.send_error(403)
         elif rest == "":
             self._send("text/html; charset=utf-8", (files("symofros.blocks.graphics") / "live_page.html").read_bytes())
