@@ -39,3 +39,9 @@ def test_a_curved_cantilever_bends_out_of_its_plane_as_the_exact_rod(functions: 
 @pytest.mark.parametrize("functions", rods.PRINCETON)
 def test_a_strip_bends_and_twists_as_the_exact_rod(functions: int) -> None:
     assert rods.strip(functions, 45.0) < rods.PRINCETON[functions]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("functions", rods.PARALLEL)
+def test_two_rods_joined_at_their_tips_rest_where_exact_rods_do(functions: int) -> None:
+    assert rods.parallel(functions) < rods.PARALLEL[functions]

@@ -1,4 +1,4 @@
-"""Geometrically exact rods at rest: the elastica, a circle, Bathe's curved cantilever, the Princeton strip."""
+"""Geometrically exact rods at rest: the elastica, a circle, Bathe's arc, the Princeton strip, two rods in a loop."""
 
 from __future__ import annotations
 
@@ -21,6 +21,8 @@ FUNCTIONS = ("generalized_force", "frame_pose")
 LOAD, ELASTICA = 15.0, {3: 2.4e-3, 4: 3.7e-5, 5: 1.9e-5, 6: 5.2e-6, 7: 6.6e-7}
 # Bathe and Bolourchi 1979: an arc of 45 degrees of radius 100 under a force across its plane; errors over the radius.
 RADIUS, MODULUS, ACROSS, BATHE = 100.0, 1e7, 600.0, {2: 5e-3, 3: 1.4e-4}
+# Two rods side by side whose tips are joined, under a force on the tips; errors of the tips over L.
+APART, PULL, PARALLEL = 0.3, (1.5, -0.8), {3: 4e-5, 5: 1.2e-8, 7: 1e-11}
 # The Princeton strip under its largest load, at these angles; errors over its length.
 HEAVY, ANGLES, PRINCETON = 13.345, (15.0, 45.0, 75.0), {2: 1.2e-3, 3: 5e-5}
 
@@ -129,11 +131,61 @@ def strip(functions: int, degrees: float) -> float:
     return float(np.linalg.norm(spatial(beam.length, functions, stiffness, loads) - known)) / beam.length
 
 
+def parallel_known() -> Array:
+    """Joined tips (2) of two upright rods, by shooting for their curvatures at the root and the force between tips."""
+
+    def ends(curvature: float, force: Array) -> Array:
+        def slope(_: float, y: Array) -> list[float]:
+            c, s = np.cos(y[0]), np.sin(y[0])
+            return [y[1], force[0] * s - force[1] * c, c, s]
+
+        run = solve_ivp(slope, (0.0, 1.0), [np.pi / 2, curvature, 0.0, 0.0], "DOP853", rtol=1e-13, atol=1e-14)
+        return np.asarray(run.y[:, -1])
+
+    def conditions(x: Array) -> Array:
+        left, right = ends(x[0], np.array(PULL) + x[2:]), ends(x[1], -x[2:])
+        return np.array([left[1], right[1], left[2] - right[2] - APART, left[3] - right[3]])
+
+    x = fsolve(conditions, [-0.5, 0.5, -0.4, 4.0], xtol=1e-13)
+    return ends(x[0], np.array(PULL) + x[2:])[2:]
+
+
+def parallel(functions: int) -> float:
+    """Distance of the joined tips of two rods, a parallel robot in a plane, from those of the exact rods over L."""
+    upright = sf.Rotation.rpy(0.0, 0.0, np.pi / 2)
+    pull = sf.BeamLoad((*PULL, 0.0), at=1.0, axes="world")
+    shared: dict[str, Any] = {"EI_z": 1.0, "bend_y": functions, "family": "legendre", "theory": "strain"}
+    left = sf.Beam("left", sf.Joint("foot", "fixed", rotation=upright), 1.0, 1.0, loads=(pull,), **shared)
+    foot = sf.Joint("other foot", "fixed", position=(APART, 0.0, 0.0), rotation=upright)
+    closure = sf.Closure("tips", ("left", "tip"), ("right", "tip"))
+    m = interpreted(
+        left,
+        sf.Beam("right", foot, 1.0, 1.0, **shared),
+        functions=(*FUNCTIONS, "constraint", "constraint_jacobian"),
+        constraints=(closure,),
+    )
+    n, nc = m.nq, 2  # Out of the plane the closure holds by itself.
+    x = np.zeros(n + nc)
+    x[0], x[functions] = -0.45, -0.2
+
+    def residual(x: Array) -> Array:
+        q = x[:n]
+        G = m.constraint_jacobian(q)[:nc]
+        return np.concatenate([m.generalized_force(q, 0.0 * q, ()) + G.T @ x[n:], m.constraint(q)[:nc]])
+
+    for _ in range(12):
+        columns = [residual(x + step) - residual(x - step) for step in 1e-6 * np.eye(n + nc)]
+        x = x - np.linalg.solve(np.array(columns).T / 2e-6, residual(x))
+    p, _ = m.frame_pose("left.tip", x[:n])
+    return float(np.linalg.norm(p[:2] - parallel_known()))
+
+
 def study(quick: bool) -> Study:
     """Answer."""
     plane = {n: elastica(n) for n in ELASTICA}
     closing = {n: circle(n) for n in (6, 8, 10)}
     curved = {n: bathe(n) for n in BATHE}
+    pairs = {n: parallel(n) for n in PARALLEL if n < (7 if quick else 8)}
     angles = ANGLES[1:2] if quick else ANGLES
     strips = {n: max(strip(n, at) for at in angles) for n in PRINCETON}
     findings = [
@@ -151,6 +203,10 @@ def study(quick: bool) -> Study:
         Finding(f"Princeton strip, {n} functions a strain: error over L", error, PRINCETON[n], reason="convergence")
         for n, error in strips.items()
     ]
+    findings += [
+        Finding(f"two rods joined at their tips, {n} functions: error over L", error, PARALLEL[n], reason="convergence")
+        for n, error in pairs.items()
+    ]
     answer = (
         f"A rod of three strains is off the elastica by {plane[3]:.1g} L at 86 degrees, one of seven by {plane[7]:.1g} "
         f"L; in space three functions a strain place Bathe's arc to {curved[3]:.1g} of its radius, and the Princeton "
@@ -165,7 +221,12 @@ def study(quick: bool) -> Study:
                 "error over the length  [1]",
                 tuple(
                     curve
-                    for name, errors in (("elastica", plane), ("Bathe's arc", curved), ("Princeton strip", strips))
+                    for name, errors in (
+                        ("elastica", plane),
+                        ("two rods", pairs),
+                        ("Bathe's arc", curved),
+                        ("Princeton strip", strips),
+                    )
                     for curve in curves(np.array(list(errors)), {name: np.array(list(errors.values()))})
                 ),
                 log="y",
