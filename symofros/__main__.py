@@ -2,23 +2,58 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from functools import cache
+from importlib import import_module
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
 import symofros as sf
-from symofros.commands.cache import cache
-from symofros.commands.harness import check, validation
-from symofros.commands.models import compile_command, info
-from symofros.commands.motion import simulate
-from symofros.commands.shared import BAD_INPUT, load
-from symofros.commands.statics import equilibrium
-from symofros.commands.uses import advise, edit, export_command
-from symofros.studio.viewer.command import add_view
+
+# Name -> module and function. A module is imported when its command is asked for: others need a second of imports.
+_COMMANDS = {
+    "info": ("symofros.commands.models", "info"),
+    "compile": ("symofros.commands.models", "compile_command"),
+    "simulate": ("symofros.commands.motion", "simulate"),
+    "equilibrium": ("symofros.commands.statics", "equilibrium"),
+    "advise": ("symofros.commands.uses", "advise"),
+    "export": ("symofros.commands.uses", "export_command"),
+    "edit": ("symofros.commands.uses", "edit"),
+    "view": ("symofros.commands.view", "view"),
+    "check": ("symofros.commands.harness", "check"),
+    "validation": ("symofros.commands.harness", "validation"),
+    "cache": ("symofros.commands.cache", "cache"),
+}
+_OF_THE_HARNESS = ("check", "validation")
+_AS_THEY_ARE = {"allow_extra_args": True, "ignore_unknown_options": True, "help_option_names": []}
+
+
+@cache
+def _command(name: str) -> Any:
+    module, function = _COMMANDS[name]
+    single = typer.Typer(rich_markup_mode=None)
+    settings = _AS_THEY_ARE if name in _OF_THE_HARNESS else None
+    single.command(name, context_settings=settings)(getattr(import_module(module), function))
+    return typer.main.get_group(single).commands[name]
+
+
+class Commands(TyperGroup):
+    """Commands of the table. Typer's own copy of Click has no public types."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        """Names of all commands."""
+        return [*_COMMANDS]
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """A command by its name."""
+        return _command(cmd_name) if cmd_name in _COMMANDS else None
+
 
 # Help states units in brackets, which are no markup.
-app = typer.Typer(no_args_is_help=True, rich_markup_mode=None, help="Symbolic multibody models as fast C code.")
-AS_THEY_ARE = {"allow_extra_args": True, "ignore_unknown_options": True, "help_option_names": []}
+app = typer.Typer(
+    cls=Commands, no_args_is_help=True, rich_markup_mode=None, help="Symbolic multibody models as fast C code."
+)
 
 
 def _tell_version(wanted: bool) -> None:
@@ -34,19 +69,6 @@ def main(
     ] = False,
 ) -> None:
     """Symbolic multibody models as fast C code."""
-
-
-app.command()(info)
-app.command("compile")(compile_command)
-app.command()(simulate)
-app.command()(equilibrium)
-app.command()(advise)
-app.command("export")(export_command)
-app.command()(edit)
-add_view(app, load, BAD_INPUT)
-app.command("check", context_settings=AS_THEY_ARE)(check)
-app.command("validation", context_settings=AS_THEY_ARE)(validation)
-app.command()(cache)
 
 
 if __name__ == "__main__":

@@ -17,7 +17,6 @@ from symofros.base.functions import FRAME_FUNCTIONS, MODEL_FUNCTIONS
 from symofros.commands.details import details, frames_line, tables
 from symofros.commands.shared import AsJson, FilePath, Floating, ModelPath, Network, load, out, refuse
 from symofros.compiler import Compilation
-from symofros.diagrams.files import command as diagrams
 from symofros.diagrams.files.kind import is_diagram
 from symofros.generator.codegen.names import identifier
 from symofros.generator.passes.count import Operations, count_program
@@ -28,6 +27,8 @@ from symofros.native import native_text
 def info(model: FilePath, floating_base: Floating = False, network: Network = False, as_json: AsJson = False) -> None:
     """Show a model: its tree, its sizes, the operations of each function; or a diagram: blocks, rates, order."""
     if is_diagram(model):
+        from symofros.diagrams.files import command as diagrams  # Diagrams load the library of blocks.
+
         try:
             diagrams.tell_diagram(sf.load_diagram(model, network=network), as_json, out)
         except sf.SymofrosError as error:

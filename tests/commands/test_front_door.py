@@ -3,6 +3,8 @@
 import json
 import math
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -22,6 +24,24 @@ def invoke(*arguments: object) -> Result:
 def test_the_version_is_told() -> None:
     result = invoke("--version")
     assert result.exit_code == 0 and result.output == f"symofros {sf.__version__}\n"
+
+
+def test_a_command_imports_no_other() -> None:
+    code = (
+        "import sys\nfrom symofros.__main__ import app\ntry:\n    app(['--version'])\nfinally:\n    print(*sys.modules)"
+    )
+    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout
+    assert told.startswith(f"symofros {sf.__version__}\n")
+    assert not {"symofros.compiler", "symofros.diagrams", "symofros.studio", "pydantic", "cffi"} & set(told.split())
+
+
+def test_commands_are_listed_and_completed(monkeypatch: pytest.MonkeyPatch) -> None:
+    listed = invoke("--help").output
+    names = "info compile simulate equilibrium advise export edit view check validation cache".split()
+    assert [line.split()[0] for line in listed.partition("Commands:")[2].splitlines() if line.strip()] == names
+    for name, value in {"_SYMOFROS_COMPLETE": "complete_bash", "COMP_WORDS": "symofros si", "COMP_CWORD": "1"}.items():
+        monkeypatch.setenv(name, value)
+    assert CliRunner().invoke(app, [], prog_name="symofros").output.split() == ["simulate"]
 
 
 def test_help_of_simulate_states_seconds() -> None:
