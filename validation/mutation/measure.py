@@ -61,7 +61,7 @@ def as_data(study: Study) -> dict[str, Any]:
     for fault in study.faults:
         answers = {stage: study.store.get(fault.id, stage) for stage in (CHECK, TESTS, OUTPUTS)}
         check = answers[CHECK]
-        if check is not None or fault.id in study.argued:
+        if any(answer is not None for answer in answers.values()) or fault.id in study.argued:
             rows.append(
                 {
                     "id": fault.id,
@@ -69,7 +69,8 @@ def as_data(study: Study) -> dict[str, Any]:
                     "kind": fault.kind,
                     "fate": study.fate(fault),
                     "argued": study.argued.get(fault.id, ""),
-                    "seen_by_check": seen_by_check(check),
+                    "sampled": study.sampled(fault),
+                    "seen_by_check": None if check is None else seen_by_check(check),
                     "seen_by_tests": None if answers[TESTS] is None else seen_by_tests(answers[TESTS]),
                     "said": _said(answers).replace(f"{study.folder}/tree/", ""),
                     "seconds": sum(answer["seconds"] for answer in answers.values() if answer is not None),
@@ -97,12 +98,14 @@ def _said(answers: dict[str, Any]) -> str:
 
 
 def _scores(rows: Sequence[dict[str, Any]]) -> dict[str, float]:
-    """Shares of the faults that change a result: seen by check, by tests where they were asked, by either."""
+    """Shares of the faults that change a result: of the sample those seen by check, and by tests; of all, by either."""
     matter = [row for row in rows if row["fate"] in (CAUGHT, SURVIVED)]
-    asked = [row for row in matter if row["seen_by_tests"] is not None]
+    asked = [row for row in matter if row["sampled"] and row["seen_by_tests"] is not None]
+    checked = [row for row in matter if row["sampled"]]
     return {
         "matter": len(matter),
-        "check": _share([row["seen_by_check"] for row in matter]),
+        "check": _share([bool(row["seen_by_check"]) for row in checked]),
+        "check_asked": len(checked),
         "tests": _share([bool(row["seen_by_tests"]) for row in asked]),
         "tests_asked": len(asked),
         "both": _share([row["fate"] == CAUGHT for row in matter]),

@@ -17,16 +17,18 @@ the fault is judged by `check` over a few small models, and by the tests of the 
 judge sees it, and the C text, the values of functions, motions and analyses of a battery are those of the sound package
 but for rounding; or a person has argued that no result depends on it, with the reason below. **Does not end**: the
 process of `check` crashes or runs on, which is no verdict; such faults count neither as seen nor as missed. **Open**:
-the tests were not asked yet, or their time was over before all had run. {} that the C compiler refuses are left out. Of
-the tests alone: {:.1%} of the {} faults that they were asked about."""
-_HEAD = "planted | check | tests alone | neither | no result changed | does not end | open"
+the tests were not asked yet, or their time was over before all had run. The tests are asked first, and `check` about
+what they do not see; of a sample of the faults, {} that change a result, `check` is asked first, and its score is of
+these. **tests**: seen by the tests, `check` blind or not asked. {} that the C compiler refuses are left out. Of the
+tests alone: {:.1%} of the {} of the sample that they were asked about."""
+_HEAD = "planted | check | tests | neither | no result changed | does not end | open"
 
 
 def _counts(rows: Sequence[Data]) -> tuple[int, ...]:
     """Numbers of faults under the names of `_HEAD`."""
     fates = Counter(row["fate"] for row in rows)
     valid = [row for row in rows if row["fate"] != STILLBORN]
-    check = sum(row["seen_by_check"] for row in valid)
+    check = sum(bool(row["seen_by_check"]) for row in valid)
     unchanged = fates[UNCHANGED] + fates[ARGUED]
     return len(valid), check, fates[CAUGHT] - check, fates[SURVIVED], unchanged, fates[HALTED], fates[OPEN]
 
@@ -52,7 +54,8 @@ def compose(data: Data) -> Report:
     unchanged = tuple(f"`{row['id']}`: the same outputs" for row in rows if row["fate"] == UNCHANGED)
     seen = f"{scores['check']:.1%} of those known to change a result, `check` and tests {scores['both']:.1%}"
     modules = counted(len({row["module"] for row in rows}), "module")
-    text = _TEXT.format(counted(len(rows) - planted, "fault"), scores["tests"], scores["tests_asked"])
+    refused = counted(len(rows) - planted, "fault")
+    text = _TEXT.format(scores["check_asked"], refused, scores["tests"], scores["tests_asked"])
     return Report(
         "Faults planted in the source",
         f"{counted(planted, 'fault')} in {modules}: `check` alone sees {seen}; {still_open} open.",

@@ -23,6 +23,7 @@ STILLBORN, CAUGHT, UNCHANGED, SURVIVED, OPEN = "stillborn", "caught", "no result
 HALTED, ARGUED = "halted", "argued"
 # Processor times [s].
 CHECK_LIMIT, OUTPUTS_LIMIT, TESTS_LIMIT, SOUND_LIMIT = 90.0, 120.0, 90.0, 600.0
+SAMPLE = 4  # One fault in so many goes to `check` first.
 TESTS_BUDGET = 15.0  # Processor time after which no further test of a fault begins [s].
 _ARGUED = Path(__file__).with_name("argued.json")
 _CHECK_JUDGE, _TESTS_JUDGE = "validation.mutation.check_judge", "validation.mutation.tests_judge"
@@ -62,10 +63,11 @@ class Study:
         return cls(faults, Store(folder / "answers.jsonl", overlay.tree), overlay, folder, report)
 
     def run(self, seconds: float) -> None:
-        """Ask the judges about every fault that they have not answered yet.
+        """Ask the judges about every fault that they have not answered yet, one fault after the other.
 
-        First `check`; what it does not see goes to the tests, and what they don't see is compared with the sound
-        package's outputs. Then the tests are asked about what `check` sees, for a score of their own.
+        Its tests are asked first, which is cheap; what they do not see goes to `check`. Of one fault in SAMPLE it is
+        the other way round, so that these give the score of `check` alone, and at the end the tests are asked about
+        what it sees of them, for a score of their own. What neither sees is compared with the sound package's outputs.
 
         Args:
             seconds: Time after which no further fault is begun [s].
@@ -75,24 +77,30 @@ class Study:
         """
         end = time.monotonic() + seconds
         self._require_sound()
-        for stage, ask, faults in (
-            (CHECK, self._check, lambda: self.faults),
-            (TESTS, self._test, lambda: self._unseen(CHECK)),
-            (OUTPUTS, self._compare, lambda: self._unseen(CHECK, TESTS)),
-            (TESTS, self._test, lambda: self.faults),
-        ):
-            for fault in faults():
-                if time.monotonic() > end:
-                    return
-                if fault.id in self.argued or (stage != CHECK and halted(self.store.get(fault.id, CHECK))):
-                    continue
-                self._asked(fault, stage, ask)
-                self.report(f"{stage}: {fault.module}")
+        for fault in self.faults:
+            if time.monotonic() > end:
+                return
+            if fault.id not in self.argued:
+                self._settle(fault)
+        for fault in self.faults:
+            if time.monotonic() > end:
+                return
+            check = self.store.get(fault.id, CHECK)
+            if self.sampled(fault) and seen_by_check(check) and not stillborn(fault, check):
+                self._asked(fault, TESTS, self._test)
 
-    def _unseen(self, *stages: str) -> list[SourceFault]:
-        """Faults that none of some judges has seen."""
-        seen = {CHECK: seen_by_check, TESTS: seen_by_tests}
-        return [f for f in self.faults if not any(seen[stage](self.store.get(f.id, stage)) for stage in stages)]
+    def sampled(self, fault: SourceFault) -> bool:
+        """Whether `check` is asked about a fault before its tests are."""
+        return self.faults.index(fault) % SAMPLE == 0
+
+    def _settle(self, fault: SourceFault) -> None:
+        """Ask about one fault until a judge sees it, or none does."""
+        judges = ((CHECK, self._check, seen_by_check), (TESTS, self._test, seen_by_tests))
+        for stage, ask, seen in judges if self.sampled(fault) else judges[::-1]:
+            answer = self._asked(fault, stage, ask)
+            if seen(answer) or (stage == CHECK and halted(answer)):
+                return
+        self._asked(fault, OUTPUTS, self._compare)
 
     def _asked(self, fault: SourceFault, stage: str, ask: Callable[[SourceFault], Answer]) -> Answer:
         """The answer of a judge, which is kept."""
@@ -104,6 +112,7 @@ class Study:
         if stage == TESTS and seen_by_tests(answer) and self._fails_without(answer):
             return self._asked(fault, stage, ask)
         self.store.put(fault.id, stage, answer, fault.module)
+        self.report(f"{stage}: {fault.module}")
         return answer
 
     def _fails_without(self, answer: Answer) -> bool:

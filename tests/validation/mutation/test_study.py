@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -108,9 +109,37 @@ def test_scores_count_faults_that_change_a_result(tmp_path: Path) -> None:
                 store.put(fault.id, stage, {"fate": "answered", "answer": answer, "seconds": 1.0}, "m.py")
     study = Study(tuple(faults), store, None, tmp_path, print)  # type: ignore[arg-type]
     data = json.loads(json.dumps(as_data(study)))
-    assert data["scores"] == {"matter": 3, "check": 1 / 3, "tests": 0.5, "tests_asked": 2, "both": 2 / 3}
+    # The first fault alone is of the sample.
+    scores = {"matter": 3, "check": 1.0, "check_asked": 1, "tests": 0.0, "tests_asked": 0, "both": 2 / 3}
+    assert data["scores"] == scores
     report = compose(data)
     assert not data["ok"] and "What survived" in {section.title for section in report.sections}
+
+
+def test_each_fault_is_settled_by_the_cheaper_judge_but_for_a_sample(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "m.py").write_text("a\n")
+    faults = tuple(SourceFault("m.py", line, SIGN, 0, "a", "b") for line in range(4))
+    asked: list[tuple[int, str]] = []
+    seen = {(0, CHECK), (1, TESTS), (2, CHECK)}  # And nobody sees the last.
+
+    def judge(stage: str) -> Any:
+        def ask(_: Study, fault: SourceFault) -> Any:
+            asked.append((fault.line, stage))
+            status = "failed" if (fault.line, stage) in seen else "passed"
+            return {"fate": "answered", "answer": {"status": status, "whole": True}, "seconds": 1.0}
+
+        return ask
+
+    for name, stage in (("_check", CHECK), ("_test", TESTS), ("_compare", OUTPUTS)):
+        monkeypatch.setattr(Study, name, judge(stage))
+    monkeypatch.setattr(Study, "_require_sound", lambda _: None)
+    untouched = type("Untouched", (), {"planted": lambda _, __: nullcontext()})()
+    study = Study(faults, Store(tmp_path / "answers.jsonl", tmp_path), untouched, tmp_path, lambda _: None)
+    study.run(60.0)
+    ends = [(2, TESTS), (2, CHECK), (3, TESTS), (3, CHECK), (3, OUTPUTS), (0, TESTS)]
+    assert asked == [(0, CHECK), (1, TESTS), *ends]
 
 
 @pytest.mark.parametrize(
