@@ -144,10 +144,11 @@ class ElasticBeam:
 
     @property
     def angle_blocks(self) -> Array:
-        """Angles as C reads them: by block of four stations, coordinate and station; zeros fill the last block."""
-        blocks = -(-len(self.xi) // 4)
+        """Angles as C reads them: by block of four stations that turn, coordinate and station; zeros fill the last."""
+        turning = self.angles[np.any(self.angles != 0.0, axis=1)]
+        blocks = -(-len(turning) // 4)
         angles = np.zeros((4 * blocks, self.size))
-        angles[: len(self.xi)] = self.angles
+        angles[: len(turning)] = turning
         return np.ascontiguousarray(angles.reshape(blocks, 4, self.size).transpose(0, 2, 1))
 
     @property

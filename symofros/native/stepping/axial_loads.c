@@ -13,7 +13,7 @@
 /* Nothing is known of the motion. */
 static void sym_clear_axial_loads(sym_run *r) {
     const double stages = r->tableau.stages > 0 ? r->tableau.stages : 1.0;
-    r->beam_states = 0, r->beam_steps = 0;
+    r->beam_states = 0, r->beam_steps = r->beam_next = 0;
     r->beam_stride = (int64_t)ceil((2.0 * r->system->n_beams + 1.0) / (SYM_BEAM_SHARE * stages));
 }
 
@@ -87,14 +87,12 @@ static int32_t sym_judge_axial_loads(sym_run *r) {
     sym_system *s = r->system;
     double largest = 0.0;
     int32_t b;
-    if (r->elastic_stiffness == NULL) return 0;
+    if (r->elastic_stiffness == NULL || r->beam_steps++ != r->beam_next) return 0;
     for (b = 0; b < s->n_beams; ++b)
         if (r->beam_error[b] > largest) largest = r->beam_error[b];
-    if (largest < SYM_BEAM_UNAMPLIFIED || r->beam_steps++ % r->beam_stride != 0) return 0;
-    if (r->beam_states == SYM_BEAM_STATES) {
-        sym_thin_beam_states(r);
-        if ((r->beam_steps - 1) % r->beam_stride != 0) return 0;
-    }
+    if (r->beam_states == SYM_BEAM_STATES) sym_thin_beam_states(r);
+    r->beam_next += r->beam_stride;
+    if (largest < SYM_BEAM_UNAMPLIFIED) return 0;
     sym_load_state(r);
     (void)sym_evaluate_inputs(s);
     sym_evaluate(&s->mass_matrix);

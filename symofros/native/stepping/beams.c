@@ -53,14 +53,44 @@ static void sym_beam_angles(const sym_beam *beam, const double *x, double larges
     }
 }
 
-/* An upper bound of a beam's error that costs little: each coordinate's largest angle counts, whatever its sign. */
-static double sym_beam_error_bound(const sym_beam *beam, const double *reach, const double *q) {
-    const int32_t bending = beam->n_y + beam->n_z;
-    double slope = 0.0, twist = 0.0;
+/* The larger of a number and a magnitude. */
+static double sym_larger(double most, double x) { return fabs(x) > most ? fabs(x) : most; }
+
+/* The same of a beam that bends in the x-y plane alone. */
+static void sym_planar_beam_angles(const sym_beam *beam, const double *x, double largest[4]) {
+    const double *angles = beam->angles;
+    double most = 0.0;
+    int32_t block, i;
+    for (block = 0; block < beam->blocks; ++block) {
+        double a = 0.0, b = 0.0, c = 0.0, d = 0.0;
+        for (i = 0; i < beam->n_y; ++i, angles += 4)
+            a += angles[0] * x[i], b += angles[1] * x[i], c += angles[2] * x[i], d += angles[3] * x[i];
+        most = sym_larger(sym_larger(sym_larger(sym_larger(most, a), b), c), d);
+    }
+    largest[0] = largest[2] = most * most, largest[1] = largest[3] = 0.0;
+}
+
+/* The largest that angles can be by a change of the elastic coordinates: each one's largest angle counts, whatever its sign. */
+static double sym_beam_change(int32_t n, const double *reach, const double *q, const double *reference) {
+    double change = 0.0;
     int32_t i;
-    for (i = 0; i < bending; ++i) slope += reach[i] * fabs(q[i]);
-    for (i = bending; i < bending + beam->n_twist; ++i) twist += reach[i] * fabs(q[i]);
-    return SYM_BEAM_SLOPE_ERROR * slope * slope + beam->contrast * twist * twist;
+    for (i = 0; i < n; ++i) change += reach[i] * fabs(q[i] - reference[i]);
+    return change;
+}
+
+/* An upper bound of a beam's error that costs little, by the change since its angles were evaluated last. */
+static double sym_beam_error_bound(const sym_run *r, int32_t b, const double *q) {
+    const sym_beam *beam = &r->system->beams[b];
+    const int32_t bending = beam->n_y + beam->n_z;
+    const double *reach = r->beam_reach + beam->first, *reference = r->beam_reference + 2 * r->system->n_beams + beam->first;
+    const double slope = r->beam_reference[2 * b] + sym_beam_change(bending, reach, q, reference);
+    double bound = SYM_BEAM_SLOPE_ERROR * slope * slope, twist;
+    if (beam->contrast > 0.0) {
+        twist = r->beam_reference[2 * b + 1] +
+                sym_beam_change(beam->n_twist, reach + bending, q + bending, reference + bending);
+        bound += beam->contrast * twist * twist;
+    }
+    return bound;
 }
 
 SYM_EXPORT int32_t sym_run_judge_beams(sym_run *r) {
@@ -71,14 +101,16 @@ SYM_EXPORT int32_t sym_run_judge_beams(sym_run *r) {
         const sym_beam *beam = &s->beams[b];
         const int32_t n = beam->n_y + beam->n_z + beam->n_twist;
         const double *q = r->q + beam->q, *scale = r->beam_scale + beam->first;
-        double error;
-        if (sym_beam_error_bound(beam, r->beam_reach + beam->first, q) <= r->beam_error[b]) continue;
-        for (i = 0; i < n; ++i) x[i] = scale[i] * q[i];
-        sym_beam_angles(beam, x, largest);
+        double error, *reference = r->beam_reference + 2 * s->n_beams + beam->first;
+        if (sym_beam_error_bound(r, b, q) <= r->beam_error[b]) continue;
+        for (i = 0; i < n; ++i) x[i] = scale[i] * q[i], reference[i] = q[i];
+        if (n == beam->n_y) sym_planar_beam_angles(beam, x, largest);
+        else sym_beam_angles(beam, x, largest);
+        r->beam_reference[2 * b] = sqrt(largest[2]), r->beam_reference[2 * b + 1] = sqrt(largest[3]);
         error = sym_beam_error(beam, largest[0], largest[1], largest[2], largest[3]);
         if (error > r->beam_error[b]) {
             r->beam_error[b] = error, r->beam_t[b] = r->t;
-            memcpy(r->beam_q + beam->first, q, (size_t)n * sizeof *q);
+            for (i = 0; i < n; ++i) r->beam_q[beam->first + i] = q[i];
         }
         if (error > r->beam_limit) status = SYM_BEYOND_THEORY;
     }

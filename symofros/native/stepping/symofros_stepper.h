@@ -145,12 +145,15 @@ typedef struct sym_run {
     const double *beam_scale;  /* 1/L of coordinates that are displacements, else 1 */
     const double *beam_reach;  /* largest angle per coordinate */
     double *beam_error, *beam_t, *beam_q;
+    /* (2 n_beams + elastic coordinates) largest slope and twist of each beam where they were evaluated last, then the elastic
+     * coordinates there: zeros at first, and where a beam's length changes. */
+    double *beam_reference;
     /* Axial loads of the beams, in states of the motion that are kept as those for the diagnosis are: the work of the
      * elastic stiffness (nv, nv) and of the tangent stiffness. NULL: nothing is known of them here. */
     const double *elastic_stiffness;
     double *beam_works;     /* (SYM_BEAM_STATES, n_beams, 2) */
     double *beam_change;    /* (nv + nc) scratch */
-    int64_t beam_steps, beam_stride;
+    int64_t beam_steps, beam_next, beam_stride;
     int32_t beam_states;
     /* Records, row after row; full at capacity, which is n_grid at least. */
     int64_t capacity, n_records;

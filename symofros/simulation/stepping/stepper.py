@@ -113,6 +113,7 @@ class Stepper:
         )
         run.beam_limit = math.inf
         run.beam_scale = memory.doubles(np.concatenate([np.zeros(0), *(beam.scale for beam in self.beams)]))
+        run.beam_reference = memory.zeros(2 * len(self.beams) + int(firsts[-1]))
         run.beam_reach = memory.doubles(np.concatenate([np.zeros(0), *(beam.reach for beam in self.beams)]))
         self._beam_record = np.zeros(len(self.beams)), np.zeros(len(self.beams)), np.zeros(int(firsts[-1]))
         run.beam_error, run.beam_t, run.beam_q = (
