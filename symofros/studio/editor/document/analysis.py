@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +10,7 @@ from symofros.description.reading import in_order
 from symofros.description.system import System
 from symofros.description.yaml.files import DIAGRAM, read_yaml
 from symofros.description.yaml.yaml_nodes import YamlFault
+from symofros.diagrams.units import parse
 from symofros.errors import DescriptionError, Problem
 from symofros.mechanics.topology.graph import find_problems
 from symofros.studio.editor.diagrams.analysis import analyse_diagram
@@ -46,12 +48,18 @@ def analyse(file: Path, text: str) -> Analysis:
         else:
             entry["node"] = ""
     parameters = _parameters(data, system)
-    inputs = [{"name": item.name, "unit": item.unit} for item in (system.inputs if system else ())]
+    inputs = [
+        {"name": item.name, "unit": item.unit, "unit_fault": _unit_fault(item.unit)}
+        for item in (system.inputs if system else ())
+    ]
     return Analysis(True, data, graph, shown_problems, parameters, inputs, system)
 
 
 def _parameters(data: Any, system: System | None) -> list[Json]:
-    """Parameters as the page's table has them; those that can't be read keep their text, and have no number."""
+    """Parameters as the page's table has them; those that can't be read keep their text, and have no number.
+
+    `unit_fault` says why a unit is none: files take any text there, a table that shows units does not pass it over.
+    """
     read = {
         item.name: {"name": item.name, "value": item.value, "unit": item.unit, "constant": item.constant}
         | {"number": item.value}
@@ -69,7 +77,17 @@ def _parameters(data: Any, system: System | None) -> list[Json]:
             "constant": stated.get("constant") is True,
             "number": None,
         }
-    return list((listed | read).values())
+    return [{**item, "unit_fault": _unit_fault(item["unit"])} for item in (listed | read).values()]
+
+
+@lru_cache(maxsize=1000)
+def _unit_fault(text: str) -> str:
+    """Why a text names no unit; "" if it does, or is none."""
+    try:
+        parse(text)
+    except DescriptionError as error:
+        return f"no such unit: {error.problem.found}; {error.problem.remedy}"
+    return ""
 
 
 def _checked(file: Path, source: YamlText) -> tuple[list[Problem], System | None]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -317,6 +318,14 @@ def test_results_of_an_earlier_model_say_so_and_what_can_not_be_read_stays_visib
     steps.run(page, "Compile")
     expect(steps.results(page)).to_contain_text("Operations of a call", timeout=60_000)
     expect(steps.results(page)).not_to_contain_text("The model has changed since")
+    unit = page.get_by_label("Unit of m2", exact=True)
+    unit.fill("bananas")
+    unit.press("Enter")
+    expect(unit).to_have_attribute("aria-invalid", "true")
+    expect(unit).to_have_attribute("title", re.compile("no such unit: 'bananas'"))
+    unit.fill("kg")
+    unit.press("Enter")
+    expect(unit).to_have_attribute("aria-invalid", "false")
     value = page.get_by_label("Value of m2", exact=True)
     value.fill("0,5")
     value.press("Enter")

@@ -136,6 +136,14 @@ def test_a_parameter_that_can_not_be_read_stays_in_the_table(value: str) -> None
     assert found.problems[0]["path"] == ["parameters", "L", "value"]
 
 
+@pytest.mark.parametrize(("unit", "is_one"), [("kg m^2", True), ("N m/rad", True), ("", True), ("bananas", False)])
+def test_a_unit_that_is_none_is_remarked(unit: str, is_one: bool) -> None:
+    text = TEXTS["four_bar"].replace("unit: m}", f"unit: {unit!r}}}", 1)
+    found = {item["name"]: item for item in analyse(FILES["four_bar"], text).parameters}["L"]
+    assert found["unit"] == unit and (found["unit_fault"] == "") == is_one
+    assert is_one or "'bananas'" in found["unit_fault"] and "kg m^2" in found["unit_fault"]
+
+
 def test_a_text_is_read_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """Reading is what takes long: a text that was edited is not read again to be checked."""
     texts = []

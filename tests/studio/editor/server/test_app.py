@@ -49,7 +49,8 @@ def test_a_document_carries_what_the_contract_says(client: TestClient) -> None:
     found = client.get("/api/document").json()
     assert set(found) == KEYS
     assert found["path"] == "four_bar.yaml" and found["text"] == TEXTS["four_bar"]
-    assert found["parameters"][0] == {"name": "m", "value": 1.0, "unit": "kg", "constant": False, "number": 1.0}
+    mass = {"name": "m", "value": 1.0, "unit": "kg", "constant": False, "number": 1.0, "unit_fault": ""}
+    assert found["parameters"][0] == mass
 
 
 def test_edit_undo_redo_save(client: TestClient, folder: Path) -> None:

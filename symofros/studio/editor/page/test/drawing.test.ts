@@ -56,6 +56,7 @@ const document: Document = {
   },
   problems: [],
   parameters: [],
+  inputs: [],
   recovered: false,
   disk_changed: false,
   unkept: null,

@@ -113,6 +113,8 @@ export interface Parameter {
   unit: string;
   constant: boolean;
   number: number | null;
+  /** Why its unit is none; "" where it is one, or there is none. */
+  unit_fault: string;
 }
 
 export interface Document {
@@ -135,6 +137,8 @@ export interface Document {
   trail: string[];
   problems: Problem[];
   parameters: Parameter[];
+  /** Inputs that could be read. */
+  inputs: { name: string; unit: string; unit_fault: string }[];
   recovered: boolean;
   /** Somebody else wrote the file since it was read or saved. */
   disk_changed: boolean;

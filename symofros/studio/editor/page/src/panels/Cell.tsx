@@ -7,10 +7,12 @@ interface CellProps {
   numeric?: boolean;
   /** Id of a list of what is usual. */
   list?: string;
+  /** What is wrong with the value; "" if nothing. */
+  fault?: string;
 }
 
 /** A field that changes the document when it is left, or at Enter; Escape takes it back. */
-export function Cell({ value, label, commit, numeric = false, list }: CellProps) {
+export function Cell({ value, label, commit, numeric = false, list, fault = "" }: CellProps) {
   const [text, setText] = useState<string | null>(null);
   const finish = (): void => {
     if (text !== null && text !== value) commit(text);
@@ -21,7 +23,8 @@ export function Cell({ value, label, commit, numeric = false, list }: CellProps)
       className={numeric ? "cell number" : "cell"}
       value={text ?? value}
       aria-label={label}
-      title={text ?? value}
+      aria-invalid={fault !== "" && text === null}
+      title={fault !== "" && text === null ? fault : (text ?? value)}
       list={list}
       spellCheck={false}
       data-settled={text === null}

@@ -8,7 +8,8 @@ import { Cell } from "./Cell";
 
 /** Named inputs, for formulas of efforts and loads. */
 export function Inputs() {
-  const { data } = useDocument();
+  const { data, inputs: read } = useDocument();
+  const fault = (name: string): string => read.find((each) => each.name === name)?.unit_fault ?? "";
   const inputs: JsonMap = mapAt(data, ["inputs"]);
   const add = (): void => {
     const name = fresh("u1", symbols(data));
@@ -42,6 +43,7 @@ export function Inputs() {
                   <Cell
                     value={textAt(inputs, [name, key]) ?? ""}
                     label={`${key} of ${name}`}
+                    fault={key === "unit" ? fault(name) : ""}
                     commit={(text) =>
                       void edit(`change ${name}`, [{ op: "set", path: ["inputs", name, key], value: text }])
                     }

@@ -40,6 +40,7 @@ function Row({ parameter }: { parameter: Parameter }) {
           value={parameter.unit}
           label={`Unit of ${name}`}
           list={UNITS}
+          fault={parameter.unit_fault}
           commit={(text) => set("unit", text === "" ? undefined : text)}
         />
       </td>
