@@ -89,6 +89,14 @@ def test_linters_accept_the_workflows() -> None:
     assert done.returncode == 0, done.stdout
 
 
+def test_a_linter_accepts_the_dockerfile() -> None:
+    hadolint = Path(sys.executable).with_name("hadolint")
+    if not hadolint.exists():
+        pytest.skip("needs the extra 'release', which 'dev' brings")
+    done = subprocess.run([hadolint, ROOT / "Dockerfile"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
 def test_the_images_run_the_two_commands_of_the_readme() -> None:
     text = (ROOT / "Dockerfile").read_text()
     built = dict(re.findall(r"^FROM machine AS (\w+)\nRUN (.*)$", text, re.MULTILINE))
