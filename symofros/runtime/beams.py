@@ -89,7 +89,7 @@ class BeamBending:
             return f"state more sections, such as sections: {2 * self.sections}"
         countable = self.slope < _LARGEST_SLOPE and math.isfinite(self.error)
         count = f"{max(2, math.ceil(math.sqrt(self.error / NOTED_ERROR)))}" if countable else "many"
-        return f"divide it into {count} beams joined end to end, or use a geometrically exact beam, such as Exudyn's"
+        return f"divide it into {count} beams joined end to end, or state theory: strain, which is geometrically exact"
 
 
 @dataclass(frozen=True)
