@@ -10,7 +10,7 @@ typedef enum { FMU_INSTANTIATED, FMU_INITIALISING, FMU_EVENT, FMU_CONTINUOUS, FM
 enum {
     FMU_OK, FMU_NOT_ALLOWED, FMU_UNKNOWN, FMU_SINGULAR, FMU_WRONG_MODE, FMU_START_NOT_CONSISTENT,
     FMU_STOP_BEFORE_START, FMU_NO_MEMORY, FMU_OTHER_MODEL, FMU_BUFFER_TOO_SMALL,
-    FMU_BEYOND_THEORY,
+    FMU_BEYOND_THEORY, FMU_NO_ROTATION,
     FMU_PARAMETERS /* and beyond: by the number of the condition that the parameters do not meet */
 };
 
@@ -196,9 +196,29 @@ static int fmu_set(fmu *f, size_t reference, double value) {
     return FMU_OK;
 }
 
+/* Deviation from unit length up to which a start quaternion counts as a rotation written in few digits. */
+#define FMU_QUATERNION_TOLERANCE 1e-3
+
+/* Whether the start quaternions are rotations; they are of unit length afterwards. */
+static int fmu_normalise_start(fmu *f) {
+    const sym_plant *plant = f->instance->plant;
+    int32_t k, i;
+    for (k = 0; k < plant->n_segments; ++k) {
+        const sym_segment *segment = &plant->segments[k];
+        double *p = f->instance->q + segment->q + (segment->kind == SYM_SEGMENT_POSE ? 3 : 0), length = 0.0;
+        if (segment->kind == SYM_SEGMENT_LINEAR) continue;
+        for (i = 0; i < 4; ++i) length += p[i] * p[i];
+        length = sqrt(length);
+        if (!(fabs(length - 1.0) <= FMU_QUATERNION_TOLERANCE)) return 0;
+        for (i = 0; i < 4; ++i) p[i] /= length;
+    }
+    return 1;
+}
+
 static int fmu_initialise(fmu *f) {
     const int status = fmu_prepare(f);
     if (status != FMU_OK) return status;
+    if (!fmu_normalise_start(f)) return FMU_NO_ROTATION;
     f->rates_valid = 0;
     if (sym_instance_project(f->instance) != 0 || fmu_refresh(f) != FMU_OK) return FMU_SINGULAR;
     f->phase = f->cosim ? FMU_STEPPING : FMU_EVENT;

@@ -503,3 +503,31 @@ def column(tmp_path_factory: pytest.TempPathFactory) -> Any:
             return str(sf.export(cantilever_system(), target, tmp_path_factory.mktemp("column") / "out").files[0])
 
     return make
+
+
+@pytest.mark.parametrize("scale", [0.0, 2.0, -1e150, 1.0 + 1e-6])
+def test_start_quaternions_are_rotations(made: Any, scale: float) -> None:
+    """A start of another length is refused in words; one of few digits is a rotation."""
+    path = str(made("floating", VERSIONS["floating"]))
+    log: list[str] = []
+    start = {name: scale * value for name, value in quaternion_start(path).items()}
+
+    def logger(*given: Any) -> None:
+        log.append(" ".join(x.decode() if isinstance(x, bytes) else str(x) for x in given))
+
+    def run() -> Any:
+        return fmpy.simulate_fmu(path, stop_time=0.01, output_interval=0.005, start_values=start, logger=logger)
+
+    if abs(scale - 1.0) < 1e-3:
+        assert len(run()) == 3
+    else:
+        with pytest.raises(FMICallException):
+            run()
+        assert any("no rotation" in line for line in log)
+
+
+def quaternion_start(path: str) -> dict[str, float]:
+    """Start values of the components of quaternions."""
+    variables = fmpy.read_model_description(path).modelVariables
+    ends = ("qx'", "qy'", "qz'", "qw'")
+    return {v.name: float(v.start) for v in variables if v.name.startswith("q.") and v.name.endswith(ends)}
