@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import shutil
 import sys
@@ -44,6 +45,16 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def pytest_configure(config: pytest.Config) -> None:
     if config.getoption("--browser") and not _PLAYWRIGHT:
         raise pytest.UsageError("--browser needs Playwright: pip install -e '.[dev]'")
+
+
+def pytest_sessionstart() -> None:
+    """Nothing that is made while tests are collected is let go of: the collector need not look for it."""
+    gc.disable()
+
+
+def pytest_collection_finish() -> None:
+    gc.freeze()
+    gc.enable()
 
 
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:

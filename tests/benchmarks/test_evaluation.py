@@ -8,13 +8,14 @@ from pytest_benchmark.fixture import BenchmarkFixture
 
 import symofros as sf
 from reference_models import MODELS
+from tests.models import sampled
 from validation.inputs.cases import named
 
 BATCH = 1000
 
 
 @pytest.mark.parametrize("states", [1, BATCH])
-@pytest.mark.parametrize("model", ["double_pendulum", "rx90", "mss"])
+@pytest.mark.parametrize("model", sampled(("double_pendulum", "rx90", "mss"), ("double_pendulum",)))
 def test_dynamics(benchmark: BenchmarkFixture, model: str, states: int) -> None:
     compiled = sf.compile(MODELS[model], sf.Options(functions=("dynamics",)))
     rng = np.random.default_rng(0)

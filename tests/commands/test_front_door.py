@@ -103,7 +103,6 @@ def test_the_harness_starts_from_any_folder(
     for arguments, code, expected in (
         (("check", "--help"), 0, "Compare our C"),
         (("check", "nobody"), 2, "nobody"),
-        (("validation", "--help"), 0, "timing"),
     ):
         status = invoke(*arguments).exit_code
         said = "".join(capfd.readouterr())  # Of the process that runs the harness.

@@ -27,7 +27,13 @@ PRINTED = {
 }
 
 
-@pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
+# What README's own lines do in every run: a cross-check, and C from a URDF.
+ELSEWHERE = {"cross_check", "urdf_to_c"}
+
+
+@pytest.mark.parametrize(
+    "script", [pytest.param(s, id=s.stem, marks=pytest.mark.slow if s.stem in ELSEWHERE else ()) for s in SCRIPTS]
+)
 def test_an_example_runs(script: Path, capsys: pytest.CaptureFixture[str]) -> None:
     if script.stem == "urdf_to_c" and not shutil.which("cc"):
         pytest.skip("needs a program called cc")

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from importlib import import_module
 from typing import Any
 
 import numpy as np
 import pytest
-from scipy import linalg, signal
+from scipy import linalg
 
 import symofros as sf
 from reference_models import MODELS
@@ -28,6 +29,7 @@ def test_gains_are_those_of_scipy(size: int, scale: float, rng: np.random.Genera
     expected = np.linalg.solve(R, B.T @ linalg.solve_continuous_are(A, B, Q, R))
     np.testing.assert_allclose(K, expected, rtol=1e-8, atol=1e-8 * np.abs(expected).max())
     Ad, Bd = held_inputs(A, B, 0.02)
+    signal = import_module("scipy.signal")  # Seconds, which other workers need not wait for.
     Ac, Bc, *_ = signal.cont2discrete((A, B, np.eye(size), np.zeros((size, 2))), 0.02)
     np.testing.assert_allclose(Ad, Ac, rtol=1e-11, atol=1e-12 * np.abs(Ac).max())
     np.testing.assert_allclose(Bd, Bc, rtol=1e-10, atol=1e-12 * np.abs(Bc).max())

@@ -53,7 +53,7 @@ def arm_diagram(period: float | None, **fields: Any) -> tuple[Diagram, sf.Model,
 @pytest.mark.parametrize("period", sampled((PERIOD, None), [PERIOD]), ids=["sampled", "continuous"])
 def test_an_arm_follows_a_pose(period: float | None) -> None:
     diagram, model, q0 = arm_diagram(period)
-    found = run_both(diagram, 1.0)
+    found = run_both(diagram, 0.4)
     q, v, a = (found[f"ik.{key}"] for key in "qva")
     np.testing.assert_allclose(q[0], q0, atol=1e-12)
     p, R = model.frame_pose("tool", q)

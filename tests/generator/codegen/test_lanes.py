@@ -90,7 +90,7 @@ def test_any_number_of_states(case: str, width: str) -> None:
     assert_alike(case, WIDTHS[width], (*CHEAP, *SCALAR), list(range(1, 21)))
 
 
-@pytest.mark.parametrize("width", WIDTHS)
+@pytest.mark.parametrize("width", sampled(tuple(WIDTHS), ("sse2", "native")))
 def test_columns_of_any_number_of_states(width: str) -> None:
     """In place, but for fewer states than lanes; entries that are always zero are cleared."""
     if not HAS[width]:
@@ -138,7 +138,7 @@ OPERATIONS = sf.System(
 )
 
 
-@pytest.mark.parametrize("width", WIDTHS)
+@pytest.mark.parametrize("width", sampled(tuple(WIDTHS), ("sse2", "native")))
 def test_every_operation(width: str) -> None:
     if not HAS[width]:
         pytest.skip("a processor without these vectors")
@@ -179,7 +179,7 @@ def test_large_batches_take_vectors_by_themselves(monkeypatch: pytest.MonkeyPatc
     assert made == [(("dynamics", ""), LaneOptions())]
 
 
-@pytest.mark.parametrize("case", ["rx90", "friction_arm", "operations"])
+@pytest.mark.parametrize("case", sampled(("rx90", "friction_arm", "operations"), ("friction_arm", "operations")))
 def test_parameters_of_each_state(case: str) -> None:
     """One set for each state, and one for all through the same library."""
     model, loop = (sf.compile(stated(case), sf.Options(batch=batch, flags=EXACT)) for batch in ("vector", "loop"))  # type: ignore[arg-type]
@@ -199,11 +199,23 @@ def test_parameters_of_each_state(case: str) -> None:
         assert own is not kernel and np.array_equal(found, expected, equal_nan=True)
 
 
+# Vectors of each width in every run with one way of passing parameters or the other.
+OWN_IN_EVERY_RUN = {(): True, ("-std=gnu99", "-O2"): False, ("-std=gnu99", "-O2", "-mavx512f"): True}
+
+
 @pytest.mark.parametrize(
-    "lanes", [LaneOptions(own, precision) for own in (False, True) for precision in ("double", "single")], ids=str
-)
-@pytest.mark.parametrize(
-    "flags", [(), ("-std=gnu99", "-O2"), ("-std=gnu99", "-O2", "-mavx512f"), ("-std=gnu99", "-mavx")]
+    ("flags", "lanes"),
+    [
+        pytest.param(
+            flags,
+            LaneOptions(own, precision),
+            id=f"{' '.join(flags)}-{'own' if own else 'shared'}-{precision}",
+            marks=() if OWN_IN_EVERY_RUN.get(flags, False) is own else pytest.mark.slow,
+        )
+        for flags in ((), ("-std=gnu99", "-O2"), ("-std=gnu99", "-O2", "-mavx512f"), ("-std=gnu99", "-mavx"))
+        for own in (False, True)
+        for precision in ("double", "single")
+    ],
 )
 def test_builds_without_warnings(flags: tuple[str, ...], lanes: LaneOptions, tmp_path: Path) -> None:
     """As strict C99, where batches are loops, and on vectors of every width."""

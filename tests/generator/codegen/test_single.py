@@ -101,7 +101,7 @@ def depth(system: sf.System, function: str) -> int:
     return max(reach[abs(edge)] for edge in program.functions[0].edges() if abs(edge) in reach)
 
 
-@pytest.mark.parametrize("name", sampled(("chain7", "rx90", "planar_robot"), ("chain7", "planar_robot")))
+@pytest.mark.parametrize("name", sampled(("chain7", "rx90", "planar_robot"), ("planar_robot",)))
 @pytest.mark.parametrize("function", ["mass_matrix", "bias", "inverse_dynamics", "kinetic_energy"])
 def test_within_the_rounding_of_its_depth(name: str, function: str) -> None:
     """Each operation on the way adds eps_32 / 2 of a term; terms are at most some times the largest result."""

@@ -9,6 +9,7 @@ import pytest
 import scipy.linalg
 
 import symofros as sf
+from tests.models import sampled
 from tests.simulation.oscillator import oscillator
 
 
@@ -34,7 +35,9 @@ def exact_state(par: tuple[float, ...], q: np.ndarray, t: float) -> tuple[np.nda
     return scipy.linalg.expm(A * t) @ np.concatenate([q, np.zeros(2)]), scipy.linalg.block_diag(K, M)
 
 
-@pytest.mark.parametrize("method", ["generalized_alpha", "rodas4", "semi_implicit_euler", "rk4"])
+@pytest.mark.parametrize(
+    "method", sampled(("generalized_alpha", "rodas4", "semi_implicit_euler", "rk4"), ("generalized_alpha", "rk4"))
+)
 def test_short_runs_that_err_by_a_third_bear_a_note(method: str) -> None:
     """Whatever the ratio of masses, the stiffness, the damping and the step."""
     rng, wrong = np.random.default_rng(0), 0

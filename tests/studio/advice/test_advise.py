@@ -158,6 +158,7 @@ def test_tighter_tolerances_keep_more(estimated: str) -> None:
     assert tight.estimate == pytest.approx(100 * loose.estimate, rel=0.05)
 
 
+@pytest.mark.slow  # In every run: foreshortening, beams and joints that may be rigid.
 def test_second_order_and_rotary_inertia_go_where_they_do_not_matter() -> None:
     system, scene = crane(retain="all", rotary_inertia=True, bend_z=0, twist=0)
     # Beyond rigid's error, so that the boom bends and the smaller terms are judged by themselves.

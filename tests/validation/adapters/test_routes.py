@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.models import sampled
 from validation.adapters import ROUTES, differences
 from validation.reporting.charts import SERIES
 
@@ -14,7 +15,7 @@ PACKAGES = {route.package for route in ROUTES.values()} - {""}
 ROOT = Path(__file__).parents[3]
 
 
-@pytest.mark.parametrize("name", ["pinocchio", "mujoco"])
+@pytest.mark.parametrize("name", sampled(("pinocchio", "mujoco"), ("mujoco",)))
 def test_a_check_with_one_engine_imports_no_other(name: str) -> None:
     """Each takes seconds to load, and need not be installed."""
     code = f"""

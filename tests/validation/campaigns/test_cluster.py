@@ -122,6 +122,7 @@ def killing(folder: Path, victim: Callable[[], None], after: int) -> Callable[[]
     return kill
 
 
+@pytest.mark.slow  # In every run: a campaign of the command line that is interrupted and resumed.
 def test_the_rows_of_a_local_campaign(tmp_path: Path) -> None:
     """By the command line's own option."""
     models, engines = ",".join(PLAN["models"]), ",".join(PLAN["engines"])  # type: ignore[arg-type]

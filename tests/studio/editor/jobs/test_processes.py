@@ -14,10 +14,10 @@ from starlette.testclient import TestClient
 
 from symofros.errors import DescriptionError, Problem, SymofrosError
 from symofros.studio.editor.editing.data_edits import EditError
-from symofros.studio.editor.jobs import processes, worker_process
+from symofros.studio.editor.jobs import operations, processes, worker_process
 from symofros.studio.editor.jobs.processes import Jobs
 from symofros.studio.editor.jobs.worker import error_of
-from tests.studio.editor.conftest import finished, over
+from tests.studio.editor.conftest import finished
 
 SLIDER = """\
 symofros: 1
@@ -75,7 +75,8 @@ def test_simulate_with_inputs_on_prismatic_and_revolute_joints(client: TestClien
 
 
 def test_what_can_not_be_simulated_says_why(client: TestClient) -> None:
-    """One after the other, by the same worker."""
+    """In this process; a worker sends the same words."""
+    text = client.get("/api/document").json()["text"]
     refused: list[tuple[dict[str, Any], str]] = [
         ({"method": "rk99"}, "no method 'rk99'"),
         ({"t_end": "soon"}, "t_end is not a number"),
@@ -85,8 +86,12 @@ def test_what_can_not_be_simulated_says_why(client: TestClient) -> None:
         ({"dt": -1}, "not positive"),
     ]
     for options, says in refused:
-        job = finished(client, "simulate", **options)
-        assert job["state"] == "failed" and says in job["error"]["object"] and job["error"]["remedy"], options
+        with pytest.raises((SymofrosError, ValueError)) as caught:
+            operations.simulate({"file": "four_bar.yaml", "text": text, "options": options}, lambda *_: None)
+        error = error_of(caught.value)
+        assert says in error["object"] and error["remedy"], options
+    job = finished(client, "simulate", **refused[0][0])
+    assert job["state"] == "failed" and refused[0][1] in job["error"]["object"]
 
 
 def test_a_faulty_document_is_told_not_compiled(client: TestClient) -> None:
@@ -140,8 +145,6 @@ def test_import(client: TestClient, folder: Path) -> None:
 
 def test_a_cross_check_needs_the_harness_and_says_so(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
     """In this process: the worker's finds it."""
-    from symofros.studio.editor.jobs import operations
-
     monkeypatch.setattr(operations, "find_spec", lambda name: None)
     request = {"file": "x.yaml", "text": client.get("/api/document").json()["text"]}
     with pytest.raises(Exception, match="not installed") as caught:
@@ -149,7 +152,13 @@ def test_a_cross_check_needs_the_harness_and_says_so(client: TestClient, monkeyp
     assert "pip install 'symofros[validation]'" in error_of(caught.value)["remedy"]
 
 
-def test_cross_check(client: TestClient) -> None:
+def test_cross_check_by_workers_that_take_nothing_from_their_folder(
+    client: TestClient, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A module beside a model is not imported, however it is called: neither by the worker nor by the harness."""
+    for name in ("numpy", "json", "sympy", "validation"):
+        (folder / f"{name}.py").write_text("raise SystemExit('taken from the workspace')")
+    monkeypatch.chdir(folder)
     job = finished(client, "crosscheck", states=2)
     assert job["state"] == "done", job
     rows = job["result"]["rows"]
@@ -283,19 +292,3 @@ def test_few_jobs_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
         assert jobs.start("x", {}).over.wait(30)
     with pytest.raises(EditError, match="no job"):
         jobs.get(first.key)
-
-
-def test_the_worker_takes_nothing_from_the_folder_it_works_in(
-    client: TestClient, folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A module beside a model is not imported, however it is called."""
-    for name in ("numpy", "json", "sympy", "validation"):
-        (folder / f"{name}.py").write_text("raise SystemExit('taken from the workspace')")
-    monkeypatch.chdir(folder)
-    assert finished(client, "compile")["state"] == "done"
-    assert (
-        over(client, client.post("/api/jobs", json={"kind": "crosscheck", "options": {"states": 1}}).json()["id"])[
-            "state"
-        ]
-        == "done"
-    )

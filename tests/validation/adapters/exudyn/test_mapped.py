@@ -39,7 +39,7 @@ def disagreeing(result: ModelResult) -> set[str]:
     "name",
     sampled(
         ("planar_robot", "spinning_beam", "flexible_pendulum", "free_boom", "flexible_slider_crank"),
-        ("spinning_beam", "flexible_pendulum"),
+        ("flexible_pendulum",),
     ),
 )
 def test_elements_that_move_as_our_beams_have_their_mechanics(name: str) -> None:
@@ -50,9 +50,7 @@ def test_elements_that_move_as_our_beams_have_their_mechanics(name: str) -> None
         assert all(rows[quantity].error < 1e-8 for quantity in OFFERED)
 
 
-@pytest.mark.parametrize(
-    "kind", sampled(("free", "ball", "universal", "cylindrical", "planar", "screw"), ("free", "screw"))
-)
+@pytest.mark.parametrize("kind", sampled(("free", "ball", "universal", "cylindrical", "planar", "screw"), ("screw",)))
 def test_a_beam_on_every_kind_of_joint_with_a_body_at_its_tip(kind: str) -> None:
     joint = sf.Joint("j", kind, position=(0.1, 0.2, 0.3), axis=(1, 2, 2), pitch=0.2)  # type: ignore[arg-type]
     load = sf.RigidBody("load", sf.Joint("elbow", "revolute", "b", "tip", axis=(0, 1, 0)), UNIT)

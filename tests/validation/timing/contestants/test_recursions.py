@@ -69,7 +69,7 @@ def test_casadis_recursions_agree_with_the_interpreter(label: str, name: str) ->
     assert error(evaluated(given, name), interpreted(given, name)) < TOLERANCE.get(name, 1e-12)
 
 
-FEW = ("dynamics", "inverse_dynamics_derivatives")
+FEW = ("dynamics",)  # Derivatives, by the interpreter in every run, take four compilations of five times the text.
 
 
 @pytest.mark.parametrize(
