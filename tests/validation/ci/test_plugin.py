@@ -127,8 +127,8 @@ kinds.tree_of = lambda name: Tree(name, (arm,), gravity=(0.0, -9.81, 0.0))
     ("arguments", "complaint"),
     [
         (("--symofros-engine", "havok"), "no such engine; there are pinocchio"),
-        (("--symofros-model", "nobody"), "neither a file nor a model"),
-        ((*SMOKE, "--symofros-baseline", "test_own.py"), "can't be read as JSON"),
+        pytest.param(("--symofros-model", "nobody"), "neither a file nor a model", marks=pytest.mark.slow),
+        pytest.param((*SMOKE, "--symofros-baseline", "test_own.py"), "can't be read as JSON", marks=pytest.mark.slow),
     ],
 )
 def test_options_of_no_use_are_refused_in_words(project: Path, arguments: tuple[str, ...], complaint: str) -> None:

@@ -46,6 +46,7 @@ def test_a_wrong_coefficient_of_a_method_shows(monkeypatch: pytest.MonkeyPatch) 
     assert wrong(runs.fixed_steps(scene("heavy_top"))) == ["steps by rk4"]
 
 
+@pytest.mark.slow  # In every run: a wrong coefficient of a method.
 def test_a_damper_that_is_left_out_shows(monkeypatch: pytest.MonkeyPatch) -> None:
     system = forces.carried()
     assert not wrong(forces.applied(scene("heavy_top")))

@@ -24,7 +24,6 @@ from validation.stability.study import Cell, ParameterStudy, Subject, Verdict, s
 # Those whose models other tests compile, and that take less than half a second.
 FEW = (
     "redundant",
-    "damped_beam",
     "light_link",
     "stick_slip",
     "spin",

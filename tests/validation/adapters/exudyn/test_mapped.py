@@ -67,6 +67,7 @@ def test_rates_and_orders_are_the_derived_ones() -> None:
     assert "strain of sections of 'beam' 2.00 of 2" in rows["mesh_rate"].note
 
 
+@pytest.mark.slow  # In every run: uniform beams, and rotary inertia by Lagrange's equations.
 def test_a_tapered_beam_with_rotary_inertia_and_damping_in_space() -> None:
     """What is of second order in our rotary inertia differs by the second power, elastic forces by the third."""
     stated = {"EI_z": "3*(1 - x/3)^3", "damping": 0.01, "rotary_inertia": True, "rhoI_y": 0.02, "rhoI_z": 0.03}

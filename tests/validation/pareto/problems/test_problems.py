@@ -54,6 +54,7 @@ def test_the_chain_of_links_converges_with_the_square_of_their_length() -> None:
     assert float(np.abs(rod.tip(soft, t, 6) - fine).max()) < errors[1] / 3.0
 
 
+@pytest.mark.slow  # In every run: references agree, and sides of a problem move alike.
 def test_the_spin_up_is_one_motion() -> None:
     mine = spin_up.judged_model("3 modes", spin_up.model(3)).measured(method="rk4", dt=0.02)
     assert 5e-4 < mine.error < 2e-3 and mine.seconds > 0

@@ -166,6 +166,7 @@ def test_a_model_goes_over_as_numbers() -> None:
     assert [len(line.split()) for line in text[3:]] == [3 + 3 + 9 + 3 + 1 + 3 + 9 + 3 + 9] * 3
 
 
+@pytest.mark.slow  # In every run: single states by the same recursions.
 def test_batches_compute_what_single_states_do() -> None:
     """Over a last block that is not full."""
     given = task("planar3R", 100)
