@@ -27,6 +27,22 @@ STEP = {"planar_robot": 1e-4, "panda": 1e-3, "four_bar": 1e-3}
 MODELS = tuple(STARTS)
 # In every run beams with inputs and a loop; an arm of nine joints, which compiles as long as both, with --slow.
 SAMPLED = sampled(MODELS, ("planar_robot", "four_bar"))
+# A beam that a motor turns in the plane, the least that has elastic coordinates and an input.
+PLANAR = sf.System(
+    "planar",
+    (
+        sf.Beam(
+            "link",
+            sf.Joint("q1", "revolute", axis=(0, 0, 1), actuated=True),
+            1.0,
+            1.0,
+            EI_z=100.0,
+            bend_y=1,
+            frames=(sf.Frame("tool"),),
+        ),
+    ),
+    gravity=(0, -9.81, 0),
+)
 STRICT = ("-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror")
 # Without the second half of the optimiser's time; what an export compiles by itself has `compiling.FLAGS`.
 BUILD = (*STRICT, "-O1")

@@ -14,6 +14,7 @@ import pytest
 import symofros as sf
 from tests.exports.cases import (
     MODELS,
+    PLANAR,
     STARTS,
     STEP,
     STRICT,
@@ -134,14 +135,12 @@ def test_cmake_builds_tests_and_installs(package: tuple[str, Path], tmp_path: Pa
 @pytest.mark.parametrize("checker", ["address,undefined", "thread", "valgrind"])
 def test_two_models_in_threads_under_checkers(tmp_path: Path, checker: str) -> None:
     need("clang", "valgrind")
-    for name in ("planar_robot", "four_bar"):
-        sf.export(system_of(name), "c", tmp_path / name, start=STARTS[name], frames=[])
-    text = Template((HERE / "threads.c.in").read_text()).substitute(first="planar_robot", second="four_bar")
+    for name, system in (("planar", PLANAR), ("four_bar", system_of("four_bar"))):
+        sf.export(system, "c", tmp_path / name, start=STARTS.get(name), frames=[])
+    text = Template((HERE / "threads.c.in").read_text()).substitute(first="planar", second="four_bar")
     (tmp_path / "threads.c").write_text(text)
-    files = [
-        tmp_path / n / f"{n}{part}.c" for n in ("planar_robot", "four_bar") for part in ("", "_plant", "_selftest")
-    ]
-    flags = ["-g", "-O1", *STRICT, "-D_POSIX_C_SOURCE=200809L", "-Iplanar_robot", "-Ifour_bar", "-pthread"]
+    files = [tmp_path / n / f"{n}{part}.c" for n in ("planar", "four_bar") for part in ("", "_plant", "_selftest")]
+    flags = ["-g", "-O1", *STRICT, "-D_POSIX_C_SOURCE=200809L", "-Iplanar", "-Ifour_bar", "-pthread"]
     if checker == "valgrind":
         run("gcc", *flags, "-o", "threads", "threads.c", *files, "four_bar/symofros_stepper.c", "-lm", cwd=tmp_path)
         out = run("valgrind", "--error-exitcode=9", "--leak-check=full", "-q", "./threads", cwd=tmp_path)

@@ -23,7 +23,7 @@ from fmpy.validation import validate_fmu
 import symofros as sf
 from reference_models import MODELS as REFERENCE
 from symofros.exports.c import compiling
-from tests.exports.cases import MODELS, STARTS, STEP, first_state, relative, run, system_of, trajectory
+from tests.exports.cases import MODELS, PLANAR, STARTS, STEP, first_state, relative, run, system_of, trajectory
 from tests.models import sampled
 from tests.simulation.beam_models import at_rest, cantilever_system
 
@@ -71,22 +71,6 @@ DRIVEN = sf.System(
             (sf.Frame("tip", (0.2, 0.3, 0.1)),),
         ),
     ),
-)
-# A beam that a motor turns in the plane, the least that has elastic coordinates and an input.
-PLANAR = sf.System(
-    "planar",
-    (
-        sf.Beam(
-            "link",
-            sf.Joint("q1", "revolute", axis=(0, 0, 1), actuated=True),
-            1.0,
-            1.0,
-            EI_z=100.0,
-            bend_y=1,
-            frames=(sf.Frame("tool"),),
-        ),
-    ),
-    gravity=(0, -9.81, 0),
 )
 OWN = {"floating": FLOATING, "driven": DRIVEN, "planar": PLANAR}
 
