@@ -23,9 +23,9 @@ from symofros.simulation.stepping.stepper import Stepper
 _STEPS = 256
 # States, about, at which a function of the user's is asked again for the inputs; share by which they may differ.
 _CALLED, _SAME = 8, 1e-9
-# Differences of displacements and energies count by this share: they are relative to how they change in the run, while
-# coordinates and energies themselves may be larger.
-_POSITIONS = 3.0
+# Differences of displacements count by this share: they are relative to how they change in the run, while coordinates
+# themselves may be larger; those of energies by another: they are squares.
+_POSITIONS, _ENERGIES = 3.0, 2.0
 # Share of coordinates and energies that is rounding, and what an equilibrium is found to: at rest nothing else moves.
 _AT_REST = 1e-11
 # Share of the largest speed that the absolute tolerance may allow as the error of a step; displacements over it that
@@ -176,7 +176,7 @@ def _change(stepper: Stepper, q0: Array, states: Sequence[Array], finer: Sequenc
         if energies is not None and others is not None:
             largest = float(np.abs(energies[1] - energies[0]).max() + energies[0].max())
             spread = max(float(energies[0].max()), float(np.ptp(energies[1])), _AT_REST * largest)
-            change.append(_share(float(np.abs(others[1] - energies[1][rows]).max()), spread) / _POSITIONS)
+            change.append(_share(float(np.abs(others[1] - energies[1][rows]).max()), spread) / _ENERGIES)
     return max(change)
 
 

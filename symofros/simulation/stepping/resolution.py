@@ -120,10 +120,10 @@ def resolution(
         if radius <= resolved:
             continue
         modes = [(z, share) for z, share in _modes(basis, matrix, motion, h * speed, M) if abs(z) > resolved]
-        judged = (_judged(method, z, share, h, part, t) for z, share in modes)
+        judged = [_judged(method, z, share, h, part, t) for z, share in modes]
         here = max(judged, key=lambda mode: mode.error, default=None)
         if here is not None:
-            total += here.error
+            total += sum(mode.error for mode in judged)
             worst = here if worst is None or here.error > worst.error else worst
         if worst is not None and total > TOLERANCE:  # What follows may be no motion any more.
             return Resolution(replace(worst, error=total), evident)

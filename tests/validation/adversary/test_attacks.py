@@ -72,6 +72,16 @@ def equilibria_without_estimates(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sf, "equilibrium", faulty)
 
 
+def silent_diagrams(monkeypatch: pytest.MonkeyPatch) -> None:
+    sound = sf.Simulation.run
+
+    def faulty(*given: Any, **named: Any) -> sf.DiagramRun:
+        run = sound(*given, **named)
+        return replace(run, outcome=replace(run.outcome, notes=()))
+
+    monkeypatch.setattr(sf.Simulation, "run", faulty)
+
+
 def always_converged(monkeypatch: pytest.MonkeyPatch) -> None:
     sound = sf.inverse_kinematics
     monkeypatch.setattr(sf, "inverse_kinematics", lambda *a, **k: replace(sound(*a, **k), converged=True))
@@ -83,6 +93,7 @@ FAULTS: dict[str, Plant] = {
     "loop_runs": runs(lambda run: replace(run, q=1.001 * run.q)),
     "rolling_runs": runs(lambda run: replace(run, v=1.3 * run.v)),
     "step_sizes": runs(silenced),
+    "diagram_runs": silent_diagrams,
     "beam_statics": equilibria_without_estimates,
     "beam_runs": runs(silenced, beam_limit=inf),
     "inverse_kinematics": always_converged,

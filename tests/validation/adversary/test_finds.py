@@ -10,6 +10,66 @@ from validation.adversary.catalogue import ATTACKS
 # Attack, scene, what was mended.
 FINDS: list[tuple[str, Scene, str]] = [
     (
+        "rolling_runs",
+        {
+            "r": 0.001,
+            "m": 1.0,
+            "tilt": 0.7,
+            "spin": 20.0,
+            "turn": 0.5,
+            "method": "generalized_alpha",
+            "step": 0.01,
+            "span": 3.0,
+        },
+        "errors of all modes of a state are added",
+    ),
+    (
+        "step_sizes",
+        {
+            "mechanism": "masses",
+            "method": "generalized_alpha",
+            "step": 0.3,
+            "steps": 3,
+            "mass": 1000.0,
+            "size": 1000.0,
+            "damping": 2.0,
+            "scale": 1.0,
+            "start": [1.0, -0.5],
+            "speed": [0.0, 2.0],
+        },
+        "energies of repetitions count as squares of speeds",
+    ),
+    (
+        "diagram_runs",
+        {
+            "force": "floor",
+            "law": "formula",
+            "method": "euler",
+            "m": 10.0,
+            "k": 1.0,
+            "c": 0.0,
+            "step": 0.001,
+            "record": 0.1,
+            "span": 5.0,
+        },
+        "work is uncertain where the power bends, not where it changes",
+    ),
+    (
+        "diagram_runs",
+        {
+            "force": "none",
+            "k": 0.1,
+            "m": 0.01,
+            "record": 0.1,
+            "step": 0.01,
+            "c": 0.0,
+            "law": "python",
+            "span": 1.0,
+            "method": "euler",
+        },
+        "smaller changes are noted where external blocks do not answer to them",
+    ),
+    (
         "closed_dynamics",
         {
             "mechanism": "held",

@@ -21,11 +21,13 @@ _SHARE, _FEWEST, _MOST = 0.005, 64, 500
 # A power is a difference of energies over this share of the time between records, or of the time in which the largest
 # speed arises where that is shorter.
 _MOMENT = 1e-3
-# Share of the work that a change of power within an interval may hide, (5).
-_SMOOTH = 0.5
+# Share of the work that a bend of the power may hide, (5).
+_SMOOTH = 0.25
 # Intervals, those with most energy that is not explained, that are made once more; share of that energy by which they
 # must then change: what a contact between two records takes or gives stays the same.
 _REPEATED, _CHANGED = 4, 0.3
+# Or share of the largest kinetic energy: beside the work of a contact between records all else is small.
+_CHANGED_MOTION = 0.1
 
 # Accelerations (n, nv) at some of the records, by number.
 Accelerations = Callable[[Array], Array]
@@ -96,19 +98,23 @@ def energy_note(energies: Energies, states: States, steps: int, accelerations: A
             kinetic, energy = energies.of(name, *some[:3])
             power, spans = energies.powers(name, some, a), np.diff(some[0])
             gained = np.where(engages, 0.0, np.diff(energy) - 0.5 * (power[1:] + power[:-1]) * spans)
-            unexplained, uncertain = np.abs(np.cumsum(gained)), np.cumsum(0.5 * np.abs(np.diff(power)) * spans)
-            if not np.any(unexplained - _SMOOTH * uncertain > _NOTED * kinetic.max()):
+            bends = np.abs(np.diff(power, n=2, prepend=power[:1])) * spans
+            unexplained, uncertain = np.abs(np.cumsum(gained)), np.cumsum(_SMOOTH * bends)
+            if not np.any(unexplained - uncertain > _NOTED * kinetic.max()):
                 continue
-            if _is_numerical(energies, name, states, rows, gained, repeat):
+            largest = float(kinetic.max())
+            if _is_numerical(energies, name, states, rows, gained, largest, repeat):
                 return (
                     f"the energy of '{name}' changes by {unexplained.max():.3g} J beside the work done on it, where its"
-                    f" motion has {kinetic.max():.3g} J at most: finer steps change that; a smaller dt or tighter"
+                    f" motion has {largest:.3g} J at most: finer steps change that; a smaller dt or tighter"
                     " tolerances"
                 )
     return ""
 
 
-def _is_numerical(energies: Energies, name: str, states: States, rows: Array, gained: Array, repeat: Repeat) -> bool:
+def _is_numerical(
+    energies: Energies, name: str, states: States, rows: Array, gained: Array, largest: float, repeat: Repeat
+) -> bool:
     """Whether finer steps change what the intervals with most unexplained energy gain."""
     share = changed = 0.0
     for i in np.argsort(-np.abs(gained))[:_REPEATED]:
@@ -118,4 +124,4 @@ def _is_numerical(energies: Energies, name: str, states: States, rows: Array, ga
             return True
         _, energy = energies.of(name, *(np.stack([x[last], y[-1]]) for x, y in zip(states[:3], finer[:3], strict=True)))
         share, changed = share + abs(float(gained[i])), changed + abs(float(energy[1] - energy[0]))
-    return changed >= _CHANGED * share
+    return changed >= min(_CHANGED * share, _CHANGED_MOTION * largest)

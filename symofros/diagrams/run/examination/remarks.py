@@ -52,7 +52,8 @@ def remarks(run: Examined, modes: Resolution) -> tuple[str, ...]:
     try:
         note = ""
         if (worst is None and not modes.evident) or (run.h == 0.0 and _is_loose(run)):
-            note = step_note(layout, states, run.repeat, run.h, run.steps)
+            external = any(piece.is_external for piece in run.energies.resolved.pieces.values())
+            note = step_note(layout, states, run.repeat, run.h, run.steps, answers_are_kept=external)
         note = note or energy_note(run.energies, states, run.steps, run.accelerations, run.repeat)
         return (note,) if note else ()
     except NotKeptError:  # External blocks were called more often than is kept.

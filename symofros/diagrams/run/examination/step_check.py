@@ -25,6 +25,8 @@ _STEPS_A_WINDOW, _FEW, _MANY, _SHARE, _FEWEST, _MOST = 50_000, 2, 4, 0.01, 8, 25
 _SPARSE = 4.0
 # Differences of displacements count by this share: coordinates may be larger than how they change.
 _POSITIONS = 3.0
+# Share of the tolerance that is allowed where external blocks do not answer to the change.
+_UNANSWERED = 0.08
 
 # Records: t (n), q (n, nq), v (n, nv), and what else a run keeps.
 States = Sequence[Array]
@@ -74,7 +76,9 @@ def windows(states: States, h: float, steps: int) -> list[Window]:
     return chosen
 
 
-def step_note(layout: Layout, states: States, repeat: Repeat, h: float, steps: int) -> str:
+def step_note(
+    layout: Layout, states: States, repeat: Repeat, h: float, steps: int, *, answers_are_kept: bool = False
+) -> str:
     """Which mechanism moves otherwise by finer steps, in words; nothing where all move nearly the same.
 
     Each mechanism is judged by itself, in its own speeds: those of others may be of another size.
@@ -85,6 +89,8 @@ def step_note(layout: Layout, states: States, repeat: Repeat, h: float, steps: i
         repeat: Makes a part of the run once more.
         h: Step [s]; 0: it adapts.
         steps: Number of steps.
+        answers_are_kept: Whether external blocks answer as they did: what they make of a change is not seen then, so
+            that a smaller one counts.
     """
     worst, block, t, mean = 0.0, "", 0.0, h or float(states[0][-1] - states[0][0]) / steps
     stepping = f"steps of {h:.4g} s do" if h else "the tolerances do"
@@ -100,11 +106,12 @@ def step_note(layout: Layout, states: States, repeat: Repeat, h: float, steps: i
             change = _change(layout, name, None if steps <= _STEPS else states, coarse, fine)
             if change > worst or not change >= 0.0:
                 worst, block, t = change, name, float(states[0][window.first])
-    if worst <= TOLERANCE:
+    if worst <= (_UNANSWERED if answers_are_kept else 1.0) * TOLERANCE:
         return ""
     by = f"{100.0 * worst:.2g} %" if worst < 1.0 else "more than 100 %"
+    same = ", even where external blocks answer as they did" if answers_are_kept else ""
     seen = "" if steps <= _STEPS else f" (seen at t = {t:.4g} s)"
-    return f"{stepping} not determine the motion of '{block}': {finer} changes it by {by}{seen}; {cure}"
+    return f"{stepping} not determine the motion of '{block}': {finer} changes it by {by}{seen}{same}; {cure}"
 
 
 def _change(layout: Layout, block: str, run: States | None, coarse: States, fine: States) -> float:
