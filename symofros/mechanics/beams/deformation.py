@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, lru_cache
 
 from symofros.description.beam import DIRECTIONS, Beam, Family, UserShape
-from symofros.mechanics.beams.fields import Field, unit_field
+from symofros.mechanics.beams.fields import Field, UnitIntegral, unit_field
 from symofros.mechanics.beams.piecewise import XI
 from symofros.mechanics.beams.shape_functions import Shape, shapes
 
@@ -33,6 +34,11 @@ class Deformation:
     functions: tuple[Shape, ...]
     counts: tuple[int, int, int]
     foreshortening: bool
+
+    @cached_property
+    def integrals(self) -> dict[Hashable, UnitIntegral]:
+        """Integrals of products of its fields that were formed so far, by what they are of."""
+        return {}
 
     @cached_property
     def lengths(self) -> tuple[bool, ...]:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Hashable, Iterable, Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import combinations_with_replacement
 from typing import NamedTuple
 
@@ -12,8 +13,8 @@ from symofros.description.values import Value
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
 from symofros.mechanics.beams.deformation import Deformation, deformation_of
-from symofros.mechanics.beams.fields import EVERY_DEGREE, Field, Form, no_form, unit_field
-from symofros.mechanics.beams.integrals import LengthIntegrator, Lower, points_for
+from symofros.mechanics.beams.fields import EVERY_DEGREE, Field, Form, UnitIntegral, no_form, unit_field
+from symofros.mechanics.beams.integrals import LengthIntegrator, Lower, is_uniform, points_for
 
 ORDERS: dict[Retain, float] = {"zeroth_order": 0, "first_order": 1, "all": EVERY_DEGREE}
 # Pairs of axes in the order of Sym3: xx, yy, zz, xy, xz, yz.
@@ -26,11 +27,13 @@ class SectionInertia(NamedTuple):
     """Inertia of a beam's sections about one of their axes.
 
     Attributes:
+        about: Index of the axis.
         per_length: Moment of inertia per length about the axis [kg m].
         axis: Components of the axis in B.
         spins: Partial angular velocities of the section about the axis, one a coordinate.
     """
 
+    about: int
     per_length: Value
     axis: tuple[Field, ...]
     spins: tuple[Field, ...]
@@ -61,18 +64,30 @@ class BeamForms:
             sections = []
             for k, per_length in weights:
                 axis, spins = (tuple(row[k] for row in rows) for rows in (shape.rotation, shape.partial_spins))
-                sections.append(SectionInertia(per_length, axis, spins))
+                sections.append(SectionInertia(k, per_length, axis, spins))
         else:
             one, none = unit_field(shape.lengths), Field(0, shape.lengths, {})
             spins = tuple(shape.roll.by(i) for i in range(beam.modes))
-            sections = [SectionInertia(beam.rhoJ, (one, none, none), spins)]
+            sections = [SectionInertia(0, beam.rhoJ, (one, none, none), spins)]
         return tuple(section for section in sections if section.per_length != 0.0)
 
-    def _summed(self, parts: list[tuple[Field, Value]]) -> Form:
-        total = no_form(self.along.g, self.along.coordinates)
-        for field, weight in parts:
-            total = total + self.along.integral(field, weight)
-        return total
+    def _integral(self, of: Hashable, product: Callable[[], Field], weight: Value) -> Form:
+        """The integral of a product of fields; its numbers are formed once for beams with equal shape functions.
+
+        Args:
+            of: What the product is of, besides the order and the choice of rotary inertia.
+            product: The product, formed where it is needed.
+            weight: Property of the section.
+        """
+        if not is_uniform(weight):
+            return self.along.integral(product(), weight)
+        known, key = self.shape.integrals, (of, self.order, self.beam.rotary_inertia)
+        if key not in known:
+            known[key] = UnitIntegral.of(product())
+        return self.along.uniform(known[key], weight)
+
+    def _summed(self, forms: Iterable[Form]) -> Form:
+        return sum(forms, start=no_form(self.along.g, self.along.coordinates))
 
     @cached_property
     def mass(self) -> Edge:
@@ -88,11 +103,14 @@ class BeamForms:
     @cached_property
     def second_moment(self) -> tuple[Form, ...]:
         """Second moment E, the integral of r r^T dm, sections included, in the order of Sym3 (eqs. 9, 13)."""
-        upto, r = self.order + 1, self.shape.position
-        E = [self.along.integral(r[a].times(r[b], upto), self.beam.rhoA) for a, b in PAIRS]
+        upto, r, rhoA = self.order + 1, self.shape.position, self.beam.rhoA
+        E = [self._integral(("E", a, b), partial(r[a].times, r[b], upto), rhoA) for a, b in PAIRS]
         for section in self._sections:
             c = section.axis
-            J = [self.along.integral(c[a].times(c[b], upto), section.per_length) for a, b in PAIRS]
+            J = [
+                self._integral(("J", section.about, a, b), partial(c[a].times, c[b], upto), section.per_length)
+                for a, b in PAIRS
+            ]
             half = (J[0] + J[1] + J[2]).scaled(self.along.g.constant(0.5))
             E = [e + (half - j if a == b else -j) for e, j, (a, b) in zip(E, J, PAIRS, strict=True)]
         return tuple(E)
@@ -100,29 +118,41 @@ class BeamForms:
     @cached_property
     def angular(self) -> tuple[Vector, ...]:
         """Angular momentum K_i about the root per unit rate of each coordinate (eqs. 10, 13)."""
-        r = self.shape.position
         momenta: list[Vector] = []
         for i in range(self.beam.modes):
-            d = [field.by(i) for field in r]
-            parts: list[list[tuple[Field, Value]]] = []
-            for a in range(3):
-                b, c = (a + 1) % 3, (a + 2) % 3
-                moment = r[b].times(d[c], self.order) - r[c].times(d[b], self.order)
-                parts.append([(moment, self.beam.rhoA)])
-                for section in self._sections:
-                    parts[a].append((section.axis[a].times(section.spins[i], self.order), section.per_length))
-            momenta.append((self._summed(parts[0]), self._summed(parts[1]), self._summed(parts[2])))
+            x, y, z = (self._summed(self._momentum(i, a)) for a in range(3))
+            momenta.append((x, y, z))
         return tuple(momenta)
+
+    def _momentum(self, i: int, a: int) -> Iterator[Form]:
+        """Parts of the angular momentum about axis a per unit rate of coordinate i."""
+        r, b, c = self.shape.position, (a + 1) % 3, (a + 2) % 3
+
+        def moment() -> Field:
+            return r[b].times(r[c].by(i), self.order) - r[c].times(r[b].by(i), self.order)
+
+        yield self._integral(("K", i, a), moment, self.beam.rhoA)
+        for section in self._sections:
+            spin = partial(section.axis[a].times, section.spins[i], self.order)
+            yield self._integral(("K", i, a, section.about), spin, section.per_length)
 
     @cached_property
     def modal_mass(self) -> dict[tuple[int, int], Form]:
         """Modal mass M_ij for i <= j (eqs. 11, 13)."""
-        masses = {}
-        for i, j in combinations_with_replacement(range(self.beam.modes), 2):
-            parts = [(field.by(i).times(field.by(j), self.order), self.beam.rhoA) for field in self.shape.position]
-            parts += [(s.spins[i].times(s.spins[j], self.order), s.per_length) for s in self._sections]
-            masses[i, j] = self._summed([(field, weight) for field, weight in parts if field.terms])
-        return masses
+        pairs = combinations_with_replacement(range(self.beam.modes), 2)
+        return {(i, j): self._summed(self._masses(i, j)) for i, j in pairs}
+
+    def _masses(self, i: int, j: int) -> Iterator[Form]:
+        """Parts of the modal mass of two coordinates."""
+        for k, field in enumerate(self.shape.position):
+
+            def product(field: Field = field) -> Field:
+                return field.by(i).times(field.by(j), self.order)
+
+            yield self._integral(("M", i, j, k), product, self.beam.rhoA)
+        for section in self._sections:
+            spins = partial(section.spins[i].times, section.spins[j], self.order)
+            yield self._integral(("M", i, j, "spin", section.about), spins, section.per_length)
 
     @cached_property
     def strain_energy(self) -> Form:
@@ -130,8 +160,9 @@ class BeamForms:
         upto = 3 if self.order > 1 else 2
         beam, half = self.beam, self.along.g.constant(0.5)
         stiffness = (beam.GJ, beam.EI_y, beam.EI_z)
-        squares = [(k.times(k, upto), EI) for k, EI in zip(self.shape.curvatures, stiffness, strict=True)]
-        return self._summed([(square, EI) for square, EI in squares if square.terms]).scaled(half)
+        curvatures = enumerate(zip(self.shape.curvatures, stiffness, strict=True))
+        squares = (self._integral(("V", k), partial(kappa.times, kappa, upto), EI) for k, (kappa, EI) in curvatures)
+        return self._summed(squares).scaled(half)
 
     def damping_energy(self, speeds: tuple[Edge, ...]) -> Form:
         """Rayleigh's dissipation function: damping times the quadratic strain energy of the rates (eq. 14)."""

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from itertools import combinations_with_replacement
+from typing import NamedTuple
 
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.graph import Graph
@@ -84,7 +85,7 @@ class Field:
 
     def exponent(self, mono: Monomial) -> int:
         """The power of L that goes with a monomial."""
-        return self.power - sum(self.lengths[i] for i in mono)
+        return exponent(self.power, self.lengths, mono)
 
     def at(self, g: Graph, coordinates: Sequence[Edge], L: Edge, xi: float) -> Form:
         """The value of the field at one station, as a form."""
@@ -97,9 +98,39 @@ class Field:
         )
 
 
+def exponent(power: int, lengths: tuple[bool, ...], mono: Monomial) -> int:
+    """The power of L that goes with a monomial.
+
+    Args:
+        power: Exponent of the monomial of degree 0.
+        lengths: Whether each coordinate is a displacement.
+        mono: Monomial.
+    """
+    return power - sum(lengths[i] for i in mono)
+
+
 def length_power(g: Graph, L: Edge, exponent: int) -> Edge:
     """A power of L with a whole exponent."""
     return g.power(L, g.constant(float(exponent)))
+
+
+class UnitIntegral(NamedTuple):
+    """The integral of a field over xi, for sections that do not change.
+
+    Attributes:
+        power: Exponent of the length of the monomial of degree 0, that of dx included.
+        lengths: Whether each coordinate is a displacement.
+        terms: Number by monomial.
+    """
+
+    power: int
+    lengths: tuple[bool, ...]
+    terms: Mapping[Monomial, float]
+
+    @classmethod
+    def of(cls, field: Field) -> UnitIntegral:
+        """The integral of a field."""
+        return cls(field.power + 1, field.lengths, {mono: float(f.integral()) for mono, f in field.terms.items()})
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from symofros.description.values import Value, symbols
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.expression import Expression
 from symofros.expr.graph import Graph
-from symofros.mechanics.beams.fields import Field, Form, Monomial, length_power
+from symofros.mechanics.beams.fields import Field, Form, Monomial, UnitIntegral, exponent, length_power
 from symofros.mechanics.beams.piecewise import Number, Piecewise, stations
 
 # Gauss nodes an interval for properties that change along the beam, exact to degree 31: what pieces of splines and of
@@ -50,16 +50,19 @@ class LengthIntegrator:
     def integral(self, field: Field, weight: Value) -> Form:
         """The integral of weight times field over the beam's length."""
         g = self.g
-        if STATION not in symbols(weight):
-            uniform = self.lower(weight)
-            numbers = {mono: g.constant(float(f.integral())) for mono, f in field.terms.items()}
-            terms = {mono: g.mul(number, uniform) for mono, number in numbers.items()}
-        else:
-            assert isinstance(weight, Expression)
-            xi, w = stations(self.knots, self.points)
-            values = [self.lower(at_station(weight, self.length, x)) for x in xi]
-            terms = {mono: _weighted(g, f, xi, w, values) for mono, f in field.terms.items()}
-        return self._scaled(field, terms)
+        if is_uniform(weight):
+            return self.uniform(UnitIntegral.of(field), weight)
+        assert isinstance(weight, Expression)
+        xi, w = stations(self.knots, self.points)
+        values = [self.lower(at_station(weight, self.length, x)) for x in xi]
+        terms = {mono: _weighted(g, f, xi, w, values) for mono, f in field.terms.items()}
+        return self._scaled(field.power + 1, field.lengths, terms)
+
+    def uniform(self, integral: UnitIntegral, weight: Value) -> Form:
+        """The integral of a field whose weight does not change along the beam."""
+        g, factor = self.g, self.lower(weight)
+        terms = {mono: g.mul(g.constant(number), factor) for mono, number in integral.terms.items()}
+        return self._scaled(integral.power, integral.lengths, terms)
 
     def shares(self, weight: Value) -> list[tuple[float, Edge]]:
         """Gauss stations, each with its share of the weight's integral: for integrands that are not polynomials."""
@@ -74,17 +77,22 @@ class LengthIntegrator:
         """The field at one station."""
         return field.at(self.g, self.coordinates, self.L, xi)
 
-    def _scaled(self, field: Field, terms: dict[Monomial, Edge]) -> Form:
+    def _scaled(self, power: int, lengths: tuple[bool, ...], terms: dict[Monomial, Edge]) -> Form:
         g = self.g
         return Form(
             g,
             self.coordinates,
             {
-                mono: g.mul(edge, length_power(g, self.L, field.exponent(mono) + 1))
+                mono: g.mul(edge, length_power(g, self.L, exponent(power, lengths, mono)))
                 for mono, edge in terms.items()
                 if edge != ZERO
             },
         )
+
+
+def is_uniform(weight: Value) -> bool:
+    """Whether a property is the same along the beam."""
+    return STATION not in symbols(weight)
 
 
 def _weighted(g: Graph, f: Piecewise, xi: Sequence[float], w: Sequence[float], values: Sequence[Edge]) -> Edge:

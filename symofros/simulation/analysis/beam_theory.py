@@ -38,6 +38,30 @@ def bendings_in_motion(
     )
 
 
+def bendings_linearised(
+    model: Model, q: Array, v: Array, u: Array, slopes: Array, par: ArrayLike | None = None, t: float = 0.0
+) -> tuple[BeamBending, ...]:
+    """Bending of each beam in a state of motion whose accelerations are linearised already, without constraints.
+
+    Args:
+        model: Model.
+        q: Configuration (nq).
+        v: Speeds (nv).
+        u: Inputs (nu).
+        slopes: Derivative of the accelerations by q there (nv, nv).
+        par: Run-time parameters.
+        t: Time.
+    """
+    M = model.evaluate("dynamics", q=q, v=v, u=u, t=t, par=par)[0]
+    tangent = -M @ slopes  # Of (26a): the accelerations of the state stay.
+    bent = []
+    for beam in model.beams(par):
+        x = q[beam.in_q]
+        work, loaded = (x @ K @ x for K in (beam.elastic_stiffness(), tangent[beam.in_v, beam.in_v]))
+        bent.append(beam.bending(x, amplification=amplification_of(np.array([work]), np.array([loaded]))))
+    return tuple(bent)
+
+
 def bendings_at_rest(model: Model, q: Array, K: Array, par: ArrayLike | None) -> tuple[BeamBending, ...]:
     """Bending of each beam at rest under its loads, whose axial parts amplify the error (26).
 
