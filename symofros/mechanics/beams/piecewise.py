@@ -11,7 +11,7 @@ from bisect import bisect_left
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cache, lru_cache
+from functools import cache, cached_property, lru_cache
 from itertools import pairwise, zip_longest
 
 from symofros.expr.numerics.extended import Extended, extended_context
@@ -32,90 +32,164 @@ _NEWTON_STEPS = 5
 class Piecewise:
     """A function of xi in [0, 1]: polynomials on consecutive intervals.
 
+    Exact ones hold whole numbers over one denominator, which is many times faster than fractions.
+
     Attributes:
         knots: Ends of the intervals, from 0 to 1.
-        pieces: Coefficients in the distance from the interval's left end, constant first, for each interval.
+        numerators: Coefficients times the denominator, in the distance from the interval's left end, constant first,
+            for each interval; whole numbers all, or floats over 1.
+        denominator: Denominator of all coefficients, without a factor that they share.
     """
 
     knots: tuple[Number, ...]
-    pieces: tuple[Coefficients, ...]
+    numerators: tuple[Coefficients, ...]
+    denominator: int = 1
+
+    @classmethod
+    def of(cls, knots: Sequence[Number], pieces: Sequence[Sequence[Number]]) -> Piecewise:
+        """The function of these coefficients; of floats where one of them is."""
+        if any(isinstance(c, float) for piece in pieces for c in piece):
+            return cls(tuple(knots), tuple(tuple(float(c) for c in piece) for piece in pieces))
+        exact = [[Fraction(c) for c in piece] for piece in pieces]
+        common = math.lcm(*(c.denominator for piece in exact for c in piece))
+        whole = tuple(tuple(c.numerator * (common // c.denominator) for c in piece) for piece in exact)
+        return cls._reduced(tuple(knots), whole, common)
+
+    @classmethod
+    def _reduced(cls, knots: tuple[Number, ...], numerators: tuple[Coefficients, ...], denominator: int) -> Piecewise:
+        """The function without factors that its numbers share."""
+        if isinstance(numerators[0][0], float):
+            return cls(knots, numerators)
+        factor = math.gcd(denominator, *(int(c) for piece in numerators for c in piece))
+        if factor == 1:
+            return cls(knots, numerators, denominator)
+        whole = tuple(tuple(int(c) // factor for c in piece) for piece in numerators)
+        return cls(knots, whole, denominator // factor)
+
+    @property
+    def pieces(self) -> tuple[Coefficients, ...]:
+        """Coefficients for each interval: fractions, or floats."""
+        if self.is_float:
+            return self.numerators
+        return tuple(tuple(Fraction(int(c), self.denominator) for c in piece) for piece in self.numerators)
+
+    @cached_property
+    def is_float(self) -> bool:
+        """Whether its coefficients are floats."""
+        return isinstance(self.numerators[0][0], float)
 
     @property
     def is_zero(self) -> bool:
         """Whether it vanishes identically."""
-        return not any(any(piece) for piece in self.pieces)
+        return not any(map(any, self.numerators))
 
     @property
     def degree(self) -> int:
         """The largest degree of its pieces."""
-        return max(len(piece) for piece in self.pieces) - 1
+        return max(map(len, self.numerators)) - 1
 
     def __add__(self, other: Piecewise) -> Piecewise:
         a, b = _aligned(self, other)
-        return Piecewise(a.knots, tuple(map(_sum, a.pieces, b.pieces)))
+        common = math.lcm(a.denominator, b.denominator)
+        x, y = (f.scaled_numerators(common // f.denominator) for f in (a, b))
+        return self._reduced(a.knots, tuple(map(_sum, x, y)), common)
 
     def __mul__(self, other: Piecewise) -> Piecewise:
         a, b = _aligned(self, other)
-        return Piecewise(a.knots, tuple(map(_product, a.pieces, b.pieces)))
+        products = tuple(map(_product, a.numerators, b.numerators))
+        return self._reduced(a.knots, products, a.denominator * b.denominator)
+
+    def scaled_numerators(self, factor: Number) -> tuple[Coefficients, ...]:
+        """The numerators times a factor."""
+        return self.numerators if factor == 1 else tuple(tuple(factor * c for c in p) for p in self.numerators)
 
     def scaled(self, factor: Number) -> Piecewise:
         """Factor times the function."""
-        return Piecewise(self.knots, tuple(tuple(factor * c for c in piece) for piece in self.pieces))
+        if self.is_float or isinstance(factor, float):
+            return Piecewise.of(self.knots, tuple(tuple(factor * c for c in piece) for piece in self.pieces))
+        return self._reduced(
+            self.knots, self.scaled_numerators(factor.numerator), self.denominator * factor.denominator
+        )
 
     def derivative(self) -> Piecewise:
         """The derivative, piece by piece."""
-        return Piecewise(
-            self.knots, tuple(tuple(k * c for k, c in enumerate(p))[1:] or (p[0] * 0,) for p in self.pieces)
-        )
+        slopes = (tuple(k * c for k, c in enumerate(p))[1:] or (p[0] * 0,) for p in self.numerators)
+        return self._reduced(self.knots, tuple(slopes), self.denominator)
 
     def antiderivative(self) -> Piecewise:
         """The continuous antiderivative that vanishes at 0."""
-        start: Number = Fraction(0)
+        start: Number = 0.0 if self.is_float else Fraction(0)
         pieces: list[Coefficients] = []
         for (a, b), piece in zip(pairwise(self.knots), self.pieces, strict=True):
             raised = (start, *(_divided(c, k + 1) for k, c in enumerate(piece)))
             pieces.append(raised)
             start = _value(raised, b - a)
-        return Piecewise(self.knots, tuple(pieces))
+        return Piecewise.of(self.knots, pieces)
 
     def integral(self) -> Number:
         """The integral from 0 to 1."""
-        total: Number = Fraction(0)
-        for (a, b), piece in zip(pairwise(self.knots), self.pieces, strict=True):
-            h = b - a
-            total += h * _value(tuple(_divided(c, k + 1) for k, c in enumerate(piece)), h)
-        return total
+        if self.is_float:
+            total: Number = Fraction(0)
+            for (a, b), piece in zip(pairwise(self.knots), self.numerators, strict=True):
+                h = b - a
+                total += h * _value(tuple(_divided(c, k + 1) for k, c in enumerate(piece)), h)
+            return total
+        # Over one denominator as well: of the coefficients, of 1/(k + 1), of the powers of the intervals.
+        count = self.degree + 1
+        ends = [Fraction(knot) for knot in self.knots]
+        span = math.lcm(*(knot.denominator for knot in ends))
+        shares = math.lcm(*range(1, count + 1))
+        whole = 0
+        for (a, b), piece in zip(pairwise(ends), self.numerators, strict=True):
+            h = int((b - a) * span)
+            value = 0
+            for k in reversed(range(len(piece))):
+                value = value * h + int(piece[k]) * (shares // (k + 1)) * span ** (count - 1 - k)
+            whole += value * h
+        return Fraction(whole, self.denominator * shares * span**count)
 
     def __call__(self, xi: Number) -> Number:
         """The value at a station; at a knot, that of the interval to its left."""
         i = 0
-        while i < len(self.pieces) - 1 and xi > self.knots[i + 1]:
+        while i < len(self.numerators) - 1 and xi > self.knots[i + 1]:
             i += 1
-        return _value(self.pieces[i], xi - self.knots[i])
+        coefficients = self.numerators[i]
+        if not self.is_float:
+            coefficients = tuple(Fraction(int(c), self.denominator) for c in coefficients)
+        return _value(coefficients, xi - self.knots[i])
 
     def rounded(self, stations: Sequence[float]) -> list[float]:
         """Values at stations, rounded once where coefficients and knots are rational, whatever cancels in between."""
         values = []
         for xi in stations:
             i = max(bisect_left(self.knots, xi) - 1, 0)
-            values.append(_rounded(self.pieces[i], Fraction(xi) - self.knots[i]))
+            values.append(self._rounded(self.numerators[i], Fraction(xi) - self.knots[i]))
         return values
+
+    def _rounded(self, numerators: Coefficients, s: Number) -> float:
+        """The value of a piece as the nearest double, in whole numbers over one denominator."""
+        if not isinstance(s, Fraction) or self.is_float:
+            return float(_value(tuple(c / self.denominator for c in numerators), float(s)))
+        total, scale = 0, 1
+        for c in reversed(numerators):
+            # total/scale is what Horner's rule has so far, times the denominator.
+            total = total * s.numerator + int(c) * scale * s.denominator
+            scale *= s.denominator
+        return total / (self.denominator * scale)
 
     def refined(self, knots: tuple[Number, ...]) -> Piecewise:
         """The same function on finer knots, which contain its own."""
-        pieces, i = [], 0
+        pieces, i, stated = [], 0, self.pieces
         for a in knots[:-1]:
-            while i < len(self.pieces) - 1 and a >= self.knots[i + 1]:
+            while i < len(stated) - 1 and a >= self.knots[i + 1]:
                 i += 1
-            pieces.append(_shifted(self.pieces[i], a - self.knots[i]))
-        return Piecewise(knots, tuple(pieces))
+            pieces.append(_shifted(stated[i], a - self.knots[i]))
+        return Piecewise.of(knots, pieces)
 
 
 def polynomial(*coefficients: Number | int) -> Piecewise:
     """One polynomial on [0, 1], constant first."""
-    return Piecewise(
-        (Fraction(0), Fraction(1)), (tuple(Fraction(c) if isinstance(c, int) else c for c in coefficients),)
-    )
+    return Piecewise.of((Fraction(0), Fraction(1)), (coefficients,))
 
 
 ONE = polynomial(1)
@@ -143,7 +217,7 @@ def fitted(function: Callable[[Extended], Extended], pieces: int) -> Piecewise:
         while len(kept) > 1 and not kept[-1]:
             kept.pop()
         interpolants.append(tuple(map(float, kept)))
-    return Piecewise(tuple(k / pieces for k in range(pieces)) + (1.0,), tuple(interpolants))
+    return Piecewise.of([*(k / pieces for k in range(pieces)), 1.0], interpolants)
 
 
 @cache
@@ -210,6 +284,9 @@ def stations(knots: Sequence[Number], points: int) -> tuple[list[float], list[fl
 
 
 def _aligned(a: Piecewise, b: Piecewise) -> tuple[Piecewise, Piecewise]:
+    """Two functions on the same knots, both exact or both of floats."""
+    if a.is_float != b.is_float:
+        a, b = (Piecewise.of(f.knots, [[float(c) for c in piece] for piece in f.pieces]) for f in (a, b))
     if a.knots == b.knots:
         return a, b
     knots = tuple(sorted({*a.knots, *b.knots}))
@@ -222,9 +299,10 @@ def _sum(a: Coefficients, b: Coefficients) -> Coefficients:
 
 
 def _product(a: Coefficients, b: Coefficients) -> Coefficients:
+    zero = a[0] * b[0] * 0
     if not any(a) or not any(b):
-        return (Fraction(0),)
-    total: list[Number] = [Fraction(0)] * (len(a) + len(b) - 1)
+        return (zero,)
+    total = [zero] * (len(a) + len(b) - 1)
     for i, x in enumerate(a):
         if x:
             for j, y in enumerate(b):
@@ -237,20 +315,6 @@ def _value(coefficients: Coefficients, s: Number) -> Number:
     for c in reversed(coefficients):
         total = total * s + c
     return total
-
-
-def _rounded(coefficients: Coefficients, s: Number) -> float:
-    """The value as the nearest double: in whole numbers over one denominator, many times faster than in fractions."""
-    exact = [c for c in coefficients if isinstance(c, Fraction)]
-    if not isinstance(s, Fraction) or len(exact) < len(coefficients):
-        return float(_value(coefficients, float(s)))
-    common = math.lcm(*(c.denominator for c in exact))
-    total, scale = 0, 1
-    for c in reversed(exact):
-        # total/scale is what Horner's rule has so far, times the common denominator.
-        total = total * s.numerator + c.numerator * (common // c.denominator) * scale * s.denominator
-        scale *= s.denominator
-    return total / (common * scale)
 
 
 def _divided(c: Number, k: int) -> Number:

@@ -162,7 +162,7 @@ def _b_spline(knots: list[Fraction], degree: int, index: int, spans: int) -> Pie
                 raised[i] = total
             values = raised
         pieces.append(values[index].pieces[0])
-    return Piecewise(tuple(Fraction(k, spans) for k in range(spans + 1)), tuple(pieces))
+    return Piecewise.of([Fraction(k, spans) for k in range(spans + 1)], pieces)
 
 
 def _eigenmodes(bending: bool, count: int) -> list[Piecewise]:
@@ -243,7 +243,7 @@ def _root_correction(knots: tuple[Number, ...], root: list[float]) -> Piecewise:
         cubic = (value, slope, -3 * value / h**2 - 2 * slope / h, 2 * value / h**3 + slope / h**2)
     else:
         cubic = (value, -value / h, 0.0, 0.0)  # A straight line: twist may have a kink.
-    return Piecewise(knots, (cubic, *((0.0,) for _ in knots[2:])))
+    return Piecewise.of(knots, (cubic, *((0.0,) for _ in knots[2:])))
 
 
 def formula_of_station(formula: Expression | float) -> ExtendedFunction:
@@ -274,7 +274,7 @@ def _through(xi: Sequence[float], values: Sequence[float], bending: bool) -> Pie
     for value, chord, step, (left, right) in zip(y, chords, h, pairwise(curvatures), strict=False):
         slope = chord - step * (2 * left + right) / 6
         pieces.append(tuple(map(float, (value, slope, left / 2, (right - left) / (6 * step)))))
-    return Piecewise(tuple(xi), tuple(pieces))
+    return Piecewise.of(xi, pieces)
 
 
 def _spline_curvatures(h: Sequence[Extended], chords: Sequence[Extended], clamped: bool) -> list[Extended]:

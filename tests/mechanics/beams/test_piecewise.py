@@ -21,7 +21,7 @@ def some(knots: tuple[Fraction, ...], seed: int, degree: int = 3) -> Piecewise:
     """Random fractions as coefficients."""
     rng = np.random.default_rng(seed)
     numbers = rng.integers(-9, 10, (len(knots) - 1, degree + 1)).tolist()
-    return Piecewise(knots, tuple(tuple(Fraction(c, 7) for c in piece) for piece in numbers))
+    return Piecewise.of(knots, tuple(tuple(Fraction(c, 7) for c in piece) for piece in numbers))
 
 
 ONE, OTHER = some(THIRDS, 1), some(HALVES, 2)
