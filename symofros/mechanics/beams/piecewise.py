@@ -136,16 +136,19 @@ class Piecewise:
             return total
         # Over one denominator as well: of the coefficients, of 1/(k + 1), of the powers of the intervals.
         count = self.degree + 1
-        ends = [Fraction(knot) for knot in self.knots]
-        span = math.lcm(*(knot.denominator for knot in ends))
-        shares = math.lcm(*range(1, count + 1))
-        whole = 0
-        for (a, b), piece in zip(pairwise(ends), self.numerators, strict=True):
-            h = int((b - a) * span)
-            value = 0
-            for k in reversed(range(len(piece))):
-                value = value * h + int(piece[k]) * (shares // (k + 1)) * span ** (count - 1 - k)
-            whole += value * h
+        span, widths = _whole_widths(self.knots)
+        by_width: dict[int, list[int]] = {}
+        for width, piece in zip(widths, self.numerators, strict=True):
+            sums = by_width.setdefault(width, [0] * count)
+            for k, c in enumerate(piece):
+                sums[k] += int(c)
+        shares, whole = math.lcm(*range(1, count + 1)), 0
+        for width, sums in by_width.items():
+            value, scale = 0, 1
+            for k in reversed(range(count)):
+                value = value * width + sums[k] * (shares // (k + 1)) * scale
+                scale *= span
+            whole += value * width
         return Fraction(whole, self.denominator * shares * span**count)
 
     def __call__(self, xi: Number) -> Number:
@@ -179,12 +182,30 @@ class Piecewise:
 
     def refined(self, knots: tuple[Number, ...]) -> Piecewise:
         """The same function on finer knots, which contain its own."""
-        pieces, i, stated = [], 0, self.pieces
+        owners, i = [], 0
         for a in knots[:-1]:
-            while i < len(stated) - 1 and a >= self.knots[i + 1]:
+            while i < len(self.numerators) - 1 and a >= self.knots[i + 1]:
                 i += 1
-            pieces.append(_shifted(stated[i], a - self.knots[i]))
-        return Piecewise.of(knots, pieces)
+            owners.append((i, a - self.knots[i]))
+        if self.is_float or any(isinstance(shift, float) for _, shift in owners):
+            return Piecewise.of(knots, [_shifted(self.pieces[i], shift) for i, shift in owners])
+        # In the variable q xi, q the denominator of all shifts, these are whole numbers.
+        q, n = math.lcm(*(Fraction(shift).denominator for _, shift in owners)), self.degree
+        powers = [q**k for k in range(n + 1)]
+        pieces = []
+        for i, shift in owners:
+            piece = tuple(c * powers[n - k] for k, c in enumerate(self.numerators[i]))
+            moved = _shifted(piece, int(shift * q))
+            pieces.append(tuple(c * powers[k] for k, c in enumerate(moved)))
+        return self._reduced(knots, tuple(pieces), self.denominator * powers[n])
+
+
+@lru_cache(maxsize=256)
+def _whole_widths(knots: tuple[Number, ...]) -> tuple[int, tuple[int, ...]]:
+    """A denominator of the knots, and the widths of the intervals times it."""
+    ends = [Fraction(knot) for knot in knots]
+    span = math.lcm(*(knot.denominator for knot in ends))
+    return span, tuple(int((b - a) * span) for a, b in pairwise(ends))
 
 
 def polynomial(*coefficients: Number | int) -> Piecewise:
@@ -287,10 +308,15 @@ def _aligned(a: Piecewise, b: Piecewise) -> tuple[Piecewise, Piecewise]:
     """Two functions on the same knots, both exact or both of floats."""
     if a.is_float != b.is_float:
         a, b = (Piecewise.of(f.knots, [[float(c) for c in piece] for piece in f.pieces]) for f in (a, b))
-    if a.knots == b.knots:
+    if a.knots is b.knots or a.knots == b.knots:
         return a, b
-    knots = tuple(sorted({*a.knots, *b.knots}))
+    knots = _merged(a.knots, b.knots)
     return a.refined(knots), b.refined(knots)
+
+
+@lru_cache(maxsize=256)
+def _merged(a: tuple[Number, ...], b: tuple[Number, ...]) -> tuple[Number, ...]:
+    return tuple(sorted({*a, *b}))
 
 
 def _sum(a: Coefficients, b: Coefficients) -> Coefficients:
