@@ -14,7 +14,7 @@ def test_info_lists_tree_and_operations(tmp_path: Path) -> None:
         "symofros: 1\nsystem: {name: arm}\nbodies:\n"
         "  link: {joint: {name: q1, kind: revolute}, inertia: {mass: 1, center_of_mass: [0.5, 0, 0]}}\n"
     )
-    command = [sys.executable, "-m", "symofros", "info", str(model)]
+    command = [sys.executable, "-m", "symofros", "info", str(model), "--operations"]
     text = subprocess.run(command, capture_output=True, text=True).stdout
     assert "link" in text and "revolute q1" in text and "mass_matrix" in text
     data = json.loads(subprocess.run([*command, "--json"], capture_output=True, text=True).stdout)

@@ -24,8 +24,16 @@ from symofros.mechanics.topology.tree import BASE, SpanningTree
 from symofros.native import native_text
 
 
-def info(model: FilePath, floating_base: Floating = False, network: Network = False, as_json: AsJson = False) -> None:
-    """Show a model: its tree, its sizes, the operations of each function; or a diagram: blocks, rates, order."""
+def info(
+    model: FilePath,
+    floating_base: Floating = False,
+    network: Network = False,
+    operations: Annotated[
+        bool, typer.Option("--operations", help="Also derive every function and count its operations.")
+    ] = False,
+    as_json: AsJson = False,
+) -> None:
+    """Show a model: tree, sizes, masses, limits, parameters; or a diagram: blocks, rates, order."""
     if is_diagram(model):
         from symofros.diagrams.files import command as diagrams  # Diagrams load the library of blocks.
 
@@ -36,15 +44,17 @@ def info(model: FilePath, floating_base: Floating = False, network: Network = Fa
         return
     system = load(model, floating_base)
     compilation = Compilation(system, sf.Options(functions=MODEL_FUNCTIONS))
-    tree = compilation.tree
-    compilation.request(FRAME_FUNCTIONS, [tree.frames[-1].name])
-    counts = {" of ".join(filter(None, key)): count for key, count in count_program(compilation.program).items()}
+    tree, counts = compilation.tree, dict[str, Operations]()
+    if operations:
+        compilation.request(FRAME_FUNCTIONS, [tree.frames[-1].name])
+        counts = {" of ".join(filter(None, key)): count for key, count in count_program(compilation.program).items()}
     names = tree.coordinates
     sizes = {"nq": len(names.q), "nv": len(names.v), "nu": len(names.u), "npar": len(names.par)}
     facts = details(tree)
     if as_json:
-        operations = {name: vars_of(count) for name, count in counts.items()}
-        stated = {"name": system.name, **sizes, **facts, "operations": operations, "notes": list(system.notes)}
+        stated = {"name": system.name, **sizes, **facts, "notes": list(system.notes)}
+        if operations:
+            stated["operations"] = {name: vars_of(count) for name, count in counts.items()}
         print(json.dumps(stated, indent=1))
         return
     out.print(_draw(tree))
@@ -53,12 +63,17 @@ def info(model: FilePath, floating_base: Floating = False, network: Network = Fa
         out.print(frames_line(facts), markup=False, highlight=False, soft_wrap=True)
     for shown in tables(facts):
         out.print(shown)
+    if operations:
+        out.print(_operations(counts))
+    for note in system.notes:
+        out.print(f"note: {note}", markup=False, highlight=False, soft_wrap=True)
+
+
+def _operations(counts: dict[str, Operations]) -> Table:
     table = Table("function", "mul", "add", "div", "call", "total", title="Operations per call")
     for name, count in counts.items():
         table.add_row(name, *map(str, (count.mul, count.add, count.div, count.call, count.total)))
-    out.print(table)
-    for note in system.notes:
-        out.print(f"note: {note}", markup=False, highlight=False, soft_wrap=True)
+    return table
 
 
 def vars_of(count: Operations) -> dict[str, int]:

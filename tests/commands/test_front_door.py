@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 from typer.testing import CliRunner, Result
@@ -57,6 +58,21 @@ def test_info_tells_masses_limits_parameters_and_frames(tmp_path: Path) -> None:
     arm = ROOT / "validation/corpus/arm.urdf"
     limits = {item["name"]: item for item in json.loads(invoke("info", arm, "--json").output)["coordinates"]}
     assert any(item["lower"] is not None for item in limits.values())
+
+
+def test_info_tells_the_mass_of_a_tapered_beam(tmp_path: Path) -> None:
+    beam = sf.Beam("boom", sf.Joint("slew", "revolute"), "L", "3 - x", EI_z=1.0, bend_y=1)
+    sf.save(sf.System("crane", (beam,), (sf.Parameter("L", 2.0),)), tmp_path / "crane.yaml")
+    (body,) = json.loads(invoke("info", tmp_path / "crane.yaml", "--json").output)["bodies"]
+    assert body["mass"] == pytest.approx(4.0)
+
+
+def test_info_derives_no_function_unasked(monkeypatch: pytest.MonkeyPatch) -> None:
+    def derived(*_: Any) -> None:
+        raise AssertionError("info derived a function")
+
+    monkeypatch.setattr("symofros.compiler.ProgramBuilder", derived)
+    assert "operations" not in json.loads(invoke("info", CART_POLE, "--json").output)
 
 
 def test_run_time_parameters_are_set_from_the_shell() -> None:
