@@ -25,6 +25,11 @@ LOSS_LIMIT = 0.01
 _GAIN, _GAIN_STEP = 20.0, 0.5
 
 
+# Deviation from unit length up to which a quaternion counts as a rotation written in few digits; that of FMUs
+# (native/exports/symofros_fmu.h).
+UNIT_TOLERANCE = 1e-3
+
+
 def vector(model: Model, name: str, values: ArrayLike, size: int) -> Array:
     """A vector of that size, finite.
 
@@ -203,6 +208,34 @@ def check_fit(model: Model, settings: Settings, inputs: InputPlan) -> None:
 
 # Beyond, a first state is a mistake and not what drift leaves.
 CLOSED = 1e-6
+
+
+def refuse_lengths(model: Model, q: Array) -> None:
+    """Refuse first configurations whose quaternions are no rotations; runs make those written in few digits unit ones.
+
+    Args:
+        model: Model.
+        q: Configurations (..., nq).
+
+    Raises:
+        ShapeError: With the coordinates of the one that is off most.
+    """
+    for segment in model.record.segments:
+        if segment.kind == "linear":
+            continue
+        first = segment.q + segment.translations
+        lengths = np.linalg.norm(q[..., first : first + 4], axis=-1)
+        finite = lengths[np.isfinite(lengths)]  # States that are not finite are told of as such.
+        length = float(finite.flat[np.argmax(np.abs(finite - 1.0))]) if finite.size else 1.0
+        if not abs(length - 1.0) <= UNIT_TOLERANCE:
+            raise ShapeError(
+                Problem(
+                    f"model '{model.record.name}': q0 holds a quaternion that is no rotation",
+                    f"length {length:.6g} of {', '.join(model.names.q[first : first + 4])}",
+                    f"quaternions are of unit length, to {UNIT_TOLERANCE:g}",
+                    "divide it by its length; model.neutral() has those of no rotation",
+                )
+            )
 
 
 def check_start(model: Model, settings: Settings, q: Array, v: Array, u: Array, par: Array) -> None:

@@ -17,7 +17,7 @@ from symofros.simulation.options import SimulationOptions
 from symofros.simulation.progress import bar
 from symofros.simulation.results.diagnosis import diagnose
 from symofros.simulation.results.trajectory import Found, Statistics, Trajectory
-from symofros.simulation.settings import Settings, check_fit, check_start, vector
+from symofros.simulation.settings import Settings, check_fit, check_start, refuse_lengths, vector
 from symofros.simulation.stepping.loops import run_own, run_sundials
 from symofros.simulation.stepping.methods import Method
 from symofros.simulation.stepping.stepper import Stepper
@@ -60,7 +60,7 @@ def simulate(
         exception, so that the part before it is kept; so does Ctrl-C.
 
     Raises:
-        ShapeError: An array does not fit.
+        ShapeError: An array does not fit, or a quaternion is no rotation.
         UnknownNameError: The name of an option, an input or in a formula is unknown.
         AssemblyError: The first state does not meet the constraints.
         SymofrosError: The options contradict each other.
@@ -71,6 +71,7 @@ def simulate(
     if par is not None:
         values = vector(model, "par", model.checked_parameters(par), model.npar)
     q = model.neutral() if q0 is None else vector(model, "q0", q0, model.nq)
+    refuse_lengths(model, q)
     v = np.zeros(model.nv) if v0 is None else vector(model, "v0", v0, model.nv)
     looked_for = named_events(events)
     inputs = plan_inputs(model, u)

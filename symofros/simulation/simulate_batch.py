@@ -20,7 +20,7 @@ from symofros.simulation.inputs import Inputs
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.results.batch_examination import BatchExamination
 from symofros.simulation.results.trajectories import Trajectories
-from symofros.simulation.settings import CLOSED, Settings
+from symofros.simulation.settings import CLOSED, Settings, refuse_lengths
 from symofros.simulation.stepping.batch_stepper import BatchResults, BatchStepper, InitialStates, run_batch_steppers
 from symofros.simulation.stepping.methods import METHODS
 from symofros.simulation.stepping.status import Status
@@ -86,6 +86,7 @@ def simulate_batch(
         "v0": _rows(model, "v0", np.zeros(model.nv) if v0 is None else v0, model.nv),
         "par": _rows(model, "par", parameters, model.npar),
     }
+    refuse_lengths(model, rows["q0"])
     shape = _batch_shape(rows, given.shapes)
     n = math.prod(shape)
     inputs = given.spread(model, shape)

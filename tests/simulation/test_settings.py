@@ -1,0 +1,31 @@
+"""Settings of runs: what a run does not start from."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import symofros as sf
+
+
+@pytest.fixture(scope="module")
+def top() -> sf.Model:
+    spin = sf.Joint("spin", "free")
+    return sf.compile(sf.System("top", (sf.RigidBody("top", spin, sf.Inertia(1.0, (0, 0, 0), (1, 2, 3))),)))
+
+
+@pytest.mark.parametrize("length", [0.0, 0.5, 0.998, 1.002, 2.0])
+def test_quaternions_that_are_no_rotations_are_refused(top: sf.Model, length: float) -> None:
+    q = top.neutral()
+    q[3:] *= length
+    with pytest.raises(sf.ShapeError, match=f"length {length:g}"):
+        sf.simulate(top, 0.1, q0=q)
+    with pytest.raises(sf.ShapeError, match=f"length {length:g}"):
+        sf.simulate_batch(top, 0.1, q0=np.stack([top.neutral(), q]))
+
+
+def test_quaternions_in_few_digits_are_made_unit_ones(top: sf.Model) -> None:
+    q = top.neutral()
+    q[3:] = 0.5004, -0.5, 0.5, 0.5
+    run = sf.simulate(top, 0.1, q0=q)
+    assert abs(np.linalg.norm(run.q[-1, 3:]) - 1.0) < 1e-14
