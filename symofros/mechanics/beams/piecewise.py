@@ -186,11 +186,11 @@ class Piecewise:
         for a in knots[:-1]:
             while i < len(self.numerators) - 1 and a >= self.knots[i + 1]:
                 i += 1
-            owners.append((i, a - self.knots[i]))
-        if self.is_float or any(isinstance(shift, float) for _, shift in owners):
-            return Piecewise.of(knots, [_shifted(self.pieces[i], shift) for i, shift in owners])
+            owners.append((i, Fraction(a) - Fraction(self.knots[i])))
+        if self.is_float:
+            return Piecewise.of(knots, [_shifted(self.numerators[i], float(shift)) for i, shift in owners])
         # In the variable q xi, q the denominator of all shifts, these are whole numbers.
-        q, n = math.lcm(*(Fraction(shift).denominator for _, shift in owners)), self.degree
+        q, n = math.lcm(*(shift.denominator for _, shift in owners)), self.degree
         powers = [q**k for k in range(n + 1)]
         pieces = []
         for i, shift in owners:
@@ -310,13 +310,8 @@ def _aligned(a: Piecewise, b: Piecewise) -> tuple[Piecewise, Piecewise]:
         a, b = (Piecewise.of(f.knots, [[float(c) for c in piece] for piece in f.pieces]) for f in (a, b))
     if a.knots is b.knots or a.knots == b.knots:
         return a, b
-    knots = _merged(a.knots, b.knots)
+    knots = tuple(sorted({*a.knots, *b.knots}))
     return a.refined(knots), b.refined(knots)
-
-
-@lru_cache(maxsize=256)
-def _merged(a: tuple[Number, ...], b: tuple[Number, ...]) -> tuple[Number, ...]:
-    return tuple(sorted({*a, *b}))
 
 
 def _sum(a: Coefficients, b: Coefficients) -> Coefficients:

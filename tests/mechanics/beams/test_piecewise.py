@@ -36,6 +36,16 @@ def test_algebra_is_that_of_values_exactly(xi: Fraction) -> None:
     assert ONE.antiderivative().derivative()(xi) == ONE(xi)
 
 
+def test_exact_functions_stay_exact_on_knots_that_are_floats() -> None:
+    """Knots of fitted functions equal those of splines as numbers, and must not change what a spline is."""
+    floats = tuple(float(k) for k in HALVES)
+    refined = XI.refined(floats)
+    assert not refined.is_float and refined(Fraction(3, 4)) == Fraction(3, 4)
+    assert (refined * OTHER).integral() == (XI * OTHER).integral()
+    fitted_one = fitted(lambda x: x, 2)
+    assert float((fitted_one * OTHER).integral()) == pytest.approx(float((XI * OTHER).integral()), rel=1e-15)
+
+
 def test_values_are_those_of_scipy() -> None:
     knots = [float(k) for k in THIRDS]
     coefficients = np.array([[float(c) for c in reversed(piece)] for piece in ONE.pieces]).T
