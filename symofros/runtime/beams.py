@@ -14,6 +14,8 @@ from symofros.runtime.calls.kernel import Array
 
 # Judges each step of a run, and has the numbers of (24).
 _JUDGE = "stepping/beams.c"
+# Judges the axial loads of a motion, and has the numbers of (26a) and (26c).
+_AXIAL = "stepping/axial_loads.c"
 # Estimated error from which results carry a note.
 NOTED_ERROR = 0.01
 # Estimated error beyond which a result fails by default: up to there the estimate is calibrated (section 6).
@@ -24,10 +26,6 @@ _STRAIGHT = 1e-9
 _LARGEST = 1e100
 # Tangent stiffness over elastic stiffness below which an axial load counts as critical.
 _CRITICAL = 1e-9
-# Angle [rad] by which sections are turned for differences of forces.
-_TURN = 1e-4
-# Least share of the elastic work that the tangent stiffness of a motion counts with.
-_LEAST = 1e-9
 # Largest slope [rad] from which the number of beams that would do is no longer stated: true slopes stay below it.
 _LARGEST_SLOPE = math.pi
 
@@ -214,7 +212,8 @@ class ElasticBeam:
     def difference_step(self, elastic: Array) -> Array:
         """Share of elastic coordinates (..., n) that turns sections by the angle of differences (...)."""
         turned = np.abs(elastic) @ self.reach
-        step: Array = np.divide(_TURN, turned, out=np.zeros_like(turned), where=turned > 0.0)
+        angle, least = (native_number(_AXIAL, f"SYM_BEAM_{name}") for name in ("TURN", "LEAST_TURN"))
+        step: Array = np.divide(angle, turned, out=np.zeros_like(turned), where=turned > least)
         return step
 
     def amplification(self, elastic: Array, tangent: Array) -> float:
@@ -284,7 +283,7 @@ def amplification_of(work: Array, loaded: Array) -> float:
     elastic, total = float(work.sum()), float(loaded.sum())
     if not (elastic > 0.0 and math.isfinite(total)):
         return 1.0
-    return elastic / max(abs(total), _LEAST * elastic)
+    return elastic / max(abs(total), native_number(_AXIAL, "SYM_BEAM_LEAST_WORK") * elastic)
 
 
 def worst_bendings(

@@ -19,13 +19,13 @@ def test_quaternions_that_are_no_rotations_are_refused(top: sf.Model, length: fl
     q = top.neutral()
     q[3:] *= length
     with pytest.raises(sf.ShapeError, match=f"length {length:g}"):
-        sf.simulate(top, 0.1, q0=q)
+        sf.simulate(top, q, t_end=0.1)
     with pytest.raises(sf.ShapeError, match=f"length {length:g}"):
-        sf.simulate_batch(top, 0.1, q0=np.stack([top.neutral(), q]))
+        sf.simulate_batch(top, t_end=0.1, q0=np.stack([top.neutral(), q]))
 
 
 def test_quaternions_in_few_digits_are_made_unit_ones(top: sf.Model) -> None:
     q = top.neutral()
     q[3:] = 0.5004, -0.5, 0.5, 0.5
-    run = sf.simulate(top, 0.1, q0=q)
+    run = sf.simulate(top, q, t_end=0.1)
     assert abs(np.linalg.norm(run.q[-1, 3:]) - 1.0) < 1e-14

@@ -115,11 +115,6 @@ def differences() -> tuple[Difference, ...]:
     return tuple(row for folder in folders if folder != __name__ for row in import_module(folder).DIFFERENCES)
 
 
-def rods(system: sf.System) -> list[str]:
-    """Names of the geometrically exact rods of a system."""
-    return [body.name for body in system.bodies if isinstance(body, sf.Beam) and body.theory == "strain"]
-
-
 def has_beams(system: sf.System) -> bool:
     """Whether any body is elastic."""
     return any(isinstance(body, sf.Beam) for body in system.bodies)

@@ -38,6 +38,8 @@ class Case:
         """A guess at the work it makes [bytes of a file]: large models first keep all workers busy to the end."""
         if self.path is not None:
             return self.path.stat().st_size if self.path.is_file() else 0
+        if self.label not in reference_models.MODELS:
+            return 0  # `load` says what is wrong.
         system = reference_models.MODELS[self.label]
         beams = sum(isinstance(body, sf.Beam) for body in system.bodies)
         return BODY * (len(system.bodies) + ELASTIC * beams + LOOP * len(system.constraints))

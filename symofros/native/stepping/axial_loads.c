@@ -1,8 +1,10 @@
 /* How axial loads amplify the error of beams in a motion: docs/theory/beams.md, (26a) and (26c). */
 
 /* Error of the slope alone below which no axial load is looked for; angle [rad] by which sections are turned for differences
- * of forces; least share of the elastic work that the tangent stiffness counts with. */
+ * of forces, and the angle below which nothing is deformed; least share of the elastic work that the tangent stiffness counts
+ * with. */
 #define SYM_BEAM_UNAMPLIFIED 1e-5
+#define SYM_BEAM_LEAST_TURN 1e-100
 #define SYM_BEAM_TURN 1e-4
 #define SYM_BEAM_LEAST_WORK 1e-9
 /* Share of a run's evaluations that may look at axial loads. */
@@ -37,7 +39,7 @@ static void sym_axial_works(sym_run *r, const sym_beam *beam, double works[2]) {
     int32_t i, k;
     works[0] = works[1] = 0.0;
     for (i = 0; i < n; ++i) turned += reach[i] * fabs(x[i]);
-    if (!(turned > 0.0)) return;
+    if (!(turned > SYM_BEAM_LEAST_TURN)) return;
     step = SYM_BEAM_TURN / turned;
     sym_accelerate_deformed(r, beam, 1.0 + step);
     memcpy(change, s->a, (size_t)nv * sizeof *change);

@@ -7,15 +7,21 @@ import os
 from pathlib import Path
 
 _SUFFIXES = (".py", ".in", ".h", ".c")
+_BUILT = ("__pycache__", "node_modules")
 
 
 def source_digest(package: Path) -> str:
-    """Digest of all source files of a package, Python and C, and of their places in its folder."""
+    """Digest of all source files of a package, Python and C, and of their places in its folder.
+
+    What is built beside them while a process runs, caches of bytecode and packages of Node, is none of them.
+    """
     digest = hashlib.sha256()
     for folder, folders, files in os.walk(package):
-        folders.sort()
-        digest.update(f"{os.path.relpath(folder, package)}\0".encode())
-        for name in sorted(name for name in files if name.endswith(_SUFFIXES)):
+        folders[:] = sorted(name for name in folders if name not in _BUILT)
+        sources = sorted(name for name in files if name.endswith(_SUFFIXES))
+        if sources:
+            digest.update(f"{os.path.relpath(folder, package)}\0".encode())
+        for name in sources:
             with open(os.path.join(folder, name), "rb") as stream:
                 content = stream.read()
             digest.update(f"{name}\0{len(content)}\0".encode())

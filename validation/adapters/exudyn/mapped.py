@@ -13,8 +13,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 import symofros as sf
-from validation.adapters import rods
 from validation.adapters.compiled import untruncated, without_rotary
+from validation.adapters.description import rods
 from validation.adapters.exudyn.elements import Elements, Terms, elements
 from validation.adapters.exudyn.solids import Nodal, Solids, inertial, solids
 from validation.adapters.exudyn.system import VERSION

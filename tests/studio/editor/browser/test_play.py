@@ -70,6 +70,7 @@ def test_a_motion_plays_at_the_cursor_of_the_plots_and_runs_are_compared(
     # A second run beside the first, which keeps the name that it was given.
     results.get_by_label("Name of run 1").fill("from 1.2")
     simulate(page, "0.7")
+    expect(results.get_by_label("Name of run 2")).to_be_visible(timeout=JOB)  # Results of the first stood until then.
     curves = results.get_by_role("img", name="q1, q2 over time").locator("path.series")
     expect(curves).to_have_count(2)
     results.get_by_label("Draw from 1.2").check()

@@ -22,6 +22,7 @@ ADDRESSES = (
     ("GET", "parts"),
     ("GET", "events"),
     ("GET", "jobs/1"),
+    ("GET", "jobs/1/table.csv"),
     ("POST", "edit"),
     ("POST", "text"),
     ("POST", "undo"),
@@ -53,7 +54,7 @@ def test_every_address_is_among_those_tested(session: Session) -> None:
     routes = [route for route in guard.app.routes if getattr(route, "methods", None)]  # type: ignore[attr-defined]
     routes = [route for route in routes if not route.path.startswith("/view/")]  # test_document_viewer.py
     stated = {
-        (method, route.path.removeprefix("/api/").replace("{key}", "1"))
+        (method, route.path.removeprefix("/api/").replace("{key}", "1").replace("{suffix}", "csv"))
         for route in routes
         for method in route.methods - {"HEAD"}
     }

@@ -1,0 +1,30 @@
+"""Which code this is: sources and their places, and nothing that is built beside them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from symofros.runtime.build.identity import source_digest
+
+
+def test_what_is_built_beside_sources_is_no_other_code(tmp_path: Path) -> None:
+    (tmp_path / "part").mkdir()
+    (tmp_path / "part" / "code.py").write_text("x = 1")
+    before = source_digest(tmp_path)
+    for built in ("node_modules/gyp/code.py", "part/__pycache__/code.c", "assets/page.html"):
+        (tmp_path / built).parent.mkdir(parents=True)
+        (tmp_path / built).write_text("built")
+    assert source_digest(tmp_path) == before
+
+
+def test_other_text_and_another_place_are_other_code(tmp_path: Path) -> None:
+    (tmp_path / "one").mkdir()
+    (tmp_path / "two").mkdir()
+    source = tmp_path / "one" / "code.c"
+    source.write_text("1")
+    digests = {source_digest(tmp_path)}
+    source.write_text("2")
+    digests.add(source_digest(tmp_path))
+    source.rename(tmp_path / "two" / "code.c")
+    digests.add(source_digest(tmp_path))
+    assert len(digests) == 3
