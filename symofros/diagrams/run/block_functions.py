@@ -15,7 +15,7 @@ from symofros.diagrams.wiring import Source
 from symofros.expr.program import Function, Output, Program
 from symofros.generator.passes import run_passes
 from symofros.runtime.build.toolchain import Toolchain
-from symofros.runtime.calls.kernel import Array
+from symofros.runtime.calls.kernel import Array, Kernel
 from symofros.runtime.constrained import constrained
 
 Call = Callable[[], None]
@@ -44,6 +44,7 @@ class Blocks:
         self.memory = {key: resolved.pieces[key[0]].memory[key[1]].copy() for key in layout.memory}
         self.out = {source: np.zeros(resolved.wired.shape(source)) for source in resolved.order}
         self.calls: dict[tuple[str, str], tuple[Call, dict[str, Array]]] = {}
+        self._bound: list[tuple[Kernel, Array, list[Array]]] = []  # What calls have addresses of.
         for piece in resolved.pieces.values():
             self._make(piece)
 
@@ -72,6 +73,7 @@ class Blocks:
             port = function.name.removeprefix("out_")
             returned = {key: self.out[name, port] if key == "y" else np.zeros(shape) for key, shape in function.returns}
             pre = kernel.prepare(np.zeros((1, 0)))
+            self._bound.append((kernel, pre, inputs))
             self.calls[name, function.name] = kernel.bind(pre, inputs, list(returned.values())), returned
 
     def _memory_of(self, piece: Piece, group: str) -> Array:
