@@ -82,7 +82,7 @@ def test_comments_elsewhere_survive_any_new_value(name: str, value: Any, data: s
     node = source.node(path)
     assert node is not None
     # Comments between a key and a value that stands below it are the value's.
-    key = re.search(r":[ \t]*\n(?:[ \t]*(?:#.*)?\n)*[ \t]*\Z", text[: node.start])
+    key = re.search(r":[ \t]*\r?\n(?:[ \t]*(?:#.*)?\r?\n)*[ \t]*\Z", text[: node.start])
     inside = text[key.start() if key else node.start : source.end(node)]
     comments = [line for line in text.splitlines() if line.strip().startswith("#") and line not in inside]
     left = apply(text, Edit("set", path, value)).splitlines()
