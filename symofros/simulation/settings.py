@@ -225,7 +225,7 @@ def refuse_lengths(model: Model, q: Array) -> None:
             continue
         first = segment.q + segment.translations
         lengths = np.linalg.norm(q[..., first : first + 4], axis=-1)
-        finite = lengths[np.isfinite(lengths)]  # States that are not finite are told of as such.
+        finite = lengths[np.isfinite(lengths)]  # Others are reported as not finite.
         length = float(finite.flat[np.argmax(np.abs(finite - 1.0))]) if finite.size else 1.0
         if not abs(length - 1.0) <= UNIT_TOLERANCE:
             raise ShapeError(

@@ -196,13 +196,6 @@ def beam_forms(g: Graph, lower: Lower, beam: Beam, coordinates: tuple[Edge, ...]
     """
     shape = deformation_of(beam)
     knots = tuple(sorted({knot for function in shape.functions for knot in function.phi.knots} or {0, 1}))
-    along = LengthIntegrator(
-        g,
-        lower,
-        beam.length,
-        lower(beam.length),
-        coordinates,
-        knots,
-        points_for([function.phi for function in shape.functions]),
-    )
+    points = points_for([function.phi for function in shape.functions])
+    along = LengthIntegrator(g, lower, beam.length, coordinates, knots, points)
     return BeamForms(beam, along, shape, ORDERS[beam.retain])

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 from symofros.description.beam import STATION, Beam
 from symofros.description.values import Value, symbols
@@ -33,7 +34,6 @@ class LengthIntegrator:
         g: The graph.
         lower: Lowering of values of the description to edges.
         length: Length as described [m].
-        L: Length as an edge.
         coordinates: Edges of the elastic coordinates.
         knots: Stations xi where pieces of the shape functions meet.
         points: Number of Gauss nodes an interval.
@@ -42,10 +42,14 @@ class LengthIntegrator:
     g: Graph
     lower: Lower
     length: Value
-    L: Edge
     coordinates: tuple[Edge, ...]
     knots: tuple[Number, ...]
     points: int = POINTS
+
+    @cached_property
+    def L(self) -> Edge:
+        """Length as an edge."""
+        return self.lower(self.length)
 
     def integral(self, field: Field, weight: Value) -> Form:
         """The integral of weight times field over the beam's length."""

@@ -386,5 +386,5 @@ def rod_of(g: Graph, lower: Lower, beam: Beam, coordinates: tuple[Edge, ...]) ->
         coordinates: Edges of the strain coordinates.
     """
     strains = strains_of(beam)
-    along = LengthIntegrator(g, lower, beam.length, lower(beam.length), coordinates, strains.knots)
+    along = LengthIntegrator(g, lower, beam.length, coordinates, strains.knots)
     return Rod(beam, along, strains)

@@ -26,40 +26,52 @@ def bendings_at(model: Model, q: Array, par: ArrayLike | None = None, t: float =
 
 
 def bendings_in_motion(
-    model: Model, q: Array, v: Array, u: Array, par: ArrayLike | None = None, t: float = 0.0
+    model: Model,
+    q: Array,
+    v: Array,
+    u: Array,
+    par: ArrayLike | None = None,
+    t: float = 0.0,
+    slopes: Array | None = None,
 ) -> tuple[BeamBending, ...]:
-    """Bending of each beam in a state of motion, amplified by its axial loads."""
-    bent = bendings_at(model, q, par)
-    if max((bending.error for bending in bent), default=0.0) < UNAMPLIFIED:
-        return bent
-    factors = amplifications(model, (np.array([t]), q[np.newaxis], v[np.newaxis], u[np.newaxis]), par)
-    return tuple(
-        beam.bending(q[beam.in_q], amplification=factor) for beam, factor in zip(model.beams(par), factors, strict=True)
-    )
-
-
-def bendings_linearised(
-    model: Model, q: Array, v: Array, u: Array, slopes: Array, par: ArrayLike | None = None, t: float = 0.0
-) -> tuple[BeamBending, ...]:
-    """Bending of each beam in a state of motion whose accelerations are linearised already, without constraints.
+    """Bending of each beam in a state of motion, amplified by its axial loads.
 
     Args:
         model: Model.
         q: Configuration (nq).
         v: Speeds (nv).
         u: Inputs (nu).
-        slopes: Derivative of the accelerations by q there (nv, nv).
         par: Run-time parameters.
         t: Time.
+        slopes: Derivative of the accelerations by q there (nv, nv), where known; of models without constraints.
     """
-    M = model.evaluate("dynamics", q=q, v=v, u=u, t=t, par=par)[0]
-    tangent = -M @ slopes  # Of (26a): the accelerations of the state stay.
-    bent = []
-    for beam in model.beams(par):
+    bent = bendings_at(model, q, par)
+    if max((bending.error for bending in bent), default=0.0) < UNAMPLIFIED:
+        return bent
+    if slopes is None:
+        factors = amplifications(model, (np.array([t]), q[np.newaxis], v[np.newaxis], u[np.newaxis]), par)
+    else:
+        factors = _linearised_amplifications(model, q, v, u, slopes, par, t)
+    return tuple(
+        beam.bending(q[beam.in_q], amplification=factor) for beam, factor in zip(model.beams(par), factors, strict=True)
+    )
+
+
+def _linearised_amplifications(
+    model: Model, q: Array, v: Array, u: Array, slopes: Array, par: ArrayLike | None, t: float
+) -> tuple[float, ...]:
+    """Amplifications in a state whose accelerations are linearised already (26a)."""
+    beams = model.beams(par)
+    try:
+        tangent = -model.evaluate("dynamics", q=q, v=v, u=u, t=t, par=par)[0] @ slopes
+    except SymofrosError:  # Options.functions left it out.
+        return (1.0,) * len(beams)
+    factors = []
+    for beam in beams:
         x = q[beam.in_q]
-        work, loaded = (x @ K @ x for K in (beam.elastic_stiffness(), tangent[beam.in_v, beam.in_v]))
-        bent.append(beam.bending(x, amplification=amplification_of(np.array([work]), np.array([loaded]))))
-    return tuple(bent)
+        works = (np.array([x @ K @ x]) for K in (beam.elastic_stiffness(), tangent[beam.in_v, beam.in_v]))
+        factors.append(amplification_of(*works))
+    return tuple(factors)
 
 
 def bendings_at_rest(model: Model, q: Array, K: Array, par: ArrayLike | None) -> tuple[BeamBending, ...]:

@@ -11,7 +11,7 @@ from symofros.base.arrays import numeric
 from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
-from symofros.simulation.analysis.beam_theory import bendings_in_motion, bendings_linearised, refuse_beyond
+from symofros.simulation.analysis.beam_theory import bendings_in_motion, refuse_beyond
 from symofros.simulation.analysis.state_space import state_space
 
 Complex = npt.NDArray[np.complex128]
@@ -69,10 +69,9 @@ def modes(
         numeric("u", model.record.u_default if u is None else model.by_name("u", u)),
     )
     linear_model = state_space(model, *state, par=par, t=t)
-    if model.nc:
-        bendings = bendings_in_motion(model, *state, par, t)
-    else:  # Without constraints A holds the derivatives of the accelerations.
-        bendings = bendings_linearised(model, *state, linear_model.A[model.nv :, : model.nv], par, t)
+    # Without constraints A holds the derivatives of the accelerations.
+    slopes = None if model.nc else linear_model.A[model.nv :, : model.nv]
+    bendings = bendings_in_motion(model, *state, par, t, slopes)
     refuse_beyond(model, bendings, beam_limit, "the state of the modes")
     s, X = np.linalg.eig(linear_model.A)
     kept = s.imag >= 0.0

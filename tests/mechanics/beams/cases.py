@@ -10,25 +10,17 @@ import casadi as ca
 import numpy as np
 
 import symofros as sf
+from tests.mechanics.beams import rods
+from tests.mechanics.beams.rods import GRAVITY as GRAVITY
 from validation.adapters.lagrangian.beam import Flexible
 from validation.adapters.lagrangian.beam import rotation_about as about
 from validation.adapters.lagrangian.tree import Node, Solid
 from validation.mechanics import shape_functions as shapes
 
-GRAVITY = (1.0, -2.0, -9.5)
 L = 1.3
 XI = (0.0, 0.2, 0.45, 0.7, 1.0)
 SAMPLES = (0.0, 0.05, 0.3, 0.6, 1.1)
-SECTION: dict[str, Any] = {
-    "rhoA": 2.0,
-    "EI_z": 3.0,
-    "EI_y": 5.0,
-    "GJ": 1.5,
-    "rhoJ": 0.04,
-    "rhoI_y": 0.03,
-    "rhoI_z": 0.02,
-    "damping": 0.03,
-}
+SECTION: dict[str, Any] = rods.SECTION | {"damping": 0.03}
 
 
 @dataclass(frozen=True)
