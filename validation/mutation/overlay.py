@@ -147,10 +147,10 @@ def _fix_identity(tree: Path) -> None:
     """
     path = tree / "symofros" / "runtime" / "build" / "identity.py"
     text = path.read_text(encoding="utf-8")
-    every = "if path.suffix in _SUFFIXES)"
+    last = '"node_modules")'
     folders = ("simulation", "stepping", "diagrams", "exports", "studio", "blocks", "commands")
-    assert every in text
-    path.write_text(text.replace(every, f"{every[:-1]} and not {set(folders)!r} & set(path.parts))"), encoding="utf-8")
+    assert text.count(last) == 1
+    path.write_text(text.replace(last, f"{last[:-1]}, *{folders!r})"), encoding="utf-8")
 
 
 def _link_cache(cache: Path, folder: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import runpy
 from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
@@ -19,6 +20,7 @@ from validation.mutation.study import CHECK, OUTPUTS, TESTS, Study
 from validation.mutation.tests_judge import chosen
 
 ROOT = Path(__file__).parents[3]
+IDENTITY = Path("symofros", "runtime", "build", "identity.py")
 JUDGE = """
 import os, time
 from symofros.sum import total
@@ -36,12 +38,13 @@ def overlay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
     (root / "symofros").mkdir(parents=True)
     (root / "symofros" / "sum.py").write_text("def total(a, b):\n    return a - -b\n")
     (root / "judge.py").write_text(JUDGE)
+    (root / IDENTITY).parent.mkdir(parents=True)
+    (root / IDENTITY).write_bytes((ROOT / IDENTITY).read_bytes())
     server = root / "validation" / "mutation" / "server.py"
     server.parent.mkdir(parents=True)
     text = (ROOT / "validation" / "mutation" / "server.py").read_text()
     server.write_text(text.replace(text[text.index("PRELOADED = (") : text.index("MEMORY")], "PRELOADED = ()\n"))
     monkeypatch.setattr(overlays, "COPIED", ("symofros", "validation", "judge.py"))
-    monkeypatch.setattr(overlays, "_fix_identity", lambda tree: None)
     made = Overlay(root, tmp_path / "work")
     yield made
     made.close()
@@ -59,6 +62,20 @@ def test_a_fault_is_there_while_it_is_planted_and_only_then(overlay: Overlay) ->
         assert total() == 1
     assert total() == 3
     assert not (overlay.tree.parent / "root" / "symofros" / "__pycache__").exists()
+
+
+def test_faults_of_the_simulation_alone_leave_the_identity_of_the_copy_as_it_is(overlay: Overlay) -> None:
+    package = overlay.tree / "symofros"
+
+    def digest() -> str:
+        return str(runpy.run_path(str(overlay.tree / IDENTITY))["source_digest"](package))
+
+    sound = digest()
+    (package / "simulation").mkdir()
+    (package / "simulation" / "run.py").write_text("step = 1\n")
+    assert digest() == sound
+    (package / "sum.py").write_text("total = max\n")
+    assert digest() != sound
 
 
 def test_a_crash_and_a_hang_are_answers(overlay: Overlay) -> None:
