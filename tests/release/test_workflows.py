@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import os
 import re
@@ -59,6 +60,26 @@ def test_the_matrix_is_of_the_versions_and_systems_that_are_named() -> None:
         "windows-latest",
     }
     assert job["windows"]["continue-on-error"] is True, "Windows is tried, and not promised"
+
+
+def test_the_base_installation_has_all_that_its_tests_import_at_their_top() -> None:
+    script = (ROOT / ".ci/base").read_text()
+    installed = {word.replace("-", "_") for word in script.split("-e '.[zig]' ")[1].splitlines()[0].split()}
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    installed |= {re.split(r"[<>=\[; ]", line)[0].replace("-", "_") for line in project["dependencies"]}
+    folders = [word for word in script.split("set -- ")[1].splitlines()[0].split()]
+    files = [path for folder in folders for path in (ROOT / folder).rglob("*.py")] + [ROOT / "tests/conftest.py"]
+    missing = set()
+    for path in files:
+        for node in ast.parse(path.read_text()).body:
+            if isinstance(node, ast.Import):
+                names = [alias.name for alias in node.names]
+            elif isinstance(node, ast.ImportFrom) and node.module:
+                names = [node.module]
+            else:
+                continue
+            missing |= {name.split(".")[0] for name in names} - installed - sys.stdlib_module_names
+    assert missing <= {"symofros", "reference_models", "tests", "ruamel"}, missing
 
 
 def test_publishing_has_no_secret_and_follows_the_checks() -> None:
