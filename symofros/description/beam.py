@@ -147,7 +147,8 @@ class Beam:
         curvature_y: Curvature about y of a rod without stress [1/m].
         curvature_z: Curvature about z of a rod without stress [1/m].
         twist_rate: Twist rate of a rod without stress [rad/m].
-        frames: The one extremity frame, at the tip and turning with it.
+        frames: Extremity frames, each at a station of the axis and turning with the section there; one at the tip
+            unless stated.
         loads: Loads along the axis.
         waive: Names of checks that the beam is allowed to fail.
         segments: Number of beams of equal length, each clamped to the tip of the last, that a system makes of it

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from symofros.description.entries import refuses_unknown_entries
 from symofros.description.values import IDENTITY, ORIGIN, Rotation, Vector, as_vector
+from symofros.errors import DescriptionError, Problem
 
 
 @refuses_unknown_entries
@@ -17,12 +18,29 @@ class Frame:
         name: Name, unique on its body.
         position: Position p_BE of the frame's origin, in the body frame [m].
         rotation: Rotation R_BE from the body frame to this one.
+        at: Station x/L of a frame that turns with a section of a beam, from 0 (root) to 1 (tip); the tip if not given.
+            A rigid body has no stations.
     """
 
     name: str
     position: Vector = ORIGIN
     rotation: Rotation = IDENTITY
+    at: float | None = None
 
     def __post_init__(self) -> None:
-        """Convert the position."""
+        """Convert the position, check the station."""
         object.__setattr__(self, "position", as_vector(self.position, f"frame '{self.name}': position"))
+        if self.at is not None and not 0.0 <= self.at <= 1.0:
+            raise DescriptionError(
+                Problem(
+                    f"frame '{self.name}': station off the beam",
+                    f"at {self.at!r}",
+                    "at is x/L, from 0 (root) to 1 (tip)",
+                    "divide the station by the length; leave at out for a frame at the tip",
+                )
+            )
+
+    @property
+    def station(self) -> float:
+        """Station x/L on a beam."""
+        return 1.0 if self.at is None else self.at

@@ -6,7 +6,7 @@ second-order theory leaves out falls with the square of the number of segments (
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import fields, replace
 from typing import Any
 
@@ -63,7 +63,7 @@ def segments_of(beam: Beam) -> tuple[Beam, ...]:
                 name=name,
                 joint=clamp if k else beam.joint,
                 length=length,
-                frames=beam.frames if k == n - 1 else (Frame(END),),
+                frames=tuple(_frames(beam.frames, k, n)),
                 loads=tuple(_loads(beam.loads, k, n, station)),
                 segments=1,
                 **section,
@@ -78,13 +78,31 @@ def _station(length: Value, k: int, n: int) -> Value:
     return (Term(x) + Term(k / n) * Term(length)).value if k else x
 
 
-def _loads(loads: Iterable[BeamLoad], k: int, n: int, station: Value) -> Iterable[BeamLoad]:
-    """The loads on segment k; one at a station between two is on the one nearer to the root."""
+def _segment_at(xi: float, n: int) -> tuple[int, float]:
+    """The segment at a station, of two the one nearer to the root, and the station on it."""
+    k = next((k for k in range(n) if xi <= (k + 1) / n), n - 1)
+    return k, min(max(xi * n - k, 0.0), 1.0)
+
+
+def _frames(frames: Iterable[Frame], k: int, n: int) -> Iterator[Frame]:
+    """The frames of segment k, and the one that carries the next segment."""
+    if k < n - 1:
+        yield Frame(END)
+    for frame in frames:
+        on, xi = _segment_at(frame.station, n)
+        if on == k:
+            yield frame if frame.at is None else replace(frame, at=xi)
+
+
+def _loads(loads: Iterable[BeamLoad], k: int, n: int, station: Value) -> Iterator[BeamLoad]:
+    """The loads on segment k."""
     for load in loads:
         if load.at is None:
             yield replace(load, force=_from_root(load.force, station), torque=_from_root(load.torque, station))
-        elif k / n < load.at <= (k + 1) / n or (k == 0 and load.at == 0.0):
-            yield replace(load, at=min(max(load.at * n - k, 0.0), 1.0))
+        else:
+            on, xi = _segment_at(load.at, n)
+            if on == k:
+                yield replace(load, at=xi)
 
 
 def _from_root(vector: Vector, station: Value) -> Vector:
@@ -93,8 +111,8 @@ def _from_root(vector: Vector, station: Value) -> Vector:
     return x, y, z
 
 
-class TipAnchors:
-    """Where the frames of beams in segments are: on the last of them.
+class SegmentAnchors:
+    """Where the frames of beams in segments are: each on the segment at its station.
 
     Args:
         beams: Beams in segments.
@@ -102,11 +120,13 @@ class TipAnchors:
 
     def __init__(self, beams: Iterable[Beam]) -> None:
         self.places: Mapping[tuple[str, str], str] = {
-            (beam.name, frame.name): segment_names(beam)[-1] for beam in beams for frame in beam.frames
+            (beam.name, frame.name): segment_names(beam)[_segment_at(frame.station, beam.segments)[0]]
+            for beam in beams
+            for frame in beam.frames
         }
 
     def joint(self, joint: Joint) -> Joint:
-        """A joint that may be placed on a beam's tip."""
+        """A joint that may be placed on a frame of a beam."""
         parent, frame = self.anchor((joint.parent, joint.frame))
         return joint if parent == joint.parent else replace(joint, parent=parent, frame=frame)
 

@@ -17,7 +17,7 @@ from symofros.description.entries import refuses_unknown_entries
 from symofros.description.forces import Connection, Load, Potential, VirtualPower
 from symofros.description.frames import Frame
 from symofros.description.joint import Joint
-from symofros.description.segments import TipAnchors, segment_names, segments_of
+from symofros.description.segments import SegmentAnchors, segment_names, segments_of
 from symofros.description.values import IDENTITY, ORIGIN, Rotation, Value, Vector, as_value, as_vector
 from symofros.description.visual import Visual
 from symofros.errors import DescriptionError, Problem, did_you_mean
@@ -142,6 +142,16 @@ class RigidBody:
     def __post_init__(self) -> None:
         """Freeze the collections and check the waivers."""
         object.__setattr__(self, "frames", tuple(self.frames))
+        for frame in self.frames:
+            if frame.at is not None:
+                raise DescriptionError(
+                    Problem(
+                        f"body '{self.name}': frame '{frame.name}' at a station",
+                        f"at {frame.at!r}",
+                        "beams alone have stations: a rigid body's frame is placed by its position",
+                        "state the position instead",
+                    )
+                )
         object.__setattr__(self, "loads", tuple(self.loads))
         object.__setattr__(self, "waive", tuple(sorted(set(self.waive))))
         for unknown in sorted(set(self.waive) - WAIVERS.keys()):
@@ -216,7 +226,7 @@ class System:
     def _divide_beams(self) -> None:
         """Put the segments of beams in their places, and what is fixed to a beam's tip on the last of them."""
         divided = [body for body in self.bodies if isinstance(body, Beam) and body.segments > 1]
-        anchors, bodies, origin = TipAnchors(divided), list[Body](), dict(self.origin)
+        anchors, bodies, origin = SegmentAnchors(divided), list[Body](), dict(self.origin)
         for body in self.bodies:
             placed = body if body.joint is None else replace(body, joint=anchors.joint(body.joint))
             if isinstance(placed, Beam) and placed.segments > 1:

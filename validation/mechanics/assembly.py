@@ -57,7 +57,7 @@ class Mover:
         q: Slice of our coordinates; empty where the motion is prescribed.
         v: Slice of our speeds, likewise.
         pitch: Pitch of a screw [m/rad].
-        length: Length of a beam whose elastic coordinates it stands for [m].
+        length: Length of a beam whose elastic coordinates it stands for; of a section before the tip, its station [m].
         masses: Masses of the body and of everything fixed to it.
     """
 
@@ -193,6 +193,8 @@ class _AssemblyBuilder:
         self.movers: list[Mover] = []
         self.frames: list[tuple[str, str, FrameSite]] = []
         self.children: dict[str, list[sf.Body]] = {}
+        # Where the frames of beams are.
+        self.stations: dict[tuple[str, str], tuple[int, Placement]] = {}
         self.base: sf.Body = next((body for body in system.bodies if body.joint is None), sf.RigidBody(WORLD))
         for body in system.bodies:
             if body.joint is not None:
@@ -217,11 +219,14 @@ class _AssemblyBuilder:
             if isinstance(body, sf.Beam):
                 self._add_elastic(body, *root)
                 mover, X_BF = len(self.movers) - 1, Placement.identity()
+                self._add_stations(body, root, mover)
             self._add_mass(body, mover, X_BF)
             self._add_frames(body, root, (mover, X_BF))
             for child in self._reversed_children(body):
                 assert child.joint is not None
                 on, X = root if child.joint.frame is None else (mover, X_BF)
+                if isinstance(body, sf.Beam) and child.joint.frame is not None:
+                    on, X = self.stations[body.name, child.joint.frame]
                 pending.append((child, on, X @ self._proximal(body, child)))
 
     def _reversed_children(self, body: sf.Body) -> list[sf.Body]:
@@ -270,6 +275,34 @@ class _AssemblyBuilder:
         )
         self.movers.append(mover)
 
+    def _add_stations(self, beam: sf.Beam, root: tuple[int, Placement], tip: int) -> None:
+        """The beam's sections with frames: root, tip, or a mover of its own without coordinates."""
+        length = float(self.numbers([beam.length])[0])
+        places = {0.0: root, 1.0: (tip, Placement.identity())}
+        for frame in beam.frames:
+            xi = 1.0 if frame.at is None else frame.at
+            if xi not in places:
+                q, v = self.joints[-1].q.stop, self.joints[-1].v.stop
+                joint = sf.Joint(f"{beam.name}.{frame.name}", "fixed", beam.name)
+                part, along_x = Part("section", joint.axis, 0, 0, 0), np.array([1.0, 0.0, 0.0])
+                none = slice(q, q), slice(v, v)
+                self.movers.append(
+                    Mover(
+                        beam.name,
+                        joint.name,
+                        joint,
+                        part,
+                        False,
+                        tip,
+                        Placement.identity(),
+                        along_x,
+                        *none,
+                        length=xi * length,
+                    )
+                )
+                places[xi] = len(self.movers) - 1, Placement.identity()
+            self.stations[beam.name, frame.name] = places[xi]
+
     def _add_mass(self, body: sf.Body, mover: int, X_BF: Placement) -> None:
         if body.inertia is None or mover == BASE:
             return
@@ -290,5 +323,7 @@ class _AssemblyBuilder:
         self.frames.append((body.name, body.name, FrameSite(body.name, *root)))
         mover, X_BE = ends
         for frame in body.frames:
+            if isinstance(body, sf.Beam):
+                mover, X_BE = self.stations[body.name, frame.name]
             X = X_BE @ self.placement(frame.position, frame.rotation)
             self.frames.append((frame.name, f"{body.name}.{frame.name}", FrameSite(frame.name, mover, X)))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Literal, NamedTuple
 
-PartKind = Literal["revolute", "prismatic", "screw", "ball", "free", "general", "elastic"]
+PartKind = Literal["revolute", "prismatic", "screw", "ball", "free", "general", "elastic", "section"]
 Sampling = Literal["angle", "slide", "deflection", "quaternion", "pose"]
 
 
@@ -18,7 +18,8 @@ class SimpleJoint(NamedTuple):
     Attributes:
         sampling: Distribution that states are drawn from: an "angle", a "slide", the "deflection" of a beam, a
             "quaternion" uniform on the sphere, or a "pose" of a slide in each direction and a quaternion.
-        coordinates: Number of coordinates; of a general joint or a beam, as many as it has.
+        coordinates: Number of coordinates; of a general joint or a beam, as many as it has; of a section of a beam
+            before its tip none, as those of the beam move it.
         speeds: Number of speeds.
     """
 
@@ -35,6 +36,7 @@ SIMPLE_JOINTS: dict[PartKind, SimpleJoint] = {
     "free": SimpleJoint("pose", 7, 6),
     "general": SimpleJoint("slide"),
     "elastic": SimpleJoint("deflection"),
+    "section": SimpleJoint("deflection", 0, 0),
 }
 
 

@@ -96,7 +96,7 @@ class JointEntry(NounEntry, noun=Joint):
 
 
 class FrameEntry(NounEntry, noun=Frame, without=("name",)):
-    pass
+    at: Annotated[Number, Field(ge=0.0, le=1.0)] | None = None
 
 
 class BodyEntry(Entry):
@@ -106,7 +106,7 @@ class BodyEntry(Entry):
     inertia: InertiaEntry | None = None
     """A rigid body without one is massless."""
     beam: BeamEntry | None = None
-    """What makes it a beam; then it has a joint, no inertia of its own, and one frame at most: its tip."""
+    """What makes it a beam; then it has a joint, no inertia of its own, and frames at stations of its axis."""
     frames: Annotated[dict[Name, FrameEntry | None], Field(max_length=1000)] | None = None
     waive: list[Waiver] = []
     """Checks that this body is allowed to fail."""

@@ -133,7 +133,7 @@ def _link(body: Body, parent: str | None, system: System, numbers: Numbers, name
     for frame in body.frames:
         at, turned = numbers.values(frame.position), numbers.rotation(frame.rotation)
         if isinstance(body, Beam):
-            at, turned = np.array([numbers.value(body.length), 0.0, 0.0]), np.eye(3)
+            at, turned = np.array([frame.station * numbers.value(body.length), 0.0, 0.0]), np.eye(3)
         taken = frame.name in names
         frames.append((f"{body.name}.{frame.name}" if taken else frame.name, at, turned))
         names.add(frame.name)
@@ -150,11 +150,11 @@ def _placed(joint: Joint, system: System, numbers: Numbers) -> tuple[Array, Arra
     parent = next((body for body in system.bodies if body.name == joint.parent), None)
     if parent is None and joint.frame is not None:  # A frame of a base that goes by another name than "world".
         parent = next(body for body in system.bodies if body.joint is None)
-    if isinstance(parent, Beam) and joint.frame is not None:
-        position = np.array([numbers.value(parent.length), 0.0, 0.0])
-    elif parent is not None and joint.frame is not None:
+    if parent is not None and joint.frame is not None:
         frame = next(frame for frame in parent.frames if frame.name == joint.frame)
         position, rotation = numbers.values(frame.position), numbers.rotation(frame.rotation)
+        if isinstance(parent, Beam):
+            position = np.array([frame.station * numbers.value(parent.length), 0.0, 0.0])
     return position + rotation @ numbers.values(joint.position), rotation @ numbers.rotation(joint.rotation)
 
 

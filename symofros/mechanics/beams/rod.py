@@ -130,11 +130,6 @@ class Rod:
         start, section = (stations[before - 1], self.sections[before - 1]) if before else (0.0, self.root)
         return self._after(section, self._step(start, xi)) if xi > start else section
 
-    @cached_property
-    def tip(self) -> Section:
-        """The section at the tip."""
-        return self.section_at(1.0)
-
     def _turned(self, axis: int, xi: float) -> Section:
         """The section at a station of a rod whose sections turn about one axis (4)."""
         g = self.g

@@ -107,7 +107,8 @@ def virtual_power(kinematics: TreeKinematics, wrenches: Sequence[Wrench]) -> lis
     for i, wrench in subtree_wrenches(kinematics, wrenches):
         link = kinematics.links[i]
         for k, partial in enumerate(link.free_partial_velocities):
-            total[link.first_speed + k] = power(partial, wrench)
+            at = link.first_speed + k
+            total[at] = kinematics.g.add(total[at], power(partial, wrench))
     return total
 
 

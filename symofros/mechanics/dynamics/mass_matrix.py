@@ -23,11 +23,12 @@ class _Momentum:
     """Momentum that a unit rate of one speed gives to everything beyond its joint.
 
     Attributes:
-        link: Index of the link beyond the joint.
+        link: Index of the link beyond the joint; of a beam's coordinate that at its tip.
         k: Index of the speed.
         f: Linear momentum, in L.
         n: Angular momentum about Lo, in L.
-        added: Linear and angular momentum of the beam that ends in the link, about its root, in the root's link.
+        added: Linear and angular momentum of the beam that ends in the link, and of what its other sections carry,
+            about its root, in the root's link.
     """
 
     link: int
@@ -67,8 +68,11 @@ def mass_matrix(kinematics: TreeKinematics, inertias: list[LinkInertia], rotors:
 def _own_blocks(kinematics: TreeKinematics, M: Matrix, inertias: list[LinkInertia]) -> dict[int, _Momentum]:
     """The entries between speeds of one joint; the momentum of each speed."""
     composite = list(inertias)
+    g = kinematics.g
     momenta: dict[int, _Momentum] = {}
     beam_at_tip = {beam.tip: beam for beam in kinematics.beams if beam.tip is not None}
+    # Momenta of what a beam's sections before the tip carry, by speed; those links come after the tip.
+    at_stations: dict[int, tuple[Vec3, Vec3]] = {}
     for beam in beam_at_tip.values():
         composite[beam.root] = composite[beam.root] + deformed(kinematics, beam)
     for i, link in reversed(list(enumerate(kinematics.links))):
@@ -77,16 +81,17 @@ def _own_blocks(kinematics: TreeKinematics, M: Matrix, inertias: list[LinkInerti
         body.I_LLo_L.named(f"I_KLo_L[{link.name}]")
         for k, partial in enumerate(link.free_partial_velocities):
             f, n = _momentum(body, partial)
-            for j in range(k + 1):
-                modal = modal_mass(beam_at_tip[i], j, k) if i in beam_at_tip else ZERO
-                _set(
-                    M,
-                    link.first_speed + j,
-                    link.first_speed + k,
-                    kinematics.g.add(_virtual_power(link.partial_velocities[j], f, n), modal),
-                )
+            row = link.first_speed + k
+            for j, other in enumerate(link.partial_velocities[: k + 1], start=link.first_speed):
+                modal = modal_mass(beam_at_tip[i], j - link.first_speed, k) if i in beam_at_tip else ZERO
+                _set(M, j, row, g.add(M[j][row], g.add(_virtual_power(other, f, n), modal)))
+            if link.tip is not None:
+                at_stations[row] = _across_beam(link, f, n, at_stations.get(row, (Vec3(g), Vec3(g))))
+                continue
             added = added_momentum(kinematics, beam_at_tip[i], k) if i in beam_at_tip else None
-            momenta[link.first_speed + k] = _Momentum(i, link.first_speed + k, f, n, added)
+            if added is not None and row in at_stations:
+                added = added[0] + at_stations[row][0], added[1] + at_stations[row][1]
+            momenta[row] = _Momentum(i, row, f, n, added)
         if link.parent != BASE:
             composite[link.parent] = composite[link.parent] + inertia_in_parent(link, body)
     return momenta
@@ -110,7 +115,7 @@ def _carry_to_base(kinematics: TreeKinematics, M: Matrix, momenta: list[_Momentu
             if momentum.added is None:
                 wrench = _with_momentum(wrench, lane[momentum.k], momentum.f, momentum.n)
             else:
-                late.append((momentum.k, *_across_beam(kinematics.links[i], momentum, momentum.added)))
+                late.append((momentum.k, *_across_beam(kinematics.links[i], momentum.f, momentum.n, momentum.added)))
         wrench = _momenta_in_parent(kinematics, kinematics.links[i], wrench)
         for k, f, n in late:
             wrench = _with_momentum(wrench, lane[k], f, n)
@@ -146,9 +151,9 @@ def _momenta_in_parent(kinematics: TreeKinematics, link: MovingLink, wrench: lis
     ]
 
 
-def _across_beam(link: MovingLink, momentum: _Momentum, added: tuple[Vec3, Vec3]) -> tuple[Vec3, Vec3]:
-    """A momentum at a beam's tip -> at its root, with the beam's own."""
-    f, n = link.R_AL.apply(momentum.f), link.R_AL.apply(momentum.n)
+def _across_beam(link: MovingLink, f: Vec3, n: Vec3, added: tuple[Vec3, Vec3]) -> tuple[Vec3, Vec3]:
+    """A momentum at a section of a beam -> at its root, with what is added there."""
+    f, n = link.R_AL.apply(f), link.R_AL.apply(n)
     n = n + link.p_AL.cross(f)
     return f + added[0], n + added[1]
 

@@ -1,4 +1,4 @@
-"""From a beam's root to its tip: the elastic coordinates move the tip as a joint's coordinates would.
+"""From a beam's root to its tip or another section: elastic coordinates move it as a joint's coordinates would.
 
 The displacement is that of the second-order field, the rotation is the product of the section's yaw, pitch and roll
 (docs/theory/beams.md, eqs. 1-5), so it is a rotation at any deflection.
@@ -23,17 +23,20 @@ from symofros.mechanics.kinematics.joint import (
 from symofros.mechanics.kinematics.rotations import AxisRotation, MatrixRotation, RotationProduct
 
 
-def across_beam(forms: BeamForms, q: tuple[Edge, ...], speeds: Sequence[Edge], deformed: bool) -> AcrossJoint:
-    """The motion of the tip in the root frame B.
+def across_beam(
+    forms: BeamForms, xi: float, q: tuple[Edge, ...], speeds: Sequence[Edge], deformed: bool
+) -> AcrossJoint:
+    """The motion of a section in the root frame B.
 
     Args:
         forms: Displacement and rotation of the beam's sections.
+        xi: Station x/L of the section.
         q: Elastic coordinates.
         speeds: Rates of the elastic coordinates.
-        deformed: Whether the tip is where the deflection puts it; otherwise it moves about the undeformed place, with
-            partial velocities that are constant.
+        deformed: Whether the section is where the deflection puts it; otherwise it moves about the undeformed place,
+            with partial velocities that are constant.
     """
-    g, point, angles = forms.along.g, forms.point(1.0), forms.angles(1.0)
+    g, point, angles = forms.along.g, forms.point(xi), forms.angles(xi)
     if not deformed:
         zero = Vec3(g)
         partials = tuple(_constant_partial(g, point, angles, i, zero) for i in range(len(q)))
@@ -46,25 +49,27 @@ def across_beam(forms: BeamForms, q: tuple[Edge, ...], speeds: Sequence[Edge], d
     return across_rotations(g, q, speeds, _values(g, point), rotations)
 
 
-def across_rod(rod: Rod, speeds: Sequence[Edge]) -> AcrossJoint:
-    """The motion of a geometrically exact rod's tip in the root frame B (docs/theory/rods.md, section 3).
+def across_rod(rod: Rod, xi: float, speeds: Sequence[Edge]) -> AcrossJoint:
+    """The motion of a geometrically exact rod's section in the root frame B (docs/theory/rods.md, section 3).
 
     Args:
         rod: The rod.
+        xi: Station x/L of the section.
         speeds: Rates of the strain coordinates.
     """
-    g, R_BT = rod.g, rod.tip.R_BS
+    g, section = rod.g, rod.section_at(xi)
+    R_BS = section.R_BS
     if rod.axis is None:
-        factor: AxisRotation | MatrixRotation = MatrixRotation(R_BT)
+        factor: AxisRotation | MatrixRotation = MatrixRotation(R_BS)
     else:
         i, j = (rod.axis + 1) % 3, (rod.axis + 2) % 3
-        factor = AxisRotation(rod.axis, R_BT.at(i, i), R_BT.at(j, i))
+        factor = AxisRotation(rod.axis, R_BS.at(i, i), R_BS.at(j, i))
     R = RotationProduct(g, (factor,))
     partials = tuple(
-        with_rates(g, rod.coordinates, speeds, R.apply_inverse(spin), R.apply_inverse(rod.partial_position(1.0, i)))
-        for i, spin in enumerate(rod.tip.spins)
+        with_rates(g, rod.coordinates, speeds, R.apply_inverse(spin), R.apply_inverse(rod.partial_position(xi, i)))
+        for i, spin in enumerate(section.spins)
     )
-    return AcrossJoint(R, rod.position(1.0), partials)
+    return AcrossJoint(R, rod.position(xi), partials)
 
 
 def _values(g: Graph, forms: Vector, upto: float = float("inf")) -> Vec3:

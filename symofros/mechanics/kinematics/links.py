@@ -45,6 +45,8 @@ class MovingLink:
         R_LB: The body frame in the link frame.
         fixed_origin: Whether Lo is fixed in A, so that mass at Lo may be booked on A.
         axis: The coordinate axis of L that the joint turns about; None if it is not a turn about one.
+        tip: Index of the link at the tip of a beam of which this is a section before the tip: the speeds are that
+            link's; None of any other link.
     """
 
     name: str
@@ -58,6 +60,13 @@ class MovingLink:
     R_LB: Mat3
     fixed_origin: bool
     axis: int | None
+    tip: int | None = None
+
+    @property
+    def own_speeds(self) -> range:
+        """Indices in v of the speeds that are this link's own; none where the motion is prescribed."""
+        count = len(self.free_partial_velocities) if self.tip is None else 0
+        return range(self.first_speed, self.first_speed + count)
 
     @property
     def free_partial_velocities(self) -> tuple[PartialVelocity, ...]:
@@ -80,12 +89,14 @@ class MovingBeam:
     Attributes:
         root: Index of the link at its root.
         tip: Index of the link at its tip, which its elastic coordinates move; None for a rigid beam.
+        stations: Indices of the links at its stations before the tip, which the same coordinates move.
         forms: Inertia, strain energy and displacements of the beam as functions of the elastic coordinates; of a
             geometrically exact rod its sections.
     """
 
     root: int
     tip: int | None
+    stations: tuple[int, ...]
     forms: BeamForms | Rod
 
     @property
@@ -129,7 +140,7 @@ def speeds_by_path(kinematics: TreeKinematics) -> list[list[int]]:
     """
     depth: list[int] = []
     for link in kinematics.links:
-        depth.append(len(link.free_partial_velocities) + (depth[link.parent] if link.parent != BASE else 0))
+        depth.append(len(link.own_speeds) + (depth[link.parent] if link.parent != BASE else 0))
     visited: set[int] = set()
     paths: list[list[int]] = []
     for i in sorted(range(len(kinematics.links)), key=lambda i: -depth[i]):
@@ -137,7 +148,7 @@ def speeds_by_path(kinematics: TreeKinematics) -> list[list[int]]:
         while i != BASE and i not in visited:
             visited.add(i)
             link = kinematics.links[i]
-            path += range(link.first_speed + len(link.free_partial_velocities) - 1, link.first_speed - 1, -1)
+            path += reversed(link.own_speeds)
             i = link.parent
         if path:
             paths.append(path)
@@ -167,11 +178,20 @@ def tree_kinematics(g: Graph, tree: SpanningTree, deflected_tips: bool = False) 
         if link.beam is not None:
             elastic = tuple(map(lowering.symbol, link.beam.coordinates))
             make = rod_of if link.beam.theory == "strain" else beam_forms
-            beams.append(MovingBeam(i, i + 1 if elastic else None, make(g, lowering.value, link.beam, elastic)))
-        if link.tip_of is None:
+            tip = i + 1 if elastic else None
+            stations = tuple(k for k, x in enumerate(tree.links) if x.station is not None and x.station.tip == tip)
+            beams.append(MovingBeam(i, tip, stations, make(g, lowering.value, link.beam, elastic)))
+        first_speed = link.v[0]
+        if not link.is_section:
             across = across_joint(lowering, link.joint, q, speeds, axis)
         else:
-            across = _across_deformation(beams[-1], q, speeds, deflected_tips)
+            if link.station is not None:
+                joint, first_speed = tree.links[link.station.tip].joint, links[link.station.tip].first_speed
+                q, speeds = (
+                    tuple(map(lowering.symbol, names)) for names in (coordinate_names(joint), speed_symbols(joint))
+                )
+            xi = 1.0 if link.station is None else link.station.xi
+            across = _across_deformation(beams[-1], xi, q, speeds, deflected_tips)
         constant = constant_rotation(snapped(R_AP @ R_BL))
         links.append(
             MovingLink(
@@ -182,20 +202,23 @@ def tree_kinematics(g: Graph, tree: SpanningTree, deflected_tips: bool = False) 
                 partial_velocities=across.partial_velocities,
                 speeds=speeds,
                 rates=rates,
-                first_speed=link.v[0],
+                first_speed=first_speed,
                 R_LB=R_BL.T,
                 fixed_origin=across.p_PD.is_zero,
                 axis=axis.k if link.joint.traits.turns_about else None,
+                tip=None if link.station is None else link.station.tip,
             )
         )
     return TreeKinematics(g, lowering, tree, tuple(links), len(tree.coordinates.v), tuple(beams))
 
 
-def _across_deformation(beam: MovingBeam, q: tuple[Edge, ...], speeds: Sequence[Edge], deflected: bool) -> AcrossJoint:
-    """The motion of a beam's tip in the frame of its root."""
+def _across_deformation(
+    beam: MovingBeam, xi: float, q: tuple[Edge, ...], speeds: Sequence[Edge], deflected: bool
+) -> AcrossJoint:
+    """The motion of a beam's section in the frame of its root."""
     if isinstance(beam.forms, Rod):
-        return across_rod(beam.forms, speeds)
-    return across_beam(beam.forms, q, speeds, deflected or beam.order > 0)
+        return across_rod(beam.forms, xi, speeds)
+    return across_beam(beam.forms, xi, q, speeds, deflected or beam.order > 0)
 
 
 def _aligned(lowering: Lowering, link: Link) -> tuple[Mat3, Axis]:

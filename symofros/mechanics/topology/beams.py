@@ -30,22 +30,13 @@ _STATIONS = np.linspace(0.0, 1.0, 33)
 def beam_problems(beam: Beam, where: str) -> Iterator[Problem]:
     """Faults that need no numbers."""
     what = f"beam '{beam.name}'"
-    if len(beam.frames) > 1:
-        names = ", ".join(f"'{frame.name}'" for frame in beam.frames)
-        yield Problem(
-            f"{what}: more than one extremity frame",
-            names,
-            "a slender beam has one extremity frame, at its tip",
-            "keep one, and put others on a rigid body fixed to the tip",
-            where,
-        )
     for frame in beam.frames:
         if frame.position != ORIGIN or not frame.rotation.is_identity:
             yield Problem(
                 f"{what}: frame '{frame.name}' has a placement of its own",
                 "a position or a rotation",
-                "the place of a beam's frame is its tip, and is computed",
-                "drop it, and fix a massless body to the tip for another place",
+                "a beam's frame turns with the section at its station, about the section's own axes",
+                "drop it; state the station as at, and fix a massless body to the frame for another place",
                 where,
             )
     try:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from symofros.description.beam import Beam
 from symofros.description.joint import WORLD, Joint
 from symofros.description.system import Body, Inertia, RigidBody, System
-from symofros.description.values import IDENTITY, Rotation, Vector
+from symofros.description.values import IDENTITY, Rotation, Term, Vector
 from symofros.mechanics.topology.coordinates import CoordinateMap, joint_sizes, map_coordinates, speed_names
 
 BASE = -1
@@ -22,6 +22,18 @@ class Step(NamedTuple):
 
 
 Placement = tuple[Step, ...]
+
+
+class Station(NamedTuple):
+    """A section of a beam that carries frames between root and tip.
+
+    Attributes:
+        tip: Index of the link at the beam's tip, whose coordinates move this one as well.
+        xi: Station x/L.
+    """
+
+    tip: int
+    xi: float
 
 
 @dataclass(frozen=True)
@@ -38,6 +50,7 @@ class Link:
         v: Slice of v as (start, size); empty where the motion is prescribed.
         beam: The beam whose root this link is.
         tip_of: The beam whose tip this link is: its joint stands for the beam's deformation.
+        station: Section of a beam that this link is; it has no coordinates of its own.
     """
 
     name: str
@@ -49,6 +62,12 @@ class Link:
     v: tuple[int, int]
     beam: Beam | None = None
     tip_of: Beam | None = None
+    station: Station | None = None
+
+    @property
+    def is_section(self) -> bool:
+        """Whether the link is a section of a beam, at its tip or before: what moves it is the beam's deformation."""
+        return self.tip_of is not None or self.station is not None
 
 
 @dataclass(frozen=True)
@@ -105,8 +124,8 @@ class SpanningTree:
 
 
 def joint_names(tree: SpanningTree) -> tuple[str, ...]:
-    """Name of each link's joint; of what a beam carries, that of the beam's tip."""
-    return tuple(link.joint.name if link.tip_of is None else link.name for link in tree.links)
+    """Name of each link's joint; of what a beam carries, that of the section."""
+    return tuple(link.name if link.is_section else link.joint.name for link in tree.links)
 
 
 def prescribed_speeds(tree: SpanningTree) -> tuple[str, ...]:
@@ -157,10 +176,20 @@ class _Draft(NamedTuple):
     v: tuple[int, int]
     beam: Beam | None
     tip_of: Beam | None
+    station: Station | None
 
     def freeze(self, inertias: list[tuple[Placement, Inertia]]) -> Link:
         return Link(
-            self.name, self.joint, self.parent, self.placement, tuple(inertias), self.q, self.v, self.beam, self.tip_of
+            self.name,
+            self.joint,
+            self.parent,
+            self.placement,
+            tuple(inertias),
+            self.q,
+            self.v,
+            self.beam,
+            self.tip_of,
+            self.station,
         )
 
 
@@ -197,9 +226,10 @@ class _Builder:
         placement: Placement,
         beam: Beam | None = None,
         tip_of: Beam | None = None,
+        station: Station | None = None,
     ) -> int:
         nq, nv = (0, 0) if joint.prescribed else joint_sizes(joint)
-        self.links.append(_Draft(name, joint, parent, placement, (self.nq, nq), (self.nv, nv), beam, tip_of))
+        self.links.append(_Draft(name, joint, parent, placement, (self.nq, nq), (self.nv, nv), beam, tip_of, station))
         self.inertias.append([])
         self.nq, self.nv = self.nq + nq, self.nv + nv
         return len(self.links) - 1
@@ -210,19 +240,32 @@ class _Builder:
             self.inertias[link].append((placement, body.inertia))
         self.frames.append((body.name, body.name, link, placement))
         ends: dict[str | None, tuple[int, Placement]] = {None: (link, placement)}
-        tip = self._add_tip(body, link) if isinstance(body, Beam) else None
+        sections = self._add_sections(body, link) if isinstance(body, Beam) else {}
         for frame in body.frames:
-            on, at = tip if tip is not None else (link, (*placement, Step(frame.position, frame.rotation)))
+            own = (*placement, Step(frame.position, frame.rotation))
+            on, at = sections[frame.station] if sections else (link, own)
             ends[frame.name] = (on, at)
             self.frames.append((frame.name, f"{body.name}.{frame.name}", on, at))
         return ends
 
-    def _add_tip(self, beam: Beam, root: int) -> tuple[int, Placement]:
-        """The place of a beam's tip: a link of its own, which the elastic coordinates move, if there are any."""
+    def _add_sections(self, beam: Beam, root: int) -> dict[float, tuple[int, Placement]]:
+        """The places of a beam's tip and of its stations with frames.
+
+        Each is a link of its own, which the elastic coordinates move, if there are any; they belong to the tip.
+        """
+        xis = dict.fromkeys((1.0, *(frame.station for frame in beam.frames)))
         if not beam.modes:
-            return root, (Step((beam.length, 0.0, 0.0), IDENTITY),)
+            return {xi: (root, (Step(((Term(xi) * Term(beam.length)).value, 0.0, 0.0), IDENTITY),)) for xi in xis}
         elastic = Joint(f"{beam.name}.elastic", "general", beam.name, coordinates=beam.coordinates)
-        return self._add_link(f"{beam.name}.tip", elastic, root, (), tip_of=beam), ()
+        tip = self._add_link(f"{beam.name}.tip", elastic, root, (), tip_of=beam)
+        places: dict[float, tuple[int, Placement]] = {0.0: (root, ()), 1.0: (tip, ())}
+        for xi in xis:
+            if xi not in places:
+                name = next(frame.name for frame in beam.frames if frame.station == xi)
+                name = f"{beam.name}.{name}"
+                at = self._add_link(name, Joint(name, "fixed", beam.name), root, (), station=Station(tip, xi))
+                places[xi] = at, ()
+        return places
 
 
 def _public_names(frames: list[tuple[str, str, int, Placement]]) -> tuple[NamedFrame, ...]:

@@ -55,17 +55,23 @@ def integrated(counts: tuple[int, int, int], q: np.ndarray, stations: np.ndarray
 BODY = sf.Inertia(0.7, (0.1, -0.05, 0.08), (0.02, 0.03, 0.025))
 HUB = sf.Joint("hub", "revolute", axis=(1, 1, 0), position=(0.1, 0.2, 0.0))
 ALL: dict[str, Any] = {"rotary_inertia": True, "curvature_y": 0.3, "twist_rate": "0.2*x", "damping": 0.03}
-CASES: dict[str, tuple[sf.Beam, bool]] = {
-    "clamped, in a plane": (rod((3, 0, 0)), False),
-    "in the other plane, at a hub, with a body": (rod((0, 2, 0), HUB, rhoA="2 + x"), True),
-    "free in space, curved and twisted without stress": (rod((1, 1, 1), sf.Joint("base", "free"), **ALL), False),
-    "in space, with a body": (rod((2, 1, 1), HUB), True),
-    "a shaft": (rod((0, 0, 2), HUB), True),
+STATIONS = (sf.Frame("tip"), sf.Frame("middle", at=0.5), sf.Frame("quarter", at=0.25))
+# Rods with the frames that carry a body.
+CASES: dict[str, tuple[sf.Beam, tuple[str, ...]]] = {
+    "clamped, in a plane": (rod((3, 0, 0)), ()),
+    "in the other plane, at a hub, with a body": (rod((0, 2, 0), HUB, rhoA="2 + x"), ("tip",)),
+    "free in space, curved and twisted without stress": (rod((1, 1, 1), sf.Joint("base", "free"), **ALL), ()),
+    "in space, with a body": (rod((2, 1, 1), HUB), ("tip",)),
+    "a shaft": (rod((0, 0, 2), HUB), ("tip",)),
+    "in a plane, with bodies along it": (rod((2, 0, 0), HUB, frames=STATIONS), ("middle", "tip", "quarter")),
 }
 
 
 def rod_system(name: str) -> sf.System:
-    """A case, with a body on the tip where it has one."""
+    """A case, with a body on each frame that carries one."""
     stated, loaded = CASES[name]
-    body = sf.RigidBody("body", sf.Joint("wrist", "revolute", "rod", "tip", axis=(0, 1, 0)), BODY)
-    return sf.System("s", (stated, body) if loaded else (stated,), gravity=GRAVITY)
+    bodies = (
+        sf.RigidBody(f"on {frame}", sf.Joint(f"joint {frame}", "revolute", "rod", frame, axis=(0, 1, 0)), BODY)
+        for frame in loaded
+    )
+    return sf.System("s", (stated, *bodies), gravity=GRAVITY)

@@ -179,7 +179,8 @@ def engine(subject: Subject, name: str) -> MappedEngine | Unsupported:
     assembly = assemble(subject.system)
     for mover in assembly.movers:
         if mover.kind not in carried.KINDS:
-            return Unsupported(f"joint '{mover.joint.name}': a motion by formulas")
+            what = "a section of a beam" if mover.kind == "section" else "a motion by formulas"
+            return Unsupported(f"joint '{mover.joint.name}': {what}")
     plain = without_rotary(subject.system)
     turning = None if plain == untruncated(subject.system) else _engine(subject, subject.system, assembly, name)
     return replace(_engine(subject, plain, assembly, name), rotary=turning)

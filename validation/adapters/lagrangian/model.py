@@ -92,6 +92,8 @@ class Translation:
                 tip=solid,
                 at=self._first(mover),
             )
+        if mover.kind == "section":
+            return Node(mover.parent, solid, at=self._first(mover), station=mover.length)
         manifold: Manifold = mover.kind if mover.kind == "ball" or mover.kind == "free" else "flat"
         across = self._across(mover)
 

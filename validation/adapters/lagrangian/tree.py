@@ -63,6 +63,7 @@ class Node:
         at: Index of its first coordinate and speed, among the free or the prescribed ones; None: after those of the
             node before.
         tip: A rigid body fixed to the tip of a beam, in the tip's frame.
+        station: Distance from the root of a section of the beam that is the parent, which it stands for [m].
     """
 
     parent: int
@@ -74,6 +75,7 @@ class Node:
     rotors: tuple[Rotor, ...] = ()
     tip: Solid | None = None
     at: tuple[int, int] | None = None
+    station: float | None = None
 
     @property
     def coordinates(self) -> int:
@@ -161,12 +163,13 @@ class Lagrangian:
         self.viscous = ca.SX(0)  # Rayleigh's dissipation function.
         self.power = ca.SX(0)  # Of loads.
         self.shown: list[Pose] = []  # What each body shows its children: its frame, or its tip.
+        self._sections: dict[int, Callable[[float], Pose]] = {}  # Sections of beams, by node.
         speeds: list[SX] = []
         at = {False: (0, 0), True: (0, 0)}  # Next coordinate and speed: free, prescribed.
         for node in nodes:
             i, k = node.at or at[node.prescribed]
             at[node.prescribed] = i + node.coordinates, k + node.count
-            own = self._joint(node, i, k)
+            own = self._joint(node, i, k) if node.station is None else self._sections[node.parent](node.station)
             speeds.append((x.ds if node.prescribed else x.v)[k : k + node.count])
             if isinstance(node.body, Flexible | ExactRod):
                 i, k = (i + node.coordinates, k + node.count) if not node.prescribed else at[False]
@@ -254,6 +257,7 @@ class Lagrangian:
 
         for line in beam.loads:
             self._load(beam, line, pose, section)
+        self._sections[len(self.shown)] = section
         return section(beam.length)
 
     def _load(self, beam: Flexible | ExactRod, line: beams.Line, pose: Pose, section: Callable[[float], Pose]) -> None:

@@ -64,8 +64,11 @@ def articulated_acceleration(
     for i, (link, joint) in enumerate(zip(kinematics.links, joints, strict=True)):
         parent = base if link.parent == BASE else accelerations[link.parent]
         x = acceleration_from_parent(link, parent) + biases[i]
-        rates = joint.rates(parent if joint.in_parent else x)
-        v_rate[link.first_speed : link.first_speed + len(rates)] = rates
+        if joint is None:  # A section of a beam: the rates are those of the tip, which comes before it.
+            rates = list(link.speed_rates(v_rate))
+        else:
+            rates = joint.rates(parent if joint.in_parent else x)
+            v_rate[link.first_speed : link.first_speed + len(rates)] = rates
         for partial, rate in zip(link.free_partial_velocities, rates, strict=True):
             x = x + Acceleration(partial.w.scaled(rate), partial.v.scaled(rate))
         accelerations.append(x)
@@ -108,8 +111,8 @@ def _tip_to_base(
     rotors: list[MovingRotor],
     biases: Sequence[Acceleration],
     forces: Sequence[Edge],
-) -> list[_FreeJoint]:
-    """Each joint with everything beyond it articulated, base to tip.
+) -> list[_FreeJoint | None]:
+    """Each joint with everything beyond it articulated, base to tip; none of a section before a beam's tip.
 
     Args:
         kinematics: Kinematics of the tree.
@@ -120,10 +123,22 @@ def _tip_to_base(
     """
     g = kinematics.g
     bodies = dict(enumerate(links)) | {BASE: _ArticulatedBody(ArticulatedInertia.none(g), no_wrench(g))}
-    joints: list[_FreeJoint] = []
+    joints: list[_FreeJoint | None] = []
+    # What is carried by sections of a beam before its tip acts on the speeds of the tip, which comes after them.
+    carried: dict[int, _Coupling] = {}
     for i, link in reversed(list(enumerate(kinematics.links))):
-        body, parent, coupling = bodies[i], bodies[link.parent], _coupling(kinematics, rotors, i)
+        body, parent = bodies[i], bodies[link.parent]
         partials = link.free_partial_velocities
+        if link.tip is not None:
+            body = body.with_acceleration(biases[i])
+            at_station = _carried(link, bodies[i], body)
+            carried[link.tip] = carried[link.tip] + at_station if link.tip in carried else at_station
+            bodies[link.parent] = body.added_to_parent(link, parent)
+            joints.insert(0, None)
+            continue
+        coupling = _coupling(kinematics, rotors, i)
+        if i in carried:
+            coupling = coupling + carried[i]
         U = [body.inertia.times(Acceleration(partial.w, partial.v)) for partial in partials]
         D = [
             [g.add(_power(partial, U_k), direct) for U_k, direct in zip(U, row, strict=True)]
@@ -131,7 +146,10 @@ def _tip_to_base(
         ]
         if coupling.in_parent:
             body = body.with_acceleration(biases[i])
-        d = [g.add(forces[k], _power(partial, body.bias)) for k, partial in enumerate(partials, start=link.first_speed)]
+        d = [
+            g.add(g.add(forces[link.first_speed + k], coupling.forces[k]), _power(partial, body.bias))
+            for k, partial in enumerate(partials)
+        ]
         if coupling.in_parent:
             U = [wrench_in_parent(link, U_k) + on_parent for U_k, on_parent in zip(U, coupling.wrenches, strict=True)]
             joint = _FreeJoint(g, body.added_to_parent(link, parent), U, D, d, True, link.first_speed)
@@ -229,15 +247,40 @@ class _Coupling:
     Attributes:
         direct: Forces on the speeds per rate of each (n x n).
         wrenches: Wrenches on the parent per rate of each speed (n).
+        forces: Forces on the speeds at v' = 0 (n).
     """
 
     direct: Rows
     wrenches: list[Wrench]
+    forces: list[Edge]
 
     @property
     def in_parent(self) -> bool:
         """Whether any wrench acts on the parent."""
         return not all(wrench.f.is_zero and wrench.n.is_zero for wrench in self.wrenches)
+
+    def __add__(self, other: _Coupling) -> _Coupling:
+        g = self.wrenches[0].f.g
+        return _Coupling(
+            [[g.add(a, b) for a, b in zip(*rows, strict=True)] for rows in zip(self.direct, other.direct, strict=True)],
+            [a + b for a, b in zip(self.wrenches, other.wrenches, strict=True)],
+            [g.add(a, b) for a, b in zip(self.forces, other.forces, strict=True)],
+        )
+
+
+def _carried(link: MovingLink, body: _ArticulatedBody, moving: _ArticulatedBody) -> _Coupling:
+    """What a section of a beam carries, on the speeds that move it (rods.md, eq. 19).
+
+    Args:
+        link: The section.
+        body: The section's articulated body.
+        moving: The same with the bias acceleration of the section in its bias.
+    """
+    partials = link.partial_velocities
+    U = [body.inertia.times(Acceleration(partial.w, partial.v)) for partial in partials]
+    direct = [[_power(partial, U_k) for U_k in U] for partial in partials]
+    forces = [_power(partial, moving.bias) for partial in partials]
+    return _Coupling(direct, [wrench_in_parent(link, U_k) for U_k in U], forces)
 
 
 def _coupling(kinematics: TreeKinematics, rotors: Sequence[MovingRotor], index: int) -> _Coupling:
@@ -255,7 +298,7 @@ def _coupling(kinematics: TreeKinematics, rotors: Sequence[MovingRotor], index: 
             direct[c][c] = g.add(direct[c][c], g.mul(per_spin, rotor.ratio))
             if rotor.carrier != BASE:
                 wrenches[c] = wrenches[c] + Wrench(Vec3(g), rotor.axis.scaled(per_spin))
-    return _Coupling(direct, wrenches)
+    return _Coupling(direct, wrenches, [ZERO for _ in n])
 
 
 def _power(partial: PartialVelocity, wrench: Wrench) -> Edge:

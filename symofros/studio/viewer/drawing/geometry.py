@@ -183,7 +183,7 @@ class _DrawingBuilder:
 
     def _joints(self) -> Iterator[DrawnPart]:
         for i, link in enumerate(self.tree.links):
-            mesh = None if link.tip_of is not None else self._joint(link, i)
+            mesh = None if link.is_section else self._joint(link, i)
             if mesh is not None:
                 yield DrawnPart(f"joints/{link.joint.name}", "joints", i, mesh, _JOINT)
 

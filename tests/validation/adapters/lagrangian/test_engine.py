@@ -58,7 +58,7 @@ def test_reference_models_agree(name: str) -> None:
     assert TREE_QUANTITIES <= agreeing
 
 
-@pytest.mark.parametrize("name", sampled(tuple(RODS), ("a shaft",)))
+@pytest.mark.parametrize("name", sampled(tuple(RODS), ("in a plane, with bodies along it",)))
 def test_geometrically_exact_rods_agree(name: str) -> None:
     checked(rod_system(name), replace(SETTINGS, states=10))
 

@@ -1,0 +1,162 @@
+"""Sections of beams between root and tip: frames, bodies and closures there (docs/theory/rods.md, section 5)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from tests.mechanics.beams.rods import BODY, GRAVITY, HUB, rod
+
+MOTION = (
+    "mass_matrix",
+    "bias",
+    "generalized_force",
+    "frame_pose",
+    "frame_velocity",
+    "frame_acceleration",
+    "frame_jacobian",
+    "frame_jacobian_rate",
+)
+FRAMES = (sf.Frame("tip"), sf.Frame("middle", at=0.5))
+ELBOW = sf.Joint("elbow", "revolute", "rod", "middle", axis=(1, 2, 0), position=(0.1, 0.0, 0.05))
+CLAMP = sf.Joint("clamp", "fixed", "rod", "tip", position=(0.0, -0.2, 0.0))
+CARRIED = (sf.RigidBody("arm", ELBOW, BODY), sf.RigidBody("hand", CLAMP, BODY))
+
+
+def stated(theory: str = "strain", sections: int = 4, **changed: Any) -> sf.System:
+    """A beam on a hub with bodies at its middle and its tip."""
+    more: dict[str, Any] = {"sections": sections}
+    if theory == "second_order":
+        more = {"theory": theory, "family": "spline", "retain": "all"}
+    beam = rod((1, 1, 1), HUB, frames=FRAMES, **more)
+    return sf.System("whole", (beam, *CARRIED), gravity=GRAVITY, **changed)
+
+
+def interpreted(system: sf.System, *functions: str, **options: Any) -> sf.Model:
+    return sf.compile(system, sf.Options(functions, ("tip", "middle"), backend="interpreter", **options))
+
+
+@cache
+def whole(theory: str = "strain") -> sf.Model:
+    return interpreted(stated(theory), *MOTION, "kinetic_energy", "coriolis_matrix")
+
+
+def halves() -> sf.System:
+    """The same as two rods in series; its coordinates are hub, strains of the first, elbow, strains of the second."""
+    first, second = (rod((1, 1, 1), HUB, 1.3 / 2, sections=6) for _ in range(2))
+    second = replace(second, name="second", joint=sf.Joint("half", "fixed", "rod", "tip"))
+    arm, hand = CARRIED
+    bodies = (
+        replace(first, frames=(sf.Frame("tip"), sf.Frame("middle"))),
+        replace(second, frames=(sf.Frame("end"),)),
+        replace(arm, joint=replace(ELBOW, frame="middle")),
+        replace(hand, joint=replace(CLAMP, parent="second", frame="end")),
+    )
+    return sf.System("halves", bodies, gravity=GRAVITY)
+
+
+def test_bodies_at_stations_move_as_on_two_rods_in_series(rng: np.random.Generator) -> None:
+    """Constant strains turn each half by half of the angle."""
+    m = interpreted(stated(sections=9), *MOTION)
+    parts = sf.compile(halves(), sf.Options(MOTION, ("end", "middle"), backend="interpreter"))
+    own = {name: i for i, name in enumerate(m.names.q)}
+    T = np.zeros((parts.nq, m.nq))
+    for i, name in enumerate(parts.names.q):
+        whole_name = name.replace("second.", "rod.")
+        T[i, own[whole_name]] = 0.5 if "rod." in whole_name else 1.0
+    q, v, a = rng.standard_normal((3, m.nv)) * 0.5
+    Q, V = T @ q, T @ v
+    assert T.T @ parts.mass_matrix(Q) @ T == pytest.approx(m.mass_matrix(q), abs=1e-9)
+    assert T.T @ parts.bias(Q, V) == pytest.approx(m.bias(q, v), abs=1e-8)
+    assert T.T @ parts.generalized_force(Q, V, ()) == pytest.approx(m.generalized_force(q, v, ()), abs=1e-9)
+    for ours, theirs in (("middle", "middle"), ("tip", "end")):
+        for x, y in zip(m.frame_pose(ours, q), parts.frame_pose(theirs, Q), strict=True):
+            assert x == pytest.approx(y, abs=1e-9)
+        assert m.frame_jacobian(ours, q) == pytest.approx(parts.frame_jacobian(theirs, Q) @ T, abs=1e-8)
+        moved = parts.frame_acceleration(theirs, Q, V, T @ a)
+        assert m.frame_acceleration(ours, q, v, a) == pytest.approx(moved, abs=1e-7)
+
+
+@pytest.mark.parametrize("theory", ["strain", "second_order"])
+def test_stations_keep_the_identities_of_the_equations(theory: str, rng: np.random.Generator) -> None:
+    m = whole(theory)
+    size = 0.5 if theory == "strain" else 0.02
+    q, v, a = size * rng.standard_normal((3, m.nv))
+    M, C, eps = m.mass_matrix(q), m.coriolis_matrix(q, v), 1e-5
+    ahead, behind = q + eps * v, q - eps * v
+    rate = (m.mass_matrix(ahead) - m.mass_matrix(behind)) / (2 * eps)
+    assert np.abs(rate - C - C.T).max() < 1e-8 * np.abs(M).max()
+    assert m.kinetic_energy(q, v) == pytest.approx(0.5 * v @ M @ v, rel=1e-12)
+    J, dJ = m.frame_jacobian("middle", q), m.frame_jacobian_rate("middle", q, v)
+    assert J @ v == pytest.approx(m.frame_velocity("middle", q, v), abs=1e-13)
+    assert J @ a + dJ @ v == pytest.approx(m.frame_acceleration("middle", q, v, a), abs=1e-12)
+    difference = (m.frame_jacobian("middle", ahead) - m.frame_jacobian("middle", behind)) / (2 * eps)
+    assert dJ == pytest.approx(difference, abs=1e-8)
+
+
+@pytest.mark.parametrize("theory", ["strain", "second_order"])
+def test_articulated_bodies_and_factors_of_the_mass_matrix_agree(theory: str, rng: np.random.Generator) -> None:
+    ways = [interpreted(stated(theory), "forward_dynamics", forward_dynamics=way) for way in ("articulated", "factors")]
+    q, v = 0.1 * rng.standard_normal((2, ways[0].nv))
+    one, other = (m.forward_dynamics(q, v, ()) for m in ways)
+    assert np.abs(one - other).max() < 1e-10 * np.abs(other).max()
+
+
+def test_a_closure_at_a_station_is_that_of_its_frame(rng: np.random.Generator) -> None:
+    ground = sf.RigidBody("ground", frames=(sf.Frame("post", (0.3, 0.4, 0.1)),))
+    closure = sf.Closure("stay", ("ground", "post"), ("rod", "middle"))
+    system = stated("second_order", constraints=(closure,))
+    m = interpreted(replace(system, bodies=(ground, *system.bodies)), "constraint", "constraint_jacobian")
+    q = 0.5 * rng.standard_normal(m.nv)
+    p, _ = whole("second_order").frame_pose("middle", q)
+    assert m.constraint(q) == pytest.approx(p - (0.3, 0.4, 0.1), abs=1e-14)
+    assert m.constraint_jacobian(q) == pytest.approx(whole("second_order").frame_jacobian("middle", q)[:3], abs=1e-14)
+
+
+def test_a_load_at_a_station_is_a_force_on_its_frame(rng: np.random.Generator) -> None:
+    force, torque = (1.0, -2.0, 0.5), (0.3, 0.2, -0.1)
+    load = sf.BeamLoad(force, torque, at=0.5, axes="world")
+    system = stated("second_order", 0)
+    beam = replace(system.bodies[0], loads=(load,))
+    m = interpreted(replace(system, bodies=(beam, *CARRIED)), "generalized_force")
+    q = 0.5 * rng.standard_normal(m.nv)
+    added = m.generalized_force(q, 0 * q, ()) - whole("second_order").generalized_force(q, 0 * q, ())
+    assert added == pytest.approx(whole("second_order").frame_jacobian("middle", q).T @ (*force, *torque), abs=1e-13)
+
+
+def test_a_rigid_beam_has_its_stations_along_its_axis() -> None:
+    beam = rod((0, 0, 0), HUB, frames=FRAMES, theory="second_order", family="spline")
+    m = sf.compile(sf.System("s", (beam,)), sf.Options(("frame_pose",), backend="interpreter"))
+    p, R = m.frame_pose("rod", np.array([0.4]))
+    for name, xi in (("tip", 1.0), ("middle", 0.5)):
+        assert m.frame_pose(name, np.array([0.4]))[0] == pytest.approx(p + 1.3 * xi * R[:, 0], abs=1e-15)
+
+
+def test_segments_keep_frames_at_their_stations() -> None:
+    q = {n: np.zeros(n) for n in (1, 3)}
+    poses = []
+    for n in (1, 3):
+        beam = rod((1, 0, 0), curvature_z=0.8, frames=FRAMES, segments=n, sections=10)
+        m = sf.compile(sf.System("s", (beam,)), sf.Options(("frame_pose",), backend="interpreter"))
+        poses.append([m.frame_pose(frame.name, q[n]) for frame in FRAMES])
+    for (p, R), (other, turned) in zip(*poses, strict=True):
+        assert p == pytest.approx(other, abs=1e-9)
+        assert pytest.approx(turned, abs=1e-12) == R
+
+
+def test_stations_are_refused_off_the_beam_and_on_rigid_bodies() -> None:
+    with pytest.raises(sf.DescriptionError, match="station off the beam"):
+        sf.Frame("middle", at=1.5)
+    with pytest.raises(sf.DescriptionError, match="beams alone have stations"):
+        sf.RigidBody("b", frames=(sf.Frame("middle", at=0.5),))
+
+
+def test_files_hold_stations(tmp_path: Path) -> None:
+    sf.save(stated(), tmp_path / "s.yaml")
+    assert sf.load(tmp_path / "s.yaml") == stated()
