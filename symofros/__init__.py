@@ -69,6 +69,8 @@ if TYPE_CHECKING:
     from symofros.diagrams.files.writer import save_diagram as save_diagram
     from symofros.diagrams.result import DiagramRun as DiagramRun
     from symofros.diagrams.simulation import Simulation as Simulation
+    from symofros.exports.equations.equations import ReadableEquations as ReadableEquations
+    from symofros.exports.equations.equations import equations as equations
     from symofros.exports.exporting import export as export
     from symofros.loading import load as load
     from symofros.loading import save as save
@@ -111,6 +113,8 @@ _LAZY = {
     "compile": ("symofros.compiler", "compile_system"),
     "compile_library": ("symofros.compiler", "compile_library"),
     "program_of": ("symofros.compiler", "program_of"),
+    "equations": ("symofros.exports.equations.equations", "equations"),
+    "ReadableEquations": ("symofros.exports.equations.equations", "ReadableEquations"),
     "export": ("symofros.exports.exporting", "export"),
     "load_diagram": ("symofros.diagrams.files.reader", "load_diagram"),
     "save_diagram": ("symofros.diagrams.files.writer", "save_diagram"),

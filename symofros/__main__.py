@@ -1,4 +1,4 @@
-"""Command line: symofros info | compile | simulate | advise | export | view | edit | check MODEL; cache; validation."""
+"""Command line: symofros info | compile | equations | simulate | export | view | edit | check MODEL, and others."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ _COMMANDS = {
     "info": ("symofros.commands.models", "info"),
     "compile": ("symofros.commands.models", "compile_command"),
     "simulate": ("symofros.commands.motion", "simulate"),
+    "equations": ("symofros.commands.equations", "equations"),
     "equilibrium": ("symofros.commands.statics", "equilibrium"),
     "advise": ("symofros.commands.uses", "advise"),
     "export": ("symofros.commands.uses", "export_command"),

@@ -1,4 +1,4 @@
-"""SymPy -> Expression: the only module that looks inside SymPy."""
+"""SymPy -> Expression: the only module that reads SymPy; exports/equations/formulas.py writes it."""
 
 from __future__ import annotations
 

@@ -1,0 +1,1 @@
+"""Equations of motion for people: as SymPy, LaTeX and NumPy source."""

@@ -1,0 +1,160 @@
+"""Readable equations: the compiled model's numbers, the textbook's form."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+import sympy
+from matplotlib.mathtext import MathTextParser
+from typer.testing import CliRunner
+
+import symofros as sf
+from reference_models import MODELS
+from symofros.__main__ import app
+
+SMALL = (
+    "pendulum",
+    "double_pendulum",
+    "cart_pole",
+    "heavy_top",
+    "gyroscope",
+    "torque_free_body",
+    "friction_arm",
+    "flyball_governor",
+    "spinning_beam",
+    "four_bar",
+    "two_four_bars",
+    "parallelogram",
+    "slider_crank",
+    "sleigh",
+    "rolling_disc",
+    "andrews_squeezer",
+)
+
+
+@cache
+def readable(name: str) -> sf.ReadableEquations:
+    return sf.equations(MODELS[name])
+
+
+def function(equations: sf.ReadableEquations) -> Callable[..., tuple[Any, ...]]:
+    names: dict[str, Any] = {}
+    exec(equations.numpy_source(), names)
+    return next(value for value in names.values() if type(value).__name__ == "function")
+
+
+@pytest.mark.parametrize("name", SMALL)
+def test_the_source_gives_the_compiled_models_numbers(name: str, rng: np.random.Generator) -> None:
+    model = sf.compile(MODELS[name])
+    written = function(readable(name))
+    for _ in range(5):
+        q, v = model.random_state(rng)
+        u = rng.standard_normal(model.nu)
+        expected = [*model.dynamics(q, v, u), model.constraint_jacobian(q) if model.nc else np.zeros((0, model.nv))]
+        for array, right in zip(written(q, v, u), expected, strict=True):
+            # Sums of some hundred terms, whose order differs.
+            np.testing.assert_allclose(array, right, rtol=0, atol=1e-12 * max(1.0, np.abs(right).max(initial=0.0)))
+
+
+def test_the_double_pendulum_is_the_textbooks() -> None:
+    system = sf.System(
+        "point_masses",
+        bodies=[
+            sf.RigidBody(
+                "upper",
+                sf.Joint("q1", "revolute", axis=(0, -1, 0), rotation=sf.Rotation.rpy(0, "pi/2", 0)),
+                sf.Inertia("m1", ("l1", 0, 0)),
+                frames=[sf.Frame("elbow", ("l1", 0, 0))],
+            ),
+            sf.RigidBody(
+                "lower",
+                sf.Joint("q2", "revolute", parent="upper", frame="elbow", axis=(0, -1, 0)),
+                sf.Inertia("m2", ("l2", 0, 0)),
+            ),
+        ],
+        parameters=[sf.Parameter(name, 1.0) for name in ("m1", "m2", "l1", "l2")],
+    )
+    equations = sf.equations(system)
+    symbols = {symbol.name: symbol for group in equations.symbols.values() for symbol in group}
+    q1, q2, dq1, dq2 = (symbols[name] for name in ("q1", "q2", "dq1", "dq2"))
+    m1, m2, l1, l2, g = (symbols[name] for name in ("m1", "m2", "l1", "l2", "g"))
+    c2 = sympy.cos(q2)
+    right = sympy.Matrix(
+        [[m1 * l1**2 + m2 * (l1**2 + l2**2 + 2 * l1 * l2 * c2), m2 * (l2**2 + l1 * l2 * c2)], [0, m2 * l2**2]]
+    )
+    right[1, 0] = right[0, 1]
+    weight = g * (m1 + m2) * l1 * sympy.sin(q1) + g * m2 * l2 * sympy.sin(q1 + q2)
+    h1 = -m2 * l1 * l2 * sympy.sin(q2) * (2 * dq1 + dq2) * dq2 + weight
+    assert (equations.M - right).expand() == sympy.zeros(2, 2)
+    assert (equations.h[0] - h1).expand() == 0
+    # The sum of the angles has been combined, and nothing longer than the textbook's has been left.
+    assert equations.h[0].has(sympy.sin(q1 + q2))
+    assert sympy.count_ops(equations.h[0]) <= sympy.count_ops(h1)
+    assert sympy.count_ops(equations.M) <= sympy.count_ops(right)
+
+
+@pytest.mark.parametrize("name", ["double_pendulum", "four_bar", "friction_arm", "gyroscope"])
+def test_latex_parses(name: str) -> None:
+    parser = MathTextParser("path")
+    body = readable(name).latex().splitlines()[1:-1]
+    assert len(body) > 3
+    for line in body:
+        parser.parse("$" + line.removesuffix("\\\\").replace("&", "").replace("\\operatorname", "\\mathrm") + "$")
+
+
+def test_rates_bear_dots_and_names_are_the_users() -> None:
+    text = readable("cart_pole").latex()
+    assert r"\dot{q}^{2}" in text and "m_{cart}" in text
+    assert readable("cart_pole").text().splitlines()[0] == "M[1,1] = m_cart + m_pole"
+
+
+@pytest.mark.parametrize("name", ["puma560", "stewart", "flexible_arm"])
+def test_large_models_are_refused_in_words_and_have_their_recursion(name: str) -> None:
+    equations = sf.equations(MODELS[name])
+    assert not equations.is_small
+    with pytest.raises(sf.ExportError, match="at most 300 operations"):
+        _ = equations.M
+    text = equations.recursion()
+    assert text.count("\\paragraph") == sum("{Link" in line for line in text.splitlines()) >= 6
+    assert text.count("\\begin") == text.count("\\end") and text.count("{") == text.count("}")
+
+
+def test_the_recursion_names_joints_offsets_axes_and_masses_as_the_user_does() -> None:
+    text = readable("double_pendulum").recursion()
+    assert "Link 2 (lower)} on link 1 (upper): revolute joint q2" in text
+    assert "p &= (L_{1},\\ 0,\\ 0)^T" in text and "n &= (0,\\ 1,\\ 0)^T" in text
+    assert "m &= m_{2}" in text and "c &= (\\frac{L_{2}}{2},\\ 0,\\ 0)^T" in text
+
+
+def test_names_that_python_reserves_are_changed(rng: np.random.Generator) -> None:
+    system = sf.System(
+        "odd names",
+        bodies=[sf.RigidBody("b", sf.Joint("lambda", "prismatic", actuated=True), sf.Inertia("M"))],
+        parameters=[sf.Parameter("M", 2.0)],
+    )
+    M, h, Q, G = function(sf.equations(system))([0.1], [0.2], [3.0])
+    assert M == [[2.0]] and Q == [3.0] and G.shape == (0, 1)
+    np.testing.assert_allclose(h, [2.0 * 9.81])
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        ([], "M[2,2] = L**2*m/3"),
+        (["--latex"], "\\frac{L^{2} m}{3}"),
+        (["--numpy"], "def four_bar(q, v, u, par=(1.0, 1.0), t=0.0):"),
+        (["--recursion"], "\\paragraph{Link 3 (rocker)}"),
+    ],
+)
+def test_the_command_writes_them(words: list[str], says: str) -> None:
+    done = CliRunner().invoke(app, ["equations", "reference_models/closed/four_bar.yaml", *words])
+    assert done.exit_code == 0 and says in done.output
+
+
+def test_the_command_refuses_large_models_in_words() -> None:
+    done = CliRunner().invoke(app, ["equations", "reference_models/rigid/puma560.yaml"])
+    assert done.exit_code == 2 and "at most 300 operations" in done.output
