@@ -44,7 +44,7 @@ class OutputArray:
     source: str
 
     def sizes(self, known: Mapping[str, int]) -> tuple[int, ...]:
-        """Shape in numbers, from the sizes nq, nv, nu, nc, npar, nw, nj, ns, nb and npi."""
+        """Shape in numbers, from the sizes nq, nv, nu, nc, npar, nw, nj, nf, ns, nb and npi."""
         return tuple(size_of(text, known) for text in self.shape)
 
 
@@ -185,6 +185,13 @@ _ROWS = (
         "wrench (nj, 6) = joint_wrenches",
         "dynamics",
         "force and moment that each joint transmits to its body",
+    ),
+    _row(
+        "section_forces",
+        "q v a u lam t",
+        "F (nf, 6) = section_forces",
+        "dynamics",
+        "force and moment inside elastic beams at their stations, N Vy Vz T My Mz in the axes of the section",
     ),
     _row(
         "prescribed_efforts",

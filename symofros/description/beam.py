@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields
+from itertools import pairwise
 from typing import Any, Literal, get_args
 
 from symofros.description.entries import refuses_unknown_entries
@@ -21,6 +22,8 @@ RETAIN: tuple[Retain, ...] = get_args(Retain)
 Theory = Literal["second_order", "strain"]
 THEORIES: tuple[Theory, ...] = get_args(Theory)
 MOST_SECTIONS = 64
+# Stations x/L of section forces, where none are stated.
+STATIONS = tuple(k / 8 for k in range(9))
 
 # What may depend on the station x, and so taper.
 SECTION = ("rhoA", "EI_y", "EI_z", "GJ", "rhoJ", "rhoI_y", "rhoI_z")
@@ -153,6 +156,7 @@ class Beam:
         waive: Names of checks that the beam is allowed to fail.
         segments: Number of beams of equal length, each clamped to the tip of the last, that a system makes of it
             (segments.py); each has the functions stated.
+        stations: Stations x/L, rising from 0 (root) to 1 (tip) at most, whose section forces can be asked for.
     """
 
     name: str
@@ -183,6 +187,7 @@ class Beam:
     loads: tuple[BeamLoad, ...] = ()
     waive: tuple[str, ...] = ()
     segments: int = 1
+    stations: tuple[float, ...] = STATIONS
 
     def __post_init__(self) -> None:
         """Convert numbers, freeze collections, check the choices."""
@@ -212,6 +217,7 @@ class Beam:
                     )
                 )
         self._check_theory(what)
+        self._check_stations(what)
         for key in given:
             if key not in DIRECTIONS:
                 raise DescriptionError(
@@ -239,6 +245,20 @@ class Beam:
                     repr(self.segments),
                     "a whole number, 1 or more",
                     "1 leaves the beam in one piece",
+                )
+            )
+
+    def _check_stations(self, what: str) -> None:
+        """Convert the stations of section forces, and check that they rise along the beam."""
+        object.__setattr__(self, "stations", tuple(float(xi) for xi in self.stations))
+        rising = all(a < b for a, b in pairwise(self.stations))
+        if not rising or not all(0.0 <= xi <= 1.0 for xi in self.stations):
+            raise DescriptionError(
+                Problem(
+                    f"{what}: stations of section forces",
+                    ", ".join(f"{xi:g}" for xi in self.stations),
+                    "stations x/L rise, from 0 (root) to 1 (tip) at most",
+                    "divide them by the length, and sort them",
                 )
             )
 

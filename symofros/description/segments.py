@@ -66,6 +66,7 @@ def segments_of(beam: Beam) -> tuple[Beam, ...]:
                 frames=tuple(_frames(beam.frames, k, n)),
                 loads=tuple(_loads(beam.loads, k, n, station)),
                 segments=1,
+                stations=tuple(xi for on, xi in (_segment_at(x, n) for x in beam.stations) if on == k),
                 **section,
             )
         )

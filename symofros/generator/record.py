@@ -15,7 +15,7 @@ from symofros.mechanics.dynamics.constraints.measures import measures_of
 from symofros.mechanics.dynamics.constraints.wrenches import acts_on_bodies
 from symofros.mechanics.kinematics.joint import neutral_coordinates
 from symofros.mechanics.topology.coordinates import angles, joint_sizes
-from symofros.mechanics.topology.tree import SpanningTree, frame_of, joint_names, prescribed_speeds
+from symofros.mechanics.topology.tree import SpanningTree, frame_of, joint_names, prescribed_speeds, section_names
 from symofros.runtime.record import ClosureRecord, ModelRecord, Segment
 
 GENERATOR = "symofros 0.1.0"
@@ -66,6 +66,7 @@ def model_record(tree: SpanningTree, options: Options) -> ModelRecord:
         speed_conditions=tuple(name for item in tree.system.constraints for name in item.on_speeds),
         wrench_names=tuple(acts_on_bodies(tree.system.constraints)),
         joint_names=joint_names(tree),
+        section_names=section_names(tree),
         prescribed_names=prescribed_speeds(tree),
         closures=tuple(_closure(tree, item) for item in tree.system.constraints if isinstance(item, Closure)),
         driven=len(driven),

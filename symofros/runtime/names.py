@@ -16,7 +16,7 @@ from symofros.runtime.record import ModelRecord
 
 @dataclass(frozen=True)
 class Names:
-    """Names of coordinates, speeds, inputs, run-time parameters, frames, constraints, joints, prescribed speeds."""
+    """Names of coordinates, speeds, inputs, parameters, frames, constraints, joints, sections, prescribed speeds."""
 
     q: tuple[str, ...]
     v: tuple[str, ...]
@@ -25,6 +25,7 @@ class Names:
     frames: tuple[str, ...]
     constraints: tuple[str, ...]
     joints: tuple[str, ...]
+    sections: tuple[tuple[str, float], ...]
     prescribed: tuple[str, ...]
 
     @classmethod
@@ -38,6 +39,7 @@ class Names:
             record.frame_names,
             record.constraint_names,
             record.joint_names,
+            record.section_names,
             record.prescribed_names,
         )
 

@@ -42,6 +42,29 @@ class ReactionFunctions(Functions):
         """
         return self._reactions("joint_wrenches", q, v, a, u, lam, par, t)
 
+    def section_forces(
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        a: ArrayLike,
+        u: ArrayLike,
+        lam: ArrayLike | None = None,
+        *,
+        par: ArrayLike | None = None,
+        t: ArrayLike = 0.0,
+    ) -> Array:
+        """Force and moment inside elastic beams (..., sections, 6) [N, N m], in the order of `names.sections`.
+
+        Normal force N, shear forces Vy and Vz, torque T and bending moments My and Mz: what the part of the beam beyond
+        the station does to the part before it, about the section's centroid and along the section's axes; N is positive
+        in tension. They hold what lies beyond in its motion against its weight and all loads, so that in equilibrium
+        they are exact for the deformed shape (docs/theory/beams.md, section 9). A load at a station counts there as
+        beyond it. Stations are those of `Beam.stations`.
+
+        Arguments as of `joint_wrenches`.
+        """
+        return self._reactions("section_forces", q, v, a, u, lam, par, t)
+
     def prescribed_efforts(
         self,
         q: ArrayLike,

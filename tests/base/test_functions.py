@@ -47,6 +47,7 @@ def test_functions_have_the_inputs_and_shapes_of_the_table(name: str, function: 
     sizes |= {
         "npi": 10 * len(tree.links),
         "nj": len(m.names.joints),
+        "nf": len(m.names.sections),
         "ns": len(m.names.prescribed),
         "nb": len(m.beams()),
     }

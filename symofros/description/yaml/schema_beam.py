@@ -6,7 +6,7 @@ from typing import Annotated, Any, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from symofros.description.beam import MOST_SECTIONS, SECTION, Beam, BeamLoad, Direction, Samples
+from symofros.description.beam import MOST_SECTIONS, SECTION, STATIONS, Beam, BeamLoad, Direction, Samples
 from symofros.description.yaml.derived import NounEntry
 from symofros.description.yaml.fields import Formula, Number, fault
 from symofros.description.yaml.schema_section import SectionEntry
@@ -39,6 +39,7 @@ class BeamEntry(NounEntry, noun=Beam, without=("name", "joint", "frames", "waive
     bend_z: Count = 0
     twist: Count = 0
     segments: Annotated[int, Field(ge=1, le=200)] = 1
+    stations: Annotated[list[Annotated[Number, Field(ge=0.0, le=1.0)]], Field(max_length=200)] = [*STATIONS]
     sections: Annotated[int, Field(ge=0, le=MOST_SECTIONS)] = 0
     shapes: dict[Direction, ShapeList] = {}
     loads: Annotated[list[BeamLoadEntry], Field(max_length=100)] = []

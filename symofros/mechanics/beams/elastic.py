@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import cached_property, partial
 from itertools import combinations_with_replacement
 from typing import NamedTuple
@@ -81,13 +82,17 @@ class BeamForms:
         """
         if not is_uniform(weight):
             return self.along.integral(product(), weight)
-        known, key = self.shape.integrals, (of, self.order, self.beam.rotary_inertia)
+        known, key = self.shape.integrals, (of, self.order, self.beam.rotary_inertia, self.along.start)
         if key not in known:
-            known[key] = UnitIntegral.of(product())
+            known[key] = UnitIntegral.of(product(), self.along.start)
         return self.along.uniform(known[key], weight)
 
     def _summed(self, forms: Iterable[Form]) -> Form:
         return sum(forms, start=no_form(self.along.g, self.along.coordinates))
+
+    def beyond(self, xi: float) -> BeamForms:
+        """The same of the part beyond a station, whose moments stay about the root."""
+        return replace(self, along=replace(self.along, start=Fraction(xi)))
 
     @cached_property
     def mass(self) -> Edge:

@@ -128,9 +128,14 @@ class UnitIntegral(NamedTuple):
     terms: Mapping[Monomial, float]
 
     @classmethod
-    def of(cls, field: Field) -> UnitIntegral:
-        """The integral of a field."""
-        return cls(field.power + 1, field.lengths, {mono: float(f.integral()) for mono, f in field.terms.items()})
+    def of(cls, field: Field, start: Number = 0) -> UnitIntegral:
+        """The integral of a field from a station to the tip."""
+        terms = {mono: float(_integral(f, start)) for mono, f in field.terms.items()}
+        return cls(field.power + 1, field.lengths, terms)
+
+
+def _integral(f: Piecewise, start: Number) -> Number:
+    return f.integral() - f.antiderivative()(start) if start else f.integral()
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Integrals over the length of a beam: Fields weighted by section properties become Forms.
+"""Integrals over the length of a beam, or from a station to the tip: Fields weighted by sections become Forms.
 
 A property that is the same along the beam stands before the integral, which is then exact (rational where the shape
 functions are). One that changes is taken at Gauss stations on every interval between knots, where fields are rounded
@@ -37,6 +37,7 @@ class LengthIntegrator:
         coordinates: Edges of the elastic coordinates.
         knots: Stations xi where pieces of the shape functions meet.
         points: Number of Gauss nodes an interval.
+        start: Station xi from which integrals are taken, to the tip.
     """
 
     g: Graph
@@ -45,6 +46,12 @@ class LengthIntegrator:
     coordinates: tuple[Edge, ...]
     knots: tuple[Number, ...]
     points: int = POINTS
+    start: Number = 0
+
+    @property
+    def _ends(self) -> tuple[Number, ...]:
+        """Ends of the intervals that are integrated over."""
+        return (self.start, *(knot for knot in self.knots if knot > self.start))
 
     @cached_property
     def L(self) -> Edge:
@@ -52,12 +59,12 @@ class LengthIntegrator:
         return self.lower(self.length)
 
     def integral(self, field: Field, weight: Value) -> Form:
-        """The integral of weight times field over the beam's length."""
+        """The integral of weight times field over the length."""
         g = self.g
         if is_uniform(weight):
-            return self.uniform(UnitIntegral.of(field), weight)
+            return self.uniform(UnitIntegral.of(field, self.start), weight)
         assert isinstance(weight, Expression)
-        xi, w = stations(self.knots, self.points)
+        xi, w = stations(self._ends, self.points)
         values = [self.lower(at_station(weight, self.length, x)) for x in xi]
         terms = {mono: _weighted(g, f, xi, w, values) for mono, f in field.terms.items()}
         return self._scaled(field.power + 1, field.lengths, terms)
@@ -72,7 +79,7 @@ class LengthIntegrator:
         """Gauss stations, each with its share of the weight's integral: for integrands that are not polynomials."""
         g = self.g
         shares = []
-        for xi, w in zip(*stations(self.knots, self.points), strict=True):
+        for xi, w in zip(*stations(self._ends, self.points), strict=True):
             value = at_station(weight, self.length, xi) if isinstance(weight, Expression) else weight
             shares.append((xi, g.mul(g.constant(w), g.mul(self.lower(value), self.L))))
         return shares

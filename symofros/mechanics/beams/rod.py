@@ -292,10 +292,11 @@ class Rod:
             return self.strains.mass_points, (whole,)
         return self.strains.positions, tuple(g.mul(share, g.mul(L, L)) for share in self.shares(self.beam.rhoA))
 
-    def shares(self, weight: Value) -> tuple[Edge, ...]:
-        """Integral of a property of the section over the length, by sections."""
+    def shares(self, weight: Value, weights: Sequence[float] | None = None) -> tuple[Edge, ...]:
+        """Integral of a property of the section over the length, by sections; over a part, with its weights."""
         g, shares = self.g, []
-        for xi, w in zip(*self.strains.stations, strict=True):
+        stations, whole = self.strains.stations
+        for xi, w in zip(stations, weights or whole, strict=True):
             value = at_station(weight, self.along.length, xi) if isinstance(weight, Expression) else weight
             shares.append(g.mul(g.constant(w), g.mul(self.along.lower(value), self.along.L)))
         return tuple(shares)
@@ -314,13 +315,17 @@ class Rod:
     @cached_property
     def inertia_axes(self) -> tuple[InertiaAxis, ...]:
         """Axes about which the sections have inertia: their own x axis, with rotary inertia all three."""
+        return self.inertia_axes_of(self.strains.stations[1])
+
+    def inertia_axes_of(self, weights: Sequence[float]) -> tuple[InertiaAxis, ...]:
+        """The same of a part of the rod, by its weights of the sections."""
         beam = self.beam
         stated = (beam.rhoJ, beam.rhoI_y, beam.rhoI_z) if beam.rotary_inertia else (beam.rhoJ,)
         return tuple(
             InertiaAxis(k, share, section.R_BS.column(axis))
             for axis, per_length in enumerate(stated)
             if per_length != 0.0
-            for k, (section, share) in enumerate(zip(self.sections, self.shares(per_length), strict=True))
+            for k, (section, share) in enumerate(zip(self.sections, self.shares(per_length, weights), strict=True))
         )
 
     @cached_property

@@ -6,12 +6,13 @@ of the tangents: it is taken over points with the same second moments.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 from symofros.expr.edges import Edge
 from symofros.expr.vector import Sym3, Vec3
 from symofros.mechanics.beams.elastic import PAIRS
-from symofros.mechanics.beams.rod import Rod
+from symofros.mechanics.beams.rod import InertiaAxis, Rod
 
 
 def _weighted(rod: Rod, terms: Sequence[Edge]) -> Edge:
@@ -77,16 +78,8 @@ def rod_forces(
         Force and moment on the root, in B, and the force on each coordinate.
     """
     g, n = rod.g, len(rod.coordinates)
-    turning = rod.angular_rates(speeds)
-    spins, accelerations, curves = [], [], []
-    for section, t, (own, own_rate) in zip(rod.sections, rod.tangents, turning, strict=True):
-        # The section turns in the world with w + own, seen from B; the rate of that in the world, too.
-        total, total_rate = w + own, alpha + own_rate + w.cross(own)
-        for spin, rate in zip(section.spins, rates, strict=True):
-            total_rate = total_rate + spin.scaled(rate)
-        spins.append(total)
-        accelerations.append(total_rate)
-        curves.append(total_rate.cross(t) + total.cross(total.cross(t)))
+    motion = _section_motion(rod, w, alpha, speeds, rates)
+    curves = motion.curves
     rows, masses = rod.mass_points
     points = [rod.combined(row, curves) for row in rows]
     if len(masses) > 1:
@@ -101,12 +94,75 @@ def rod_forces(
         moment = moment + t.cross(arm)
     forces = [g.add(rod.first_moment(rod.partial_tangents[i]).dot(a), _power(rod, i, arms)) for i in range(n)]
     for axis in rod.inertia_axes:
-        k, c = axis.section, axis.direction
-        H = c.scaled(g.mul(axis.inertia, c.dot(spins[k])))
-        torque = c.scaled(g.mul(axis.inertia, c.dot(accelerations[k]))) + spins[k].cross(H)
+        torque = _torque(axis, motion)
         moment = moment + torque
-        forces = [g.add(x, torque.dot(rod.sections[k].spins[i])) for i, x in enumerate(forces)]
+        forces = [g.add(x, torque.dot(rod.sections[axis.section].spins[i])) for i, x in enumerate(forces)]
     return f, moment, forces
+
+
+class _SectionMotion(NamedTuple):
+    """Angular velocity and acceleration of each section in the world; second derivative of each tangent, in B."""
+
+    spins: list[Vec3]
+    accelerations: list[Vec3]
+    curves: list[Vec3]
+
+
+def _section_motion(rod: Rod, w: Vec3, alpha: Vec3, speeds: Sequence[Edge], rates: Sequence[Edge]) -> _SectionMotion:
+    motion = _SectionMotion([], [], [])
+    turning = rod.angular_rates(speeds)
+    for section, t, (own, own_rate) in zip(rod.sections, rod.tangents, turning, strict=True):
+        # The section turns in the world with w + own, seen from B; the rate of that in the world, too.
+        total, total_rate = w + own, alpha + own_rate + w.cross(own)
+        for spin, rate in zip(section.spins, rates, strict=True):
+            total_rate = total_rate + spin.scaled(rate)
+        motion.spins.append(total)
+        motion.accelerations.append(total_rate)
+        motion.curves.append(total_rate.cross(t) + total.cross(total.cross(t)))
+    return motion
+
+
+def _torque(axis: InertiaAxis, motion: _SectionMotion) -> Vec3:
+    """Moment that the motion of a section takes about one of its axes."""
+    g, k, c = axis.direction.g, axis.section, axis.direction
+    H = c.scaled(g.mul(axis.inertia, c.dot(motion.spins[k])))
+    return c.scaled(g.mul(axis.inertia, c.dot(motion.accelerations[k]))) + motion.spins[k].cross(H)
+
+
+def wrenches_beyond(
+    rod: Rod,
+    stations: Sequence[float],
+    w: Vec3,
+    alpha: Vec3,
+    a: Vec3,
+    speeds: Sequence[Edge],
+    rates: Sequence[Edge],
+) -> Iterator[tuple[Vec3, Vec3]]:
+    """Inertia force, and moment about the root, of the part of a rod beyond each station, in B (20).
+
+    Args:
+        rod: The rod.
+        stations: Stations x/L.
+        w: Angular velocity of the root, in B.
+        alpha: Angular acceleration of the root, in B.
+        a: Acceleration of the root with gravity as one of the base, in B.
+        speeds: Rates of the strain coordinates.
+        rates: Second derivatives of the strain coordinates.
+    """
+    motion, L = _section_motion(rod, w, alpha, speeds, rates), rod.along.L
+    positions, relative = (
+        [rod.combined(row, vectors).scaled(L) for row in rod.strains.positions]
+        for vectors in (rod.tangents, motion.curves)
+    )
+    for xi in stations:
+        weights = rod.strains.weights_beyond(xi)
+        f, n = Vec3(rod.g), Vec3(rod.g)
+        for p, acceleration, share in zip(positions, relative, rod.shares(rod.beam.rhoA, weights), strict=True):
+            force = (a + acceleration).scaled(share)
+            f, n = f + force, n + p.cross(force)
+        for axis in rod.inertia_axes_of(weights):
+            n = n + _torque(axis, motion)
+        yield f, n
 
 
 def _power(rod: Rod, i: int, arms: Sequence[Vec3]) -> Edge:

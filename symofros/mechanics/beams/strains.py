@@ -102,6 +102,10 @@ class Strains:
                 row[m * p + k] = (b - a) * weights[k] * _partial_weight(p, nodes[k], upto)
         return tuple(row)
 
+    def weights_beyond(self, xi: float) -> tuple[float, ...]:
+        """Weights of the sections in the integral from a station to the tip, by the polynomials through them."""
+        return tuple(w - a for w, a in zip(self.stations[1], self.from_root(xi), strict=True))
+
     @cached_property
     def positions(self) -> Rows:
         """Rows of `from_root` at the sections themselves (N, N)."""

@@ -29,6 +29,7 @@ from symofros.mechanics.dynamics.jourdain import inertia_forces
 from symofros.mechanics.dynamics.mass_matrix import Matrix, mass_matrix
 from symofros.mechanics.dynamics.momentum import coadjoint, momentum_rate
 from symofros.mechanics.dynamics.reactions import in_body_frames, prescribed_efforts, transmitted_wrenches
+from symofros.mechanics.dynamics.section_forces import section_forces
 from symofros.mechanics.kinematics.frames import FrameKinematics
 from symofros.mechanics.kinematics.links import TreeKinematics, tree_kinematics
 from symofros.mechanics.topology.tree import SpanningTree
@@ -122,8 +123,8 @@ class Equations:
                     "choose Options(forward_dynamics='factors'), or 'auto'",
                 )
             )
-        inertias, _ = link_inertias(self.kinematics, regrouped=False)
         with self._refusing_singular():
+            inertias, _ = link_inertias(self.kinematics, regrouped=False)
             return articulated_acceleration(self.kinematics, inertias, self.rotors, self.gravity, self.Q)
 
     @cached_property
@@ -240,6 +241,11 @@ class Equations:
         return in_body_frames(self.kinematics, self._transmitted)
 
     @property
+    def section_forces(self) -> Matrix:
+        """Force and moment at the stations of the elastic beams, in the axes of the section (nf x 6)."""
+        return list(section_forces(self.kinematics, self.frames, self._motions, self.v_rate, self._transmitted))
+
+    @property
     def prescribed_efforts(self) -> list[Edge]:
         """Effort of the drive of each prescribed speed (ns)."""
         return prescribed_efforts(self.kinematics, self.rotors, self._motions, self.v_rate, self._transmitted)
@@ -264,10 +270,8 @@ class Equations:
         for i, row in enumerate(self.constraints):
             lam = g.input("lam", i)
             forces = [g.sub(force, g.mul(lam, entry)) for force, entry in zip(forces, row.G, strict=True)]
-        conditions = [
-            g.sub(g.sum(g.mul(x, y) for x, y in zip(row.G, a, strict=True)), row.gamma) for row in self.constraints
-        ]
-        return forces + conditions
+        rates = (g.sum(g.mul(x, y) for x, y in zip(row.G, a, strict=True)) for row in self.constraints)
+        return forces + [g.sub(rate, row.gamma) for rate, row in zip(rates, self.constraints, strict=True)]
 
     @property
     def dynamic_residual(self) -> list[Edge]:
@@ -340,11 +344,9 @@ class Equations:
     @cached_property
     def momentum_force(self) -> list[Edge]:
         """Force F with p' = F + ad_v^T p: the equations of motion give F = dM/dt v + Q - h - ad_v^T p (nv)."""
-        g = self.g
-        rate = momentum_rate(self.kinematics, self.momentum)
-        turning = coadjoint(self.kinematics, self.momentum)
-        total = [g.sub(g.add(r, Q), g.add(h, c)) for r, Q, h, c in zip(rate, self.Q, self.h, turning, strict=True)]
-        return total
+        g, p = self.g, self.momentum
+        parts = zip(momentum_rate(self.kinematics, p), self.Q, self.h, coadjoint(self.kinematics, p), strict=True)
+        return [g.sub(g.add(rate, Q), g.add(h, turning)) for rate, Q, h, turning in parts]
 
     @cached_property
     def center_of_mass(self) -> list[Edge]:

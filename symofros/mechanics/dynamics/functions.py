@@ -17,7 +17,7 @@ from symofros.mechanics.dynamics.constraints.rows import retracted
 from symofros.mechanics.dynamics.constraints.wrenches import acts_on_bodies
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.dynamics.frame_equations import FrameEquations
-from symofros.mechanics.topology.tree import prescribed_speeds
+from symofros.mechanics.topology.tree import prescribed_speeds, section_names
 
 
 class Request(NamedTuple):
@@ -87,6 +87,7 @@ def _sizes(e: Equations) -> dict[str, int]:
         "nj": len(e.tree.links),
         "ns": len(prescribed_speeds(e.tree)),
         "nb": sum(link.tip_of is not None and link.tip_of.modes > 0 for link in e.tree.links),
+        "nf": len(section_names(e.tree)),
         "npi": 10 * len(e.tree.links),
     }
 

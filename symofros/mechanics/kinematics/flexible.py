@@ -15,6 +15,7 @@ from symofros.mechanics.beams.elastic import BeamForms, Vector
 from symofros.mechanics.beams.rod import Rod
 from symofros.mechanics.kinematics.joint import (
     AcrossJoint,
+    JointRotation,
     PartialVelocity,
     across_rotations,
     rotation_about,
@@ -36,17 +37,27 @@ def across_beam(
         deformed: Whether the section is where the deflection puts it; otherwise it moves about the undeformed place,
             with partial velocities that are constant.
     """
-    g, point, angles = forms.along.g, forms.point(xi), forms.angles(xi)
+    g, point = forms.along.g, forms.point(xi)
     if not deformed:
-        zero = Vec3(g)
+        angles, zero = forms.angles(xi), Vec3(g)
         partials = tuple(_constant_partial(g, point, angles, i, zero) for i in range(len(q)))
         return AcrossJoint(RotationProduct(g, ()), _values(g, point, 0), partials)
-    rotations = [
+    return across_rotations(g, q, speeds, _values(g, point), _turns(forms, xi))
+
+
+def _turns(forms: BeamForms, xi: float) -> list[JointRotation]:
+    """Yaw, pitch and roll of the section at a station, those that are not zero."""
+    g = forms.along.g
+    return [
         rotation_about(Vec3.unit(g, k), angle, k, False)
-        for k, angle in zip((2, 1, 0), (form.value() for form in angles), strict=True)
+        for k, angle in zip((2, 1, 0), (form.value() for form in forms.angles(xi)), strict=True)
         if angle != ZERO
     ]
-    return across_rotations(g, q, speeds, _values(g, point), rotations)
+
+
+def turned_section(forms: BeamForms, xi: float) -> RotationProduct:
+    """Rotation R_BS of the section at a station, as the product of its yaw, pitch and roll."""
+    return RotationProduct(forms.along.g, tuple(turn.factor for turn in _turns(forms, xi)))
 
 
 def across_rod(rod: Rod, xi: float, speeds: Sequence[Edge]) -> AcrossJoint:

@@ -128,6 +128,12 @@ def joint_names(tree: SpanningTree) -> tuple[str, ...]:
     return tuple(link.name if link.is_section else link.joint.name for link in tree.links)
 
 
+def section_names(tree: SpanningTree) -> tuple[tuple[str, float], ...]:
+    """The sections whose forces are formed: name of the elastic beam, and station x/L."""
+    beams = [link.tip_of for link in tree.links if link.tip_of is not None]
+    return tuple((beam.name, xi) for beam in beams for xi in beam.stations)
+
+
 def prescribed_speeds(tree: SpanningTree) -> tuple[str, ...]:
     """Names of the speeds of prescribed motions, in order."""
     return tuple(name for link in tree.links if link.joint.prescribed for name in speed_names(link.joint))

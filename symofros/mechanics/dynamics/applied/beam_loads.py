@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
+from typing import NamedTuple
 
 from symofros.description.beam import BeamLoad
 from symofros.description.values import Value
@@ -55,20 +56,61 @@ def _on_rod(rod: Rod, at: float | None, d: Vec3, force: Value, torque: Value) ->
     g, n = rod.g, len(rod.coordinates)
     wrench, modal = no_wrench(g), [ZERO] * n
     if at is not None:
-        stations: tuple[float, ...] = (at,)
-        forces: tuple[Edge, ...] = (rod.along.lower(force),)
-        torques: tuple[Edge, ...] = (rod.along.lower(torque),)
+        points = [_Point(at, d.scaled(rod.along.lower(force)), d.scaled(rod.along.lower(torque)))]
         sections: tuple[Section, ...] = (rod.section_at(at),)
     else:
-        stations, sections = rod.strains.stations[0], rod.sections
-        forces, torques = rod.shares(force), rod.shares(torque)
-    for xi, section, share, moment in zip(stations, sections, forces, torques, strict=True):
-        f, m = d.scaled(share), d.scaled(moment)
-        wrench = wrench + Wrench(f, rod.position(xi).cross(f) + m)
+        points, sections = _spread(rod, d, force, torque, rod.strains.stations[1]), rod.sections
+    for point, section in zip(points, sections, strict=True):
+        wrench = wrench + point.wrench(rod)
         for i in range(n):
-            power = g.add(rod.partial_position(xi, i).dot(f), section.spins[i].dot(m))
+            power = g.add(rod.partial_position(point.xi, i).dot(point.force), section.spins[i].dot(point.torque))
             modal[i] = g.add(modal[i], power)
     return wrench, modal
+
+
+class _Point(NamedTuple):
+    """A force and a moment on a rod at one station, in B."""
+
+    xi: float
+    force: Vec3
+    torque: Vec3
+
+    def wrench(self, rod: Rod) -> Wrench:
+        """The wrench about the root."""
+        return Wrench(self.force, rod.position(self.xi).cross(self.force) + self.torque)
+
+
+def _spread(rod: Rod, d: Vec3, force: Value, torque: Value, weights: Sequence[float]) -> list[_Point]:
+    """One component of a load that is spread over a rod, or over a part of it, as loads on its sections."""
+    shares = zip(rod.strains.stations[0], rod.shares(force, weights), rod.shares(torque, weights), strict=True)
+    return [_Point(xi, d.scaled(f), d.scaled(m)) for xi, f, m in shares]
+
+
+def loads_beyond(kinematics: TreeKinematics, frames: FrameKinematics, beam: MovingBeam, xi: float) -> Wrench:
+    """The wrench about the root, in B, of the loads along the part of a beam beyond a station, those at it included.
+
+    Args:
+        kinematics: Kinematics of the tree.
+        frames: Kinematics of frames, for components in world axes.
+        beam: The beam.
+        xi: Station x/L.
+    """
+    wrench, forms = no_wrench(kinematics.g), beam.forms
+    for load in forms.beam.loads:
+        if load.at is not None and load.at < xi:
+            continue
+        for d, force, torque in zip(_directions(kinematics, frames, beam, load), load.force, load.torque, strict=True):
+            if isinstance(forms, Rod):
+                if load.at is not None:
+                    points = [_Point(load.at, d.scaled(forms.along.lower(force)), d.scaled(forms.along.lower(torque)))]
+                else:
+                    points = _spread(forms, d, force, torque, forms.strains.weights_beyond(xi))
+                for point in points:
+                    wrench = wrench + point.wrench(forms)
+            else:
+                part = forms if load.at is not None else forms.beyond(xi)
+                wrench = wrench + _wrench_along(part, load.at, d, force, torque)
+    return wrench
 
 
 def _directions(kinematics: TreeKinematics, frames: FrameKinematics, beam: MovingBeam, load: BeamLoad) -> list[Vec3]:
@@ -81,28 +123,40 @@ def _directions(kinematics: TreeKinematics, frames: FrameKinematics, beam: Movin
 
 def _along(forms: BeamForms, at: float | None, d: Vec3, force: Value, torque: Value) -> tuple[Wrench, list[Edge]]:
     """One component of a load along a direction d: the wrench about Bo, and the elastic coordinates' forces."""
-    g, shape, order = d.g, forms.shape, forms.order
-    weighted: Weighted = partial(_at_station, forms, at) if at is not None else forms.along.integral
-    one = unit_field(forms.shape.lengths)
-    wrench, modal = no_wrench(g), [ZERO] * forms.beam.modes
-
-    def vector(fields: tuple[Field, ...], weight: Value) -> Vec3:
-        return Vec3(g, *(weighted(field, weight).value(order) for field in fields))
-
+    g, shape = d.g, forms.shape
+    wrench, modal = _wrench_along(forms, at, d, force, torque), [ZERO] * forms.beam.modes
     if force != 0.0:
-        total = d.scaled(weighted(one, force).value())
-        wrench = wrench + Wrench(total, vector(shape.position, force).cross(d))
         for i in range(forms.beam.modes):
-            partial_velocity = vector(tuple(field.by(i) for field in shape.position), force)
+            partial_velocity = _vector(forms, at, tuple(field.by(i) for field in shape.position), force)
             modal[i] = g.add(modal[i], partial_velocity.dot(d))
     if torque != 0.0:
-        wrench = wrench + Wrench(Vec3(g), d.scaled(weighted(one, torque).value()))
-        if order == EVERY_DEGREE:
+        if forms.order == EVERY_DEGREE:
             turned = _turned(forms, at, d, torque)
         else:
-            turned = [vector(turning, torque).dot(d) for turning in shape.turning]
+            turned = [_vector(forms, at, turning, torque).dot(d) for turning in shape.turning]
         modal = [g.add(a, b) for a, b in zip(modal, turned, strict=True)]
     return wrench, modal
+
+
+def _wrench_along(forms: BeamForms, at: float | None, d: Vec3, force: Value, torque: Value) -> Wrench:
+    """The wrench about Bo of one component of a load, along d, on a beam or on the part beyond a station."""
+    g, weighted, one = d.g, _weighted(forms, at), unit_field(forms.shape.lengths)
+    wrench = no_wrench(g)
+    if force != 0.0:
+        total = d.scaled(weighted(one, force).value())
+        wrench = wrench + Wrench(total, _vector(forms, at, forms.shape.position, force).cross(d))
+    if torque != 0.0:
+        wrench = wrench + Wrench(Vec3(g), d.scaled(weighted(one, torque).value()))
+    return wrench
+
+
+def _weighted(forms: BeamForms, at: float | None) -> Weighted:
+    return partial(_at_station, forms, at) if at is not None else forms.along.integral
+
+
+def _vector(forms: BeamForms, at: float | None, fields: tuple[Field, ...], weight: Value) -> Vec3:
+    weighted = _weighted(forms, at)
+    return Vec3(forms.along.g, *(weighted(field, weight).value(forms.order) for field in fields))
 
 
 def _turned(forms: BeamForms, at: float | None, d: Vec3, torque: Value) -> list[Edge]:

@@ -7,6 +7,7 @@ follows from its kinetic energy by Boltzmann and Hamel's equations, so the same 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.graph import Graph
@@ -55,14 +56,42 @@ def beam_forces(
         The wrench on the root in the link frame, and the force on each elastic coordinate.
     """
     R_LB = kinematics.links[beam.root].R_LB
-    w, alpha, a = (R_LB.T.times(x) for x in (state.w_WL_L, state.alpha_WL_L, state.a_WLo_L))
+    w, alpha, a = root_motion(kinematics, beam, state)
     if isinstance(beam.forms, Rod):
         f, n, forces = rod_forces(beam.forms, w, alpha, a, speeds, rates)
         return Wrench(R_LB.times(f), R_LB.times(n)), forces
-    relative = _relative_wrench(beam.forms, w, speeds, rates)
-    straight = inertia_wrench(deformed(kinematics, beam), state)
-    wrench = straight + Wrench(R_LB.times(relative.f), R_LB.times(relative.n))
+    wrench = deformation_wrench(kinematics, beam, beam.forms, state, speeds, rates)
     return wrench, [_modal_force(beam.forms, i, w, alpha, a, speeds, rates) for i in range(len(speeds))]
+
+
+def root_motion(kinematics: TreeKinematics, beam: MovingBeam, state: LinkMotion) -> tuple[Vec3, Vec3, Vec3]:
+    """Angular velocity, angular acceleration and acceleration of a beam's root, in B."""
+    R_BL = kinematics.links[beam.root].R_LB.T
+    return R_BL.times(state.w_WL_L), R_BL.times(state.alpha_WL_L), R_BL.times(state.a_WLo_L)
+
+
+def deformation_wrench(
+    kinematics: TreeKinematics,
+    beam: MovingBeam,
+    forms: BeamForms,
+    state: LinkMotion,
+    speeds: Sequence[Edge],
+    rates: Sequence[Edge],
+) -> Wrench:
+    """Wrench on the root, in the link frame, that deformation adds to the inertia of the undeformed beam (eqs. 15, 16).
+
+    Args:
+        kinematics: Kinematics of the tree.
+        beam: The beam.
+        forms: Forms of the beam, or of the part beyond a station.
+        state: Motion of the beam's root.
+        speeds: Rates of the elastic coordinates.
+        rates: Second derivatives of the elastic coordinates.
+    """
+    R_LB = kinematics.links[beam.root].R_LB
+    relative = _relative_wrench(forms, R_LB.T.times(state.w_WL_L), speeds, rates)
+    straight = inertia_wrench(deformed(kinematics, replace(beam, forms=forms)), state)
+    return straight + Wrench(R_LB.times(relative.f), R_LB.times(relative.n))
 
 
 def _relative_wrench(forms: BeamForms, w: Vec3, speeds: Sequence[Edge], rates: Sequence[Edge]) -> Wrench:
