@@ -70,5 +70,5 @@ def test_diagrams_of_closed_loops_state_the_error_of_runs() -> None:
     (bent,), (beam,) = alone.bendings, model.beams()
     unloaded = max(beam.bending(q[beam.in_q]).error for q in alone.q)
     assert not 0.95 < bent.error / unloaded < 1.05
-    for run in runs:
-        assert [b.error for b in run.bendings] == pytest.approx([bent.error], rel=1e-6)
+    for run in runs:  # the slack of (26d): interpreted runs evaluate every step whose error may be larger
+        assert [b.error for b in run.bendings] == pytest.approx([bent.error], rel=0.04)

@@ -231,7 +231,7 @@ static int fmu_initialise(fmu *f) {
 /* Write the message on the beam whose theory errs most. Returns whether that is new and worth telling. */
 static int fmu_note_bending(fmu *f) {
     const sym_plant *plant = f->instance->plant;
-    const sym_run *r = &f->instance->run;
+    sym_run *r = &f->instance->run;
     int32_t b, worst = 0;
     double error;
     for (b = 1; b < plant->n_beams; ++b)

@@ -8,7 +8,7 @@
 #define SYM_BEAM_TURN 1e-4
 #define SYM_BEAM_LEAST_WORK 1e-9
 /* Share of a run's evaluations that may look at axial loads. */
-#define SYM_BEAM_SHARE 0.012
+#define SYM_BEAM_SHARE 0.008
 /* States from which on axial loads may end a run: a single one may be a passing one. */
 #define SYM_BEAM_LASTING 4
 
@@ -22,7 +22,7 @@ static void sym_clear_axial_loads(sym_run *r) {
 /* a (nv) and lam (nc) at the evaluation point, which is the present state with a beam's deformation times a factor. */
 static void sym_accelerate_deformed(sym_run *r, const sym_beam *beam, double factor) {
     sym_system *s = r->system;
-    const int32_t n = beam->n_y + beam->n_z + beam->n_twist;
+    const int32_t n = beam->n;
     int32_t i;
     sym_load_state(r);
     for (i = 0; i < n; ++i) s->q[beam->q + i] *= factor;
@@ -33,7 +33,7 @@ static void sym_accelerate_deformed(sym_run *r, const sym_beam *beam, double fac
 /* Works of a beam's elastic and tangent stiffness in the present state, whose M and G are evaluated (26c). */
 static void sym_axial_works(sym_run *r, const sym_beam *beam, double works[2]) {
     const sym_system *s = r->system;
-    const int32_t nv = s->nv, n = beam->n_y + beam->n_z + beam->n_twist;
+    const int32_t nv = s->nv, n = beam->n;
     const double *x = r->q + beam->q, *reach = r->beam_reach + beam->first;
     double *change = r->beam_change, turned = 0.0, step;
     int32_t i, k;
@@ -70,7 +70,8 @@ static double sym_beam_amplification(const sym_run *r, int32_t beam) {
     return elastic / (total > SYM_BEAM_LEAST_WORK * elastic ? total : SYM_BEAM_LEAST_WORK * elastic);
 }
 
-SYM_EXPORT double sym_run_beam_error(const sym_run *r, int32_t beam) {
+SYM_EXPORT double sym_run_beam_error(sym_run *r, int32_t beam) {
+    sym_run_settle_beams(r);
     return r->beam_error[beam] * 0.25 * (sym_beam_amplification(r, beam) + 3.0);
 }
 
@@ -83,13 +84,12 @@ static void sym_thin_beam_states(sym_run *r) {
         memcpy(r->beam_works + (size_t)k * row, r->beam_works + 2 * (size_t)k * row, row * sizeof(double));
 }
 
-/* Look at the axial loads of the present state if it is one of those kept, after its bending was judged. Returns 0 or
- * SYM_BEYOND_THEORY. */
-static int32_t sym_judge_axial_loads(sym_run *r) {
+/* Look at the axial loads of the present state, after its bending was judged. Returns 0 or SYM_BEYOND_THEORY. */
+static int32_t sym_look_at_axial_loads(sym_run *r) {
     sym_system *s = r->system;
     double largest = 0.0;
     int32_t b;
-    if (r->elastic_stiffness == NULL || r->beam_steps++ != r->beam_next) return 0;
+    sym_run_settle_beams(r);
     for (b = 0; b < s->n_beams; ++b)
         if (r->beam_error[b] > largest) largest = r->beam_error[b];
     if (r->beam_states == SYM_BEAM_STATES) sym_thin_beam_states(r);
@@ -106,4 +106,10 @@ static int32_t sym_judge_axial_loads(sym_run *r) {
     for (b = 0; b < s->n_beams && r->beam_states >= SYM_BEAM_LASTING; ++b)
         if (sym_run_beam_error(r, b) > r->beam_limit) return SYM_BEYOND_THEORY;
     return 0;
+}
+
+/* The same if the state is one of those kept. */
+static int32_t sym_judge_axial_loads(sym_run *r) {
+    if (r->elastic_stiffness == NULL || r->beam_steps++ != r->beam_next) return 0;
+    return sym_look_at_axial_loads(r);
 }

@@ -145,8 +145,9 @@ static void sym_batch_move_last(sym_batch *b, int32_t to) {
 
 /* End the trajectory of a slot; the last active one takes the slot. */
 static void sym_batch_retire(sym_batch *b, int32_t slot, int32_t status) {
-    const sym_run *r = b->runs + slot;
+    sym_run *r = b->runs + slot;
     const int64_t trajectory = b->trajectory_of_slot[slot];
+    sym_run_settle_beams(r);
     sym_batch_store_result(b, trajectory, status, r->t, r->q, r->v);
     b->steps[trajectory] = r->steps;
     b->rejected[trajectory] = r->rejected;
@@ -174,7 +175,8 @@ static void sym_batch_activate_next(sym_batch *b) {
     r->beam_reach = b->beam_reach.at + trajectory * b->beam_reach.stride;
     r->beam_error = b->beam_error + trajectory * s->n_beams, r->beam_t = b->beam_t + trajectory * s->n_beams;
     r->beam_q = b->beam_q + trajectory * b->n_beam_coordinates;
-    r->beam_reference = b->beam_reference + trajectory * (2 * s->n_beams + b->n_beam_coordinates);
+    r->beam_reference = b->beam_reference + trajectory * b->n_beam_coordinates;
+    r->beam_guard = b->beam_guard + trajectory * s->n_beams;
     if (status == 0 && !(sym_all_finite(s->nq, r->q) && sym_all_finite(s->nv, r->v))) status = SYM_DIVERGED;
     if (status == 0) status = sym_run_start(r);
     if (status == 0 && r->t >= r->t_end) status = SYM_FINISHED;

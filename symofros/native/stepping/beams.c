@@ -31,7 +31,7 @@ static void sym_beam_keep_largest(const double square[4], double largest[4]) {
 
 /* Squares of the largest angles of a beam: yaw, pitch, slope, twist. */
 static void sym_beam_angles(const sym_beam *beam, const double *x, double largest[4]) {
-    const int32_t bending = beam->n_y + beam->n_z, n = bending + beam->n_twist;
+    const int32_t bending = beam->n_y + beam->n_z, n = beam->n;
     double squares[4][4] = {{0.0}};
     int32_t block, k, l;
     for (block = 0; block < beam->blocks; ++block) {
@@ -53,66 +53,119 @@ static void sym_beam_angles(const sym_beam *beam, const double *x, double larges
     }
 }
 
-/* The larger of a number and a magnitude. */
-static double sym_larger(double most, double x) { return fabs(x) > most ? fabs(x) : most; }
+/* The larger of two numbers; of a second one that is none the first. */
+static double sym_larger(double most, double x) { return x > most ? x : most; }
 
 /* The same of a beam that bends in the x-y plane alone. */
 static void sym_planar_beam_angles(const sym_beam *beam, const double *x, double largest[4]) {
-    const double *angles = beam->angles;
+    const double *angles = beam->angles, *end = x + beam->n_y, *at;
     double most = 0.0;
-    int32_t block, i;
+    int32_t block;
     for (block = 0; block < beam->blocks; ++block) {
         double a = 0.0, b = 0.0, c = 0.0, d = 0.0;
-        for (i = 0; i < beam->n_y; ++i, angles += 4)
-            a += angles[0] * x[i], b += angles[1] * x[i], c += angles[2] * x[i], d += angles[3] * x[i];
-        most = sym_larger(sym_larger(sym_larger(sym_larger(most, a), b), c), d);
+        for (at = x; at < end; ++at, angles += 4)
+            a += angles[0] * *at, b += angles[1] * *at, c += angles[2] * *at, d += angles[3] * *at;
+        most = sym_larger(sym_larger(sym_larger(sym_larger(most, a * a), b * b), c * c), d * d);
     }
-    largest[0] = largest[2] = most * most, largest[1] = largest[3] = 0.0;
+    largest[0] = largest[2] = most, largest[1] = largest[3] = 0.0;
 }
 
-/* The largest that angles can be by a change of the elastic coordinates: each one's largest angle counts, whatever its sign. */
-static double sym_beam_change(int32_t n, const double *reach, const double *q, const double *reference) {
+/* How far a beam's error may lie above the largest one before a step that goes on in the same direction is judged: this
+ * factor, and this error. */
+#define SYM_BEAM_SLACK 1.04
+#define SYM_BEAM_NEGLIGIBLE 1e-4
+
+/* The change of angles, of a slope and a twist whose squares are given, at which a beam's error may reach a given one: not
+ * before (26d). Without twist this inverts (24). */
+static double sym_change_to_error(const sym_beam *beam, double slope, double twist, double error) {
+    const double weight = beam->contrast / SYM_BEAM_SLOPE_ERROR, y = 0.5 * SYM_BEAM_LARGE_SLOPE / SYM_BEAM_SLOPE_ERROR * error;
+    const double square = error / SYM_BEAM_SLOPE_ERROR * (weight > 0.0 ? 1.0 : y + sqrt(1.0 + y * y));
+    const double left = square - slope - weight * twist;
+    double b;
+    if (!(left > 0.0)) return 0.0;
+    if (!(weight > 0.0)) return sqrt(square) - sqrt(slope);
+    b = sqrt(slope) + weight * sqrt(twist);
+    return left / (b + sqrt(b * b + (1.0 + weight) * left));
+}
+
+/* The largest that angles can be by the change of n elastic coordinates since the angles were evaluated last: each one's
+ * largest angle counts, whatever its sign. */
+static double sym_beam_change(int32_t n, const double *reach, const double *reference, const double *q) {
     double change = 0.0;
     int32_t i;
     for (i = 0; i < n; ++i) change += reach[i] * fabs(q[i] - reference[i]);
     return change;
 }
 
-/* An upper bound of a beam's error that costs little, by the change since its angles were evaluated last. */
-static double sym_beam_error_bound(const sym_run *r, int32_t b, const double *q) {
+/* Evaluate a beam's error in a configuration, and keep it if it is the largest. Returns 0 or SYM_BEYOND_THEORY. */
+static int32_t sym_evaluate_beam(sym_run *r, int32_t b, double t, const double *configuration) {
     const sym_beam *beam = &r->system->beams[b];
-    const int32_t bending = beam->n_y + beam->n_z;
-    const double *reach = r->beam_reach + beam->first, *reference = r->beam_reference + 2 * r->system->n_beams + beam->first;
-    const double slope = r->beam_reference[2 * b] + sym_beam_change(bending, reach, q, reference);
-    double bound = SYM_BEAM_SLOPE_ERROR * slope * slope, twist;
-    if (beam->contrast > 0.0) {
-        twist = r->beam_reference[2 * b + 1] +
-                sym_beam_change(beam->n_twist, reach + bending, q + bending, reference + bending);
-        bound += beam->contrast * twist * twist;
+    sym_beam_guard *guard = &r->beam_guard[b];
+    const int32_t n = beam->n;
+    const double *q = configuration + beam->q, *scale = r->beam_scale + beam->first;
+    double x[SYM_MAX_BEAM_COORDINATES], largest[4], *reference = r->beam_reference + beam->first, error, judged;
+    int32_t i;
+    for (i = 0; i < n; ++i) x[i] = scale[i] * q[i], reference[i] = q[i];
+    if (n == beam->n_y) sym_planar_beam_angles(beam, x, largest);
+    else sym_beam_angles(beam, x, largest);
+    error = sym_beam_error(beam, largest[0], largest[1], largest[2], largest[3]);
+    if (error > r->beam_error[b]) {
+        r->beam_error[b] = error, r->beam_t[b] = t;
+        for (i = 0; i < n; ++i) r->beam_q[beam->first + i] = q[i];
     }
-    return bound;
+    judged = SYM_BEAM_SLACK * r->beam_error[b];
+    if (judged < SYM_BEAM_NEGLIGIBLE) judged = SYM_BEAM_NEGLIGIBLE;
+    if (judged > r->beam_limit) judged = r->beam_limit;
+    guard->settled = sym_change_to_error(beam, largest[2], largest[3], r->beam_error[b]);
+    guard->judged = sym_change_to_error(beam, largest[2], largest[3], judged);
+    guard->pending = 0.0;
+    return error > r->beam_limit ? SYM_BEYOND_THEORY : 0;
 }
 
 SYM_EXPORT int32_t sym_run_judge_beams(sym_run *r) {
     const sym_system *s = r->system;
-    double x[SYM_MAX_BEAM_COORDINATES], largest[4];
-    int32_t b, i, status = 0;
+    int32_t b, status = 0;
     for (b = 0; b < s->n_beams; ++b) {
         const sym_beam *beam = &s->beams[b];
-        const int32_t n = beam->n_y + beam->n_z + beam->n_twist;
-        const double *q = r->q + beam->q, *scale = r->beam_scale + beam->first;
-        double error, *reference = r->beam_reference + 2 * s->n_beams + beam->first;
-        if (sym_beam_error_bound(r, b, q) <= r->beam_error[b]) continue;
-        for (i = 0; i < n; ++i) x[i] = scale[i] * q[i], reference[i] = q[i];
-        if (n == beam->n_y) sym_planar_beam_angles(beam, x, largest);
-        else sym_beam_angles(beam, x, largest);
-        r->beam_reference[2 * b] = sqrt(largest[2]), r->beam_reference[2 * b + 1] = sqrt(largest[3]);
-        error = sym_beam_error(beam, largest[0], largest[1], largest[2], largest[3]);
-        if (error > r->beam_error[b]) {
-            r->beam_error[b] = error, r->beam_t[b] = r->t;
-            for (i = 0; i < n; ++i) r->beam_q[beam->first + i] = q[i];
-        }
-        if (error > r->beam_limit) status = SYM_BEYOND_THEORY;
+        const double *reach = r->beam_reach + beam->first, *reference = r->beam_reference + beam->first;
+        if (sym_beam_change(beam->n, reach, reference, r->q + beam->q) <= r->beam_guard[b].settled) continue;
+        if (sym_evaluate_beam(r, b, r->t, r->q) != 0) status = SYM_BEYOND_THEORY;
+    }
+    return status;
+}
+
+SYM_EXPORT void sym_run_settle_beams(sym_run *r) {
+    int32_t b;
+    for (b = 0; b < r->system->n_beams; ++b)
+        if (r->beam_guard[b].pending > 0.0) (void)sym_evaluate_beam(r, b, r->t, r->q);
+}
+
+/* Judge a beam at the end (t, q) of an accepted step, whose angles have changed by more than is settled, while the present
+ * state is still the begin of the step. Returns 0 or SYM_BEYOND_THEORY. */
+static int32_t sym_judge_farther(sym_run *r, int32_t b, double t, const double *q, double change) {
+    const sym_beam *beam = &r->system->beams[b];
+    sym_beam_guard *guard = &r->beam_guard[b];
+    if (change < guard->pending) { /* the begin was the farthest */
+        (void)sym_evaluate_beam(r, b, r->t, r->q);
+        change = sym_beam_change(beam->n, r->beam_reach + beam->first, r->beam_reference + beam->first, q + beam->q);
+    }
+    if (change > guard->judged) return sym_evaluate_beam(r, b, t, q);
+    guard->pending = change > guard->settled ? change : 0.0;
+    return 0;
+}
+
+/* Judge the end (t, q) of an accepted step while the present state is still its begin (26d). Returns 0 or
+ * SYM_BEYOND_THEORY. */
+static int32_t sym_judge_step(sym_run *r, double t, const double *q) {
+    const sym_beam *beam = r->system->beams, *last = beam + r->system->n_beams;
+    const double *reach = r->beam_reach, *reference = r->beam_reference;
+    sym_beam_guard *guard = r->beam_guard;
+    int32_t status = 0;
+    for (; beam < last; reach += beam->n, reference += beam->n, ++beam, ++guard) {
+        const double change = sym_beam_change(beam->n, reach, reference, q + beam->q);
+        if (change <= guard->settled && !(guard->pending > 0.0)) continue;
+        if (change >= guard->pending && change <= guard->judged) guard->pending = change;
+        else if (sym_judge_farther(r, (int32_t)(guard - r->beam_guard), t, q, change) != 0) status = SYM_BEYOND_THEORY;
     }
     return status;
 }

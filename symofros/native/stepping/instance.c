@@ -21,7 +21,8 @@ static int32_t sym_instance_allocate_beams(sym_instance *instance, sym_arena *ar
     s->n_beams = p->n_beams, s->beams = instance->beams;
     r->beam_limit = p->beam_limit, r->beam_scale = instance->beam_scale, r->beam_reach = instance->beam_reach;
     r->beam_error = sym_allocate(arena, n), r->beam_t = sym_allocate(arena, n), r->beam_q = sym_allocate(arena, coordinates);
-    r->beam_reference = sym_allocate(arena, 2 * n + coordinates);
+    r->beam_reference = sym_allocate(arena, coordinates);
+    r->beam_guard = sym_allocate_bytes(arena, n * sizeof *r->beam_guard);
     r->beam_works = sym_allocate(arena, 2 * SYM_BEAM_STATES * n);
     r->beam_change = sym_allocate(arena, (size_t)s->nv + (size_t)s->nc);
     has_stiffness = sym_instance_bind(instance, arena, &instance->beam_stiffness, "beam_stiffness");
@@ -37,11 +38,12 @@ static void sym_instance_prepare_beams(sym_instance *instance) {
     const double *L = instance->beam_stiffness.out[0], *EI = instance->beam_stiffness.out[1];
     int32_t b, i;
     if (p->n_beams == 0) return;
-    memset(instance->run.beam_reference, 0, (2 * (size_t)p->n_beams + (size_t)p->n_beam_coordinates) * sizeof(double));
+    memset(instance->run.beam_reference, 0, (size_t)p->n_beam_coordinates * sizeof(double));
+    memset(instance->run.beam_guard, 0, (size_t)p->n_beams * sizeof(sym_beam_guard));
     sym_evaluate(&instance->beam_stiffness);
     for (b = 0; b < p->n_beams; ++b) {
         sym_beam *beam = &instance->beams[b];
-        const int32_t end = beam->first + beam->n_y + beam->n_z + beam->n_twist;
+        const int32_t end = beam->first + beam->n;
         const double EI_z = EI[2 * b], EI_y = EI[2 * b + 1], least = EI_z < EI_y ? EI_z : EI_y;
         beam->EI_z = EI_z, beam->EI_y = EI_y;
         beam->contrast = beam->n_y > 0 && beam->n_z > 0 && least > 0.0 ? fabs(EI_z - EI_y) / least : 0.0;
@@ -154,7 +156,7 @@ SYM_EXPORT int32_t sym_instance_judge_beams(sym_instance *instance) {
     return status != 0 ? status : sym_judge_axial_loads(&instance->run);
 }
 
-SYM_EXPORT double sym_instance_beam_error(const sym_instance *instance, int32_t beam) {
+SYM_EXPORT double sym_instance_beam_error(sym_instance *instance, int32_t beam) {
     return sym_run_beam_error(&instance->run, beam);
 }
 

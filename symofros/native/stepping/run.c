@@ -142,6 +142,7 @@ static int32_t sym_accept_step(sym_run *r, sym_workspace *w, double h, double t1
         sym_store_end_state(s, w);
         t1 = *s->t;
     }
+    beyond = sym_judge_step(r, t1, w->end_state);
     sym_set_end_state(r, w, t1);
     r->slope_valid = 0;
     if (fsal && !r->project && !stopped) { /* first same as last, but in the chart about the new state, where theta' = v */
@@ -150,7 +151,6 @@ static int32_t sym_accept_step(sym_run *r, sym_workspace *w, double h, double t1
         r->slope_valid = 1;
     }
     ++r->steps;
-    beyond = sym_run_judge_beams(r);
     if (s->n_events > 0 && stopped) { /* not the state that sym_find_events evaluated */
         sym_load_state(r);
         status = sym_event_values(r, r->event_values);

@@ -75,7 +75,7 @@ int32_t sym_instance_project(sym_instance *instance);
 /* Judge how far the beams of the present state bend, as sym_instance_advance does. Returns 0 or SYM_BEYOND_THEORY. */
 int32_t sym_instance_judge_beams(sym_instance *instance);
 /* Estimated error of a beam's theory since the reset, relative to its deflection, axial loads included. */
-double sym_instance_beam_error(const sym_instance *instance, int32_t beam);
+double sym_instance_beam_error(sym_instance *instance, int32_t beam);
 /* Accelerations and multipliers at the present state. Returns 0 or a status. */
 int32_t sym_instance_accelerate(sym_instance *instance);
 /* Integrate to t_end by steps of at most h (0: the plant's). Returns SYM_FINISHED or a status below zero. */

@@ -58,12 +58,18 @@ typedef struct sym_signal { /* one input, sampled over time */
 
 typedef struct sym_beam { /* one elastic body: angles of its sections are linear in its elastic coordinates */
     int32_t q, v, first;         /* first index in q, in v, in beam_scale and beam_q */
-    int32_t n_y, n_z, n_twist;   /* number of coordinates by direction */
+    int32_t n, n_y, n_z, n_twist; /* number of coordinates, in all and by direction */
     int32_t blocks;              /* number of blocks of four stations */
     const double *angles;        /* (blocks, n_y + n_z + n_twist, 4): yaw, pitch and twist per scaled coordinate [rad] */
     double EI_z, EI_y;           /* stiffness against n_y and n_z at mid-length */
     double contrast;             /* |EI_z - EI_y| over the smaller; 0 where bending is rigid in a plane */
 } sym_beam;
+
+typedef struct sym_beam_guard { /* changes of a beam's angles since they were evaluated last [rad] */
+    double settled;              /* up to here the error is not larger than the largest one */
+    double judged;               /* from here on each step is judged; between both one that is farther than the next */
+    double pending;              /* of the present state where that is to be judged yet; 0: it is not */
+} sym_beam_guard;
 
 typedef struct sym_call { /* a model function with the arrays it reads and writes */
     const sym_function *function; /* NULL: absent */
@@ -145,9 +151,10 @@ typedef struct sym_run {
     const double *beam_scale;  /* 1/L of coordinates that are displacements, else 1 */
     const double *beam_reach;  /* largest angle per coordinate */
     double *beam_error, *beam_t, *beam_q;
-    /* (2 n_beams + elastic coordinates) largest slope and twist of each beam where they were evaluated last, then the elastic
-     * coordinates there: zeros at first, and where a beam's length changes. */
+    /* Elastic coordinates where the angles of each beam were evaluated last, and what follows from these (n_beams): zeros at
+     * first, and where a beam's length changes. */
     double *beam_reference;
+    sym_beam_guard *beam_guard;
     /* Axial loads of the beams, in states of the motion that are kept as those for the diagnosis are: the work of the
      * elastic stiffness (nv, nv) and of the tangent stiffness. NULL: nothing is known of them here. */
     const double *elastic_stiffness;
@@ -180,8 +187,10 @@ int32_t sym_run_start(sym_run *run);
 int32_t sym_run_advance(sym_run *run, int64_t max_steps);
 /* Compare the present state's beams with the limit, and keep the largest error of each. Returns 0 or SYM_BEYOND_THEORY. */
 int32_t sym_run_judge_beams(sym_run *run);
+/* Judge beams in the present state that wait for the next step: the largest errors are complete then. */
+void sym_run_settle_beams(sym_run *run);
 /* Estimated error of a beam's theory, the largest so far, amplified by its axial loads. */
-double sym_run_beam_error(const sym_run *run, int32_t beam);
+double sym_run_beam_error(sym_run *run, int32_t beam);
 /* For external integrators, whose states are y = (q, v) with quaternions of any length; each returns a status. */
 /* The present state becomes y, normalised, and the system's inputs those of that state. */
 int32_t sym_run_set_state(sym_run *run, double t, const double *y);

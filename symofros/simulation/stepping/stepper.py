@@ -100,6 +100,7 @@ class Stepper:
                     beam.q,
                     beam.v,
                     first,
+                    beam.size,
                     *beam.counts,
                     len(blocks),
                     memory.doubles(blocks),
@@ -113,7 +114,8 @@ class Stepper:
         )
         run.beam_limit = math.inf
         run.beam_scale = memory.doubles(np.concatenate([np.zeros(0), *(beam.scale for beam in self.beams)]))
-        run.beam_reference = memory.zeros(2 * len(self.beams) + int(firsts[-1]))
+        run.beam_reference = memory.zeros(int(firsts[-1]))
+        run.beam_guard = memory.own("sym_beam_guard[]", len(self.beams))
         run.beam_reach = memory.doubles(np.concatenate([np.zeros(0), *(beam.reach for beam in self.beams)]))
         self._beam_record = np.zeros(len(self.beams)), np.zeros(len(self.beams)), np.zeros(int(firsts[-1]))
         run.beam_error, run.beam_t, run.beam_q = (
@@ -127,6 +129,7 @@ class Stepper:
 
     def amplified_bendings(self, amplifications: Sequence[float]) -> tuple[BeamBending, ...]:
         """Bending of each beam at that step, its error amplified by axial loads."""
+        self.native.sym_run_settle_beams(self.run)
         _, t, q = self._beam_record
         return worst_bendings(self.beams, t, q, amplifications)
 
