@@ -15,7 +15,7 @@ from symofros.expr.program import Output, Program
 from symofros.generator.codegen.packs import Store, runs_of_lanes, vector_lines, vector_name
 from symofros.generator.codegen.statements import Statement, StatementWriter
 from symofros.generator.codegen.trigonometry import block_lines
-from symofros.runtime.calls.kernel import LaneOptions
+from symofros.runtime.calls.kernel import LaneOptions, Precision
 
 MAX_STATEMENTS = 1000
 # Past this length, shorter chunks compile twice as fast and run as fast (measured on a 52-link chain, gcc 12); below
@@ -124,6 +124,32 @@ class FunctionWriter:
         head = f"static void {self.c_name}_v(int count, const sym_column *in, const sym_column *out, sym_v *work) {{"
         return FunctionText("\n".join([*parts, head, "    int i;", *calls, "}"]), chunked.work)
 
+    def text_on_device(self, precision: Precision) -> FunctionText:
+        """The C text for the state of one thread: chunks as on vectors, of one lane, and the function that calls them.
+
+        That function takes `pre`, then an address and a step of each array; of a writer without packs.
+        """
+        writer = self.writer.in_lanes(precision == "single")
+        parts = [self._chunk_in_lanes(i, self.chunked, writer) for i in range(len(self.chunked.chunks))]
+        work = self.chunked.work
+        pre, *inputs = self.inputs
+        names = [*inputs, *(output.name for output in self.outputs)]
+        arguments = [pre, *(f"{name}_at, {name}_step" for name in names), "work" if work else "NULL"]
+        body = [f"    sym_v work[{work}];"] * (work > 0)
+        for output in self.outputs:
+            zeros = (i for i, edge in enumerate(output.edges) if edge == 0)
+            body += [f"    SYM_PUT({output.name}, {i}, 0);" for i in zeros]
+        calls = [f"    {self.c_name}_v_{k}({', '.join(arguments)});" for k in range(len(parts))]
+        head = f"static inline void {self.c_name}_of_state({', '.join(self._strided_arguments())}) {{"
+        return FunctionText("\n".join([*parts, head, *body, *calls, "}"]), work)
+
+    def _strided_arguments(self) -> list[str]:
+        """Declarations of the arguments of functions on vectors: `pre`, then an address and a step of each array."""
+        pre, *inputs = self.inputs
+        arguments = [f"const sym_p *restrict {pre}"]
+        arguments += [f"const sym_number *restrict {name}_at, ptrdiff_t {name}_step" for name in inputs]
+        return arguments + [f"sym_number *restrict {o.name}_at, ptrdiff_t {o.name}_step" for o in self.outputs]
+
     def _clear(self, output: Output) -> list[str]:
         zeros = [i for i, edge in enumerate(output.edges) if edge == 0]
         if not zeros:
@@ -145,16 +171,14 @@ class FunctionWriter:
     def _chunk_in_lanes(self, index: int, chunked: _Chunks, writer: StatementWriter) -> str:
         lines, used = self._body(index, chunked, writer, "sym_v")
         pre, *inputs = self.inputs
-        arguments = [f"const sym_p *restrict {pre}"]
-        arguments += [f"const sym_number *restrict {name}_at, ptrdiff_t {name}_step" for name in inputs]
-        arguments += [f"sym_number *restrict {o.name}_at, ptrdiff_t {o.name}_step" for o in self.outputs]
         unused = [
             f"    (void){name}_at, (void){name}_step;"
             for name in (*inputs, *(o.name for o in self.outputs))
             if name not in used
         ]
         unused += [f"    (void){name};" for name in (pre, "work") if name not in used]
-        head = f"static SYM_NOINLINE void {self.c_name}_v_{index}({', '.join([*arguments, 'sym_v *restrict work'])}) {{"
+        arguments = [*self._strided_arguments(), "sym_v *restrict work"]
+        head = f"static SYM_NOINLINE void {self.c_name}_v_{index}({', '.join(arguments)}) {{"
         return "\n".join([head, *unused, *lines, "}"])
 
     def _body(self, index: int, chunked: _Chunks, writer: StatementWriter, real: str) -> tuple[list[str], set[str]]:

@@ -146,14 +146,18 @@ def _sizes(program: Program, function: Function) -> list[int]:
 def routines(lanes: LaneOptions) -> str:
     """The hand-written routines that batches in lanes call."""
     makers = {1: "SYM_BY_LANE", 2: "SYM_BY_LANES"}
-    functions = [
-        f"{makers[op.arity]}({op.name}, {op.c.partition('(')[0]})"
-        for op in OPS.values()
-        if op.name not in (ADD, MUL, DIV, STOP_GRADIENT)
-    ]
     return Template(native_text("model/lanes.c.in")).substitute(
-        functions="\n".join(functions),
+        functions="\n".join(f"{makers[arity]}({name}, {function})" for name, function, arity in called_functions()),
         own=int(lanes.own_parameters),
         single=int(lanes.single),
         sines=trigonometry.of_lanes(lanes.single),
     )
+
+
+def called_functions() -> list[tuple[str, str, int]]:
+    """(operation, C function, number of operands) of the operations that text on vectors calls as sym_v_NAME."""
+    return [
+        (op.name, op.c.partition("(")[0], op.arity)
+        for op in OPS.values()
+        if op.name not in (ADD, MUL, DIV, STOP_GRADIENT)
+    ]

@@ -53,7 +53,7 @@ def model_source(
     texts = [
         "\n".join(
             [
-                *_legend(
+                *legend(
                     record,
                     "parameters -> pre, all that depends on them alone",
                     ["par"],
@@ -69,15 +69,11 @@ def model_source(
         text, row = _one_function(program, record, function, c_function, vectors, packs, sparse.get(function.name))
         texts.append(text)
         rows.append(row)
-    counts = count_program(program)
-    titles = [" of ".join(filter(None, key)) for key in counts]
-    width = max(map(len, titles), default=0) + 2
-    lines = [f" *   {title:<{width}}{count}" for title, count in zip(titles, counts.values(), strict=True)]
     return Template(native_text("model/model.c.in")).substitute(
-        title=_comment(record.name),
+        title=comment(record.name),
         generator=generator,
         hash=record.hash,
-        operations=_comment("\n".join(lines)),
+        operations=operations_text(program),
         functions="\n\n".join(
             [
                 *trigonometry.routines(texts, vectors is not None),
@@ -106,6 +102,16 @@ def model_source(
         par_names=_strings(record.par_names),
         par_default=_numbers(record.par_default),
         q_neutral=_numbers(record.q_neutral),
+    )
+
+
+def operations_text(program: Program) -> str:
+    """Lines of a comment: operations of each function, and of the parameters' part."""
+    counts = count_program(program)
+    titles = [" of ".join(filter(None, key)) for key in counts]
+    width = max(map(len, titles), default=0) + 2
+    return comment(
+        "\n".join(f" *   {title:<{width}}{count}" for title, count in zip(titles, counts.values(), strict=True))
     )
 
 
@@ -143,7 +149,7 @@ class _Row:
     lanes: str
 
 
-def _legend(
+def legend(
     record: ModelRecord,
     title: str,
     inputs: Iterable[str],
@@ -166,7 +172,7 @@ def _legend(
         "u": record.u_names,
         "par": record.par_names,
     }
-    lines = ["/* " + _comment(title)]
+    lines = ["/* " + comment(title)]
     for group in inputs:
         lines += _wrapped([f"{group}[{i}] {name}" for i, name in enumerate(names.get(group, ()))])
     lines += _wrapped(described)
@@ -177,7 +183,7 @@ def _legend(
 
 def _wrapped(entries: Iterable[str]) -> list[str]:
     """Lines of a comment that break between entries, not within one."""
-    text = ", ".join(_comment(entry).replace(" ", _SPACE) for entry in entries)
+    text = ", ".join(comment(entry).replace(" ", _SPACE) for entry in entries)
     lines = wrap(text, _WIDTH, break_long_words=False, break_on_hyphens=False)
     return [f" *   {line.replace(_SPACE, ' ')}" for line in lines]
 
@@ -235,9 +241,9 @@ def _one_function(
     work = max(text.work, scratch)
     title = f"{function.name} {function.frame}".rstrip()
     described = f"{title}: {function.summary}" if function.summary else title
-    legend = _legend(record, described, function.inputs, function.returns)
     batch = lanes.batch(c_name, function, in_lanes)
-    code = "\n".join([*legend, text.code, *vectors, batch])
+    head = legend(record, described, function.inputs, function.returns)
+    code = "\n".join([*head, text.code, *vectors, batch])
     arrays_in = ", ".join(f'{{"{name}", 1, {program.sizes[name]}, 1}}' for name in inputs)
     arrays_out = ", ".join(f'{{"{name}", {len(s)}, {_rows(s)}, {_columns(s)}}}' for name, s in function.returns)
     tables = (
@@ -292,7 +298,7 @@ def _numbers(values: Iterable[float]) -> str:
     return ", ".join(map(repr, values)) or "0.0"
 
 
-def _comment(text: str) -> str:
+def comment(text: str) -> str:
     """Text that can't end a C comment, in ASCII, without trigraphs."""
     plain = text.encode("ascii", "replace").decode()
     return plain.replace("*/", "* /").replace("/*", "/ *").replace("?", "_")

@@ -17,6 +17,7 @@ from symofros.expr.numerics.trigonometry import (
 )
 from symofros.generator.codegen.statements import WIDEST, Statement, StatementWriter
 from symofros.native import native_text
+from symofros.runtime.calls.kernel import Precision
 
 # A block of angles is padded to one of these.
 WIDTHS = (1, 2, 4, WIDEST)
@@ -111,6 +112,13 @@ def of_lanes(single: bool) -> str:
         cosine=_polynomial(COSINE_SINGLE, "f"),
     )
     return near + native_text("model/sincos_lanes.c.in")
+
+
+def on_device(precision: Precision) -> str:
+    """The routine of a graphics processor, for angles of one state."""
+    if precision == "single":
+        return native_text("cuda/sincos_single.cu.in")
+    return Template(native_text("cuda/sincos_double.cu.in")).substitute(far=repr(FAR), near=_near("sym_near_1"))
 
 
 def _near(

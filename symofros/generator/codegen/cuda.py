@@ -1,0 +1,167 @@
+"""Program -> CUDA C++: one kernel a function, one thread a state.
+
+The text of a function is that of the C code by vectors (docs/theory/code.md), whose vectors have one lane here: arrays
+are addressed by entry and step, so that threads of neighbouring states read neighbouring numbers.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from string import Template
+
+from symofros.expr.program import Function, Program
+from symofros.generator.codegen import trigonometry
+from symofros.generator.codegen.function import FunctionWriter
+from symofros.generator.codegen.lanes import called_functions
+from symofros.generator.codegen.model import comment, legend, operations_text
+from symofros.generator.codegen.names import identifier
+from symofros.native import native_text
+from symofros.runtime.calls.kernel import Precision, Signature
+from symofros.runtime.cuda.device_code import BLOCK, DeviceCode, DeviceKernel
+from symofros.runtime.record import ModelRecord
+
+_REAL: dict[Precision, str] = {"double": "double", "single": "float"}
+_STATIC = re.compile(r"^static ", re.MULTILINE)
+_DECIMAL = re.compile(r"(?<![\w.])\d+(?:\.\d+(?:e[-+]?\d+)?|e[-+]?\d+)(?![\w.])")
+# Methods that roll out, by their names in sf.simulate.
+ROLLOUTS = {"rk4": "rk4", "semi_implicit_euler": "semi_implicit"}
+
+
+def device_code(
+    program: Program, record: ModelRecord, generator: str, precision: Precision, c_name: str | None = None
+) -> DeviceCode:
+    """The kernels of a program.
+
+    Args:
+        program: Staged program; functions that a solver finishes have no kernel.
+        record: Names and sizes of the model.
+        generator: Name and version of the generator.
+        precision: Precision of the numbers.
+        c_name: Prefix of symbols; made of the record's name by default.
+    """
+    name = c_name or identifier(record.name)
+    functions = [function for function in program.functions if function.solver is None]
+    kernels = [DeviceKernel(symbol, _signature(program, f)) for f, symbol in zip(functions, _symbols(name, functions))]
+    texts = [
+        "\n".join(
+            [
+                *legend(record, function.summary or function.name, function.inputs, function.returns),
+                _on_device(_function(program, function, kernel.symbol, precision)),
+                _kernel(kernel),
+            ]
+        )
+        for function, kernel in zip(functions, kernels, strict=True)
+    ]
+    text = Template(native_text("cuda/kernels.cu.in")).substitute(
+        title=comment(record.name),
+        precision=precision,
+        generator=generator,
+        hash=record.hash,
+        operations=operations_text(program),
+        block=BLOCK,
+        real=_REAL[precision],
+        functions="",
+    )
+    routines = "\n".join([*map(_called, called_functions()), trigonometry.on_device(precision)])
+    rollouts = {}
+    if any(function.name == "forward_dynamics" for function in functions):
+        texts.append(_on_device(_rollout(name, record, functions, precision)))
+        rollouts = {method: f"{name}_rollout_{suffix}" for method, suffix in ROLLOUTS.items()}
+    return DeviceCode("\n\n".join([_on_device(text + routines), *texts]), precision, tuple(kernels), rollouts)
+
+
+def _on_device(text: str) -> str:
+    """C text as functions of the device; constants within functions stay as they are."""
+    return _STATIC.sub("static __device__ ", text)
+
+
+def _called(function: tuple[str, str, int]) -> str:
+    """A function of CUDA's library under the name that text on vectors calls it by."""
+    operation, c_function, arity = function
+    arguments, values = ("sym_v x", "x") if arity == 1 else ("sym_v x, sym_v y", "x, y")
+    return f"static inline sym_v sym_v_{operation}({arguments}) {{ return {c_function}({values}); }}"
+
+
+def _symbols(name: str, functions: Sequence[Function]) -> list[str]:
+    """One name a kernel: frames that look alike in C are told apart by a number."""
+    symbols: list[str] = []
+    for function in functions:
+        symbol = "_".join([name, function.name, *([identifier(function.frame)] if function.frame else [])])
+        taken = symbol in symbols
+        symbols.append(f"{symbol}_{len(symbols)}" if taken else symbol)
+    return symbols
+
+
+def _signature(program: Program, function: Function) -> Signature:
+    inputs = tuple((group, program.sizes[group]) for group in function.inputs)
+    return Signature(function.name, function.frame, inputs, function.returns)
+
+
+def _function(program: Program, function: Function, symbol: str, precision: Precision) -> str:
+    writer = FunctionWriter(program, symbol, ["pre", *function.inputs], function.outputs)
+    return writer.text_on_device(precision).code
+
+
+def _kernel(kernel: DeviceKernel) -> str:
+    """The kernel: the state of the thread, its place in each array, the call."""
+    names = [name for name, _ in (*kernel.signature.inputs, *kernel.signature.outputs)]
+    arguments = ", ".join(["long long n", "const sym_p *restrict pre", *(f"sym_strided {name}" for name in names)])
+    places = ", ".join(["pre", *(f"sym_of(&{name}, state), {name}.step" for name in names)])
+    return "\n".join(
+        [
+            f'extern "C" __global__ void __launch_bounds__(SYM_BLOCK) {kernel.symbol}({arguments}) {{',
+            "    const ptrdiff_t state = sym_state();",
+            f"    if (state < n) {kernel.symbol}_of_state({places});",
+            "}",
+        ]
+    )
+
+
+def _rollout(name: str, record: ModelRecord, functions: Sequence[Function], precision: Precision) -> str:
+    """Kernels that step states by the forward dynamics among the functions."""
+    forward = next(function for function in functions if function.name == "forward_dynamics")
+    rotations = native_text("stepping/rotations.c").replace("double", "sym_number")
+    if precision == "single":
+        rotations = _DECIMAL.sub(r"\g<0>f", rotations)
+    segments = record.segments
+    return Template(native_text("cuda/rollout.cu.in")).substitute(
+        name=name,
+        nq=max(1, len(record.q_names)),
+        nv=max(1, len(record.v_names)),
+        rotations=rotations,
+        retract="\n".join(_RETRACTED[s.kind].substitute(q=s.q, v=s.v, size=s.size) for s in segments),
+        chart_rate="\n".join(_CHART_RATE[s.kind].substitute(v=s.v, size=s.size) for s in segments),
+        stage=_forward_arguments(forward, "stage_q", "stage_v"),
+        present=_forward_arguments(forward, "q", "v"),
+    )
+
+
+def _forward_arguments(forward: Function, q: str, v: str) -> str:
+    """Arguments of the forward dynamics of one thread, at arrays of that thread."""
+    places = {"q": f"{q}, 1", "v": f"{v}, 1", "u": "u, u_step", "t": "&time, 1"}
+    return ", ".join(["pre", *(places[group] for group in forward.inputs), "a, 1"])
+
+
+# A segment's part of q1 = q0 (+) theta and of the rate of theta, as in native/stepping/manifold.c.
+_RETRACTED = {
+    "linear": Template("    for (i = 0; i < $size; ++i) q1[$q + i] = q0[$q + i] + theta[$v + i];"),
+    "quaternion": Template(
+        "    sym_quaternion_exp(theta + $v, rotation);\n    sym_quaternion_product(q0 + $q, rotation, q1 + $q);"
+    ),
+    "pose": Template(
+        "    sym_rotate(q0 + $q + 3, theta + $v, displacement);\n"
+        "    for (i = 0; i < 3; ++i) q1[$q + i] = q0[$q + i] + displacement[i];\n"
+        "    sym_quaternion_exp(theta + $v + 3, rotation);\n"
+        "    sym_quaternion_product(q0 + $q + 3, rotation, q1 + $q + 3);"
+    ),
+}
+_CHART_RATE = {
+    "linear": Template("    for (i = 0; i < $size; ++i) rate[$v + i] = v[$v + i];"),
+    "quaternion": Template("    sym_rotation_vector_rate(theta + $v, v + $v, rate + $v);"),
+    "pose": Template(
+        "    sym_quaternion_exp(theta + $v + 3, rotation);\n"
+        "    sym_rotate(rotation, v + $v, rate + $v);\n"
+        "    sym_rotation_vector_rate(theta + $v + 3, v + $v + 3, rate + $v + 3);"
+    ),
+}

@@ -1,0 +1,1 @@
+"""Graphics processors: CUDA text compiled by NVRTC, run through the driver."""

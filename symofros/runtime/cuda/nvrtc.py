@@ -1,0 +1,142 @@
+"""CUDA text -> machine code of one architecture, by NVRTC, the compiler that the package nvidia-cuda-nvrtc-cu12 brings.
+
+No driver and no graphics processor take part, so that what a kernel takes is known where there is none.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import re
+from dataclasses import dataclass
+from functools import cache
+from importlib.util import find_spec
+from pathlib import Path
+
+from symofros.errors import CompileError, Problem
+
+_ARCHITECTURE = re.compile(r"sm_\d{2,3}a?")
+# What `ptxas -v` says of each entry: its own frame, then that of the functions that it calls.
+_ENTRY = re.compile(r"Compiling entry function '(?P<name>\w+)'(?P<rest>(?:(?!Compiling entry function).)*)", re.DOTALL)
+_REGISTERS = re.compile(r"Used (\d+) registers")
+_STACK = re.compile(r"(\d+) bytes cumulative stack size")
+_STORES, _LOADS = re.compile(r"(\d+) bytes spill stores"), re.compile(r"(\d+) bytes spill loads")
+# Lines of the compiler's message that an error shows.
+_SHOWN = 6
+
+
+@dataclass(frozen=True)
+class KernelUsage:
+    """What a kernel takes of each thread, as the assembler (`ptxas -v`) states it.
+
+    Attributes:
+        registers: Registers of 32 bits; 255 are all that there are.
+        stack: Local memory of the deepest call [bytes].
+        spill_stores: Bytes stored to local memory because registers ran out, in the kernel and the functions it calls.
+        spill_loads: Bytes loaded again.
+    """
+
+    registers: int
+    stack: int
+    spill_stores: int
+    spill_loads: int
+
+
+@dataclass(frozen=True)
+class MachineCode:
+    """Kernels of one architecture.
+
+    Attributes:
+        image: Contents of a cubin.
+        usage: Name of a kernel -> what it takes.
+    """
+
+    image: bytes
+    usage: dict[str, KernelUsage]
+
+
+def compile_cuda(text: str, architecture: str, contract: bool = False) -> MachineCode:
+    """Compile CUDA C++.
+
+    Args:
+        text: Source that includes nothing.
+        architecture: Such as "sm_90".
+        contract: Whether products and sums are fused, which rounds otherwise than the C code does.
+
+    Raises:
+        CompileError: NVRTC is not installed, knows no such architecture, or refuses the text.
+    """
+    if not _ARCHITECTURE.fullmatch(architecture):
+        raise CompileError(
+            Problem(
+                f"CUDA: no architecture '{architecture:.40}'",
+                repr(architecture)[:60],
+                "an architecture is 'sm_' and a compute capability, such as 'sm_90'",
+                "leave it out where a graphics processor is at hand",
+            )
+        )
+    nvrtc, program = _library(), ctypes.c_void_p()
+    options = [f"-arch={architecture}", "--ptxas-options=-v", f"-fmad={str(contract).lower()}", "-std=c++17"]
+    given = (ctypes.c_char_p * len(options))(*(option.encode() for option in options))
+    if nvrtc.nvrtcCreateProgram(ctypes.byref(program), text.encode(), b"kernels.cu", 0, None, None):
+        raise _failed(architecture, "NVRTC takes no program")
+    try:
+        failed = nvrtc.nvrtcCompileProgram(program, len(options), given)
+        log = _text(nvrtc, "ProgramLog", program).rstrip(b"\0").decode(errors="replace")
+        if failed:
+            raise _failed(architecture, "; ".join(log.strip().splitlines()[:_SHOWN]) or f"NVRTC error {failed}")
+        image = _text(nvrtc, "CUBIN", program)
+    finally:
+        nvrtc.nvrtcDestroyProgram(ctypes.byref(program))
+    return MachineCode(image, {match["name"]: _usage(match["rest"]) for match in _ENTRY.finditer(log)})
+
+
+def _usage(text: str) -> KernelUsage:
+    """What is said after the name of an entry."""
+    registers, stack = _REGISTERS.search(text), _STACK.search(text)
+    return KernelUsage(
+        int(registers[1]) if registers else 0,
+        int(stack[1]) if stack else 0,
+        sum(map(int, _STORES.findall(text))),
+        sum(map(int, _LOADS.findall(text))),
+    )
+
+
+def _text(nvrtc: ctypes.CDLL, what: str, program: ctypes.c_void_p) -> bytes:
+    """One result of a program, by its size and then its content."""
+    size = ctypes.c_size_t()
+    getattr(nvrtc, f"nvrtcGet{what}Size")(program, ctypes.byref(size))
+    content = ctypes.create_string_buffer(size.value)
+    getattr(nvrtc, f"nvrtcGet{what}")(program, content)
+    return content.raw
+
+
+@cache
+def _library() -> ctypes.CDLL:
+    """NVRTC as a package of Python's, or of the system."""
+    spec = find_spec("nvidia.cuda_nvrtc") if find_spec("nvidia") else None
+    folders = [Path(place) / "lib" for place in (spec.submodule_search_locations or ())] if spec else []
+    packaged = [str(path) for folder in folders for path in sorted(folder.glob("libnvrtc.so.*"))]
+    for name in (*packaged, "libnvrtc.so.12"):
+        try:
+            return ctypes.CDLL(name)
+        except OSError:
+            continue
+    raise CompileError(
+        Problem(
+            "CUDA: no compiler",
+            "neither the package nvidia-cuda-nvrtc-cu12 nor libnvrtc.so.12",
+            "kernels are compiled by NVRTC, which needs no graphics processor",
+            "pip install 'symofros[cuda]'",
+        )
+    )
+
+
+def _failed(architecture: str, found: str) -> CompileError:
+    return CompileError(
+        Problem(
+            f"CUDA: the kernels do not compile for {architecture}",
+            found,
+            "NVRTC compiles generated kernels for each architecture that it knows",
+            "choose another architecture, or install a newer nvidia-cuda-nvrtc-cu12",
+        )
+    )

@@ -1,0 +1,64 @@
+"""Kernels compiled as C++ of the host, thread after thread, so that their numbers are tested without a GPU."""
+
+from __future__ import annotations
+
+import ctypes
+import subprocess
+from pathlib import Path
+
+import numpy as np
+
+from symofros.runtime.cuda.device_code import DeviceCode
+
+SHIM = Path(__file__).parent / "cuda_shim.h"
+# As the C code is compiled: products and sums are not fused, so that results agree bit for bit.
+FLAGS = ("-x", "c++", "-std=c++17", "-O0", "-ffp-contract=off", "-fPIC", "-shared", "-Wno-unknown-pragmas")
+_STRIDED, _SEQUENCE = "sym_strided", "sym_sequence"
+_ROLLOUT = ("long long", "long long", "double", *(_STRIDED,) * 2, _SEQUENCE, _STRIDED, *(_SEQUENCE,) * 2)
+
+
+class Strided(ctypes.Structure):
+    _fields_ = [("at", ctypes.c_void_p), ("step", ctypes.c_ssize_t), ("stride", ctypes.c_ssize_t)]
+
+
+class Sequence(ctypes.Structure):
+    _fields_ = [("batch", Strided), ("next", ctypes.c_ssize_t)]
+
+
+def launcher(symbol: str, types: tuple[str, ...]) -> str:
+    """C++ that launches a kernel with arguments by address."""
+    values = ["*(long long *)p[0]", "*(const sym_p **)p[1]"]
+    values += [f"*({kind} *)p[{i}]" for i, kind in enumerate(types, 2)]
+    return (
+        f'extern "C" void {symbol}_on_host(unsigned grid, unsigned block, void **p) {{'
+        f" SYM_THREADS({symbol}({', '.join(values)})); }}"
+    )
+
+
+def on_host(code: DeviceCode, folder: Path, sources: str = "") -> Path:
+    """A library of the kernels, each with a launcher."""
+    launchers = [
+        launcher(k.symbol, (_STRIDED,) * (len(k.signature.inputs) + len(k.signature.outputs))) for k in code.kernels
+    ]
+    launchers += [launcher(symbol, _ROLLOUT) for symbol in code.rollouts.values()]
+    source = folder / f"{code.precision}.cu"
+    source.write_text("\n".join([f'#include "{SHIM}"', code.text, *launchers, sources]))
+    library = source.with_suffix(".so")
+    subprocess.run(["g++", *FLAGS, source, "-o", library], check=True)
+    return library
+
+
+def launch(library: ctypes.CDLL, symbol: str, n: int, pre: np.ndarray, *arguments: object, block: int = 32) -> None:
+    given = [ctypes.c_longlong(n), ctypes.c_void_p(pre.ctypes.data), *arguments]
+    addresses = (ctypes.c_void_p * len(given))(*(ctypes.addressof(x) for x in given))
+    getattr(library, f"{symbol}_on_host")(-(-n // block), block, addresses)
+
+
+def strided(array: np.ndarray) -> Strided:
+    """An array (n, ...) whose entries of a state lie at equal distances."""
+    entry = array.strides[-1] if array.ndim > 1 else array.itemsize
+    return Strided(array.ctypes.data, entry // array.itemsize, array.strides[0] // array.itemsize)
+
+
+def by_columns(array: np.ndarray, dtype: type) -> np.ndarray:
+    return np.asfortranarray(array, dtype=dtype)
