@@ -42,7 +42,8 @@ def device_code(
     """
     name = c_name or identifier(record.name)
     functions = [function for function in program.functions if function.solver is None]
-    kernels = [DeviceKernel(symbol, _signature(program, f)) for f, symbol in zip(functions, _symbols(name, functions))]
+    signatures = [_signature(program, function) for function in functions]
+    kernels = list(map(DeviceKernel, _symbols(name, functions), signatures))
     texts = [
         "\n".join(
             [
