@@ -15,6 +15,7 @@ from validation.engines.interface import EnginePlugin
 from validation.engines.matrix import SEED, Judged, Truths, judged
 from validation.engines.plugins.writing.source import SourcePlugin
 from validation.engines.proving.pieces import taken
+from validation.engines.proving.pruning import pruned
 from validation.engines.proving.shrink import TRIES, Case, smallest
 from validation.engines.proving.threads import thread
 from validation.engines.workers import Crashed, Job, Worker
@@ -24,8 +25,8 @@ _SHOWN = 16
 # A smaller case keeps at least this part of the error, so that it shows the same fault plainly.
 _KEPT = 0.05
 _TIME = 120.0
-# Cases tried to shrink a tree with constraints.
-_LOOPS = 24
+# Cases tried where each takes long.
+_SLOW = 24
 
 
 @dataclass(frozen=True)
@@ -62,20 +63,20 @@ class Proof:
 
 
 def shrunk(plugin: EnginePlugin, red: Judged, worker: Worker, truths: Truths, tries: int = TRIES) -> Judged:
-    """The smallest case that shows the fault of a red cell; of what is imprecise, and of a crash, the case itself."""
+    """The smallest case that shows the fault of a red cell; of a crash, the case itself."""
     answer = red.answer
-    # What is a matter of digits is one of these very numbers.
-    if answer.layout is None or answer.state is None or red.cell.verdict != "wrong":
+    if answer.layout is None or answer.state is None or red.cell.verdict not in ("wrong", "imprecise"):
         return red
     best, final = red, red
+    wrong = red.cell.verdict == "wrong"
     # A fault that is no matter of rounding is seen without asking how far roundings go.
-    quick = Truths(perturbations=0)
+    quick = Truths(perturbations=0) if wrong else truths
     job = Job(plugin.name, red.tree, (answer.function,))
     if red.form:
         return red
 
-    # A state of a loop is closed anew for each case.
-    most = min(tries, _LOOPS) if red.tree.constraints else tries
+    # A state of a loop is closed anew for each case; lost digits are told from roundings for each.
+    most = min(tries, _SLOW) if red.tree.constraints or not wrong else tries
 
     def shows(case: Case) -> bool:
         nonlocal best
@@ -99,7 +100,7 @@ def prove(plugin: EnginePlugin, red: Judged, worker: Worker, truths: Truths, fol
     if path.exists():
         kept = path.read_text(encoding="utf-8")
         output, failed = fails(path)
-        if failed and f"{plugin.name} {plugin.version()}:" in kept:
+        if failed and f"{plugin.name} {plugin.version()}:" in kept and pruned(kept) == kept:
             return _proof(plugin, red, kept, output, failed, known)
     small = (
         _with_script(plugin, red, worker)
@@ -107,7 +108,7 @@ def prove(plugin: EnginePlugin, red: Judged, worker: Worker, truths: Truths, fol
         else shrunk(plugin, red, worker, truths, tries)
     )
     folder.mkdir(parents=True, exist_ok=True)
-    path.write_text(text(plugin, small, known), encoding="utf-8")
+    path.write_text(pruned(text(plugin, small, known)), encoding="utf-8")
     output, failed = fails(path)
     return _proof(plugin, red, path.read_text(encoding="utf-8"), output, failed, known)
 
