@@ -16,6 +16,7 @@ from symofros.errors import DescriptionError, Problem, did_you_mean
 from symofros.mechanics.topology.graph import find_problems
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.physics import has_physical_inertia
+from symofros.mechanics.topology.units import unit_problems
 
 _PATHS = "check the path; a relative one starts at the current folder"
 _READABLE = (*YAML_SUFFIXES, ".urdf", ".xml")
@@ -37,7 +38,7 @@ def load(
         waive: Checks that every body is allowed to fail (WAIVERS), such as "massless_tip".
 
     Returns:
-        The system; its `notes` say what an importer ignored or changed.
+        The system; its `notes` say what an importer ignored or changed, and which formulas' units do not fit their entries.
 
     Raises:
         DescriptionError: With every problem of the file and of the mechanism it describes.
@@ -47,7 +48,9 @@ def load(
     problems = find_problems(reading.system, reading.broken) if reading.system is not None else []
     if reading.problems or problems or reading.system is None:
         raise DescriptionError(in_order([*reading.problems, *problems]))
-    return reading.system
+    system = reading.system
+    units = [f"{problem.what}: {problem.found}; {problem.rule}" for problem in unit_problems(system)]
+    return replace(system, notes=(*system.notes, *units)) if units else system
 
 
 def _waived(reading: Reading, waive: Collection[str]) -> Reading:

@@ -1,21 +1,39 @@
-"""Entries of description classes: one that does not exist is refused in words."""
+"""Entries of description classes: what they are, their units; one that does not exist is refused in words."""
 
 from __future__ import annotations
 
+import inspect
+import re
 from collections.abc import Mapping
 from dataclasses import fields
-from functools import wraps
+from functools import cache, wraps
 from typing import Any, TypeVar
 
 from symofros.errors import DescriptionError, Problem, did_you_mean
 
 _Class = TypeVar("_Class", bound=type)
+_ATTRIBUTE = re.compile(r"^    (\w+): (.*(?:\n {8}.*)*)", re.MULTILINE)
+_UNIT = re.compile(r"\[([^\]]+)\]")
 # What other programs state of a beam, and this theory has not.
 _ABSENT: Mapping[str, str] = {
     "EA": "beams do not stretch: leave it out, or put a prismatic joint with a spring at the end",
     "GA": "sections do not shear: leave it out",
     "kGA": "sections do not shear: leave it out",
 }
+
+
+@cache
+def descriptions(noun: type) -> dict[str, str]:
+    """Entry -> its line in the docstring of a dataclass."""
+    text = inspect.cleandoc(noun.__doc__ or "").partition("Attributes:\n")[2]
+    return {name: " ".join(line.split()) for name, line in _ATTRIBUTE.findall(text)}
+
+
+@cache
+def units_of(noun: type, entry: str) -> tuple[str, ...]:
+    """Units that an entry of a dataclass may have, by its docstring: ("N m/rad", "N/m"); none where it states none."""
+    stated = _UNIT.findall(descriptions(noun).get(entry, ""))
+    return tuple(unit for text in stated for unit in text.split(" or "))
 
 
 def refuses_unknown_entries(cls: _Class) -> _Class:

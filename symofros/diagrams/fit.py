@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from symofros.diagrams.block import Ports
 from symofros.diagrams.diagram import Diagram
-from symofros.diagrams.units import agree, parse
+from symofros.base.units import agree, parse
 from symofros.errors import DescriptionError, Problem
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from symofros.blocks.checks import choice, number, numbers, refuse
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Shape, Values
 from symofros.diagrams.tensor import Tensor
-from symofros.diagrams.units import parse
+from symofros.base.units import parse
 
 
 def _rates(unit: str) -> tuple[str, str, str]:

@@ -9,14 +9,13 @@ gives elsewhere, as the key of a mapping for instance.
 from __future__ import annotations
 
 import inspect
-import re
 from dataclasses import MISSING, fields
-from functools import cache
 from types import NoneType, UnionType
 from typing import Any, ClassVar, Literal, Self, Union, get_args, get_origin, get_type_hints
 
 from pydantic import ConfigDict, Field, model_validator
 
+from symofros.description.entries import descriptions
 from symofros.description.values import IDENTITY, Rotation, Value
 from symofros.description.yaml.fields import (
     AnchorEntry,
@@ -31,17 +30,9 @@ from symofros.description.yaml.fields import (
 )
 from symofros.errors import DescriptionError
 
-_ATTRIBUTE = re.compile(r"^    (\w+): (.*(?:\n {8}.*)*)", re.MULTILINE)
 _TEXTS = ("unit", "description")
 _VECTOR = (Value, Value, Value)
 _ANCHOR = (str, str | None)
-
-
-@cache
-def descriptions(noun: type) -> dict[str, str]:
-    """Field -> its line in the docstring of a dataclass."""
-    text = inspect.cleandoc(noun.__doc__ or "").partition("Attributes:\n")[2]
-    return {name: " ".join(line.split()) for name, line in _ATTRIBUTE.findall(text)}
 
 
 def _entry_type(name: str, kind: Any) -> Any:

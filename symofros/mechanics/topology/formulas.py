@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from typing import Literal, NamedTuple
 
-from symofros.description.beam import DIRECTIONS, PRE_STRAINS, SECTION, STATION, Beam, Samples
+from symofros.description.beam import DIRECTIONS, PRE_STRAINS, SECTION, STATION, Beam, BeamLoad, Samples
 from symofros.description.constraints import Constraint, Nonholonomic
+from symofros.description.entries import units_of
+from symofros.description.forces import Connection, Load, Rotor
+from symofros.description.frames import Frame
 from symofros.description.joint import Joint
 from symofros.description.joint_kinds import CONSTANT_ENTRIES
-from symofros.description.system import RigidBody, System
+from symofros.description.system import Inertia, RigidBody, System
 from symofros.description.values import Value, symbols
 from symofros.errors import Problem, did_you_mean
 from symofros.mechanics.topology.coordinates import coordinate_names, rate_symbols, speed_symbols
@@ -30,6 +33,7 @@ class Stated(NamedTuple):
         key: Key in System.origin.
         scope: Names that the value may depend on.
         joint: The joint whose coordinates it may use, with scope "joint".
+        units: Units that it may have; none where any will do.
     """
 
     what: str
@@ -37,12 +41,13 @@ class Stated(NamedTuple):
     key: tuple[str, ...]
     scope: Scope = "parameters"
     joint: Joint | None = None
+    units: tuple[str, ...] = ()
 
 
 def stated_values(system: System) -> Iterator[Stated]:
     """Every value of a description."""
     for value in system.gravity:
-        yield Stated(f"system '{system.name}': gravity", value, ("system",))
+        yield Stated(f"system '{system.name}': gravity", value, ("system",), units=units_of(System, "gravity"))
     for body in system.bodies:
         if body.joint is not None:
             yield from _joint_values(body.joint)
@@ -50,7 +55,8 @@ def stated_values(system: System) -> Iterator[Stated]:
     for connection in system.connections:
         for label in ("stiffness", "length", "damping"):
             key = ("connection", connection.name)
-            yield Stated(f"connection '{connection.name}': {label}", getattr(connection, label), key)
+            units = units_of(Connection, label)
+            yield Stated(f"connection '{connection.name}': {label}", getattr(connection, label), key, units=units)
     for power in system.virtual_power:
         for speed, value in power.forces:
             key = ("virtual_power", power.name)
@@ -66,7 +72,7 @@ def _constraint_values(constraint: Constraint) -> Iterator[Stated]:
     what, key = f"constraint '{constraint.name}'", ("constraint", constraint.name)
     for label in ("length", "radius", "height"):
         if hasattr(constraint, label):
-            yield Stated(f"{what}: {label}", getattr(constraint, label), key)
+            yield Stated(f"{what}: {label}", getattr(constraint, label), key, units=units_of(type(constraint), label))
     if isinstance(constraint, Nonholonomic):
         for speed, value in constraint.coefficients:
             yield Stated(f"{what}: coefficient of {speed}", value, key, "configuration")
@@ -75,54 +81,72 @@ def _constraint_values(constraint: Constraint) -> Iterator[Stated]:
 
 def _joint_values(joint: Joint) -> Iterator[Stated]:
     what, key = f"joint '{joint.name}'", ("joint", joint.name)
-    constant: list[tuple[str, Iterable[Value]]] = [("position", joint.position), ("rotation", joint.rotation)]
-    for entry in (*CONSTANT_ENTRIES, "armature"):
+    for entry in ("position", "rotation", *CONSTANT_ENTRIES, "armature"):
         stated = getattr(joint, entry)
-        constant.append((entry, stated if isinstance(stated, tuple) else (stated,)))
+        units = _of_coordinate(joint, 0, units_of(Joint, entry))
+        for value in (stated,) if isinstance(stated, Value) else stated:
+            yield Stated(f"{what}: {entry}", value, key, units=units)
     for element in joint.elements:
-        numbers = [getattr(element, item.name) for item in fields(element) if item.name != "coordinate"]
-        constant.append((type(element).__name__.lower(), [x for x in numbers if x is not None]))
+        label = type(element).__name__.lower()
+        for item in fields(element):
+            value = getattr(element, item.name)
+            if item.name != "coordinate" and value is not None:
+                units = _of_coordinate(joint, element.coordinate, units_of(type(element), item.name))
+                yield Stated(f"{what}: {label} {item.name}", value, key, units=units)
     for rotor in joint.rotors:
-        constant.append(("rotor", (rotor.inertia, rotor.ratio, *(rotor.axis or ()))))
-    for label, values in constant:
-        for value in values:
-            yield Stated(f"{what}: {label}", value, key)
+        yield Stated(f"{what}: rotor", rotor.inertia, key, units=units_of(Rotor, "inertia"))
+        for value in (rotor.ratio, *(rotor.axis or ())):
+            yield Stated(f"{what}: rotor", value, key)
     for label, values in (("moving_position", joint.moving_position), ("moving_rotation", joint.moving_rotation)):
         for value in values:
-            yield Stated(f"{what}: {label}", value, key, "joint", joint)
-    for value in joint.effort:
-        yield Stated(f"{what}: effort", value, key, "motion")
+            yield Stated(f"{what}: {label}", value, key, "joint", joint, units_of(Joint, label))
+    for k, value in enumerate(joint.effort):
+        yield Stated(f"{what}: effort", value, key, "motion", units=_of_coordinate(joint, k, units_of(Joint, "effort")))
+
+
+def _of_coordinate(joint: Joint, number: int, units: tuple[str, ...]) -> tuple[str, ...]:
+    """Of units for a turn and for a translation, as docstrings state them, those of a coordinate."""
+    coordinates = joint.traits.coordinates
+    if len(units) != 2 or joint.traits.user_defined or not 0 <= number < len(coordinates):
+        return units
+    return {"rad": units[:1], "m": units[1:]}.get(coordinates[number].unit, units)
 
 
 def _body_values(body: RigidBody) -> Iterator[Stated]:
     what, key = f"body '{body.name}'", ("body", body.name)
     if body.inertia is not None:
         inertia = body.inertia
-        yield Stated(f"{what}: mass", inertia.mass, key)
-        for label, values in (
-            ("center_of_mass", inertia.center_of_mass),
-            ("inertia", inertia.moments),
-            ("inertia rotation", inertia.rotation),
+        yield Stated(f"{what}: mass", inertia.mass, key, units=units_of(Inertia, "mass"))
+        for label, values, units in (
+            ("center_of_mass", inertia.center_of_mass, units_of(Inertia, "center_of_mass")),
+            ("inertia", inertia.moments, units_of(Inertia, "moments")),
+            ("inertia rotation", inertia.rotation, ()),
         ):
             for value in values:
-                yield Stated(f"{what}: {label}", value, key)
+                yield Stated(f"{what}: {label}", value, key, units=units)
     for frame in body.frames:
-        for value in (*frame.position, *frame.rotation):
-            yield Stated(f"frame '{frame.name}' of {what}", value, ("frame", body.name, frame.name))
+        for entry in ("position", "rotation"):
+            for value in getattr(frame, entry):
+                where = ("frame", body.name, frame.name)
+                yield Stated(f"frame '{frame.name}' of {what}", value, where, units=units_of(Frame, entry))
     for load in body.loads:
-        for value in (*load.force, *load.torque):
-            yield Stated(f"{what}: load", value, key, "motion")
+        for entry in ("force", "torque"):
+            for value in getattr(load, entry):
+                yield Stated(f"{what}: load", value, key, "motion", units=units_of(Load, entry))
 
 
 def _beam_values(beam: Beam) -> Iterator[Stated]:
     what, key = f"beam '{beam.name}'", ("body", beam.name)
     for label in ("length", "damping"):
-        yield Stated(f"{what}: {label}", getattr(beam, label), key)
+        yield Stated(f"{what}: {label}", getattr(beam, label), key, units=units_of(Beam, label))
     for label in (*SECTION, *PRE_STRAINS):
-        yield Stated(f"{what}: {label}", getattr(beam, label), key, "section")
+        yield Stated(f"{what}: {label}", getattr(beam, label), key, "section", units=units_of(Beam, label))
     for load in beam.loads:
-        for value in (*load.force, *load.torque):
-            yield Stated(f"{what}: load", value, key, "spread" if load.at is None else "motion")
+        for entry in ("force", "torque"):
+            for value in getattr(load, entry):
+                scope: Scope = "spread" if load.at is None else "motion"
+                units = (units_of(BeamLoad, entry)[load.at is None],)
+                yield Stated(f"{what}: load", value, key, scope, units=units)
     for direction in DIRECTIONS:
         for shape in beam.user_shapes(direction):
             if not isinstance(shape, Samples):

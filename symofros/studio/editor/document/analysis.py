@@ -10,9 +10,10 @@ from symofros.description.reading import in_order
 from symofros.description.system import System
 from symofros.description.yaml.files import DIAGRAM, read_yaml
 from symofros.description.yaml.yaml_nodes import YamlFault
-from symofros.diagrams.units import parse
+from symofros.base.units import parse
 from symofros.errors import DescriptionError, Problem
 from symofros.mechanics.topology.graph import find_problems
+from symofros.mechanics.topology.units import unit_problems
 from symofros.studio.editor.diagrams.analysis import analyse_diagram
 from symofros.studio.editor.document.diagram import diagram
 from symofros.studio.editor.document.meaning import Analysis, Json, as_json
@@ -94,7 +95,8 @@ def _checked(file: Path, source: YamlText) -> tuple[list[Problem], System | None
     """Every problem of the file and of its mechanism."""
     try:
         reading = read_yaml(file, source.text, (source.root, source.duplicates))
-        problems = find_problems(reading.system, reading.broken) if reading.system is not None else []
+        system = reading.system
+        problems = [] if system is None else [*find_problems(system, reading.broken), *unit_problems(system)]
     except DescriptionError as error:
         return list(error.problems), None
     return list(in_order([*reading.problems, *problems])), reading.system

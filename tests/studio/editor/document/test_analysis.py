@@ -144,6 +144,13 @@ def test_a_unit_that_is_none_is_remarked(unit: str, is_one: bool) -> None:
     assert is_one or "'bananas'" in found["unit_fault"] and "kg m^2" in found["unit_fault"]
 
 
+def test_a_formula_of_another_unit_is_a_problem_of_its_entry() -> None:
+    text = TEXTS["four_bar"].replace("unit: m}", "unit: N m}", 1)
+    problems = [problem for problem in analyse(FILES["four_bar"], text).problems if "unit N m" in problem["object"]]
+    assert problems and all(problem["path"][0] == "bodies" for problem in problems)
+    assert all("position" in problem["path"] or "center_of_mass" in problem["path"] for problem in problems)
+
+
 def test_a_text_is_read_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """Reading is what takes long: a text that was edited is not read again to be checked."""
     texts = []

@@ -1,4 +1,4 @@
-"""Units of ports: products of powers of SI names, compared by dimension, scale and angle."""
+"""Units of ports, parameters and inputs: products of powers of SI names, with dimension, scale and angle."""
 
 from __future__ import annotations
 

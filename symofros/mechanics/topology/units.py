@@ -1,0 +1,169 @@
+"""Units of formulas, by those of the parameters and inputs in them, against those that the entries have.
+
+A stiffness [N m/rad] that is stated as "m*L" of m [kg] and L [m] is no stiffness. Units are optional, so that only what
+follows from stated ones is judged: a name without a unit, a number, which may stand for a quantity (2700*b^2 of a width
+b), a unit that is not SI (mm, deg: the formula may convert it) leave a product's unit open. An angle's unit is 1 here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from fractions import Fraction
+from math import isclose
+
+from symofros.base.units import NAMES, parse
+from symofros.description.beam import STATION
+from symofros.description.joint import Joint
+from symofros.description.system import System
+from symofros.errors import DescriptionError, Problem
+from symofros.expr.expression import CONSTANTS, Expression
+from symofros.mechanics.topology.coordinates import coordinate_names, rate_symbols, speed_symbols
+from symofros.mechanics.topology.formulas import TIME, stated_values
+
+# Powers of kg, m, s, A, K, mol and cd; None: open.
+Powers = tuple[Fraction, ...]
+_BASE = ("kg", "m", "s", "A", "K", "mol", "cd")
+_ONE: Powers = (Fraction(0),) * len(_BASE)
+_SAME = ("abs", "min", "max")
+_RATIOS = ("sign", "atan2")
+
+
+class _Clash(Exception):
+    """Terms, or an argument, of units that do not go together."""
+
+
+def unit_problems(system: System) -> Iterator[Problem]:
+    """Units that are none, and formulas whose unit is not that of their entry.
+
+    Args:
+        system: The description; names that it does not declare are passed over.
+    """
+    known: dict[str, Powers | None] = {}
+    for kind, items in (("parameter", system.parameters), ("input", system.inputs)):
+        for item in items:
+            try:
+                known[item.name] = _powers(item.unit) if item.unit else None
+            except DescriptionError as error:
+                where = system.origin.get((kind, item.name), "")
+                problem = error.problem
+                yield Problem(
+                    f"{kind} '{item.name}': no such unit", problem.found, problem.rule, problem.remedy, where
+                )
+    known |= {TIME: _parsed("s"), STATION: _parsed("m"), "xi": _ONE} | _of_motion(system)
+    if not any(known.get(item.name) for item in (*system.parameters, *system.inputs)):
+        return
+    for stated in stated_values(system):
+        if not stated.units or not isinstance(stated.value, Expression) or stated.value.kind == "number":
+            continue
+        wanted = {_parsed(unit) for unit in stated.units}
+        where = system.origin.get(stated.key, "")
+        rule = f"its unit is {' or '.join(stated.units)}"
+        try:
+            unit = _unit_of(stated.value, known)
+        except _Clash as clash:
+            yield Problem(f"{stated.what}: units do not go together", f"'{stated.value}'", str(clash), _REMEDY, where)
+            continue
+        if unit is not None and None not in wanted and unit not in wanted:
+            yield Problem(f"{stated.what}: unit {shown(unit)}", f"'{stated.value}'", rule, _REMEDY, where)
+
+
+_REMEDY = "change the formula, or the unit of a parameter in it; a parameter without a unit fits everywhere"
+
+
+def _of_motion(system: System) -> dict[str, Powers | None]:
+    """Units of coordinates, of speeds, and of prescribed rates."""
+    known: dict[str, Powers | None] = {}
+    for joint in (body.joint for body in system.bodies if body.joint is not None):
+        names = coordinate_names(joint)
+        units = _coordinate_units(joint, len(names))
+        known |= {name: _parsed(unit) for name, unit in zip(names, units, strict=True)}
+        speeds = speed_symbols(joint)
+        if len(speeds) == len(units) and not joint.traits.quasi_velocities:
+            known |= {name: _parsed(f"{unit}/s") for name, unit in zip(speeds, units, strict=True) if unit}
+            if joint.prescribed:
+                rates = rate_symbols(joint)
+                known |= {name: _parsed(f"{unit}/s^2") for name, unit in zip(rates, units, strict=False) if unit}
+    return known
+
+
+def _coordinate_units(joint: Joint, count: int) -> list[str]:
+    return [""] * count if joint.traits.user_defined else [item.unit for item in joint.traits.coordinates]
+
+
+def _parsed(text: str) -> Powers | None:
+    """Powers of a unit; None where the text is none, as of entries without one."""
+    try:
+        return _powers(text) if text else None
+    except DescriptionError:
+        return None
+
+
+def _powers(text: str) -> Powers | None:
+    """Powers of a unit of SI; None of another scale.
+
+    Raises:
+        DescriptionError: The text names no unit.
+    """
+    unit = parse(text)
+    if not isclose(unit.scale, 1.0, rel_tol=1e-12):
+        return None
+    return tuple(map(Fraction, unit.powers[: len(_BASE)]))
+
+
+def shown(powers: Powers) -> str:
+    """A unit for people: the name of its dimension where it has one, or else powers of the base units."""
+    for name in ("N", "J", "W", "Pa"):
+        if tuple(map(Fraction, NAMES[name].powers[: len(_BASE)])) == powers:
+            return {"J": "N m", "W": "N m/s", "Pa": "N/m^2"}.get(name, name)
+
+    def text(name: str, power: Fraction) -> str:
+        return name if power == 1 else f"{name}^{power}"
+
+    over = [text(name, power) for name, power in zip(_BASE, powers, strict=True) if power > 0]
+    under = [text(name, -power) for name, power in zip(_BASE, powers, strict=True) if power < 0]
+    # What follows a slash divides.
+    return (" ".join(over) or "1") + (f"/{' '.join(under)}" if under else "")
+
+
+def _unit_of(formula: Expression, known: Mapping[str, Powers | None]) -> Powers | None:
+    """Powers of a formula, None where they are open.
+
+    Raises:
+        _Clash: Terms or an argument do not go together, in words.
+    """
+    kind = formula.kind
+    if kind == "number":
+        return None
+    if kind == "symbol":
+        return _ONE if formula.name in CONSTANTS else known.get(formula.name)
+    args = [_unit_of(argument, known) for argument in formula.args]
+    if kind == "neg" or kind in _SAME or kind in ("add", "sub"):
+        return _common(formula, args)
+    if kind in ("mul", "div"):
+        left, right = args
+        if left is None or right is None:
+            return None
+        sign = 1 if kind == "mul" else -1
+        return tuple(a + sign * b for a, b in zip(left, right, strict=True))
+    if kind == "pow" or kind == "sqrt":
+        exponent = 0.5 if kind == "sqrt" else formula.args[1].number if formula.args[1].kind == "number" else None
+        base = args[0]
+        if base is None or (exponent is None and base != _ONE):
+            return None
+        power = Fraction(exponent or 0.0).limit_denominator(60)
+        return tuple(power * a for a in base)
+    if kind in _RATIOS:
+        _common(formula, args)
+        return _ONE
+    for argument, unit in zip(formula.args, args, strict=True):
+        if unit is not None and unit != _ONE:
+            raise _Clash(f"the argument of {kind} is a ratio or an angle; '{argument}' is in {shown(unit)}")
+    return _ONE
+
+
+def _common(formula: Expression, units: list[Powers | None]) -> Powers | None:
+    stated = {unit for unit in units if unit is not None}
+    if len(stated) > 1:
+        parts = [f"'{arg}' in {shown(unit)}" for arg, unit in zip(formula.args, units, strict=True) if unit is not None]
+        raise _Clash(f"terms have one unit: {', '.join(parts)}")
+    return stated.pop() if stated else None
