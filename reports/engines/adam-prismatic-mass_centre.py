@@ -4,7 +4,6 @@ Result: mass centre (3).
 Known: none found.
 """
 
-import casadi as ca
 import numpy as np
 from adam.casadi import KinDynComputations
 URDF = """<robot name="tree">
@@ -18,7 +17,6 @@ URDF = """<robot name="tree">
 </joint>
 </robot>"""
 robot = KinDynComputations(URDF, ['joint_b'], gravity=np.array([0.0, 0.0, 0.0] + [0, 0, 0]))
-links = ['b']
 cut = 6
 def place(q):
     H = np.eye(4)
@@ -27,7 +25,6 @@ def place(q):
         K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
         H[:3, 3], H[:3, :3] = q[:3], np.eye(3) + 2 * w * K + 2 * K @ K
     return H, q[7 - 7 * (cut > 0):]
-def move(v): return (v[:6], v[6:]) if cut == 0 else (np.zeros(6), v)
 
 q = np.array([1.0])
 value = np.array(robot.CoM_position_fun()(*place(q))).squeeze(-1)

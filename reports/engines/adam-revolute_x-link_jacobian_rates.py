@@ -4,7 +4,6 @@ Result: their time derivatives (L, 6, nv).
 Known: none found.
 """
 
-import casadi as ca
 import numpy as np
 from adam.casadi import KinDynComputations
 URDF = """<robot name="tree">

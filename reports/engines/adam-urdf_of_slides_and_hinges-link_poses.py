@@ -4,7 +4,6 @@ Result: positions and rows of R (L, 12).
 Known: none found.
 """
 
-import casadi as ca
 import numpy as np
 from adam.casadi import KinDynComputations
 URDF = """<robot name="tree">
@@ -46,7 +45,6 @@ def place(q):
         K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
         H[:3, 3], H[:3, :3] = q[:3], np.eye(3) + 2 * w * K + 2 * K @ K
     return H, q[7 - 7 * (cut > 0):]
-def move(v): return (v[:6], v[6:]) if cut == 0 else (np.zeros(6), v)
 
 q = np.array([-1.0996201868492035, -0.7565606148471162, -0.45415795612897547, -0.8020666483629364])
 value = []

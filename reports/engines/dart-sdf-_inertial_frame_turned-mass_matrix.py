@@ -7,11 +7,6 @@ Known: none found.
 import numpy as np
 import dartpy as dart
 dy = dart.dynamics
-def iso(R, p):
-    X = dart.math.Isometry3()
-    X.set_rotation(np.array(R))
-    X.set_translation(np.array(p))
-    return X
 def state(q, v=None, a=None):
     s.setPositions(q)
     s.setVelocities(np.zeros(len(q)) if v is None else v)

@@ -5,17 +5,9 @@ Known: https://github.com/RobotLocomotion/drake/pull/21967.
 """
 
 import numpy as np
-from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.multibody import tree
 from pydrake.multibody.plant import MultibodyPlant
 p = MultibodyPlant(0.0)
-def X(R, r): return RigidTransform(RotationMatrix(np.array(R)), r)
-def inertia(mass, com, I):
-    if mass == 0 and not np.any(I): return tree.SpatialInertia.Zero()
-    I = np.array(I)
-    about = tree.RotationalInertia(*I.diagonal(), I[0, 1], I[0, 2], I[1, 2])
-    return tree.SpatialInertia.MakeFromCentralInertia(mass, com, about)
-def frame(name, body, R, r): return p.AddFrame(tree.FixedOffsetFrame(name, body, X(R, r)))
 from pydrake.multibody.parsing import Parser
 TEXT = '<mujoco model="r"><compiler angle="radian"/><default><joint armature="0.5"/></default><worldbody><body name="a" pos="0.1 0.2 0.3"><joint axis="0.6 0 0.8"/><inertial pos="0.1 -0.2 0.3" mass="2" diaginertia="0.2 0.3 0.4"/><body name="b" pos="0 0 0.5"><joint axis="0 1 0"/><inertial pos="0 0.1 0.2" mass="1" diaginertia="0.2 0.3 0.4"/></body></body></worldbody></mujoco>'
 p.mutable_gravity_field().set_gravity_vector([0.0, 0.0, -9.81])
@@ -30,8 +22,6 @@ def forces():
     applied = tree.MultibodyForces(p)
     p.CalcForceElementsContribution(c, applied)
     return applied
-def jacobian(b, about, speeds=tree.JacobianWrtVariable.kV):
-    return np.roll(p.CalcJacobianSpatialVelocity(c, speeds, b.body_frame(), [0, 0, 0], W, about), 3, axis=0)
 links = [p.GetBodyByName(name) for name in ['a', 'b']]
 q = np.array([-1.0996201868492035, -1.8914015371177906])
 v = np.array([-0.1816631824515902, -0.8567209055906702])

@@ -33,7 +33,6 @@ links, g = ['a', 'b'], np.array([0.0, 0.0, 0.0])
 
 cut, n = 6, 6 + robot.getNrOfDegreesOfFreedom()
 def state(q, v): robot.setRobotState(np.eye(4), q, np.zeros(6), v, g)
-def rates(a): return iDynTree.Vector6.FromPython(np.zeros(6)), iDynTree.VectorDynSize.FromPython(a)
 q = np.array([0.0])
 v = np.array([0.0])
 state(q, v)

@@ -5,7 +5,6 @@ Known: none found.
 """
 
 import tempfile
-import numpy as np
 import pybullet as p
 TEXT = """<sdf version="1.9"><model name="m"><link name="a"><pose relative_to="ja"/><inertial><pose>0.1 -0.2 0.3 0 0 0</pose><mass>2</mass><inertia><ixx>0.2</ixx><iyy>0.3</iyy><izz>0.4</izz><ixy>0</ixy><ixz>0</ixz><iyz>0</iyz></inertia></inertial></link><joint name="ja" type="revolute"><pose relative_to="__model__">0.1 0.2 0.3 0.3 -0.4 0.5</pose><parent>world</parent><child>a</child><axis><xyz>0.6 0 0.8</xyz><limit><lower>-9</lower><upper>9</upper><effort>9</effort><velocity>9</velocity></limit></axis></joint></model></sdf>"""
 if not p.isConnected():
@@ -19,8 +18,4 @@ with tempfile.NamedTemporaryFile("w", suffix=".sdf") as file:
 named = {p.getJointInfo(robot, k)[12].decode(): k for k in range(p.getNumJoints(robot))}
 links = [named[name] for name in ['a']]
 moving = [k for k in range(p.getNumJoints(robot)) if p.getJointInfo(robot, k)[2] != p.JOINT_FIXED]
-def states(q, v):
-    for k, position, speed in zip(moving, q, v):
-        p.resetJointState(robot, k, position, speed)
-    return [p.getLinkState(robot, k, computeLinkVelocity=1, computeForwardKinematics=1) for k in links]
 

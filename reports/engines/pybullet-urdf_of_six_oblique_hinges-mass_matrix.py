@@ -57,10 +57,6 @@ with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
 named = {p.getJointInfo(robot, k)[12].decode(): k for k in range(p.getNumJoints(robot))}
 links = [named[name] for name in ['a', 'b', 'c', 'd', 'e', 'f']]
 moving = [k for k in range(p.getNumJoints(robot)) if p.getJointInfo(robot, k)[2] != p.JOINT_FIXED]
-def states(q, v):
-    for k, position, speed in zip(moving, q, v):
-        p.resetJointState(robot, k, position, speed)
-    return [p.getLinkState(robot, k, computeLinkVelocity=1, computeForwardKinematics=1) for k in links]
 
 q = np.array([-1.0996201868492035, -1.8914015371177906, -0.45415795612897547, -2.005166620907341, 0.9703394117879331, 0.7008840429488101])
 value = p.calculateMassMatrix(robot, q.tolist())
