@@ -38,7 +38,7 @@ def load(
         waive: Checks that every body is allowed to fail (WAIVERS), such as "massless_tip".
 
     Returns:
-        The system; its `notes` say what an importer ignored or changed, and which formulas' units do not fit their entries.
+        The system; its `notes` say what an importer ignored or changed, and where units of formulas do not fit.
 
     Raises:
         DescriptionError: With every problem of the file and of the mechanism it describes.

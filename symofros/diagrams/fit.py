@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
+from symofros.base.units import agree, parse
 from symofros.diagrams.block import Ports
 from symofros.diagrams.diagram import Diagram
-from symofros.base.units import agree, parse
 from symofros.errors import DescriptionError, Problem
 
 

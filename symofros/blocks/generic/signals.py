@@ -7,11 +7,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from symofros.base.units import parse
 from symofros.blocks.checks import known_name, numbers, refuse, whole
 from symofros.blocks.quantities import actuated_names, common_shape
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.tensor import joined
-from symofros.base.units import parse
 
 # Inputs that a block with a free number of them may have.
 MOST_INPUTS = 64

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.units import parse
 from symofros.blocks.checks import choice, increasing, number, numbers, refuse
 from symofros.blocks.inputs.laws import LAWS, Share, moves, spline
 from symofros.blocks.rotations import matrix_of_quaternion, matrix_of_vector, quaternion_of_matrix, vector_of_matrix
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.tensor import Tensor, joined
-from symofros.base.units import parse
 from symofros.runtime.calls.kernel import Array
 
 # Formulas grow with the points; tables over time (`Sequence`) take as many as there are.

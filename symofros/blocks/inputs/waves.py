@@ -8,10 +8,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from symofros.base.units import parse
 from symofros.blocks.checks import choice, number, numbers, refuse
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Shape, Values
 from symofros.diagrams.tensor import Tensor
-from symofros.base.units import parse
 
 
 def _rates(unit: str) -> tuple[str, str, str]:

@@ -46,9 +46,7 @@ def unit_problems(system: System) -> Iterator[Problem]:
             except DescriptionError as error:
                 where = system.origin.get((kind, item.name), "")
                 problem = error.problem
-                yield Problem(
-                    f"{kind} '{item.name}': no such unit", problem.found, problem.rule, problem.remedy, where
-                )
+                yield Problem(f"{kind} '{item.name}': no such unit", problem.found, problem.rule, problem.remedy, where)
     known |= {TIME: _parsed("s"), STATION: _parsed("m"), "xi": _ONE} | _of_motion(system)
     if not any(known.get(item.name) for item in (*system.parameters, *system.inputs)):
         return

@@ -57,7 +57,8 @@ def test_products_powers_and_sums_have_their_units(moment: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("moment", "unit"), [("m*L", "kg m"), ("J/L", "kg m"), ("m*L^3", "kg m^3"), ("m^2*L^2/J", "kg"), ("L/k", "s^2/kg m")]
+    ("moment", "unit"),
+    [("m*L", "kg m"), ("J/L", "kg m"), ("m*L^3", "kg m^3"), ("m^2*L^2/J", "kg"), ("L/k", "s^2/kg m")],
 )
 def test_another_power_is_another_unit(moment: str, unit: str) -> None:
     (text,) = texts(pendulum(moment=moment))
@@ -95,7 +96,9 @@ def test_a_spring_of_a_slide_is_stated_in_newtons_per_metre() -> None:
     assert "joint 'q': spring stiffness: unit N m" in text and "its unit is N/m" in text
 
 
-@pytest.mark.parametrize(("effort", "fits"), [("u - k*q", True), ("u - k*dq", False), ("u - c*dq", True), ("m*q", False)])
+@pytest.mark.parametrize(
+    ("effort", "fits"), [("u - k*q", True), ("u - k*dq", False), ("u - c*dq", True), ("m*q", False)]
+)
 def test_efforts_have_the_units_of_coordinates_and_speeds(effort: str, fits: bool) -> None:
     assert (texts(pendulum(effort=(effort,))) == []) == fits
 

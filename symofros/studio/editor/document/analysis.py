@@ -6,11 +6,11 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from symofros.base.units import parse
 from symofros.description.reading import in_order
 from symofros.description.system import System
 from symofros.description.yaml.files import DIAGRAM, read_yaml
 from symofros.description.yaml.yaml_nodes import YamlFault
-from symofros.base.units import parse
 from symofros.errors import DescriptionError, Problem
 from symofros.mechanics.topology.graph import find_problems
 from symofros.mechanics.topology.units import unit_problems
