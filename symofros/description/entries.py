@@ -29,7 +29,6 @@ def descriptions(noun: type) -> dict[str, str]:
     return {name: " ".join(line.split()) for name, line in _ATTRIBUTE.findall(text)}
 
 
-@cache
 def units_of(noun: type, entry: str) -> tuple[str, ...]:
     """Units that an entry of a dataclass may have, by its docstring: ("N m/rad", "N/m"); none where it states none."""
     stated = _UNIT.findall(descriptions(noun).get(entry, ""))

@@ -39,16 +39,16 @@ def unit_problems(system: System) -> Iterator[Problem]:
         system: The description; names that it does not declare are passed over.
     """
     known: dict[str, Powers | None] = {}
-    for kind, items in (("parameter", system.parameters), ("input", system.inputs)):
-        for item in items:
-            try:
-                known[item.name] = _powers(item.unit) if item.unit else None
-            except DescriptionError as error:
-                where = system.origin.get((kind, item.name), "")
-                problem = error.problem
-                yield Problem(f"{kind} '{item.name}': no such unit", problem.found, problem.rule, problem.remedy, where)
+    declared = [("parameter", item.name, item.unit) for item in system.parameters]
+    declared += [("input", item.name, item.unit) for item in system.inputs]
+    for kind, name, unit in declared:
+        try:
+            known[name] = _powers(unit) if unit else None
+        except DescriptionError as error:
+            where, fault = system.origin.get((kind, name), ""), error.problem
+            yield Problem(f"{kind} '{name}': no such unit", fault.found, fault.rule, fault.remedy, where)
     known |= {TIME: _parsed("s"), STATION: _parsed("m"), "xi": _ONE} | _of_motion(system)
-    if not any(known.get(item.name) for item in (*system.parameters, *system.inputs)):
+    if not any(known.get(name) for _, name, _ in declared):
         return
     for stated in stated_values(system):
         if not stated.units or not isinstance(stated.value, Expression) or stated.value.kind == "number":
@@ -57,12 +57,12 @@ def unit_problems(system: System) -> Iterator[Problem]:
         where = system.origin.get(stated.key, "")
         rule = f"its unit is {' or '.join(stated.units)}"
         try:
-            unit = _unit_of(stated.value, known)
+            actual = _unit_of(stated.value, known)
         except _Clash as clash:
             yield Problem(f"{stated.what}: units do not go together", f"'{stated.value}'", str(clash), _REMEDY, where)
             continue
-        if unit is not None and None not in wanted and unit not in wanted:
-            yield Problem(f"{stated.what}: unit {shown(unit)}", f"'{stated.value}'", rule, _REMEDY, where)
+        if actual is not None and None not in wanted and actual not in wanted:
+            yield Problem(f"{stated.what}: unit {shown(actual)}", f"'{stated.value}'", rule, _REMEDY, where)
 
 
 _REMEDY = "change the formula, or the unit of a parameter in it; a parameter without a unit fits everywhere"
