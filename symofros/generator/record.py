@@ -29,10 +29,13 @@ def model_record(tree: SpanningTree, options: Options) -> ModelRecord:
     neutral: list[float] = []
     periodic: list[bool] = []
     driven: list[float] = []
+    quaternions: list[int] = []
     for link in tree.links:
         limits, n = link.joint.limits, link.q[1]
         if link.joint.prescribed:
             nq, nv = joint_sizes(link.joint)
+            if nq > nv:
+                quaternions.append(names.efforts + len(driven) + nq - 4)
             driven += (*neutral_coordinates(link.joint, nq), *(0.0,) * (2 * nv))
             continue
         if link.tip_of is not None:
@@ -70,6 +73,7 @@ def model_record(tree: SpanningTree, options: Options) -> ModelRecord:
         prescribed_names=prescribed_speeds(tree),
         closures=tuple(_closure(tree, item) for item in tree.system.constraints if isinstance(item, Closure)),
         driven=len(driven),
+        quaternion_inputs=tuple(quaternions),
         measures=measures_of(tree),
     )
 

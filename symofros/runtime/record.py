@@ -81,6 +81,7 @@ class ModelRecord:
         prescribed_names: Speeds of prescribed motions.
         closures: Closures of frames, for checks of their rotations.
         driven: Inputs that prescribe motion, the last of u.
+        quaternion_inputs: First index in u of each quaternion among these.
         measures: Measures of the rows and columns of the constraint Jacobian.
     """
 
@@ -107,6 +108,7 @@ class ModelRecord:
     prescribed_names: tuple[str, ...] = ()
     closures: tuple[ClosureRecord, ...] = ()
     driven: int = 0
+    quaternion_inputs: tuple[int, ...] = ()
     measures: Measures = Measures()
 
     @property

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from symofros.base.arrays import numeric, real_array
 from symofros.errors import AssemblyError, Problem, ShapeError, SymofrosError, UnknownNameError, did_you_mean
+from symofros.native import native_number
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.inputs import InputPlan
@@ -25,9 +26,8 @@ LOSS_LIMIT = 0.01
 _GAIN, _GAIN_STEP = 20.0, 0.5
 
 
-# Deviation from unit length up to which a quaternion counts as a rotation written in few digits; that of FMUs
-# (native/exports/symofros_fmu.h).
-UNIT_TOLERANCE = 1e-3
+# Deviation from unit length up to which a quaternion counts as a rotation written in few digits.
+UNIT_TOLERANCE = native_number("stepping/system.c", "SYM_QUATERNION_TOLERANCE")
 
 
 def vector(model: Model, name: str, values: ArrayLike, size: int) -> Array:

@@ -12,6 +12,7 @@ static const char *fmi_message(int found) {
     case FMU_START_NOT_CONSISTENT: return "no state near the start meets the constraints";
     case FMU_STOP_BEFORE_START: return "the stop time is before the start time";
     case FMU_NO_ROTATION: return "start values of a quaternion are no rotation: they are of unit length";
+    case FMU_INPUT_NO_ROTATION: return "inputs that prescribe a motion hold a quaternion that is no rotation: they are of unit length";
     case FMU_NO_MEMORY: return "no memory";
     case FMU_OTHER_MODEL: return "the state is of another model or kind";
     case FMU_BUFFER_TOO_SMALL: return "too few bytes";

@@ -10,7 +10,7 @@ typedef enum { FMU_INSTANTIATED, FMU_INITIALISING, FMU_EVENT, FMU_CONTINUOUS, FM
 enum {
     FMU_OK, FMU_NOT_ALLOWED, FMU_UNKNOWN, FMU_SINGULAR, FMU_WRONG_MODE, FMU_START_NOT_CONSISTENT,
     FMU_STOP_BEFORE_START, FMU_NO_MEMORY, FMU_OTHER_MODEL, FMU_BUFFER_TOO_SMALL,
-    FMU_BEYOND_THEORY, FMU_NO_ROTATION,
+    FMU_BEYOND_THEORY, FMU_NO_ROTATION, FMU_INPUT_NO_ROTATION,
     FMU_PARAMETERS /* and beyond: by the number of the condition that the parameters do not meet */
 };
 
@@ -142,9 +142,11 @@ static int fmu_refresh(fmu *f) {
     const int status = fmu_prepare(f);
     if (status != FMU_OK) return status;
     if (f->rates_valid) return FMU_OK;
-    if (sym_instance_rates(f->instance, f->rates) != 0) return FMU_SINGULAR;
-    f->rates_valid = 1;
-    return FMU_OK;
+    switch (sym_instance_rates(f->instance, f->rates)) {
+    case 0: return f->rates_valid = 1, FMU_OK;
+    case SYM_NO_ROTATION: return FMU_INPUT_NO_ROTATION;
+    default: return FMU_SINGULAR;
+    }
 }
 
 static int fmu_get(fmu *f, size_t reference, double *value) {
@@ -196,31 +198,28 @@ static int fmu_set(fmu *f, size_t reference, double value) {
     return FMU_OK;
 }
 
-/* Deviation from unit length up to which a start quaternion counts as a rotation written in few digits. */
-#define FMU_QUATERNION_TOLERANCE 1e-3
-
 /* Whether the start quaternions are rotations; they are of unit length afterwards. */
 static int fmu_normalise_start(fmu *f) {
     const sym_plant *plant = f->instance->plant;
     int32_t k, i;
     for (k = 0; k < plant->n_segments; ++k) {
         const sym_segment *segment = &plant->segments[k];
-        double *p = f->instance->q + segment->q + (segment->kind == SYM_SEGMENT_POSE ? 3 : 0), length = 0.0;
+        double *p = f->instance->q + segment->q + (segment->kind == SYM_SEGMENT_POSE ? 3 : 0), length;
         if (segment->kind == SYM_SEGMENT_LINEAR) continue;
-        for (i = 0; i < 4; ++i) length += p[i] * p[i];
-        length = sqrt(length);
-        if (!(fabs(length - 1.0) <= FMU_QUATERNION_TOLERANCE)) return 0;
+        if (!sym_is_rotation(p, &length)) return 0;
         for (i = 0; i < 4; ++i) p[i] /= length;
     }
     return 1;
 }
 
 static int fmu_initialise(fmu *f) {
-    const int status = fmu_prepare(f);
+    int status = fmu_prepare(f);
     if (status != FMU_OK) return status;
     if (!fmu_normalise_start(f)) return FMU_NO_ROTATION;
     f->rates_valid = 0;
-    if (sym_instance_project(f->instance) != 0 || fmu_refresh(f) != FMU_OK) return FMU_SINGULAR;
+    if (sym_instance_project(f->instance) != 0) return FMU_SINGULAR;
+    status = fmu_refresh(f);
+    if (status != FMU_OK) return status;
     f->phase = f->cosim ? FMU_STEPPING : FMU_EVENT;
     return FMU_OK;
 }
@@ -254,6 +253,7 @@ static int fmu_step(fmu *f, double t, double h) {
     switch (sym_instance_advance(f->instance, t + h, 0.0)) {
     case SYM_FINISHED: return FMU_OK;
     case SYM_BEYOND_THEORY: return fmu_note_bending(f), FMU_BEYOND_THEORY;
+    case SYM_NO_ROTATION: return FMU_INPUT_NO_ROTATION;
     default: return FMU_SINGULAR;
     }
 }

@@ -179,7 +179,7 @@ static int32_t sym_records_fit(const sym_run *r) {
 /* After a step was tried, with that status and error norm: accept it, or reject it and shorten the next one. Returns 0
  * or a status. */
 static int32_t sym_accept_or_reject(sym_run *r, sym_workspace *w, double h, double t1, int32_t status, double error) {
-    if (status == SYM_CALLBACK_FAILED) return status;
+    if (status == SYM_CALLBACK_FAILED || status == SYM_NO_ROTATION) return status;
     if (r->adaptive && (status != 0 || !(error <= 1.0))) {
         ++r->rejected;
         r->next_step = status != 0 || !(error == error) ? 0.25 * h : sym_next_step_size(r, h, error);

@@ -7,7 +7,7 @@
  *     status = sym_instance_advance(arm, t_end, 1e-3);         // arm->t, arm->q, arm->v move on
  *
  * After sym_instance_init nothing allocates, and nothing is shared between instances: each may live in a thread of its
- * own. A status below zero is one of SYM_DIVERGED ... SYM_PARAMETERS_REFUSED (symofros_stepper.h).
+ * own. A status below zero is one of SYM_DIVERGED ... SYM_NO_ROTATION (symofros_stepper.h).
  */
 #ifndef SYMOFROS_INSTANCE_H
 #define SYMOFROS_INSTANCE_H
@@ -40,6 +40,8 @@ typedef struct sym_plant { /* constants that a package generates besides the mod
     /* The first condition that parameters (npar) violate, -1: none; what each condition asks for, in words. */
     int32_t (*violated)(const double *par);
     const char *const *conditions;
+    int32_t n_quaternion_inputs;
+    const int32_t *quaternion_inputs;     /* (n_quaternion_inputs) first indices in u, as in sym_system */
 } sym_plant;
 
 typedef struct sym_instance {

@@ -24,7 +24,8 @@ typedef enum sym_status {
     SYM_PROJECTION_FAILED = -6,  /* the state could not be projected onto the constraints */
     SYM_BEYOND_THEORY = -7,      /* a beam is bent beyond second-order theory */
     SYM_ENERGY_LOST = -8,        /* projection onto the constraints has taken the motion's energy */
-    SYM_PARAMETERS_REFUSED = -9  /* parameters violate a condition of the description; of instances only */
+    SYM_PARAMETERS_REFUSED = -9, /* parameters violate a condition of the description; of instances only */
+    SYM_NO_ROTATION = -10        /* a quaternion among the inputs is not of unit length */
 } sym_status;
 
 typedef enum sym_method {
@@ -98,11 +99,12 @@ typedef struct sym_tableau { /* coefficients of a Runge-Kutta or Rosenbrock meth
 
 /* The differential equations of one model: its functions bound to one evaluation point, its inputs, its events. */
 typedef struct sym_system {
-    int32_t nq, nv, nu, nc, n_segments, n_signals, n_law, n_events, n_beams;
+    int32_t nq, nv, nu, nc, n_segments, n_signals, n_law, n_events, n_beams, n_quaternion_inputs;
     const sym_segment *segments;
     const sym_beam *beams;          /* (n_beams) */
     const sym_signal *signals;
     const int32_t *law_inputs;      /* (n_law) indices in u of the inputs that the law gives */
+    const int32_t *quaternion_inputs; /* (n_quaternion_inputs) first indices in u of quaternions that prescribe motions */
     const int32_t *event_direction; /* (n_events) 1 rising, -1 falling, 0 both */
     const int32_t *event_terminal;  /* (n_events) whether the event ends the run */
     const double *u_constant;       /* (nu) inputs that nothing else gives */

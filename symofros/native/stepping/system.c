@@ -98,10 +98,29 @@ static int32_t sym_all_finite(int32_t n, const double *x) {
     return s == 0.0;
 }
 
+/* Deviation from unit length up to which a quaternion counts as a rotation written in few digits. */
+#define SYM_QUATERNION_TOLERANCE 1e-3
+
+/* Whether four numbers are a rotation, up to a length that they are divided by. */
+static int32_t sym_is_rotation(const double *p, double *length) {
+    *length = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3]);
+    return fabs(*length - 1.0) <= SYM_QUATERNION_TOLERANCE;
+}
+
+/* Check the quaternions among the inputs at the evaluation point. Returns 0 or SYM_NO_ROTATION. */
+static int32_t sym_check_inputs(const sym_system *s) {
+    double length;
+    int32_t k;
+    for (k = 0; k < s->n_quaternion_inputs; ++k)
+        if (!sym_is_rotation(s->u + s->quaternion_inputs[k], &length)) return SYM_NO_ROTATION;
+    return 0;
+}
+
 /* Count and check the accelerations just evaluated. Returns 0 or a status. */
 static int32_t sym_check_acceleration(sym_run *r) {
     const sym_system *s = r->system;
     ++r->evaluations;
+    if (sym_check_inputs(s) != 0) return SYM_NO_ROTATION;
     if (s->nc > 0 && *s->rank < 0.0) return SYM_SINGULAR;
     return sym_all_finite(s->nv, s->a) ? 0 : SYM_DIVERGED;
 }

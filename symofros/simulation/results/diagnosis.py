@@ -86,7 +86,11 @@ def _outcome(
     if status == Status.CALLBACK_FAILED:
         return replace(outcome("input failed", *input_failure(failure)), failure=failure)
     if fault:
-        return outcome("input failed", fault, "inputs that are finite at all times and states of the run")
+        return outcome(
+            "input failed",
+            fault,
+            "inputs that are finite, quaternions among them of unit length, at all times and states of the run",
+        )
     turning = jump(stepper, status)
     if turning is not None:
         lost = f"; {lost_energy(stepper)}" if status == Status.ENERGY_LOST else ""

@@ -51,6 +51,11 @@ _ENDS: dict[int, tuple[Kind, str, str]] = {
         "keeping the constraints has taken the energy of the motion: they are singular here, or the steps are too long",
         "sf.simulate from this state says which; a smaller step, or a terminal event before it",
     ),
+    Status.NO_ROTATION: (
+        "input failed",
+        "a quaternion among the inputs is not of unit length",
+        "divide it by its length; samples of a rotation have to be dense enough for the chords between them",
+    ),
     Status.BEYOND_THEORY: ("beyond theory", "a beam is bent beyond second-order theory", ""),
 }
 # Statuses that a step past the limit of stability leads to.

@@ -72,7 +72,15 @@ DRIVEN = sf.System(
         ),
     ),
 )
-OWN = {"floating": FLOATING, "driven": DRIVEN, "planar": PLANAR}
+# The importer turns the base by a quaternion.
+TURNED = sf.System(
+    "turned",
+    (
+        sf.RigidBody("base", sf.Joint("gimbal", "ball", prescribed=True), sf.Inertia(1.0, moments=(1, 1, 1))),
+        sf.RigidBody("arm", sf.Joint("q1", "revolute", "base"), sf.Inertia(1.0, (0.3, 0.1, 0))),
+    ),
+)
+OWN = {"floating": FLOATING, "driven": DRIVEN, "planar": PLANAR, "turned": TURNED}
 
 
 def system_called(name: str) -> sf.System:
@@ -508,6 +516,28 @@ def test_start_quaternions_are_rotations(made: Any, scale: float) -> None:
         with pytest.raises(FMICallException):
             run()
         assert any("no rotation" in line for line in log)
+
+
+@pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
+@pytest.mark.parametrize("length", [0.0, 1.01, -1.0])
+def test_quaternions_among_inputs_are_rotations(made: Any, kind: Any, length: float) -> None:
+    path, log = str(made("turned", 3)), list[str]()
+    inputs = [v.name for v in fmpy.read_model_description(path).modelVariables if v.causality == "input"]
+    (last,) = (name for name in inputs if name.rstrip("'").endswith("qw"))
+
+    def logger(*given: Any) -> None:
+        log.append(" ".join(x.decode() if isinstance(x, bytes) else str(x) for x in given))
+
+    def run() -> Any:
+        given = {"fmi_type": kind, "start_values": {last: length}, "logger": logger}
+        return fmpy.simulate_fmu(path, stop_time=0.01, output_interval=0.005, **given)
+
+    if length == -1.0:
+        assert len(run()) == 3
+    else:
+        with pytest.raises(FMICallException):
+            run()
+        assert any("inputs that prescribe a motion" in line and "no rotation" in line for line in log)
 
 
 def quaternion_start(path: str) -> dict[str, float]:

@@ -101,3 +101,37 @@ def test_a_step_that_is_too_long_is_no_singular_mass_matrix(name: str, method: s
     for dt in (0.05, 0.2, 1.0):
         run = sf.simulate(model, q, 3.0 * v, 20.0, method=method, dt=dt, adaptive=False if method == "dop853" else None)
         assert run.outcome.kind in ("finished", "diverged"), (dt, run.outcome)
+
+
+TURNED = sf.System(
+    "turned",
+    (
+        sf.RigidBody("base", sf.Joint("p", "ball", prescribed=True), sf.Inertia(1.0, moments=(1, 1, 1))),
+        sf.RigidBody("arm", sf.Joint("q", "revolute", "base", axis=(0, 1, 0)), sf.Inertia(1.0, (0.5, 0, 0))),
+    ),
+)
+
+
+METHODS = ["rk4", "dopri5", "semi_implicit_euler", "rodas4", "generalized_alpha"]
+CASES = [(method, kind) for method in METHODS for kind in ("number", "formula", "samples")]
+
+
+@pytest.mark.parametrize(("method", "kind"), [*CASES, ("rk4", "function"), ("dopri5", "function")])
+def test_quaternions_that_prescribe_a_motion_are_of_unit_length(method: str, kind: str) -> None:
+    """Of another length they would turn and stretch what they carry, without a word."""
+    model = sf.compile(TURNED)
+    array = np.array([0, 0, 0, 1.5, *[0.0] * 6])
+    samples = sf.Signal([0.0, 0.1, 0.2], [1.0, 1.0, 0.0])  # Turned by 2 pi: the chord between q and -q is no rotation.
+    u = {
+        "number": {"p.qw": 0.9},
+        "formula": {"p.qw": "1 + t^2"},
+        "samples": {"p.qw": samples},
+        "function": lambda t, q, v: array,
+    }[kind]
+    run = sf.simulate(model, [0.3], u=u, t_end=0.3, dt=0.01, method=method)
+    assert run.outcome.kind == "input failed" and run.outcome.t < 0.15
+    assert "p.qx, p.qy, p.qz, p.qw are a quaternion of length" in run.outcome.reason
+    if kind == "number" and method in ("rk4", "dopri5"):
+        many = sf.simulate_batch(model, [[0.3], [0.2]], u=u, t_end=0.3, dt=0.01, method=method)
+        assert [many.outcome(i).reason for i in range(2)] == [run.outcome.reason] * 2
+    assert sf.simulate(model, [0.3], u={"p.qw": -1.0}, t_end=0.03, dt=0.01, method=method).outcome.ok
