@@ -8,6 +8,8 @@ from typing import Any
 from symofros.description.sections.section import Material, Section
 from symofros.description.values import Term, as_value
 
+_Points = tuple[tuple[Term, Term], ...]
+
 _PI = math.pi
 # The sum of 1/n^5 over odd n: 31/32 zeta(5).
 _ODD_FIFTHS = 31.0 / 32.0 * 1.0369277551433699
@@ -25,7 +27,9 @@ def rectangle(material: Material, y: Any, z: Any) -> Section:
     area = a * b
     I_y, I_z = a * b * b * b / Term(12.0), b * a * a * a / Term(12.0)
     shear = tuple(G * area / _rectangle_compliance(E / G, *sizes) for sizes in ((a, b), (b, a)))
-    return _homogeneous(E, rho, area, I_y, I_z, G * _rectangle_torsion(a, b), shear)
+    halves = (Term(-0.5), Term(0.5))
+    corners = tuple((sy * a, sz * b) for sy in halves for sz in halves)
+    return _homogeneous(E, rho, area, I_y, I_z, G * _rectangle_torsion(a, b), shear, corners=corners)
 
 
 def circle(material: Material, radius: Any) -> Section:
@@ -41,7 +45,7 @@ def circle(material: Material, radius: Any) -> Section:
     # 6 (1 + nu)^2 / (7 + 14 nu + 8 nu^2) with E = 2 G (1 + nu).
     ratio = E / G
     shear = Term(1.5) * ratio * ratio / (Term(1.0) - ratio + Term(2.0) * ratio * ratio)
-    return _homogeneous(E, rho, area, moment, moment, Term(2.0) * G * moment, (G * area * shear,) * 2)
+    return _homogeneous(E, rho, area, moment, moment, Term(2.0) * G * moment, (G * area * shear,) * 2, radii=_radii(r, r))
 
 
 def tube(material: Material, radius: Any, thickness: Any) -> Section:
@@ -57,7 +61,7 @@ def tube(material: Material, radius: Any, thickness: Any) -> Section:
     squares = outer * outer + inner * inner
     area = Term(_PI) * wall * (outer + inner)
     moment = area * squares / Term(4.0)
-    return _homogeneous(E, rho, area, moment, moment, Term(2.0) * G * moment)
+    return _homogeneous(E, rho, area, moment, moment, Term(2.0) * G * moment, radii=_radii(outer, outer))
 
 
 def ellipse(material: Material, y: Any, z: Any) -> Section:
@@ -71,7 +75,8 @@ def ellipse(material: Material, y: Any, z: Any) -> Section:
     E, G, rho, a, b = _terms(material, y, z)
     area = Term(_PI) * a * b
     torsion = area * a * a * b * b / (a * a + b * b)
-    return _homogeneous(E, rho, area, area * b * b / Term(4.0), area * a * a / Term(4.0), G * torsion)
+    I_y, I_z = area * b * b / Term(4.0), area * a * a / Term(4.0)
+    return _homogeneous(E, rho, area, I_y, I_z, G * torsion, radii=_radii(a, b))
 
 
 def _terms(material: Material, *sizes: Any) -> list[Term]:
@@ -80,7 +85,15 @@ def _terms(material: Material, *sizes: Any) -> list[Term]:
 
 
 def _homogeneous(
-    E: Term, rho: Term, area: Term, I_y: Term, I_z: Term, GJ: Term, shear: tuple[Term, ...] = ()
+    E: Term,
+    rho: Term,
+    area: Term,
+    I_y: Term,
+    I_z: Term,
+    GJ: Term,
+    shear: tuple[Term, ...] = (),
+    corners: _Points = (),
+    radii: _Points = (),
 ) -> Section:
     GA_y, GA_z = (term.value for term in shear) if shear else (None, None)
     return Section(
@@ -93,7 +106,14 @@ def _homogeneous(
         rhoI_z=(rho * I_z).value,
         GA_y=GA_y,
         GA_z=GA_z,
+        E=E.value,
+        corners=tuple((y.value, z.value) for y, z in corners),
+        radii=tuple((y.value, z.value) for y, z in radii),
     )
+
+
+def _radii(y: Term, z: Term) -> _Points:
+    return (y, Term(0.0)), (Term(0.0), z)
 
 
 def _rectangle_torsion(y: Term, z: Term) -> Term:

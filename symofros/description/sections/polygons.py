@@ -17,7 +17,7 @@ _MOST_POINTS = 1000
 
 
 class _Geometry(NamedTuple):
-    """A homogeneous section about its centroid: area, I_y, I_z, I_yz, torsion constant, shear areas, shear centre."""
+    """A homogeneous section about its centroid: area, moments, torsion constant, shear areas and centre, centroid."""
 
     area: float
     I_y: float
@@ -27,6 +27,7 @@ class _Geometry(NamedTuple):
     shear_y: float
     shear_z: float
     shear_center: Point
+    centroid: Point
 
 
 def polygon(material: Material, outline: Sequence[Point], holes: Sequence[Sequence[Point]] = ()) -> Section:
@@ -58,6 +59,8 @@ def polygon(material: Material, outline: Sequence[Point], holes: Sequence[Sequen
         GA_y=G * part.shear_y,
         GA_z=G * part.shear_z,
         shear_center=part.shear_center,
+        E=E,
+        corners=tuple((y - part.centroid[0], z - part.centroid[1]) for y, z in rings[0]),
     )
 
 
@@ -154,4 +157,5 @@ def _geometry(rings: tuple[tuple[Point, ...], ...], poisson: float) -> _Geometry
         shear_y * square,
         shear_z * square,
         (float(sy - cy) / scale, float(sz - cz) / scale),
+        (float(cy) / scale, float(cz) / scale),
     )

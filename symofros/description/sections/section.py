@@ -62,6 +62,9 @@ class Section:
         tension_center: Point (y, z) where a force along x does not bend [m].
         shear_center: Point (y, z) where a force across does not twist [m].
         mass_center: Mass centre (y, z) [m].
+        E: Young's modulus, for stresses [N/m^2]; None where it is not known, or not the same all over the section.
+        corners: Points (y, z) whose convex hull has the section's extreme fibres [m].
+        radii: Two conjugate radii (y, z) of an elliptic outline, in place of corners [m].
     """
 
     EA: Value
@@ -78,16 +81,16 @@ class Section:
     tension_center: tuple[Value, Value] = (0.0, 0.0)
     shear_center: tuple[Value, Value] = (0.0, 0.0)
     mass_center: tuple[Value, Value] = (0.0, 0.0)
+    E: Value | None = None
+    corners: tuple[tuple[Value, Value], ...] = ()
+    radii: tuple[tuple[Value, Value], ...] = ()
 
     def __post_init__(self) -> None:
         """Convert the numbers."""
         for item in fields(self):
             stated: Any = getattr(self, item.name)
-            if isinstance(stated, tuple):
-                y, z = (as_value(value, f"section: {item.name}") for value in stated)
-                object.__setattr__(self, item.name, (y, z))
-            elif stated is not None:
-                object.__setattr__(self, item.name, as_value(stated, f"section: {item.name}"))
+            if stated is not None:
+                object.__setattr__(self, item.name, _as_values(stated, f"section: {item.name}"))
 
     @property
     def rhoJ(self) -> Value:
@@ -151,6 +154,8 @@ class Section:
         for name in ("tension_center", "shear_center", "mass_center"):
             y, z = self._point(name)
             new[name] = (c * y + s * z, c * z - s * y)
+        for name in ("corners", "radii"):
+            new[name] = tuple((c * y + s * z, c * z - s * y) for y, z in self._points(name))
         # Shear along axes that are not principal ones of shear is coupled: unknown, unless the angle is a right one.
         quarter = round(angle / (0.5 * np.pi))
         if abs(angle - quarter * 0.5 * np.pi) > 1e-12:
@@ -202,12 +207,75 @@ class Section:
         T[0, 4], T[0, 5], T[1, 3], T[2, 3] = z, -y, -z, y
         return np.asarray(T.T @ M @ T)
 
+    def normal_stress(
+        self, forces: npt.ArrayLike, points: npt.ArrayLike, values: Mapping[str, float] | None = None
+    ) -> npt.NDArray[np.float64]:
+        """Normal stress at points of the section (..., points) [N/m^2], positive in tension (eq. 32).
+
+        Args:
+            forces: Section forces N, Vy, Vz, T, My, Mz about the axis (..., 6) [N, N m].
+            points: Points (y, z) (points, 2) [m].
+            values: Number of each parameter and of the station.
+
+        Raises:
+            DescriptionError: Young's modulus is not known.
+        """
+        constant, gradient = self._normal_stress(forces, values or {})
+        return np.asarray(constant[..., None] + gradient @ np.asarray(points, dtype=np.float64).T)
+
+    def extreme_stresses(
+        self, forces: npt.ArrayLike, values: Mapping[str, float] | None = None
+    ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+        """Smallest and largest normal stress over the section (...) [N/m^2], as of `normal_stress`.
+
+        Raises:
+            DescriptionError: Young's modulus or the outline is not known.
+        """
+        constant, gradient = self._normal_stress(forces, values or {})
+        corners, radii = (np.array(self._points(name, values)).reshape(-1, 2) for name in ("corners", "radii"))
+        if len(corners):
+            at = constant[..., None] + gradient @ corners.T
+            return at.min(axis=-1), at.max(axis=-1)
+        if not len(radii):
+            rule = "extreme stresses are at the outline"
+            raise DescriptionError(
+                Problem("section: its outline is not known", "no corners, no radii", rule, "state corners, or use points")
+            )
+        reach = np.linalg.norm(gradient @ radii.T, axis=-1)
+        return constant - reach, constant + reach
+
+    def _normal_stress(
+        self, forces: npt.ArrayLike, values: Mapping[str, float]
+    ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+        """Normal stress on the axis (...), and its gradient by y and z (..., 2)."""
+        if self.E is None:
+            rule = "stress is Young's modulus times strain"
+            raise DescriptionError(Problem("section: Young's modulus is not known", "E is None", rule, "state E"))
+        E, EA, EI_y, EI_z, EI_yz = self._numbers(("E", "EA", "EI_y", "EI_z", "EI_yz"), values)
+        y, z = self._point("tension_center", values)
+        N, _, _, _, My, Mz = np.moveaxis(np.asarray(forces, dtype=np.float64), -1, 0)
+        about_center = np.stack([My - z * N, Mz + y * N], axis=-1)
+        curvatures = about_center @ np.linalg.inv([[EI_y, -EI_yz], [-EI_yz, EI_z]])
+        gradient = E * np.stack([-curvatures[..., 1], curvatures[..., 0]], axis=-1)
+        return np.asarray(E * N / EA - gradient @ [y, z]), gradient
+
+    def _points(self, label: str, values: Mapping[str, float] | None = None) -> list[tuple[float, float]]:
+        pairs = getattr(self, label)
+        return [(number_of(y, label, values or {}), number_of(z, label, values or {})) for y, z in pairs]
+
     def _numbers(self, labels: tuple[str, ...], values: Mapping[str, float] | None = None) -> list[float]:
         return [number_of(getattr(self, label), label, values or {}) for label in labels]
 
     def _point(self, label: str, values: Mapping[str, float] | None = None) -> tuple[float, float]:
         y, z = (number_of(value, label, values or {}) for value in getattr(self, label))
         return y, z
+
+
+def _as_values(stated: Any, label: str) -> Any:
+    """A value, a pair of values, or pairs."""
+    if isinstance(stated, tuple | list):
+        return tuple(_as_values(item, label) for item in stated)
+    return as_value(stated, label)
 
 
 def number_of(value: Value, label: str, values: Mapping[str, float]) -> float:

@@ -16,6 +16,7 @@ from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.results.plots import draw
+from symofros.simulation.results.section_forces import SectionForces, section_forces_of
 from symofros.simulation.results.saving import refuse_suffix, write_columns, write_npz
 
 
@@ -141,6 +142,18 @@ class Trajectory:
         """Kinetic and potential energy together (n) [J]."""
         total: Array = self.kinetic_energy + self.potential_energy
         return total
+
+    def section_forces(self, beam: str) -> SectionForces:
+        """Force and moment inside an elastic beam at its stations, over time.
+
+        Args:
+            beam: Name of the beam; of a beam in segments, of one of them.
+
+        Raises:
+            UnknownNameError: There is no such elastic beam.
+        """
+        states = self.q, self.v, self.a, self.u, self.lam
+        return section_forces_of(self.model, beam, self.t, states, self.par)
 
     @property
     def frames(self) -> Frames:

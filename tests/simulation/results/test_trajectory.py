@@ -69,3 +69,26 @@ def test_picture(run: sf.Trajectory) -> None:
     ]
     lines = figure.axes[0].get_lines()
     np.testing.assert_array_equal(lines[0].get_ydata(), run.q[:, 0])
+
+
+def test_section_forces_of_a_swing_start_with_what_the_joint_transmits(tmp_path: Path) -> None:
+    """Over time and along the span; the envelope holds every instant, and figures show both."""
+    joint = sf.Joint("pin", "revolute", axis=(0, 0, 1))
+    swinging = sf.Beam("b", joint, 1.0, 2.0, EI_z=30.0, bend_y=2, family="legendre")
+    model = sf.compile(sf.System("s", [swinging], gravity=(0, -9.81, 0)))
+    run = sf.simulate(model, t_end=0.05, dt=1e-3)
+    forces = run.section_forces("b")
+    assert forces.values.shape == (len(run), 9, 6)
+    assert forces.present == ("N", "Vy", "Mz")
+    np.testing.assert_allclose(forces.x, np.linspace(0.0, 1.0, 9))
+    wrenches = model.joint_wrenches(run.q, run.v, run.a, run.u, par=run.par, t=run.t)[:, 0]
+    np.testing.assert_allclose(forces.values[:, 0], -wrenches, atol=1e-12 * np.abs(wrenches).max())
+    low, high = forces.envelope
+    assert np.all(low[:, 1] <= forces.at(0.0123)[:, 1]) and np.all(forces.at(0.0123)[:, 1] <= high[:, 1])
+    np.testing.assert_allclose(forces.at(0.01), forces.values[10], atol=1e-9)
+    pytest.importorskip("matplotlib")
+    forces.plot(0.02).savefig(tmp_path / "forces.png")
+    with pytest.raises(sf.UnknownNameError, match="did you mean 'Mz'"):
+        forces["mz"]
+    with pytest.raises(sf.UnknownNameError, match="no section forces of 'c'"):
+        run.section_forces("c")
