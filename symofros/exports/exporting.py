@@ -201,9 +201,11 @@ def _material(
 
 
 def _reactions(system: System) -> tuple[str, ...]:
-    """Names of the functions of reactions: efforts of drives only where a motion is prescribed."""
+    """Names of the functions of reactions: efforts of drives and forces inside beams where there are any."""
     prescribed = any(body.joint is not None and body.joint.prescribed for body in system.bodies)
-    return ("joint_wrenches", "prescribed_efforts") if prescribed else ("joint_wrenches",)
+    inside = any(isinstance(body, Beam) and body.modes and body.stations for body in system.bodies)
+    further = {"prescribed_efforts": prescribed, "section_forces": inside}
+    return ("joint_wrenches", *(name for name, wanted in further.items() if wanted))
 
 
 def _refuse_variational(system: System, stepping: Stepping) -> None:

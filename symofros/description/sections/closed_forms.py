@@ -45,7 +45,9 @@ def circle(material: Material, radius: Any) -> Section:
     # 6 (1 + nu)^2 / (7 + 14 nu + 8 nu^2) with E = 2 G (1 + nu).
     ratio = E / G
     shear = Term(1.5) * ratio * ratio / (Term(1.0) - ratio + Term(2.0) * ratio * ratio)
-    return _homogeneous(E, rho, area, moment, moment, Term(2.0) * G * moment, (G * area * shear,) * 2, radii=_radii(r, r))
+    return _homogeneous(
+        E, rho, area, moment, moment, Term(2.0) * G * moment, (G * area * shear,) * 2, radii=_radii(r, r)
+    )
 
 
 def tube(material: Material, radius: Any, thickness: Any) -> Section:

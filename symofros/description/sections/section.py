@@ -239,7 +239,9 @@ class Section:
         if not len(radii):
             rule = "extreme stresses are at the outline"
             raise DescriptionError(
-                Problem("section: its outline is not known", "no corners, no radii", rule, "state corners, or use points")
+                Problem(
+                    "section: its outline is not known", "no corners, no radii", rule, "state corners, or use points"
+                )
             )
         reach = np.linalg.norm(gradient @ radii.T, axis=-1)
         return constant - reach, constant + reach

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from string import Template
 
-from symofros.exports.c.c_text import comment, integers, strings
+from symofros.exports.c.c_text import comment, doubles, integers, strings
 from symofros.exports.material import Material
 from symofros.generator.codegen.solvers import ROUTINES
 from symofros.native import native_text
@@ -28,5 +28,7 @@ def efforts_text(material: Material) -> str:
         "speed": integers(speed),
         "joints": strings(record.joint_names),
         "prescribed": strings(record.prescribed_names),
+        "section_beams": strings([beam for beam, _ in record.section_names]),
+        "section_stations": doubles([xi for _, xi in record.section_names]),
     }
     return Template(native_text("exports/actuator_efforts.c.in")).substitute(words)

@@ -1,4 +1,4 @@
-"""Forces inside a beam along a run: over its span at an instant, and their envelope (docs/theory/beams.md, section 9)."""
+"""Forces inside a beam along a run, over its span: at an instant, and their envelope (docs/theory/beams.md, 9)."""
 
 from __future__ import annotations
 
@@ -71,7 +71,9 @@ class SectionForces:
         """Components that do not vanish in the run, beside the largest force and the largest moment."""
         largest = np.abs(self.values).max(axis=(0, 1), initial=0.0)
         scales = np.repeat([largest[:3].max(), largest[3:].max()], 3)
-        return tuple(name for name, size, scale in zip(COMPONENTS, largest, scales, strict=True) if size > _ABSENT * scale)
+        return tuple(
+            name for name, size, scale in zip(COMPONENTS, largest, scales, strict=True) if size > _ABSENT * scale
+        )
 
     def plot(self, t: float | None = None) -> Any:
         """A Matplotlib figure over the span: the envelope of each component, and its values at an instant.

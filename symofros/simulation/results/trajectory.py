@@ -16,8 +16,8 @@ from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.results.plots import draw
-from symofros.simulation.results.section_forces import SectionForces, section_forces_of
 from symofros.simulation.results.saving import refuse_suffix, write_columns, write_npz
+from symofros.simulation.results.section_forces import SectionForces, section_forces_of
 
 
 class Found(NamedTuple):

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple, Self
 
 from symofros.description.system import System
 from symofros.runtime.model import ArrayLike
+from symofros.simulation.results.trajectory import Trajectory
 from symofros.studio.viewer.drawing.poses import Mechanism, State
 from symofros.studio.viewer.drawing.tracks import tracks_of
 from symofros.studio.viewer.page.viewer_page import ViewerPage
@@ -176,7 +177,8 @@ class Viewer(ViewerPage):
             ShapeError: The motion does not fit the model.
             SymofrosError: The speed is not a number above 0.
         """
-        player = Player(motion_of(self.mechanism.model, run), speed, loop)
+        motion = motion_of(self.mechanism.model, run)
+        player = Player(motion, speed, loop, run if isinstance(run, Trajectory) else None)
         player.start()
         with self._painting:
             self._discard()

@@ -24,12 +24,16 @@ def test_a_rectangle_is_stressed_most_at_a_corner() -> None:
     assert [low, high] == pytest.approx([N / (y * z) - bending, N / (y * z) + bending], rel=1e-13)
 
 
-@pytest.mark.parametrize("shape", [sections.circle(STEEL, 0.03), sections.tube(STEEL, 0.03, 0.004)], ids=["full", "tube"])
+@pytest.mark.parametrize(
+    "shape", [sections.circle(STEEL, 0.03), sections.tube(STEEL, 0.03, 0.004)], ids=["full", "tube"]
+)
 def test_round_sections_bend_about_any_axis_alike(shape: Section) -> None:
     radius, M = 0.03, math.hypot(FORCES[4], FORCES[5])
     area, moment = (sf.evaluate(value, {}) / 210e9 for value in (shape.EA, shape.EI_y))
     low, high = shape.extreme_stresses(FORCES)
-    assert [low, high] == pytest.approx([FORCES[0] / area - M * radius / moment, FORCES[0] / area + M * radius / moment])
+    assert [low, high] == pytest.approx(
+        [FORCES[0] / area - M * radius / moment, FORCES[0] / area + M * radius / moment]
+    )
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,7 @@ static void read(int n, double *x) { int i; for (i = 0; i < n; ++i) if (scanf("%
 static void show(int n, const double *x) { int i; for (i = 0; i < n; ++i) printf("%.17g ", x[i]); printf("\\n"); }
 static double pre[2000], q[$nq + 1], v[$nv + 1], a[$nv + 1], u[$nu + 1], lam[$nc + 1], t[1];
 static double efforts[$n + 1], sizes[$n + 1];
-static double out[20 * $nv + 20], work[20000];
+static double out[20 * $nv + 6 * $sections + 20], work[20000];
 static void call(const sym_function *f) {
     const double *in[] = {pre, q, v, a, u, lam, t};
     double *outputs[1];
@@ -58,9 +58,11 @@ CASES = {
     "double_pendulum": ("q1", "q2"),
     "four_bar": ("q1", "q2", "q3"),
     "bricard": ("q1", "q3", "q4"),
+    "spinning_beam": tuple(f"beam.bend_y[{i}]" for i in range(3)),
     "flexible_slider_crank": tuple(f"rod.bend_y[{i}]" for i in range(5)),
 }
 GUESSES = {
+    "spinning_beam": [0.4, -0.2, 0.1],
     "four_bar": [1.2, -1.0, 1.3],
     "bricard": [0.1, -0.1, 0.1, -0.1, 0.1],
     "flexible_slider_crank": [-0.2, 0, 0, 0, 0, 0, 0.44],
@@ -73,7 +75,9 @@ def motions(model: sf.Model, name: str, count: int) -> list[tuple[np.ndarray, ..
     for seed in range(count):
         rng = np.random.default_rng(seed)
         u = model.record.u_default + 0.3 * rng.standard_normal(model.nu)
-        guess = np.array(GUESSES.get(name, model.neutral())) + (0.0 if model.nc else rng.standard_normal(model.nq))
+        guess = np.array(GUESSES.get(name, model.neutral())) + (
+            0.0 if name in GUESSES else rng.standard_normal(model.nq)
+        )
         v = 0.1 * rng.standard_normal(model.nv)
         if model.nc:
             state = sf.assemble(model, guess, v, u=u)
@@ -88,7 +92,12 @@ def numbers(line: str) -> np.ndarray:
 
 @pytest.mark.parametrize(
     "name",
-    ["double_pendulum", "four_bar", *(pytest.param(name, marks=pytest.mark.slow) for name in list(CASES)[2:])],
+    [
+        "double_pendulum",
+        "four_bar",
+        "spinning_beam",
+        *(pytest.param(name, marks=pytest.mark.slow) for name in ("bricard", "flexible_slider_crank")),
+    ],
 )
 def test_c_gives_the_reactions_of_python(tmp_path: Path, name: str) -> None:
     m, actuators = sf.compile(MODELS[name]), CASES[name]
@@ -101,7 +110,10 @@ def test_c_gives_the_reactions_of_python(tmp_path: Path, name: str) -> None:
         for actuator in actuators
     )
     prescribed = 'call(sym_find(model, "prescribed_efforts", NULL));' if m.record.driven else ""
+    if m.names.sections:
+        prescribed += 'call(sym_find(model, "section_forces", NULL));'
     sizes = {"nq": m.nq, "nv": m.nv, "nu": m.nu, "nc": m.nc, "n": len(actuators), "joints": len(m.names.joints)}
+    sizes["sections"] = len(m.names.sections)
     text = PROGRAM.substitute(name=name, actuators=codes, states=len(states), prescribed=prescribed, **sizes)
     (tmp_path / "main.c").write_text(text)
     build(tmp_path, "reactions")
@@ -120,9 +132,12 @@ def test_c_gives_the_reactions_of_python(tmp_path: Path, name: str) -> None:
         assert lam == pytest.approx(wanted.lam, rel=1e-8, abs=1e-8 * float(np.abs(wanted.lam).max(initial=1e-3)))
         wrenches = m.joint_wrenches(q, v, a, u, lam, t=t).ravel()
         assert numbers(next(lines)) == pytest.approx(wrenches, rel=1e-9, abs=1e-9 * float(np.abs(wrenches).max()))
-        if prescribed:
+        if m.record.driven:
             drives = m.prescribed_efforts(q, v, a, u, lam, t=t)
             assert numbers(next(lines)) == pytest.approx(drives, rel=1e-9)
+        if m.names.sections:
+            inside = m.section_forces(q, v, a, u, lam, t=t).ravel()
+            assert numbers(next(lines)) == pytest.approx(inside, rel=1e-9, abs=1e-9 * float(np.abs(inside).max()))
 
 
 def test_motions_that_actuators_can_not_produce_are_refused(tmp_path: Path) -> None:

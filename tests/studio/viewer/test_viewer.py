@@ -47,6 +47,28 @@ def test_it_is_seen_from_this_machine_alone(viewer: sf.Viewer) -> None:
         assert other.connect_ex(("127.0.0.2", viewer.port)) != 0
 
 
+def test_section_forces_are_plotted_over_the_span_at_the_instant_shown() -> None:
+    system = MODELS["spinning_beam"]
+    model = sf.compile(system)
+    run = sf.simulate(model, t_end=0.02, dt=1e-3)
+    with sf.Viewer(system, port=0) as viewer:
+        viewer.play(run)
+        viewer.toggle()
+        plot = viewer._panel.force_plot
+        assert plot is not None
+        choice = next(choice for choice in plot.choices if choice.endswith(": Mz"))
+        plot.choose(choice)
+        forces = run.section_forces(plot.choices[choice][0])
+        for k in (0, 10, len(run) - 1):
+            viewer.seek(float(run.t[k]))
+            x, low, high, now = plot._plot.data
+            np.testing.assert_allclose(now, forces["Mz"][k], atol=1e-12)
+            np.testing.assert_array_equal((x, low, high), (forces.x, *(side[:, 5] for side in forces.envelope)))
+        plot.choose("none")
+        viewer.play((run.t, run.q))  # Coordinates alone have no forces.
+        assert viewer._panel.force_plot is None
+
+
 def test_a_port_that_is_taken_is_refused(viewer: sf.Viewer) -> None:
     with pytest.raises(SymofrosError, match=rf"can't serve at 127.0.0.1:{viewer.port}\n(.*\n)*.*another port, or 0"):
         sf.Viewer(MODELS["pendulum"], port=viewer.port)

@@ -11,6 +11,7 @@ import numpy as np
 from symofros.studio.viewer.drawing.drawing import Drawing
 from symofros.studio.viewer.drawing.layers import LAYERS
 from symofros.studio.viewer.drawing.meshes import Array
+from symofros.studio.viewer.page.force_plot import ForcePlot
 from symofros.studio.viewer.playing.player import Player
 from symofros.studio.viewer.playing.sliders import Slider
 
@@ -86,6 +87,7 @@ class Panel:
         self._play: Any = None
         self._time: Any = None
         self._exaggeration: Any = None
+        self.force_plot: ForcePlot | None = None
         self._boxes: dict[str, Any] = {}
         self._sliders: list[Any] = []
         gui.reset()
@@ -133,6 +135,8 @@ class Panel:
             speeds = sorted({*_SPEEDS, f"{player.speed:g}"}, key=float)
             chosen = gui.add_dropdown("speed", speeds, initial_value=f"{player.speed:g}")
             self._on(chosen, lambda text: self._controls.set_speed(float(text)))
+        if player.run is not None and player.run.model.names.sections:
+            self.force_plot = ForcePlot(gui, player.run)
 
     def _add_sliders(self, sliders: tuple[Slider, ...]) -> None:
         gui, handles = self._gui, {}
@@ -186,3 +190,5 @@ class Panel:
         if player is not None and self._time is not None:
             self._time.value = player.time
             self._play.label = "Pause" if player.playing else "Play"
+            if self.force_plot is not None:
+                self.force_plot.follow(player.time)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from symofros.simulation.results.trajectory import Trajectory
 from symofros.studio.viewer.playing.motion import PlayedMotion, positive
 
 
@@ -12,13 +13,16 @@ class Player:
         motion: Motion to play.
         speed: Seconds of the motion a second.
         loop: Whether it begins again at its end.
+        run: Trajectory that the motion is of, if it is of one.
 
     Raises:
         SymofrosError: The speed is not a number above 0.
     """
 
-    def __init__(self, motion: PlayedMotion, speed: float = 1.0, loop: bool = True) -> None:
-        self.motion = motion
+    def __init__(
+        self, motion: PlayedMotion, speed: float = 1.0, loop: bool = True, run: Trajectory | None = None
+    ) -> None:
+        self.motion, self.run = motion, run
         self.speed, self.loop = positive("speed", speed), loop
         self.time = motion.start
         self.playing = False
