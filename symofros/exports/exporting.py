@@ -22,6 +22,7 @@ from symofros.exports.c.c_package import write_c_package
 from symofros.exports.c.mex import write_mex
 from symofros.exports.c.reference import POINTS, checks
 from symofros.exports.c.sfunction import write_sfunction
+from symofros.exports.cuda.cuda_package import write_cuda_package
 from symofros.exports.diagram import write_diagram
 from symofros.exports.fmi.fmu import write_fmu2, write_fmu3
 from symofros.exports.folder import Exported as Exported
@@ -38,7 +39,7 @@ from symofros.runtime.model import Model
 from symofros.simulation.analysis.assembly import assemble
 from symofros.simulation.stepping.methods import METHODS
 
-Target = Literal["c", "mex", "sfunction", "fmu2", "fmu3", "urdf", "mjcf"]
+Target = Literal["c", "cuda", "mex", "sfunction", "fmu2", "fmu3", "urdf", "mjcf"]
 TARGETS: tuple[Target, ...] = get_args(Target)
 
 _COMPILED: dict[str, Callable[[Material, Path], Exported]] = {
@@ -72,12 +73,12 @@ def export(
 
     Args:
         model: A system, or the path of its description; or a diagram, which becomes a program of its own ("c").
-        target: "c" (a package that builds by CMake, tests itself and simulates in real time), "mex" (Matlab, Octave),
+        target: "c" (a package that builds by CMake, tests itself and simulates in real time), "cuda" (kernels, one thread a state), "mex" (Matlab, Octave),
             "sfunction" (Simulink), "fmu2", "fmu3" (FMI, Model Exchange and Co-Simulation), "urdf" or "mjcf" (what
             these can hold; the notes say what they can't).
         folder: A new one, an empty one, or one of an earlier export.
         name: Name of files and functions; made of the system's name by default.
-        frames: Frames to generate kinematics for; all by default.
+        frames: Frames to generate kinematics for; all by default, of CUDA the last one.
         outputs: Of those, frames whose positions are outputs of FMUs; the last one by default. Of a diagram, the
             signals that its program tells; by default what moves.
         start: Names of coordinates, and d + names of speeds -> first values; the neutral state at rest by default.
@@ -113,6 +114,8 @@ def export(
     if target in _DESCRIBED:
         plan(system)
         return _DESCRIBED[target](system, name, place, GENERATOR)
+    if target == "cuda":
+        return write_cuda_package(system, name, frames, place)
     stepping = replace(_stepping(method, dt, rtol, atol), beam_limit=beam_limit)
     material = _material(system, name, frames, outputs, start or {}, stepping, target)
     return _COMPILED[target](material, place)

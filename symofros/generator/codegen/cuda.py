@@ -7,7 +7,7 @@ are addressed by entry and step, so that threads of neighbouring states read nei
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from string import Template
 
 from symofros.expr.program import Function, Program
@@ -15,7 +15,7 @@ from symofros.generator.codegen import trigonometry
 from symofros.generator.codegen.function import FunctionWriter
 from symofros.generator.codegen.lanes import called_functions
 from symofros.generator.codegen.model import comment, legend, operations_text
-from symofros.generator.codegen.names import identifier
+from symofros.generator.codegen.names import function_symbols, identifier
 from symofros.native import native_text
 from symofros.runtime.calls.kernel import Precision, Signature
 from symofros.runtime.cuda.device_code import BLOCK, DeviceCode, DeviceKernel
@@ -43,7 +43,7 @@ def device_code(
     name = c_name or identifier(record.name)
     functions = [function for function in program.functions if function.solver is None]
     signatures = [_signature(program, function) for function in functions]
-    kernels = list(map(DeviceKernel, _symbols(name, functions), signatures))
+    kernels = list(map(DeviceKernel, function_symbols(name, ((f.name, f.frame) for f in functions)), signatures))
     texts = [
         "\n".join(
             [
@@ -64,7 +64,7 @@ def device_code(
         real=_REAL[precision],
         functions="",
     )
-    routines = "\n".join([*map(_called, called_functions()), trigonometry.on_device(precision)])
+    routines = "\n".join([*_called(texts), trigonometry.on_device(precision)])
     rollouts = {}
     if any(function.name == "forward_dynamics" for function in functions):
         texts.append(_on_device(_rollout(name, record, functions, precision)))
@@ -77,21 +77,15 @@ def _on_device(text: str) -> str:
     return _STATIC.sub("static __device__ ", text)
 
 
-def _called(function: tuple[str, str, int]) -> str:
-    """A function of CUDA's library under the name that text on vectors calls it by."""
-    operation, c_function, arity = function
-    arguments, values = ("sym_v x", "x") if arity == 1 else ("sym_v x, sym_v y", "x, y")
-    return f"static inline sym_v sym_v_{operation}({arguments}) {{ return {c_function}({values}); }}"
-
-
-def _symbols(name: str, functions: Sequence[Function]) -> list[str]:
-    """One name a kernel: frames that look alike in C are told apart by a number."""
-    symbols: list[str] = []
-    for function in functions:
-        symbol = "_".join([name, function.name, *([identifier(function.frame)] if function.frame else [])])
-        taken = symbol in symbols
-        symbols.append(f"{symbol}_{len(symbols)}" if taken else symbol)
-    return symbols
+def _called(texts: Iterable[str]) -> list[str]:
+    """Functions of CUDA's library under the names that some texts call them by."""
+    code = "\n".join(texts)
+    arguments = {1: ("sym_v x", "x"), 2: ("sym_v x, sym_v y", "x, y")}
+    return [
+        f"static inline sym_v sym_v_{name}({arguments[arity][0]}) {{ return {function}({arguments[arity][1]}); }}"
+        for name, function, arity in called_functions()
+        if f"sym_v_{name}(" in code
+    ]
 
 
 def _signature(program: Program, function: Function) -> Signature:
@@ -122,7 +116,8 @@ def _kernel(kernel: DeviceKernel) -> str:
 def _rollout(name: str, record: ModelRecord, functions: Sequence[Function], precision: Precision) -> str:
     """Kernels that step states by the forward dynamics among the functions."""
     forward = next(function for function in functions if function.name == "forward_dynamics")
-    rotations = native_text("stepping/rotations.c").replace("double", "sym_number")
+    turning = any(segment.kind != "linear" for segment in record.segments)
+    rotations = native_text("stepping/rotations.c").replace("double", "sym_number") if turning else ""
     if precision == "single":
         rotations = _DECIMAL.sub(r"\g<0>f", rotations)
     segments = record.segments

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
+from itertools import chain, count
 
 _KEYWORDS = frozenset(
     "auto break case char const continue default do double else enum extern float for goto if inline int long"
@@ -35,6 +37,15 @@ def identifier(text: str) -> str:
     if lower.startswith(_RESERVED_PREFIXES):
         name = f"m_{name}"
     return f"{name}_" if is_reserved else name
+
+
+def function_symbols(name: str, functions: Iterable[tuple[str, str]]) -> list[str]:
+    """C names of functions by (name, frame), all different: frames that look alike in C are told apart by numbers."""
+    symbols: list[str] = []
+    for function, frame in functions:
+        stem = "_".join([name, function, *([identifier(frame)] if frame else [])])
+        symbols.append(next(s for s in chain([stem], (f"{stem}_{i}" for i in count(2))) if s not in symbols))
+    return symbols
 
 
 def local_name(label: str, node: int) -> str:

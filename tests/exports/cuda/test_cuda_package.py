@@ -1,0 +1,97 @@
+"""The CUDA package: its example compares kernels with C, its text compiles, its table is that of the kernels."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+import symofros as sf
+from symofros.errors import ExportError, UnknownNameError
+from tests.cuda_on_host import SHIM
+from tests.exports.cases import STRICT, run
+from tests.models import system
+
+HERE = Path(__file__).parent
+# The launcher of the example, as loops over threads.
+LAUNCHER = """
+extern "C" int double_pendulum_dynamics_launch(void *, long long n, const double *pre, sym_strided q, sym_strided v,
+                                               sym_strided u, sym_strided t, sym_strided M, sym_strided h,
+                                               sym_strided Q) {
+    const unsigned block = SYM_BLOCK, grid = (unsigned)((n + block - 1) / block);
+    SYM_THREADS(double_pendulum_dynamics(n, pre, q, v, u, t, M, h, Q));
+    return 0;
+}
+"""
+
+
+@pytest.fixture(scope="module")
+def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return sf.export(system("double_pendulum"), "cuda", tmp_path_factory.mktemp("package") / "gpu").folder
+
+
+def test_the_example_finds_the_numbers_of_the_c_code(package: Path, tmp_path: Path) -> None:
+    """Run with kernels as loops; the launcher that is tested so is declared as in the header."""
+    kernels = tmp_path / "kernels.cpp"
+    kernels.write_text(f'#include "{SHIM}"\n#include "{package}/double_pendulum_double.cu"\n{LAUNCHER}')
+    run("gcc", *STRICT, "-O0", "-c", "double_pendulum.c", "-o", tmp_path / "model.o", cwd=package)
+    flags = ("-std=c++17", "-O0", "-ffp-contract=off", "-Wall", "-Wno-unknown-pragmas", "-Wno-unused-function")
+    run("g++", *flags, f"-I{package}", f"-I{HERE}", "-x", "c++", package / "main.cu", kernels, "-x", "none",
+        tmp_path / "model.o", "-lm", "-o", tmp_path / "example", cwd=tmp_path)  # fmt: skip
+    told = run(tmp_path / "example", "1000", cwd=tmp_path)
+    assert re.match(r"1000 states in 1 ms: 1e\+06 states/s, 0\.\d+ GB/s; against C at most 0\n", told), told
+
+
+@pytest.mark.parametrize("language", ["c", "c++"])
+def test_the_header_is_c_and_cpp(package: Path, language: str) -> None:
+    run("gcc", "-x", language, "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "double_pendulum_cuda.h", cwd=package)
+
+
+def test_files_compile_without_any_header(package: Path) -> None:
+    pytest.importorskip("nvidia.cuda_nvrtc", reason="the extra cuda is not installed: pip install 'symofros[cuda]'")
+    from symofros.runtime.cuda.nvrtc import compile_cuda
+
+    usage = compile_cuda((package / "double_pendulum_single.cu").read_text(), "sm_90").usage
+    assert {"double_pendulum_single_dynamics", "double_pendulum_single_rollout_rk4"} <= set(usage)
+    assert all(taken.spill_stores == 0 for taken in usage.values())
+
+
+def test_the_table_states_the_order_of_the_arguments(package: Path) -> None:
+    text, header = (package / "README.md").read_text(), (package / "double_pendulum_cuda.h").read_text()
+    rows = re.findall(r"^\| `(\w+)` \| (.*?) \| (.*?) \|", text, re.MULTILINE)
+    stated = {symbol: re.findall(r"`(\w+)`", inputs + outputs) for symbol, inputs, outputs in rows if "_" in symbol}
+    declared = {
+        symbol: re.findall(r"sym_strided (\w+)", arguments)
+        for symbol, arguments in re.findall(r"^int (\w+)_launch\((.*)\);", header, re.MULTILINE)
+    }
+    assert stated and all(declared[symbol] == arrays for symbol, arrays in stated.items())
+    assert all(symbol.replace("pendulum", "pendulum_single") in declared for symbol in stated)
+
+
+def test_constrained_motion_stays_in_c_and_the_notes_say_so(tmp_path: Path) -> None:
+    exported = sf.export(system("four_bar"), "cuda", tmp_path)
+    assert "no kernels of forward_dynamics, forward_dynamics_derivatives" in exported.notes[0]
+    assert "no rollouts" in (tmp_path / "README.md").read_text()
+    assert "four_bar_dynamics" in (tmp_path / "four_bar_double.cu").read_text()
+
+
+def test_a_folder_of_something_else_is_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "mine").write_text("x")
+    with pytest.raises(ExportError, match="not overwritten"):
+        sf.export(system("double_pendulum"), "cuda", tmp_path)
+
+
+def test_a_frame_that_does_not_exist_is_named(tmp_path: Path) -> None:
+    with pytest.raises(UnknownNameError, match="no frame 'nose'"):
+        sf.export(system("double_pendulum"), "cuda", tmp_path, frames=["nose"])
+
+
+def test_hostile_names_stay_names(tmp_path: Path) -> None:
+    """Names reach text as identifiers, or as cells of tables and comments that they can't leave."""
+    name = "a */ int x; `| <b> # b"
+    body = sf.RigidBody(name, sf.Joint("q1", "revolute"), sf.Inertia(1.0, (0.5, 0, 0), (0, 0.1, 0.1)))
+    exported = sf.export(sf.System(name, (body,)), "cuda", tmp_path)
+    assert exported.name == "a_int_x_b_b"
+    assert "int x;" not in re.sub(r"/\*.*?\*/", "", (tmp_path / "a_int_x_b_b_double.cu").read_text(), flags=re.DOTALL)
+    assert "<b>" not in (tmp_path / "README.md").read_text()
