@@ -73,9 +73,9 @@ def export(
 
     Args:
         model: A system, or the path of its description; or a diagram, which becomes a program of its own ("c").
-        target: "c" (a package that builds by CMake, tests itself and simulates in real time), "cuda" (kernels, one thread a state), "mex" (Matlab, Octave),
-            "sfunction" (Simulink), "fmu2", "fmu3" (FMI, Model Exchange and Co-Simulation), "urdf" or "mjcf" (what
-            these can hold; the notes say what they can't).
+        target: "c" (a package that builds by CMake, tests itself and simulates in real time), "cuda" (kernels, one
+            thread a state), "mex" (Matlab, Octave), "sfunction" (Simulink), "fmu2", "fmu3" (FMI, Model Exchange and
+            Co-Simulation), "urdf" or "mjcf" (what these can hold; the notes say what they can't).
         folder: A new one, an empty one, or one of an earlier export.
         name: Name of files and functions; made of the system's name by default.
         frames: Frames to generate kinematics for; all by default, of CUDA the last one.
