@@ -55,9 +55,9 @@ def write_cuda_package(system: System, name: str | None, frames: Sequence[str] |
     made = Compilation(system, Options(functions, chosen))
     program, record = made.program, made.record
     c_name = identifier(name or record.name)
+    prefixes: dict[Precision, str] = {"double": c_name, "single": f"{c_name}_single"}
     codes = {
-        precision: device_code(program, record, GENERATOR, precision, f"{c_name}{suffix}")
-        for precision, suffix in (("double", ""), ("single", "_single"))
+        precision: device_code(program, record, GENERATOR, precision, prefix) for precision, prefix in prefixes.items()
     }
     left_out = [function.name for function in program.functions if function.solver is not None]
     words = {

@@ -1,0 +1,175 @@
+"""Arrays in the memory of a graphics processor: our own, and other libraries' in place.
+
+Others give and take ours by `__cuda_array_interface__` (CuPy, PyTorch, JAX, Numba) and give theirs by it, or by DLPack.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from dataclasses import dataclass
+from math import prod
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from symofros.errors import Problem, ShapeError
+from symofros.runtime.cuda.driver import Driver
+
+_CUDA, _FLOAT, _DEFAULT_STREAM = 2, 2, 1
+
+
+class Strided(ctypes.Structure):
+    """A batch as kernels take it: sym_strided of native/cuda/kernels.cu.in."""
+
+    _fields_ = (("at", ctypes.c_void_p), ("step", ctypes.c_ssize_t), ("stride", ctypes.c_ssize_t))
+
+
+class StridedSequence(ctypes.Structure):
+    """Records of a batch: sym_sequence of native/cuda/rollout.cu.in."""
+
+    _fields_ = (("batch", Strided), ("next", ctypes.c_ssize_t))
+
+
+class DeviceArray:
+    """An array in the device's memory, freed with it; `numpy()` copies it to the host.
+
+    Args:
+        driver: Driver of the device.
+        shape: Shape (n, ...), or (records, n, ...), whose states lie side by side.
+        dtype: float64 or float32.
+        batch: Axis of the states.
+
+    Attributes:
+        shape: Shape.
+        strides: Distances of entries along each axis [bytes].
+        dtype: Type of its numbers.
+    """
+
+    def __init__(self, driver: Driver, shape: tuple[int, ...], dtype: npt.DTypeLike, batch: int = 0) -> None:
+        self._driver, self.shape, self.dtype = driver, shape, np.dtype(dtype)
+        memory = [*(size for k, size in enumerate(shape) if k != batch), shape[batch]]
+        strides = [prod(memory[k + 1 :]) * self.dtype.itemsize for k in range(len(memory))]
+        self.strides = (*strides[:batch], strides[-1], *strides[batch:-1])
+        self.address = driver.allocate(prod(shape) * self.dtype.itemsize)
+
+    def __del__(self) -> None:
+        """Free the memory."""
+        if hasattr(self, "address"):
+            self._driver.free(self.address)
+
+    @property
+    def __cuda_array_interface__(self) -> dict[str, Any]:
+        """What other libraries read it by, in place: it is ready in the default stream."""
+        return {
+            "shape": self.shape,
+            "typestr": self.dtype.str,
+            "data": (self.address, False),
+            "strides": self.strides,
+            "version": 3,
+            "stream": _DEFAULT_STREAM,
+        }
+
+    def numpy(self) -> npt.NDArray[Any]:
+        """A copy in the memory of the host, in the same layout."""
+        host = np.empty(prod(self.shape), self.dtype)
+        self._driver.read(self.address, host.ctypes.data, host.nbytes)
+        return np.lib.stride_tricks.as_strided(host, self.shape, self.strides)
+
+    def write(self, values: npt.NDArray[Any]) -> None:
+        """Copy an array of its shape from the host."""
+        host = np.empty(prod(self.shape), self.dtype)
+        np.lib.stride_tricks.as_strided(host, self.shape, self.strides)[...] = values
+        self._driver.write(self.address, host.ctypes.data, host.nbytes)
+
+
+@dataclass(frozen=True)
+class Placed:
+    """An array of anybody's in the device's memory.
+
+    Attributes:
+        address: Address of its first entry.
+        shape: Shape.
+        strides: Distances along each axis, in numbers.
+        owner: Object that keeps the memory.
+    """
+
+    address: int
+    shape: tuple[int, ...]
+    strides: tuple[int, ...]
+    owner: Any
+
+
+class _DLTensor(ctypes.Structure):
+    _fields_ = (
+        ("data", ctypes.c_void_p),
+        ("device_type", ctypes.c_int32),
+        ("device_id", ctypes.c_int32),
+        ("ndim", ctypes.c_int32),
+        ("code", ctypes.c_uint8),
+        ("bits", ctypes.c_uint8),
+        ("lanes", ctypes.c_uint16),
+        ("shape", ctypes.POINTER(ctypes.c_int64)),
+        ("strides", ctypes.POINTER(ctypes.c_int64)),
+        ("byte_offset", ctypes.c_uint64),
+    )
+
+
+def placed(name: str, array: Any, dtype: npt.DTypeLike, driver: Driver) -> Placed:
+    """An array where it lies, or a copy on the device of one of the host.
+
+    Args:
+        name: Name for messages.
+        array: What has `__cuda_array_interface__` or `__dlpack__` on the device, or what NumPy reads.
+        dtype: Type that it must have on the device; numbers of the host are converted.
+        driver: Driver of the device.
+
+    Raises:
+        ShapeError: It is of another type or on another device.
+    """
+    wanted = np.dtype(dtype)
+    interface = getattr(array, "__cuda_array_interface__", None)
+    if interface is not None:
+        if np.dtype(interface["typestr"]) != wanted:
+            raise _unfit(name, interface["typestr"], wanted)
+        if interface.get("stream") not in (None, _DEFAULT_STREAM):
+            driver.wait()  # Another stream makes it.
+        shape = tuple(interface["shape"])
+        stated = interface.get("strides")
+        strides = tuple(x // wanted.itemsize for x in stated) if stated is not None else _compact(shape)
+        return Placed(interface["data"][0], shape, strides, array)
+    if hasattr(array, "__dlpack_device__") and int(array.__dlpack_device__()[0]) == _CUDA:
+        return _of_dlpack(name, array.__dlpack__(stream=_DEFAULT_STREAM), wanted)
+    host = np.asarray(array, dtype=wanted)
+    device = DeviceArray(driver, host.shape or (1,), wanted)
+    device.write(host)
+    return Placed(device.address, host.shape, tuple(x // wanted.itemsize for x in device.strides[: host.ndim]), device)
+
+
+def _of_dlpack(name: str, capsule: Any, wanted: np.dtype[Any]) -> Placed:
+    """The array of a capsule, which frees its memory when nobody holds it."""
+    pointer = ctypes.pythonapi.PyCapsule_GetPointer
+    pointer.restype, pointer.argtypes = ctypes.c_void_p, (ctypes.py_object, ctypes.c_char_p)
+    tensor = ctypes.cast(pointer(capsule, b"dltensor"), ctypes.POINTER(_DLTensor)).contents
+    if tensor.device_type != _CUDA:
+        raise _unfit(name, f"an array on device {tensor.device_type} of DLPack", wanted)
+    if (tensor.code, tensor.bits, tensor.lanes) != (_FLOAT, 8 * wanted.itemsize, 1):
+        raise _unfit(name, f"numbers of {tensor.bits} bits, type {tensor.code} of DLPack", wanted)
+    shape = tuple(tensor.shape[k] for k in range(tensor.ndim))
+    strides = tuple(tensor.strides[k] for k in range(tensor.ndim)) if tensor.strides else _compact(shape)
+    return Placed((tensor.data or 0) + tensor.byte_offset, shape, strides, capsule)
+
+
+def _compact(shape: tuple[int, ...]) -> tuple[int, ...]:
+    return tuple(prod(shape[k + 1 :]) for k in range(len(shape)))
+
+
+def _unfit(name: str, found: str, wanted: np.dtype[Any]) -> ShapeError:
+    return ShapeError(
+        Problem(
+            f"CUDA: {name} is not an array of {wanted} on the device",
+            found,
+            "arrays of the device are read in place, in the precision of the kernels",
+            "convert it before, or take kernels of the other precision: model.cuda('single')",
+        )
+    )
