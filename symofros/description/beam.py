@@ -13,8 +13,10 @@ from symofros.description.joint import Joint
 from symofros.description.values import ORIGIN, Value, Vector, as_value, as_vector
 from symofros.errors import DescriptionError, Problem, did_you_mean
 
-Direction = Literal["bend_y", "bend_z", "twist"]
-DIRECTIONS: tuple[Direction, ...] = get_args(Direction)
+Direction = Literal["bend_y", "bend_z", "twist", "stretch", "shear_y", "shear_z"]
+# Strains of a geometrically exact rod; a beam of second order deforms in the first three directions.
+STRAINS: tuple[Direction, ...] = get_args(Direction)
+DIRECTIONS = STRAINS[:3]
 Family = Literal["spline", "polynomial", "legendre", "clamped_free", "hermite", "user"]
 FAMILIES: tuple[Family, ...] = get_args(Family)
 Retain = Literal["zeroth_order", "first_order", "all"]
@@ -26,7 +28,7 @@ MOST_SECTIONS = 64
 STATIONS = tuple(k / 8 for k in range(9))
 
 # What may depend on the station x, and so taper.
-SECTION = ("rhoA", "EI_y", "EI_z", "GJ", "rhoJ", "rhoI_y", "rhoI_z")
+SECTION = ("rhoA", "EI_y", "EI_z", "GJ", "EA", "GA_y", "GA_z", "rhoJ", "rhoI_y", "rhoI_z")
 # Strains of a rod without stress: functions of the station as well.
 PRE_STRAINS = ("twist_rate", "curvature_y", "curvature_z")
 STATION = "x"
@@ -130,12 +132,18 @@ class Beam:
         EI_z: Stiffness against bending in the x-y plane [N m^2].
         EI_y: Stiffness against bending in the x-z plane [N m^2].
         GJ: Stiffness against twist [N m^2].
+        EA: Stiffness against stretching, of a rod with functions of `stretch` [N].
+        GA_y: Stiffness against shear along y, its shear correction factor included, of a rod with `shear_y` [N].
+        GA_z: Stiffness against shear along z, of a rod with `shear_z` [N].
         rhoJ: Polar moment of inertia per length, about x [kg m].
         rhoI_y: Moment of inertia per length about y, counted with rotary_inertia [kg m].
         rhoI_z: Moment of inertia per length about z, counted with rotary_inertia [kg m].
         bend_y: Number of shape functions for the displacement along y; 0 is rigid.
         bend_z: Number of shape functions for the displacement along z; 0 is rigid.
         twist: Number of shape functions for the rotation about x; 0 is rigid.
+        stretch: Number of shape functions for the stretch of a rod's axis; 0 leaves its length as it is.
+        shear_y: Number of shape functions for the shear of a rod's sections along y; 0 keeps them across the axis.
+        shear_z: Number of shape functions for the shear of a rod's sections along z.
         family: Family of the shape functions (docs/theory/beams.md, section 2).
         shapes: User-defined functions for family "user": direction -> formulas of xi = x/L, or samples.
         damping: Voigt-Kelvin retardation time: stress is E (strain + damping strain rate) [s].
@@ -144,8 +152,9 @@ class Beam:
         retain: How far elastic terms are kept: "zeroth_order" (linear elastic terms only, no stiffening or softening
             by motion), "first_order" (consistent to first order) or "all" (everything the second-order field gives).
         theory: "second_order" in the displacements (docs/theory/beams.md), or "strain": a geometrically exact rod whose
-            curvatures and twist rate are sums of shape functions (docs/theory/rods.md). Of a rod, `bend_y`, `bend_z`
-            and `twist` count those functions, `family` is theirs, and `retain` and `foreshortening` have no meaning.
+            curvatures and twist rate, and stretch and shear if asked for, are sums of shape functions
+            (docs/theory/rods.md). Of a rod, `bend_y`, `bend_z`, `twist`, `stretch`, `shear_y` and `shear_z` count those
+            functions, `family` is theirs, and `retain` and `foreshortening` have no meaning.
         sections: Number of sections of a rod at which its motion is integrated, an interval between knots; 0: chosen.
         curvature_y: Curvature about y of a rod without stress [1/m].
         curvature_z: Curvature about z of a rod without stress [1/m].
@@ -166,12 +175,18 @@ class Beam:
     EI_z: Value = 0.0
     EI_y: Value = 0.0
     GJ: Value = 0.0
+    EA: Value = 0.0
+    GA_y: Value = 0.0
+    GA_z: Value = 0.0
     rhoJ: Value = 0.0
     rhoI_y: Value = 0.0
     rhoI_z: Value = 0.0
     bend_y: int = 0
     bend_z: int = 0
     twist: int = 0
+    stretch: int = 0
+    shear_y: int = 0
+    shear_z: int = 0
     family: Family = "spline"
     shapes: tuple[tuple[Direction, tuple[UserShape, ...]], ...] = ()
     damping: Value = 0.0
@@ -197,9 +212,7 @@ class Beam:
         for label in ("frames", "loads", "waive"):
             object.__setattr__(self, label, tuple(getattr(self, label)))
         given: Any = dict(self.shapes)
-        shapes = tuple(
-            (key, tuple(_shape(x, f"{what}: {key}") for x in given[key])) for key in DIRECTIONS if key in given
-        )
+        shapes = tuple((key, tuple(_shape(x, f"{what}: {key}") for x in given[key])) for key in STRAINS if key in given)
         object.__setattr__(self, "shapes", shapes)
         choices = (
             ("family", self.family, FAMILIES),
@@ -219,16 +232,16 @@ class Beam:
         self._check_theory(what)
         self._check_stations(what)
         for key in given:
-            if key not in DIRECTIONS:
+            if key not in STRAINS:
                 raise DescriptionError(
                     Problem(
                         f"{what}: shapes for an unknown direction",
                         f"'{key}'",
-                        f"one of {', '.join(DIRECTIONS)}",
-                        did_you_mean(str(key), DIRECTIONS),
+                        f"one of {', '.join(STRAINS)}",
+                        did_you_mean(str(key), STRAINS),
                     )
                 )
-        for direction in DIRECTIONS:
+        for direction in STRAINS:
             if not _is_count(getattr(self, direction), 0):
                 raise DescriptionError(
                     Problem(
@@ -277,8 +290,11 @@ class Beam:
             plain: dict[str, Any] = {"retain": "first_order", "foreshortening": True}
             theory, lacking = "a geometrically exact rod (theory 'strain')", "keeps every term, and shortens by itself"
         else:
-            plain = {"sections": 0} | dict.fromkeys(PRE_STRAINS, 0.0)
-            theory, lacking = "a beam of second order in its displacements", "is straight without stress"
+            plain = {"sections": 0} | dict.fromkeys(PRE_STRAINS, 0.0) | dict.fromkeys(STRAINS[3:], 0)
+            theory, lacking = (
+                "a beam of second order in its displacements",
+                "is straight without stress and does not shear",
+            )
         for label, value in plain.items():
             if getattr(self, label) != value:
                 raise DescriptionError(
@@ -298,7 +314,12 @@ class Beam:
     @property
     def modes(self) -> int:
         """How many elastic coordinates it has."""
-        return self.bend_y + self.bend_z + self.twist
+        return sum(self.counts)
+
+    @property
+    def counts(self) -> tuple[int, ...]:
+        """Number of shape functions of each direction, in the order of STRAINS."""
+        return tuple(getattr(self, direction) for direction in STRAINS)
 
     def user_shapes(self, direction: Direction) -> tuple[UserShape, ...]:
         """The user's own functions for a direction."""
@@ -307,7 +328,7 @@ class Beam:
     @property
     def coordinates(self) -> tuple[str, ...]:
         """Names of the elastic coordinates: beam.bend_y[0] and so on."""
-        return tuple(f"{self.name}.{key}[{i}]" for key in DIRECTIONS for i in range(getattr(self, key)))
+        return tuple(f"{self.name}.{key}[{i}]" for key in STRAINS for i in range(getattr(self, key)))
 
     def plain_values(self) -> list[tuple[str, Value]]:
         """What may depend on parameters only, by label."""

@@ -71,7 +71,7 @@ def _rod(beam: Beam, q: int, v: int, values: dict[str, float]) -> ElasticRod:
         length=evaluate(beam.length, values),
         q=q,
         v=v,
-        counts=strains.counts,
+        counts=(beam.bend_y, beam.bend_z, beam.modes - beam.bend_y - beam.bend_z),  # Stretch and shear turn nothing.
         xi=np.array(xi),
         angles=ElasticRod.REDUCED * np.array(strains.turns(xi)),
         displacements=np.zeros(beam.modes, dtype=bool),

@@ -118,8 +118,8 @@ class Section:
                         " differ couples bending and twist, which a Beam can't represent",
                     )
                 )
-        labels = ("rhoA", "EI_z", "EI_y", "GJ", "rhoJ", "rhoI_y", "rhoI_z")
-        return {label: getattr(self, label) for label in labels}
+        labels = ("rhoA", "EI_z", "EI_y", "GJ", "EA", "GA_y", "GA_z", "rhoJ", "rhoI_y", "rhoI_z")
+        return {label: getattr(self, label) for label in labels if getattr(self, label) is not None}
 
     def _off_axis(self) -> list[tuple[str, Value, Value]]:
         """What a beam has no entry for, with the size that it is small beside."""

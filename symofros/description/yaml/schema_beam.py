@@ -38,6 +38,9 @@ class BeamEntry(NounEntry, noun=Beam, without=("name", "joint", "frames", "waive
     bend_y: Count = 0
     bend_z: Count = 0
     twist: Count = 0
+    stretch: Count = 0
+    shear_y: Count = 0
+    shear_z: Count = 0
     segments: Annotated[int, Field(ge=1, le=200)] = 1
     stations: Annotated[list[Annotated[Number, Field(ge=0.0, le=1.0)]], Field(max_length=200)] = [*STATIONS]
     sections: Annotated[int, Field(ge=0, le=MOST_SECTIONS)] = 0

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
-from symofros.description.beam import DIRECTIONS, Beam
+from symofros.description.beam import STRAINS, Beam
 from symofros.description.forces import Friction
 from symofros.description.system import Body, System
 
@@ -21,8 +22,8 @@ def with_functions(system: System, count: int) -> System:
 
 
 def _counted(beam: Beam, count: int) -> Beam:
-    bend_y, bend_z, twist = (count if getattr(beam, name) else 0 for name in DIRECTIONS)
-    return replace(beam, bend_y=bend_y, bend_z=bend_z, twist=twist)
+    counts: dict[str, Any] = {name: count if getattr(beam, name) else 0 for name in STRAINS}
+    return replace(beam, **counts)
 
 
 def friction_only(system: System) -> System:

@@ -8,14 +8,15 @@ from functools import cached_property
 
 from symofros.description.beam import PRE_STRAINS, STATION, Beam
 from symofros.description.values import Value, symbols
-from symofros.expr.edges import ONE, ZERO, Edge
+from symofros.expr.edges import ZERO, Edge
 from symofros.expr.expression import Expression
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Vec3
 from symofros.mechanics.beams.fields import Form, no_form
 from symofros.mechanics.beams.integrals import LengthIntegrator, Lower, at_station
 from symofros.mechanics.beams.piecewise import gauss
-from symofros.mechanics.beams.strains import Rows, Strains, strains_of
+from symofros.mechanics.beams.strains import TURNING, Rows, Strains, strains_of
+from symofros.mechanics.beams.turn import Turn
 
 # Gauss nodes for the integral of a pre-strain between two sections.
 _PRE_STRAIN_POINTS = 4
@@ -49,30 +50,6 @@ class InertiaAxis:
     direction: Vec3
 
 
-@dataclass(frozen=True)
-class Step:
-    """The turn from one section to the next, in the axes of the first (5)-(8).
-
-    Attributes:
-        zeroth: Integral of the strains over the step.
-        first: First moment of the strains about the middle, over the length of the step.
-        tables: Derivatives of both by each coordinate, about the coordinate's own axis.
-        vector: Rotation vector of the turn.
-        half: Half the ratio of the tangent of half the angle to half the angle, and its first two derivatives by the
-            square of the angle.
-        gibbs: Gibbs vector of the turn, `half` times the rotation vector.
-        factor: Factor 2/(1 + a.a) of the turn's angular velocity, a the Gibbs vector.
-    """
-
-    zeroth: Vec3
-    first: Vec3
-    tables: tuple[tuple[float, ...], tuple[float, ...]]
-    vector: Vec3
-    half: tuple[Edge, Edge, Edge]
-    gibbs: Vec3
-    factor: Edge
-
-
 @dataclass(frozen=True, eq=False)
 class Rod:
     """What the equations of motion need of one rod.
@@ -101,7 +78,7 @@ class Rod:
     def axis(self) -> int | None:
         """The one axis that all sections turn about, if there is one: the turn is then a sine and a cosine."""
         pre = {k for k, label in enumerate(PRE_STRAINS) if getattr(self.beam, label) != 0.0}
-        axes = pre | {k for k, _ in self.strains.axes}
+        axes = pre | {k for k, _ in self.strains.axes if k < TURNING}
         return axes.pop() if len(axes) == 1 else None
 
     # Sections.
@@ -146,11 +123,11 @@ class Rod:
         return Section(Mat3(g, tuple(entries)), spins)
 
     @cached_property
-    def _steps(self) -> tuple[Step, ...]:
+    def _steps(self) -> tuple[Turn, ...]:
         ends = (0.0, *self.strains.stations[0])
         return tuple(self._step(a, b) for a, b in zip(ends, ends[1:], strict=False))
 
-    def _step(self, a: float, b: float) -> Step:
+    def _step(self, a: float, b: float) -> Turn:
         """The turn between two stations, by Magnus's series to fourth order (5)-(7)."""
         g = self.g
         tables = self.strains.moments(a, b)
@@ -159,11 +136,7 @@ class Rod:
             Vec3(g, *(self._superposition(axis, table, self.coordinates, pre[axis][k]) for axis in range(3)))
             for k, table in enumerate(tables)
         )
-        vector = zeroth + zeroth.cross(first)
-        half = _half_tangent(g, vector.dot(vector))
-        gibbs = vector.scaled(half[0])
-        factor = g.div(g.constant(2.0), g.add(ONE, gibbs.dot(gibbs)))
-        return Step(zeroth, first, tables, vector, half, gibbs, factor)
+        return Turn.of(zeroth, first, tables)
 
     def _superposition(self, axis: int, table: Sequence[float], values: Sequence[Edge], start: Edge = ZERO) -> Edge:
         """The sum of coordinates or their rates about one axis, with weights."""
@@ -187,43 +160,57 @@ class Rod:
             first = g.add(first, g.mul(g.constant(node - 0.5), share))
         return zeroth, first
 
-    def _after(self, section: Section, step: Step) -> Section:
+    def _after(self, section: Section, step: Turn) -> Section:
         """The section at the end of a step (8), (9)."""
-        g, a = self.g, step.gibbs
-        units = [Vec3.unit(g, k) for k in range(3)]
-        turned, spinning = [], []
-        # c ([a] + [a]^2), and c ([a] h + h + 2 h' x x^T) with a = h x: by columns.
-        along = g.mul(g.mul(g.constant(2.0), step.half[1]), step.factor)
-        across = g.mul(step.half[0], step.factor)
-        for k, unit in enumerate(units):
-            over = a.cross(unit)
-            turned.append(unit + (over + a.cross(over)).scaled(step.factor))
-            spinning.append((unit + over).scaled(across) + step.vector.scaled(g.mul(along, tuple(step.vector)[k])))
-        T = section.R_BS @ Mat3.from_columns(g, spinning)
+        g, units = self.g, [Vec3.unit(self.g, k) for k in range(3)]
+        T = section.R_BS @ step.spinning
         spins = list(section.spins)
         by_axis = {
             axis: (T.times(units[axis] + units[axis].cross(step.first)), T.times(units[axis].cross(step.zeroth)))
             for axis, _ in self.strains.axes
+            if axis < TURNING
         }
         for i, ((axis, _), z, m) in enumerate(zip(self.strains.axes, *step.tables, strict=True)):
-            whole, moment = by_axis[axis]
-            spins[i] = spins[i] + (whole.scaled(g.constant(z)) - moment.scaled(g.constant(m)))
-        return Section(section.R_BS @ Mat3.from_columns(g, turned), tuple(spins))
+            if axis in by_axis:
+                whole, moment = by_axis[axis]
+                spins[i] = spins[i] + (whole.scaled(g.constant(z)) - moment.scaled(g.constant(m)))
+        return Section(section.R_BS @ step.rotation, tuple(spins))
 
     # Positions: sums of tangents, with weights that are numbers.
 
     @cached_property
     def tangents(self) -> tuple[Vec3, ...]:
-        """Tangents of the axis at the sections, in B."""
-        return tuple(section.R_BS.column(0) for section in self.sections)
+        """Tangents of the axis at the sections, in B: derivatives of the position by x (10)."""
+        return tuple(
+            section.R_BS.column(0) + shift
+            for section, shift in zip(self.sections, self.shifted(self.coordinates), strict=True)
+        )
+
+    def shifted(self, values: Sequence[Edge]) -> list[Vec3]:
+        """Stretch and shear of the sections by coordinates, or by their rates at constant sections, in B."""
+        vectors = []
+        for section, row in zip(self.sections, self.strains.shifts, strict=True):
+            vector = Vec3(self.g)
+            for (axis, _), unit, value in zip(self.strains.axes, row, values, strict=True):
+                if unit:
+                    vector = vector + section.R_BS.column(axis - TURNING).scaled(
+                        self.g.mul(self.g.constant(unit), value)
+                    )
+            vectors.append(vector)
+        return vectors
 
     @cached_property
     def partial_tangents(self) -> tuple[tuple[Vec3, ...], ...]:
         """Derivatives of the tangents at the sections by each coordinate: one row a coordinate."""
-        return tuple(
-            tuple(s.spins[i].cross(t) for s, t in zip(self.sections, self.tangents, strict=True))
-            for i in range(len(self.coordinates))
-        )
+        rows = []
+        for i, (axis, _) in enumerate(self.strains.axes):
+            if axis < TURNING:
+                rows.append(tuple(s.spins[i].cross(t) for s, t in zip(self.sections, self.tangents, strict=True)))
+            else:
+                units = (self.g.constant(row[i]) for row in self.strains.shifts)
+                columns = (section.R_BS.column(axis - TURNING) for section in self.sections)
+                rows.append(tuple(column.scaled(unit) for column, unit in zip(columns, units, strict=True)))
+        return tuple(rows)
 
     def combined(self, row: Sequence[float], vectors: Sequence[Vec3]) -> Vec3:
         """A sum of vectors with weights."""
@@ -248,31 +235,14 @@ class Rod:
             return [(self.spin(section, speeds), Vec3(g)) for section in self.sections]
         rates, w, alpha, section = [], Vec3(g), Vec3(g), self.root
         for step, following in zip(self._steps, self.sections, strict=True):
-            relative, relative_rate = (section.R_BS.times(x) for x in self._step_rates(step, speeds))
+            moments = (
+                Vec3(g, *(self._superposition(axis, table, speeds) for axis in range(3))) for table in step.tables
+            )
+            relative, relative_rate = (section.R_BS.times(x) for x in step.rates(*moments))
             alpha = alpha + (w.cross(relative) + relative_rate)
             w, section = w + relative, following
             rates.append((w, alpha))
         return rates
-
-    def _step_rates(self, step: Step, speeds: Sequence[Edge]) -> tuple[Vec3, Vec3]:
-        """Angular velocity of a step's end relative to its start, and its rate at constant speeds (11)."""
-        g, x, a = self.g, step.vector, step.gibbs
-        two, (h, slope, bend) = g.constant(2.0), step.half
-        zeroth, first = (
-            Vec3(g, *(self._superposition(axis, table, speeds) for axis in range(3))) for table in step.tables
-        )
-        x1 = zeroth + zeroth.cross(step.first) + step.zeroth.cross(first)
-        both = zeroth.cross(first)
-        x2 = both + both
-        square1 = g.mul(two, x.dot(x1))
-        square2 = g.mul(two, g.add(x1.dot(x1), x.dot(x2)))
-        h1 = g.mul(slope, square1)
-        h2 = g.add(g.mul(bend, g.mul(square1, square1)), g.mul(slope, square2))
-        a1 = x1.scaled(h) + x.scaled(h1)
-        a2 = x2.scaled(h) + x1.scaled(g.add(h1, h1)) + x.scaled(h2)
-        relative = (a1 + a.cross(a1)).scaled(step.factor)
-        rate = (a2 + a.cross(a2) - relative.scaled(a.dot(a1))).scaled(step.factor)
-        return relative, rate
 
     def spin(self, section: Section, speeds: Sequence[Edge]) -> Vec3:
         """Angular velocity of a section in B."""
@@ -348,9 +318,9 @@ class Rod:
 
     @cached_property
     def strain_energy(self) -> Form:
-        """Strain energy: half the integral of GJ k1^2 + EI_y k2^2 + EI_z k3^2, k the changes of strain (2)."""
-        total = no_form(self.g, self.coordinates)
-        for axis, stiffness in enumerate((self.beam.GJ, self.beam.EI_y, self.beam.EI_z)):
+        """Strain energy: half the integral of stiffnesses times squares of the changes of strain (2)."""
+        beam, total = self.beam, no_form(self.g, self.coordinates)
+        for axis, stiffness in enumerate((beam.GJ, beam.EI_y, beam.EI_z, beam.EA, beam.GA_y, beam.GA_z)):
             strain = self.strains.strain(axis)
             if strain.terms:
                 total = total + self.along.integral(strain.times(strain), stiffness)
@@ -360,20 +330,6 @@ class Rod:
         """Rayleigh's dissipation function: damping times the strain energy of the rates (section 2)."""
         quadratic = self.strain_energy.scaled(self.along.lower(self.beam.damping))
         return Form(self.g, speeds, quadratic.terms)
-
-
-def _half_tangent(g: Graph, square: Edge) -> tuple[Edge, Edge, Edge]:
-    """tan(theta/2)/theta as a rational function of theta^2, and its first two derivatives by theta^2 (7)."""
-    s = g.mul(g.constant(0.25), square)
-    below = g.add(g.constant(210.0), g.mul(s, g.sub(g.add(s, s), g.constant(90.0))))
-    inverse = g.div(ONE, below)
-    value = g.mul(g.sub(g.constant(105.0), g.mul(g.constant(10.0), s)), inverse)
-    # Of value * below = 105 - 10 s, with below' = 4 s - 90.
-    below_rate = g.sub(g.mul(g.constant(4.0), s), g.constant(90.0))
-    slope = g.mul(g.sub(g.constant(-10.0), g.mul(value, below_rate)), inverse)
-    twice = g.add(slope, slope)
-    bend = -g.mul(g.add(g.mul(twice, below_rate), g.mul(g.constant(4.0), value)), inverse)
-    return value, g.mul(g.constant(0.25), slope), g.mul(g.constant(0.0625), bend)
 
 
 def rod_of(g: Graph, lower: Lower, beam: Beam, coordinates: tuple[Edge, ...]) -> Rod:

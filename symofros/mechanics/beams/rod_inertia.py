@@ -110,15 +110,17 @@ class _SectionMotion(NamedTuple):
 
 def _section_motion(rod: Rod, w: Vec3, alpha: Vec3, speeds: Sequence[Edge], rates: Sequence[Edge]) -> _SectionMotion:
     motion = _SectionMotion([], [], [])
-    turning = rod.angular_rates(speeds)
-    for section, t, (own, own_rate) in zip(rod.sections, rod.tangents, turning, strict=True):
+    turning, slips, slip_rates = rod.angular_rates(speeds), rod.shifted(speeds), rod.shifted(rates)
+    for section, t, (own, own_rate), slip, slip_rate in zip(
+        rod.sections, rod.tangents, turning, slips, slip_rates, strict=True
+    ):
         # The section turns in the world with w + own, seen from B; the rate of that in the world, too.
         total, total_rate = w + own, alpha + own_rate + w.cross(own)
         for spin, rate in zip(section.spins, rates, strict=True):
             total_rate = total_rate + spin.scaled(rate)
         motion.spins.append(total)
         motion.accelerations.append(total_rate)
-        motion.curves.append(total_rate.cross(t) + total.cross(total.cross(t)))
+        motion.curves.append(total_rate.cross(t) + total.cross(total.cross(t) + (slip + slip)) + slip_rate)
     return motion
 
 
@@ -180,7 +182,7 @@ def rod_energy_twice(rod: Rod, w: Vec3, v: Vec3, speeds: Sequence[Edge]) -> Edge
     """
     g = rod.g
     spins = [w + rod.spin(section, speeds) for section in rod.sections]
-    moved = [spin.cross(t) for spin, t in zip(spins, rod.tangents, strict=True)]
+    moved = [spin.cross(t) + slip for spin, t, slip in zip(spins, rod.tangents, rod.shifted(speeds), strict=True)]
     points = [rod.combined(row, moved) for row in rod.mass_points[0]]
     linear = rod.first_moment(moved).dot(v)
     total = g.add(g.add(linear, linear), _weighted(rod, [p.dot(p) for p in points]))

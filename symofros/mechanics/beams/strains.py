@@ -14,20 +14,30 @@ from fractions import Fraction
 from functools import cached_property, lru_cache
 from itertools import pairwise
 
-from symofros.description.beam import DIRECTIONS, Beam, Family, Samples, UserShape
+from symofros.description.beam import STRAINS, Beam, Direction, Family, Samples, UserShape
 from symofros.mechanics.beams.fields import Field, Monomial
 from symofros.mechanics.beams.piecewise import Number, Piecewise, fitted, gauss, polynomial, stations
 from symofros.mechanics.beams.shape_functions import MAX_MODES, FamilyError, b_splines, formula_of_station
 
-# Axis that a direction's strain turns the sections about, and the sign with which its coordinates count: a positive
-# coordinate bends the rod towards positive y or z.
-TURNS = {"bend_y": (2, 1), "bend_z": (1, -1), "twist": (0, 1)}
+# Strain that a direction's coordinates are of, and the sign with which they count: twist rate and curvatures (0 to 2)
+# turn the sections about their axes, stretch and shears (3 to 5) move them along those. A positive coordinate bends the
+# rod towards positive y or z.
+AXES: dict[Direction, tuple[int, int]] = {
+    "bend_y": (2, 1),
+    "bend_z": (1, -1),
+    "twist": (0, 1),
+    "stretch": (3, 1),
+    "shear_y": (4, 1),
+    "shear_z": (5, 1),
+}
+# Number of strains that turn sections.
+TURNING = 3
 # Sections an interval beyond the number of functions, and the fewest: what the elastica and a full circle ask for.
 _MORE_SECTIONS, _FEWEST_SECTIONS = 2, 4
 # Sections an interval where knots divide the rod: the cubic between them is smooth.
 _SECTIONS_A_SPAN = 4
-# Largest angle [rad] by which the strains of one direction turn the tip in random states.
-_LARGEST_TURN = 0.5 * math.pi
+# Largest angle [rad] by which the strains of one direction turn the tip in random states; largest stretch and shear.
+_LARGEST_TURN, _LARGEST_STRAIN = 0.5 * math.pi, 0.1
 
 Rows = tuple[tuple[float, ...], ...]
 
@@ -36,20 +46,32 @@ Rows = tuple[tuple[float, ...], ...]
 class Strains:
     """The strain fields of one rod over xi = x/L: each function, times its coordinate over L, is a curvature.
 
+    Of stretch and shear the function times the coordinate is the strain itself.
+
     Attributes:
-        functions: Strain functions, one a coordinate: those of bend_y, then bend_z, then twist.
-        counts: Number of functions of bend_y, bend_z and twist.
+        functions: Strain functions, one a coordinate, in the order of STRAINS.
+        counts: Number of functions of each direction, in the order of STRAINS.
         points: Number of sections an interval between knots.
     """
 
     functions: tuple[Piecewise, ...]
-    counts: tuple[int, int, int]
+    counts: tuple[int, ...]
     points: int
 
     @cached_property
     def axes(self) -> tuple[tuple[int, int], ...]:
-        """Axis about which each coordinate turns the sections, and the sign of the turn."""
-        return tuple(TURNS[d] for d, count in zip(DIRECTIONS, self.counts, strict=True) for _ in range(count))
+        """Strain that each coordinate is of, below TURNING the axis that it turns sections about; and its sign."""
+        return tuple(AXES[d] for d, count in zip(STRAINS, self.counts, strict=True) for _ in range(count))
+
+    @cached_property
+    def shifts(self) -> Rows:
+        """Stretch or shear of each section by a unit of each coordinate; zero of one that turns sections (N, n)."""
+        xi = self.stations[0]
+        columns = [
+            f.rounded(xi) if axis >= TURNING else [0.0] * len(xi)
+            for f, (axis, _) in zip(self.functions, self.axes, strict=True)
+        ]
+        return tuple(zip(*columns, strict=True)) if columns else tuple(() for _ in xi)
 
     @cached_property
     def knots(self) -> tuple[Number, ...]:
@@ -63,16 +85,17 @@ class Strains:
         return tuple(xi), tuple(w)
 
     def strain(self, axis: int) -> Field:
-        """Change of the twist rate (axis 0) or of a curvature as a field of the coordinates (1)."""
+        """Change of the twist rate (axis 0), a curvature (1, 2), stretch or shear as a field of coordinates (1)."""
         terms: dict[Monomial, Piecewise] = {
             (i,): f.scaled(s) for i, (f, (k, s)) in enumerate(zip(self.functions, self.axes, strict=True)) if k == axis
         }
-        return Field(-1, (False,) * len(self.functions), terms)
+        return Field(-1 if axis < TURNING else 0, (False,) * len(self.functions), terms)
 
     def turns(self, xi: Sequence[float]) -> Rows:
         """Angle about its own axis by which a unit of each coordinate turns the section at stations (s, n)."""
         columns = [
-            f.antiderivative().scaled(s).rounded(xi) for f, (_, s) in zip(self.functions, self.axes, strict=True)
+            f.antiderivative().scaled(s).rounded(xi) if axis < TURNING else [0.0] * len(xi)
+            for f, (axis, s) in zip(self.functions, self.axes, strict=True)
         ]
         return tuple(zip(*columns, strict=True)) if columns else tuple(() for _ in xi)
 
@@ -81,7 +104,11 @@ class Strains:
         zeroth, first = [], []
         a, b = Fraction(start), Fraction(end)
         middle = (a + b) / 2
-        for f, (_, s) in zip(self.functions, self.axes, strict=True):
+        for f, (axis, s) in zip(self.functions, self.axes, strict=True):
+            if axis >= TURNING:
+                zeroth.append(0.0)
+                first.append(0.0)
+                continue
             whole = f.antiderivative()
             moment = (f * polynomial(-middle, 1)).antiderivative()
             zeroth.append(float(s * (whole(b) - whole(a))))
@@ -134,17 +161,19 @@ class Strains:
 
     @cached_property
     def sizes(self) -> tuple[float, ...]:
-        """Sizes of the coordinates with which no direction turns a section by more than a right angle."""
+        """Sizes of the coordinates with which no direction turns a section by more than a right angle.
+
+        None stretches or shears the rod by more than a tenth, either.
+        """
         rows = self.turns([k / 16 for k in range(17)])
-        largest = [max(abs(row[i]) for row in rows) for i in range(len(self.functions))]
-        return tuple(
-            _LARGEST_TURN / (size * self.counts[DIRECTIONS.index(_direction(axis))])
-            for size, (axis, _) in zip(largest, self.axes, strict=True)
-        )
-
-
-def _direction(axis: int) -> str:
-    return next(d for d, (k, _) in TURNS.items() if k == axis)
+        sizes = []
+        for i, (axis, _) in enumerate(self.axes):
+            share = 1.0 / sum(other == axis for other, _ in self.axes)
+            if axis < TURNING:
+                sizes.append(share * _LARGEST_TURN / max(abs(row[i]) for row in rows))
+            else:
+                sizes.append(share * _LARGEST_STRAIN / max(abs(row[i]) for row in self.shifts))
+        return tuple(sizes)
 
 
 def _partial_weight(points: int, node: float, upto: float) -> float:
@@ -169,14 +198,13 @@ def strains_of(beam: Beam) -> Strains:
     Raises:
         FamilyError: The family has no such functions.
     """
-    counts = (beam.bend_y, beam.bend_z, beam.twist)
-    user = tuple(beam.user_shapes(direction) for direction in DIRECTIONS)
-    return _shared_strains(beam.family, counts, user, beam.sections)
+    user = tuple(beam.user_shapes(direction) for direction in STRAINS)
+    return _shared_strains(beam.family, beam.counts, user, beam.sections)
 
 
 @lru_cache(maxsize=64)
 def _shared_strains(
-    family: Family, counts: tuple[int, int, int], user: tuple[tuple[UserShape, ...], ...], sections: int
+    family: Family, counts: tuple[int, ...], user: tuple[tuple[UserShape, ...], ...], sections: int
 ) -> Strains:
     functions: list[Piecewise] = []
     for count, stated in zip(counts, user, strict=True):

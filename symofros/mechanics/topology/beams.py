@@ -8,7 +8,7 @@ from functools import lru_cache, partial
 import numpy as np
 
 from symofros.base.rotations import Array
-from symofros.description.beam import DIRECTIONS, PRE_STRAINS, SECTION, STATION, Beam
+from symofros.description.beam import PRE_STRAINS, SECTION, STATION, STRAINS, Beam
 from symofros.description.values import ORIGIN, Term, Value, substituted, symbols
 from symofros.errors import Problem
 from symofros.mechanics.beams.deformation import deformation_of
@@ -80,6 +80,9 @@ class _Section:
             ("EI_z", bool(beam.bend_y), "bending along y bends against EI_z"),
             ("EI_y", bool(beam.bend_z), "bending along z bends against EI_y"),
             ("GJ", bool(beam.twist), "twist acts against GJ"),
+            ("EA", bool(beam.stretch), "a rod stretches against EA"),
+            ("GA_y", bool(beam.shear_y), "shear along y is against GA_y"),
+            ("GA_z", bool(beam.shear_z), "shear along z is against GA_z"),
             ("rhoJ", bool(beam.twist), "a twist coordinate moves the polar inertia rhoJ"),
             ("rhoI_y", False, "no moment of inertia is negative"),
             ("rhoI_z", False, "no moment of inertia is negative"),
@@ -174,7 +177,7 @@ def _conditioning(beam: Beam, where: str) -> Iterator[Problem]:
     Of a rod it is that of the strain functions themselves: that of the strain energy.
     """
     start, every = 0, _functions(beam)
-    for direction, count in zip(DIRECTIONS, (beam.bend_y, beam.bend_z, beam.twist), strict=True):
+    for direction, count in zip(STRAINS, beam.counts, strict=True):
         functions = tuple(every[start : start + count])
         start += count
         if not count:

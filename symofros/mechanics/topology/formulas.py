@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from typing import Literal, NamedTuple
 
-from symofros.description.beam import DIRECTIONS, PRE_STRAINS, SECTION, STATION, Beam, BeamLoad, Samples
+from symofros.description.beam import PRE_STRAINS, SECTION, STATION, STRAINS, Beam, BeamLoad, Samples
 from symofros.description.constraints import Constraint, Nonholonomic
 from symofros.description.entries import units_of
 from symofros.description.forces import Connection, Load, Rotor
@@ -147,7 +147,7 @@ def _beam_values(beam: Beam) -> Iterator[Stated]:
                 scope: Scope = "spread" if load.at is None else "motion"
                 units = (units_of(BeamLoad, entry)[load.at is None],)
                 yield Stated(f"{what}: load", value, key, scope, units=units)
-    for direction in DIRECTIONS:
+    for direction in STRAINS:
         for shape in beam.user_shapes(direction):
             if not isinstance(shape, Samples):
                 yield Stated(f"{what}: shapes of {direction}", shape, key, "shape")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from symofros.mechanics.beams.deformation import deformation_of
+from symofros.mechanics.beams.strains import strains_of
 from symofros.mechanics.topology.tree import SpanningTree
 
 
@@ -13,9 +14,10 @@ def coordinate_units(tree: SpanningTree) -> dict[str, str]:
         start, size = link.q
         names = tree.coordinates.q[start : start + size]
         if link.tip_of is not None:
-            is_rod = link.tip_of.theory == "strain"
-            lengths = (False,) * link.tip_of.modes if is_rod else deformation_of(link.tip_of).lengths
-            units = ["m" if length else "rad" for length in lengths]
+            if link.tip_of.theory == "strain":
+                units = ["rad" if axis < 3 else "" for axis, _ in strains_of(link.tip_of).axes]
+            else:
+                units = ["m" if length else "rad" for length in deformation_of(link.tip_of).lengths]
         elif link.joint.traits.user_defined:
             units = [""] * size
         else:

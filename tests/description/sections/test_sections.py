@@ -56,7 +56,9 @@ def test_a_tube_is_a_circle_without_its_core() -> None:
 
 def test_an_ellipse_of_equal_axes_is_a_circle() -> None:
     circle, ellipse = sections.circle(STEEL, 0.7), sections.ellipse(STEEL, 0.7, 0.7)
-    assert ellipse.beam_properties() == pytest.approx(circle.beam_properties(), rel=1e-14)
+    properties = circle.beam_properties()
+    del properties["GA_y"], properties["GA_z"]  # No closed form is known of an ellipse's.
+    assert ellipse.beam_properties() == pytest.approx(properties, rel=1e-14)
 
 
 def test_sizes_may_be_formulas() -> None:
@@ -113,7 +115,8 @@ def test_symmetric_outlines_serve_beams_at_any_size() -> None:
     size = 1e-6
     unit = sections.i_section(STEEL, 2.0, 1.0, 0.1, 0.15).beam_properties()
     scaled = sections.i_section(STEEL, 2.0 * size, size, 0.1 * size, 0.15 * size).beam_properties()
-    powers = {"rhoA": 2, "EI_z": 4, "EI_y": 4, "GJ": 4, "rhoJ": 4, "rhoI_y": 4, "rhoI_z": 4}
+    powers = dict.fromkeys(("EI_z", "EI_y", "GJ", "rhoJ", "rhoI_y", "rhoI_z"), 4)
+    powers |= dict.fromkeys(("rhoA", "EA", "GA_y", "GA_z"), 2)
     assert scaled == pytest.approx({label: number(unit[label]) * size ** powers[label] for label in unit}, rel=1e-9)
     # 2 b f ((h - f)/2)^2 and so on, by hand.
     assert number(unit["EI_z"]) == pytest.approx(2.6 * (1.0 * 2.0**3 - 0.9 * 1.7**3) / 12)

@@ -18,6 +18,8 @@ SECTION: dict[str, Any] = {
     "rhoI_y": 0.03,
     "rhoI_z": 0.02,
 }
+# Against stretch and shear, which rods have.
+STIFF = {"EA": 40.0, "GA_y": 25.0, "GA_z": 20.0}
 GRAVITY = (1.0, -2.0, -9.5)
 TURNS = ((2, 1.0), (1, -1.0), (0, 1.0))
 
@@ -63,6 +65,8 @@ CASES: dict[str, tuple[sf.Beam, tuple[str, ...]]] = {
     "free in space, curved and twisted without stress": (rod((1, 1, 1), sf.Joint("base", "free"), **ALL), ()),
     "in space, with a body": (rod((2, 1, 1), HUB), ("tip",)),
     "a shaft": (rod((0, 0, 2), HUB), ("tip",)),
+    "stretched and sheared in a plane": (rod((2, 0, 0), HUB, stretch=1, shear_y=2, **STIFF), ("tip",)),
+    "stretched and sheared in space": (rod((1, 1, 1), HUB, stretch=1, shear_y=1, shear_z=1, **ALL, **STIFF), ("tip",)),
     "in a plane, with bodies along it": (rod((2, 0, 0), HUB, frames=STATIONS), ("middle", "tip", "quarter")),
 }
 

@@ -49,8 +49,15 @@ _CASADI: Mapping[str, Callable[..., SX]] = {
 }
 
 SECTION = ("rhoA", "EI_z", "EI_y", "GJ", "rhoJ", "rhoI_y", "rhoI_z")
-# Axis and sign by which a rod's strains of a direction turn its sections.
-TURNS = ((2, 1.0), (1, -1.0), (0, 1.0))
+# Strain that a rod's coordinates of a direction are of, and their sign.
+STRAINS = {
+    "bend_y": (2, 1.0),
+    "bend_z": (1, -1.0),
+    "twist": (0, 1.0),
+    "stretch": (3, 1.0),
+    "shear_y": (4, 1.0),
+    "shear_z": (5, 1.0),
+}
 
 
 class Translation:
@@ -191,8 +198,8 @@ class Translation:
         L = self.number(beam.length)
         strains: list[Strain] = []
         breaks: set[float] = set()
-        counts = beam.bend_y, beam.bend_z, beam.twist
-        for direction, count, (axis, sign) in zip(("bend_y", "bend_z", "twist"), counts, TURNS, strict=True):
+        counts = [getattr(beam, direction) for direction in STRAINS]
+        for count, (direction, (axis, sign)) in zip(counts, STRAINS.items(), strict=True):
             if beam.family == "user":
                 functions = [self._strain(stated) for stated in beam.user_shapes(direction)]  # type: ignore[arg-type]
             elif count:
@@ -201,7 +208,8 @@ class Translation:
             else:
                 functions = []
             strains += [Strain(axis, sign, value) for value in functions]
-        sections: dict[str, Any] = {name: self._section(getattr(beam, name)) for name in SECTION}
+        labels = (*SECTION, "EA", "GA_y", "GA_z")
+        sections: dict[str, Any] = {name: self._section(getattr(beam, name)) for name in labels}
         return ExactRod(
             L,
             strains=tuple(strains),

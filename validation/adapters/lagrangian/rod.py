@@ -28,7 +28,7 @@ MORE, FEWEST, A_SPAN = 2, 4, 4
 
 @dataclass(frozen=True)
 class Strain:
-    """One strain function of xi = x/L, about an axis of the section, with the sign of the turn."""
+    """One strain function of xi = x/L: a turn about an axis (0 to 2), stretch (3) or shear (4, 5)."""
 
     axis: int
     sign: float
@@ -48,6 +48,9 @@ class ExactRod:
     EI_z: Section = 0.0
     EI_y: Section = 0.0
     GJ: Section = 0.0
+    EA: Section = 0.0
+    GA_y: Section = 0.0
+    GA_z: Section = 0.0
     rhoJ: Section = 0.0
     rhoI_y: Section = 0.0
     rhoI_z: Section = 0.0
@@ -74,13 +77,14 @@ class ExactRod:
     def axes(self) -> set[int]:
         """Axes that anything turns about."""
         stressless = {k for k, value in enumerate(self.unstressed) if callable(value) or value != 0.0}
-        return stressless | {strain.axis for strain in self.strains}
+        return stressless | {strain.axis for strain in self.strains if strain.axis < 3}
 
     def table(self, x: Array) -> Array:
-        """Strains of unit coordinates at stations (K, 3, n) [1/m]."""
-        values = np.zeros((len(x), 3, self.modes))
+        """Strains of unit coordinates at stations (K, 6, n): turns a length [1/m], stretch and shears."""
+        values = np.zeros((len(x), 6, self.modes))
         for i, strain in enumerate(self.strains):
-            values[:, strain.axis, i] = strain.sign * strain.value(x / self.length) / self.length
+            scale = strain.sign / (self.length if strain.axis < 3 else 1.0)
+            values[:, strain.axis, i] = scale * strain.value(x / self.length)
         return values
 
     def moments(self, a: float, b: float, q: SX) -> tuple[SX, SX]:
@@ -93,7 +97,7 @@ class ExactRod:
             x, weight = left + (right - left) * (node + 1) / 2, (right - left) * w / 2
             stressless = np.stack([at_stations(value, x) for value in self.unstressed], axis=1)
             for k, share in enumerate(weight):
-                strain = ca.SX(stressless[k]) + ca.SX(self.table(x[k : k + 1])[0]) @ q
+                strain = ca.SX(stressless[k]) + ca.SX(self.table(x[k : k + 1])[0, :3]) @ q
                 zeroth += share * strain
                 first += share * (x[k] - (a + b) / 2) / (b - a) * strain
         return zeroth, first
@@ -168,7 +172,9 @@ def _weights(rod: ExactRod, x: float) -> Array:
 
 def centroids(rod: ExactRod, x: Array, q: SX) -> SX:
     """Places of the axis at stations, in B (3, n)."""
-    tangents = ca.horzcat(*(R[:, 0] for R in rotations(rod, q)))
+    shifts = ca.SX(rod.table(rod.at)[:, 3:].reshape(-1, rod.modes)) @ q
+    moved = (ca.SX([1, 0, 0]) + shifts[3 * k : 3 * k + 3] for k in range(len(rod.at)))
+    tangents = ca.horzcat(*(R @ t for R, t in zip(rotations(rod, q), moved, strict=True)))
     return tangents @ ca.SX(np.stack([_weights(rod, at) for at in x.tolist()], axis=1))
 
 
@@ -178,10 +184,10 @@ def section(rod: ExactRod, x: float, q: SX) -> tuple[SX, SX]:
 
 
 def strain_energy(rod: ExactRod, q: SX) -> SX:
-    """1/2 the integral of GJ k1^2 + EI_y k2^2 + EI_z k3^2, of the changes of strain."""
+    """1/2 the integral of stiffnesses times squares of the changes of strain."""
     x, weight = stations(rod.length, rod.breaks, NODES)
     table, total = rod.table(x), ca.SX(0)
-    for axis, stiffness in enumerate((rod.GJ, rod.EI_y, rod.EI_z)):
+    for axis, stiffness in enumerate((rod.GJ, rod.EI_y, rod.EI_z, rod.EA, rod.GA_y, rod.GA_z)):
         K = np.einsum("k,ki,kj->ij", weight * at_stations(stiffness, x), table[:, axis], table[:, axis])
         total += 0.5 * ca.dot(q, ca.SX(K) @ q)
     return total

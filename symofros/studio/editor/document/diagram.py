@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from symofros.description.beam import DIRECTIONS, STRAINS
 from symofros.description.joint import WORLD
 from symofros.description.yaml.schema import default_joint_name
 
@@ -61,7 +62,7 @@ class _Diagram:
         beam = body.get("beam")
         frames = [*_dict(body.get("frames"))]
         if isinstance(beam, dict):
-            modes = [beam.get(key, 0) for key in ("bend_y", "bend_z", "twist")]
+            modes = [beam.get(key, 0) for key in STRAINS if key in beam or key in DIRECTIONS]
             kind, subtitle = "beam", f"{beam.get('family', 'spline')}, {'+'.join(map(str, modes))} modes"
             frames = frames or ["tip"]
         elif isinstance(body.get("inertia"), dict):
