@@ -160,13 +160,14 @@ class Compilation:
         """The requested functions, optimised."""
         return self.programs.program(self.requests)
 
-    def source(self, c_name: str | None = None) -> str:
+    def source(self, c_name: str | None = None, lanes: LaneOptions | None = None) -> str:
         """C text of the requested functions.
 
         Args:
             c_name: Prefix of C symbols; made of the model's name by default.
+            lanes: Options of batches by vectors; None: batches are loops over states.
         """
-        return model_source(self.program, self.record, GENERATOR, c_name=c_name)
+        return model_source(self.program, self.record, GENERATOR, lanes, c_name)
 
     def model(self) -> Model:
         """The functions that the options name, callable; where they name none, each is generated when first called."""

@@ -78,7 +78,7 @@ def export_command(
     dt: Annotated[float, typer.Option(help="Step [s].")] = 1e-3,
     as_json: AsJson = False,
 ) -> None:
-    """Write a model for C, Matlab, Octave, Simulink, FMI, or as URDF or MJCF; a diagram as a C program."""
+    """Write a model for C, Matlab, Octave, Simulink, FMI, WebAssembly, or as URDF or MJCF; a diagram as a C program."""
     described = sf.load_diagram(model) if is_diagram(model) else load(model, floating_base)
     start = {key: number(key, text) for key, text in assignments(given, "--set").items()}
     try:

@@ -30,16 +30,18 @@ from symofros.exports.folder import check_folder
 from symofros.exports.interchange.mjcf import write_mjcf
 from symofros.exports.interchange.urdf import write_urdf
 from symofros.exports.material import Material, Stepping
+from symofros.exports.wasm import wasm
+from symofros.exports.wasm.wasm import write_wasm
 from symofros.generator.codegen.interpreted import InterpretedUnit
 from symofros.generator.codegen.names import identifier
 from symofros.loading import load
 from symofros.runtime.beams import BEAM_LIMIT
-from symofros.runtime.calls.kernel import Array
+from symofros.runtime.calls.kernel import Array, LaneOptions
 from symofros.runtime.model import Model
 from symofros.simulation.analysis.assembly import assemble
 from symofros.simulation.stepping.methods import METHODS
 
-Target = Literal["c", "cuda", "mex", "sfunction", "fmu2", "fmu3", "urdf", "mjcf"]
+Target = Literal["c", "cuda", "mex", "sfunction", "fmu2", "fmu3", "wasm", "urdf", "mjcf"]
 TARGETS: tuple[Target, ...] = get_args(Target)
 
 _COMPILED: dict[str, Callable[[Material, Path], Exported]] = {
@@ -48,6 +50,7 @@ _COMPILED: dict[str, Callable[[Material, Path], Exported]] = {
     "sfunction": write_sfunction,
     "fmu2": write_fmu2,
     "fmu3": write_fmu3,
+    "wasm": write_wasm,
 }
 # Targets that give exact derivatives of their outputs, by inputs too.
 _DIFFERENTIATED = ("fmu2", "fmu3")
@@ -75,7 +78,8 @@ def export(
         model: A system, or the path of its description; or a diagram, which becomes a program of its own ("c").
         target: "c" (a package that builds by CMake, tests itself and simulates in real time), "cuda" (kernels, one
             thread a state), "mex" (Matlab, Octave), "sfunction" (Simulink), "fmu2", "fmu3" (FMI, Model Exchange and
-            Co-Simulation), "urdf" or "mjcf" (what these can hold; the notes say what they can't).
+            Co-Simulation), "wasm" (WebAssembly with an ES module and a page that simulates), "urdf" or "mjcf" (what
+            these can hold; the notes say what they can't).
         folder: A new one, an empty one, or one of an earlier export.
         name: Name of files and functions; made of the system's name by default.
         frames: Frames to generate kinematics for; all by default, of CUDA the last one.
@@ -98,7 +102,7 @@ def export(
         DescriptionError: The description can't be a mechanism.
         UnknownNameError: No such target, frame, coordinate or method.
         AssemblyError: No state near the start meets the constraints.
-        CompileError: An FMU's binary does not compile.
+        CompileError: An FMU's binary or a WebAssembly module does not compile.
     """
     if isinstance(model, Diagram):
         return _export_diagram(model, target, Path(folder), outputs, method, dt)
@@ -171,8 +175,10 @@ def _material(
     _refuse_variational(system, stepping)
     needs = (*stepping.method.family.functions, *(_reactions(system) if target == "c" else ()))
     if any(isinstance(body, Beam) and body.modes for body in system.bodies):
-        needs = (*needs, "beam_stiffness")
-    functions = tuple(dict.fromkeys((*exported(bool(system.constraints)), *needs)))
+        needs = (*needs, "beam_stiffness", "mass_matrix")
+    constrained = bool(system.constraints)
+    offered = wasm.functions(constrained) if target == "wasm" else exported(constrained)
+    functions = tuple(dict.fromkeys((*offered, *needs)))
     compilation = Compilation(system, Options(functions, None if frames is None else tuple(frames)))
     record = compilation.record
     c_name = identifier(name or record.name)
@@ -188,7 +194,7 @@ def _material(
         system,
         record,
         c_name,
-        compilation.source(c_name),
+        compilation.source(c_name, LaneOptions() if target == "wasm" else None),
         order,
         checks(record, kernels, order, q),
         POINTS,

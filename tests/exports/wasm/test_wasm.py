@@ -1,0 +1,146 @@
+"""WebAssembly modules: the bits of native C under Node and wasmtime; a page that simulates by itself."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from symofros.exports.wasm import wasm
+from tests.exports.cases import PLANAR, STARTS, need, run, system_of
+
+# The double as 16 hexadecimal digits, so that no digit is lost on the way.
+PROGRAM = """
+import { load } from "./NAME.mjs";
+const model = await load(), given = JSON.parse(process.argv[2]);
+const words = (x) => [...new BigUint64Array(x.slice().buffer)].map((b) => b.toString(16));
+const told = (outputs) => Object.fromEntries(Object.entries(outputs).map(([k, x]) => [k, words(x)]));
+const { q, v, u, n, t } = given, robot = model.instance();
+const { nq, nv, nu } = model.sizes, first = { q: q.slice(0, nq), v: v.slice(0, nv), u: u.slice(0, nu) };
+const results = { selftest: model.selftest(), batch: told(model.batch("dynamics", n, { q, v, u })) };
+results.one = told(model.evaluate("dynamics", first));
+for (let k = 0; k < t / 1e-3; ++k) robot.advance((k + 1) * 1e-3, 1e-3);
+results.end = told({ q: robot.q, v: robot.v });
+results.pose = told(robot.evaluate("frame_pose", model.names.frames.at(-1)));
+results.refusals = [];
+for (const action of [() => model.find("mass"), () => model.evaluate("dynamics", { q: [1, 2, 3, 4, 5] })])
+  try { action(); } catch (error) { results.refusals.push(error.message); }
+console.log(JSON.stringify(results));
+"""
+
+
+def doubles(words: list[str]) -> np.ndarray:
+    return np.array([int(word, 16) for word in words], dtype=np.uint64).view(np.float64)
+
+
+@pytest.fixture(scope="module")
+def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A flexible robot with inputs; compiling for WebAssembly the first time takes a minute or two."""
+    folder = tmp_path_factory.mktemp("package") / "wasm"
+    sf.export(PLANAR, "wasm", folder, start={"q1": 0.4, "dq1": 1.0}, dt=1e-3)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def answers(package: Path, native: dict[str, Any]) -> dict[str, Any]:
+    need("node")
+    (package / "ask.mjs").write_text(PROGRAM.replace("NAME", "planar"))
+    given = {key: native[key].ravel().tolist() for key in ("q", "v", "u")} | {"n": len(native["q"]), "t": 0.25}
+    return json.loads(run("node", "ask.mjs", json.dumps(given), cwd=package))  # type: ignore[no-any-return]
+
+
+@pytest.fixture(scope="module")
+def native() -> dict[str, Any]:
+    """Random states and the interpreter's numbers, which C without fused products has bit for bit."""
+    model = sf.compile(PLANAR, sf.Options(backend="interpreter"))
+    rng = np.random.default_rng(5)
+    states = [model.random_state(rng) for _ in range(9)]
+    q, v = (np.array(each) for each in zip(*states, strict=True))
+    u = rng.standard_normal((9, model.nu))
+    return {"q": q, "v": v, "u": u, **dict(zip("MhQ", model.dynamics(q, v, u), strict=True))}
+
+
+@pytest.mark.tools
+def test_the_module_has_the_native_bits(answers: dict[str, Any], native: dict[str, Any]) -> None:
+    """Odd numbers of states: one of two lanes is left over at the end."""
+    assert answers["selftest"] == 0.0
+    for name in "MhQ":
+        np.testing.assert_array_equal(doubles(answers["batch"][name]), native[name].ravel())
+        np.testing.assert_array_equal(doubles(answers["one"][name]), native[name][0].ravel())
+
+
+@pytest.mark.tools
+def test_a_run_moves_as_strict_native_code_does(answers: dict[str, Any], tmp_path: Path) -> None:
+    sf.export(PLANAR, "c", tmp_path, start={"q1": 0.4, "dq1": 1.0}, dt=1e-3)
+    sources = sorted(path.name for path in tmp_path.glob("*.c"))
+    run("gcc", "-std=c99", "-O1", "-ffp-contract=off", *sources, "-lm", "-o", "example", cwd=tmp_path)
+    lines = [line.split() for line in run("./example", "0.25", "0.001", "--fast", cwd=tmp_path).splitlines()]
+    told = {words[0]: np.array(list(map(float, words[1:]))) for words in lines if words[0] in ("q", "v")}
+    for name in "qv":
+        np.testing.assert_array_equal(doubles(answers["end"][name]), told[name])
+
+
+@pytest.mark.tools
+def test_wrong_names_and_sizes_are_refused_in_words(answers: dict[str, Any]) -> None:
+    unknown, size = answers["refusals"]
+    assert "no function 'mass'" in unknown and "forward_dynamics" in unknown
+    assert "'q' has 5 numbers; it takes 2" in size
+
+
+@pytest.mark.tools
+def test_wasmtime_runs_it(package: Path) -> None:
+    """Without a single import: any runtime will do."""
+    wasmtime = pytest.importorskip("wasmtime", reason="the package wasmtime is not installed")
+    store = wasmtime.Store()
+    module = wasmtime.Module.from_file(store.engine, str(package / "planar.wasm"))
+    assert not module.imports
+    exports = wasmtime.Instance(store, module, []).exports(store)
+    exports["_initialize"](store)
+    assert exports["js_selftest"](store) == 0.0
+
+
+@pytest.mark.tools
+def test_the_package_tests_itself_and_is_small(package: Path) -> None:
+    need("node")
+    assert run("node", "selftest.mjs", cwd=package).startswith("selftest 0.000e+0")
+    assert (package / "planar.wasm").stat().st_size < 200_000
+
+
+@pytest.mark.tools
+@pytest.mark.slow
+def test_the_arm_of_seven_axes_fits_into_200_kilobytes(tmp_path: Path) -> None:
+    need("node")
+    sf.export(system_of("panda"), "wasm", tmp_path, start=STARTS["panda"])
+    assert (tmp_path / "panda.wasm").stat().st_size < 200_000
+    assert run("node", "selftest.mjs", cwd=tmp_path).startswith("selftest 0.000e+0")
+
+
+@pytest.mark.tools
+@pytest.mark.browser
+def test_the_page_simulates_without_a_server(package: Path, chromium: Any) -> None:
+    page = chromium.new_page()
+    faults: list[str] = []
+    page.on("pageerror", lambda error: faults.append(str(error)))
+    page.goto((package / "index.html").as_uri())
+    page.wait_for_function("parseFloat(document.getElementById('time').textContent) > 0.3")
+    colours = page.evaluate(
+        "new Set(new Uint32Array(document.querySelector('canvas').getContext('2d')"
+        ".getImageData(0, 0, 800, 600).data.buffer)).size"
+    )
+    page.close()
+    assert not faults and colours > 2
+
+
+def test_without_zig_it_is_said_in_words(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(wasm.importlib.util, "find_spec", lambda name: None)
+    with pytest.raises(sf.CompileError, match=r"pip install 'symofros\[zig\]'"):
+        sf.export(PLANAR, "wasm", tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def test_names_can_not_end_the_script_of_the_page() -> None:
+    assert "</" not in wasm._json({"name": "</script>"})
