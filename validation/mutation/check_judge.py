@@ -29,8 +29,10 @@ GENERAL = (
     "car",
     "spinning_beam",
     "flexible_pendulum",
+    "soft_pendulum",
 )
-BEAMS = ("spinning_beam", "flexible_slider_crank", "planar_robot", "double_pendulum")
+BEAMS = ("spinning_beam", "soft_pendulum", "flexible_slider_crank", "planar_robot", "double_pendulum")
+RODS = ("soft_pendulum", "spinning_beam")
 READ = {"urdf": ("sampler", "ur5"), "mjcf": ("creature",)}
 # Compared compiled, free motion included: what writes C shows there only.
 WRITTEN = ("double_pendulum", "heavy_top", "friction_arm", "rolling_disc", "four_bar", "spinning_beam")
@@ -46,6 +48,8 @@ def interpreted_models(module: str) -> tuple[str, ...]:
     """The models whose interpreted programs are compared where a module has a fault."""
     if module.startswith(_STEPPING + _WRITING):
         return ()
+    if any(f"/{name}" in module for name in ("rod", "strains", "flexible")):
+        return RODS
     read = next((names for folder, names in READ.items() if f"/{folder}/" in module), ())
     rods = ("delta_rods",) if "constraints" in module else ()
     return read or (BEAMS if "beam" in module else GENERAL + rods)

@@ -7,7 +7,7 @@ import warnings
 from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -39,6 +39,7 @@ _RUNS = {
     "rolling_disc": ("rk4", "rodas4", "generalized_alpha"),
     "four_bar": ("dopri5", "generalized_alpha", "variational", "rodas4", "ida"),
     "flexible_pendulum": ("dopri5", "rodas4", "generalized_alpha"),
+    "soft_pendulum": ("rk4", "dop853"),
 }
 _STARTS = {"four_bar": [1.2, -1.2, 1.2], "rolling_disc": [0.0, 0.0, 0.5, 0.5, 0.5, 0.5, 0.5]}
 
@@ -120,8 +121,7 @@ def _random(model: sf.Model, n: int) -> tuple[Array, Array, Array, Array]:
 def _values() -> Iterator[tuple[str, Callable[[], Any]]]:
     """Functions of the interpreted models at two states."""
 
-    def values(name: str) -> Array:
-        system = subject(name).system
+    def values(system: sf.System, name: str = "") -> Array:
         functions: tuple[str, ...] = _FUNCTIONS if name in _DERIVED else _FUNCTIONS[:7]
         functions += ("constraint_jacobian", "constraint_bias") if system.constraints else ()
         model = sf.compile(system, sf.Options(functions=functions, backend="interpreter"))
@@ -132,7 +132,40 @@ def _values() -> Iterator[tuple[str, Callable[[], Any]]]:
         return np.concatenate(results)
 
     for name in dict.fromkeys((*GENERAL, *BEAMS, *READ["urdf"], *READ["mjcf"])):
-        yield f"values {name}", partial(values, name)
+        yield f"values {name}", lambda name=name: values(subject(name).system, name)  # type: ignore[misc]
+    for order in ("zeroth_order", "first_order", "all"):
+        yield f"values loaded beam, {order}", partial(values, _loaded_beam(order))
+
+
+def _wrench(force: tuple[Any, ...], torque: tuple[Any, ...]) -> dict[str, Any]:
+    return {"force": force, "torque": torque}
+
+
+def _loaded_beam(retain: Literal["zeroth_order", "first_order", "all"]) -> sf.System:
+    """A beam with rotary inertia, with forces and moments at a station and along the span."""
+    loads = [
+        sf.BeamLoad(**_wrench(("u", 1.0, 0.5), (0.3, 0.2, "u")), at=0.4),
+        sf.BeamLoad(**_wrench((0.2, "x", 0.1), ("x", 0.4, "u*x")), axes="world"),
+    ]
+    beam = sf.Beam(
+        "beam",
+        sf.Joint("q", "ball"),
+        length=1.2,
+        rhoA=0.7,
+        EI_y=30.0,
+        EI_z=20.0,
+        GJ=15.0,
+        rhoJ=0.02,
+        rhoI_y=0.01,
+        rhoI_z=0.01,
+        rotary_inertia=True,
+        retain=retain,
+        bend_y=2,
+        bend_z=2,
+        twist=1,
+        loads=tuple(loads),
+    )
+    return sf.System("loaded_beam", bodies=(beam,), inputs=(sf.Input("u"),))
 
 
 def _called(model: sf.Model, function: str, q: Array, v: Array, a: Array, u: Array) -> Any:
@@ -156,7 +189,8 @@ def _motions() -> Iterator[tuple[str, Callable[[], Any]]]:
             start = sf.assemble(model, _STARTS[name], 0.3 * np.ones(model.nv))
             q, v = start.q, start.v
         motion = sf.simulate(model, q, v, options.pop("t_end", 0.05), u=[0.1] * model.nu or None, **options)
-        return _flat([motion.t, motion.q, motion.v])
+        bent = [(one.slope, one.twist, one.foreshortening, one.error) for one in motion.bendings]
+        return _flat([motion.t, motion.q, motion.v, *bent, len(motion.outcome.notes)])
 
     for name, methods in _RUNS.items():
         for method in methods:
