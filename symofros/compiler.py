@@ -200,6 +200,7 @@ class Compilation:
             beams=beams_at(self.tree),
             parameter_check=RunTimeCheck(self.system, self.record.par_names).problems,
             origin=partial(compile_system, self.system, self.options),
+            device_code=units.device_code,
         )
 
     def library(self, precision: Precision = "double") -> tuple[Path, str]:

@@ -14,6 +14,7 @@ from symofros.base.options import Options
 from symofros.description.values import as_value
 from symofros.errors import CompileError
 from symofros.expr.program import Program
+from symofros.generator.codegen.cuda import device_code
 from symofros.generator.codegen.dispatch import dispatch_source
 from symofros.generator.codegen.interpreted import InterpretedUnit
 from symofros.generator.codegen.model import model_source
@@ -28,8 +29,9 @@ from symofros.runtime.build.build import build_library, recall_library
 from symofros.runtime.build.progress import Progress
 from symofros.runtime.build.toolchain import NO_COMPILER, Toolchain
 from symofros.runtime.build.tuning import Build, builds, fastest
-from symofros.runtime.calls.kernel import SHARED_PARAMETERS, LaneOptions, Unit
+from symofros.runtime.calls.kernel import SHARED_PARAMETERS, LaneOptions, Precision, Unit
 from symofros.runtime.calls.library import CompiledKernel, CompiledUnit
+from symofros.runtime.cuda.device_code import DeviceCode
 from symofros.runtime.functions import Key, Rate
 from symofros.runtime.record import ModelRecord
 
@@ -101,6 +103,12 @@ class UnitCompiler:
             return build_library(source, _header(), build.toolchain, build.flags, self._dispatch, self.symbol)
 
         return self._build(build_one, self._toolchain, lanes)
+
+    def device_code(self, key: Key, precision: Precision) -> DeviceCode:
+        """The kernels of a function, for graphics processors; none where a solver finishes it."""
+        with self._generating:
+            program = self._programs.program((Request(*key),))
+            return device_code(program, self._record, GENERATOR, precision)
 
     @property
     def symbol(self) -> str:

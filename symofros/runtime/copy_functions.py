@@ -8,6 +8,7 @@ from typing import Any, Self
 from symofros.base.html import html_table
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.calls.kernel import Array, Precision
+from symofros.runtime.cuda.cuda_model import CudaModel
 from symofros.runtime.parameter_functions import ParameterFunctions
 
 
@@ -55,6 +56,27 @@ class CopyFunctions(ParameterFunctions):
                 )
             )
         return self if precision == self._precision else self._like(precision=precision)
+
+    def cuda(self, precision: Precision | None = None, *, contract: bool = False) -> CudaModel:
+        """The model's functions on a graphics processor, with the present values of its parameters.
+
+        Args:
+            precision: Precision of all numbers; that of the model by default.
+            contract: Whether products and sums are fused: faster where arithmetic bounds, and rounded otherwise than C.
+
+        Raises:
+            SymofrosError: The model came without its description.
+        """
+        if self._device_code is None:
+            raise SymofrosError(
+                Problem(
+                    f"model '{self.record.name}': no kernels",
+                    "a model without its description, as that of a compiled diagram",
+                    "kernels are generated from a description",
+                    "compile the system that it is of",
+                )
+            )
+        return CudaModel(self.record, self._par, self._device_code, precision or self._precision, contract)
 
     def __copy__(self) -> Self:
         """The same model."""

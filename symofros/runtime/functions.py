@@ -16,6 +16,7 @@ from symofros.runtime.beams import ElasticBeam
 from symofros.runtime.calls.kernel import Array, BatchOptions, Kernel, Numbers, Precision, Unit
 from symofros.runtime.calls.layout import by_columns, flat, states
 from symofros.runtime.calls.single import SingleCall, SingleCalls
+from symofros.runtime.cuda.device_code import DeviceCode
 from symofros.runtime.names import Names as Names
 from symofros.runtime.names import stacked
 from symofros.runtime.record import ModelRecord
@@ -55,6 +56,7 @@ class Functions:
         precision: Precision of what functions take and return.
         parameter_check: Problems of sets of run-time parameters (n, npar); None where nothing is known of them.
         origin: Makes the model again, for copies in other processes; None where it has no description.
+        device_code: Generates kernels of a function, for graphics processors; None where there is no description.
     """
 
     def __init__(
@@ -69,6 +71,7 @@ class Functions:
         precision: Precision = "double",
         parameter_check: ParameterCheck | None = None,
         origin: Callable[[], Functions] | None = None,
+        device_code: Callable[[Key, Precision], DeviceCode] | None = None,
     ) -> None:
         self.record = record
         self._threads = threads
@@ -77,6 +80,7 @@ class Functions:
         self._parameter_check, self._last_checked = parameter_check, b""
         self._build_formulas = formulas
         self._origin = origin
+        self._device_code = device_code
         self._beams_at = beams
         self._par = np.array(record.par_default if par is None else par, dtype=np.float64)
         self._par.flags.writeable = False
@@ -161,6 +165,7 @@ class Functions:
             precision or self._precision,
             self._parameter_check,
             self._origin,
+            self._device_code,
         )
         other._kernels = self._kernels  # Shared, so that what either compiles serves both.
         return other

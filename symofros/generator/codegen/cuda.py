@@ -13,6 +13,7 @@ from string import Template
 from symofros.expr.program import Function, Program
 from symofros.generator.codegen import trigonometry
 from symofros.generator.codegen.function import FunctionWriter
+from symofros.generator.codegen.interpreted import InterpretedKernel
 from symofros.generator.codegen.lanes import called_functions
 from symofros.generator.codegen.model import comment, legend, operations_text
 from symofros.generator.codegen.names import function_symbols, identifier
@@ -69,7 +70,9 @@ def device_code(
     if any(function.name == "forward_dynamics" for function in functions):
         texts.append(_on_device(_rollout(name, record, functions, precision)))
         rollouts = {method: f"{name}_rollout_{suffix}" for method, suffix in ROLLOUTS.items()}
-    return DeviceCode("\n\n".join([_on_device(text + routines), *texts]), precision, tuple(kernels), rollouts)
+    prepare = InterpretedKernel(program, program.functions[0]).prepare
+    whole = "\n\n".join([_on_device(text + routines), *texts])
+    return DeviceCode(whole, precision, tuple(kernels), rollouts, prepare)
 
 
 def _on_device(text: str) -> str:

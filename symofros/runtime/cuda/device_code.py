@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import prod
 
-from symofros.runtime.calls.kernel import Precision, Signature
+from symofros.runtime.calls.kernel import Array, Precision, Signature
 
 # Threads of a block at most: kernels of many registers fill a processor by small blocks.
 BLOCK = 128
@@ -39,9 +40,11 @@ class DeviceCode:
         precision: Precision of its numbers.
         kernels: Kernels of functions.
         rollouts: Stepping method -> name of its kernel.
+        prepare: Sets of parameters (m, npar) -> what kernels read of them (m, npre).
     """
 
     text: str
     precision: Precision
     kernels: tuple[DeviceKernel, ...]
     rollouts: dict[str, str]
+    prepare: Callable[[Array], Array]

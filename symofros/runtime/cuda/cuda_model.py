@@ -1,0 +1,284 @@
+"""The functions of a model on a graphics processor: batches of states, and rollouts."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from math import prod
+from typing import Any
+
+import numpy as np
+
+from symofros.errors import Problem, ShapeError, SymofrosError, UnknownNameError, did_you_mean
+from symofros.runtime.calls.kernel import Array, BatchOptions, Precision
+from symofros.runtime.cuda.arrays import DeviceArray, Placed, Strided, StridedSequence, placed
+from symofros.runtime.cuda.device_code import BLOCK, DeviceCode
+from symofros.runtime.cuda.driver import Driver, driver
+from symofros.runtime.cuda.nvrtc import KernelUsage, compile_cuda
+from symofros.runtime.record import ModelRecord
+
+Key = tuple[str, str]
+
+
+@dataclass(frozen=True)
+class _Loaded:
+    """The kernels of one function on the device."""
+
+    code: DeviceCode
+    module: ctypes.c_void_p
+    pre: DeviceArray
+
+
+class CudaModel:
+    """Functions of one mechanism on a graphics processor, each compiled when it is first called.
+
+    Arrays have the shapes of `Model`, (n, size), or (size) for all states. Arrays of the device are read in place, by
+    `__cuda_array_interface__` or DLPack (CuPy, PyTorch, JAX); those of the host are copied. States side by side
+    (`torch.empty(nq, n).T`) are read at the full speed of the memory. Results are `DeviceArray`s of that layout, which
+    other libraries take in place, too. Values of parameters are those of the model.
+    Results are those of C where products and sums are not fused (`contract`), in single precision to its rounding. A
+    step of a rollout that is too long for its method is not noticed, unlike in `simulate`; nor is bending of beams
+    beyond their theory.
+
+    Args:
+        record: Names and sizes.
+        par: Values of the run-time parameters.
+        make: Generates the kernels of a function.
+        precision: Precision of all numbers.
+        contract: Whether products and sums are fused.
+    """
+
+    def __init__(
+        self,
+        record: ModelRecord,
+        par: Array,
+        make: Callable[[Key, Precision], DeviceCode],
+        precision: Precision,
+        contract: bool,
+    ) -> None:
+        self.record, self.precision, self.contract = record, precision, contract
+        self._par, self._make = par, make
+        self._codes: dict[Key, DeviceCode] = {}
+        self._loaded: dict[Key, _Loaded] = {}
+        self._dtype = BatchOptions(precision=precision).dtype
+
+    def code(self, name: str, frame: str = "") -> DeviceCode:
+        """Kernels of a function as text, which no processor is needed for.
+
+        Raises:
+            UnknownNameError: There is no such function or frame.
+            SymofrosError: A solver finishes the function.
+        """
+        key = (name, frame)
+        if key not in self._codes:
+            code = self._make(key, self.precision)
+            if not code.kernels:
+                raise SymofrosError(
+                    Problem(
+                        f"model '{self.record.name}': {name} has no kernel",
+                        "a solver finishes it",
+                        "kernels are of functions that are formulas alone",
+                        "call it on the processor: it runs in the model's threads there",
+                    )
+                )
+            self._codes[key] = code
+        return self._codes[key]
+
+    def usage(self, name: str, frame: str = "", architecture: str = "") -> dict[str, KernelUsage]:
+        """What the kernels of a function take of an architecture ("sm_90"); that of this machine by default.
+
+        Raises:
+            CompileError: There is no compiler, or no such architecture.
+        """
+        return compile_cuda(self.code(name, frame).text, architecture or driver().architecture, self.contract).usage
+
+    def evaluate(
+        self, name: str, frame: str = "", *, out: Mapping[str, Any] | None = None, wait: bool = True, **inputs: Any
+    ) -> dict[str, Any]:
+        """A function of a batch of states.
+
+        Args:
+            name: Name of the function.
+            frame: Frame of a function of frames.
+            out: Arrays of the device to write into, by name, each (n, ...); what is left out is allocated.
+            wait: Whether to return when the results are there. Without it they are ready for the default stream, and
+                the arrays must be kept until then.
+            inputs: Inputs by name; `t` is 0 and `u` the default inputs where they are left out.
+
+        Returns:
+            Results by name.
+
+        Raises:
+            ShapeError: An input is missing or does not fit.
+            SymofrosError: There is no graphics processor, or the function has no kernel.
+        """
+        loaded, device = self._load((name, frame)), driver()
+        kernel = loaded.code.kernels[0]
+        given = self._placed({size[0]: size[1] for size in kernel.signature.inputs}, inputs, device)
+        n = self._states(name, given)
+        results: dict[str, Any] = {}
+        arguments = [_batch(given[group], n) for group, _ in kernel.signature.inputs]
+        for label, shape in kernel.signature.outputs:
+            results[label] = (out or {}).get(label)
+            if results[label] is None:
+                results[label] = DeviceArray(device, (n, *shape), self._dtype)
+            arguments.append(_entries(label, placed(label, results[label], self._dtype, device), (n, *shape)))
+        self._launch(loaded, kernel.symbol, n, arguments, device)
+        if wait:
+            device.wait()
+        return results
+
+    def rollout(
+        self,
+        q: Any,
+        v: Any,
+        u: Any = None,
+        *,
+        dt: float,
+        steps: int,
+        every: int | None = None,
+        method: str = "rk4",
+        t: Any = 0.0,
+    ) -> tuple[DeviceArray, DeviceArray]:
+        """Motions from many states by steps of constant length, inputs held over each step.
+
+        Args:
+            q: First configurations (n, nq).
+            v: First speeds (n, nv).
+            u: Inputs: (nu), (n, nu), or (steps, n, nu); the default inputs where they are left out.
+            dt: Step [s].
+            steps: Number of steps.
+            every: Steps between two records; the last state alone by default.
+            method: "rk4" or "semi_implicit_euler", as in `simulate`.
+            t: First time, for all or (n) [s].
+
+        Returns:
+            q (records, n, nq) and v (records, n, nv).
+
+        Raises:
+            UnknownNameError: There is no such method.
+            ShapeError: An input does not fit.
+            SymofrosError: The model has constraints, or there is no graphics processor.
+        """
+        code = self.code("forward_dynamics")
+        if method not in code.rollouts:
+            known = tuple(code.rollouts)
+            raise UnknownNameError(
+                Problem(f"CUDA: no rollouts by '{method}'", method, ", ".join(known), did_you_mean(method, known))
+            )
+        every = steps if every is None else every
+        if not (steps >= 1 and 1 <= every <= steps and np.isfinite(dt)):
+            raise ShapeError(
+                Problem(
+                    "CUDA: no such rollout",
+                    f"{steps} steps of {dt}, a record every {every}",
+                    "1 <= every <= steps, and a finite step",
+                    "leave every out for the last state alone",
+                )
+            )
+        loaded, device = self._load(("forward_dynamics", "")), driver()
+        sizes = {"q": len(self.record.q_names), "v": len(self.record.v_names), "t": 1}
+        given = self._placed(sizes, {"q": q, "v": v, "t": t}, device)
+        n = self._states("rollout", given)
+        inputs = placed("u", self.record.u_default if u is None else u, self._dtype, device)
+        held = self._held(inputs, steps, n)
+        records = steps // every
+        results = [DeviceArray(device, (records, n, sizes[x]), self._dtype, batch=1) for x in ("q", "v")]
+        sequences = [
+            StridedSequence(Strided(x.address, x.strides[2] // x.dtype.itemsize, 1), x.strides[0] // x.dtype.itemsize)
+            for x in results
+        ]
+        scalars = [ctypes.c_longlong(steps), ctypes.c_longlong(every), ctypes.c_double(dt)]
+        start = [_batch(given[x], n) for x in ("q", "v", "t")]
+        arguments = [*scalars, *start[:2], held, start[2], *sequences]
+        self._launch(loaded, loaded.code.rollouts[method], n, arguments, device)
+        device.wait()
+        return results[0], results[1]
+
+    def _held(self, u: Placed, steps: int, n: int) -> StridedSequence:
+        """Inputs of each step: the same for all, or one set a step."""
+        nu = len(self.record.u_names)
+        if len(u.shape) == 3:
+            if u.shape != (steps, n, nu):
+                raise _misfit("u", u.shape, f"({nu}), ({n}, {nu}) or ({steps}, {n}, {nu})")
+            return StridedSequence(_batch(Placed(u.address, u.shape[1:], u.strides[1:], u.owner), n), u.strides[0])
+        self._states("rollout", {"u": self._fitting("u", u, nu)}, n)
+        return StridedSequence(_batch(u, n), 0)
+
+    def _load(self, key: Key) -> _Loaded:
+        if key not in self._loaded:
+            code, device = self.code(*key), driver()
+            module = device.load(compile_cuda(code.text, device.architecture, self.contract).image)
+            values = code.prepare(self._par.reshape(1, -1))[0]
+            pre = DeviceArray(device, (max(1, len(values)),), self._dtype)
+            if len(values):
+                pre.write(values)
+            self._loaded[key] = _Loaded(code, module, pre)
+        return self._loaded[key]
+
+    def _launch(self, loaded: _Loaded, symbol: str, n: int, arguments: list[Any], device: Driver) -> None:
+        given = [ctypes.c_longlong(n), ctypes.c_void_p(loaded.pre.address), *arguments]
+        if n:
+            device.launch(device.function(loaded.module, symbol), n, BLOCK, given)
+
+    def _placed(self, sizes: Mapping[str, int], inputs: Mapping[str, Any], device: Driver) -> dict[str, Placed]:
+        """Inputs on the device, in their shapes: (n, size) or (size); t as (n, 1) or (1)."""
+        values = {"u": None, "t": 0.0} | dict(inputs)
+        for group in inputs:
+            if group not in sizes:
+                raise UnknownNameError(
+                    Problem(f"CUDA: no input '{group}'", group, ", ".join(sizes), did_you_mean(group, tuple(sizes)))
+                )
+        arrays = {}
+        for group, size in sizes.items():
+            if group not in values:
+                raise ShapeError(
+                    Problem(f"CUDA: no {group}", ", ".join(inputs) or "nothing", ", ".join(sizes), "add it")
+                )
+            value = self.record.u_default if group == "u" and values[group] is None else values[group]
+            array = placed(group, value, self._dtype, device)
+            if group == "t":
+                array = Placed(array.address, (*array.shape, 1), (*array.strides, 1), array.owner)
+            arrays[group] = self._fitting(group, array, size)
+        return arrays
+
+    def _fitting(self, group: str, array: Placed, size: int) -> Placed:
+        if len(array.shape) not in (1, 2) or array.shape[-1] != size:
+            raise _misfit(group, array.shape, f"(n, {size}), or ({size}) for all states")
+        return array
+
+    def _states(self, name: str, arrays: Mapping[str, Placed], n: int | None = None) -> int:
+        """The number of states, in which all arrays agree."""
+        counts = {array.shape[0] for array in arrays.values() if len(array.shape) == 2} | (
+            {n} if n is not None else set()
+        )
+        if len(counts) > 1:
+            shown = ", ".join(f"{group} {array.shape}" for group, array in arrays.items())
+            raise _misfit(name, tuple(sorted(counts)), f"one number of states in all of {shown}")
+        return counts.pop() if counts else 1
+
+
+def _batch(array: Placed, n: int) -> Strided:
+    """As kernels take an input: one for all states has no stride."""
+    if len(array.shape) == 1 or n == 1:
+        return Strided(array.address, array.strides[-1], 0)
+    return Strided(array.address, array.strides[1], array.strides[0])
+
+
+def _entries(label: str, array: Placed, shape: tuple[int, ...]) -> Strided:
+    """As kernels take a result: entries by rows, at equal distances."""
+    even = all(
+        array.strides[k] == array.strides[k + 1] * array.shape[k + 1] or array.shape[k] == 1
+        for k in range(1, len(array.shape) - 1)
+    )
+    if array.shape != shape or not even:
+        raise _misfit(label, array.shape, f"{shape}, its entries at equal distances")
+    entry = array.strides[-1] if len(shape) > 1 and prod(shape[1:]) > 1 else 1
+    return Strided(array.address, entry, array.strides[0])
+
+
+def _misfit(group: str, shape: tuple[int, ...], wanted: str) -> ShapeError:
+    return ShapeError(
+        Problem(f"CUDA: {group} has the wrong shape", str(shape), f"{group} has shape {wanted}", "reshape it")
+    )

@@ -1,0 +1,189 @@
+"""Models on a graphics processor, with a driver whose processor is the host: arrays in place, rollouts, words."""
+
+from __future__ import annotations
+
+import ctypes
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from symofros.errors import ShapeError, SymofrosError, UnknownNameError
+from symofros.runtime.cuda import cuda_model
+from symofros.runtime.cuda.cuda_model import CudaModel
+from symofros.runtime.cuda.driver import Driver, driver
+from symofros.runtime.cuda.nvrtc import MachineCode
+from tests.cuda_on_host import on_host
+from tests.models import model
+
+HERE = Path(__file__).parent
+
+
+@pytest.fixture(scope="module")
+def device(tmp_path_factory: pytest.TempPathFactory) -> Driver:
+    library = tmp_path_factory.mktemp("driver") / "libcuda.so.1"
+    subprocess.run(["gcc", "-shared", "-fPIC", HERE / "driver_on_host.c", "-o", library, "-ldl"], check=True)
+    return Driver(ctypes.CDLL(str(library)))
+
+
+@pytest.fixture(scope="module")
+def on_device(device: Driver, tmp_path_factory: pytest.TempPathFactory) -> CudaModel:
+    """The double pendulum, its kernels compiled as C++."""
+    folder = tmp_path_factory.mktemp("kernels")
+
+    def compiled(text: str, architecture: str, contract: bool) -> MachineCode:
+        assert architecture == "sm_90"
+        code = next(code for code in gpu._codes.values() if code.text == text)
+        place = folder / code.kernels[0].symbol
+        place.mkdir()
+        return MachineCode(str(on_host(code, place)).encode() + b"\0", {})
+
+    patch = pytest.MonkeyPatch()
+    patch.setattr(cuda_model, "driver", lambda: device)
+    patch.setattr(cuda_model, "compile_cuda", compiled)
+    gpu = model("double_pendulum").cuda()
+    gpu.evaluate("dynamics", q=np.zeros((1, 2)), v=np.zeros((1, 2)))
+    yield gpu
+    patch.undo()
+
+
+class OnDevice:
+    """An array of another library, in place."""
+
+    def __init__(self, array: np.ndarray) -> None:
+        self.array = array
+        self.__cuda_array_interface__ = {
+            "shape": array.shape,
+            "typestr": array.dtype.str,
+            "data": (array.ctypes.data, False),
+            "strides": array.strides,
+            "version": 3,
+        }
+
+
+class Exchanged:
+    """An array of another library, by DLPack; NumPy's, said to be of the device."""
+
+    def __init__(self, array: np.ndarray, device_type: int = 2) -> None:
+        self.array, self.device_type = array, device_type
+
+    def __dlpack_device__(self) -> tuple[int, int]:
+        return 2, 0
+
+    def __dlpack__(self, stream: int) -> object:
+        assert stream == 1
+        capsule = self.array.__dlpack__()
+        pointer = ctypes.pythonapi.PyCapsule_GetPointer
+        pointer.restype, pointer.argtypes = ctypes.c_void_p, (ctypes.py_object, ctypes.c_char_p)
+        ctypes.c_int32.from_address(pointer(capsule, b"dltensor") + 8).value = self.device_type
+        return capsule
+
+
+def states(n: int) -> tuple[np.ndarray, np.ndarray]:
+    rng = np.random.default_rng(3)
+    return rng.uniform(-3, 3, (n, 2)), rng.standard_normal((n, 2))
+
+
+@pytest.mark.parametrize("n", [1, 2, 128, 300])
+@pytest.mark.parametrize("order", ["C", "F"])
+@pytest.mark.parametrize("place", [np.asarray, OnDevice, Exchanged])
+def test_batches_of_any_layout_give_the_bits_of_the_model(on_device: CudaModel, n: int, order: Any, place: Any) -> None:
+    q, v = (np.array(x, order=order) for x in states(n))
+    results = on_device.evaluate("dynamics", q=place(q), v=place(v), u=[0.5, -1.0])
+    wanted = model("double_pendulum").dynamics(q, v, np.array([0.5, -1.0]))
+    for result, expected in zip(results.values(), wanted, strict=True):
+        assert np.array_equal(result.numpy(), expected)
+
+
+def test_states_of_results_lie_side_by_side(on_device: CudaModel) -> None:
+    q, v = states(5)
+    M = on_device.evaluate("dynamics", q=q, v=v)["M"]
+    assert M.shape == (5, 2, 2) and M.strides == (8, 80, 40)
+    assert M.__cuda_array_interface__["shape"] == (5, 2, 2)
+    again = on_device.evaluate("forward_dynamics", q=q, v=v, u=on_device.evaluate("dynamics", q=q, v=v)["h"])
+    assert np.allclose(again["a"].numpy(), 0.0, atol=1e-12)  # Efforts that balance; in place from one to the next.
+
+
+def test_results_are_written_into_arrays_that_are_given(on_device: CudaModel) -> None:
+    q, v = states(7)
+    M = np.full((7, 2, 2), np.nan)
+    results = on_device.evaluate("dynamics", q=q, v=v, out={"M": OnDevice(M)})
+    assert results["M"].array is M
+    assert np.array_equal(M, model("double_pendulum").mass_matrix(q))
+    with pytest.raises(ShapeError, match="entries at equal distances"):
+        on_device.evaluate("dynamics", q=q, v=v, out={"M": OnDevice(np.zeros((7, 2, 4))[:, :, :2])})
+
+
+def test_frames_and_parameters_are_those_of_the_model(on_device: CudaModel) -> None:
+    frame = model("double_pendulum").names.frames[-1]
+    q, _ = states(4)
+    pose = on_device.evaluate("frame_pose", frame, q=q)
+    assert np.array_equal(pose["p"].numpy(), model("double_pendulum").frame_pose(frame, q)[0])
+    longer = model("double_pendulum").with_parameters(L1=2.0)
+    assert np.array_equal(longer.cuda()._par, longer.parameter_values)
+
+
+@pytest.mark.parametrize("method", ["rk4", "semi_implicit_euler"])
+@pytest.mark.parametrize("given", ["all", "states", "steps"])
+def test_rollouts_hold_the_inputs_of_each_step(on_device: CudaModel, method: str, given: str) -> None:
+    q, v = states(6)
+    u = np.random.default_rng(4).standard_normal({"all": (2,), "states": (6, 2), "steps": (8, 6, 2)}[given])
+    records = on_device.rollout(q, v, u, dt=0.01, steps=8, every=3, method=method)
+    assert records[0].shape == (2, 6, 2)
+    held = np.broadcast_to(u, (8, 6, 2))
+    at_q, at_v = q, v
+    for step in range(6):
+        runs = [
+            sf.simulate(model("double_pendulum", "c"), a, b, 0.01, u=w, method=method, dt=0.01)
+            for a, b, w in zip(at_q, at_v, held[step], strict=True)
+        ]
+        at_q, at_v = np.array([run.q[-1] for run in runs]), np.array([run.v[-1] for run in runs])
+        if step % 3 == 2:
+            for record, wanted in zip(records, (at_q, at_v), strict=True):
+                assert np.abs(record.numpy()[step // 3] - wanted).max() < 1e-12
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda g: g.evaluate("dynamics", q=np.zeros((3, 2))), "no v"),
+        (lambda g: g.evaluate("dynamics", q=np.zeros((3, 3)), v=np.zeros((3, 2))), "q has the wrong shape"),
+        (lambda g: g.evaluate("dynamics", q=np.zeros((3, 2)), v=np.zeros((4, 2))), "one number of states"),
+        (lambda g: g.evaluate("dynamics", q=np.zeros((3, 2)), v=np.zeros((3, 2)), w=1.0), "no input 'w'"),
+        (lambda g: g.evaluate("dynamics", q=OnDevice(np.zeros((3, 2), "f4")), v=np.zeros((3, 2))), "float64"),
+        (lambda g: g.evaluate("dynamics", q=Exchanged(np.zeros((3, 2)), 1), v=np.zeros(2)), "device 1 of DLPack"),
+        (lambda g: g.evaluate("dynamics", q=Exchanged(np.zeros((3, 2), "i8")), v=np.zeros(2)), "type 0 of DLPack"),
+        (lambda g: g.evaluate("dynamics", q=np.zeros((3, 2)), v=np.zeros((3, 2)), t=np.zeros(4)), "one number of"),
+        (lambda g: g.rollout(np.zeros((3, 2)), np.zeros((3, 2)), dt=0.1, steps=2, every=3), "no such rollout"),
+        (lambda g: g.rollout(np.zeros((3, 2)), np.zeros((3, 2)), dt=0.1, steps=2, method="rk5"), "by 'rk5'"),
+        (lambda g: g.rollout(np.zeros((3, 2)), np.zeros((3, 2)), np.zeros((3, 3, 2)), dt=0.1, steps=2), "u has the wrong"),
+        (lambda g: g.rollout(np.zeros((3, 2)), np.zeros((3, 2)), np.zeros((4, 2)), dt=0.1, steps=2), "one number of"),
+    ],
+)  # fmt: skip
+def test_what_does_not_fit_is_refused_in_words(on_device: CudaModel, call: Any, words: str) -> None:
+    with pytest.raises((ShapeError, UnknownNameError), match=words):
+        call(on_device)
+
+
+def test_memory_that_runs_out_is_the_drivers_word(on_device: CudaModel, device: Driver) -> None:
+    with pytest.raises(SymofrosError, match="cuMemAlloc_v2 failed"):
+        device.allocate(1 << 41)
+    assert device.name == "host 0"
+
+
+def test_functions_that_a_solver_finishes_have_no_kernel() -> None:
+    with pytest.raises(SymofrosError, match="forward_dynamics has no kernel"):
+        model("four_bar").cuda().code("forward_dynamics")
+
+
+def test_without_a_driver_the_error_says_so() -> None:
+    try:
+        ctypes.CDLL("libcuda.so.1")
+    except OSError:
+        with pytest.raises(SymofrosError, match="no graphics processor"):
+            driver()
+    else:
+        pytest.skip("this machine has a driver")
