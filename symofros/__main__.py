@@ -20,6 +20,7 @@ _COMMANDS = {
     "equilibrium": ("symofros.commands.statics", "equilibrium"),
     "advise": ("symofros.commands.uses", "advise"),
     "export": ("symofros.commands.uses", "export_command"),
+    "kernels": ("symofros.commands.kernels", "kernels"),
     "edit": ("symofros.commands.uses", "edit"),
     "view": ("symofros.commands.view", "view"),
     "check": ("symofros.commands.harness", "check"),

@@ -38,7 +38,7 @@ def test_a_command_imports_no_other() -> None:
 
 def test_commands_are_listed_and_completed(monkeypatch: pytest.MonkeyPatch) -> None:
     listed = invoke("--help").output
-    names = "info compile simulate equilibrium advise export edit view check validation cache".split()
+    names = "info compile simulate equations equilibrium advise export kernels edit view check validation cache".split()
     assert [line.split()[0] for line in listed.partition("Commands:")[2].splitlines() if line.strip()] == names
     for name, value in {"_SYMOFROS_COMPLETE": "complete_bash", "COMP_WORDS": "symofros si", "COMP_CWORD": "1"}.items():
         monkeypatch.setenv(name, value)
@@ -147,3 +147,18 @@ def test_the_first_command_of_the_readme_brings_all_that_the_harness_starts_with
     monkeypatch.setenv("PYTHONPATH", f"{tmp_path}{os.pathsep}{ROOT}")  # Of the process that runs the harness.
     status, said = invoke("validation", "pareto", "--help").exit_code, "".join(capfd.readouterr())
     assert status == 0 and "--problem" in said, said
+
+
+def test_kernels_tell_registers_and_the_bound_of_the_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without a graphics processor, and so without times."""
+    pytest.importorskip("nvidia.cuda_nvrtc", reason="the extra cuda is not installed: pip install 'symofros[cuda]'")
+    monkeypatch.setattr("symofros.commands.kernels.present", lambda: None)
+    told = invoke("kernels", CART_POLE, "--architecture", "sm_80", "--bandwidth", 2000, "--json")
+    assert told.exit_code == 0, told.output
+    double, single = json.loads(told.output)["kernels"]
+    # q, v, u, t, and M, h, Q: 2 + 2 + 1 + 1 + 4 + 2 + 2 numbers.
+    assert double["bytes_of_state"] == 14 * 8 and single["bytes_of_state"] == 14 * 4
+    assert double["bound"] == 2e12 / (14 * 8)
+    assert 0 < single["usage"]["registers"] <= double["usage"]["registers"] <= 64
+    refused = invoke("kernels", CART_POLE, "--architecture", "90")
+    assert refused.exit_code == 2 and "no architecture" in refused.output
