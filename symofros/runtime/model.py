@@ -12,6 +12,7 @@ import numpy.typing as npt
 from symofros.base.arrays import numeric
 from symofros.base.functions import MODEL_FUNCTIONS, generated_with
 from symofros.runtime import linear, manifold
+from symofros.runtime.adjoint_functions import AdjointFunctions
 from symofros.runtime.calls.bound import Bound, Layout, bind, bind_batch
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constraint_functions import ConstraintFunctions
@@ -26,7 +27,7 @@ from symofros.runtime.momentum_functions import MomentumFunctions
 from symofros.runtime.reaction_functions import ReactionFunctions
 
 
-class Model(ConstraintFunctions, CopyFunctions, FrameFunctions, MomentumFunctions, ReactionFunctions):
+class Model(AdjointFunctions, ConstraintFunctions, CopyFunctions, FrameFunctions, MomentumFunctions, ReactionFunctions):
     """The equations of one mechanism, ready to be evaluated.
 
     Every function takes float64 arrays with any leading batch dimensions, broadcasts them, and returns new arrays

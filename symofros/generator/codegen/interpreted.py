@@ -78,6 +78,16 @@ class InterpretedKernel:
         derivatives = zip(*(differentiate(m, g, list(of), measures) for m, g, of in states), strict=True)
         return [np.array(values) for values in derivatives]
 
+    def _transpose(self, solver: Solver, named: Mapping[str, Array], outputs: list[Array]) -> list[Array]:
+        """At the motion that the terms determine, by the adjoint of its equations."""
+        M, r, G, c = outputs
+        measures = Measures(*solver.tables)
+        a, lam, _ = constrained(M, r, G, c, measures)
+        weights = (np.broadcast_to(named[group], of.shape) for group, of in (("a_bar", a), ("lam_bar", lam)))
+        mu, nu, _ = constrained(M, -next(weights), G, next(weights), measures)
+        at = {**named, "a": a, "lam": lam, "a_bar": mu, "lam_bar": -nu}
+        return interpret(self._program, solver.parts[0], at, len(a))
+
     def _project(self, solver: Solver, named: Mapping[str, Array], outputs: list[Array]) -> list[Array]:
         """State by state."""
         projected = []
@@ -99,4 +109,5 @@ _TWINS: dict[str, Callable[[InterpretedKernel, Solver, Mapping[str, Array], list
     "null_space": InterpretedKernel._constrained,
     "project": InterpretedKernel._project,
     "differentiate": InterpretedKernel._differentiate,
+    "transpose": InterpretedKernel._transpose,
 }

@@ -24,6 +24,7 @@ ROUTINES: dict[str, tuple[str, ...]] = {
     "sparse_system": ("dense", "row_sizes", "null_space_factors", "kkt", "constrained", "sparse_system"),
     "project": ("dense", "row_sizes", "null_space_factors", "kkt", "constrained", "project"),
     "differentiate": ("dense", "row_sizes", "null_space_factors", "kkt", "differentiate"),
+    "transpose": ("dense", "row_sizes", "null_space_factors", "kkt", "transpose"),
 }
 
 
@@ -168,6 +169,15 @@ def _differentiate(c_name: str, function: Function, needs: int, sparse: SparseSy
     return lines, work_size("SYM_DIFFERENTIATE_WORK", n, m) + solving + needs
 
 
+def _transpose(c_name: str, function: Function, needs: int, sparse: SparseSystem | None) -> tuple[list[str], int]:
+    """The state and cotangents of a and lam -> vector-Jacobian products."""
+    m, n = function.outputs[2].shape
+    lines = [
+        f"    sym_transpose({n}, {m}, &measures, {c_name}_terms, {c_name}_slopes, in, out, work);",
+    ]
+    return lines, work_size("SYM_TRANSPOSE_WORK", n, m) + needs
+
+
 def work_size(macro: str, *sizes: int) -> int:
     """Doubles of scratch of a routine: the value of its macro in native/model, such as "SYM_KKT_WORK", for sizes."""
     macros = _work_macros()
@@ -190,4 +200,5 @@ _CALLS: dict[str, Callable[[str, Function, int, SparseSystem | None], tuple[list
     "null_space": _null_space,
     "project": _project,
     "differentiate": _differentiate,
+    "transpose": _transpose,
 }

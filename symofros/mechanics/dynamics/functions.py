@@ -7,16 +7,19 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 from symofros.base.functions import FUNCTIONS, INPUTS, ModelFunction, OutputArray, size_of
+from symofros.base.model_function import cotangents
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.ops import STOP_GRADIENT
 from symofros.expr.packs.pack import WIDTH
 from symofros.expr.program import Function, Output, Program, Solver
 from symofros.mechanics.beams.integrals import at_middle
+from symofros.mechanics.dynamics.adjoints import weighted_derivatives
 from symofros.mechanics.dynamics.constraints.measures import measures_of
 from symofros.mechanics.dynamics.constraints.rows import retracted
 from symofros.mechanics.dynamics.constraints.wrenches import acts_on_bodies
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.dynamics.frame_equations import FrameEquations
+from symofros.mechanics.dynamics.second_derivatives import hessian_vector_product, second_derivatives
 from symofros.mechanics.topology.tree import prescribed_speeds, section_names
 
 
@@ -95,6 +98,8 @@ def _sizes(e: Equations) -> dict[str, int]:
 def _function(e: Equations, request: Request, methods: Methods, known: Mapping[str, int]) -> Function:
     """One function's inputs and outputs."""
     row = FUNCTIONS[request.name]
+    if row.transposes:
+        return _transposed(e, row, _function(e, Request(row.transposes, request.frame), methods, known), known)
     if row.by_solver:
         return _BUILDERS[row.name](e, row, methods, known)
     # Properties are looked up by the names that the table states.
@@ -102,6 +107,26 @@ def _function(e: Equations, request: Request, methods: Methods, known: Mapping[s
     outputs = tuple(_output(array, getattr(source, array.source), known) for array in row.outputs)
     implicit = tuple(name for name in e.implicit_inputs if name not in row.inputs)
     return Function(row.name, request.frame, (*row.inputs, *implicit), outputs)
+
+
+def _transposed(e: Equations, row: ModelFunction, of: Function, known: Mapping[str, int]) -> Function:
+    """Vector-Jacobian products of a function; of one that the routine for constraints finishes, by its equations."""
+    by = [array.source.removeprefix("by_") for array in row.outputs]
+    implicit = tuple(name for name in e.implicit_inputs if name not in row.inputs)
+    inputs = (*row.inputs, *implicit)
+    if of.solver is not None:
+        weights = [e.g.input(group, k) for group, n in (("a_bar", e.nv), ("lam_bar", known["nc"])) for k in range(n)]
+        gradient = weighted_derivatives(e.kinematics, e.residual, weights, by)
+        slopes = tuple(_output(array, gradient[group], known) for array, group in zip(row.outputs, by, strict=True))
+        part = Function("slopes", "", (*FUNCTIONS["residual_derivatives"].inputs, "a_bar", "lam_bar"), slopes)
+        solver = Solver("transpose", _returns(row, known), (part,), measures_of(e.tree))
+        return Function(row.name, "", inputs, _constrained_terms(e, e.gamma), solver)
+    groups = {array.name: group for group, array in cotangents(FUNCTIONS[row.transposes]).items()}
+    weighted = [(output, groups[output.name]) for output in of.outputs]
+    weights = [e.g.input(group, k) for output, group in weighted for k in range(len(output.edges))]
+    gradient = weighted_derivatives(e.kinematics, of.edges(), weights, by)
+    outputs = tuple(_output(array, gradient[group], known) for array, group in zip(row.outputs, by, strict=True))
+    return Function(row.name, of.frame, inputs, outputs)
 
 
 def _output(array: OutputArray, value: Any, known: Mapping[str, int]) -> Output:
@@ -213,11 +238,26 @@ def _beam_stiffness(e: Equations, row: ModelFunction, methods: Methods, known: M
     return Function(row.name, "", row.inputs, outputs)
 
 
+def _formed(
+    form: Callable[[Equations], Sequence[Any]],
+) -> Callable[[Equations, ModelFunction, Methods, Mapping[str, int]], Function]:
+    """Builder of a function all of whose outputs are formed together."""
+
+    def build(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[str, int]) -> Function:
+        outputs = tuple(_output(array, value, known) for array, value in zip(row.outputs, form(e), strict=True))
+        implicit = tuple(name for name in e.implicit_inputs if name not in row.inputs)
+        return Function(row.name, "", (*row.inputs, *implicit), outputs)
+
+    return build
+
+
 _Builder = Callable[[Equations, ModelFunction, Methods, Mapping[str, int]], Function]
 _BUILDERS: dict[str, _Builder] = {
     "forward_dynamics": _forward_dynamics,
     "forward_dynamics_derivatives": _forward_slopes,
     "forward_dynamics_by_par": _forward_slopes,
+    "inverse_dynamics_second_derivatives": _formed(second_derivatives),
+    "inverse_dynamics_hvp": _formed(hessian_vector_product),
     "project": _project,
     "beam_stiffness": _beam_stiffness,
 }

@@ -1,0 +1,125 @@
+"""Vector-Jacobian products and second derivatives of a model's functions."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from symofros.base.functions import FUNCTIONS
+from symofros.base.model_function import cotangents
+from symofros.errors import Problem, ShapeError
+from symofros.runtime.calls.kernel import Array
+from symofros.runtime.functions import ArrayLike, Functions
+
+
+class SecondDerivatives(NamedTuple):
+    """Second derivatives of tau (..., nv, nv, nv): entry (i, j, k) is that of tau_i by the j-th, then by the k-th.
+
+    Attributes:
+        d2tau_dq2: By q_j, then by q_k, both along the manifold.
+        d2tau_dv2: By v_j and v_k.
+        d2tau_dqdv: By q_j and v_k.
+        d2tau_dadq: By a_j and q_k: the derivatives of the mass matrix.
+    """
+
+    d2tau_dq2: Array
+    d2tau_dv2: Array
+    d2tau_dqdv: Array
+    d2tau_dadq: Array
+
+
+class AdjointFunctions(Functions):
+    """Methods of a model that differentiate in reverse, or twice; arguments as in `Model`."""
+
+    def vjp(
+        self, name: str, frame: str = "", *, par: ArrayLike | None = None, **arrays: ArrayLike | None
+    ) -> dict[str, Array]:
+        """Vector-Jacobian products of a function: the derivatives of the sum of cotangents times outputs.
+
+        `model.vjp("inverse_dynamics", q=q, v=v, a=a, tau_bar=w)["q"]` is w @ dtau_dq. One reverse sweep gives all of
+        them for about three times the operations of the function, whatever the number of inputs and parameters.
+
+        Args:
+            name: Function that has such products, as "forward_dynamics"; `NAME_vjp` in the table of functions.
+            frame: Frame of a frame function.
+            par: Run-time parameters.
+            arrays: Inputs of the function by name, and cotangents, each of the shape of its output: `NAME_bar` of the
+                output NAME, of frame functions `NAME_WF_bar`. Cotangents that are left out are zero.
+
+        Returns:
+            Derivatives by input: "q" (..., nv) along its manifold, then those of "v", "a", "u", "lam" that the
+            function has, and "par" (..., npar).
+
+        Raises:
+            UnknownNameError: No such products, or no such frame or input.
+            ShapeError: An input is missing or does not fit.
+        """
+        known = tuple(row.transposes for row in FUNCTIONS.values() if row.transposes)
+        if name not in known:
+            raise self._unknown("vector-Jacobian product of", str(name)[:80], known, "they are of smooth functions")
+        given = dict(arrays)
+        signature = self._kernel(f"{name}_vjp", self._frame(frame) if frame else "", "frames have names").signature
+        sizes = dict(signature.inputs)
+        for group, output in cotangents(FUNCTIONS[name]).items():
+            given[group] = self._flat(group, arrays.get(group), len(output.shape), sizes[group])
+        results = self.evaluate(f"{name}_vjp", frame, par=par, **given)
+        return {label.removeprefix("by_"): value for (label, _), value in zip(signature.outputs, results, strict=True)}
+
+    def inverse_dynamics_second_derivatives(
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        a: ArrayLike,
+        *,
+        u: ArrayLike | None = None,
+        par: ArrayLike | None = None,
+        t: ArrayLike = 0.0,
+    ) -> SecondDerivatives:
+        """The second derivatives of `inverse_dynamics`, as Pinocchio's computeRNEASecondOrderDerivatives.
+
+        Those by q are along the manifold: d2tau_dq2 is the change of `inverse_dynamics_derivatives` as q moves, and so
+        not symmetric where j and k are turns of one ball or free joint (docs/theory/linear.md, section 6).
+        """
+        given = {"q": q, "v": v, "a": a, "u": u, "t": t}
+        tensors = self._call("inverse_dynamics_second_derivatives", "", given, par)
+        return SecondDerivatives(*(tensor.reshape(*tensor.shape[:-1], self.nv, self.nv) for tensor in tensors))
+
+    def inverse_dynamics_hvp(
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        a: ArrayLike,
+        tau_bar: ArrayLike,
+        dq: ArrayLike,
+        dv: ArrayLike,
+        da: ArrayLike,
+        *,
+        u: ArrayLike | None = None,
+        par: ArrayLike | None = None,
+        t: ArrayLike = 0.0,
+    ) -> tuple[Array, Array, Array]:
+        """Hessian-vector products of tau_bar . `inverse_dynamics`: its Hessian times (dq, dv, da), by q, v and a.
+
+        Each is (..., nv): the change of the vector-Jacobian products as q moves along dq, v by dv and a by da.
+        """
+        given = {"q": q, "v": v, "a": a, "u": u, "t": t, "tau_bar": tau_bar, "dq": dq, "dv": dv, "da": da}
+        by_q, by_v, by_a = self._call("inverse_dynamics_hvp", "", given, par)
+        return by_q, by_v, by_a
+
+    def _flat(self, group: str, values: ArrayLike | None, rank: int, size: int) -> Array:
+        """A cotangent of an output of so many dimensions, with its entries in one (..., size); zeros where None."""
+        if values is None:
+            return np.zeros(size)
+        array = np.asarray(values)
+        inner = array.shape[array.ndim - rank :]
+        if array.ndim < rank or np.prod(inner, dtype=int) != size:
+            raise ShapeError(
+                Problem(
+                    f"model '{self.record.name}': {group} has the wrong shape",
+                    str(array.shape),
+                    f"a cotangent has the shape of its output, {size} numbers in the last {rank} dimensions",
+                    "give it as the function returns its output",
+                )
+            )
+        return array.reshape(*array.shape[: array.ndim - rank], size)

@@ -1,0 +1,67 @@
+"""Second derivatives of the inverse dynamics against the change of the first, their symmetries, and each other."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from tests.models import system
+
+CASES = ("double_pendulum", "heavy_top", "friction_arm", "gyroscope")
+NAMES = ("inverse_dynamics_second_derivatives", "inverse_dynamics_hvp", "inverse_dynamics_derivatives", "mass_matrix")
+STEP = 1e-3
+
+
+@pytest.fixture(params=CASES)
+def m(request: pytest.FixtureRequest) -> sf.Model:
+    return sf.compile(system(request.param), sf.Options(NAMES, backend="interpreter"))
+
+
+def change(of, along) -> np.ndarray:
+    """Derivative of of(along(step)) at zero, from differences of sixth order."""
+    pairs = ((1, 45 / 60), (2, -9 / 60), (3, 1 / 60))
+    return sum(w * (of(*along(k * STEP)) - of(*along(-k * STEP))) for k, w in pairs) / STEP
+
+
+def test_they_are_the_changes_of_the_first_derivatives(m: sf.Model, rng: np.random.Generator) -> None:
+    q, v = m.random_state(rng)
+    a = rng.normal(size=m.nv)
+    second = m.inverse_dynamics_second_derivatives(q, v, a)
+    first = [lambda q, v, i=i: m.inverse_dynamics_derivatives(q, v, a)[i] for i in range(2)]
+    for k, e in enumerate(np.eye(m.nv)):
+
+        def by_q(step: float, e: np.ndarray = e) -> tuple[np.ndarray, np.ndarray]:
+            return m.integrate(q, step * e), v
+
+        def by_v(step: float, e: np.ndarray = e) -> tuple[np.ndarray, np.ndarray]:
+            return q, v + step * e
+
+        for tensor, reference in (
+            (second.d2tau_dq2[..., k], change(first[0], by_q)),
+            (second.d2tau_dv2[..., k], change(first[1], by_v)),
+            (second.d2tau_dqdv[..., k], change(first[0], by_v)),
+            (second.d2tau_dqdv[:, k], change(first[1], by_q)),
+            (second.d2tau_dadq[..., k], change(lambda q, v: m.mass_matrix(q), by_q)),
+        ):
+            np.testing.assert_allclose(tensor, reference, rtol=0, atol=1e-8 * max(1.0, np.abs(reference).max()))
+
+
+def test_hessian_vector_products_are_the_tensors_contracted(m: sf.Model, rng: np.random.Generator) -> None:
+    q, v = m.random_state(rng)
+    a, w, dq, dv, da = rng.normal(size=(5, m.nv))
+    qq, vv, qv, aq = (np.einsum("i,ijk->jk", w, T) for T in m.inverse_dynamics_second_derivatives(q, v, a))
+    expected = (qq @ dq + qv @ dv + aq.T @ da, qv.T @ dq + vv @ dv, aq @ dq)
+    for product, reference in zip(m.inverse_dynamics_hvp(q, v, a, w, dq, dv, da), expected, strict=True):
+        np.testing.assert_allclose(product, reference, rtol=0, atol=1e-12 * max(1.0, np.abs(reference).max()))
+
+
+def test_turns_of_one_ball_commute_up_to_their_bracket(rng: np.random.Generator) -> None:
+    """D_j D_k f - D_k D_j f is the derivative along e_j x e_k, as the rotations about body axes do (12)."""
+    m = sf.compile(system("heavy_top"), sf.Options(NAMES, backend="interpreter"))
+    q, v = m.random_state(rng)
+    a = rng.normal(size=3)
+    T = m.inverse_dynamics_second_derivatives(q, v, a).d2tau_dq2
+    by_q, _ = m.inverse_dynamics_derivatives(q, v, a)
+    for j, k, n in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        np.testing.assert_allclose(T[:, k, j] - T[:, j, k], by_q[:, n], rtol=0, atol=1e-12 * np.abs(T).max())
