@@ -13,19 +13,20 @@ import numpy as np
 
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.results.energy_norm import energies_of, energy_norms, metrics
+from symofros.simulation.results.windows import WHOLE, windows
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.loops import run_own
 from symofros.simulation.stepping.resolution import TOLERANCE
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
 
-# Steps of a run that is repeated as a whole; a call takes as long as some hundred steps of a small model.
-_STEPS = 256
 # States, about, at which a function of the user's is asked again for the inputs; share by which they may differ.
 _CALLED, _SAME = 8, 1e-9
 # Differences of displacements count by this share: they are relative to how they change in the run, while coordinates
 # themselves may be larger; those of energies by another: they are squares.
 _POSITIONS, _ENERGIES = 3.0, 2.0
+# Records, about, among which the fastest is looked for; fewest that show where speeds change.
+_SPEEDS, _RECORDS = 64, 3
 # Share of coordinates and energies that is rounding, and what an equilibrium is found to: at rest nothing else moves.
 _AT_REST = 1e-11
 # Share of the largest speed that the absolute tolerance may allow as the error of a step; displacements over it that
@@ -98,7 +99,7 @@ def halved_step_note(
         states: States of the run: t (n), q, v, u; compared are all where these are its steps, else the last ones.
         steps: Number of steps.
     """
-    if settings.adaptive or not 1 <= steps <= _STEPS or not stepper.model.nv:
+    if settings.adaptive or not 1 <= steps <= WHOLE or not stepper.model.nv:
         return ""
     t, q, v, _ = states
     h = settings.dt
@@ -119,6 +120,57 @@ def halved_step_note(
         return ""
     by = f"{100.0 * change:.2g} %" if change < 1.0 else "more than 100 %"
     return f"steps of {h:.4g} s do not determine the motion: half of that changes it by {by}; a smaller dt"
+
+
+def windows_note(stepper: Stepper, settings: Settings, states: Sequence[Array], steps: int) -> str:
+    """What half the step makes of windows of a longer run with fixed steps (17), in words; nothing where little.
+
+    Args:
+        stepper: Stepper of the run.
+        settings: Settings of the run.
+        states: States of the run: t (n), q, v, u.
+        steps: Number of steps.
+    """
+    if settings.adaptive or settings.realtime or steps <= WHOLE or len(states[0]) < _RECORDS:
+        return ""
+    if not stepper.model.nv or not repeatable(stepper, settings, states):
+        return ""
+    t, q, v, u = states
+    h, rows = settings.dt, slice(None, None, -max(1, len(t) // _SPEEDS))
+    fastest, worst, seen = float(energy_norms(stepper, q[rows], u[rows], v[rows]).max()), 0.0, 0.0
+    for window in windows(t, v, h, steps):
+        i = window.first
+        count = max(1, round((window.t_end - t[i]) / h))
+        start, t_end = (float(t[i]), q[i], v[i]), float(t[i]) + count * h
+        every = len(t) == steps + 1  # a record at each step
+        coarse = [x[i : i + count + 1] for x in states] if every else repeated(stepper, settings, start, t_end, h)[1]
+        status, half = repeated(stepper, settings, start, t_end, 0.5 * h, every=2)
+        if status < 0:
+            return (
+                f"steps of {h:.4g} s do not show the motion from t = {t[i]:.6g} s: with half of that it does not go on;"
+                " a smaller dt"
+            )
+        if len(coarse[0]) == len(half[0]):
+            change = _change_in_window(stepper, fastest, coarse, half)
+            if change > worst:
+                worst, seen = change, float(t[i])
+    if not worst > TOLERANCE:
+        return ""
+    by = f"{100.0 * worst:.2g} %" if worst < 1.0 else "more than 100 %"
+    return (
+        f"steps of {h:.4g} s do not determine the motion: half of that changes it by {by} (seen at t = {seen:.4g} s);"
+        " a smaller dt"
+    )
+
+
+def _change_in_window(stepper: Stepper, fastest: float, coarse: Sequence[Array], fine: Sequence[Array]) -> float:
+    """Largest difference of speeds and displacements, relative to the run's fastest and what that makes of time."""
+    (_, q, v, _), (t, q_fine, v_fine, u) = coarse, fine
+    with np.errstate(all="ignore"):  # What has exploded overflows.
+        changes = v - v_fine, stepper.model.difference(q_fine, q)
+        faster, apart = (float(energy_norms(stepper, q_fine, u, x).max()) for x in changes)
+    largest = max(fastest, _rounding(stepper, fine))
+    return max(_share(faster, largest), _share(apart, largest * float(t[-1] - t[0])) / _POSITIONS)
 
 
 def tolerance_note(

@@ -10,7 +10,7 @@ import numpy as np
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.results.energy_balance import EXPLODED, energy_note, energy_that_appeared
 from symofros.simulation.results.energy_norm import metrics, norms_in
-from symofros.simulation.results.repetition import halved_step_note, tolerance_note
+from symofros.simulation.results.repetition import halved_step_note, tolerance_note, windows_note
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.methods import Method
 from symofros.simulation.stepping.resolution import (
@@ -58,6 +58,8 @@ def examine_run(
         notes.append(step_size_note(mode, settings.method, settings.dt, energy))
     if ended_well and not resolution.evident and mode is None:
         notes.append(halved_step_note(stepper, settings, start, states, steps))
+    if ended_well and mode is None:
+        notes.append(windows_note(stepper, settings, states, steps))
     if ended_well:
         notes.append(tolerance_note(stepper, settings, start, states, steps))
     if ended_well and (mode is None or not mode.amplified) and not (mode is None and any(notes)):

@@ -129,3 +129,30 @@ def test_an_absolute_tolerance_beyond_the_speeds_is_noted_where_it_harms(method:
         elif atol == 1e-10:
             assert not run.outcome.notes
     assert wrong
+
+
+@cache
+def stiffened() -> sf.Model:
+    """A mass on a spring that is stiffer by k about one instant late in a run, at any scale of time."""
+    force = sf.formula("-400/T^2*x*(1 + k*exp(-((t/T - when)/width)^2))", "F")
+    joint = sf.Joint("x", "prismatic", axis=(1, 0, 0))
+    mass = sf.RigidBody("mass", joint, sf.Inertia(1.0), loads=(sf.Load((force, 0.0, 0.0)),))
+    parameters = tuple(sf.Parameter(name, 1.0) for name in ("T", "k", "when", "width"))
+    return sf.compile(sf.System("stiffened", (mass,), parameters, gravity=(0, 0, 0)))
+
+
+def test_long_runs_that_err_late_bear_a_note() -> None:
+    """Fixed steps that suit all but one late part: its states are in no other examination."""
+    rng, wrong, noted = np.random.default_rng(0), 0, 0
+    for _ in range(20):
+        T, amplitude = 10.0 ** rng.integers(-3, 4), 10.0 ** rng.integers(-6, 3)
+        par = {"T": T, "k": rng.uniform(20, 90), "when": rng.uniform(6, 18), "width": rng.uniform(0.2, 1.0)}
+        given = {"t_end": 20.0 * T, "par": par, "method": "rk4"}
+        run = sf.simulate(stiffened(), [amplitude], dt=0.01 * T, **given)
+        fine = sf.simulate(stiffened(), [amplitude], dt=0.00125 * T, **given)
+        scale = np.abs(fine.v).max()
+        assert not fine.outcome.notes
+        if run.outcome.ok and abs(np.abs(run.v[-200:]).max() - np.abs(fine.v[-1600:]).max()) > 0.3 * scale:
+            wrong += 1
+            noted += bool(run.outcome.notes)
+    assert wrong >= 5 and noted == wrong

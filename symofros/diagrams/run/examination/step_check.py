@@ -6,7 +6,6 @@ docs/theory/diagrams.md, section 7; docs/theory/simulation.md, (17).
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,15 +13,9 @@ from symofros.diagrams.program.layout import Layout
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import STILL
 from symofros.runtime.manifold import difference
+from symofros.simulation.results.windows import WHOLE, windows
 from symofros.simulation.stepping.resolution import TOLERANCE
 
-# Steps of a run that is repeated as a whole: as of `sf.simulate`.
-_STEPS = 256
-# Windows of a longer one: two, and one more for so many steps, four at most; their steps together, a share of the run,
-# but no fewer than show a change of speeds.
-_STEPS_A_WINDOW, _FEW, _MANY, _SHARE, _FEWEST, _MOST = 50_000, 2, 4, 0.01, 8, 256
-# A window ends at a record, unless these are so many windows apart: then it is made twice.
-_SPARSE = 4.0
 # Differences of displacements count by this share: coordinates may be larger than how they change.
 _POSITIONS = 3.0
 # Share of the tolerance that is allowed where external blocks do not answer to the change.
@@ -33,47 +26,6 @@ States = Sequence[Array]
 # The records of a run that goes on from a record (its number) to a time, by the same steps (False) or by finer ones
 # (True), which are half as long, or have a hundredth of the tolerances; None where it does not get there.
 Repeat = Callable[[int, float, bool], States | None]
-
-
-@dataclass(frozen=True)
-class Window:
-    """A span of a run that is made once more.
-
-    Attributes:
-        first: Number of the record that it begins with.
-        last: Number of the record that it ends with; None where it ends between two.
-        t_end: End time [s].
-    """
-
-    first: int
-    last: int | None
-    t_end: float
-
-
-def windows(states: States, h: float, steps: int) -> list[Window]:
-    """The whole of a short run; of a longer one its start, and where its speeds change most in each part of it.
-
-    Args:
-        states: Records of the run.
-        h: Step, or the mean of adaptive ones [s].
-        steps: Number of steps.
-    """
-    t, _, v = states[:3]
-    if steps <= _STEPS:
-        return [Window(0, len(t) - 1, float(t[-1]))]
-    count = min(_FEW + steps // _STEPS_A_WINDOW, _MANY)
-    span = h * min(_MOST, max(_FEWEST, int(_SHARE * steps / count)))
-    n = max(1, int(np.searchsorted(t, t[-1] - span, side="right")))
-    spans, sizes = np.diff(t[: n + 1]), np.maximum(np.abs(v).max(axis=0, initial=0.0), STILL)
-    with np.errstate(all="ignore"):  # What has exploded overflows.
-        changes = np.abs(np.diff(v[: n + 1], axis=0) / sizes).sum(axis=1) / np.where(spans > 0.0, spans, np.inf)
-    parts = [part for part in np.array_split(np.arange(len(changes)), count - 1) if len(part)]
-    chosen = []
-    for i in sorted({0, *(int(part[np.argmax(changes[part])]) for part in parts)}):
-        last = min(int(np.searchsorted(t, t[i] + span)), len(t) - 1)
-        sparse = t[last] - t[i] > _SPARSE * span
-        chosen.append(Window(i, None, float(t[i]) + span) if sparse else Window(i, last, float(t[last])))
-    return chosen
 
 
 def step_note(
@@ -95,22 +47,22 @@ def step_note(
     worst, block, t, mean = 0.0, "", 0.0, h or float(states[0][-1] - states[0][0]) / steps
     stepping = f"steps of {h:.4g} s do" if h else "the tolerances do"
     finer, cure = ("half of that", "a smaller dt") if h else ("a hundredth of them", "tighter tolerances")
-    for window in windows(states, mean, steps):
+    for window in windows(states[0], states[2], mean, steps):
         rows = slice(window.first, window.last + 1) if window.last is not None else None
         coarse = [x[rows] for x in states] if rows else repeat(window.first, window.t_end, False)
         fine = repeat(window.first, window.t_end, True)
         if coarse is None or fine is None:
-            begin = "" if steps <= _STEPS else f" from t = {float(states[0][window.first]):.6g} s"
+            begin = "" if steps <= WHOLE else f" from t = {float(states[0][window.first]):.6g} s"
             return f"{stepping} not show the motion: with {finer} it does not come to this end{begin}; {cure}"
         for name in layout.v:
-            change = _change(layout, name, None if steps <= _STEPS else states, coarse, fine)
+            change = _change(layout, name, None if steps <= WHOLE else states, coarse, fine)
             if change > worst or not change >= 0.0:
                 worst, block, t = change, name, float(states[0][window.first])
     if worst <= (_UNANSWERED if answers_are_kept else 1.0) * TOLERANCE:
         return ""
     by = f"{100.0 * worst:.2g} %" if worst < 1.0 else "more than 100 %"
     same = ", even where external blocks answer as they did" if answers_are_kept else ""
-    seen = "" if steps <= _STEPS else f" (seen at t = {t:.4g} s)"
+    seen = "" if steps <= WHOLE else f" (seen at t = {t:.4g} s)"
     return f"{stepping} not determine the motion of '{block}': {finer} changes it by {by}{seen}{same}; {cure}"
 
 
