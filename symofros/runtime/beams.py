@@ -120,6 +120,9 @@ class ElasticBeam:
     EI_z: float
     EI_y: float
 
+    # Error up to which a run does not look for the step that bends a beam most: of what is stated, the last digit.
+    NEGLIGIBLE = 1e-4
+
     @property
     def size(self) -> int:
         """Number of elastic coordinates."""
@@ -253,8 +256,9 @@ class ElasticRod(ElasticBeam):
     sections: int
     integration_error: Callable[[Array], float]
 
-    # Factor of the angles.
+    # Factor of the angles, whose errors are a measure of how far a rod turns and no errors.
     REDUCED = 1e-4
+    NEGLIGIBLE = 0.0
 
     def bending(self, elastic: Array, t: float = math.nan, amplification: float = 1.0) -> BeamBending:
         """Judge a deformation; axial loads amplify no error of a rod."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 
+import numpy as np
 import pytest
 
 import symofros as sf
@@ -45,6 +46,16 @@ def test_postures_state_the_error_of_rest(share: float) -> None:
     mechanism = viewed()
     (bent,) = mechanism.bendings(mechanism.state(rest.q, par=model.parameter_values))
     assert bent.error == pytest.approx(rest.bendings[0].error, rel=1e-6)
+
+
+@pytest.mark.parametrize("share", SHARES)
+@pytest.mark.parametrize("L", [1e-3, 30.0])
+def test_efforts_of_a_motion_state_the_error_of_rest(share: float, L: float) -> None:
+    """Efforts on all elastic coordinates, which vanish at rest, in two states at once."""
+    model, rest = at_rest(share, L)
+    still, q = np.zeros((2, model.nv)), np.array([0.5 * rest.q, rest.q])
+    efforts = sf.actuator_efforts(model, q, still, still, model.names.v, par=model.parameter_values)
+    assert efforts.bendings[0].error == pytest.approx(rest.bendings[0].error, rel=1e-6)
 
 
 @cache

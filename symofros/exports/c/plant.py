@@ -181,7 +181,7 @@ def _beams(name: str, beams: Sequence[ElasticBeam]) -> list[str]:
         blocks = beam.angle_blocks
         lines.append(f"static const double {name}_beam{i}_angles[] = {{{doubles(blocks.ravel().tolist())}}};")
         indices = f"{beam.q}, {beam.v}, {first}, {beam.size}, {integers(beam.counts)}"
-        numbers = f"{beam.EI_z!r}, {beam.EI_y!r}, {beam.contrast!r}"
+        numbers = f"{beam.EI_z!r}, {beam.EI_y!r}, {beam.NEGLIGIBLE!r}, {beam.contrast!r}"
         structs.append(f"{{{indices}, {len(blocks)}, {name}_beam{i}_angles, {numbers}}}")
         first += beam.size
     displacements = [int(counts) for beam in beams for counts in beam.displacements]

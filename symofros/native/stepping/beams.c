@@ -70,10 +70,8 @@ static void sym_planar_beam_angles(const sym_beam *beam, const double *x, double
     largest[0] = largest[2] = most, largest[1] = largest[3] = 0.0;
 }
 
-/* How far a beam's error may lie above the largest one before a step that goes on in the same direction is judged: this
- * factor, and this error. */
+/* By which factor a beam's error may lie above the largest one before a step that goes on in the same direction is judged. */
 #define SYM_BEAM_SLACK 1.04
-#define SYM_BEAM_NEGLIGIBLE 1e-4
 
 /* The change of angles, of a slope and a twist whose squares are given, at which a beam's error may reach a given one: not
  * before (26d). Without twist this inverts (24). */
@@ -114,7 +112,7 @@ static int32_t sym_evaluate_beam(sym_run *r, int32_t b, double t, const double *
         for (i = 0; i < n; ++i) r->beam_q[beam->first + i] = q[i];
     }
     judged = SYM_BEAM_SLACK * r->beam_error[b];
-    if (judged < SYM_BEAM_NEGLIGIBLE) judged = SYM_BEAM_NEGLIGIBLE;
+    if (judged < beam->negligible) judged = beam->negligible;
     if (judged > r->beam_limit) judged = r->beam_limit;
     guard->settled = sym_change_to_error(beam, largest[2], largest[3], r->beam_error[b]);
     guard->judged = sym_change_to_error(beam, largest[2], largest[3], judged);

@@ -63,6 +63,7 @@ typedef struct sym_beam { /* one elastic body: angles of its sections are linear
     int32_t blocks;              /* number of blocks of four stations */
     const double *angles;        /* (blocks, n_y + n_z + n_twist, 4): yaw, pitch and twist per scaled coordinate [rad] */
     double EI_z, EI_y;           /* stiffness against n_y and n_z at mid-length */
+    double negligible;           /* error up to which no step is looked for */
     double contrast;             /* |EI_z - EI_y| over the smaller; 0 where bending is rigid in a plane */
 } sym_beam;
 

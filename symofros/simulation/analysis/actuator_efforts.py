@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -15,7 +16,7 @@ from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import Eliminated, eliminate, free_motions, natural_sizes, pseudo_inverse
 from symofros.runtime.model import ArrayLike, Model
-from symofros.simulation.analysis.beam_theory import bendings_at, refuse_beyond
+from symofros.simulation.analysis.beam_theory import Motion, bendings_under_efforts, refuse_beyond
 from symofros.simulation.analysis.consistency import consistent_jacobian, place_in_batch
 
 # Share of the terms of a sum below which it is their rounding.
@@ -130,7 +131,14 @@ def actuator_efforts(
         if name in model.names.u:
             inputs[..., model.names.u.index(name)] = efforts[..., k]
     _check_linear(model, terms, efforts, model.generalized_force(q, v, inputs, par=par, t=t), names)
-    bendings = _bendings(model, q, par, batch)
+    bendings: tuple[BeamBending, ...] = ()
+    if model.beams():
+        values = model.parameter_values if par is None else model.by_name("par", par)
+        motion = [model.by_name("q", q), model.by_name("v", v), accelerations, inputs, lam, values]
+        widths = model.nq, model.nv, model.nv, model.nu, model.nc, model.npar
+        rows = [np.array(np.broadcast_to(x, (*batch, n))) for x, n in zip(motion, widths, strict=True)]
+        flat = Motion(*(x.reshape(math.prod(batch), n) for x, n in zip(rows, widths, strict=True)))
+        bendings = bendings_under_efforts(model, flat, np.broadcast_to(np.asarray(t, dtype=np.float64), batch).ravel())
     refuse_beyond(model, bendings, beam_limit, "the motion")
     return ActuatorEfforts(names, efforts, lam, inputs, redundancy, bendings, bending_notes(bendings))
 
@@ -258,17 +266,6 @@ def _check_linear(model: Model, terms: _State, efforts: Array, force: Array, nam
                 "name the speeds of the joints that the actuators drive instead",
             )
         )
-
-
-def _bendings(model: Model, q: ArrayLike, par: ArrayLike | None, batch: tuple[int, ...]) -> tuple[BeamBending, ...]:
-    """Bending of each beam in the state of the batch where it is largest."""
-    if not model.beams():
-        return ()
-    values = model.parameter_values if par is None else np.asarray(model.by_name("par", par), dtype=np.float64)
-    configurations = np.broadcast_to(np.asarray(model.by_name("q", q), dtype=np.float64), (*batch, model.nq))
-    parameters = np.broadcast_to(values, (*batch, model.npar))
-    states = [bendings_at(model, configurations[index], parameters[index]) for index in np.ndindex(batch)]
-    return tuple(max(beam, key=lambda bending: bending.error) for beam in zip(*states, strict=True))
 
 
 def _listed(names: tuple[str, ...]) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -55,6 +56,50 @@ def bendings_in_motion(
     return tuple(
         beam.bending(q[beam.in_q], amplification=factor) for beam, factor in zip(model.beams(par), factors, strict=True)
     )
+
+
+class Motion(NamedTuple):
+    """States of a motion whose accelerations, inputs and multipliers are given, with their parameters, row by row."""
+
+    q: Array
+    v: Array
+    a: Array
+    u: Array
+    lam: Array
+    par: Array
+
+
+def bendings_under_efforts(model: Model, motion: Motion, t: Array) -> tuple[BeamBending, ...]:
+    """Bending of each beam in the state of a given motion where its theory errs most, amplified by its axial loads.
+
+    Args:
+        model: Model.
+        motion: States (n, ...).
+        t: Times (n).
+    """
+    q, v, a, u, lam, par = motion
+    worst = list[BeamBending]()
+    for b, beam in enumerate(model.beams()):
+        bent = [model.beams(values)[b].bending(row[beam.in_q]) for row, values in zip(q, par, strict=True)]
+        if max((bending.error for bending in bent), default=0.0) >= UNAMPLIFIED:
+            x, step = q[:, beam.in_q], beam.difference_step(q[:, beam.in_q])
+            forces = []
+            for factor in (step, -step):
+                moved = q.copy()
+                moved[:, beam.in_q] += factor[:, np.newaxis] * x
+                M, h, Q = model.dynamics(moved, v, u, par=par, t=t)
+                force = np.einsum("nij,nj->ni", M, a) + h - Q
+                if model.nc:
+                    G = model.evaluate("constraint_jacobian", q=moved, v=v, u=u, t=t, par=par)[0]
+                    force -= np.einsum("nji,nj->ni", G, lam)
+                forces.append(np.einsum("ni,ni->n", x, force[:, beam.in_v]))
+            loaded = np.divide(forces[0] - forces[1], 2.0 * step, out=np.zeros(len(q)), where=step > 0.0)
+            stiffness = (model.beams(values)[b].elastic_stiffness() for values in par)
+            works = (row @ K @ row for row, K in zip(x, stiffness, strict=True))
+            factors = (amplification_of(np.array([w]), np.array([k])) for w, k in zip(works, loaded, strict=True))
+            bent = [bending.amplified(factor) for bending, factor in zip(bent, factors, strict=True)]
+        worst.append(max(bent, key=lambda bending: bending.error))
+    return tuple(worst)
 
 
 def _linearised_amplifications(

@@ -108,6 +108,7 @@ class Stepper:
                     memory.doubles(blocks),
                     beam.EI_z,
                     beam.EI_y,
+                    beam.NEGLIGIBLE,
                     beam.contrast,
                 )
                 for beam, first in zip(self.beams, firsts.tolist(), strict=False)
