@@ -196,6 +196,7 @@ def _material(
         c_name,
         compilation.source(c_name, LaneOptions() if target == "wasm" else None),
         order,
+        tuple(kernels[key].signature for key in order),
         checks(record, kernels, order, q),
         POINTS,
         tuple(q.tolist()),

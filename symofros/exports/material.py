@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from symofros.description.system import System
 from symofros.exports.c.parameter_check import Judged
 from symofros.runtime.beams import BEAM_LIMIT, ElasticBeam
+from symofros.runtime.calls.kernel import Signature
 from symofros.runtime.record import ModelRecord
 from symofros.simulation.stepping.methods import Method
 
@@ -53,6 +54,7 @@ class Material:
         c_name: Name of files and symbols in C.
         source: C text of the model.
         functions: Keys of the functions in it, in order.
+        signatures: Inputs and outputs of each function, in that order.
         checks: Reference points of each function, in that order.
         points: Number of values of each.
         q_start: First configuration (nq).
@@ -70,6 +72,7 @@ class Material:
     c_name: str
     source: str
     functions: tuple[tuple[str, str], ...]
+    signatures: tuple[Signature, ...]
     checks: tuple[Check, ...]
     points: int
     q_start: tuple[float, ...]

@@ -8,7 +8,9 @@ from string import Template
 from symofros.exports.c.c_text import comment
 from symofros.exports.c.plant import header_text, plant_text, selftest_text
 from symofros.exports.c.reactions import efforts_text
+from symofros.exports.c.typed import eigen_text, named_functions, typed_text
 from symofros.exports.folder import Exported, write_folder
+from symofros.exports.functions import cell, functions_table, names_table
 from symofros.exports.material import Material
 from symofros.native import amalgamated, header_files, native_text
 
@@ -39,7 +41,8 @@ def write_c_package(material: Material, folder: Path) -> Exported:
     Raises:
         ExportError: The folder is not ours.
     """
-    name = material.c_name
+    name, functions = material.c_name, named_functions(material)
+    dynamics = next(signature for signature in material.signatures if signature.name == "dynamics")
     version = material.generator.rpartition(" ")[2]
     words = {
         "name": name,
@@ -47,9 +50,15 @@ def write_c_package(material: Material, folder: Path) -> Exported:
         "version": version,
         "tolerance": SELFTEST_TOLERANCE,
         "title": comment(material.record.name),
+        "heading": cell(material.record.name),
+        "functions": functions_table(functions),
+        "names": names_table(material.record),
+        "example": ", ".join(group for group, _ in dynamics.inputs),
     }
     filled = {"main.c": "main.c.in", "CMakeLists.txt": "CMakeLists.txt.in", f"{name}.pc.in": "model.pc.in"}
+    filled["README.md"] = "README.md.in"
     files = model_files(material) | {f"{name}_selftest.c": selftest_text(material)}
+    files |= {f"{name}_functions.h": typed_text(material), f"{name}.hpp": eigen_text(material)}
     files |= {f"{name}_efforts.c": efforts_text(material)} | header_files("exports/symofros_efforts.h")
     files |= {file: Template(native_text(f"exports/{source}")).substitute(words) for file, source in filled.items()}
     return write_folder(folder, "c", name, files, material.generator, material.notes)

@@ -1,0 +1,119 @@
+"""Functions of a package with named arguments: in C, and on Eigen's maps in C++, the numbers of the interpreter."""
+
+from __future__ import annotations
+
+import importlib.util
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from tests.exports.cases import STRICT, run
+from tests.models import GUESSES, model, system
+
+NAMES = ("double_pendulum", "four_bar")
+SHOW = """
+#include <stdio.h>
+static void show(int n, const double *x) { for (int i = 0; i < n; ++i) printf("%.17g ", x[i]); printf("\\n"); }
+"""
+C = """
+#include "NAME_functions.h"
+SHOW
+int main(void) {
+    static double pre[1000], work[100000], M[NAME_NV * NAME_NV], h[NAME_NV], Q[NAME_NV + 1], T;
+    double q[NAME_NQ], v[NAME_NV], u[NAME_NU + 1] = {0};
+    for (int i = 0; i < NAME_NQ; ++i) q[i] = Q_START[i];
+    for (int i = 0; i < NAME_NV; ++i) v[i] = 0.1 * (i + 1);
+    NAME_prepare(NAME_model()->par_default, pre);
+    NAME_dynamics(pre, q, v, u, 0.25, M, h, Q, work);
+    NAME_kinetic_energy(pre, q, v, &T, work);
+    show(NAME_NV * NAME_NV, M), show(NAME_NV, h), show(1, &T);
+    return 0;
+}
+"""
+CPP = """
+#include "NAME.hpp"
+SHOW
+int main() {
+    NAME_equations equations;
+    NAME_equations::Array<NAME_NQ> q;
+    NAME_equations::Array<NAME_NV> v;
+    NAME_equations::Array<NAME_NU> u;
+    u.setZero();
+    for (int i = 0; i < NAME_NQ; ++i) q[i] = Q_START[i];
+    for (int i = 0; i < NAME_NV; ++i) v[i] = 0.1 * (i + 1);
+    const auto at = equations.dynamics(q, v, u, 0.25);
+    const Eigen::MatrixXd M = at.M.transpose();
+    show(NAME_NV * NAME_NV, M.data()), show(NAME_NV, at.h.data());
+    show(1, equations.kinetic_energy(q, v).T.data());
+    return std::abs(0.5 * v.dot(at.M * v) - equations.kinetic_energy(q, v).T[0]) < 1e-12 ? 0 : 1;
+}
+"""
+
+
+@pytest.fixture(scope="module", params=NAMES)
+def package(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
+    folder = tmp_path_factory.mktemp("typed")
+    start = dict(zip(model(request.param).names.q, GUESSES.get(request.param, ()), strict=False))
+    sf.export(system(request.param), "c", folder, start=start)
+    return request.param, folder
+
+
+def program(text: str, name: str, folder: Path, q: np.ndarray, file: str) -> None:
+    text = text.replace("SHOW", SHOW).replace("NAME_N", f"{name.upper()}_N").replace("NAME", name)
+    start = f"static const double Q_START[] = {{{', '.join(map(repr, q.tolist()))}}};\n"
+    (folder.parent / file).write_text(start + text)
+
+
+def told(folder: Path) -> list[np.ndarray]:
+    return [np.array(line.split(), dtype=float) for line in run("./example", cwd=folder.parent).splitlines()]
+
+
+def check(name: str, q: np.ndarray, found: list[np.ndarray]) -> None:
+    v = 0.1 * (np.arange(model(name).nv) + 1)
+    wanted = (model(name).mass_matrix(q).ravel(), model(name).bias(q, v), [model(name).kinetic_energy(q, v)])
+    for ours, theirs in zip(found, wanted, strict=True):
+        assert np.abs(ours - theirs).max() <= 1e-13 * max(1.0, np.abs(theirs).max())
+
+
+def configuration(name: str) -> np.ndarray:
+    return model(name).random_state(np.random.default_rng(2))[0]
+
+
+def test_c_calls_functions_with_named_arguments(package: tuple[str, Path]) -> None:
+    name, folder = package
+    q = configuration(name)
+    program(C, name, folder, q, "main.c")
+    sources = (folder / f"{name}.c", folder.parent / "main.c")
+    run("gcc", *STRICT, "-O0", f"-I{folder}", *sources, "-lm", "-o", "example", cwd=folder.parent)
+    check(name, q, told(folder))
+
+
+def test_cpp_gets_maps_of_eigen(package: tuple[str, Path]) -> None:
+    name, folder = package
+    spec = importlib.util.find_spec("cmeel")
+    eigen = Path(spec.origin or "").parents[1] / "cmeel.prefix/include/eigen3" if spec else Path("/none")
+    if not (eigen / "Eigen").is_dir():
+        pytest.skip("no Eigen: the extra validation brings it with Pinocchio")
+    q = configuration(name)
+    program(CPP, name, folder, q, "main.cpp")
+    run("gcc", "-std=c99", "-O0", "-c", folder / f"{name}.c", "-o", "model.o", cwd=folder.parent)
+    flags = ("-std=c++14", "-O0", "-Wall", "-Wextra", "-Wpedantic", "-Werror", f"-I{folder}", "-isystem", eigen)
+    run("g++", *flags, "main.cpp", "model.o", "-lm", "-o", "example", cwd=folder.parent)
+    check(name, q, told(folder))
+
+
+def test_the_table_has_every_function_in_the_order_of_the_arguments(package: tuple[str, Path]) -> None:
+    name, folder = package
+    table = (folder / "README.md").read_text()
+    header = " ".join(re.sub(r"/\*.*?\*/", "", (folder / f"{name}_functions.h").read_text(), flags=re.DOTALL).split())
+    rows = re.findall(rf"^\| `({name}_\w+)` \| (.*?) \| (.*?) \|", table, re.MULTILINE)
+    assert len(rows) == (folder / f"{name}.c").read_text().count("_batch},") + 1
+    for symbol, inputs, outputs in rows:
+        stated = re.findall(r"`(\w+)`", f"{inputs} {outputs}")
+        arguments = re.search(rf" {symbol}\(([^)]*)\) {{", header)
+        assert arguments is not None, symbol
+        declared = [argument.split()[-1].lstrip("*") for argument in arguments[1].split(",")]
+        assert declared[1:-1] == stated, symbol
