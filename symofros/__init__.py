@@ -83,6 +83,8 @@ if TYPE_CHECKING:
     from symofros.simulation.analysis.inverse_kinematics import inverse_kinematics as inverse_kinematics
     from symofros.simulation.analysis.inverse_kinematics import joint_motion as joint_motion
     from symofros.simulation.analysis.modes import modes as modes
+    from symofros.simulation.analysis.rollout import Rollout as Rollout
+    from symofros.simulation.analysis.rollout import rollout as rollout
     from symofros.simulation.analysis.state_space import state_space as state_space
     from symofros.simulation.events import Event as Event
     from symofros.simulation.inputs import Signal as Signal
@@ -137,6 +139,8 @@ _LAZY = {
     "Target": ("symofros.simulation.analysis.inverse_kinematics", "Target"),
     "equilibrium": ("symofros.simulation.analysis.equilibrium", "equilibrium"),
     "modes": ("symofros.simulation.analysis.modes", "modes"),
+    "rollout": ("symofros.simulation.analysis.rollout", "rollout"),
+    "Rollout": ("symofros.simulation.analysis.rollout", "Rollout"),
     "Event": ("symofros.simulation.events", "Event"),
     "Signal": ("symofros.simulation.inputs", "Signal"),
     "SimulationOptions": ("symofros.simulation.options", "SimulationOptions"),

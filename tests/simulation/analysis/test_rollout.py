@@ -1,0 +1,110 @@
+"""Derivatives of motions: adjoint, forward sensitivities and complex steps agree to rounding."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from tests.models import model
+
+METHODS = ("euler", "semi_implicit_euler", "rk4")
+N, H = 60, 0.02
+
+
+@pytest.fixture(params=METHODS)
+def method(request: pytest.FixtureRequest) -> str:
+    return request.param
+
+
+def pendulum() -> sf.Model:
+    """Mass m at the distance L of a driven, damped hinge: m L^2 a = u - d v - m g L sin(q + pi/2), by hand."""
+    joint = sf.Joint("j", "revolute", axis=(0, 1, 0), actuated=True, elements=(sf.Damper("d"),))
+    body = sf.RigidBody("b", joint, sf.Inertia("m", ("L", 0, 0)))
+    parameters = [sf.Parameter("m", 1.3), sf.Parameter("L", 0.7), sf.Parameter("d", 0.2)]
+    return sf.compile(sf.System("p", [body], parameters=parameters))
+
+
+def by_hand(x: np.ndarray, u: np.ndarray, par: np.ndarray, method: str) -> np.ndarray:
+    """The state (2) after the steps, of complex numbers as well."""
+    m, L, d = par
+
+    def slope(x: np.ndarray, force: complex) -> np.ndarray:
+        return np.array([x[1], (force - d * x[1] + 9.81 * m * L * np.cos(x[0])) / (m * L * L)])
+
+    for force in u:
+        k1 = slope(x, force)
+        if method == "euler":
+            x = x + H * k1
+        elif method == "semi_implicit_euler":
+            v = x[1] + H * k1[1]
+            x = np.array([x[0] + H * v, v])
+        else:
+            k2 = slope(x + 0.5 * H * k1, force)
+            k3 = slope(x + 0.5 * H * k2, force)
+            k4 = slope(x + H * k3, force)
+            x = x + H / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+    return x
+
+
+def test_the_gradient_is_that_of_a_complex_step(method: str, rng: np.random.Generator) -> None:
+    m, u = pendulum(), rng.normal(size=N)
+    names = {name: m.names.par.index(name) for name in ("m", "L", "d")}
+    run = sf.rollout(m, [0.4], [-0.3], u[:, None], H, method=method)
+    z = np.concatenate([[0.4, -0.3], [1.3, 0.7, 0.2], u]).astype(complex)
+    w = np.array([0.8, -1.1])
+    np.testing.assert_allclose([run.q[-1, 0], run.v[-1, 0]], by_hand(z[:2], z[5:], z[2:5], method).real, rtol=1e-12)
+    expected = []
+    for k in range(len(z)):
+        moved = z.copy()
+        moved[k] += 1e-30j
+        expected.append((w @ by_hand(moved[:2], moved[5:], moved[2:5], method)).imag / 1e-30)
+    g = run.gradient([w[0]], [w[1]])
+    got = np.concatenate([g.q0, g.v0, g.par[[names[name] for name in ("m", "L", "d")]], g.u[:, 0]])
+    np.testing.assert_allclose(got, expected, rtol=1e-12, atol=1e-12 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("case", ["double_pendulum", "friction_arm"])
+def test_adjoint_and_forward_sensitivities_are_transposes(method: str, case: str, rng: np.random.Generator) -> None:
+    m = model(case, "c")
+    u = rng.normal(size=(N, m.nu))
+    run = sf.rollout(m, 0.3 * rng.normal(size=m.nq), 0.1 * rng.normal(size=m.nv), u, 0.005, method=method)
+    sizes = {"dq0": (m.nv, 2), "dv0": (m.nv, 2), "du": (N, m.nu, 2), "dpar": (m.npar, 2)}
+    d = {name: rng.normal(size=shape) for name, shape in sizes.items()}
+    q_bar, v_bar = rng.normal(size=(2, N + 1, m.nv))
+    changes = run.tangents(**d)
+    forward = np.einsum("ni,nik->k", q_bar, changes.q) + np.einsum("ni,nik->k", v_bar, changes.v)
+    g = run.gradient(q_bar, v_bar)
+    backward = g.q0 @ d["dq0"] + g.v0 @ d["dv0"] + np.einsum("ni,nik->k", g.u, d["du"]) + g.par @ d["dpar"]
+    terms = sum(np.abs(part).sum() for part in g)
+    np.testing.assert_allclose(backward, forward, rtol=1e-12, atol=1e-12 * terms)
+
+
+def test_the_steps_are_those_of_simulate(method: str, rng: np.random.Generator) -> None:
+    m = model("double_pendulum", "c")
+    u = rng.normal(size=(N, m.nu))
+    if method == "rk4":  # Its last stage stands at the end of the step, where the next sample of a signal holds.
+        u[:] = u[0]
+    run = sf.rollout(m, [0.3, -0.2], [0.1, 0.4], u, 0.005, method=method)
+    signal = sf.Signal(run.t[:-1], u, "hold") if m.nu else None
+    other = sf.simulate(m, [0.3, -0.2], [0.1, 0.4], float(run.t[-1]), u=signal, method=method, dt=0.005)
+    np.testing.assert_allclose(run.q[-1], other.q[-1], rtol=1e-11, atol=1e-12)
+    np.testing.assert_allclose(run.v[-1], other.v[-1], rtol=1e-11, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("case", "changes", "words"),
+    [
+        ("double_pendulum", {"method": "dopri5"}, "method 'dopri5'"),
+        ("double_pendulum", {"dt": 0.0}, "dt = 0.0"),
+        ("slider_crank", {}, "constraints"),
+        ("heavy_top", {}, "a ball or free joint"),
+        ("double_pendulum", {"u": [1.0]}, "u does not fit"),
+        ("double_pendulum", {"v0": [1e200, 1e200]}, "leaves the finite numbers"),
+    ],
+)
+def test_what_has_no_derivative_is_refused_in_words(case: str, changes: dict[str, object], words: str) -> None:
+    m = model(case, "c")
+    given = {"q0": m.neutral(), "v0": np.zeros(m.nv), "u": np.zeros((3, m.nu)), "dt": 0.01} | changes
+    with pytest.raises(sf.SymofrosError, match=words):
+        sf.rollout(m, **given)
