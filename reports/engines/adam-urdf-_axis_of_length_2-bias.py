@@ -25,4 +25,4 @@ value = np.array(value, dtype=float)
 expected = np.array([-0.6019330820786587, 1.5989472785909784])
 error = np.max(np.abs(value - expected))
 print(f"{value = }\n{expected = }\n{error = :.3g}")
-assert error <= 2.8e-12
+assert error <= 2.2e-12

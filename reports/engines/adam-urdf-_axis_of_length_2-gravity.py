@@ -23,4 +23,4 @@ value = np.array(value, dtype=float)
 expected = np.array([-0.5855789379766183, 1.5981007262313927])
 error = np.max(np.abs(value - expected))
 print(f"{value = }\n{expected = }\n{error = :.3g}")
-assert error <= 2.9e-12
+assert error <= 2.3e-12

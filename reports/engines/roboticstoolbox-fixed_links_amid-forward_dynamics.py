@@ -20,4 +20,4 @@ value = np.array(value, dtype=float)
 expected = np.array([-0.5, 1.5])
 error = np.max(np.abs(value - expected))
 print(f"{value = }\n{expected = }\n{error = :.3g}")
-assert error <= 2.7e-12
+assert error <= 2.8e-12

@@ -17,4 +17,4 @@ value = np.array(value, dtype=float)
 expected = np.array([0.7178979245793486])
 error = np.max(np.abs(value - expected))
 print(f"{value = }\n{expected = }\n{error = :.3g}")
-assert error <= 3.6e-12
+assert error <= 3.4e-12
