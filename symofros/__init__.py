@@ -12,6 +12,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from symofros import interop as interop
 from symofros.base.options import Options as Options
 from symofros.description import sections as sections
 from symofros.description.beam import Beam as Beam

@@ -68,6 +68,8 @@ ALLOWED = table("""
     # A diagram's package is made of its parts' C, written as the diagram is resolved.
     exports: base errors native expr description mechanics.topology
         generator.passes runtime generator.codegen compiler loading simulation diagrams
+    # Models in other frameworks, each of them imported by its own module alone.
+    interop: base errors native description compiler generator.codegen runtime simulation
     # Advice compiles and simulates reduced systems, and counts what they take.
     studio.advice: base errors expr description generator.passes runtime compiler simulation
     # The picture compiles its own frame poses, plays trajectories, and closes loops; beams lend their shape.
@@ -82,7 +84,7 @@ ALLOWED = table("""
     # What tools that look inside may use; nothing in the package imports it.
     tools: base description compiler expr generator.passes generator.ablation runtime simulation diagrams
     __init__: base errors expr description runtime compiler loading simulation diagrams diagrams.files
-        exports studio.advice studio.viewer
+        exports interop studio.advice studio.viewer
 """)
 
 # The same of the harness: what a check is made of ...

@@ -145,6 +145,11 @@ class CompiledKernel:
         return self._unit.ffi.addressof(self._function)
 
     @property
+    def model(self) -> Any:
+        """Pointer to the library's sym_model, for calls from C."""
+        return self._unit.model
+
+    @property
     def work(self) -> int:
         """Doubles of scratch that one call needs."""
         return int(self._function.work)

@@ -1,0 +1,117 @@
+"""What frameworks differentiate: functions of models, and which functions give their exact derivatives."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from importlib import import_module
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from symofros.errors import Problem, SymofrosError
+from symofros.runtime.model import Model
+
+
+class Rule(NamedTuple):
+    """A function with its derivatives.
+
+    Attributes:
+        inputs: Names of what it is differentiated by, in order.
+        derivatives: Function and output that give the derivative by each input; of the rows the first nv count.
+    """
+
+    inputs: tuple[str, ...]
+    derivatives: Mapping[str, tuple[str, str]]
+
+
+RULES: dict[str, Rule] = {
+    "forward_dynamics": Rule(
+        ("q", "v", "u", "par"),
+        {
+            "q": ("forward_dynamics_derivatives", "by_q"),
+            "v": ("forward_dynamics_derivatives", "by_v"),
+            "u": ("forward_dynamics_derivatives", "by_u"),
+            "par": ("forward_dynamics_by_par", "by_par"),
+        },
+    ),
+    "inverse_dynamics": Rule(
+        ("q", "v", "a", "par"),
+        {
+            "q": ("inverse_dynamics_derivatives", "dtau_dq"),
+            "v": ("inverse_dynamics_derivatives", "dtau_dv"),
+            "a": ("mass_matrix", "M"),
+            "par": ("inverse_dynamics_by_par", "dtau_dpar"),
+        },
+    ),
+}
+# Times at which a model that does not depend on time is the same.
+_TIMES = (0.0, 0.7310585, 19.47)
+
+
+class InteropError(SymofrosError):
+    """A model, or an array, that a framework's wrapper can't take."""
+
+
+def framework(name: str, extra: str) -> Any:
+    """A package, or words on how to get it.
+
+    Raises:
+        InteropError: It is not installed.
+    """
+    try:
+        return import_module(name)
+    except ModuleNotFoundError as error:
+        if error.name != name:
+            raise
+        raise InteropError(
+            Problem(
+                f"symofros.interop.{extra} needs the package '{name}'",
+                "it is not installed",
+                "each framework is an extra",
+                f"pip install 'symofros[{extra}]'",
+            )
+        ) from None
+
+
+def check_model(model: Model) -> None:
+    """Refuse models whose derivatives are not those by the arrays that a framework holds.
+
+    Raises:
+        InteropError: Speeds are no rates of the coordinates, a motion is prescribed, or forces depend on time.
+    """
+    record = model.record
+    what = f"model '{record.name}' is not offered to other frameworks"
+    if any(segment.kind != "linear" for segment in record.segments):
+        joints = ", ".join(name for name in record.q_names if name.endswith(".w")) or "quaternions"
+        raise InteropError(
+            Problem(
+                what,
+                f"coordinates that are quaternions: {joints}",
+                "derivatives by q are along its manifold; frameworks take q for a plain array",
+                "describe the joint by revolute and prismatic ones",
+            )
+        )
+    if record.driven:
+        names = ", ".join(record.u_names[-record.driven :])
+        raise InteropError(
+            Problem(
+                what,
+                f"inputs that prescribe motion: {names}",
+                "inputs are forces",
+                "replace the prescribed joint by one with an input",
+            )
+        )
+    q, v = model.random_state(np.random.default_rng(7))
+    u = np.ones(model.nu)
+    if len({model.forward_dynamics(q, v, u, t=t).tobytes() for t in _TIMES}) > 1:
+        raise InteropError(
+            Problem(what, "forces depend on the time t", "wrapped functions take no time", "make t an input")
+        )
+
+
+def outputs(model: Model, function: str, given: Mapping[str, Any]) -> dict[str, np.ndarray[Any, Any]]:
+    """Outputs of a function by name, from arrays (..., size) by name; of derivatives the rows of the speeds."""
+    kernel = model.kernel(function)
+    wanted = {name: given[name] for name, _ in kernel.signature.inputs if name in given}
+    names = [name for name, _ in kernel.signature.outputs]
+    return dict(zip(names, model.evaluate(function, par=given.get("par"), **wanted), strict=True))

@@ -1,0 +1,52 @@
+"""What frameworks are refused, in words."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from symofros.interop import rules
+
+
+def test_importing_interop_loads_no_framework() -> None:
+    code = (
+        "import sys, symofros; symofros.interop; print(*({'torch', 'jax', 'casadi', 'gymnasium'} & set(sys.modules)))"
+    )
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "\n"
+
+
+def test_an_absent_framework_is_said_in_words() -> None:
+    with pytest.raises(sf.SymofrosError, match=r"pip install 'symofros\[torch\]'"):
+        rules.framework("a_package_that_nobody_has", "torch")
+
+
+def test_unknown_modules_are_refused_with_the_known_ones() -> None:
+    with pytest.raises(AttributeError, match="casadi, gymnasium, jax, torch"):
+        _ = sf.interop.tensorflow
+
+
+def test_quaternions_are_refused() -> None:
+    with pytest.raises(sf.SymofrosError, match="quaternions"):
+        rules.check_model(sf.compile(MODELS["torque_free_body"]))
+
+
+def test_forces_that_depend_on_time_are_refused() -> None:
+    joint = sf.Joint("x", "prismatic", axis=(1, 0, 0), effort=("sin(t)",))
+    pushed = sf.System("pushed", [sf.RigidBody("cart", joint, sf.Inertia(2.0))])
+    with pytest.raises(sf.SymofrosError, match="depend on the time"):
+        rules.check_model(sf.compile(pushed))
+
+
+def test_prescribed_motions_are_refused() -> None:
+    driven = sf.Joint("x", "prismatic", axis=(1, 0, 0), prescribed=True)
+    swing = sf.Joint("q", "revolute", "cart", axis=(0, 1, 0))
+    system = sf.System(
+        "driven",
+        [sf.RigidBody("cart", driven, sf.Inertia(2.0)), sf.RigidBody("bob", swing, sf.Inertia(1.0, (0, 0, -0.5)))],
+    )
+    with pytest.raises(sf.SymofrosError, match="prescribe motion"):
+        rules.check_model(sf.compile(system))
