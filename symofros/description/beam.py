@@ -85,13 +85,14 @@ class BeamLoad:
         force: Force [N], or [N/m] if spread; formulas as for a Load, and of the station x [m] if spread.
         torque: Moment [N m], or [N m/m] if spread; formulas as for the force.
         at: Station x/L, from 0 (root) to 1 (tip); spread over the length if not given.
-        axes: Axes of the components: "body" (those of the undeformed beam) or "world".
+        axes: Axes of the components: "body" (those of the undeformed beam), "world", or "section" (those of each
+            section of a geometrically exact rod: a force that follows it).
     """
 
     force: Vector = ORIGIN
     torque: Vector = ORIGIN
     at: float | None = None
-    axes: Literal["body", "world"] = "body"
+    axes: Literal["body", "world", "section"] = "body"
 
     def __post_init__(self) -> None:
         """Convert the components, check the station."""
@@ -106,13 +107,13 @@ class BeamLoad:
                     "divide the station by the length; leave at out for a load that is spread",
                 )
             )
-        if self.axes not in ("body", "world"):
+        if self.axes not in ("body", "world", "section"):
             raise DescriptionError(
                 Problem(
                     f"beam load: axes '{self.axes}'",
                     str(self.axes),
-                    "axes are 'body' or 'world'",
-                    did_you_mean(str(self.axes), ("body", "world")),
+                    "axes are 'body', 'world' or 'section'",
+                    did_you_mean(str(self.axes), ("body", "world", "section")),
                 )
             )
 
@@ -284,6 +285,15 @@ class Beam:
                     repr(self.sections),
                     f"a whole number from 0, which leaves the choice to the generator, to {MOST_SECTIONS}",
                     "leave it out",
+                )
+            )
+        if self.theory != "strain" and any(load.axes == "section" for load in self.loads):
+            raise DescriptionError(
+                Problem(
+                    f"{what}: a load along the axes of the sections",
+                    f"theory '{self.theory}'",
+                    "sections of a beam of second order turn by small angles: a load does not follow them exactly",
+                    "state theory: strain, or put a rigid body with a load on a frame of the beam",
                 )
             )
         if self.theory == "strain":

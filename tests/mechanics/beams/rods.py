@@ -59,11 +59,16 @@ HUB = sf.Joint("hub", "revolute", axis=(1, 1, 0), position=(0.1, 0.2, 0.0))
 ALL: dict[str, Any] = {"rotary_inertia": True, "curvature_y": 0.3, "twist_rate": "0.2*x", "damping": 0.03}
 STATIONS = (sf.Frame("tip"), sf.Frame("middle", at=0.5), sf.Frame("quarter", at=0.25))
 # Rods with the frames that carry a body.
+FOLLOWING = (
+    sf.BeamLoad((-0.4, 0.3, 0.2), (0.1, 0.2, -0.1), at=0.7, axes="section"),
+    sf.BeamLoad(("0.2*x", 0.3, 0.0), axes="section"),
+)
 CASES: dict[str, tuple[sf.Beam, tuple[str, ...]]] = {
     "clamped, in a plane": (rod((3, 0, 0)), ()),
     "in the other plane, at a hub, with a body": (rod((0, 2, 0), HUB, rhoA="2 + x"), ("tip",)),
     "free in space, curved and twisted without stress": (rod((1, 1, 1), sf.Joint("base", "free"), **ALL), ()),
     "in space, with a body": (rod((2, 1, 1), HUB), ("tip",)),
+    "under loads that follow its sections": (rod((2, 0, 1), loads=FOLLOWING, damping=0.03), ()),
     "a shaft": (rod((0, 0, 2), HUB), ("tip",)),
     "stretched and sheared in a plane": (rod((2, 0, 0), HUB, stretch=1, shear_y=2, **STIFF), ("tip",)),
     "stretched and sheared in space": (rod((1, 1, 1), HUB, stretch=1, shear_y=1, shear_z=1, **ALL, **STIFF), ("tip",)),

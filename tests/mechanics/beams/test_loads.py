@@ -18,12 +18,12 @@ FORCES: dict[str, tuple[sf.BeamLoad, Line]] = {
     "at the tip": (sf.BeamLoad((1.0, -2.0, 0.5), at=1.0), Line(lambda x: (1.0, -2.0, 0.5), at=L)),
     "within, in the world": (
         sf.BeamLoad((1.0, -2.0, 0.5), at=0.4, axes="world"),
-        Line(lambda x: (1.0, -2.0, 0.5), at=0.4 * L, world=True),
+        Line(lambda x: (1.0, -2.0, 0.5), at=0.4 * L, axes="world"),
     ),
     "spread": (sf.BeamLoad(("p*x", "-2", "exp(-x)")), Line(lambda x: (3 * x, -2.0, np.exp(-x)))),
     "spread, in the world": (
         sf.BeamLoad(("1 + x", 0, "p"), axes="world"),
-        Line(lambda x: (1 + x, 0.0, 3.0), world=True),
+        Line(lambda x: (1 + x, 0.0, 3.0), axes="world"),
     ),
 }
 TORQUES: dict[str, tuple[sf.BeamLoad, Line]] = {
@@ -33,11 +33,11 @@ TORQUES: dict[str, tuple[sf.BeamLoad, Line]] = {
     ),
     "a moment within, in the world": (
         sf.BeamLoad(torque=("p", 0, "-1"), at=0.4, axes="world"),
-        Line(lambda x: (0, 0, 0), lambda x: (3.0, 0.0, -1.0), 0.4 * L, True),
+        Line(lambda x: (0, 0, 0), lambda x: (3.0, 0.0, -1.0), 0.4 * L, "world"),
     ),
     "a spread moment, in the world": (
         sf.BeamLoad(torque=("x", "p", "-1"), axes="world"),
-        Line(lambda x: (0, 0, 0), lambda x: (x, 3.0, -1.0), world=True),
+        Line(lambda x: (0, 0, 0), lambda x: (x, 3.0, -1.0), axes="world"),
     ),
 }
 

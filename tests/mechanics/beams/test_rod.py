@@ -31,6 +31,8 @@ def test_energy_is_kept_and_coriolis_matrix_gives_the_rate_of_mass(name: str, rn
     ahead, behind = m.integrate(q, eps * v), m.integrate(q, -eps * v)
     rate = (m.mass_matrix(ahead) - m.mass_matrix(behind)) / (2 * eps)
     assert np.abs(rate - C - C.T).max() < 1e-8 * np.abs(M).max()
+    if CASES[name][0].loads:
+        return  # Loads that follow sections have no potential.
     # Without damping's power, that of the forces is the loss of potential energy.
     still = m.generalized_force(q, 0 * v, ())
     stored = (m.potential_energy(ahead) - m.potential_energy(behind)) / (2 * eps)

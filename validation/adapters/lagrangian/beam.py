@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import casadi as ca
 import numpy as np
@@ -23,7 +23,7 @@ POINTS = 12
 
 
 class Line(NamedTuple):
-    """A force and a moment on the axis: at a station x [m], or per length at every x, in B or in the world.
+    """A force and a moment on the axis: at a station x [m], or per length at every x, along axes.
 
     Components are numbers, or CasADi expressions of a motion's symbols.
     """
@@ -31,7 +31,7 @@ class Line(NamedTuple):
     force: Callable[[float], Sequence[Any]]
     torque: Callable[[float], Sequence[Any]] | None = None
     at: float | None = None
-    world: bool = False
+    axes: Literal["body", "world", "section"] = "body"
 
 
 @dataclass(frozen=True)

@@ -288,7 +288,7 @@ class Translation:
                 along(load.force),
                 along(load.torque),
                 None if load.at is None else load.at * length,
-                load.axes == "world",
+                load.axes,
             )
             for load in beam.loads
         )

@@ -263,9 +263,9 @@ class Lagrangian:
     def _load(self, beam: Flexible | ExactRod, line: beams.Line, pose: Pose, section: Callable[[float], Pose]) -> None:
         """The power of a load: of its force on the centroid, of its moment on the section, which turns exactly."""
         x, weight = ([line.at], [1.0]) if line.at is not None else beams.stations(beam.length, beam.breaks, beam.points)
-        axes = ca.SX.eye(3) if line.world else pose.R
         for xi, w in zip(x, weight, strict=True):
             here = section(float(xi))
+            axes = {"world": ca.SX.eye(3), "body": pose.R, "section": here.R}[line.axes]
             self.power += w * ca.dot(axes @ ca.vertcat(*line.force(xi)), here.dp)
             if line.torque is not None:
                 self.power += w * ca.dot(axes @ ca.vertcat(*line.torque(xi)), here.R @ here.spin())

@@ -37,9 +37,9 @@ def beam_loads(kinematics: TreeKinematics, frames: FrameKinematics, beam: Moving
     modal = [ZERO] * beam.forms.beam.modes
     for load in beam.forms.beam.loads:
         directions = _directions(kinematics, frames, beam, load)
-        for d, force, torque in zip(directions, load.force, load.torque, strict=True):
+        for k, (d, force, torque) in enumerate(zip(directions, load.force, load.torque, strict=True)):
             if isinstance(beam.forms, Rod):
-                one, forces = _on_rod(beam.forms, load.at, d, force, torque)
+                one, forces = _on_rod(beam.forms, load, k, d)
             else:
                 one, forces = _along(beam.forms, load.at, d, force, torque)
             wrench = wrench + Wrench(R_LB.times(one.f), R_LB.times(one.n))
@@ -51,19 +51,14 @@ def _at_station(forms: BeamForms, xi: float, field: Field, weight: Value) -> For
     return forms.along.at(field, xi).scaled(forms.along.lower(weight))
 
 
-def _on_rod(rod: Rod, at: float | None, d: Vec3, force: Value, torque: Value) -> tuple[Wrench, list[Edge]]:
-    """One component of a load on a geometrically exact rod, at a station or at every section (18)."""
+def _on_rod(rod: Rod, load: BeamLoad, k: int, d: Vec3) -> tuple[Wrench, list[Edge]]:
+    """Component k of a load on a geometrically exact rod, along d or an axis of the sections (18)."""
     g, n = rod.g, len(rod.coordinates)
     wrench, modal = no_wrench(g), [ZERO] * n
-    if at is not None:
-        points = [_Point(at, d.scaled(rod.along.lower(force)), d.scaled(rod.along.lower(torque)))]
-        sections: tuple[Section, ...] = (rod.section_at(at),)
-    else:
-        points, sections = _spread(rod, d, force, torque, rod.strains.stations[1]), rod.sections
-    for point, section in zip(points, sections, strict=True):
+    for point in _points(rod, load, k, d, rod.strains.stations[1]):
         wrench = wrench + point.wrench(rod)
         for i in range(n):
-            power = g.add(rod.partial_position(point.xi, i).dot(point.force), section.spins[i].dot(point.torque))
+            power = g.add(rod.partial_position(point.xi, i).dot(point.force), point.section.spins[i].dot(point.torque))
             modal[i] = g.add(modal[i], power)
     return wrench, modal
 
@@ -72,6 +67,7 @@ class _Point(NamedTuple):
     """A force and a moment on a rod at one station, in B."""
 
     xi: float
+    section: Section
     force: Vec3
     torque: Vec3
 
@@ -80,10 +76,20 @@ class _Point(NamedTuple):
         return Wrench(self.force, rod.position(self.xi).cross(self.force) + self.torque)
 
 
-def _spread(rod: Rod, d: Vec3, force: Value, torque: Value, weights: Sequence[float]) -> list[_Point]:
-    """One component of a load that is spread over a rod, or over a part of it, as loads on its sections."""
-    shares = zip(rod.strains.stations[0], rod.shares(force, weights), rod.shares(torque, weights), strict=True)
-    return [_Point(xi, d.scaled(f), d.scaled(m)) for xi, f, m in shares]
+def _points(rod: Rod, load: BeamLoad, k: int, d: Vec3, weights: Sequence[float]) -> list[_Point]:
+    """Component k of a load on a rod: at its station, or spread over it or a part of it as loads on the sections."""
+    force, torque = load.force[k], load.torque[k]
+    xis, sections = rod.strains.stations[0], rod.sections
+    if load.at is not None:
+        xis, sections = (load.at,), (rod.section_at(load.at),)
+        shares = [[rod.along.lower(value)] for value in (force, torque)]
+    else:
+        shares = [list(rod.shares(value, weights)) for value in (force, torque)]
+    points = []
+    for xi, section, f, m in zip(xis, sections, *shares, strict=True):
+        along = section.R_BS.column(k) if load.axes == "section" else d
+        points.append(_Point(xi, section, along.scaled(f), along.scaled(m)))
+    return points
 
 
 def loads_beyond(kinematics: TreeKinematics, frames: FrameKinematics, beam: MovingBeam, xi: float) -> Wrench:
@@ -99,13 +105,10 @@ def loads_beyond(kinematics: TreeKinematics, frames: FrameKinematics, beam: Movi
     for load in forms.beam.loads:
         if load.at is not None and load.at < xi:
             continue
-        for d, force, torque in zip(_directions(kinematics, frames, beam, load), load.force, load.torque, strict=True):
+        directions = _directions(kinematics, frames, beam, load)
+        for k, (d, force, torque) in enumerate(zip(directions, load.force, load.torque, strict=True)):
             if isinstance(forms, Rod):
-                if load.at is not None:
-                    points = [_Point(load.at, d.scaled(forms.along.lower(force)), d.scaled(forms.along.lower(torque)))]
-                else:
-                    points = _spread(forms, d, force, torque, forms.strains.weights_beyond(xi))
-                for point in points:
+                for point in _points(forms, load, k, d, forms.strains.weights_beyond(xi)):
                     wrench = wrench + point.wrench(forms)
             else:
                 part = forms if load.at is not None else forms.beyond(xi)
@@ -114,8 +117,8 @@ def loads_beyond(kinematics: TreeKinematics, frames: FrameKinematics, beam: Movi
 
 
 def _directions(kinematics: TreeKinematics, frames: FrameKinematics, beam: MovingBeam, load: BeamLoad) -> list[Vec3]:
-    """The axes that a load's components are along, in B."""
-    if load.axes == "body":
+    """The axes that a load's components are along, in B; of one along those of the sections, the root's."""
+    if load.axes != "world":
         return [Vec3.unit(kinematics.g, k) for k in range(3)]
     R_WL, R_LB = frames.link_pose(beam.root).R_WF, kinematics.links[beam.root].R_LB
     return [R_LB.T.times(R_WL.row(k)) for k in range(3)]
