@@ -71,7 +71,7 @@ def _array(name: str, stream: IO[bytes], file_size: int, most_numbers: int) -> A
     if version != (1, 0):  # Later versions allow records of many fields, in headers of gigabytes.
         raise ValueError(f"array '{name}': its header is of version {version}, numbers have (1, 0)")
     shape, by_columns, dtype = np.lib.format.read_array_header_1_0(stream)
-    if dtype.hasobject or dtype.fields or not dtype.itemsize:
+    if dtype.kind not in "biufcSU" or dtype.fields or not dtype.itemsize:
         raise ValueError(f"array '{name}' holds {dtype!s:.60}; numbers or texts are read, objects never (allow_pickle)")
     size = math.prod(shape)
     # A long text counts as so many numbers.

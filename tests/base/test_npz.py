@@ -106,3 +106,10 @@ def test_damaged_archives_are_read_or_refused(
         read_npz(path, 1000)
     except (ValueError, OSError) as error:
         assert str(error)
+
+
+@pytest.mark.parametrize("kind", ["<M8[ns]", "<m8[s]", "V8"])
+def test_arrays_are_of_numbers_and_texts(kind: str, tmp_path: Path) -> None:
+    np.savez(tmp_path / "dates.npz", t=np.zeros(2, dtype=kind))
+    with pytest.raises(ValueError, match="numbers or texts are read"):
+        read_npz(tmp_path / "dates.npz", 1000)

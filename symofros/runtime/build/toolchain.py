@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib.util
 import os
 import platform
 import shlex
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -154,7 +156,14 @@ def _run(command: Sequence[str], limit: float, folder: Path | None, errors: int)
     """
     with tempfile.TemporaryFile() as said:
         try:
-            process = subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=said, stderr=errors)
+            process = subprocess.Popen(
+                command,
+                cwd=folder,
+                stdin=subprocess.DEVNULL,
+                stdout=said,
+                stderr=errors,
+                start_new_session=True,  # The driver starts others, which are ended with it.
+            )
         except OSError as error:
             rule, remedy = "a compiler is a program that this machine can run", "name another compiler, or install one"
             raise CompileError(
@@ -165,7 +174,7 @@ def _run(command: Sequence[str], limit: float, folder: Path | None, errors: int)
 
         def end() -> None:
             too_late.set()
-            process.kill()
+            _end_group(process)
 
         watch = Timer(limit, end)
         watch.daemon = True
@@ -173,7 +182,7 @@ def _run(command: Sequence[str], limit: float, folder: Path | None, errors: int)
         try:
             status = process.wait()
         except BaseException:  # As of a user who interrupts.
-            process.kill()
+            _end_group(process)
             process.wait()
             raise
         finally:
@@ -189,6 +198,15 @@ def _run(command: Sequence[str], limit: float, folder: Path | None, errors: int)
             )
         said.seek(0)
         return status, said.read().decode(errors="replace")
+
+
+def _end_group(process: subprocess.Popen[bytes]) -> None:
+    """End a process and what it has started."""
+    if sys.platform == "win32":
+        process.kill()
+        return
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGKILL)
 
 
 def kinds() -> tuple[tuple[str, tuple[str, ...], tuple[str, ...]], ...]:

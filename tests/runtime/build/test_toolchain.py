@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -81,3 +83,20 @@ def test_an_export_says_so_too(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("CC", "/bin/true")
     with pytest.raises(sf.CompileError, match="wrote nothing"):
         shared_library({"a.c": "int x;\n"}, "a.c", [])
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
+def test_what_a_compiler_started_ends_with_it(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """As a driver's own compiler, which would go on computing."""
+    monkeypatch.setattr(toolchain, "COMPILATION_LIMIT", 0.5)
+    started = tmp_path / "started"
+    driver = script(tmp_path, f"#!/bin/sh\nsleep 60 & echo $! > {started}\nwait\n")
+    with pytest.raises(sf.CompileError, match="did not end within"):
+        toolchain.call_compiler([str(driver)], "out", tmp_path, "another compiler")
+    child = int(started.read_text())
+    for _ in range(100):
+        state = Path(f"/proc/{child}/stat")
+        if not state.exists() or state.read_text().split()[2] == "Z":
+            return
+        time.sleep(0.02)
+    pytest.fail("it runs on")
