@@ -225,6 +225,22 @@ _ROWS: tuple[ModelFunction, ...] = (
         "of elastic beams: lengths, EI_z and EI_y at mid-length (rods: 0), and stiffness of the elastic coordinates",
         by_solver=True,
     ),
+    _row(
+        "mass_matrix_values",
+        "q",
+        "values (nz)",
+        "dynamics",
+        "entries of M's lower triangle that may differ from zero",
+        by_solver=True,
+    ),
+    _row(
+        "mass_matrix_pattern",
+        "",
+        "row (nz); column (nz)",
+        "dynamics",
+        "rows and columns of mass_matrix_values",
+        by_solver=True,
+    ),
     _row("center_of_mass", "q", "p_WScm (3) = center_of_mass", "dynamics", "mass centre of all that joints carry"),
     _row(
         "centroidal_momentum",

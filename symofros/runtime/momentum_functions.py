@@ -1,6 +1,9 @@
-"""Momentum of a model about its mass centre, and the matrix of its Coriolis terms."""
+"""Momentum of a model about its mass centre, the matrix of its Coriolis terms, and its mass matrix by entries."""
 
 from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
 
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.functions import ArrayLike, Functions
@@ -47,3 +50,18 @@ class MomentumFunctions(Functions):
         at rest (docs/theory/rigid.md, section 13).
         """
         return self._one("coriolis_matrix", {"q": q, "v": v, "u": u}, par)
+
+    def mass_matrix_values(self, q: ArrayLike, *, u: ArrayLike | None = None, par: ArrayLike | None = None) -> Array:
+        """Entries of the lower triangle of M(q) that may differ from zero (..., nz), where `mass_matrix_pattern` says.
+
+        `scipy.sparse.coo_array((values, model.mass_matrix_pattern()))` is that triangle; M is symmetric.
+        """
+        return self._one("mass_matrix_values", {"q": q, "u": u}, par)
+
+    def mass_matrix_pattern(self) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
+        """Rows (nz) and columns (nz) of `mass_matrix_values`, row by row: speeds of which one carries the other.
+
+        Entries that are zero in every state are left out, as those of speeds on different branches.
+        """
+        row, column = self._call("mass_matrix_pattern", "", {}, None)
+        return row.astype(np.intp), column.astype(np.intp)

@@ -50,6 +50,7 @@ def test_functions_have_the_inputs_and_shapes_of_the_table(name: str, function: 
         "nf": len(m.names.sections),
         "ns": len(m.names.prescribed),
         "nb": len(m.beams()),
+        "nz": len(m.mass_matrix_pattern()[0]),
     }
     inputs = [group for group in row.inputs if group != "gains" or m.nc]
     assert [group for group in bound.inputs if group in row.inputs] == inputs

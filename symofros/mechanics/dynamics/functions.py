@@ -238,6 +238,22 @@ def _beam_stiffness(e: Equations, row: ModelFunction, methods: Methods, known: M
     return Function(row.name, "", row.inputs, outputs)
 
 
+def _mass_matrix_values(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[str, int]) -> Function:
+    """The entries of M that are not zero in every state, of the lower triangle."""
+    values = [e.M[i][j] for i, j in _mass_pattern(e)]
+    return Function(row.name, "", (*row.inputs, *e.implicit_inputs), (_vector("values", values),))
+
+
+def _mass_matrix_pattern(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[str, int]) -> Function:
+    """Their rows and columns, which are numbers."""
+    rows, columns = ([e.g.constant(entry[side]) for entry in _mass_pattern(e)] for side in (0, 1))
+    return Function(row.name, "", (), (_vector("row", rows), _vector("column", columns)))
+
+
+def _mass_pattern(e: Equations) -> list[tuple[int, int]]:
+    return [(i, j) for i in range(e.nv) for j in range(i + 1) if e.M[i][j] != ZERO]
+
+
 def _formed(
     form: Callable[[Equations], Sequence[Any]],
 ) -> Callable[[Equations, ModelFunction, Methods, Mapping[str, int]], Function]:
@@ -256,6 +272,8 @@ _BUILDERS: dict[str, _Builder] = {
     "forward_dynamics": _forward_dynamics,
     "forward_dynamics_derivatives": _forward_slopes,
     "forward_dynamics_by_par": _forward_slopes,
+    "mass_matrix_values": _mass_matrix_values,
+    "mass_matrix_pattern": _mass_matrix_pattern,
     "inverse_dynamics_second_derivatives": _formed(second_derivatives),
     "inverse_dynamics_hvp": _formed(hessian_vector_product),
     "project": _project,
