@@ -31,6 +31,7 @@ LEFT = {
     "gcc": "tests/exports/c builds and runs exported packages",
     "ctest": "tests/exports/c builds and runs exported packages",
     "example": "tests/exports/c builds and runs exported packages",
+    "nvcc": "tests/exports/cuda runs the example with kernels as C++",
     "sphinx": "tests/docs/test_site.py builds the site",
     "cmake": "tests/exports/c builds and runs exported packages",
 }
