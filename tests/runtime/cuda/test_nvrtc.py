@@ -19,8 +19,8 @@ from tests.models import system
 pytest.importorskip("nvidia.cuda_nvrtc", reason="the extra cuda is not installed: pip install 'symofros[cuda]'")
 
 ARCHITECTURES = ("sm_80", "sm_90")
-# Most registers and bytes of spills (stores + loads) a kernel, with room for what versions of NVRTC differ by: 12.4 keeps
-# some numbers of a rollout in memory across the call of the forward dynamics.
+# Most registers and bytes of spills (stores + loads) a kernel, with room for what versions of NVRTC differ by: that of
+# 12.4 keeps some numbers of a rollout in memory across the call of the forward dynamics.
 MOST: dict[tuple[str, Precision], dict[str, tuple[int, int]]] = {
     ("double_pendulum", "double"): {
         "dynamics": (64, 0),
