@@ -69,7 +69,7 @@ ALLOWED = table("""
     exports: base errors native expr description mechanics.topology
         generator.passes runtime generator.codegen compiler loading simulation diagrams
     # Models in other frameworks, each of them imported by its own module alone.
-    interop: base errors native description compiler generator.codegen runtime simulation
+    interop: base errors native expr description compiler generator.codegen runtime simulation
     # Advice compiles and simulates reduced systems, and counts what they take.
     studio.advice: base errors expr description generator.passes runtime compiler simulation
     # The picture compiles its own frame poses, plays trajectories, and closes loops; beams lend their shape.

@@ -1,0 +1,67 @@
+/* Functions of a model by CasADi's interface of external functions, which acados takes as well: the model's C text stands
+ * before this one, the functions of that interface after it (symofros/interop/casadi.py writes them). */
+#define SYM_CASADI_MOST 16
+
+/* One output: an array of a function of the model, whose entries are gathered into columns. */
+typedef struct sym_casadi_output {
+    const char *function;
+    int32_t array;
+    long long count;
+    const long long *gather; /* (count) index of each nonzero in the array, which is row by row */
+} sym_casadi_output;
+
+static size_t sym_casadi_size(const sym_array *array) { return (size_t)array->rows * (size_t)array->cols; }
+
+/* Doubles of scratch: pre, default zeros, outputs of one function, its work. */
+static size_t sym_casadi_work(const sym_model *model) {
+    size_t most = 0, zeros = 1;
+    int32_t i, k;
+    for (i = 0; i < model->n_functions; ++i) {
+        const sym_function *f = &model->functions[i];
+        size_t total = 0;
+        for (k = 0; k < f->n_out; ++k) total += sym_casadi_size(&f->out[k]);
+        for (k = 0; k < f->n_in; ++k)
+            if (sym_casadi_size(&f->in[k]) > zeros) zeros = sym_casadi_size(&f->in[k]);
+        if (total > most) most = total;
+    }
+    return (size_t)model->npre + zeros + (size_t)model->npar + most + sym_work(model);
+}
+
+/* names (n): what arg holds, parameters last; what is not given is zero. Returns 0, or 1 where the model lacks a function. */
+static int sym_casadi_call(const sym_model *model, const char *const *names, int32_t n, const sym_casadi_output *outputs,
+                           int32_t n_outputs, const double **arg, double **res, double *w) {
+    const size_t npre = (size_t)model->npre, npar = (size_t)model->npar;
+    const size_t total = sym_casadi_work(model) - npre - npar - sym_work(model);
+    double *pre = w, *par = pre + npre, *zeros = par + npar, *work = zeros + total, *out[SYM_CASADI_MOST];
+    const double *in[SYM_CASADI_MOST];
+    const char *evaluated = NULL;
+    size_t largest = 1;
+    int32_t i, k, o;
+    for (i = 0; i < model->n_functions; ++i)
+        for (k = 0; k < model->functions[i].n_in; ++k)
+            if (sym_casadi_size(&model->functions[i].in[k]) > largest) largest = sym_casadi_size(&model->functions[i].in[k]);
+    memset(par, 0, (npar + largest) * sizeof(double));
+    if (arg[n - 1] != NULL) memcpy(par, arg[n - 1], npar * sizeof(double));
+    model->init(par, pre);
+    for (o = 0; o < n_outputs; ++o) {
+        const sym_casadi_output *output = &outputs[o];
+        const sym_function *f = sym_find(model, output->function, NULL);
+        long long j;
+        if (res[o] == NULL) continue;
+        if (f == NULL || f->n_in > SYM_CASADI_MOST || f->n_out > SYM_CASADI_MOST) return 1;
+        if (evaluated == NULL || strcmp(evaluated, output->function) != 0) {
+            double *into = zeros + largest;
+            in[0] = pre;
+            for (k = 1; k < f->n_in; ++k) {
+                in[k] = zeros;
+                for (i = 0; i < n; ++i)
+                    if (strcmp(names[i], f->in[k].name) == 0 && arg[i] != NULL) in[k] = arg[i];
+            }
+            for (k = 0; k < f->n_out; ++k) out[k] = into, into += sym_casadi_size(&f->out[k]);
+            f->eval(in, out, work);
+            evaluated = output->function;
+        }
+        for (j = 0; j < output->count; ++j) res[o][j] = out[output->array][output->gather[j]];
+    }
+    return 0;
+}
