@@ -28,6 +28,10 @@ os.environ.setdefault("MUJOCO_GL", "disable")
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
 
+# Compiling is half of a run's time, and half of that is optimisation. Tests of other things than generated code and its
+# compilation do without, but for runs with --slow or a part of it, which compile as users do.
+_STATED_FLAGS = os.environ.get("SYMOFROS_CFLAGS")
+_OPTIMISED = {"benchmarks", "generator", "native", "runtime"}
 
 # The browser's tests name Playwright's types as they are collected.
 _PLAYWRIGHT = find_spec("playwright") is not None
@@ -79,6 +83,15 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
             for item in items:
                 if word in item.keywords:
                     item.add_marker(pytest.mark.skip(reason=f"{why}; run with --{word}"))
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Flags of the compiler for a test, its fixtures and the processes that it starts."""
+    if _STATED_FLAGS is None:
+        slow = item.config.getoption("--slow") or item.config.getoption("--slow-part")
+        as_users_do = slow or item.path.relative_to(Path(__file__).parent).parts[0] in _OPTIMISED
+        os.environ["SYMOFROS_CFLAGS"] = "" if as_users_do else "-O0"
 
 
 def _keep_a_part_of_the_slow(config: pytest.Config, items: list[pytest.Item]) -> None:

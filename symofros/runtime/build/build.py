@@ -21,7 +21,15 @@ import numpy as np
 from symofros.base.atomic import write_atomically
 from symofros.runtime.build.cache import cache_folder, create_cache_folder, install, is_intact, unusable
 from symofros.runtime.build.identity import CODE_IDENTITY
-from symofros.runtime.build.toolchain import DEFAULT_FLAGS, SHARED_FLAGS, Toolchain, call_compiler, cpu_identity, kinds
+from symofros.runtime.build.toolchain import (
+    DEFAULT_FLAGS,
+    SHARED_FLAGS,
+    Toolchain,
+    call_compiler,
+    cpu_identity,
+    kinds,
+    stated_flags,
+)
 
 _SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 _REMEDY = "check Options(flags=…) and the compiler; backend='interpreter' needs none"
@@ -75,7 +83,8 @@ def _chosen(flags: Sequence[str] | None, dispatch: str) -> tuple[str, ...]:
     """The flags of all kinds: where there are several, none is the machine's own."""
     if flags is not None:
         return tuple(flags)
-    return tuple(flag for flag in DEFAULT_FLAGS if not (dispatch and flag.startswith("-march")))
+    kept = tuple(flag for flag in DEFAULT_FLAGS if not (dispatch and flag.startswith("-march")))
+    return (*kept, *stated_flags())
 
 
 def build_library(

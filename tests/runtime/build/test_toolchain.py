@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import sys
 import time
 from collections.abc import Iterator
@@ -58,6 +59,32 @@ def test_what_is_no_compiler_is_told(monkeypatch: pytest.MonkeyPatch, stated: st
     monkeypatch.setenv("CC", stated)
     assert what in refused().what
     assert not list(cache.glob("*.so"))
+
+
+def test_flags_of_the_environment_follow_the_default_ones(monkeypatch: pytest.MonkeyPatch, cache: Path) -> None:
+    named = find_toolchain()
+    assert named is not None
+    text = """
+        #ifndef __OPTIMIZE__
+        #define __OPTIMIZE__ 0
+        #endif
+        #ifndef VALUE
+        #define VALUE 0
+        #endif
+        __attribute__((visibility("default"))) int compiled(void) { return 2 * (VALUE) + __OPTIMIZE__; }
+    """
+
+    def value(flags: tuple[str, ...] | None = None) -> int:
+        result: int = ctypes.CDLL(str(build_library(text, "", named, flags))).compiled()
+        return result
+
+    assert value() == 1
+    monkeypatch.setenv("SYMOFROS_CFLAGS", "-O0 '-DVALUE=1 + 1'")
+    assert value() == 4
+    assert value(("-O2",)) == 1  # Flags that are stated for a model are all that it is compiled with.
+    monkeypatch.setenv("SYMOFROS_CFLAGS", "-O0 '")
+    problem = refused()
+    assert problem.what.startswith("$SYMOFROS_CFLAGS can't be read") and problem.found == '"-O0 \'"'
 
 
 def test_a_program_that_the_machine_can_t_run_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
