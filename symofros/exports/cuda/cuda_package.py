@@ -75,7 +75,6 @@ def write_cuda_package(system: System, name: str | None, frames: Sequence[str] |
         "functions": functions_table([NamedFunction(k.symbol, k.signature) for k in codes["double"].kernels]),
         "names": names_table(record),
         "u_start": doubles(record.u_default),
-        "q_start": doubles(record.q_neutral),
         "bytes": next(k.bytes_of_state("double") for k in codes["double"].kernels),
         "array_arguments": "".join(f", arrays[{k}]" for k in range(len(_declared(codes["double"])[0][2]) - 1)),
         "rollouts": _rollouts_text(codes["double"]),
@@ -109,7 +108,11 @@ def _rollouts_text(code: DeviceCode) -> str:
     if not code.rollouts:
         return "This model has no rollouts: its accelerations take a solver."
     methods = " and ".join(f"`{symbol}` (`{method}` of `sf.simulate`)" for method, symbol in code.rollouts.items())
-    return f"Rollouts: {methods}."
+    return (
+        f"Rollouts: {methods}. They take `steps` steps of `dt` from `q0`, `v0`, `t0`, with the inputs `u` of each\n"
+        "step held over it, and write each `every`-th state into `q` and `v`. A step that is too long for the method is\n"
+        "not noticed: compare with a shorter one."
+    )
 
 
 def _declared(code: DeviceCode) -> list[tuple[str, str, list[str]]]:

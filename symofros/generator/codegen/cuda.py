@@ -55,7 +55,8 @@ def device_code(
         )
         for function, kernel in zip(functions, kernels, strict=True)
     ]
-    text = Template(native_text("cuda/kernels.cu.in")).substitute(
+    routines = "\n".join([*_called(texts), trigonometry.on_device(precision)])
+    head = Template(native_text("cuda/kernels.cu.in")).substitute(
         title=comment(record.name),
         precision=precision,
         generator=generator,
@@ -63,15 +64,14 @@ def device_code(
         operations=operations_text(program),
         block=BLOCK,
         real=_REAL[precision],
-        functions="",
+        routines=routines,
     )
-    routines = "\n".join([*_called(texts), trigonometry.on_device(precision)])
     rollouts = {}
     if any(function.name == "forward_dynamics" for function in functions):
         texts.append(_on_device(_rollout(name, record, functions, precision)))
         rollouts = {method: f"{name}_rollout_{suffix}" for method, suffix in ROLLOUTS.items()}
     prepare = InterpretedKernel(program, program.functions[0]).prepare
-    whole = "\n\n".join([_on_device(text + routines), *texts])
+    whole = "\n\n".join([_on_device(head), *texts])
     return DeviceCode(whole, precision, tuple(kernels), rollouts, prepare)
 
 

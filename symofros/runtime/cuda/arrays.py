@@ -6,6 +6,7 @@ Others give and take ours by `__cuda_array_interface__` (CuPy, PyTorch, JAX, Num
 from __future__ import annotations
 
 import ctypes
+from contextlib import suppress
 from dataclasses import dataclass
 from math import prod
 from typing import Any
@@ -13,7 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from symofros.errors import Problem, ShapeError
+from symofros.errors import Problem, ShapeError, SymofrosError
 from symofros.runtime.cuda.driver import Driver
 
 _CUDA, _FLOAT, _DEFAULT_STREAM = 2, 2, 1
@@ -54,9 +55,10 @@ class DeviceArray:
         self.address = driver.allocate(prod(shape) * self.dtype.itemsize)
 
     def __del__(self) -> None:
-        """Free the memory."""
-        if hasattr(self, "address"):
-            self._driver.free(self.address)
+        """Free the memory; at the end of the process the driver may have done so."""
+        with suppress(SymofrosError):
+            if hasattr(self, "address"):
+                self._driver.free(self.address)
 
     @property
     def __cuda_array_interface__(self) -> dict[str, Any]:

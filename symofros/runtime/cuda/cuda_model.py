@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.functions import FRAME_FUNCTIONS, MODEL_FUNCTIONS
 from symofros.errors import Problem, ShapeError, SymofrosError, UnknownNameError, did_you_mean
 from symofros.runtime.calls.kernel import Array, BatchOptions, Precision
 from symofros.runtime.cuda.arrays import DeviceArray, Placed, Strided, StridedSequence, placed
@@ -70,8 +71,9 @@ class CudaModel:
             UnknownNameError: There is no such function or frame.
             SymofrosError: A solver finishes the function.
         """
-        key = (name, frame)
+        key = (name, self.record.frame_aliases.get(frame, frame))
         if key not in self._codes:
+            self._check_names(*key)
             code = self._make(key, self.precision)
             if not code.kernels:
                 raise SymofrosError(
@@ -84,6 +86,15 @@ class CudaModel:
                 )
             self._codes[key] = code
         return self._codes[key]
+
+    def _check_names(self, name: str, frame: str) -> None:
+        known = FRAME_FUNCTIONS if frame else MODEL_FUNCTIONS
+        for what, given, names in (("function", name, known), ("frame", frame, ("", *self.record.frame_names))):
+            if given not in names:
+                listed = ", ".join(filter(None, names[:12]))
+                what = f"model '{self.record.name}': no {what} '{given:.60}'"
+                remedy = did_you_mean(given, names) or "functions of frames are called with their frame, others without"
+                raise UnknownNameError(Problem(what, given[:60], listed, remedy))
 
     def usage(self, name: str, frame: str = "", architecture: str = "") -> dict[str, KernelUsage]:
         """What the kernels of a function take of an architecture ("sm_90"); that of this machine by default.
@@ -113,7 +124,7 @@ class CudaModel:
             ShapeError: An input is missing or does not fit.
             SymofrosError: There is no graphics processor, or the function has no kernel.
         """
-        loaded, device = self._load((name, frame)), driver()
+        loaded, device = self._load((name, self.record.frame_aliases.get(frame, frame))), driver()
         kernel = loaded.code.kernels[0]
         given = self._placed({size[0]: size[1] for size in kernel.signature.inputs}, inputs, device)
         n = self._states(name, given)

@@ -174,6 +174,12 @@ def test_memory_that_runs_out_is_the_drivers_word(on_device: CudaModel, device: 
     assert device.name == "host 0"
 
 
+@pytest.mark.parametrize(("name", "frame"), [("nothing", ""), ("frame_pose", ""), ("frame_pose", "x"), ("bias", "tip")])
+def test_names_that_the_model_lacks_are_refused(on_device: CudaModel, name: str, frame: str) -> None:
+    with pytest.raises(UnknownNameError, match="no (function|frame) '"):
+        on_device.evaluate(name, frame, q=np.zeros(2))
+
+
 def test_functions_that_a_solver_finishes_have_no_kernel() -> None:
     with pytest.raises(SymofrosError, match="forward_dynamics has no kernel"):
         model("four_bar").cuda().code("forward_dynamics")
