@@ -110,8 +110,8 @@ def _rollouts_text(code: DeviceCode) -> str:
     methods = " and ".join(f"`{symbol}` (`{method}` of `sf.simulate`)" for method, symbol in code.rollouts.items())
     return (
         f"Rollouts: {methods}. They take `steps` steps of `dt` from `q0`, `v0`, `t0`, with the inputs `u` of each\n"
-        "step held over it, and write each `every`-th state into `q` and `v`. A step that is too long for the method is\n"
-        "not noticed: compare with a shorter one."
+        "step held over it, and write each `every`-th state into `q` and `v`. A step that is too long is not noticed:\n"
+        "compare with a shorter one."
     )
 
 
