@@ -1,8 +1,8 @@
 """Adjoints on the graph: the gradient of a weighted sum of edges in one sweep from the results to the inputs.
 
 Reverse mode: with y-bar = d(w . y)/dy of each node y, a node z = f(y, ...) adds (df/dy) z-bar to y-bar
-(docs/theory/linear.md, section 5). One sweep serves all inputs; it takes at most three operations for each one of the
-function, whatever the number of inputs, besides those of the function's own values that it reads.
+(docs/theory/linear.md, section 5). One sweep serves all inputs; it takes at most four operations for each one of the
+function, its own values among them, whatever the number of inputs.
 """
 
 from __future__ import annotations

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from symofros.base.functions import FUNCTIONS
 from symofros.base.model_function import cotangents
 from symofros.errors import Problem, ShapeError
-from symofros.runtime.calls.kernel import Array
+from symofros.runtime.calls.kernel import Array, Numbers
 from symofros.runtime.functions import ArrayLike, Functions
 
 
@@ -33,7 +34,13 @@ class AdjointFunctions(Functions):
     """Methods of a model that differentiate in reverse, or twice; arguments as in `Model`."""
 
     def vjp(
-        self, name: str, frame: str = "", *, par: ArrayLike | None = None, **arrays: ArrayLike | None
+        self,
+        name: str,
+        frame: str = "",
+        *,
+        par: ArrayLike | None = None,
+        out: Mapping[str, Numbers] | None = None,
+        **arrays: ArrayLike | None,
     ) -> dict[str, Array]:
         """Vector-Jacobian products of a function: the derivatives of the sum of cotangents times outputs.
 
@@ -44,6 +51,7 @@ class AdjointFunctions(Functions):
             name: Function that has such products, as "forward_dynamics"; `NAME_vjp` in the table of functions.
             frame: Frame of a frame function.
             par: Run-time parameters.
+            out: Arrays that receive products, by their names in `evaluate`: by_q, by_v, ...
             arrays: Inputs of the function by name, and cotangents, each of the shape of its output: `NAME_bar` of the
                 output NAME, of frame functions `NAME_WF_bar`. Cotangents that are left out are zero.
 
@@ -63,7 +71,7 @@ class AdjointFunctions(Functions):
         sizes = dict(signature.inputs)
         for group, output in cotangents(FUNCTIONS[name]).items():
             given[group] = self._flat(group, arrays.get(group), len(output.shape), sizes[group])
-        results = self.evaluate(f"{name}_vjp", frame, par=par, **given)
+        results = self.evaluate(f"{name}_vjp", frame, par=par, out=out, **given)
         return {label.removeprefix("by_"): value for (label, _), value in zip(signature.outputs, results, strict=True)}
 
     def inverse_dynamics_second_derivatives(

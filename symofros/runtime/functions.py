@@ -13,6 +13,7 @@ from symofros.base.arrays import real_array
 from symofros.base.functions import FRAME_FUNCTIONS, FUNCTIONS, INPUTS, MODEL_FUNCTIONS, generated_with
 from symofros.errors import ParameterError, Problem, ShapeError, SymofrosError, UnknownNameError, did_you_mean
 from symofros.runtime.beams import ElasticBeam
+from symofros.runtime.calls.bound import into
 from symofros.runtime.calls.kernel import Array, BatchOptions, Kernel, Numbers, Precision, Unit
 from symofros.runtime.calls.layout import by_columns, flat, states
 from symofros.runtime.calls.single import SingleCall, SingleCalls, single_call
@@ -192,7 +193,13 @@ class Functions:
         return self._kernels.get((name, frame)) or self._make(name, frame)
 
     def evaluate(
-        self, name: str, frame: str = "", *, par: ArrayLike | None = None, **inputs: ArrayLike | None
+        self,
+        name: str,
+        frame: str = "",
+        *,
+        par: ArrayLike | None = None,
+        out: Mapping[str, Numbers] | None = None,
+        **inputs: ArrayLike | None,
     ) -> list[Numbers]:
         """Any function by its name in the table of functions (`symofros/base/functions.py`).
 
@@ -200,14 +207,15 @@ class Functions:
             name: The function; most have a method of that name.
             frame: Frame of a frame function.
             par: Run-time parameters.
+            out: Arrays by names of outputs, which receive these and are returned; `bind` computes in place.
             inputs: The function's inputs by name; `t` is 0 and `u` the default inputs where they are left out.
 
         Returns:
             The function's outputs in the order of the table, each (..., *shape).
 
         Raises:
-            UnknownNameError: No such function, frame or input.
-            ShapeError: An input is missing or does not fit.
+            UnknownNameError: No such function, frame, input or output.
+            ShapeError: An input is missing, or an array does not fit.
         """
         public = self._frame(frame) if frame else ""
         kernel = self._kernel(name, public, "functions of frames are evaluated with their frame")
@@ -219,7 +227,8 @@ class Functions:
             if group not in values:
                 takes = ", ".join(FUNCTIONS[name].inputs)
                 raise ShapeError(Problem(f"{name}: no {group}", f"{', '.join(inputs) or 'nothing'}", takes, "add it"))
-        return self._call(name, public, values, par)
+        results = self._call(name, public, values, par)
+        return results if out is None else into(out, kernel.signature, results)
 
     def formulas(self, formulas: Sequence[Any], derivatives: bool = True) -> Kernel:
         """Formulas over the model's names, compiled: (q, v, u, t) -> values, and derivatives by q and by v.

@@ -11,7 +11,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from symofros.errors import Problem, ShapeError, UnknownNameError, did_you_mean
-from symofros.runtime.calls.kernel import Array, BatchKernel, Kernel, Signature
+from symofros.runtime.calls.kernel import Array, BatchKernel, Kernel, Numbers, Signature
 from symofros.runtime.calls.layout import columns
 
 Layout = Literal["rows", "columns"]
@@ -75,6 +75,33 @@ def bind(kernel: Kernel, par: Array, given: Mapping[str, Array], defaults: Mappi
     pre = kernel.prepare(par[None])
     read, written = _ordered(signature, arrays)
     return Bound(kernel.bind(pre, read, written), arrays, signature, (kernel, pre))
+
+
+def into(out: Mapping[str, Numbers], signature: Signature, results: list[Numbers]) -> list[Numbers]:
+    """Results of a plain call, copied into arrays of the caller's where there are some.
+
+    Args:
+        out: Arrays by names of outputs.
+        signature: Signature of the function.
+        results: What the call returned.
+
+    Raises:
+        UnknownNameError: The function has no such output.
+        ShapeError: An array is not a writeable, contiguous one of its output's shape and type; none is changed then.
+    """
+    named = dict(zip([name for name, _ in signature.outputs], results, strict=True))
+    for name, array in out.items():
+        if name not in named:
+            what, hint = f"{signature.name}: no output '{name}'", did_you_mean(name, named) or "leave it out"
+            raise UnknownNameError(Problem(what, ", ".join(named), "arrays receive outputs by these names", hint))
+        of = named[name]
+        kind = isinstance(array, np.ndarray) and array.dtype == of.dtype and bool(array.flags.carray)
+        if not kind or array.shape != of.shape:
+            rule = f"a writeable C-contiguous {of.dtype} array of shape {of.shape}"
+            raise _misfit(signature, name, _seen(array), rule, "pass np.empty(shape), or leave it out")
+    for name, array in out.items():
+        array[...] = named[name]
+    return [out.get(name, result) for name, result in named.items()]
 
 
 def bind_batch(

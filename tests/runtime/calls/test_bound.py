@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+from typing import Any
 
 import numpy as np
 import pytest
@@ -96,3 +97,29 @@ def test_read_only_arrays_are_refused() -> None:
 def test_unknown_names_are_refused(name: str, frame: str, arrays: dict[str, np.ndarray], message: str) -> None:
     with pytest.raises(sf.UnknownNameError, match=message):
         sf.compile(MODELS["double_pendulum"]).bind(name, frame, **arrays)
+
+
+def test_plain_calls_write_into_arrays_of_the_callers(rng: np.random.Generator) -> None:
+    m = model("double_pendulum")
+    q = np.array([m.random_state(rng)[0] for _ in range(3)])
+    M = np.full((3, m.nv, m.nv), np.nan)
+    (result,) = m.evaluate("mass_matrix", q=q, out={"M": M})
+    assert result is M
+    assert np.array_equal(M, m.mass_matrix(q))
+
+
+@pytest.mark.parametrize(
+    ("out", "words"),
+    [
+        ({"M": np.empty((2, 3))}, r"a writeable C-contiguous float64 array of shape \(2, 2\)"),
+        ({"M": np.empty((2, 2), np.float32)}, "float32 array"),
+        ({"M": np.empty((4, 2))[::2]}, "not contiguous or not writeable"),
+        ({"M": np.broadcast_to(0.0, (2, 2))}, "not contiguous or not writeable"),
+        ({"M": [[0.0, 0.0], [0.0, 0.0]]}, "list"),
+        ({"m": np.empty((2, 2))}, "no output 'm'"),
+    ],
+)
+def test_arrays_that_can_not_receive_an_output_are_refused_in_words(out: dict[str, Any], words: str) -> None:
+    m = model("double_pendulum")
+    with pytest.raises((sf.ShapeError, sf.UnknownNameError), match=words):
+        m.evaluate("mass_matrix", q=m.neutral(), out=out)
