@@ -14,11 +14,10 @@ from symofros.errors import DescriptionError, Problem, did_you_mean
 _Class = TypeVar("_Class", bound=type)
 _ATTRIBUTE = re.compile(r"^    (\w+): (.*(?:\n {8}.*)*)", re.MULTILINE)
 _UNIT = re.compile(r"\[([^\]]+)\]")
-# What other programs state of a beam, and this theory has not.
+# What other programs state of a beam under other names.
 _ABSENT: Mapping[str, str] = {
-    "EA": "beams do not stretch: leave it out, or put a prismatic joint with a spring at the end",
-    "GA": "sections do not shear: leave it out",
-    "kGA": "sections do not shear: leave it out",
+    "GA": "state GA_y and GA_z, with the correction of shear, of a rod with shear_y and shear_z; else leave it out",
+    "kGA": "state it as GA_y and GA_z, of a rod with shear_y and shear_z; else leave it out",
 }
 
 
