@@ -39,7 +39,9 @@ BARE = {
     "Acceleration": "a part of alpha_WL_L and a_WLo_L",
     "Wrench": "f_Lo_L and n_Lo_L of a link, of what it carries, or of its parent",
     "FrameState": "p_WF, R_WF, v_WFo_W, w_WF_W, a_WFo_W, alpha_WF_W of a constraint's frame, which it calls A or B",
-    "_Momentum": "linear momentum, and angular momentum about Lo, in L",
+    "RelativeMotion": "w_AL_L, v_ALo_L of a link in its parent, and the derivatives of their components",
+    "Variation": "changes of w_WL_L, alpha_WL_L, a_WLo_L per unit of a coordinate or a speed",
+    "Momentum": "linear momentum, and angular momentum about Lo, in L",
 }
 
 

@@ -61,12 +61,11 @@ def no_wrench(g: Graph) -> Wrench:
 
 def base_to_tip(kinematics: TreeKinematics, v_rate: Sequence[Edge], gravity: Vec3) -> list[LinkMotion]:
     """Velocity and acceleration of every link (eqs. 6-8)."""
-    g = kinematics.g
-    base = _link_motion(Vec3(g), Vec3(g), -gravity)
+    base = base_motion(gravity)
     motions: list[LinkMotion] = []
     for link in kinematics.links:
         parent = base if link.parent == BASE else motions[link.parent]
-        w, alpha, a = _across(g, link, parent, link.speed_rates(v_rate))
+        w, alpha, a = _across(link, parent, link.speed_rates(v_rate))
         alpha.named(f"alpha_WL_L[{link.name}]")
         motions.append(_link_motion(w, alpha, a.named(f"a_WLo_L[{link.name}]")))
     return motions
@@ -79,31 +78,58 @@ def velocities(kinematics: TreeKinematics) -> tuple[list[LinkMotion], list[Accel
         Each link with its velocity and no acceleration; and the bias acceleration of each joint: what it adds to the
         acceleration of its parent (eqs. 7, 8) at v' = 0, or at the stated rates of a prescribed motion.
     """
-    g, zero = kinematics.g, Vec3(kinematics.g)
-    base = _link_motion(zero, zero, zero)
+    zero = Vec3(kinematics.g)
+    base = base_motion(zero)
     motions: list[LinkMotion] = []
     biases: list[Acceleration] = []
     for link in kinematics.links:
         parent = base if link.parent == BASE else motions[link.parent]
-        w, alpha, a = _across(g, link, parent, link.speed_rates([ZERO] * kinematics.nv))
+        w, alpha, a = _across(link, parent, link.speed_rates([ZERO] * kinematics.nv))
         motions.append(_link_motion(w, zero, zero))
         biases.append(Acceleration(alpha, a))
     return motions, biases
 
 
-def _across(g: Graph, link: MovingLink, parent: LinkMotion, rates: Sequence[Edge]) -> tuple[Vec3, Vec3, Vec3]:
-    """From the parent's motion to the link's w, alpha, a."""
-    w_AL_L, v_ALo_L, w_AL_L_rate, v_ALo_L_rate = Vec3(g), Vec3(g), Vec3(g), Vec3(g)
+@dataclass(frozen=True)
+class RelativeMotion:
+    """Velocity of a link in its parent A, in L: w_AL_L [rad/s], v_ALo_L [m/s], and the rates of their components."""
+
+    w: Vec3
+    v: Vec3
+    w_rate: Vec3
+    v_rate: Vec3
+
+
+def relative_motion(link: MovingLink, rates: Sequence[Edge]) -> RelativeMotion:
+    """What the speeds of a joint and their rates make: sums of partial velocities."""
+    g = link.p_AL.g
+    w, v, w_rate, v_rate = Vec3(g), Vec3(g), Vec3(g), Vec3(g)
     for partial, speed, rate in zip(link.partial_velocities, link.speeds, rates, strict=True):
-        w_AL_L, v_ALo_L = w_AL_L + partial.w.scaled(speed), v_ALo_L + partial.v.scaled(speed)
-        w_AL_L_rate = w_AL_L_rate + (partial.w.scaled(rate) + partial.w_rate.scaled(speed))
-        v_ALo_L_rate = v_ALo_L_rate + (partial.v.scaled(rate) + partial.v_rate.scaled(speed))
+        w, v = w + partial.w.scaled(speed), v + partial.v.scaled(speed)
+        w_rate = w_rate + (partial.w.scaled(rate) + partial.w_rate.scaled(speed))
+        v_rate = v_rate + (partial.v.scaled(rate) + partial.v_rate.scaled(speed))
+    return RelativeMotion(w, v, w_rate, v_rate)
+
+
+def parent_acceleration(link: MovingLink, parent: LinkMotion) -> Vec3:
+    """Acceleration of the point of A where Lo is, in L."""
+    return link.R_AL.apply_inverse(parent.a_WLo_L + parent.U.times(link.p_AL))
+
+
+def _across(link: MovingLink, parent: LinkMotion, rates: Sequence[Edge]) -> tuple[Vec3, Vec3, Vec3]:
+    """From the parent's motion to the link's w, alpha, a."""
+    relative = relative_motion(link, rates)
     w_WA_L = link.R_AL.apply_inverse(parent.w_WL_L)
-    w = (w_WA_L + w_AL_L).named(f"w_WL_L[{link.name}]")
-    alpha = link.R_AL.apply_inverse(parent.alpha_WL_L) + (w_AL_L_rate + w_WA_L.cross(w_AL_L))
-    of_A = link.R_AL.apply_inverse(parent.a_WLo_L + parent.U.times(link.p_AL))
-    a = of_A + (v_ALo_L_rate + (w_WA_L + w).cross(v_ALo_L))
+    w = (w_WA_L + relative.w).named(f"w_WL_L[{link.name}]")
+    alpha = link.R_AL.apply_inverse(parent.alpha_WL_L) + (relative.w_rate + w_WA_L.cross(relative.w))
+    a = parent_acceleration(link, parent) + (relative.v_rate + (w_WA_L + w).cross(relative.v))
     return w, alpha, a
+
+
+def base_motion(gravity: Vec3) -> LinkMotion:
+    """Rest, with gravity as an upward acceleration."""
+    zero = Vec3(gravity.g)
+    return _link_motion(zero, zero, -gravity)
 
 
 def _link_motion(w: Vec3, alpha: Vec3, a: Vec3) -> LinkMotion:

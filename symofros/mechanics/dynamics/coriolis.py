@@ -7,7 +7,7 @@ from symofros.expr.substitute import substitute
 from symofros.expr.vector import Vec3
 from symofros.mechanics.dynamics.bodies.inertia import LinkInertia
 from symofros.mechanics.dynamics.bodies.rotors import MovingRotor
-from symofros.mechanics.dynamics.derivatives import by_inputs
+from symofros.mechanics.dynamics.derivatives.differentiation import by_inputs
 from symofros.mechanics.dynamics.jourdain import inertia_forces
 from symofros.mechanics.dynamics.mass_matrix import Matrix
 from symofros.mechanics.dynamics.momentum import coadjoint

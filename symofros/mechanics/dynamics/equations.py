@@ -1,282 +1,27 @@
-"""The equations of motion of one tree, each part formed when it is first needed."""
+"""All quantities of one tree that model functions return, each formed when it is first needed."""
 
 from __future__ import annotations
 
-import copy
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from functools import cached_property
 
-from symofros.errors import DescriptionError, Problem
 from symofros.expr.edges import ZERO, Edge
-from symofros.expr.graph import Graph
-from symofros.expr.packs.pack import EMPTY
-from symofros.expr.substitute import substitute
-from symofros.expr.vector import Vec3
-from symofros.mechanics.dynamics.acceleration import LinkMotion, Wrench, base_to_tip
-from symofros.mechanics.dynamics.applied.forces import applied_wrenches, generalized_forces, stored_energy
-from symofros.mechanics.dynamics.bodies.inertia import LinkInertia, inertia_inputs, link_inertias
-from symofros.mechanics.dynamics.bodies.rotors import MovingRotor, rotors_of
+from symofros.expr.ops import STOP_GRADIENT
+from symofros.mechanics.dynamics.applied.forces import stored_energy
+from symofros.mechanics.dynamics.bodies.inertia import inertia_inputs
 from symofros.mechanics.dynamics.centroidal import central_mass, centroidal_momentum, centroidal_rate
-from symofros.mechanics.dynamics.constraints.rows import Constraints, Row
-from symofros.mechanics.dynamics.constraints.wrenches import closure_wrenches, wrenches_on_links
 from symofros.mechanics.dynamics.coriolis import coriolis_matrix
-from symofros.mechanics.dynamics.derivatives import by_configuration, by_inputs
+from symofros.mechanics.dynamics.derivatives.differentiation import by_configuration, by_inputs
+from symofros.mechanics.dynamics.derivatives.recursion import inertia_force_derivatives, is_recursive
 from symofros.mechanics.dynamics.energy import kinetic_energy, potential_energy
-from symofros.mechanics.dynamics.forward.articulated import articulated_acceleration, is_local
-from symofros.mechanics.dynamics.forward.factors import Factors, SingularMassMatrixError
+from symofros.mechanics.dynamics.equations_of_motion import EquationsOfMotion
 from symofros.mechanics.dynamics.jourdain import inertia_forces
-from symofros.mechanics.dynamics.mass_matrix import Matrix, mass_matrix
+from symofros.mechanics.dynamics.mass_matrix import Matrix
 from symofros.mechanics.dynamics.momentum import coadjoint, momentum_rate
-from symofros.mechanics.dynamics.reactions import in_body_frames, prescribed_efforts, transmitted_wrenches
-from symofros.mechanics.dynamics.section_forces import section_forces
-from symofros.mechanics.kinematics.frames import FrameKinematics
-from symofros.mechanics.kinematics.links import TreeKinematics, tree_kinematics
-from symofros.mechanics.topology.tree import SpanningTree
-
-_DIVIDES = "forward dynamics divides by the inertia that each speed moves"
 
 
-class Equations:
-    """The equations of motion of one tree: M v' + h = Q, its energies and its frames.
-
-    Each property is formed when it is first needed, in one graph, so functions share what they have in common.
-    """
-
-    def __init__(self, tree: SpanningTree) -> None:
-        self.tree = tree
-        self.g = Graph()
-        self.nv = len(tree.coordinates.v)
-        self.nu = len(tree.coordinates.u)
-        self.efforts = tree.coordinates.efforts
-        # Prescribed motions are inputs that every function may depend on.
-        self.implicit_inputs = ("u",) if self.nu > self.efforts else ()
-
-    def fork(self) -> Equations:
-        """A copy with a graph of its own, in which the kinematics are formed; what else it forms, this one lacks."""
-        assert self.kinematics.g is self.g  # Formed once, for all copies.
-        kept = (self.tree, self.tree.coordinates, EMPTY)
-        return copy.deepcopy(self, {id(item): item for item in kept})
-
-    @cached_property
-    def kinematics(self) -> TreeKinematics:
-        """Kinematics of the tree."""
-        return tree_kinematics(self.g, self.tree)
-
-    @cached_property
-    def _inertias(self) -> tuple[list[LinkInertia], LinkInertia]:
-        return link_inertias(self.kinematics)
-
-    @cached_property
-    def rotors(self) -> list[MovingRotor]:
-        """Rotors and armatures."""
-        return rotors_of(self.kinematics)
-
-    @cached_property
-    def gravity(self) -> Vec3:
-        """Acceleration of gravity in the world."""
-        return self.kinematics.lowering.vector(self.tree.system.gravity)
-
-    @cached_property
-    def M(self) -> Matrix:
-        """Mass matrix (nv x nv)."""
-        return mass_matrix(self.kinematics, self._inertias[0], self.rotors)
-
-    @cached_property
-    def h(self) -> list[Edge]:
-        """Coriolis, centrifugal and gravity terms (nv)."""
-        return inertia_forces(self.kinematics, self._inertias[0], self.rotors, [ZERO] * self.nv, self.gravity)
-
-    @cached_property
-    def Q(self) -> list[Edge]:
-        """Generalized forces (nv)."""
-        return generalized_forces(self.kinematics, self.frames)
-
-    @cached_property
-    def v_rate(self) -> list[Edge]:
-        """The input a, as edges (nv)."""
-        return [self.g.input("a", i) for i in range(self.nv)]
-
-    @cached_property
-    def acceleration(self) -> list[Edge]:
-        """Acceleration v' = M^-1 (Q - h) (nv)."""
-        return self.factors.solve(self.force_minus_bias)
-
-    @property
-    def is_articulated(self) -> bool:
-        """Whether each joint concerns its link and its parent alone, rotors included."""
-        return all(is_local(self.kinematics, rotor) for rotor in self.rotors)
-
-    @cached_property
-    def articulated(self) -> list[Edge]:
-        """Acceleration v' by articulated bodies (nv).
-
-        Raises:
-            DescriptionError: As for `factors`; or not `is_articulated`.
-        """
-        if not self.is_articulated:
-            raise DescriptionError(
-                Problem(
-                    f"system '{self.tree.system.name}': forward dynamics by articulated bodies",
-                    "a rotor that is borne by another body than the parent of the joint that drives it",
-                    "a joint's speeds move its link, and rotors on its parent or on the base, alone",
-                    "choose Options(forward_dynamics='factors'), or 'auto'",
-                )
-            )
-        with self._refusing_singular():
-            inertias, _ = link_inertias(self.kinematics, regrouped=False)
-            return articulated_acceleration(self.kinematics, inertias, self.rotors, self.gravity, self.Q)
-
-    @cached_property
-    def factors(self) -> Factors:
-        """Factors of M.
-
-        Raises:
-            DescriptionError: A speed moves no mass whatever the state, and so has no acceleration.
-        """
-        with self._refusing_singular():
-            return Factors(self.g, self.M)
-
-    @contextmanager
-    def _refusing_singular(self) -> Iterator[None]:
-        """Turns a mass matrix that is singular in every state into a DescriptionError that names the speed."""
-        try:
-            yield
-        except SingularMassMatrixError as error:
-            self.refuse_massless()
-            name = self.tree.coordinates.v[error.speed]
-            raise DescriptionError(
-                Problem(
-                    f"system '{self.tree.system.name}': speed '{name}' moves nothing that those after it do not"
-                    " move alike",
-                    "M is singular in every state",
-                    f"{_DIVIDES} alone",
-                    "give the bodies between mass, turn one of the axes, or bind it by a constraint",
-                )
-            ) from None
-
-    def refuse_massless(self) -> None:
-        """Raise DescriptionError for a speed that moves no mass."""
-        for k, name in enumerate(self.tree.coordinates.v):
-            if self.M[k][k] == ZERO:
-                raise DescriptionError(
-                    Problem(
-                        f"system '{self.tree.system.name}': speed '{name}' moves no mass",
-                        "its row of M is zero",
-                        _DIVIDES,
-                        "give it an inertia, or bind it by a constraint",
-                    )
-                )
-
-    @cached_property
-    def force_minus_bias(self) -> list[Edge]:
-        """Force minus bias, Q - h (nv)."""
-        return [self.g.sub(Q, h) for Q, h in zip(self.Q, self.h, strict=True)]
-
-    @cached_property
-    def constraints(self) -> list[Row]:
-        """Constraint equations, one row a condition (nc)."""
-        return Constraints(self.frames).rows()
-
-    @property
-    def phi(self) -> list[Edge]:
-        """Residual phi of the position of each condition; zero for conditions on speeds (nc)."""
-        return [row.phi for row in self.constraints]
-
-    @property
-    def constraint_rate(self) -> list[Edge]:
-        """Rate G v - b of each condition (nc)."""
-        return [row.rate for row in self.constraints]
-
-    @property
-    def G(self) -> Matrix:
-        """Constraint Jacobian (nc x nv)."""
-        return [list(row.G) for row in self.constraints]
-
-    @property
-    def gamma(self) -> list[Edge]:
-        """Right-hand side of G v' = gamma (nc)."""
-        return [row.gamma for row in self.constraints]
-
-    @cached_property
-    def gamma_baumgarte(self) -> list[Edge]:
-        """Right-hand side with Baumgarte's terms: gamma - 2 alpha (G v - b) - beta^2 phi (nc)."""
-        g, nc = self.g, len(self.constraints)
-        stabilised = []
-        for i, row in enumerate(self.constraints):
-            alpha, beta = g.input("gains", i), g.input("gains", nc + i)
-            damped = g.mul(g.add(alpha, alpha), row.rate)
-            stabilised.append(g.sub(g.sub(row.gamma, damped), g.mul(g.mul(beta, beta), row.phi)))
-        return stabilised
-
-    @cached_property
-    def _wrenches(self) -> tuple[Matrix, Matrix]:
-        on_second, on_first = closure_wrenches(self.frames, self.constraints)
-        return [list(wrench) for wrench in on_second], [list(wrench) for wrench in on_first]
-
-    @property
-    def wrenches_on_second(self) -> Matrix:
-        """Force and moment of each constraint on its second frame (nw x 6)."""
-        return self._wrenches[0]
-
-    @property
-    def wrenches_on_first(self) -> Matrix:
-        """Force and moment of each constraint on its first frame (nw x 6)."""
-        return self._wrenches[1]
-
-    @cached_property
-    def _motions(self) -> list[LinkMotion]:
-        return base_to_tip(self.kinematics, self.v_rate, self.gravity)
-
-    @cached_property
-    def _transmitted(self) -> list[Wrench]:
-        acting, _ = applied_wrenches(self.kinematics, self.frames)
-        by_constraints = wrenches_on_links(self.kinematics, self.frames, self.constraints)
-        lists = [by_constraints] if acting is None else [acting, by_constraints]
-        return transmitted_wrenches(self.kinematics, self.rotors, self._motions, self.v_rate, lists)
-
-    @property
-    def joint_wrenches(self) -> Matrix:
-        """Wrench that each joint transmits to its body (nj x 6)."""
-        return in_body_frames(self.kinematics, self._transmitted)
-
-    @property
-    def section_forces(self) -> Matrix:
-        """Force and moment at the stations of the elastic beams, in the axes of the section (nf x 6)."""
-        return list(section_forces(self.kinematics, self.frames, self._motions, self.v_rate, self._transmitted))
-
-    @property
-    def prescribed_efforts(self) -> list[Edge]:
-        """Effort of the drive of each prescribed speed (ns)."""
-        return prescribed_efforts(self.kinematics, self.rotors, self._motions, self.v_rate, self._transmitted)
-
-    @cached_property
-    def inverse_dynamics(self) -> list[Edge]:
-        """Inverse dynamics tau = M a + h - Q(q, v, 0): the inputs' share of the forces for an acceleration a (nv)."""
-        total = inertia_forces(self.kinematics, self._inertias[0], self.rotors, self.v_rate, self.gravity)
-        passive = substitute(self.g, self.Q, {self.g.input("u", i): ZERO for i in range(self.efforts)})
-        return [self.g.sub(inertial, applied) for inertial, applied in zip(total, passive, strict=True)]
-
-    def unconstrained_residual(self, a: Sequence[Edge]) -> list[Edge]:
-        """Residual M a + h - Q at an acceleration a, without constraints (nv)."""
-        total = inertia_forces(self.kinematics, self._inertias[0], self.rotors, a, self.gravity)
-        return [self.g.sub(inertial, applied) for inertial, applied in zip(total, self.Q, strict=True)]
-
-    @cached_property
-    def residual(self) -> list[Edge]:
-        """Residual M a + h - Q - G^T lam, then G a - gamma: zero for the motion that the inputs produce (nv + nc)."""
-        g, a = self.g, self.v_rate
-        forces = self.unconstrained_residual(a)
-        for i, row in enumerate(self.constraints):
-            lam = g.input("lam", i)
-            forces = [g.sub(force, g.mul(lam, entry)) for force, entry in zip(forces, row.G, strict=True)]
-        rates = (g.sum(g.mul(x, y) for x, y in zip(row.G, a, strict=True)) for row in self.constraints)
-        return forces + [g.sub(rate, row.gamma) for rate, row in zip(rates, self.constraints, strict=True)]
-
-    @property
-    def dynamic_residual(self) -> list[Edge]:
-        """Residual M a + h - Q - G^T lam (nv)."""
-        return self.residual[: self.nv]
+class Equations(EquationsOfMotion):
+    """The equations of motion of one tree with their derivatives, momenta and energies."""
 
     # Derivatives, along the manifold of q where they are by q.
 
@@ -296,15 +41,56 @@ class Equations:
         """Derivatives of some edges by the run-time parameters."""
         return by_inputs(self.kinematics, edges, "par", len(self.tree.coordinates.par))
 
-    @cached_property
-    def residual_by_q(self) -> Matrix:
-        """Derivative of the residual by q (nv + nc x nv)."""
-        return self.by_q(self.residual)
+    def _slopes(self, balance: Callable[[Sequence[Edge]], list[Edge]], a: Sequence[Edge]) -> tuple[Matrix, Matrix]:
+        """Derivatives of a balance by q and by v at constant a, those of rigid trees' inertia forces by recursion.
+
+        Args:
+            balance: Gives the balance for the inertia forces, in whose first rows they are added.
+            a: Acceleration (nv).
+        """
+        if not is_recursive(self.kinematics, self.rotors):
+            edges = balance(self.inertia_forces(a))
+            return self.by_q(edges), self.by_v(edges)
+        inertial = inertia_force_derivatives(self.kinematics, self._mass_matrix, self._inertias[0], a, self.gravity)
+        others = balance([ZERO] * self.nv)
+        by_q, by_v = self.by_q(others), self.by_v(others)
+        for slopes, rows in zip((by_q, by_v), inertial, strict=True):
+            slopes[: self.nv] = [
+                [self.g.add(x, y) for x, y in zip(row, other, strict=True)]
+                for row, other in zip(rows, slopes[: self.nv], strict=True)
+            ]
+        return by_q, by_v
 
     @cached_property
+    def _residual_slopes(self) -> tuple[Matrix, Matrix]:
+        return self._slopes(self._less_forces, self.v_rate)
+
+    @property
+    def residual_by_q(self) -> Matrix:
+        """Derivative of the residual by q (nv + nc x nv)."""
+        return self._residual_slopes[0]
+
+    @property
     def residual_by_v(self) -> Matrix:
         """Derivative of the residual by v (nv + nc x nv)."""
-        return self.by_v(self.residual)
+        return self._residual_slopes[1]
+
+    @cached_property
+    def _slopes_in_motion(self) -> tuple[Matrix, Matrix]:
+        """Derivatives of M a + h - Q by q and v, with a the acceleration that the forces make."""
+        return self._slopes(self._less_applied, self._held_acceleration)
+
+    @cached_property
+    def _held_acceleration(self) -> list[Edge]:
+        """The acceleration, which derivatives take for a constant (nv)."""
+        return [self.g.call(STOP_GRADIENT, edge) for edge in self.acceleration]
+
+    def slopes_in_motion(self, name: str) -> Matrix:
+        """Derivative "by_q", "by_v", "by_u" or "by_par" of M a + h - Q at the acceleration that the forces make."""
+        if name in ("by_q", "by_v"):
+            return self._slopes_in_motion[name == "by_v"]
+        edges = self._less_applied(self.inertia_forces(self._held_acceleration))
+        return self.by_u(edges) if name == "by_u" else self.by_par(edges)
 
     @cached_property
     def residual_by_u(self) -> Matrix:
@@ -322,14 +108,18 @@ class Equations:
         return self.by_q(self.constraint_rate)
 
     @cached_property
+    def _inverse_slopes(self) -> tuple[Matrix, Matrix]:
+        return self._slopes(self._less_passive, self.v_rate)
+
+    @property
     def inverse_dynamics_by_q(self) -> Matrix:
         """Derivative of the inverse dynamics by q (nv x nv)."""
-        return self.by_q(self.inverse_dynamics)
+        return self._inverse_slopes[0]
 
-    @cached_property
+    @property
     def inverse_dynamics_by_v(self) -> Matrix:
         """Derivative of the inverse dynamics by v (nv x nv)."""
-        return self.by_v(self.inverse_dynamics)
+        return self._inverse_slopes[1]
 
     @cached_property
     def inverse_dynamics_by_par(self) -> Matrix:
@@ -390,11 +180,3 @@ class Equations:
         """Potential energy: of the weight, and what forces store."""
         weight = potential_energy(self.frames.kinematics, *self._inertias, self.gravity)
         return self.g.add(weight, stored_energy(self.kinematics, self.frames))
-
-    @cached_property
-    def frames(self) -> FrameKinematics:
-        """Kinematics of the frames, at their deflected places."""
-        is_deflected = all(beam.order > 0 for beam in self.kinematics.beams)
-        return FrameKinematics(
-            self.kinematics if is_deflected else tree_kinematics(self.g, self.tree, deflected_tips=True)
-        )

@@ -9,7 +9,7 @@ from symofros.errors import DescriptionError, Problem, UnknownNameError, did_you
 from symofros.expr.derivative import directional
 from symofros.expr.edges import ONE, Edge
 from symofros.expr.program import Function, Output, Program
-from symofros.mechanics.dynamics.derivatives import by_configuration, by_inputs
+from symofros.mechanics.dynamics.derivatives.differentiation import by_configuration, by_inputs
 from symofros.mechanics.kinematics.links import TreeKinematics
 
 

@@ -6,7 +6,7 @@ from functools import cached_property
 
 from symofros.expr.edges import Edge
 from symofros.expr.vector import Mat3, Vec3
-from symofros.mechanics.dynamics.derivatives import Matrix
+from symofros.mechanics.dynamics.derivatives.differentiation import Matrix
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.kinematics.frames import Pose
 from symofros.mechanics.topology.tree import NamedFrame

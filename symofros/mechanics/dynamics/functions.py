@@ -9,17 +9,16 @@ from typing import Any, NamedTuple
 from symofros.base.functions import FUNCTIONS, INPUTS, ModelFunction, OutputArray, size_of
 from symofros.base.model_function import cotangents
 from symofros.expr.edges import ONE, ZERO, Edge
-from symofros.expr.ops import STOP_GRADIENT
 from symofros.expr.packs.pack import WIDTH
 from symofros.expr.program import Function, Output, Program, Solver
 from symofros.mechanics.beams.integrals import at_middle
-from symofros.mechanics.dynamics.adjoints import weighted_derivatives
 from symofros.mechanics.dynamics.constraints.measures import measures_of
 from symofros.mechanics.dynamics.constraints.rows import retracted
 from symofros.mechanics.dynamics.constraints.wrenches import acts_on_bodies
+from symofros.mechanics.dynamics.derivatives.adjoints import weighted_derivatives
+from symofros.mechanics.dynamics.derivatives.second_derivatives import hessian_vector_product, second_derivatives
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.dynamics.frame_equations import FrameEquations
-from symofros.mechanics.dynamics.second_derivatives import hessian_vector_product, second_derivatives
 from symofros.mechanics.topology.tree import prescribed_speeds, section_names
 
 
@@ -177,10 +176,7 @@ def _forward_slopes(e: Equations, row: ModelFunction, methods: Methods, known: M
     """Derivatives of forward dynamics: da/dx = -M^-1 dR/dx at the motion that a = M^-1 (Q - h) makes."""
     if e.constraints:
         return _forward_slopes_by_routine(e, row, known)
-    # For the slopes of R(x, a), a is a value of its own.
-    a = [e.g.call(STOP_GRADIENT, edge) for edge in e.acceleration]
-    residual = e.unconstrained_residual(a)
-    slopes = [_output(array, getattr(e, array.name)(residual), known) for array in row.outputs]
+    slopes = [_output(array, e.slopes_in_motion(array.name), known) for array in row.outputs]
     if e.factors.entries * sum(output.shape[1] for output in slopes) > _MOST_STEPS * WIDTH:
         return _forward_slopes_by_routine(e, row, known)
     outputs = [_matrix(output.name, (e.nv, output.shape[1]), _solved(e, output)) for output in slopes]

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from symofros.expr.edges import ONE, ZERO, Edge
-from symofros.expr.packs.combine import linear_combination
-from symofros.expr.packs.pack import EMPTY, WIDTH, SignedPack
+from symofros.expr.edges import ZERO, Edge
+from symofros.expr.packs.pack import WIDTH, SignedPack
 from symofros.expr.vector import Vec3
 from symofros.mechanics.dynamics.bodies.beams import added_momentum, modal_mass
 from symofros.mechanics.dynamics.bodies.inertia import LinkInertia, deformed, inertia_in_parent
 from symofros.mechanics.dynamics.bodies.rotors import MovingRotor
+from symofros.mechanics.dynamics.wrench_packs import NO_WRENCHES, virtual_powers, with_wrench, wrenches_in_parent
 from symofros.mechanics.kinematics.joint import PartialVelocity
 from symofros.mechanics.kinematics.links import MovingLink, TreeKinematics, speeds_by_path
 from symofros.mechanics.topology.tree import BASE
@@ -19,7 +19,7 @@ Matrix = list[list[Edge]]
 
 
 @dataclass(frozen=True)
-class _Momentum:
+class Momentum:
     """Momentum that a unit rate of one speed gives to everything beyond its joint.
 
     Attributes:
@@ -38,7 +38,40 @@ class _Momentum:
     added: tuple[Vec3, Vec3] | None
 
 
-def mass_matrix(kinematics: TreeKinematics, inertias: list[LinkInertia], rotors: list[MovingRotor]) -> Matrix:
+@dataclass(frozen=True)
+class CarriedMomenta:
+    """Momenta of up to WIDTH speeds on one path to the base, in packs.
+
+    Attributes:
+        momenta: The momenta, that of the outermost speed first.
+        lanes: Lane of each speed.
+        at_links: Index of each link on the way, from the parent of the outermost on, with the six components of the
+            momenta there: linear, then angular about its origin, in its frame.
+    """
+
+    momenta: list[Momentum]
+    lanes: dict[int, int]
+    at_links: list[tuple[int, list[SignedPack]]]
+
+
+@dataclass(frozen=True)
+class MassMatrix:
+    """M and what it is made of.
+
+    Attributes:
+        entries: M (nv x nv), symmetric.
+        composites: Inertia of the composite body of each link, about its origin.
+        momenta: Momentum of each speed by the index of the speed.
+        carried: Momenta on their way to the base.
+    """
+
+    entries: Matrix
+    composites: list[LinkInertia]
+    momenta: dict[int, Momentum]
+    carried: list[CarriedMomenta]
+
+
+def mass_matrix(kinematics: TreeKinematics, inertias: list[LinkInertia], rotors: list[MovingRotor]) -> MassMatrix:
     """M, from the inertia of everything beyond each joint.
 
     Column by column: a unit rate of speed k gives the composite body beyond its joint a momentum; M[j][k] is that
@@ -48,28 +81,28 @@ def mass_matrix(kinematics: TreeKinematics, inertias: list[LinkInertia], rotors:
         kinematics: Kinematics of the tree.
         inertias: Inertia of each link; not changed.
         rotors: Rotors that spin in links.
-
-    Returns:
-        nv rows of nv edges, symmetric.
     """
     M: Matrix = [[ZERO] * kinematics.nv for _ in range(kinematics.nv)]
-    momenta = _own_blocks(kinematics, M, inertias)
+    composites, momenta = _own_blocks(kinematics, M, inertias)
+    carried = []
     for path in speeds_by_path(kinematics):
         # Momenta of joints on the base have no joint left to cross.
         outer = [momenta[k] for k in path if kinematics.links[momenta[k].link].parent != BASE]
         for at in range(0, len(outer), WIDTH):
-            _carry_to_base(kinematics, M, outer[at : at + WIDTH])
+            carried.append(_carry_to_base(kinematics, M, outer[at : at + WIDTH]))
     for rotor in rotors:
         if rotor.k is not None:
             _add_rotor(kinematics, M, rotor, rotor.k)
-    return M
+    return MassMatrix(M, composites, momenta, carried)
 
 
-def _own_blocks(kinematics: TreeKinematics, M: Matrix, inertias: list[LinkInertia]) -> dict[int, _Momentum]:
-    """The entries between speeds of one joint; the momentum of each speed."""
+def _own_blocks(
+    kinematics: TreeKinematics, M: Matrix, inertias: list[LinkInertia]
+) -> tuple[list[LinkInertia], dict[int, Momentum]]:
+    """The entries between speeds of one joint; inertias of the composite bodies, and the momentum of each speed."""
     composite = list(inertias)
     g = kinematics.g
-    momenta: dict[int, _Momentum] = {}
+    momenta: dict[int, Momentum] = {}
     beam_at_tip = {beam.tip: beam for beam in kinematics.beams if beam.tip is not None}
     # Momenta of what a beam's sections before the tip carry, by speed; those links come after the tip.
     at_stations: dict[int, tuple[Vec3, Vec3]] = {}
@@ -91,13 +124,13 @@ def _own_blocks(kinematics: TreeKinematics, M: Matrix, inertias: list[LinkInerti
             added = added_momentum(kinematics, beam_at_tip[i], k) if i in beam_at_tip else None
             if added is not None and row in at_stations:
                 added = added[0] + at_stations[row][0], added[1] + at_stations[row][1]
-            momenta[row] = _Momentum(i, row, f, n, added)
+            momenta[row] = Momentum(i, row, f, n, added)
         if link.parent != BASE:
             composite[link.parent] = composite[link.parent] + inertia_in_parent(link, body)
-    return momenta
+    return composite, momenta
 
 
-def _carry_to_base(kinematics: TreeKinematics, M: Matrix, momenta: list[_Momentum]) -> None:
+def _carry_to_base(kinematics: TreeKinematics, M: Matrix, momenta: list[Momentum]) -> CarriedMomenta:
     """Carry momenta to the base, all columns at once, and enter their virtual power at every joint on the way.
 
     Args:
@@ -106,49 +139,29 @@ def _carry_to_base(kinematics: TreeKinematics, M: Matrix, momenta: list[_Momentu
         momenta: Momenta on one path to the base, the outermost first.
     """
     lane = {momentum.k: WIDTH - 1 - at for at, momentum in enumerate(momenta)}  # Ascending, as in a row of M.
-    wrench: list[SignedPack] = [(ONE, EMPTY)] * 6
+    wrench = NO_WRENCHES
     i, waiting = momenta[0].link, list(momenta)
+    at_links: list[tuple[int, list[SignedPack]]] = []
     while kinematics.links[i].parent != BASE:
         late: list[tuple[int, Vec3, Vec3]] = []
         while waiting and waiting[0].link == i:
             momentum = waiting.pop(0)
             if momentum.added is None:
-                wrench = _with_momentum(wrench, lane[momentum.k], momentum.f, momentum.n)
+                wrench = with_wrench(wrench, lane[momentum.k], momentum.f, momentum.n)
             else:
                 late.append((momentum.k, *_across_beam(kinematics.links[i], momentum.f, momentum.n, momentum.added)))
-        wrench = _momenta_in_parent(kinematics, kinematics.links[i], wrench)
+        wrench = wrenches_in_parent(kinematics.links[i], wrench)
         for k, f, n in late:
-            wrench = _with_momentum(wrench, lane[k], f, n)
+            wrench = with_wrench(wrench, lane[k], f, n)
         i = kinematics.links[i].parent
+        at_links.append((i, wrench))
         link = kinematics.links[i]
         for j, partial in enumerate(link.free_partial_velocities):
-            sign, power = linear_combination(kinematics.g, list(zip((*partial.v, *partial.w), wrench, strict=True)))
+            sign, power = virtual_powers(partial, wrench)
             for k, at in lane.items():
                 if power.lanes[at] != ZERO:
                     _set(M, link.first_speed + j, k, kinematics.g.mul(sign, power.lanes[at]))
-
-
-def _with_momentum(wrench: list[SignedPack], lane: int, f: Vec3, n: Vec3) -> list[SignedPack]:
-    return [
-        (sign, pack.with_lane(lane, edge if sign == ONE else -edge))
-        for (sign, pack), edge in zip(wrench, (*f, *n), strict=True)
-    ]
-
-
-def _momenta_in_parent(kinematics: TreeKinematics, link: MovingLink, wrench: list[SignedPack]) -> list[SignedPack]:
-    """Momenta about Lo in L -> about Ao in A: f_A = R f, n_A = R n + p x f_A."""
-    g = kinematics.g
-    f, n = wrench[:3], wrench[3:]
-    for factor in reversed(link.R_AL.factors):
-        rows = [factor.matrix(g).row(i) for i in range(3)]
-        f = [linear_combination(g, list(zip(row, f, strict=True))) for row in rows]
-        n = [linear_combination(g, list(zip(row, n, strict=True))) for row in rows]
-    p = link.p_AL
-    return f + [
-        linear_combination(g, [(ONE, n[0]), (p.y, f[2]), (-p.z, f[1])]),
-        linear_combination(g, [(ONE, n[1]), (p.z, f[0]), (-p.x, f[2])]),
-        linear_combination(g, [(ONE, n[2]), (p.x, f[1]), (-p.y, f[0])]),
-    ]
+    return CarriedMomenta(momenta, lane, at_links)
 
 
 def _across_beam(link: MovingLink, f: Vec3, n: Vec3, added: tuple[Vec3, Vec3]) -> tuple[Vec3, Vec3]:

@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 
 from symofros.expr.derivative import along, directional
 from symofros.expr.edges import ONE, ZERO, Edge
-from symofros.mechanics.dynamics.adjoints import weighted_derivatives
 from symofros.mechanics.dynamics.applied.forces import rates_per_speed
-from symofros.mechanics.dynamics.derivatives import Matrix
+from symofros.mechanics.dynamics.derivatives.adjoints import weighted_derivatives
 from symofros.mechanics.dynamics.equations import Equations
+from symofros.mechanics.dynamics.mass_matrix import Matrix
 from symofros.mechanics.kinematics.links import TreeKinematics
 
 Tensor = list[list[list[Edge]]]
