@@ -18,7 +18,7 @@ from validation.__main__ import app as validation
 
 # Commands of symofros that are cheap, unless an option asks for more.
 CHEAP = {"--version", "cache", "compile", "equilibrium", "export", "info", "simulate"}
-COSTLY = re.compile(r"--view|window|fmu|--record|--realtime|square\.yaml|--method|\.parquet|diagram\.yaml")
+COSTLY = re.compile(r"--view|window|fmu|wasm|--record|--realtime|square\.yaml|--method|\.parquet|diagram\.yaml")
 # Other programs: run, or left to others for a reason.
 RUN = {"cp", "mkdir"}
 LEFT = {
@@ -31,6 +31,8 @@ LEFT = {
     "gcc": "tests/exports/c builds and runs exported packages",
     "ctest": "tests/exports/c builds and runs exported packages",
     "example": "tests/exports/c builds and runs exported packages",
+    "node": "tests/exports/wasm runs exported modules",
+    "chromium": "tests/exports/wasm opens exported pages",
     "nvcc": "tests/exports/cuda runs the example with kernels as C++",
     "sphinx": "tests/docs/test_site.py builds the site",
     "cmake": "tests/exports/c builds and runs exported packages",

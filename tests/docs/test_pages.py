@@ -18,7 +18,7 @@ from tests.docs.pages import ELSEWHERE, GIVEN, ROOT, Block, blocks, pages
 from tests.docs.shell import commands, try_out
 from validation.campaigns import plan
 
-LANGUAGES = {"python", "sh", "yaml", "toml", "xml", "c", "text"}
+LANGUAGES = {"python", "sh", "yaml", "toml", "xml", "c", "js", "text"}
 SCHEMA = json.loads((ROOT / "symofros/description/yaml/schema.json").read_text())
 WITH_CODE = [page for page in pages() if blocks(page) and page not in ELSEWHERE and "tutorial/" not in page]
 

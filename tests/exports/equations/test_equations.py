@@ -15,6 +15,7 @@ from typer.testing import CliRunner
 import symofros as sf
 from reference_models import MODELS
 from symofros.__main__ import app
+from tests.models import sampled
 
 SMALL = (
     "pendulum",
@@ -35,6 +36,9 @@ SMALL = (
     "andrews_squeezer",
 )
 
+# In every run: rates of angles, inputs, spatial motion, friction, a beam, loops, a condition on speeds.
+FEW = ("double_pendulum", "cart_pole", "gyroscope", "friction_arm", "spinning_beam", "four_bar", "sleigh")
+
 
 @cache
 def readable(name: str) -> sf.ReadableEquations:
@@ -47,7 +51,7 @@ def function(equations: sf.ReadableEquations) -> Callable[..., tuple[Any, ...]]:
     return next(value for value in names.values() if type(value).__name__ == "function")
 
 
-@pytest.mark.parametrize("name", SMALL)
+@pytest.mark.parametrize("name", sampled(SMALL, FEW))
 def test_the_source_gives_the_compiled_models_numbers(name: str, rng: np.random.Generator) -> None:
     model = sf.compile(MODELS[name])
     written = function(readable(name))
