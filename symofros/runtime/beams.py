@@ -30,6 +30,12 @@ _CRITICAL = 1e-9
 _LARGEST_SLOPE = math.pi
 
 
+def slope_error(square: float) -> float:
+    """Estimated error of second-order theory, relative to the deflection, from the square of the largest slope (24)."""
+    error = native_number(_JUDGE, "SYM_BEAM_SLOPE_ERROR") * square
+    return error / math.sqrt(1.0 + native_number(_JUDGE, "SYM_BEAM_LARGE_SLOPE") * square)
+
+
 @dataclass(frozen=True)
 class BeamBending:
     """How far one beam is bent, and the error of second-order theory that follows.
@@ -204,8 +210,7 @@ class ElasticBeam:
 
     def _error(self, yaw: float, pitch: float, slope: float, twist: float) -> float:
         """Estimated error from squares of the largest angles (24), (25)."""
-        error = native_number(_JUDGE, "SYM_BEAM_SLOPE_ERROR") * slope
-        error /= math.sqrt(1.0 + native_number(_JUDGE, "SYM_BEAM_LARGE_SLOPE") * slope)
+        error = slope_error(slope)
         stiffness = self.EI_y * pitch + self.EI_z * yaw
         if twist > 0.0 and self.contrast > 0.0 and stiffness > 0.0:
             contrast = abs(self.EI_z - self.EI_y) * abs(pitch - yaw) / stiffness

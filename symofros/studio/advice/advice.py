@@ -57,7 +57,7 @@ class Advice:
 
     Attributes:
         scene: Scene that the advice is for.
-        full: The system as it was described.
+        full: The system as it was described; with geometrically exact rods where it leaves the theory of its beams.
         system: The reduced one.
         stepping: How to step it; `full_stepping` is the cheapest way to step the full one as exactly.
         cost: Cost of a run; `full_cost` of the full one, stepped by `full_stepping`.
@@ -142,9 +142,17 @@ class Advice:
         lines.append(
             f"{self.cost.total} operations a run ({self.cost.per_evaluation} x {self.cost.evaluations} evaluations"
             + (f", {self.cost.per_jacobian} x {self.cost.jacobians} derivatives" if self.cost.jacobians else "")
-            + f"); the full model takes {self.full_cost.total} ({self.full_stepping}): {self.gain:.1f} times as many"
+            + f"); {self._beside}"
         )
         return lines
+
+    @property
+    def _beside(self) -> str:
+        """Cost of the full model, and what it is worth."""
+        taken = f"takes {self.full_cost.total} ({self.full_stepping})"
+        if self.truncation > 1.0:
+            return f"the full model {taken}, and errs by {self.truncation:.3g} of what is allowed"
+        return f"the full model {taken}: {self.gain:.1f} times as many"
 
     def __str__(self) -> str:
         """For people, without a table."""

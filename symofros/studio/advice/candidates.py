@@ -20,6 +20,7 @@ from symofros.studio.advice.loads import BeamLoads, Observed
 Kind = Literal[
     "rigid",
     "direction",
+    "theory",
     "functions",
     "foreshortening",
     "order",
@@ -71,7 +72,9 @@ def fewer_functions(loads: BeamLoads, current: Beam) -> Iterator[Reduction]:
         return  # A user's functions are chosen by the user; two of hermite's are the least.
     most = max(getattr(current, direction) for direction in DIRECTIONS)
     for count in range(1, most + 1):
-        for family in dict.fromkeys(("clamped_free", current.family)):
+        for family in dict.fromkeys(
+            ("clamped_free", current.family) if current.theory != "strain" else (current.family,)
+        ):
             counts = {direction: min(count, getattr(current, direction)) for direction in DIRECTIONS}
             if sum(counts.values()) >= current.modes:
                 continue
@@ -86,7 +89,7 @@ def fewer_functions(loads: BeamLoads, current: Beam) -> Iterator[Reduction]:
                 "functions",
                 sum(map(loads.share, left)),
                 f"of a static {_length(whole)} at the tip they miss {_length(missed)} and a slope of {slope:.2g} rad",
-                _beam_change(current.name, family=family, **counts),
+                changed_beam(current.name, family=family, **counts),
                 {"displacement": missed, "slope": slope},
             )
 
@@ -130,17 +133,16 @@ def _of_beam(loads: BeamLoads) -> Iterator[Reduction]:
         "rigid",
         total,
         f"{reason}; simulated, its tip moves {_length(loads.tip)} across",
-        _beam_change(beam.name, **none),
+        changed_beam(beam.name, **none),
         numbers,
     )
     if len(flexible) > 1:
         for direction, (moved, text, more) in by.items():
             yield Reduction(
-                what, f"rigid in {direction}", "direction", moved, text, _beam_change(beam.name, **{direction: 0}), more
+                what, f"rigid in {direction}", "direction", moved, text, changed_beam(beam.name, **{direction: 0}), more
             )
     bending = _bending(beam)
-    if bending and beam.retain != "zeroth_order":
-        yield from _of_order(loads, what, bending)
+    yield from lower_orders(loads)
     given = {d: loads.beam.rhoI_z if d == "bend_y" else loads.beam.rhoI_y for d in bending}
     if beam.rotary_inertia and any(value != 0.0 for value in given.values()):
         yield _of_rotary(loads, what, bending)
@@ -160,8 +162,11 @@ def _bent(loads: BeamLoads, direction: Direction) -> tuple[float, str, dict[str,
     return loads.share(static) * (1.0 + left), text, numbers
 
 
-def _of_order(loads: BeamLoads, what: str, bending: list[Direction]) -> Iterator[Reduction]:
-    beam = loads.beam
+def lower_orders(loads: BeamLoads) -> Iterator[Reduction]:
+    """Terms of second order and foreshortening left out, of a beam that has them."""
+    beam, what, bending = loads.beam, f"beam '{loads.beam.name}'", _bending(loads.beam)
+    if not bending or beam.retain == "zeroth_order" or beam.theory == "strain":
+        return
     if beam.retain == "all":
         slope = max(loads.deflection(direction).displacement for direction in bending) / loads.length
         error = slope**2 * loads.tip
@@ -171,7 +176,7 @@ def _of_order(loads: BeamLoads, what: str, bending: list[Direction]) -> Iterator
             "order",
             error * loads.gain,
             f"terms of second order are about {slope**2:.2g} of the deflection, {_length(error)}",
-            _beam_change(beam.name, retain="first_order"),
+            changed_beam(beam.name, retain="first_order"),
             {"slope": slope},
         )
     ratio = max(estimators.critical_ratio(loads.eta(direction)) for direction in bending)
@@ -185,7 +190,7 @@ def _of_order(loads: BeamLoads, what: str, bending: list[Direction]) -> Iterator
         error * loads.gain,
         f"spin is {ratio:.3g} of the critical speed; it stiffens the first mode by {100 * shift:.3g} %,"
         f" {_length(error)} of a deflection of {_length(loads.tip)}",
-        _beam_change(beam.name, retain="zeroth_order", foreshortening=False),
+        changed_beam(beam.name, retain="zeroth_order", foreshortening=False),
         {"critical_ratio": ratio, "shift": shift},
     )
 
@@ -207,7 +212,7 @@ def _of_rotary(loads: BeamLoads, what: str, bending: list[Direction]) -> Reducti
         error * loads.gain,
         f"it lowers the first frequency by {100 * shift:.2g} %, {_length(error)} of a deflection of"
         f" {_length(loads.tip)}",
-        _beam_change(beam.name, rotary_inertia=False),
+        changed_beam(beam.name, rotary_inertia=False),
         {"shift": shift},
     )
 
@@ -249,7 +254,9 @@ def _of_joint(seen: Observed, body: str, joint: Joint) -> Iterator[Reduction]:
         )
 
 
-def _beam_change(name: str, **changed: Any) -> Callable[[System], System]:
+def changed_beam(name: str, **changed: Any) -> Callable[[System], System]:
+    """What changes entries of a beam of a system."""
+
     def apply(system: System) -> System:
         body = system.body(name)
         assert isinstance(body, Beam)

@@ -8,20 +8,23 @@ from dataclasses import replace
 from symofros.base.options import Options
 from symofros.description.beam import Beam
 from symofros.description.system import System
-from symofros.errors import DescriptionError, Problem, SymofrosError, did_you_mean
+from symofros.errors import BeamTheoryError, DescriptionError, Problem, SymofrosError, did_you_mean
 from symofros.runtime.beams import bending_notes
 from symofros.studio.advice.advice import Advice, Choice, Verdict
-from symofros.studio.advice.candidates import Reduction, candidates, constants, fewer_functions
+from symofros.studio.advice.candidates import Reduction, candidates, constants, fewer_functions, lower_orders
 from symofros.studio.advice.loads import BeamLoads, Observed
 from symofros.studio.advice.refined_model import refined
 from symofros.studio.advice.scene import Scene
 from symofros.studio.advice.scene_runner import ReferenceSolution, SceneRunner, Trial
 from symofros.studio.advice.stepping import cheapest
+from symofros.studio.advice.theories import as_rods, missed_by_theory, simpler_theories
 
 # Shares of the tolerance: what is left out may err by the first, stepping by the second.
 MODEL, STEPPING = 0.8, 0.2
 # A description whose own truncation takes more than this share is refined before anything is left out.
 REFINE = 0.4
+# Beams whose theory is estimated to miss more than this share of the tolerance are judged by geometrically exact rods.
+THEORY = 0.2
 _ROUNDS = 3
 # Estimates err by less than this factor; what is expected to be worse is not simulated, foreshortening excepted.
 HOPELESS = 30.0
@@ -43,7 +46,8 @@ def advise(system: System, scene: Scene, tolerance: float | Mapping[str, float] 
 
     Raises:
         DescriptionError: The scene does not fit the system.
-        BeamTheoryError: A beam bends beyond second-order theory; names a model that would do.
+        BeamTheoryError: A beam bends beyond second-order theory and can't be stated as a rod, because the scene starts
+            from its elastic coordinates.
         UnknownNameError: An input or a first coordinate does not exist.
         SymofrosError: The motion can't be computed to the tolerance.
     """
@@ -55,7 +59,9 @@ class _Search:
 
     def __init__(self, system: System, scene: Scene) -> None:
         _check(system, scene)
-        self.full, self.scene, self.runner = system, scene, SceneRunner(scene)
+        self.stated = self.full = system
+        self.scene, self.runner = scene, SceneRunner(scene)
+        self.divided: set[str] = set()  # Beams that were put in segments, and these.
         self.choices: list[Choice] = []
         self.notes: list[str] = []
         self.current = system
@@ -91,22 +97,52 @@ class _Search:
         )
 
     def _settle(self) -> ReferenceSolution:
-        """The richer model; the description is refined until its own truncation is small beside the tolerance."""
-        described = self.runner.exact(self.current)[0]
+        """The richer model; the description is refined until its own truncation is small beside the tolerance.
+
+        Beams that bend too far for their theory are rods from here on.
+        """
+        first = described = self._within_theory()
+        if self.current != self.full:
+            described = self.runner.exact(self.current)[0]
         for _ in range(_ROUNDS):
             richer = refined(self.current)
             reference = self.runner.exact(richer)[0] if richer != self.current else described
             off = self.runner.error(described, reference)
-            if self.current is self.full:
-                self.truncation = off
             if off <= REFINE:
                 break
             self.notes.append(f"the model errs by {off:.2g} of the tolerance against one of more functions: refined")
             self.current, described = richer, reference
         else:
             self.notes.append("more functions still change the outputs; the tolerance is near what beams can give")
+        self.truncation = self.runner.error(first, reference)
         self.bounds = {output.name: output.bound(reference.values[output.name]) for output in self.scene.outputs}
         return ReferenceSolution(richer, reference)
+
+    def _within_theory(self) -> Trial:
+        """The described motion; where second-order theory misses too much of it, rods take the place of its beams."""
+        beams = [b for b in self.full.bodies if isinstance(b, Beam) and b.modes and b.theory != "strain"]
+        try:
+            described = self.runner.exact(self.full)[0]
+        except BeamTheoryError as error:
+            self.full = self.current = as_rods(self.full, [beam.name for beam in beams], self.scene.start)
+            if self.full == self.stated:
+                raise
+            self.notes.append(
+                f"{error.problem.found}; the full model has geometrically exact rods in place of its beams"
+            )
+            return self.runner.exact(self.full)[0]
+        seen, far = Observed.of(self.full, self.scene, ReferenceSolution(self.full, described)), []
+        bendings = {bending.beam: bending for bending in seen.reference.run.bendings}
+        for beam in beams:
+            bending = bendings[beam.name]
+            share = missed_by_theory(seen.beam(beam), bending)
+            if share > THEORY:
+                far.append(beam.name)
+                self.notes.append(
+                    f"{bending}, which is {share:.2g} of what is allowed: judged by a geometrically exact rod"
+                )
+        self.current = as_rods(self.full, far, self.scene.start)
+        return described
 
     def _reduce(self) -> None:
         pool = sorted(candidates(self.seen), key=lambda one: one.estimate)
@@ -116,7 +152,11 @@ class _Search:
         for one in sorted(rest, key=_order):
             if one.kind not in ("foreshortening", "order"):
                 self._consider(one)
+        self._simpler_theories()
         self._fewer()
+        for beam in self._beams():
+            if self.loads[beam.name].beam.theory == "strain" != beam.theory:
+                rest += lower_orders(replace(self.loads[beam.name], beam=beam))
         for one in sorted(rest, key=_order):
             if one.kind in ("foreshortening", "order"):
                 self._consider(one)
@@ -125,9 +165,34 @@ class _Search:
             if one.apply(self.current) != self.current:
                 self._consider(one)
 
+    def _beams(self) -> list[Beam]:
+        """Elastic beams that the motion was observed of: no segments."""
+        return [b for b in self.current.bodies if isinstance(b, Beam) and b.modes and b.name not in self.divided]
+
+    def _simpler_theories(self) -> None:
+        """Beams of second order in place of rods: the first that serves, or of segments what costs least."""
+        bendings = {bending.beam: bending for bending in self.reference.run.bendings}
+        for beam in self._beams():
+            if beam.theory != "strain":
+                continue
+            for one in simpler_theories(self.loads[beam.name], beam, bendings[beam.name]):
+                changed = one.apply(self.current)
+                cost, of_rod = self._evaluation(changed), self._evaluation(self.current)
+                if cost >= of_rod:
+                    dear = f"{one.reason}; an evaluation takes {cost} operations, {of_rod} with the rod"
+                    self._note(replace(one, reason=dear), "not tried", None)
+                elif self._consider(one):
+                    self.divided |= {b.name for b in changed.bodies} - {b.name for b in self.full.bodies}
+                    self.divided |= {beam.name} if len(changed.bodies) > len(self.full.bodies) else set()
+                    break
+
+    def _evaluation(self, system: System) -> int:
+        """Operations of one evaluation of the accelerations."""
+        return self.runner.operations(system, ("forward_dynamics",))["forward_dynamics"]
+
     def _fewer(self) -> None:
         """Fewer functions: the same for all beams first, then beam by beam."""
-        beams = [b for b in self.current.bodies if isinstance(b, Beam) and b.modes]
+        beams = self._beams()
         if len(beams) > 1:
             first = [next(iter(self._hopeful(beam)), None) for beam in beams]
             together = [one for one in first if one is not None]
@@ -215,7 +280,7 @@ class _Search:
 
 
 # What saves most comes first.
-_PRIORITY = ("rigid", "elastic joint", "direction", "rotor", "rotary inertia", "order", "foreshortening")
+_PRIORITY = ("rigid", "elastic joint", "direction", "theory", "rotor", "rotary inertia", "order", "foreshortening")
 
 
 def _order(one: Reduction) -> tuple[int, float]:
@@ -229,16 +294,6 @@ def _all(some: Sequence[Reduction], system: System) -> System:
 
 
 def _check(system: System, scene: Scene) -> None:
-    rods = [body.name for body in system.bodies if isinstance(body, Beam) and body.theory == "strain" and body.modes]
-    if rods:
-        raise DescriptionError(
-            Problem(
-                f"system '{system.name}': advice on a geometrically exact rod",
-                ", ".join(rods),
-                "what beams lose by approximations is estimated for theory 'second_order' alone",
-                "state theory: second_order for the search, or compare models of your own by simulation",
-            )
-        )
     names = [parameter.name for parameter in system.parameters]
     for name in scene.keep:
         if name not in names:

@@ -21,6 +21,7 @@ THEORIES: dict[str, dict[str, Any]] = {
     "first order": {"retain": "first_order"},
     "all": {"retain": "all"},
     "strain": {"theory": "strain"},
+    "stretch and shear": {"theory": "strain", "stretch": 1, "shear_y": 1, "EA": 900.0, "GA_y": 400.0},
 }
 
 

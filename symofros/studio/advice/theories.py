@@ -1,0 +1,88 @@
+"""Theories of beams as reductions of one another: of second order, in segments, geometrically exact."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+from typing import Any
+
+from symofros.description.beam import PRE_STRAINS, Beam
+from symofros.description.system import System
+from symofros.runtime.beams import BeamBending, slope_error
+from symofros.studio.advice.candidates import Reduction, changed_beam
+from symofros.studio.advice.loads import BeamLoads
+
+# Numbers of beams in series that a rod may be replaced by.
+_SEGMENTS = (2, 4)
+# Families of strain functions; those of displacements become Legendre's, which span the same curvatures or more.
+_OF_STRAINS = ("spline", "polynomial", "legendre")
+
+
+def as_rods(system: System, names: Iterable[str], start: Mapping[str, float]) -> System:
+    """The system with some beams as geometrically exact rods.
+
+    Args:
+        system: System.
+        names: Names of the beams.
+        start: First coordinates by name; beams whose elastic coordinates are among them stay, as those of rods are
+            others.
+    """
+    bodies = (system.body(name) for name in names)
+    beams = (body for body in bodies if isinstance(body, Beam) and body.theory != "strain")
+    return system.with_bodies(
+        *(
+            replace(
+                beam,
+                theory="strain",
+                family=beam.family if beam.family in _OF_STRAINS else "legendre",
+                shapes=(),
+                retain="first_order",
+                foreshortening=True,
+            )
+            for beam in beams
+            if not any(name.removeprefix("d") in beam.coordinates for name in start)
+        )
+    )
+
+
+def missed_by_theory(loads: BeamLoads, bending: BeamBending) -> float:
+    """What the error of second-order theory does to outputs, in units of what is allowed.
+
+    Args:
+        loads: The beam in the motion.
+        bending: Its largest bending there.
+    """
+    return bending.error * loads.tip * loads.gain
+
+
+def simpler_theories(loads: BeamLoads, rod: Beam, bending: BeamBending) -> Iterator[Reduction]:
+    """Beams of second order in place of a rod, the cheapest first; none where they lack what the rod has.
+
+    Args:
+        loads: The rod in the motion.
+        rod: The rod as it stands.
+        bending: Its largest bending in the motion.
+    """
+    beyond = any(getattr(rod, label) for label in ("stretch", "shear_y", "shear_z"))
+    if beyond or any(getattr(rod, label) != 0.0 for label in PRE_STRAINS) or rod.family == "user":
+        return
+    error = slope_error(bending.slope**2)
+    plain: dict[str, Any] = {"theory": "second_order", "sections": 0}
+    stated: list[tuple[str, dict[str, Any], int]] = [
+        ("second order, first_order", plain, 1),
+        ("second order, all", plain | {"retain": "all"}, 1),
+    ]
+    body_loads = any(load.axes == "body" for load in rod.loads)
+    if not body_loads:  # Segments have no axes of the undeformed beam.
+        stated += [(f"{n} segments of second order", plain | {"segments": n}, n) for n in _SEGMENTS]
+    for change, changed, n in stated:
+        share = error / n**2
+        yield Reduction(
+            f"beam '{rod.name}'",
+            change,
+            "theory",
+            share * loads.tip * loads.gain,
+            f"it turns its sections by {bending.slope:.2g} rad, of which second order misses {100 * share:.2g} %",
+            changed_beam(rod.name, **changed),
+            {"slope": bending.slope, "error": share},
+        )
