@@ -204,6 +204,14 @@ _ROWS: tuple[ModelFunction, ...] = (
         "derivatives of (M a + h - Q - G^T lam; G a - gamma) by q, v and u",
     ),
     _row(
+        "rest_stiffness",
+        "q u lam t",
+        "K (nv, nv)",
+        "derivatives",
+        "derivative of h - Q - G^T lam by q at rest, v = 0",
+        by_solver=True,
+    ),
+    _row(
         "residual",
         "q v a u lam t",
         "R (nv) = dynamic_residual; phi (nc); phi_rate (nc) = constraint_rate",

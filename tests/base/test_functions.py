@@ -121,3 +121,12 @@ def test_exports_of_a_tree_lack_what_constraints_need() -> None:
         "project",
     }
     assert set(MODEL_FUNCTIONS) | set(FRAME_FUNCTIONS) == set(FUNCTIONS)
+
+
+@pytest.mark.parametrize("name", ["slider_crank", "double_pendulum"])
+def test_the_stiffness_at_rest_is_the_derivative_of_the_residual_there(name: str, rng: np.random.Generator) -> None:
+    m, (q, _) = model(name), model(name).random_state(rng)
+    u, lam, still = rng.normal(size=m.nu), rng.normal(size=m.nc), np.zeros(m.nv)
+    (K,) = m.evaluate("rest_stiffness", q=q, u=u, lam=lam)
+    by_q, _, _ = m.residual_derivatives(q, still, still, u, lam)
+    np.testing.assert_allclose(K, by_q[: m.nv], atol=1e-13 * np.abs(by_q).max())

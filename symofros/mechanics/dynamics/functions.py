@@ -11,6 +11,7 @@ from symofros.base.model_function import cotangents
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.packs.pack import WIDTH
 from symofros.expr.program import Function, Output, Program, Solver
+from symofros.expr.substitute import substitute
 from symofros.mechanics.beams.integrals import at_middle
 from symofros.mechanics.dynamics.constraints.measures import measures_of
 from symofros.mechanics.dynamics.constraints.rows import retracted
@@ -263,6 +264,13 @@ def _formed(
     return build
 
 
+def _rest_stiffness(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[str, int]) -> Function:
+    """Derivative of the forces at rest by q: terms with speeds and accelerations are left out before."""
+    still = {e.g.input(group, i): ZERO for group in ("v", "a") for i in range(e.nv)}
+    K = e.by_q(substitute(e.g, e.dynamic_residual, still))
+    return Function(row.name, "", row.inputs, (_matrix("K", (e.nv, e.nv), K),))
+
+
 _Builder = Callable[[Equations, ModelFunction, Methods, Mapping[str, int]], Function]
 _BUILDERS: dict[str, _Builder] = {
     "forward_dynamics": _forward_dynamics,
@@ -273,5 +281,6 @@ _BUILDERS: dict[str, _Builder] = {
     "inverse_dynamics_second_derivatives": _formed(second_derivatives),
     "inverse_dynamics_hvp": _formed(hessian_vector_product),
     "project": _project,
+    "rest_stiffness": _rest_stiffness,
     "beam_stiffness": _beam_stiffness,
 }

@@ -100,7 +100,7 @@ def equilibrium(
     q = model.neutral() if q is None else numeric("q", model.by_name("q", q))
     v = np.zeros(nv) if v is None else numeric("v", model.by_name("v", v))
     u = numeric("u", model.record.u_default if u is None else model.by_name("u", u))
-    lam, still = np.zeros(nc), np.zeros(nv)
+    lam = np.zeros(nc)
 
     def residual(at: Array, lam: Array) -> tuple[Array, float]:
         _, h, Q = model.dynamics(at, v, u, par=par, t=t)
@@ -116,10 +116,10 @@ def equilibrium(
     R, scale = residual(q, lam)
     count = 0
     while _size(R[rows], scale, nc) > tolerance and count < iterations:
-        by_q, _, _ = model.residual_derivatives(q, v, still, u, lam, par=par, t=t)
+        by_q = _stiffness(model, q, v, u, lam, par, t)
         G = model.constraint_jacobian(q, u=u, par=par, t=t) if nc else np.zeros((0, nv))
         K = np.zeros((nv + nc, nv + nc))
-        K[:nv, :nv], K[:nv, nv:], K[nv:, :nv] = by_q[:nv], -G.T, G
+        K[:nv, :nv], K[:nv, nv:], K[nv:, :nv] = by_q, -G.T, G
         columns = rows
         step = np.zeros(nv + nc)
         step[columns] = -np.linalg.lstsq(K[np.ix_(rows, columns)], R[rows], rcond=1e-13)[0]
@@ -195,12 +195,20 @@ def _bendings(
         return (), ()
     if np.any(v):  # Motion stiffens and softens; stability is then no matter of stiffness alone.
         return bendings_in_motion(model, q, v, u, par, t), ()
-    K, _, _ = model.residual_derivatives(q, v, np.zeros(model.nv), u, lam, par=par, t=t)
+    K = _stiffness(model, q, v, u, lam, par, t)
     notes = tuple(
         f"beam '{name}' is loaded past its critical load: this rest is unstable"
         for name in beyond_critical_load(beams, q, K)
     )
     return bendings_at_rest(model, q, K, par), notes
+
+
+def _stiffness(model: Model, q: Array, v: Array, u: Array, lam: Array, par: ArrayLike | None, t: float) -> Array:
+    """Derivative of h - Q - G^T lam by q at v' = 0 (nv, nv); at rest by a function that knows no speeds."""
+    if np.any(v):
+        return model.residual_derivatives(q, v, np.zeros(model.nv), u, lam, par=par, t=t)[0][: model.nv]
+    (K,) = model.evaluate("rest_stiffness", q=q, u=u, lam=lam, par=par, t=t)
+    return np.asarray(K)
 
 
 def _refuse_without_rest(model: Model, bendings: tuple[BeamBending, ...], count: int) -> None:

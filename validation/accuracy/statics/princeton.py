@@ -42,7 +42,7 @@ def strip_model(retain: str, functions: int = 3) -> sf.Model:
     stated = sf.System(
         "strip", (beam,), gravity=(0, 0, 0), parameters=(sf.Parameter("Fy", 0.0), sf.Parameter("Fz", 0.0))
     )
-    return sf.compile(stated, sf.Options(("dynamics", "residual_derivatives", "frame_pose"), ("tip",)))
+    return sf.compile(stated, sf.Options(("dynamics", "rest_stiffness", "frame_pose"), ("tip",)))
 
 
 def beam_tips(m: sf.Model, load: float, angles: Array) -> tuple[Array, Array]:
