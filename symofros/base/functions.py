@@ -332,6 +332,10 @@ FUNCTIONS: dict[str, ModelFunction] = {row.name: row for row in _ROWS}
 # Names of the functions of the whole model, and of the functions of one frame.
 MODEL_FUNCTIONS = tuple(row.name for row in _ROWS if not row.of_frame)
 FRAME_FUNCTIONS = tuple(row.name for row in _ROWS if row.of_frame)
+# What commands generate where no functions are named: reverse mode and second order are long, and asked for by name.
+_SECOND_ORDER = ("inverse_dynamics_second_derivatives", "inverse_dynamics_hvp")
+DEFAULT_FUNCTIONS = tuple(name for name in MODEL_FUNCTIONS if not (FUNCTIONS[name].transposes or name in _SECOND_ORDER))
+DEFAULT_FRAME_FUNCTIONS = tuple(name for name in FRAME_FUNCTIONS if not FUNCTIONS[name].transposes)
 
 
 def generated_with(name: str, constrained: bool) -> tuple[str, ...]:

@@ -13,7 +13,7 @@ from rich.tree import Tree
 
 import symofros as sf
 from symofros.base.atomic import write_atomically
-from symofros.base.functions import FRAME_FUNCTIONS, MODEL_FUNCTIONS
+from symofros.base.functions import DEFAULT_FRAME_FUNCTIONS, DEFAULT_FUNCTIONS
 from symofros.commands.details import details, frames_line, tables
 from symofros.commands.shared import AsJson, FilePath, Floating, ModelPath, Network, load, out, refuse
 from symofros.compiler import Compilation
@@ -43,10 +43,10 @@ def info(
             raise refuse(error) from None
         return
     system = load(model, floating_base)
-    compilation = Compilation(system, sf.Options(functions=MODEL_FUNCTIONS))
+    compilation = Compilation(system, sf.Options(functions=DEFAULT_FUNCTIONS))
     tree, counts = compilation.tree, dict[str, Operations]()
     if operations:
-        compilation.request(FRAME_FUNCTIONS, [tree.frames[-1].name])
+        compilation.request(DEFAULT_FRAME_FUNCTIONS, [tree.frames[-1].name])
         counts = {" of ".join(filter(None, key)): count for key, count in count_program(compilation.program).items()}
     names = tree.coordinates
     sizes = {"nq": len(names.q), "nv": len(names.v), "nu": len(names.u), "npar": len(names.par)}
@@ -101,8 +101,11 @@ def compile_command(
         Path | None, typer.Option("--output", "-o", help="Also write NAME.c and symofros_model.h to this folder.")
     ] = None,
     functions: Annotated[
-        str, typer.Option(help="Functions to generate, comma-separated; all of the model's by default.")
-    ] = ",".join(MODEL_FUNCTIONS),
+        str,
+        typer.Option(
+            help="Functions to generate, comma-separated; by default all of first order, without reverse mode."
+        ),
+    ] = ",".join(DEFAULT_FUNCTIONS),
     frames: Annotated[str, typer.Option(help="Frames of frame functions, comma-separated; all by default.")] = "",
     as_json: AsJson = False,
 ) -> None:

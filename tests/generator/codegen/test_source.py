@@ -15,7 +15,7 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from symofros.base.functions import FRAME_FUNCTIONS, MODEL_FUNCTIONS
+from symofros.base.functions import DEFAULT_FRAME_FUNCTIONS, DEFAULT_FUNCTIONS, FRAME_FUNCTIONS, MODEL_FUNCTIONS
 from symofros.compiler import Compilation
 from symofros.description.joint_kinds import JOINT_KINDS
 from symofros.generator.codegen.names import c_string, identifier, local_name
@@ -28,7 +28,7 @@ STRICT = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-O1"]
 
 def source_of(stated: sf.System) -> str:
     """Every function but derivatives, which compile for long and are built on a small mechanism below."""
-    every = MODEL_FUNCTIONS + FRAME_FUNCTIONS
+    every = DEFAULT_FUNCTIONS + DEFAULT_FRAME_FUNCTIONS
     functions = [name for name in every if "derivative" not in name and "by_par" not in name]
     return source_of_functions(stated, tuple(functions))
 
