@@ -61,13 +61,11 @@ class MassMatrix:
     Attributes:
         entries: M (nv x nv), symmetric.
         composites: Inertia of the composite body of each link, about its origin.
-        momenta: Momentum of each speed by the index of the speed.
         carried: Momenta on their way to the base.
     """
 
     entries: Matrix
     composites: list[LinkInertia]
-    momenta: dict[int, Momentum]
     carried: list[CarriedMomenta]
 
 
@@ -93,7 +91,7 @@ def mass_matrix(kinematics: TreeKinematics, inertias: list[LinkInertia], rotors:
     for rotor in rotors:
         if rotor.k is not None:
             _add_rotor(kinematics, M, rotor, rotor.k)
-    return MassMatrix(M, composites, momenta, carried)
+    return MassMatrix(M, composites, carried)
 
 
 def _own_blocks(
