@@ -92,7 +92,8 @@ class ViewerPage:
         """Show or hide a layer.
 
         Args:
-            layer: "bodies", "inertias", "joints", "constraints", "paths", "visuals", "frames", "labels" or "ground".
+            layer: "bodies", "inertias", "joints", "constraints", "paths", "visuals", "frames", "labels", "ground" or
+                "shadows" (not in the pictures of films).
             visible: Whether it is to be seen.
 
         Raises:
