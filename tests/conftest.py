@@ -31,7 +31,7 @@ sys.dont_write_bytecode = False
 # Compiling is half of a run's time, and half of that is optimisation. Tests of other things than generated code and its
 # compilation do without, but for runs with --slow or a part of it, which compile as users do.
 _STATED_FLAGS = os.environ.get("SYMOFROS_CFLAGS")
-_OPTIMISED = {"benchmarks", "generator", "native", "runtime"}
+_OPTIMISED = {"benchmarks", "exports", "generator", "native", "runtime"}
 
 # The browser's tests name Playwright's types as they are collected.
 _PLAYWRIGHT = find_spec("playwright") is not None
