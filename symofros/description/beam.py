@@ -28,7 +28,9 @@ MOST_SECTIONS = 64
 STATIONS = tuple(k / 8 for k in range(9))
 
 # What may depend on the station x, and so taper.
-SECTION = ("rhoA", "EI_y", "EI_z", "GJ", "EA", "GA_y", "GA_z", "rhoJ", "rhoI_y", "rhoI_z")
+# Of a rod by its strains alone.
+ROD_STIFFNESSES = ("EA", "GA_y", "GA_z")
+SECTION = ("rhoA", "EI_y", "EI_z", "GJ", *ROD_STIFFNESSES, "rhoJ", "rhoI_y", "rhoI_z")
 # Strains of a rod without stress: functions of the station as well.
 PRE_STRAINS = ("twist_rate", "curvature_y", "curvature_z")
 STATION = "x"
@@ -300,10 +302,12 @@ class Beam:
             plain: dict[str, Any] = {"retain": "first_order", "foreshortening": True}
             theory, lacking = "a geometrically exact rod (theory 'strain')", "keeps every term, and shortens by itself"
         else:
-            plain = {"sections": 0} | dict.fromkeys(PRE_STRAINS, 0.0) | dict.fromkeys(STRAINS[3:], 0)
+            plain = (
+                {"sections": 0} | dict.fromkeys((*PRE_STRAINS, *ROD_STIFFNESSES), 0.0) | dict.fromkeys(STRAINS[3:], 0)
+            )
             theory, lacking = (
                 "a beam of second order in its displacements",
-                "is straight without stress and does not shear",
+                "is straight without stress, and neither stretches nor shears",
             )
         for label, value in plain.items():
             if getattr(self, label) != value:

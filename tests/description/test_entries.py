@@ -46,5 +46,11 @@ def test_a_beam_says_under_which_names_it_has_shear(entry: str) -> None:
         sf.Beam("b", sf.Joint("q", "fixed"), 1.0, 1.0, **{entry: 1e6})
 
 
+@pytest.mark.parametrize("entry", ["EA", "GA_y", "GA_z"])
+def test_a_beam_of_second_order_does_not_take_what_it_can_not_use(entry: str) -> None:
+    with pytest.raises(sf.DescriptionError, match=rf"beam 'b': {entry} = 1000000(.|\n)*neither stretches nor shears"):
+        sf.Beam("b", sf.Joint("q", "fixed"), 1.0, 1.0, **{entry: 1e6})
+
+
 def test_known_entries_pass() -> None:
     assert sf.Frame("f", position=(1, 2, 3)).position == (1.0, 2.0, 3.0)

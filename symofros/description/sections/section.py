@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from symofros.description.beam import ROD_STIFFNESSES, SECTION, Theory
 from symofros.description.entries import refuses_unknown_entries
 from symofros.description.values import Term, Value, as_value, symbols
 from symofros.errors import DescriptionError, Problem
@@ -97,8 +98,11 @@ class Section:
         """Polar moment of inertia, about x through the mass centre [kg m]."""
         return (Term(self.rhoI_y) + Term(self.rhoI_z)).value
 
-    def beam_properties(self) -> dict[str, Value]:
+    def beam_properties(self, theory: Theory = "second_order") -> dict[str, Value]:
         """The section properties of a Beam: `Beam(name, joint, length, **section.beam_properties())`.
+
+        Args:
+            theory: Theory of the beam: one by strains takes the stiffnesses against stretching and shear, too.
 
         Raises:
             DescriptionError: The axis does not go through all three centres, or y and z are no principal axes.
@@ -118,7 +122,7 @@ class Section:
                         " differ couples bending and twist, which a Beam can't represent",
                     )
                 )
-        labels = ("rhoA", "EI_z", "EI_y", "GJ", "EA", "GA_y", "GA_z", "rhoJ", "rhoI_y", "rhoI_z")
+        labels = SECTION if theory == "strain" else tuple(label for label in SECTION if label not in ROD_STIFFNESSES)
         return {label: getattr(self, label) for label in labels if getattr(self, label) is not None}
 
     def _off_axis(self) -> list[tuple[str, Value, Value]]:

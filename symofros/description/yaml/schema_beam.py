@@ -64,4 +64,5 @@ class BeamEntry(NounEntry, noun=Beam, without=("name", "joint", "frames", "waive
     def stated(self) -> dict[str, Any]:
         """The fields of the beam, those of its section among them."""
         stated = super().stated()
-        return stated | (stated.pop("section") or {})
+        del stated["section"]
+        return stated | (self.section.build(stated["theory"]) if self.section is not None else {})

@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal, Self, get_args
 from pydantic import Field, model_validator
 
 from symofros.description import sections
+from symofros.description.beam import Theory
 from symofros.description.yaml.fields import Formula, Number, PartEntry, fault
 from symofros.errors import DescriptionError, Problem
 
@@ -74,10 +75,10 @@ class SectionEntry(PartEntry):
         entries = {label: getattr(self, label) for label in type(self).model_fields if label not in _MATERIAL}
         return {label: value for label, value in entries.items() if value is not None}
 
-    def build(self) -> Any:
-        """The properties that a beam takes of it."""
+    def build(self, theory: Theory = "second_order") -> dict[str, Any]:
+        """The properties that a beam of a theory takes of it."""
         make, _, _ = _maker(self.shape)
-        return make(sections.Material(self.E, self.G, self.rho), **self._sizes()).beam_properties()
+        return make(sections.Material(self.E, self.G, self.rho), **self._sizes()).beam_properties(theory)
 
 
 _MATERIAL = ("shape", "E", "G", "rho")

@@ -109,5 +109,5 @@ def test_stiffnesses_of_stretch_and_shear_are_needed_and_come_from_sections() ->
     with pytest.raises(sf.DescriptionError, match="theory 'second_order'"):
         rod((1, 0, 0), theory="second_order", stretch=1)
     section = sf.sections.rectangle(sf.sections.Material(70e9, 26e9, 2700.0), 0.02, 0.01)
-    beam = sf.Beam("b", sf.Joint("root", "fixed"), 1.0, **section.beam_properties())
+    beam = sf.Beam("b", sf.Joint("root", "fixed"), 1.0, theory="strain", **section.beam_properties("strain"))
     assert (beam.EA, beam.GA_y) == (section.EA, section.GA_y)
