@@ -175,11 +175,10 @@ def _jacobian(e: Equations) -> Output:
 
 def _forward_slopes(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[str, int]) -> Function:
     """Derivatives of forward dynamics: da/dx = -M^-1 dR/dx at the motion that a = M^-1 (Q - h) makes."""
-    if e.constraints:
+    columns = sum(array.sizes(known)[1] for array in row.outputs)
+    if e.constraints or e.factors.entries * columns > _MOST_STEPS * WIDTH:
         return _forward_slopes_by_routine(e, row, known)
     slopes = [_output(array, e.slopes_in_motion(array.name), known) for array in row.outputs]
-    if e.factors.entries * sum(output.shape[1] for output in slopes) > _MOST_STEPS * WIDTH:
-        return _forward_slopes_by_routine(e, row, known)
     outputs = [_matrix(output.name, (e.nv, output.shape[1]), _solved(e, output)) for output in slopes]
     return Function(row.name, "", row.inputs, tuple(outputs))
 
