@@ -135,18 +135,12 @@ class Beam:
         EI_z: Stiffness against bending in the x-y plane [N m^2].
         EI_y: Stiffness against bending in the x-z plane [N m^2].
         GJ: Stiffness against twist [N m^2].
-        EA: Stiffness against stretching, of a rod with functions of `stretch` [N].
-        GA_y: Stiffness against shear along y, its shear correction factor included, of a rod with `shear_y` [N].
-        GA_z: Stiffness against shear along z, of a rod with `shear_z` [N].
         rhoJ: Polar moment of inertia per length, about x [kg m].
         rhoI_y: Moment of inertia per length about y, counted with rotary_inertia [kg m].
         rhoI_z: Moment of inertia per length about z, counted with rotary_inertia [kg m].
         bend_y: Number of shape functions for the displacement along y; 0 is rigid.
         bend_z: Number of shape functions for the displacement along z; 0 is rigid.
         twist: Number of shape functions for the rotation about x; 0 is rigid.
-        stretch: Number of shape functions for the stretch of a rod's axis; 0 leaves its length as it is.
-        shear_y: Number of shape functions for the shear of a rod's sections along y; 0 keeps them across the axis.
-        shear_z: Number of shape functions for the shear of a rod's sections along z.
         family: Family of the shape functions (docs/theory/beams.md, section 2).
         shapes: User-defined functions for family "user": direction -> formulas of xi = x/L, or samples.
         damping: Voigt-Kelvin retardation time: stress is E (strain + damping strain rate) [s].
@@ -169,6 +163,12 @@ class Beam:
         segments: Number of beams of equal length, each clamped to the tip of the last, that a system makes of it
             (segments.py); each has the functions stated.
         stations: Stations x/L, rising from 0 (root) to 1 (tip) at most, whose section forces can be asked for.
+        EA: Stiffness against stretching, of a rod with functions of `stretch` [N].
+        GA_y: Stiffness against shear along y, its shear correction factor included, of a rod with `shear_y` [N].
+        GA_z: Stiffness against shear along z, of a rod with `shear_z` [N].
+        stretch: Number of shape functions for the stretch of a rod's axis; 0 leaves its length as it is.
+        shear_y: Number of shape functions for the shear of a rod's sections along y; 0 keeps them across the axis.
+        shear_z: Number of shape functions for the shear of a rod's sections along z.
     """
 
     name: str
@@ -178,18 +178,12 @@ class Beam:
     EI_z: Value = 0.0
     EI_y: Value = 0.0
     GJ: Value = 0.0
-    EA: Value = 0.0
-    GA_y: Value = 0.0
-    GA_z: Value = 0.0
     rhoJ: Value = 0.0
     rhoI_y: Value = 0.0
     rhoI_z: Value = 0.0
     bend_y: int = 0
     bend_z: int = 0
     twist: int = 0
-    stretch: int = 0
-    shear_y: int = 0
-    shear_z: int = 0
     family: Family = "spline"
     shapes: tuple[tuple[Direction, tuple[UserShape, ...]], ...] = ()
     damping: Value = 0.0
@@ -206,6 +200,12 @@ class Beam:
     waive: tuple[str, ...] = ()
     segments: int = 1
     stations: tuple[float, ...] = STATIONS
+    EA: Value = 0.0
+    GA_y: Value = 0.0
+    GA_z: Value = 0.0
+    stretch: int = 0
+    shear_y: int = 0
+    shear_z: int = 0
 
     def __post_init__(self) -> None:
         """Convert numbers, freeze collections, check the choices."""

@@ -54,3 +54,10 @@ def test_a_beam_of_second_order_does_not_take_what_it_can_not_use(entry: str) ->
 
 def test_known_entries_pass() -> None:
     assert sf.Frame("f", position=(1, 2, 3)).position == (1.0, 2.0, 3.0)
+
+
+def test_entries_that_came_later_stand_behind_those_that_calls_give_by_their_places() -> None:
+    beam = sf.Beam("b", sf.Joint("q", "fixed"), 1.0, 2.0, 3.0, 4.0, 5.0, 0.6, 0.7, 0.8, 1, 2, 3, "legendre")
+    assert (beam.length, beam.rhoA, beam.EI_z, beam.EI_y, beam.GJ) == (1.0, 2.0, 3.0, 4.0, 5.0)
+    assert (beam.rhoJ, beam.rhoI_y, beam.rhoI_z) == (0.6, 0.7, 0.8)
+    assert (beam.bend_y, beam.bend_z, beam.twist, beam.family) == (1, 2, 3, "legendre")

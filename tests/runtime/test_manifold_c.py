@@ -74,7 +74,7 @@ def native() -> tuple[Any, Any]:
     if toolchain is None:
         pytest.skip("no C compiler")
     source = _WRAPPER
-    for name in ("symofros_stepper.h", "manifold.c"):
+    for name in ("symofros_stepper.h", "manifold.c", "rotations.c"):
         source = source.replace(f'#include "{name}"', native_text(f"stepping/{name}"))
     ffi = cffi.FFI()
     ffi.cdef(_INTERFACE)

@@ -16,7 +16,7 @@ from symofros.description.beam import STATION
 from symofros.description.joint import Joint
 from symofros.description.system import System
 from symofros.errors import DescriptionError, Problem
-from symofros.expr.expression import CONSTANTS, Expression
+from symofros.expr.expression import Expression
 from symofros.mechanics.topology.coordinates import coordinate_names, rate_symbols, speed_symbols
 from symofros.mechanics.topology.formulas import TIME, stated_values
 
@@ -133,7 +133,7 @@ def _unit_of(formula: Expression, known: Mapping[str, Powers | None]) -> Powers 
     if kind == "number":
         return None
     if kind == "symbol":
-        return _ONE if formula.name in CONSTANTS else known.get(formula.name)
+        return known.get(formula.name)
     args = [_unit_of(argument, known) for argument in formula.args]
     if kind == "neg" or kind in _SAME or kind in ("add", "sub"):
         return _common(formula, args)

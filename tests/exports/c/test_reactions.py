@@ -145,7 +145,7 @@ def test_motions_that_actuators_can_not_produce_are_refused(tmp_path: Path) -> N
     state = sf.assemble(m, [1.2, -1.0, 1.3], [1.0, 0, 0], held=["q1"])
     a = m.forward_dynamics(state.q, state.v, np.zeros(m.nu))
     sf.export(MODELS[name], "c", tmp_path, frames=[])
-    sizes = {"nq": m.nq, "nv": m.nv, "nu": m.nu, "nc": m.nc, "n": 1, "joints": 0, "states": 4}
+    sizes = {"nq": m.nq, "nv": m.nv, "nu": m.nu, "nc": m.nc, "n": 1, "joints": 0, "states": 4, "sections": 0}
     (tmp_path / "main.c").write_text(PROGRAM.substitute(name=name, actuators="SYM_ON_SPEED(1)", prescribed="", **sizes))
     build(tmp_path, "reactions")
     u = np.zeros(m.nu)

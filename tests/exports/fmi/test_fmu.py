@@ -77,7 +77,7 @@ TURNED = sf.System(
     "turned",
     (
         sf.RigidBody("base", sf.Joint("gimbal", "ball", prescribed=True), sf.Inertia(1.0, moments=(1, 1, 1))),
-        sf.RigidBody("arm", sf.Joint("q1", "revolute", "base"), sf.Inertia(1.0, (0.3, 0.1, 0))),
+        sf.RigidBody("arm", sf.Joint("q1", "revolute", "base", axis=(0, 1, 0)), sf.Inertia(1.0, (0.3, 0.1, 0))),
     ),
 )
 OWN = {"floating": FLOATING, "driven": DRIVEN, "planar": PLANAR, "turned": TURNED}
@@ -268,9 +268,15 @@ def test_directional_derivatives_are_those_of_the_functions(unit: Any, name: str
     states = it.named("q.") + it.named("v.")
     inputs = it.named("u.")
     unknown = it.named("der(") + it.named("p.")
-    # Away from the start, where much is zero; quaternions may be of any length.
+    # Away from the start, where much is zero; quaternions among the states may be of any length.
     x = it.get(*states) + 0.2 * rng.standard_normal(len(states))
     u = rng.standard_normal(len(inputs))
+    turns = [
+        k
+        for k, label in enumerate(inputs)
+        if label.endswith((".qx", ".qy", ".qz", ".qw", ".qx'", ".qy'", ".qz'", ".qw'"))
+    ]
+    u[turns] /= np.linalg.norm(u[turns]) if turns else 1.0
 
     def values(x: np.ndarray, u: np.ndarray) -> np.ndarray:
         it.states(x)

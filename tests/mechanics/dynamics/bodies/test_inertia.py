@@ -32,7 +32,7 @@ def evaluated(case: str, regrouped: bool, q: np.ndarray, v: np.ndarray) -> list[
     M = mass_matrix(kinematics, inertias, [])
     h = inertia_forces(kinematics, inertias, [], [ZERO] * kinematics.nv, gravity)
     T, V = kinetic_energy(kinematics, inertias, []), potential_energy(kinematics, inertias, base, gravity)
-    edges = (*(edge for row in M for edge in row), *h, T, V)
+    edges = (*(edge for row in M.entries for edge in row), *h, T, V)
     function = Function("all", "", ("q", "v"), (Output("x", (len(edges),), edges),))
     program = Program("p", g, {}, (function,))
     par = np.array([tree.coordinates.par_default])

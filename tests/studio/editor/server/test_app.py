@@ -155,7 +155,7 @@ def test_the_catalogue_names_methods_units_targets(client: TestClient) -> None:
             "2*L + pi",
             {"ok": True, "names": ["L"], "value": 2 + 3.141592653589793},
         ),
-        (["bodies", "crank", "joint", "armature"], "L", {"ok": True, "names": ["L"], "value": 1.0}),
+        (["bodies", "crank", "inertia", "center_of_mass", 0], "L", {"ok": True, "names": ["L"], "value": 1.0}),
     ],
 )
 def test_a_good_formula(client: TestClient, path: list, text: str, expected: dict) -> None:
