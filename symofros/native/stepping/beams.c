@@ -155,15 +155,16 @@ static int32_t sym_judge_farther(sym_run *r, int32_t b, double t, const double *
 /* Judge the end (t, q) of an accepted step while the present state is still its begin (26d). Returns 0 or
  * SYM_BEYOND_THEORY. */
 static int32_t sym_judge_step(sym_run *r, double t, const double *q) {
-    const sym_beam *beam = r->system->beams, *last = beam + r->system->n_beams;
     const double *reach = r->beam_reach, *reference = r->beam_reference;
-    sym_beam_guard *guard = r->beam_guard;
-    int32_t status = 0;
-    for (; beam < last; reach += beam->n, reference += beam->n, ++beam, ++guard) {
+    int32_t b, status = 0;
+    for (b = 0; b < r->system->n_beams; ++b) {
+        const sym_beam *beam = r->system->beams + b;
+        sym_beam_guard *guard = r->beam_guard + b;
         const double change = sym_beam_change(beam->n, reach, reference, q + beam->q);
+        reach += beam->n, reference += beam->n;
         if (change <= guard->settled && !(guard->pending > 0.0)) continue;
         if (change >= guard->pending && change <= guard->judged) guard->pending = change;
-        else if (sym_judge_farther(r, (int32_t)(guard - r->beam_guard), t, q, change) != 0) status = SYM_BEYOND_THEORY;
+        else if (sym_judge_farther(r, b, t, q, change) != 0) status = SYM_BEYOND_THEORY;
     }
     return status;
 }
