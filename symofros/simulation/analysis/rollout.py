@@ -12,7 +12,7 @@ from symofros.base.arrays import real_array
 from symofros.errors import Problem, ShapeError, SymofrosError, did_you_mean
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
-from symofros.simulation.settings import vector
+from symofros.simulation.settings import UNIT_TOLERANCE, vector
 from symofros.simulation.stepping.methods import METHODS
 from symofros.simulation.stepping.tableaus import Tableau
 
@@ -168,9 +168,9 @@ def rollout(
 
     The steps are those of `simulate` to rounding, but that the inputs of a step hold for all its stages: of "rk4" with
     a `Signal(t, u, "hold")` the last stage reads the next sample. Steps are not judged here: the derivatives are those
-    of the steps that were made, however long; `simulate` says whether steps of that length resolve the motion. Not for
-    constraints, whose drift `simulate` projects away, for ball and free joints, for events, and for methods that choose
-    their steps.
+    of the steps that were made, however long, and of the beams' theory, however far they bend; `simulate` says whether
+    steps of that length resolve the motion, and what the theory misses. Not for constraints, whose drift `simulate`
+    projects away, for ball and free joints that move by themselves, for events, for methods that choose their steps.
 
     Args:
         model: Of a tree whose coordinates have the speeds as rates.
@@ -183,7 +183,8 @@ def rollout(
         t0: First time [s].
 
     Raises:
-        SymofrosError: The model or the method is out of reach, or the motion leaves the finite numbers.
+        SymofrosError: The model or the method is out of reach, a quaternion among the inputs is no rotation, or the
+            motion leaves the finite numbers.
         ShapeError: An array does not fit.
     """
     model = model.with_precision("double")
@@ -199,6 +200,8 @@ def rollout(
                 "np.zeros((n, model.nu)) for none",
             )
         )
+    held = held.copy()  # The derivatives read it later, when the caller may have moved on.
+    _refuse_inputs(model, held)
     values = model.parameter_values if par is None else vector(model, "par", model.checked_parameters(par), model.npar)
     tableau = METHODS[method].tableau
     first = vector(model, "q0", q0, model.nq), vector(model, "v0", v0, model.nv)
@@ -252,6 +255,23 @@ def _refuse(model: Model, method: str, dt: float) -> None:
         fault, remedy = "a ball or free joint", "state it by three revolute joints"
     if fault:
         raise SymofrosError(Problem(f"model '{model.record.name}': no derivatives of its motion", fault, _RULE, remedy))
+
+
+def _refuse_inputs(model: Model, u: Array) -> None:
+    """Refuse quaternions among the inputs (n, nu) that are of another length than one."""
+    for first in model.record.quaternion_inputs:
+        lengths = np.linalg.norm(u[:, first : first + 4], axis=1)
+        wrong = np.flatnonzero(np.abs(lengths - 1.0) > UNIT_TOLERANCE)
+        if len(wrong):
+            names = ", ".join(model.names.u[first : first + 4])
+            raise SymofrosError(
+                Problem(
+                    f"model '{model.record.name}': inputs {names} are no rotation",
+                    f"a quaternion of length {lengths[wrong[0]]:.6g} in step {wrong[0]}",
+                    f"quaternions are of unit length, to {UNIT_TOLERANCE:g}",
+                    "divide each quaternion by its length",
+                )
+            )
 
 
 def _fitting(name: str, given: Numbers | None, shape: tuple[int, ...]) -> Array:

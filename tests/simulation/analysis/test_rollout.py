@@ -108,3 +108,24 @@ def test_what_has_no_derivative_is_refused_in_words(case: str, changes: dict[str
     given = {"q0": m.neutral(), "v0": np.zeros(m.nv), "u": np.zeros((3, m.nu)), "dt": 0.01} | changes
     with pytest.raises(sf.SymofrosError, match=words):
         sf.rollout(m, **given)
+
+
+def test_inputs_changed_after_the_motion_change_no_derivative() -> None:
+    m, u = pendulum(), np.ones((N, 1))
+    run = sf.rollout(m, [0.4], [-0.3], u, H)
+    before = run.gradient([1.0])
+    u[:] = 1e3
+    for part, expected in zip(run.gradient([1.0]), before, strict=True):
+        np.testing.assert_array_equal(part, expected)
+
+
+def test_a_quaternion_among_the_inputs_that_is_no_rotation_is_refused() -> None:
+    wrist = sf.RigidBody("c", sf.Joint("w", "ball", prescribed=True), sf.Inertia(1.0, (0.1, 0, 0)))
+    arm = sf.RigidBody("b", sf.Joint("j", "revolute", "c", axis=(0, 1, 0)), sf.Inertia(1.0, (0.5, 0, 0)))
+    m = sf.compile(sf.System("carried", [wrist, arm]))
+    u = np.zeros((5, m.nu))
+    u[:, m.names.u.index("w.qw")] = 1.0
+    sf.rollout(m, [0.1], [0.0], u, 0.01)
+    u[3, m.names.u.index("w.qw")] = 3.0
+    with pytest.raises(sf.SymofrosError, match="quaternion of length 3 in step 3"):
+        sf.rollout(m, [0.1], [0.0], u, 0.01)
