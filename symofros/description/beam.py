@@ -27,9 +27,9 @@ MOST_SECTIONS = 64
 # Stations x/L of section forces, where none are stated.
 STATIONS = tuple(k / 8 for k in range(9))
 
-# What may depend on the station x, and so taper.
-# Of a rod by its strains alone.
+# Stiffnesses that rods alone have.
 ROD_STIFFNESSES = ("EA", "GA_y", "GA_z")
+# What may depend on the station x, and so taper.
 SECTION = ("rhoA", "EI_y", "EI_z", "GJ", *ROD_STIFFNESSES, "rhoJ", "rhoI_y", "rhoI_z")
 # Strains of a rod without stress: functions of the station as well.
 PRE_STRAINS = ("twist_rate", "curvature_y", "curvature_z")
