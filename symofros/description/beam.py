@@ -298,6 +298,16 @@ class Beam:
                     "state theory: strain, or put a rigid body with a load on a frame of the beam",
                 )
             )
+        lacking_direction = next((key for key, _ in self.shapes if key not in DIRECTIONS), None)
+        if self.theory != "strain" and lacking_direction is not None:
+            raise DescriptionError(
+                Problem(
+                    f"{what}: shapes for {lacking_direction}",
+                    f"theory '{self.theory}'",
+                    f"a beam of second order in its displacements has functions for {', '.join(DIRECTIONS)}",
+                    f"leave shapes for {lacking_direction} out, or state theory: strain",
+                )
+            )
         if self.theory == "strain":
             plain: dict[str, Any] = {"retain": "first_order", "foreshortening": True}
             theory, lacking = "a geometrically exact rod (theory 'strain')", "keeps every term, and shortens by itself"

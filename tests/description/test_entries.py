@@ -52,6 +52,12 @@ def test_a_beam_of_second_order_does_not_take_what_it_can_not_use(entry: str) ->
         sf.Beam("b", sf.Joint("q", "fixed"), 1.0, 1.0, **{entry: 1e6})
 
 
+def test_a_beam_of_second_order_takes_no_functions_for_stretch() -> None:
+    shapes = {"bend_y": ("xi^2",), "stretch": ("xi",)}
+    with pytest.raises(sf.DescriptionError, match=r"beam 'b': shapes for stretch(.|\n)*theory: strain"):
+        sf.Beam("b", sf.Joint("q", "fixed"), 1.0, 1.0, EI_z=1.0, bend_y=1, family="user", shapes=shapes)
+
+
 def test_known_entries_pass() -> None:
     assert sf.Frame("f", position=(1, 2, 3)).position == (1.0, 2.0, 3.0)
 
