@@ -242,6 +242,7 @@ describe("schema", () => {
     const { shapeFunctions, section, model } = beamGroups(root, shape.properties, "user");
     expect([...shapeFunctions, ...section, ...model].sort()).toEqual(Object.keys(shape.properties).sort());
     expect(section).toContain("rhoI_y");
+    expect(shapeFunctions).toEqual(expect.arrayContaining(["stretch", "shear_y", "shear_z"]));
     expect(beamGroups(root, shape.properties, "spline").shapeFunctions).not.toContain("shapes");
   });
 });

@@ -4,7 +4,7 @@ import type { Json, JsonMap } from "../api/types";
 import { mapAt } from "../model/paths";
 import { field } from "./schema";
 
-export const DIRECTIONS = ["bend_y", "bend_z", "twist"];
+export const DIRECTIONS = ["bend_y", "bend_z", "twist", "stretch", "shear_y", "shear_z"];
 const SHAPE_FUNCTIONS = [...DIRECTIONS, "family", "shapes"];
 
 /** The properties of a beam by the parts of its window, in the order of the schema: formulas are of the section. */

@@ -125,6 +125,9 @@ const LABELS: Record<string, string> = {
   bend_y: "Modes along y",
   bend_z: "Modes along z",
   twist: "Modes of twist",
+  stretch: "Modes of stretch",
+  shear_y: "Modes of shear along y",
+  shear_z: "Modes of shear along z",
   axis2: "Second axis",
   at: "At",
 };

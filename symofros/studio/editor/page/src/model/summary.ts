@@ -20,6 +20,9 @@ export function modes(beam: JsonMap): string {
     ["bend_y", "y"],
     ["bend_z", "z"],
     ["twist", "twist"],
+    ["stretch", "stretch"],
+    ["shear_y", "shear y"],
+    ["shear_z", "shear z"],
   ] as const;
   const present = directions.filter(([key]) => count(beam, key) > 0);
   return present.length === 0 ? "rigid" : present.map(([key, word]) => `${count(beam, key)} ${word}`).join(" · ");

@@ -15,6 +15,7 @@ function Shapes({ beam, direction }: { beam: JsonMap; direction: string }) {
   const modes = beam[direction];
   const question = JSON.stringify({
     family: beam["family"] ?? "spline",
+    theory: beam["theory"] ?? "second_order",
     modes,
     direction,
     shapes: mapAt(beam, ["shapes"])[direction] ?? [],
