@@ -40,7 +40,7 @@ class CudaModel:
     other libraries take in place, too. Values of parameters are those of the model.
     Results are those of C where products and sums are not fused (`contract`), in single precision to its rounding. A
     step of a rollout that is too long for its method is not noticed, unlike in `simulate`; nor is bending of beams
-    beyond their theory.
+    beyond their theory, nor a quaternion among the inputs that is of another length than one.
 
     Args:
         record: Names and sizes.

@@ -66,7 +66,7 @@ class Rollout:
 
         Args:
             q_bar: Weights of the coordinates (n + 1, nv), or of the last ones (nv); zero if left out.
-            v_bar: Weights of the speeds, likewise.
+            v_bar: Weights of the speeds (n + 1, nv), or of the last ones (nv); zero if left out.
 
         Raises:
             ShapeError: Weights do not fit.
@@ -107,10 +107,10 @@ class Rollout:
         """Changes of the motion along k directions, by forward sensitivities (eq. 19).
 
         Args:
-            dq0: Changes of the first coordinates (nv, k); zero where left out, as the others.
-            dv0: Of the first speeds (nv, k).
-            du: Of the held inputs (n, nu, k).
-            dpar: Of the run-time parameters (npar, k).
+            dq0: Changes of the first coordinates (nv, k); these and all others are zero where left out.
+            dv0: Changes of the first speeds (nv, k).
+            du: Changes of the held inputs (n, nu, k).
+            dpar: Changes of the run-time parameters (npar, k).
 
         Raises:
             ShapeError: Directions do not fit.
@@ -280,6 +280,6 @@ def _fitting(name: str, given: Numbers | None, shape: tuple[int, ...]) -> Array:
         return np.zeros(shape)
     array = real_array(given)
     if array is None or array.shape != shape:
-        found = type(given).__name__ if array is None else str(array.shape)
-        raise ShapeError(Problem(f"rollout: {name} does not fit", found, f"an array of shape {shape}", "reshape it"))
+        stated = type(given).__name__ if array is None else str(array.shape)
+        raise ShapeError(Problem(f"rollout: {name} does not fit", stated, f"an array of shape {shape}", "reshape it"))
     return np.asarray(array, dtype=np.float64)
