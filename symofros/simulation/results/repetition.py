@@ -13,12 +13,12 @@ import numpy as np
 
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.results.energy_norm import energies_of, energy_norms, metrics
-from symofros.simulation.results.windows import WHOLE, windows
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.loops import run_own
 from symofros.simulation.stepping.resolution import TOLERANCE
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
+from symofros.simulation.stepping.windows import WHOLE, windows
 
 # States, about, at which a function of the user's is asked again for the inputs; share by which they may differ.
 _CALLED, _SAME = 8, 1e-9

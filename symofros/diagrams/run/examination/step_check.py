@@ -13,8 +13,8 @@ from symofros.diagrams.program.layout import Layout
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import STILL
 from symofros.runtime.manifold import difference
-from symofros.simulation.results.windows import WHOLE, windows
 from symofros.simulation.stepping.resolution import TOLERANCE
+from symofros.simulation.stepping.windows import WHOLE, windows
 
 # Differences of displacements count by this share: coordinates may be larger than how they change.
 _POSITIONS = 3.0
