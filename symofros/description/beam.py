@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, fields
 from itertools import pairwise
+from numbers import Real
 from typing import Any, Literal, get_args
 
 from symofros.description.entries import refuses_unknown_entries
@@ -100,7 +101,7 @@ class BeamLoad:
         """Convert the components, check the station."""
         object.__setattr__(self, "force", as_vector(self.force, "beam load: force"))
         object.__setattr__(self, "torque", as_vector(self.torque, "beam load: torque"))
-        if self.at is not None and not 0.0 <= self.at <= 1.0:
+        if self.at is not None and not (isinstance(self.at, Real) and 0.0 <= self.at <= 1.0):
             raise DescriptionError(
                 Problem(
                     "beam load: station off the beam",

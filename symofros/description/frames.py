@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from numbers import Real
 
 from symofros.description.entries import refuses_unknown_entries
 from symofros.description.values import IDENTITY, ORIGIN, Rotation, Vector, as_vector
@@ -30,7 +31,7 @@ class Frame:
     def __post_init__(self) -> None:
         """Convert the position, check the station."""
         object.__setattr__(self, "position", as_vector(self.position, f"frame '{self.name}': position"))
-        if self.at is not None and not 0.0 <= self.at <= 1.0:
+        if self.at is not None and not (isinstance(self.at, Real) and 0.0 <= self.at <= 1.0):
             raise DescriptionError(
                 Problem(
                     f"frame '{self.name}': station off the beam",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields
+from functools import partial
 from typing import Any
 
 import pytest
@@ -56,6 +57,13 @@ def test_a_beam_of_second_order_takes_no_functions_for_stretch() -> None:
     shapes = {"bend_y": ("xi^2",), "stretch": ("xi",)}
     with pytest.raises(sf.DescriptionError, match=r"beam 'b': shapes for stretch(.|\n)*theory: strain"):
         sf.Beam("b", sf.Joint("q", "fixed"), 1.0, 1.0, EI_z=1.0, bend_y=1, family="user", shapes=shapes)
+
+
+@pytest.mark.parametrize("cls", [partial(sf.Frame, "f"), sf.BeamLoad])
+@pytest.mark.parametrize("at", ["L/2", float("nan"), 1.5])
+def test_a_station_is_a_number_from_root_to_tip(cls: Any, at: Any) -> None:
+    with pytest.raises(sf.DescriptionError, match="off the beam"):
+        cls(at=at)
 
 
 def test_known_entries_pass() -> None:
