@@ -306,18 +306,6 @@ def test_layers_have_names(viewer: sf.Viewer) -> None:
         viewer.set_layer("frame", True)
 
 
-def test_shadows_are_cast_only_where_they_are_asked_for(viewer: sf.Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
-    cast: list[bool] = []
-    scene = viewer._scene_state.scene.server.scene
-    monkeypatch.setattr(scene, "configure_default_lights", lambda cast_shadow: cast.append(cast_shadow))
-    viewer.set_system(MODELS["pendulum"])
-    viewer.set_layer("shadows", True)
-    viewer.set_system(MODELS["planar_robot"])
-    viewer.set_layer("frames", True)
-    viewer.set_layer("shadows", False)
-    assert cast == [False, True, True, False]
-
-
 def test_the_controls_say_what_is_shown(viewer: sf.Viewer) -> None:
     viewer.set_layer("frames", True)
     viewer.exaggeration = 7.0

@@ -5,14 +5,13 @@ from __future__ import annotations
 from symofros.studio.viewer.drawing.drawing import KINDS, Drawing
 
 # What can be shown or hidden: kinds of pieces, and what is not of the mechanism itself.
-LAYERS = (*KINDS, "frames", "labels", "ground", "shadows")
+LAYERS = (*KINDS, "frames", "labels", "ground")
 
 
 def shown_at_first(drawing: Drawing) -> frozenset[str]:
     """The layers of a drawing that are not in the way of others."""
     dressed, bare = ({part.link for part in drawing.parts if part.kind == kind} for kind in ("visuals", "bodies"))
-    # Without a graphics card, shadows take ten times what the rest of a picture does.
-    hidden = {"frames", "labels", "shadows"}
+    hidden = {"frames", "labels"}
     if dressed or not drawing.inertias_fit:
         hidden.add("inertias")
     if dressed and not bare - dressed and not drawing.beams:

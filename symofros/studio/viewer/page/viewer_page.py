@@ -92,8 +92,7 @@ class ViewerPage:
         """Show or hide a layer.
 
         Args:
-            layer: "bodies", "inertias", "joints", "constraints", "paths", "visuals", "frames", "labels", "ground" or
-                "shadows" (not in the pictures of films).
+            layer: "bodies", "inertias", "joints", "constraints", "paths", "visuals", "frames", "labels" or "ground".
             visible: Whether it is to be seen.
 
         Raises:

@@ -58,7 +58,6 @@ class ViserScene:
             self._hide_spare_tubes()
             self._add_frames()
             self._add_ground()
-            self._cast_shadows()
             self._aim()
             self.move(posture)
 
@@ -102,11 +101,6 @@ class ViserScene:
         self._shown = self._shown | {layer} if visible else self._shown - {layer}
         for node in self._nodes[layer]:
             node.visible = visible
-        if layer == "shadows":
-            self._cast_shadows()
-
-    def _cast_shadows(self) -> None:
-        self.server.scene.configure_default_lights(cast_shadow="shadows" in self._shown)
 
     # Nodes.
 
