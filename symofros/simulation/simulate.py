@@ -21,6 +21,7 @@ from symofros.simulation.settings import Settings, check_fit, check_start, refus
 from symofros.simulation.stepping.loops import run_own, run_sundials
 from symofros.simulation.stepping.methods import Method
 from symofros.simulation.stepping.stepper import Stepper
+from symofros.simulation.uncompiled import refuse_uncompiled
 
 
 def simulate(
@@ -65,6 +66,7 @@ def simulate(
         AssemblyError: The first state does not meet the constraints.
         SymofrosError: The options contradict each other.
     """
+    refuse_uncompiled(model)
     settings = Settings.of(model, (options or SimulationOptions()).changed(changes), t_end)
     model = model.with_precision("double")
     values = model.parameter_values

@@ -24,6 +24,7 @@ from symofros.simulation.settings import CLOSED, Settings, refuse_lengths
 from symofros.simulation.stepping.batch_stepper import BatchResults, BatchStepper, InitialStates, run_batch_steppers
 from symofros.simulation.stepping.methods import METHODS
 from symofros.simulation.stepping.status import Status
+from symofros.simulation.uncompiled import refuse_uncompiled
 
 
 def simulate_batch(
@@ -69,6 +70,7 @@ def simulate_batch(
         UnknownNameError: The name of an option, an input or in a formula is unknown.
         SymofrosError: The options contradict each other, are those of single runs, or the method is implicit.
     """
+    refuse_uncompiled(model)
     chosen = (options or SimulationOptions()).changed(changes)
     if chosen.output is None:
         chosen = replace(chosen, output=[t_end])

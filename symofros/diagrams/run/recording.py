@@ -140,6 +140,14 @@ class Recording(Records, Mapping[str, Array]):
     bendings: tuple[BeamBending, ...] = ()
     kept: Mapping[str, Mapping[str, Array]] = field(default_factory=dict)
 
+    def __repr__(self) -> str:
+        """Diagram, sizes and outcome; the numbers are in its attributes."""
+        span = f"t = {self.t[0]:.6g} … {self.t[-1]:.6g} s" if len(self.t) else "no records"
+        name = self.compiled.resolved.wired.name
+        return (
+            f"<{type(self).__name__} of '{name}': {len(self.t)} records of {len(self)} outputs, {span}; {self.outcome}>"
+        )
+
     def __iter__(self) -> Iterator[str]:
         """Names of all outputs."""
         wired = self.compiled.resolved.wired

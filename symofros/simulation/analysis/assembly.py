@@ -21,6 +21,7 @@ from symofros.runtime.constrained import (
     step_factor,
 )
 from symofros.runtime.model import ArrayLike, Model
+from symofros.simulation.uncompiled import refuse_uncompiled
 
 Indices = npt.NDArray[np.intp]
 
@@ -74,6 +75,7 @@ def assemble(
         AssemblyError: No such configuration was found; names the constraint that is worst.
         UnknownNameError: `held` names something that is not a speed.
     """
+    refuse_uncompiled(model)
     free = free_speeds(model, held)
     model = model.with_precision("double")
     q = model.neutral() if q is None else numeric("q", model.by_name("q", q))

@@ -21,6 +21,7 @@ from symofros.simulation.analysis.beam_theory import (
     beyond_critical_load,
     refuse_beyond,
 )
+from symofros.simulation.uncompiled import refuse_uncompiled
 
 # Largest step of a coordinate at once; of a beam's displacements over its length.
 LARGEST_STEP = 0.5
@@ -94,6 +95,7 @@ def equilibrium(
         EquilibriumError: None was found; names the coordinate with the largest imbalance.
         UnknownNameError: `held` names something that is not a speed.
     """
+    refuse_uncompiled(model)
     model = model.with_precision("double")
     free = free_speeds(model, held)
     nv, nc = model.nv, model.nc

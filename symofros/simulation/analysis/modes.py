@@ -13,6 +13,7 @@ from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.beam_theory import bendings_in_motion, refuse_beyond
 from symofros.simulation.analysis.state_space import state_space
+from symofros.simulation.uncompiled import refuse_uncompiled
 
 Complex = npt.NDArray[np.complex128]
 
@@ -63,6 +64,7 @@ def modes(
     Raises:
         BeamTheoryError: A beam is bent beyond the limit.
     """
+    refuse_uncompiled(model)
     state = (
         numeric("q", model.by_name("q", q)),
         np.zeros(model.nv) if v is None else numeric("v", model.by_name("v", v)),

@@ -25,6 +25,7 @@ def agree(diagram: sf.Diagram, t_end: float, names: list[str], scale: float = 1.
     simulation = sf.Simulation(diagram)
     run = simulation.run(t_end, record=t_end / 50, **settings)
     assert run.outcome.ok, run.outcome
+    assert len(repr(run)) < 300 and f"{len(run.t)} records" in repr(run) and "finished" in repr(run)
     for compiled in (True, False):
         other = simulation.interpret(t_end, record=t_end / 50, compiled=compiled, **settings)
         assert np.array_equal(run.t, other.t)
