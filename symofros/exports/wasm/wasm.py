@@ -145,11 +145,11 @@ def _types(material: Material) -> str:
 
 def _json(data: object) -> str:
     """JSON that can't end a script of a page."""
-    return json.dumps(data).replace("</", "<\\/")
+    return json.dumps(data).replace("<", "\\u003c")
 
 
 def _comment(text: str) -> str:
-    return " ".join(text.replace("</", "< /").split())
+    return " ".join(text.replace("<", "< ").split())
 
 
 _SELFTEST = """\

@@ -161,9 +161,11 @@ export class Instance {
     const { model } = this, pre = model.wasm.js_array(this.at, 6), n = model.wasm.js_size(0);
     const shared = model.view(model.pre, n).slice();
     model.view(model.pre, n).set(model.view(pre, n)); // An instance has parameters of its own.
-    const results = model.evaluate(name, inputs, frame);
-    model.view(model.pre, n).set(shared);
-    return results;
+    try {
+      return model.evaluate(name, inputs, frame);
+    } finally {
+      model.view(model.pre, n).set(shared); // Also where there is no such function.
+    }
   }
 
   #array(what) { return this.model.view(this.model.wasm.js_array(this.at, what), this.sizes[what]); }
