@@ -65,9 +65,13 @@ class Frames(Mapping[str, tuple[Array, Array]]):
         self._trajectory = trajectory
 
     def __getitem__(self, name: str) -> tuple[Array, Array]:
-        """Pose over time."""
+        """Pose over time.
+
+        Raises:
+            KeyError: There is no such frame; an UnknownNameError, which says the nearest, of a text.
+        """
         run = self._trajectory
-        if name not in run.model.record.frame_names and name not in run.model.record.frame_aliases:
+        if not isinstance(name, str):
             raise KeyError(name)
         return run.model.frame_pose(name, run.q, u=run.u, par=run.par)
 

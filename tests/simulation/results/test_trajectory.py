@@ -59,6 +59,15 @@ def test_columns_by_name(run: sf.Trajectory) -> None:
         run["nothing"]
 
 
+def test_a_frame_that_is_not_there_is_named_with_the_nearest(run: sf.Trajectory) -> None:
+    name = run.model.names.frames[0]
+    with pytest.raises(KeyError, match=f"did you mean '{name}'"):
+        run.frames[f"{name}x"]
+    assert f"{name}x" not in run.frames and name in run.frames and run.frames.get(f"{name}x") is None
+    with pytest.raises(KeyError):
+        run.frames[3]  # type: ignore[index]
+
+
 def test_picture(run: sf.Trajectory) -> None:
     figure = run.plot()
     assert figure._repr_png_().startswith(b"\x89PNG")  # What a notebook shows.
