@@ -188,5 +188,6 @@ def fails(path: Path) -> tuple[str, bool]:
         return f"no end in {_TIME:g} s", True
     said = done.stdout + done.stderr.replace(str(path.absolute()), path.name).replace(str(path), path.name)
     said = re.sub(r"\S*/site-packages/", "", said)  # Warnings of engines name where they are installed here.
+    said = said.replace(str(Path.home()), "~")  # Banners of engines name their caches.
     failed = done.returncode < 0 or (done.returncode != 0 and "AssertionError" in done.stderr)
     return f"{said.strip()}\nexit code {done.returncode}", failed
