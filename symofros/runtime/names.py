@@ -98,9 +98,9 @@ def stacked(record: ModelRecord, par: Array, argument: str, values: Mapping[str,
             raise ShapeError(Problem(f"{what}: '{name}' is named twice", ", ".join(map(str, values)), rule, "keep one"))
         array = real_array(value)
         if array is None:
-            found = f"{type(value).__name__} {value!r:.60}"
+            actual = f"{type(value).__name__} {value!r:.60}"
             rule = "a value is a number, or an array of numbers"
-            raise ShapeError(Problem(f"{what}: '{stated}' is not a number", found, rule, "convert it before"))
+            raise ShapeError(Problem(f"{what}: '{stated}' is not a number", actual, rule, "convert it before"))
         given.add(name)
         columns[names.index(name)] = array
     try:

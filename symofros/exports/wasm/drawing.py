@@ -14,7 +14,7 @@ def segments(material: Material) -> list[dict[str, str | bool]]:
     """Lines from each body to its frames, and to the bodies that it carries; between frames of the module only.
 
     Returns:
-        Of each line the frames `from` and `to`; whether it is `curved`, a beam that leaves its root along x; and
+        Lines, with the frames `from` and `to`; whether one is `curved`, a beam that leaves its root along x; and
         whether `to` is the beam's tip, whose x is the `tangent` there.
     """
     tree = plan(material.system)

@@ -20,6 +20,13 @@ def angles(joint: Joint) -> tuple[bool, ...]:
     return (False,) * len(joint.coordinates) if joint.traits.user_defined else joint.traits.angles
 
 
+def joint_units(joint: Joint) -> tuple[str, ...]:
+    """SI unit of each coordinate of a joint; "" for those that a user defines, and for components of a quaternion."""
+    if joint.traits.user_defined:
+        return ("",) * len(joint.coordinates)
+    return tuple(coordinate.unit for coordinate in joint.traits.coordinates)
+
+
 def coordinate_names(joint: Joint) -> tuple[str, ...]:
     """Names of a joint's coordinates: the user's own, or the joint's name with the suffixes of its kind."""
     return _names(joint, joint.traits.coordinate_suffixes)

@@ -16,7 +16,7 @@ from symofros.description.joint_kinds import CONSTANT_ENTRIES
 from symofros.description.system import Inertia, RigidBody, System
 from symofros.description.values import Value, symbols
 from symofros.errors import Problem, did_you_mean
-from symofros.mechanics.topology.coordinates import coordinate_names, rate_symbols, speed_symbols
+from symofros.mechanics.topology.coordinates import coordinate_names, joint_units, rate_symbols, speed_symbols
 
 TIME = "t"
 # What a formula may use: parameters alone; also the configuration and t; also speeds and inputs; a general joint's
@@ -106,10 +106,10 @@ def _joint_values(joint: Joint) -> Iterator[Stated]:
 
 def _of_coordinate(joint: Joint, number: int, units: tuple[str, ...]) -> tuple[str, ...]:
     """Of units for a turn and for a translation, as docstrings state them, those of a coordinate."""
-    coordinates = joint.traits.coordinates
-    if len(units) != 2 or joint.traits.user_defined or not 0 <= number < len(coordinates):
+    known = joint_units(joint)
+    if len(units) != 2 or not 0 <= number < len(known):
         return units
-    return {"rad": units[:1], "m": units[1:]}.get(coordinates[number].unit, units)
+    return {"rad": units[:1], "m": units[1:]}.get(known[number], units)
 
 
 def _body_values(body: RigidBody) -> Iterator[Stated]:

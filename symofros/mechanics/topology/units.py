@@ -13,11 +13,10 @@ from math import isclose
 
 from symofros.base.units import NAMES, parse
 from symofros.description.beam import STATION
-from symofros.description.joint import Joint
 from symofros.description.system import System
 from symofros.errors import DescriptionError, Problem
 from symofros.expr.expression import Expression
-from symofros.mechanics.topology.coordinates import coordinate_names, rate_symbols, speed_symbols
+from symofros.mechanics.topology.coordinates import coordinate_names, joint_units, rate_symbols, speed_symbols
 from symofros.mechanics.topology.formulas import TIME, stated_values
 
 # Powers of kg, m, s, A, K, mol and cd; None: open.
@@ -73,7 +72,7 @@ def _of_motion(system: System) -> dict[str, Powers | None]:
     known: dict[str, Powers | None] = {}
     for joint in (body.joint for body in system.bodies if body.joint is not None):
         names = coordinate_names(joint)
-        units = _coordinate_units(joint, len(names))
+        units = joint_units(joint)
         known |= {name: _parsed(unit) for name, unit in zip(names, units, strict=True)}
         speeds = speed_symbols(joint)
         if len(speeds) == len(units) and not joint.traits.quasi_velocities:
@@ -82,10 +81,6 @@ def _of_motion(system: System) -> dict[str, Powers | None]:
                 rates = rate_symbols(joint)
                 known |= {name: _parsed(f"{unit}/s^2") for name, unit in zip(rates, units, strict=False) if unit}
     return known
-
-
-def _coordinate_units(joint: Joint, count: int) -> list[str]:
-    return [""] * count if joint.traits.user_defined else [item.unit for item in joint.traits.coordinates]
 
 
 def _parsed(text: str) -> Powers | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from symofros.mechanics.beams.deformation import deformation_of
 from symofros.mechanics.beams.strains import strains_of
+from symofros.mechanics.topology.coordinates import joint_units
 from symofros.mechanics.topology.tree import SpanningTree
 
 
@@ -18,9 +19,7 @@ def coordinate_units(tree: SpanningTree) -> dict[str, str]:
                 units = ["rad" if axis < 3 else "" for axis, _ in strains_of(link.tip_of).axes]
             else:
                 units = ["m" if length else "rad" for length in deformation_of(link.tip_of).lengths]
-        elif link.joint.traits.user_defined:
-            units = [""] * size
         else:
-            units = [coordinate.unit for coordinate in link.joint.traits.coordinates]
+            units = list(joint_units(link.joint))
         unit_of |= dict(zip(names, units, strict=False))  # A prescribed joint has none among q.
     return unit_of

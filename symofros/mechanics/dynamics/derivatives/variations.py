@@ -22,7 +22,7 @@ class Variation:
     Attributes:
         w: Change of the angular velocity.
         alpha: Change of the angular acceleration, less what 2 w x V has of it.
-        a: Change of the acceleration of Lo, likewise.
+        a: Change of the acceleration of Lo, less what 2 w x V has of it.
     """
 
     w: Vec3
