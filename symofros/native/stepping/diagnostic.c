@@ -31,11 +31,17 @@ static void sym_thin_diagnostic_states(sym_run *r) {
     r->diagnostic_stride *= 2;
 }
 
-/* Keep the present state, the end of step number r->steps, if it is one of those kept or the last one. */
+/* Keep the present state, the end of step number r->steps, if it is one of those kept or the last one. The last one gives
+ * way to the next where the run goes on, as in runs of one step after the other: only each stride-th fills the table. */
 static void sym_keep_diagnostic_state(sym_run *r, int32_t last) {
-    if (r->diagnostic_capacity < 2) return;
-    if (r->steps % r->diagnostic_stride != 0 && !last) return;
-    if (r->n_diagnostic == r->diagnostic_capacity) sym_thin_diagnostic_states(r);
-    if (r->steps % r->diagnostic_stride != 0 && !last) return;
+    const int32_t between = r->steps % r->diagnostic_stride != 0;
+    if (r->diagnostic_capacity < 2 || (between && !last)) return;
+    if (r->diagnostic_between) --r->n_diagnostic;
+    r->diagnostic_between = 0;
+    if (r->n_diagnostic == r->diagnostic_capacity) {
+        sym_thin_diagnostic_states(r);
+        if (!last && r->steps % r->diagnostic_stride != 0) return;
+    }
+    r->diagnostic_between = r->steps % r->diagnostic_stride != 0;
     sym_store_diagnostic_state(r, r->n_diagnostic++);
 }

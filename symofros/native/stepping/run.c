@@ -74,7 +74,7 @@ SYM_EXPORT int32_t sym_run_start(sym_run *r) {
     r->slope_valid = 0;
     r->steps = r->rejected = r->evaluations = r->jacobians = 0;
     r->n_records = r->n_event_records = r->next_grid = 0;
-    r->n_diagnostic = 0, r->diagnostic_stride = 1;
+    r->n_diagnostic = 0, r->diagnostic_stride = 1, r->diagnostic_between = 0;
     r->rank_max = -1, r->rank_min = s->nc + 1;
     r->previous_error = 1.0;
     r->lost_energy = r->kinetic_energy = 0.0;

@@ -170,6 +170,7 @@ typedef struct sym_run {
     double *record_t, *record_q, *record_v, *record_u;
     /* Ends of steps for the diagnosis: each diagnostic_stride-th and the last; thinned when full. Capacity 0: none. */
     int64_t diagnostic_capacity, n_diagnostic, diagnostic_stride;
+    int32_t diagnostic_between; /* whether the last one kept lies between two strides */
     double *diagnostic_t, *diagnostic_q, *diagnostic_v, *diagnostic_u;
     int64_t event_capacity, n_event_records;
     double *event_t, *event_q, *event_v;

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 import symofros as sf
 from reference_models import MODELS
@@ -36,3 +37,23 @@ def test_states_that_are_only_looked_at_leave_inputs_and_accelerations_of_the_ru
         stepper.slope(0.5, other, rate)
         assert not np.array_equal(held(), before)
     np.testing.assert_array_equal(held(), before)
+
+
+@pytest.mark.parametrize("steps", [40, 700, 10000])
+def test_a_run_in_many_pieces_keeps_the_states_of_a_run_in_one_for_its_diagnosis(steps: int) -> None:
+    # Each piece ends with a last state; twice as many steps between two states after 128 of them would overflow.
+    pendulum = sf.compile(MODELS["pendulum"])
+    kept = []
+    for pieces in (1, steps):
+        settings = Settings.of(pendulum, SimulationOptions("rk4", dt=2.0**-10), 1.0)
+        stepper = Stepper(pendulum, settings.method, plan_inputs(pendulum, None), (), pendulum.parameter_values)
+        settings.apply(stepper)
+        assert stepper.start(np.array([0.3]), np.zeros(1), steps + 1) >= 0
+        for piece in range(1, pieces + 1):
+            stepper.run.t_end = steps / pieces * piece * 2.0**-10
+            assert stepper.advance(steps) >= 0
+        kept.append(stepper.diagnostic_states())
+    for one, many in zip(*kept, strict=True):
+        np.testing.assert_array_equal(many, one)
+    t, *_ = kept[0]
+    assert len(t) > min(steps, 100) and np.ptp(np.diff(t)[:-1]) == 0.0 and t[-1] == steps * 2.0**-10
