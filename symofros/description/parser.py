@@ -16,6 +16,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
+from functools import lru_cache
 
 from symofros.errors import Problem, SymofrosError, did_you_mean
 from symofros.expr.expression import Expression
@@ -26,6 +27,8 @@ Token = tuple[str, str, int]
 MAX_LENGTH = 10_000
 MAX_DEPTH = 100
 
+# Of texts that are parsed once and kept; longer ones are rare, and would take room.
+_SHORT = 100
 # Of the tree: 1 + 1 + 1 + … is a tower. What works on formulas recurses into them.
 MAX_HEIGHT = 300
 
@@ -199,6 +202,10 @@ def parse(text: str) -> Expression:
     Raises:
         ExpressionError: Anything outside the grammar, too long, or too deep.
     """
+    return _parsed_once(text) if len(text) <= _SHORT else _parsed(text)
+
+
+def _parsed(text: str) -> Expression:
     reader = _Reader(text, tokenize(text))
     expression = reader.sum()
     if reader.token[0] != "end":
@@ -206,6 +213,10 @@ def parse(text: str) -> Expression:
     if _height(expression) > MAX_HEIGHT:
         raise ExpressionError(text, f"a chain of more than {MAX_HEIGHT} operations", 0, "group terms by parentheses")
     return expression
+
+
+# An editor reads the same file after each edit, and nearly all of its formulas are as before.
+_parsed_once = lru_cache(maxsize=1 << 14)(_parsed)
 
 
 def _height(expression: Expression) -> int:

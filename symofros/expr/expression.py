@@ -110,6 +110,8 @@ def evaluate(expression: Expression | float, values: Mapping[str, float]) -> flo
     """
     if isinstance(expression, float):
         return expression
+    if expression.kind == "symbol" and expression.name not in CONSTANTS:
+        return values[expression.name]
     graph = Graph()
     used = expression.symbols()
     number = graph.number(lower(expression, graph, {name: graph.constant(values[name]) for name in used}))

@@ -66,6 +66,8 @@ class Numbers:
 
     def rotation_problems(self, what: str, rotation: Any, where: str) -> Iterator[Problem]:
         """A rotation that is none."""
+        if rotation.is_identity:
+            return
         if not np.all(np.isfinite(self.values(rotation))):
             return  # Reported as values that are not finite.
         R = self.rotation(rotation)

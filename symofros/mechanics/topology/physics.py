@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from functools import partial
+from functools import lru_cache, partial
+from itertools import chain
 
 import numpy as np
 
 from symofros.base.rotations import Array
 from symofros.description.beam import STATION, Beam
 from symofros.description.system import Body, Inertia, RigidBody, System
-from symofros.description.values import Term, Value, substituted
+from symofros.description.values import Term, Value, substituted, symbols
 from symofros.errors import Problem
 from symofros.mechanics.topology.conditions import Condition, Formulas, violations
 from symofros.mechanics.topology.numbers import Numbers
@@ -24,7 +25,9 @@ _ZERO, _HALF = Term(0.0), Term(0.5)
 
 def inertia_problems(system: System, numbers: Numbers) -> Iterator[Problem]:
     """Bodies whose inertia no distribution of mass can have, unless they waive the check."""
-    return violations(inertia_conditions(system), numbers)
+    where = system.origin.get
+    stated = (_body_conditions(body, where(("body", body.name), ""), numbers) for body in system.bodies)
+    return violations(chain.from_iterable(stated), numbers)
 
 
 def inertia_conditions(system: System) -> Iterator[Condition]:
@@ -35,23 +38,28 @@ def inertia_conditions(system: System) -> Iterator[Condition]:
 
 def has_physical_inertia(body: Body, numbers: Numbers) -> bool:
     """Whether some distribution of mass has a body's inertia, or the check is waived."""
-    return next(violations(_body_conditions(body, ""), numbers), None) is None
+    return next(violations(_body_conditions(body, "", numbers), numbers), None) is None
 
 
-def _body_conditions(body: Body, where: str) -> Iterator[Condition]:
+def _body_conditions(body: Body, where: str, numbers: Numbers | None = None) -> Iterator[Condition]:
+    """Conditions of one body; with numbers, in these: a hundred operations a body that need not become formulas."""
     if isinstance(body, RigidBody) and body.inertia is not None and "nonphysical_inertia" not in body.waive:
-        problem = partial(_nonphysical, body, where)
-        yield Condition((body.inertia.mass,), "not negative", problem)
-        yield Condition(_physical_margins(body.inertia), "positive", problem)
+        problem, inertia = partial(_nonphysical, body, where), body.inertia
+        stated = _stated(inertia)
+        if numbers is not None and all(symbols(value) <= numbers.parameters.keys() for value in stated):
+            stated = tuple(map(numbers.value, stated))
+        yield Condition(stated[:1], "not negative", problem)
+        yield Condition(_physical_margins(stated, inertia.about), "positive", problem)
 
 
-def _physical_margins(inertia: Inertia) -> tuple[Value, ...]:
-    """What is positive where moments are physical, and zero without mass.
+@lru_cache(maxsize=1 << 12)  # Bodies that an edit of a file leaves as they are.
+def _physical_margins(stated: tuple[Value, ...], about: str) -> tuple[Value, ...]:
+    """What is positive where moments are physical, and zero without mass; of mass, mass centre and moments (10).
 
     The second moments E = tr(J)/2 - J of a mass distribution are positive semidefinite, which is the triangle
     inequality of the principal moments of J. With a slack on the diagonal the leading minors tell (Sylvester).
     """
-    mass, J = Term(inertia.mass), _central_moments(inertia)
+    mass, J = Term(stated[0]), _central_moments(stated, about)
     size = sum((entry * entry for row in J for entry in row), _ZERO).sqrt()
     slack = _HALF * Term(PHYSICAL_TOLERANCE) * size.maximum(Term(_LEAST_MOMENT))
     half_trace = _HALF * (J[0][0] + J[1][1] + J[2][2])
@@ -88,13 +96,23 @@ def _fault(body: RigidBody, numbers: Numbers) -> str:
     return f"{shown}: the largest exceeds the sum of the others" if mass > 0.0 else f"{shown} without mass"
 
 
-def _central_moments(inertia: Inertia) -> list[list[Term]]:
-    """The inertia matrix about the mass centre, along the axes it was stated in [kg m^2]."""
-    xx, yy, zz, xy, xz, yz = map(Term, inertia.moments)
+def _stated(inertia: Inertia) -> tuple[Value, ...]:
+    """Mass, mass centre and moments (10)."""
+    return inertia.mass, *inertia.center_of_mass, *inertia.moments
+
+
+def _central_moments(stated: tuple[Value, ...], about: str) -> list[list[Term]]:
+    """The inertia matrix about the mass centre, along the axes it was stated in [kg m^2].
+
+    Args:
+        stated: Mass, mass centre and moments (10).
+        about: Reference point of the moments, as in Inertia.
+    """
+    mass, *c = map(Term, stated[:4])
+    xx, yy, zz, xy, xz, yz = map(Term, stated[4:])
     J = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
-    if inertia.about != "body":
+    if about != "body":
         return J
-    mass, c = Term(inertia.mass), [Term(value) for value in inertia.center_of_mass]
     square = c[0] * c[0] + c[1] * c[1] + c[2] * c[2]
     return [
         [J[i][j] - mass * (square - c[i] * c[i] if i == j else _ZERO - c[i] * c[j]) for j in range(3)] for i in range(3)
@@ -104,7 +122,7 @@ def _central_moments(inertia: Inertia) -> list[list[Term]]:
 def moments_about_center(body: RigidBody, numbers: Numbers) -> Array:
     """The inertia matrix about the mass centre, along the axes it was stated in (3, 3) [kg m^2]."""
     assert body.inertia is not None
-    entries = [entry.value for row in _central_moments(body.inertia) for entry in row]
+    entries = [entry.value for row in _central_moments(_stated(body.inertia), body.inertia.about) for entry in row]
     return np.array(Formulas(entries)(numbers.parameters)).reshape(3, 3)
 
 

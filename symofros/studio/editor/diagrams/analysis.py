@@ -35,7 +35,7 @@ def analyse_diagram(file: Path, source: YamlText) -> Analysis:
         file: Path of the document; models and parts are relative to it.
         source: Text of the document.
     """
-    plain = source.root.plain()
+    plain = source.data
     read, problems = read_diagram(file, source.text)
     drafted: Draft | None = None
     loops: list[AlgebraicLoopError] = []

@@ -37,7 +37,7 @@ def analyse(file: Path, text: str) -> Analysis:
     problems, system = _checked(file, source)
     exact = schema_problems(source, str(file)) if problems else {}
     shown_problems = [placed(problem, source, str(file), exact) for problem in problems]
-    data = as_json(source.root.plain())
+    data = as_json(source.data)
     graph = diagram(data)
     blocks = {node["id"]: node for node in graph["nodes"]}
     base = next((node for node in graph["nodes"] if node["kind"] == "base"), None)

@@ -44,7 +44,7 @@ class Library:
             EditError: It has no bodies.
         """
         text, _ = read_text(self.workspace.inside(f"{FOLDER}/{name}.yaml"))
-        data = yaml_text_of(text).root.plain()
+        data = yaml_text_of(text).data
         if not isinstance(data, dict) or not isinstance(data.get("bodies"), dict):
             raise EditError(Problem(f"'{name[:50]}' is not a part", "no bodies", "a part has bodies", "choose another"))
         return data

@@ -40,7 +40,7 @@ _WORDS = {"inertia": "moments", "modes": "family", "functions": "family"}
 def schema_problems(source: YamlText, file: str) -> dict[Problem, Path]:
     """What the format finds wrong with the main file, each with its exact path."""
     try:
-        NativeFile.model_validate(source.root.plain())
+        NativeFile.model_validate(source.data)
     except ValidationError as error:
         faults = error.errors(include_url=False)
         placed = {problem_of(fault, f"{file}:{line_of(fault, source.root)}"): path_of(fault) for fault in faults}
@@ -67,7 +67,7 @@ def placed(problem: Problem, source: YamlText | None, file: str, exact: dict[Pro
         "found": problem.found,
         "rule": problem.rule,
         "remedy": problem.remedy,
-        "node": node_of(path, source.root.plain() if source else None),
+        "node": node_of(path, source.data if source else None),
     }
 
 
@@ -81,7 +81,7 @@ def node_of(path: Path, data: Any) -> str:
 
 
 def _path_of(problem: Problem, source: YamlText, line: int) -> Path:
-    data = source.root.plain()
+    data = source.data
     if not isinstance(data, dict):
         return ()
     entry = _named(problem.what, data) or _by_line(source, line)

@@ -164,7 +164,7 @@ class Session:
         self.document.expect(body.get("revision"))
         name = text_of(body, "name")
         parent, frame = text_of(body, "parent") or None, text_of(body, "frame") or None
-        edits = insertion(yaml_text_of(self.document.text).root.plain(), self.library.part(name), parent, frame)
+        edits = insertion(yaml_text_of(self.document.text).data, self.library.part(name), parent, frame)
         self.document.change(f"insert {name}"[:200], lambda text: with_references(text, edits))
         self.storage.autosave()
 
@@ -176,7 +176,7 @@ class Session:
 
     def keep_part(self, body: Json) -> None:
         """Keep some bodies of the document as a part."""
-        self.library.keep(text_of(body, "name"), yaml_text_of(self.document.text).root.plain(), body.get("bodies"))
+        self.library.keep(text_of(body, "name"), yaml_text_of(self.document.text).data, body.get("bodies"))
 
     # Asking.
 

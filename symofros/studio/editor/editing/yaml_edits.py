@@ -43,7 +43,7 @@ def with_references(text: str, edits: list[Edit]) -> str:
     """
     for edit in edits:
         if edit.op == "rename":
-            text = _together(text, renaming(yaml_text_of(text).root.plain(), edit))
+            text = _together(text, renaming(yaml_text_of(text).data, edit))
         else:
             text = apply(text, edit)
     return text
@@ -52,7 +52,7 @@ def with_references(text: str, edits: list[Edit]) -> str:
 def _together(text: str, edits: list[Edit]) -> str:
     """The text after edits apart from each other, read once: a parameter may be used in hundreds of formulas."""
     source = yaml_text_of(text)
-    done, after, rest = text, source.root.plain(), []
+    done, after, rest = text, source.data, []
     patches = [(patch(source, edit), edit) for edit in edits]
     # From the end of the text, so that positions and paths stay valid: a key stands before what is in it.
     for (start, end, new), edit in sorted(patches, key=lambda pair: pair[0][:2], reverse=True):
@@ -73,7 +73,7 @@ def _one_by_one(text: str, edits: list[Edit]) -> str:
 def trace(text: str, edit: Edit) -> tuple[str, Path | None]:
     """As `apply`, and the path of the entry that had to be written anew, if one had to."""
     source = yaml_text_of(text)
-    before = source.root.plain()
+    before = source.data
     after = edited(before, edit)
     if same(before, after):
         return text, None
@@ -100,7 +100,7 @@ def _meaning(text: str | None, wanted: Any) -> str | None:
     if text is None:
         return None
     try:
-        return text if same(yaml_text_of(text).root.plain(), wanted) else None
+        return text if same(yaml_text_of(text).data, wanted) else None
     except YamlFault:
         return None
 

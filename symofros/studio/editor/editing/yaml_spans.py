@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from functools import lru_cache
-from typing import NamedTuple
+from functools import cached_property, lru_cache
+from typing import Any, NamedTuple
 
 from symofros.description.yaml.yaml_nodes import Node
 from symofros.description.yaml.yaml_pieces import compose_text
@@ -47,6 +47,11 @@ class YamlText:
         first = _BREAK.search(text)
         self.newline = first.group() if first else "\n"
         self._settle(self.root)
+
+    @cached_property
+    def data(self) -> Any:
+        """The document as plain data, which all who read it share: not to be changed."""
+        return self.root.plain()
 
     def _settle(self, owner: Node) -> None:
         """Put values that are not written (the scanner has them at the next token) after their colon or dash."""
