@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import prod
 from typing import NamedTuple
 
 import numpy as np
 
 from symofros.base.functions import FUNCTIONS
-from symofros.base.model_function import cotangents
+from symofros.base.model_function import OutputArray, cotangents, size_of
 from symofros.errors import Problem, ShapeError
 from symofros.runtime.calls.kernel import Array, Numbers
 from symofros.runtime.functions import ArrayLike, Functions
@@ -61,16 +62,27 @@ class AdjointFunctions(Functions):
 
         Raises:
             UnknownNameError: No such products, or no such frame or input.
-            ShapeError: An input is missing or does not fit.
+            ShapeError: An input is missing or does not fit, or there is no cotangent.
         """
         known = tuple(row.transposes for row in FUNCTIONS.values() if row.transposes)
         if name not in known:
-            raise self._unknown("vector-Jacobian product of", str(name)[:80], known, "they are of smooth functions")
+            what = "differentiable function"
+            raise self._unknown(what, str(name)[:80], known, "vector-Jacobian products are of smooth functions")
+        weights = cotangents(FUNCTIONS[name])
+        if all(arrays.get(group) is None for group in weights):
+            raise ShapeError(
+                Problem(
+                    f"model '{self.record.name}': no cotangent for {name}",
+                    ", ".join(arrays) or "no arrays",
+                    "one cotangent at least weighs the outputs",
+                    f"pass {' or '.join(weights)}, of the shape of its output",
+                )
+            )
         given = dict(arrays)
         signature = self._kernel(f"{name}_vjp", self._frame(frame) if frame else "", "frames have names").signature
         sizes = dict(signature.inputs)
-        for group, output in cotangents(FUNCTIONS[name]).items():
-            given[group] = self._flat(group, arrays.get(group), len(output.shape), sizes[group])
+        for group, output in weights.items():
+            given[group] = self._flat(group, arrays.get(group), output, sizes[group])
         results = self.evaluate(f"{name}_vjp", frame, par=par, out=out, **given)
         return {label.removeprefix("by_"): value for (label, _), value in zip(signature.outputs, results, strict=True)}
 
@@ -115,19 +127,27 @@ class AdjointFunctions(Functions):
         by_q, by_v, by_a = self._call("inverse_dynamics_hvp", "", given, par)
         return by_q, by_v, by_a
 
-    def _flat(self, group: str, values: ArrayLike | None, rank: int, size: int) -> Array:
-        """A cotangent of an output of so many dimensions, with its entries in one (..., size); zeros where None."""
+    def _flat(self, group: str, values: ArrayLike | None, output: OutputArray, size: int) -> Array:
+        """A cotangent of an output, with its entries in one (..., size); zeros where None."""
         if values is None:
             return np.zeros(size)
-        array = np.asarray(values)
-        inner = array.shape[array.ndim - rank :]
-        if array.ndim < rank or np.prod(inner, dtype=int) != size:
+        array, rank = np.asarray(values), len(output.shape)
+        outer, inner = array.shape[: max(0, array.ndim - rank)], array.shape[max(0, array.ndim - rank) :]
+        known = {"nq": self.nq, "nv": self.nv, "nu": self.nu, "nc": self.nc, "npar": self.npar}
+        fits = len(inner) == rank and prod(inner) == size
+        for n, text in zip(inner, output.shape, strict=False):
+            # Numbers of links, beams and wrenches are not known here: those dimensions count in the size alone.
+            stated = all(word.isdecimal() or word in known for word in text.replace("+", " ").split())
+            fits = fits and (not stated or n == size_of(text, known))
+        if not fits:
             raise ShapeError(
                 Problem(
                     f"model '{self.record.name}': {group} has the wrong shape",
                     str(array.shape),
-                    f"a cotangent has the shape of its output, {size} numbers in the last {rank} dimensions",
+                    f"a cotangent has the shape of its output, (..., {', '.join(output.shape)}): {size} numbers a state"
+                    if rank
+                    else "the output is one number a state",
                     "give it as the function returns its output",
                 )
             )
-        return array.reshape(*array.shape[: array.ndim - rank], size)
+        return array.reshape(*outer, size)

@@ -47,6 +47,10 @@ class ReadableEquations:
 
     system: System
 
+    def __repr__(self) -> str:
+        """System and size; the equations are in the attributes."""
+        return f"<ReadableEquations of '{self.system.name}': {self.operations} operations>"
+
     @cached_property
     def gravity(self) -> float | None:
         """Value of the symbol g [m/s^2], where gravity is a number along one axis and nothing else is called g."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -53,10 +53,15 @@ class Rollout:
     v: Array
     u: Array
     dt: float
-    _model: Model = field(repr=False)
-    _method: str = field(repr=False)
-    _par: Array = field(repr=False)
-    _stages: tuple[Array, Array, Array] = field(repr=False)  # Times (n, s), q and v (n, s, nv) of each stage.
+    _model: Model
+    _method: str
+    _par: Array
+    _stages: tuple[Array, Array, Array]  # Times (n, s), q and v (n, s, nv) of each stage.
+
+    def __repr__(self) -> str:
+        """Model, method and sizes; the numbers are in the attributes."""
+        steps = f"{len(self.u)} steps of {self.dt:.6g} s"
+        return f"<Rollout of '{self._model.record.name}' by {self._method}: {steps}>"
 
     def gradient(self, q_bar: Numbers | None = None, v_bar: Numbers | None = None) -> MotionGradient:
         """The derivatives of sum q_bar . q + v_bar . v by first state, inputs and parameters, by the discrete adjoint.

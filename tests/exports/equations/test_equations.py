@@ -162,3 +162,7 @@ def test_the_command_writes_them(words: list[str], says: str) -> None:
 def test_the_command_refuses_large_models_in_words() -> None:
     done = CliRunner().invoke(app, ["equations", "reference_models/rigid/puma560.yaml"])
     assert done.exit_code == 2 and "at most 300 operations" in done.output
+
+
+def test_equations_print_in_a_line() -> None:
+    assert repr(sf.equations(MODELS["double_pendulum"])).startswith("<ReadableEquations of 'double_pendulum': ")

@@ -129,3 +129,8 @@ def test_a_quaternion_among_the_inputs_that_is_no_rotation_is_refused() -> None:
     u[3, m.names.u.index("w.qw")] = 3.0
     with pytest.raises(sf.SymofrosError, match="quaternion of length 3 in step 3"):
         sf.rollout(m, [0.1], [0.0], u, 0.01)
+
+
+def test_a_rollout_prints_in_a_line() -> None:
+    motion = sf.rollout(pendulum(), [0.3], [0.0], np.zeros((N, 1)), H)
+    assert repr(motion) == f"<Rollout of 'p' by rk4: {N} steps of {H} s>"

@@ -133,3 +133,15 @@ def test_cotangents_have_the_shapes_of_outputs(rng: np.random.Generator) -> None
         m.vjp("mass_matrix", q=q, M_bar=rng.normal(size=3))
     with pytest.raises(sf.UnknownNameError, match="did you mean 'mass_matrix'"):
         m.vjp("mass_matrx", q=q, M_bar=W)
+    with pytest.raises(sf.ShapeError, match="no cotangent for mass_matrix"):
+        m.vjp("mass_matrix", q=q)
+
+
+def test_a_transposed_cotangent_is_refused_though_it_has_as_many_entries(rng: np.random.Generator) -> None:
+    m = model("double_pendulum")
+    frame, q = m.names.frames[-1], np.array([0.3, -0.2])
+    J_bar = rng.normal(size=(6, m.nv))
+    group = next(iter(cotangents(FUNCTIONS["frame_jacobian"])))
+    m.vjp("frame_jacobian", frame, q=q, **{group: J_bar})
+    with pytest.raises(sf.ShapeError, match=r"\(\.\.\., 6, nv\)"):
+        m.vjp("frame_jacobian", frame, q=q, **{group: J_bar.T})
