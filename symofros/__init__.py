@@ -20,6 +20,7 @@ from symofros.description.beam import BeamLoad as BeamLoad
 from symofros.description.beam import Samples as Samples
 from symofros.description.constraints import Closure as Closure
 from symofros.description.constraints import Constraint as Constraint
+from symofros.description.constraints import Coupling as Coupling
 from symofros.description.constraints import KnifeEdge as KnifeEdge
 from symofros.description.constraints import Nonholonomic as Nonholonomic
 from symofros.description.constraints import Rod as Rod

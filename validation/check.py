@@ -214,8 +214,8 @@ def _unsampled_motion(system: sf.System, assembly: Assembly) -> str:
     for joint in driven:
         if has_quaternion(joint):
             return f"joint '{joint.name}': a prescribed motion with a quaternion, which the states do not have"
-    if driven and any(isinstance(item, sf.Nonholonomic) for item in system.constraints):
-        return f"joint '{driven[0].name}': a prescribed motion beside a condition on speeds by formula"
+    if driven and any(isinstance(item, sf.Coupling | sf.Nonholonomic) for item in system.constraints):
+        return f"joint '{driven[0].name}': a prescribed motion beside a condition by formula"
     return ""
 
 

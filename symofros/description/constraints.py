@@ -1,4 +1,4 @@
-"""What closes loops and binds speeds: closures, rods, rolling contacts, knife edges, constraints by formula."""
+"""What binds coordinates and speeds: closures, rods, couplings, rolling contacts, knife edges, formulas."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any, Literal, get_args
 
 from symofros.description.entries import refuses_unknown_entries
 from symofros.description.forces import Anchor
-from symofros.description.values import Value, as_value
+from symofros.description.values import Value, as_value, symbols
 from symofros.errors import DescriptionError, Problem, did_you_mean
 
 AxisName = Literal["x", "y", "z"]
@@ -95,6 +95,44 @@ class Rod:
     def __post_init__(self) -> None:
         """Convert the length."""
         object.__setattr__(self, "length", as_value(self.length, f"rod '{self.name}': length"))
+
+    @property
+    def conditions(self) -> tuple[str, ...]:
+        """One condition."""
+        return (self.name,)
+
+    @property
+    def on_speeds(self) -> tuple[str, ...]:
+        """None of them binds speeds only."""
+        return ()
+
+
+@refuses_unknown_entries
+@dataclass(frozen=True)
+class Coupling:
+    """A condition on coordinates by formula, such as a gear or a joint that mimics another.
+
+    Attributes:
+        name: Unique name.
+        residual: Formula of coordinates and parameters that stays zero: `q2 - 3*q1`.
+    """
+
+    name: str
+    residual: Value
+
+    def __post_init__(self) -> None:
+        """Convert the formula."""
+        residual = as_value(self.residual, f"coupling '{self.name}'")
+        object.__setattr__(self, "residual", residual)
+        if not symbols(residual):
+            raise DescriptionError(
+                Problem(
+                    f"coupling '{self.name}': binds no coordinate",
+                    f"'{residual}'",
+                    "a coupling is a formula of coordinates",
+                    "name a coordinate",
+                )
+            )
 
     @property
     def conditions(self) -> tuple[str, ...]:
@@ -222,4 +260,13 @@ class Nonholonomic:
         return self.conditions
 
 
-Constraint = Closure | Rod | KnifeEdge | Rolling | Nonholonomic
+Constraint = Closure | Rod | Coupling | KnifeEdge | Rolling | Nonholonomic
+# What joins two frames.
+BETWEEN_FRAMES = (Closure, Rod)
+# What knows no bodies, and so has no wrench.
+BY_FORMULA = (Coupling, Nonholonomic)
+
+
+def section_order(constraint: Constraint) -> int:
+    """Place of a constraint's section in files: closures and rods, couplings, conditions on speeds."""
+    return 0 if isinstance(constraint, BETWEEN_FRAMES) else 1 if isinstance(constraint, Coupling) else 2

@@ -12,7 +12,7 @@ from types import MappingProxyType
 from typing import Any, Literal
 
 from symofros.description.beam import Beam
-from symofros.description.constraints import Closure, Constraint, Rod
+from symofros.description.constraints import Constraint, section_order
 from symofros.description.entries import refuses_unknown_entries
 from symofros.description.forces import Connection, Load, Potential, VirtualPower
 from symofros.description.frames import Frame
@@ -182,7 +182,7 @@ class System:
         connections: Springs and dampers between frames.
         virtual_power: Internal forces by their virtual power.
         potentials: Potential energies by formula.
-        constraints: Closures of loops and rods; after them, conditions on speeds.
+        constraints: Closures of loops, rods and couplings; after them, conditions on speeds.
         notes: Remarks of an importer on what it ignored or changed.
         origin: "file:line" of objects, keyed by ("body", name), ("joint", name), …; not part of equality.
         visuals: Body -> how it looks, as an importer read it; not part of equality, nor of what is compiled.
@@ -216,8 +216,8 @@ class System:
             object.__setattr__(self, name, tuple(getattr(self, name)))
         if any(isinstance(body, Beam) and body.segments > 1 for body in self.bodies):
             self._divide_beams()
-        # Those that bind coordinates come first, as they do in files.
-        ordered = sorted(self.constraints, key=lambda item: not isinstance(item, (Closure, Rod)))
+        # What binds coordinates comes first, as it does in files.
+        ordered = sorted(self.constraints, key=section_order)
         object.__setattr__(self, "constraints", tuple(ordered))
         object.__setattr__(self, "gravity", as_vector(self.gravity, f"system '{self.name}': gravity"))
         object.__setattr__(self, "origin", MappingProxyType(dict(self.origin)))

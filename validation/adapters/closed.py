@@ -25,6 +25,8 @@ AXES = "xyz"
 RANK = 1e-6
 # Within this factor of it, one algorithm may keep a condition that another one drops.
 BORDER = 100.0
+# Differences of sixth order: weights of the steps 1 to 3.
+_SLOPE = ((1, 3 / 4), (2, -3 / 20), (3, 1 / 60))
 
 
 @dataclass(frozen=True)
@@ -129,6 +131,8 @@ class ConstrainedEngine:
     def _one(self, item: sf.Constraint, frames: dict[str, _Kinematics], states: States) -> tuple[Array, Array, Array]:
         if isinstance(item, sf.Nonholonomic):
             return self._by_formula(item, states)
+        if isinstance(item, sf.Coupling):
+            return self._coupled(item, states)
         anchors = [item.first, item.second] if isinstance(item, sf.Closure | sf.Rod) else [item.anchor]
         bodies = [frames[anchor_name(self._assembly, anchor)] for anchor in anchors]
         if isinstance(item, sf.Closure):
@@ -141,6 +145,27 @@ class ConstrainedEngine:
 
     def _number(self, value: sf.Expression | float) -> float:
         return float(sf.evaluate(value, self._subject.system.parameter_values()))
+
+    def _coupled(self, item: sf.Coupling, states: States) -> tuple[Array, Array, Array]:
+        """phi(q) = 0 of joints with q' = v: slopes by complex steps, which lose no digits."""
+        known: dict[str, Any] = {**self._subject.system.parameter_values(), "pi": np.pi}
+
+        def at(step: Any) -> Any:
+            values = dict(known)
+            for described in self._assembly.joints:
+                for k, name in enumerate(coordinate_symbols(described.joint)):
+                    values[name] = states.q[:, described.q.start + k] + step[:, described.v.start + k]
+            return np.broadcast_to(evaluate(item.residual, values), (len(states),))
+
+        tiny, h = 1e-30, 1e-3
+        units = np.eye(states.v.shape[1])
+        G = np.stack([at(1j * tiny * np.tile(unit, (len(states), 1))).imag / tiny for unit in units], axis=1)
+
+        def rate(step: float) -> Array:
+            return np.asarray(at((step + 1j * tiny) * states.v).imag / tiny)
+
+        curvature = sum(w * (rate(k * h) - rate(-k * h)) for k, w in _SLOPE) / h
+        return np.array(at(np.zeros_like(states.v)).real)[:, None], G[:, None], -np.asarray(curvature)[:, None]
 
     def _by_formula(self, item: sf.Nonholonomic, states: States) -> tuple[Array, Array, Array]:
         """A v = b; its derivative along the motion by a step in extended precision."""
@@ -163,9 +188,7 @@ class ConstrainedEngine:
             G, right = at(step)
             return np.asarray(np.einsum("nj,nj->n", G[:, 0], states.v) - right)
 
-        # A difference of sixth order.
-        weights = ((1, 3 / 4), (2, -3 / 20), (3, 1 / 60))
-        rate = sum(w * (residual(k * h) - residual(-k * h)) for k, w in weights) / h
+        rate = sum(w * (residual(k * h) - residual(-k * h)) for k, w in _SLOPE) / h
         return np.zeros((len(states), 1)), at(0.0)[0], -np.asarray(rate)[:, None]
 
 
@@ -184,7 +207,7 @@ def joined_frames(assembly: Assembly, system: sf.System) -> tuple[str, ...]:
     for item in system.constraints:
         if isinstance(item, sf.Closure | sf.Rod):
             anchors += [item.first, item.second]
-        elif not isinstance(item, sf.Nonholonomic):
+        elif not isinstance(item, sf.Coupling | sf.Nonholonomic):
             anchors.append(item.anchor)
     return tuple(dict.fromkeys(name for anchor in anchors if (name := anchor_name(assembly, anchor))))
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from symofros.description.constraints import Constraint
+from symofros.description.constraints import Constraint, Coupling
 from symofros.description.forces import Connection, Potential, VirtualPower
 from symofros.description.reading import YAML_SUFFIXES, in_order, kind_of, read_bytes, refuse_size
 from symofros.description.reading import Reading as Reading
@@ -36,6 +36,7 @@ _SECTIONS = {
     "virtual_power": "virtual_power",
     "potentials": "potential",
     "closures": "constraint",
+    "couplings": "constraint",
     "nonholonomic": "constraint",
 }
 _SUFFIXES = ("px", "py", "pz", "qx", "qy", "qz", "qw", "vx", "vy", "vz", "wx", "wy", "wz")
@@ -240,6 +241,9 @@ class _Merger:
         for name, closure in (file.closures or {}).items():
             if self.is_new("closures", name, root, shown):
                 self.constraints.append(closure.build(name))
+        for name, residual in (file.couplings or {}).items():
+            if self.is_new("couplings", name, root, shown):
+                self.constraints.append(Coupling(name, residual))
         for name, condition in (file.nonholonomic or {}).items():
             if self.is_new("nonholonomic", name, root, shown):
                 self.constraints.append(condition.build(name))

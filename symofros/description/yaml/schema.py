@@ -176,6 +176,8 @@ class NativeFile(Entry):
     """Potential energies by formula of coordinates, parameters and `t` [J]."""
     closures: Annotated[dict[Name, ClosureEntry], Field(max_length=10_000)] | None = None
     """Frames that stay together: they close loops of the tree."""
+    couplings: Annotated[dict[Name, Formula], Field(max_length=10_000)] | None = None
+    """Conditions on coordinates: formulas of coordinates and parameters that stay zero (`q2 - 3*q1`)."""
     nonholonomic: Annotated[dict[Name, NonholonomicEntry], Field(max_length=10_000)] | None = None
     """Conditions on speeds."""
     options: Reserved = None

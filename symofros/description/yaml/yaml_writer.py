@@ -13,7 +13,17 @@ from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
 from symofros.description.beam import Beam
-from symofros.description.constraints import AXES, Closure, KnifeEdge, Nonholonomic, Rod, Rolling
+from symofros.description.constraints import (
+    AXES,
+    BETWEEN_FRAMES,
+    Closure,
+    Constraint,
+    Coupling,
+    KnifeEdge,
+    Nonholonomic,
+    Rod,
+    Rolling,
+)
 from symofros.description.forces import Anchor
 from symofros.description.frames import Frame
 from symofros.description.system import Body, Inertia, System
@@ -62,6 +72,7 @@ _OPEN = frozenset(
         "frames",
         "connections",
         "closures",
+        "couplings",
         "nonholonomic",
         "virtual_power",
         "potentials",
@@ -127,11 +138,9 @@ def _document(system: System) -> Plain:
         item.name: {speed: _number(force) for speed, force in item.forces} for item in system.virtual_power
     }
     document["potentials"] = {item.name: _number(item.energy) for item in system.potentials}
-    holonomic = (Closure, Rod)
-    document["closures"] = {item.name: _closure(item) for item in system.constraints if isinstance(item, holonomic)}
-    document["nonholonomic"] = {
-        item.name: _condition(item) for item in system.constraints if not isinstance(item, holonomic)
-    }
+    for item in system.constraints:
+        section, entry = _constraint(item)
+        document.setdefault(section, {})[item.name] = entry
     return {section: entries for section, entries in document.items() if entries}
 
 
@@ -196,6 +205,15 @@ def _inertia(inertia: Inertia) -> Plain:
 def _anchor(anchor: Anchor) -> Plain:
     body, frame = anchor
     return {"body": body} | ({"frame": frame} if frame is not None else {})
+
+
+def _constraint(item: Constraint) -> tuple[str, Any]:
+    """Section and entry of a constraint."""
+    if isinstance(item, BETWEEN_FRAMES):
+        return "closures", _closure(item)
+    if isinstance(item, Coupling):
+        return "couplings", _number(item.residual)
+    return "nonholonomic", _condition(item)
 
 
 def _closure(item: Closure | Rod) -> Plain:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from functools import partial
 
-from symofros.description.constraints import Closure, Nonholonomic, Rod
+from symofros.description.constraints import BETWEEN_FRAMES, Coupling, Nonholonomic
 from symofros.description.forces import Anchor
 from symofros.description.joint import WORLD
 from symofros.description.system import Body, System
@@ -74,7 +74,9 @@ def constraint_problems(
                         where,
                     )
             continue
-        anchors = [item.first, item.second] if isinstance(item, (Closure, Rod)) else [item.anchor]
+        if isinstance(item, Coupling):
+            continue  # Names in formulas are checked with all others.
+        anchors = [item.first, item.second] if isinstance(item, BETWEEN_FRAMES) else [item.anchor]
         for anchor in anchors:
             yield from anchor_problems(what, anchor, bodies, base, broken, where)
         names = {base.name if name == WORLD else name for name, _ in anchors}

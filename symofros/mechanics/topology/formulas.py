@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 from typing import Literal, NamedTuple
 
 from symofros.description.beam import PRE_STRAINS, SECTION, STATION, STRAINS, Beam, BeamLoad, Samples
-from symofros.description.constraints import Constraint, Nonholonomic
+from symofros.description.constraints import Constraint, Coupling, Nonholonomic
 from symofros.description.entries import units_of
 from symofros.description.forces import Connection, Load, Rotor
 from symofros.description.frames import Frame
@@ -19,9 +19,9 @@ from symofros.errors import Problem, did_you_mean
 from symofros.mechanics.topology.coordinates import coordinate_names, joint_units, rate_symbols, speed_symbols
 
 TIME = "t"
-# What a formula may use: parameters alone; also the configuration and t; also speeds and inputs; a general joint's
-# own coordinates; parameters and the station x of a beam; everything and x; the station xi = x/L alone.
-Scope = Literal["parameters", "configuration", "motion", "joint", "section", "spread", "shape"]
+# What a formula may use: parameters alone; also coordinates; also t; also speeds and inputs; a general joint's own
+# coordinates; parameters and the station x of a beam; everything and x; the station xi = x/L alone.
+Scope = Literal["parameters", "coordinates", "configuration", "motion", "joint", "section", "spread", "shape"]
 
 
 class Stated(NamedTuple):
@@ -73,6 +73,8 @@ def _constraint_values(constraint: Constraint) -> Iterator[Stated]:
     for label in ("length", "radius", "height"):
         if hasattr(constraint, label):
             yield Stated(f"{what}: {label}", getattr(constraint, label), key, units=units_of(type(constraint), label))
+    if isinstance(constraint, Coupling):
+        yield Stated(what, constraint.residual, key, "coordinates")
     if isinstance(constraint, Nonholonomic):
         for speed, value in constraint.coefficients:
             yield Stated(f"{what}: coefficient of {speed}", value, key, "configuration")
@@ -158,6 +160,7 @@ class _Scopes:
     """The names that exist, by what they are."""
 
     parameters: frozenset[str]
+    coordinates: frozenset[str]
     configuration: frozenset[str]
     motion: frozenset[str]
 
@@ -182,11 +185,14 @@ def _known(system: System) -> _Scopes:
             configuration.update(coordinate_names(body.joint))
             motion.update(speed_symbols(body.joint))
             motion.update(rate_symbols(body.joint) if body.joint.prescribed else ())
-    return _Scopes(parameters, frozenset(configuration), frozenset(configuration | motion))
+    return _Scopes(
+        parameters, frozenset(configuration - {TIME}), frozenset(configuration), frozenset(configuration | motion)
+    )
 
 
 _RULES: dict[Scope, str] = {
     "parameters": "geometry, inertia, gravity and the constants of forces depend on parameters only",
+    "coordinates": "a coupling depends on coordinates and parameters only",
     "configuration": "a potential depends on coordinates, parameters and t only",
     "motion": "a formula uses names that the description declares",
     "section": "a section property depends on parameters and on the station x only",
@@ -198,6 +204,7 @@ _RULES: dict[Scope, str] = {
 
 _REMEDIES: dict[Scope, str] = {
     "parameters": "declare a parameter for it; what moves acts through loads, efforts, virtual power and potentials",
+    "coordinates": "what binds speeds is a condition on speeds; a motion that is given in time is a prescribed joint",
     "configuration": "state forces that depend on speeds or inputs as loads, efforts or virtual power",
     "motion": "",
     "joint": "name it under the joint's coordinates, or use a parameter",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from symofros.base.measures import ANGLE, FORMULA, LENGTH, OTHER, ROTATION, TRANSLATION, Measures
-from symofros.description.constraints import Closure, Constraint, Nonholonomic
+from symofros.description.constraints import BY_FORMULA, Closure, Constraint
 from symofros.description.joint import Joint
 from symofros.mechanics.topology.coordinates import speed_names
 from symofros.mechanics.topology.tree import SpanningTree
@@ -25,7 +25,7 @@ def _units(constraint: Constraint) -> list[tuple[int, int]]:
     """Unit and number of rows, group by group."""
     if isinstance(constraint, Closure):
         return [(LENGTH, len(constraint.translations)), (ANGLE, len(constraint.rotations))]
-    if isinstance(constraint, Nonholonomic):
+    if isinstance(constraint, BY_FORMULA):
         return [(FORMULA, len(constraint.conditions))]
     return [(LENGTH, len(constraint.conditions))]
 

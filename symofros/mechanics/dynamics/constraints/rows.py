@@ -10,9 +10,9 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from symofros.description.constraints import AXES, AxisName, Closure, KnifeEdge, Nonholonomic, Rod, Rolling
+from symofros.description.constraints import AXES, AxisName, Closure, Coupling, KnifeEdge, Nonholonomic, Rod, Rolling
 from symofros.description.forces import Anchor
-from symofros.expr.derivative import directional
+from symofros.expr.derivative import along, directional
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.graph import Graph
 from symofros.expr.quaternion import Quaternion
@@ -20,6 +20,7 @@ from symofros.expr.vector import Mat3, Vec3
 from symofros.mechanics.dynamics.applied.forces import coordinate_rates, rates_per_speed
 from symofros.mechanics.kinematics.frames import FrameKinematics
 from symofros.mechanics.kinematics.links import TreeKinematics
+from symofros.mechanics.topology.coordinates import rate_symbols, speed_symbols
 from symofros.mechanics.topology.tree import frame_of
 
 
@@ -89,6 +90,7 @@ class Constraints:
         make: dict[type, Callable[..., Iterator[Row]]] = {
             Closure: self._closure,
             Rod: self._rod,
+            Coupling: self._coupling,
             KnifeEdge: self._edge,
             Rolling: self._rolling,
             Nonholonomic: self._stated,
@@ -154,6 +156,19 @@ class Constraints:
         phi = g.mul(g.constant(0.5), g.sub(d.dot(n), length))
         drift = g.add((B.a - A.a).dot(n), g.mul(per_length, d_rate.dot(d_rate)))
         yield self._row(phi, d_rate.dot(n), -drift, [(B, n, None, 1), (A, n, None, -1)])
+
+    def _coupling(self, coupling: Coupling) -> Iterator[Row]:
+        """phi(q) = 0, differentiated twice along the motion (eq. 6a)."""
+        g, lowering = self.g, self.kinematics.lowering
+        phi = lowering.value(coupling.residual)
+        (G,) = along(g, [phi], rates_per_speed(self.kinematics))
+        rates = coordinate_rates(self.kinematics)
+        rate = directional(g, [phi], rates)[0]
+        for joint in (link.joint for link in self.kinematics.tree.links if link.joint.prescribed):
+            rates |= zip(
+                map(lowering.symbol, speed_symbols(joint)), map(lowering.symbol, rate_symbols(joint)), strict=True
+            )
+        yield Row(phi, tuple(G), rate, -directional(g, [rate], rates)[0])
 
     # Rolling and sliding.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from symofros.description.constraints import Closure, Constraint, Nonholonomic, Rod
+from symofros.description.constraints import BETWEEN_FRAMES, BY_FORMULA, Constraint
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Vec3
@@ -21,7 +21,7 @@ FrameWrench = tuple[Edge, ...]
 
 def acts_on_bodies(constraints: Iterable[Constraint]) -> list[str]:
     """Names of the constraints with a wrench: all but conditions by formula, which know no bodies."""
-    return [constraint.name for constraint in constraints if not isinstance(constraint, Nonholonomic)]
+    return [constraint.name for constraint in constraints if not isinstance(constraint, BY_FORMULA)]
 
 
 def closure_wrenches(frames: FrameKinematics, rows: Sequence[Row]) -> tuple[list[FrameWrench], list[FrameWrench]]:
@@ -39,9 +39,9 @@ def closure_wrenches(frames: FrameKinematics, rows: Sequence[Row]) -> tuple[list
         count = len(constraint.conditions)
         own = [(g.input("lam", at + i), row) for i, row in enumerate(rows[at : at + count])]
         at += count
-        if isinstance(constraint, Nonholonomic):
+        if isinstance(constraint, BY_FORMULA):
             continue
-        if isinstance(constraint, Closure | Rod):
+        if isinstance(constraint, BETWEEN_FRAMES):
             first, second = (frame_of(tree, *anchor) for anchor in (constraint.first, constraint.second))
             on_first.append(_sum(g, own, first.qualified))
         else:
@@ -61,10 +61,10 @@ def wrenches_on_links(kinematics: TreeKinematics, frames: FrameKinematics, rows:
     """
     tree, g = kinematics.tree, kinematics.g
     total = [no_wrench(g) for _ in kinematics.links]
-    acting = [item for item in tree.system.constraints if not isinstance(item, Nonholonomic)]
+    acting = [item for item in tree.system.constraints if not isinstance(item, BY_FORMULA)]
     for constraint, *sides in zip(acting, *closure_wrenches(frames, rows), strict=True):
         # The first side of what binds a single body is the ground.
-        if isinstance(constraint, Closure | Rod):
+        if isinstance(constraint, BETWEEN_FRAMES):
             anchors = [constraint.second, constraint.first]
         else:
             anchors = [constraint.anchor]

@@ -24,7 +24,7 @@ _NAMED = re.compile(
 _FRAME = re.compile(r"frame '([^']*)' of body '([^']*)'")
 _SECTION_OF = {
     "connection": ("connections",),
-    "constraint": ("closures", "nonholonomic"),
+    "constraint": ("closures", "couplings", "nonholonomic"),
     "virtual power": ("virtual_power",),
     "virtual_power": ("virtual_power",),
     "potential": ("potentials",),

@@ -23,6 +23,7 @@ SECTIONS = (
     "virtual_power",
     "potentials",
     "closures",
+    "couplings",
     "nonholonomic",
     "options",
 )

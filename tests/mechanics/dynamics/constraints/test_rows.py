@@ -40,6 +40,7 @@ CASES: dict[str, sf.System] = {
     "knife edge": tree(sf.KnifeEdge("k", A, "x")),
     "disc": tree(sf.Rolling("k", A, 0.3)),
     "sphere": tree(sf.Rolling("k", B, 0.3, "sphere", 0.1)),
+    "coupling": tree(sf.Coupling("k", "s*sin(c.length) + float.qx*cos(c.angle) - 0.2*float.px^2")),
     "formula": tree(sf.Nonholonomic("k", {"ds": "sin(c.angle)*s", "dc.length": "1 + c.length^2"}, "cos(s)")),
     "two at once": tree(sf.Closure("k", A, B), sf.Rod("l", ("base", None), B, 1.0)),
     "a beam's tip": tree(sf.Closure("k", ("rod", "tip"), B, ("x", "y", "z"), ("x", "y", "z")), beam=True),
