@@ -86,9 +86,9 @@ class Cell:
 
 
 def cell(run: sf.Trajectory, value: Callable[[sf.Trajectory], float]) -> Cell:
-    """What a run comes to; its notes are kept."""
+    """What a run comes to; why it failed and its notes are kept."""
     outcome = run.outcome
-    note = "; ".join((outcome.reason, *outcome.notes))
+    note = "; ".join((*(() if outcome.ok else (outcome.reason,)), *outcome.notes))
     if not outcome.ok:
         return Cell(math.nan, outcome.kind, note)
     # A criterion that overflows belongs to a run whose states grew without bound, but not to infinity.

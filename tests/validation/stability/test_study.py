@@ -54,6 +54,11 @@ class TestMaps:
         found = cell(run, baumgarte.violation)
         assert found.ended == "diverged" and "fastest speed" in found.note and math.isnan(found.value)
 
+    def test_a_run_that_ends_as_asked_keeps_its_notes_alone(self) -> None:
+        run = baumgarte.swing("rk4", 1e-2, 20.0, 0.1)
+        kept = cell(run, baumgarte.violation)
+        assert kept.ended == "finished" and kept.note == "; ".join(run.outcome.notes)
+
     def test_picture(self) -> None:
         grid = Grid("p [-]", (1.0, 10.0, 100.0), (1.0, 100.0))
         found = a_map(
