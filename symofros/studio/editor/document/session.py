@@ -15,7 +15,7 @@ from symofros.studio.editor.document.parts_library import Library
 from symofros.studio.editor.document.storage import EMPTY, Storage
 from symofros.studio.editor.document.workspace import READABLE, FileError, Workspace, read_text, write
 from symofros.studio.editor.editing.data_edits import four_parts, refusal
-from symofros.studio.editor.editing.requests import edits_of, path_of, text_of
+from symofros.studio.editor.editing.requests import edits_of, fields_of, text_of
 from symofros.studio.editor.editing.yaml_edits import with_references
 from symofros.studio.editor.editing.yaml_spans import yaml_text_of
 
@@ -180,11 +180,18 @@ class Session:
 
     # Asking.
 
-    def check_of_field(self, body: Json) -> Callable[[], Json]:
-        """What says what is to say about one field's text, of the document as it is now, whatever becomes of it."""
+    def check_of_fields(self, body: Json) -> Callable[[], Json]:
+        """What says what is to say about some fields' texts, of the document as it is now, whatever becomes of it.
+
+        Raises:
+            EditError: The fields are no list of mappings, or too many.
+        """
         document = self.document
-        path, typed = path_of(body.get("path", [])), body.get("text")
-        return partial(check_field, document.file, document.text, document.analysis, path, typed)
+        checks = [
+            partial(check_field, document.file, document.text, document.analysis, path, typed)
+            for path, typed in fields_of(body.get("fields"))
+        ]
+        return lambda: {"checks": [check() for check in checks]}
 
     def job_request(self, body: Json) -> tuple[str, Json]:
         """The kind of a job, and what its worker needs.

@@ -35,6 +35,17 @@ def path_of(given: Any) -> Path:
     return tuple(given)
 
 
+def fields_of(given: Any) -> list[tuple[Path, Any]]:
+    """Path and text of each field of a request.
+
+    Raises:
+        EditError: They are not what the contract says.
+    """
+    if not isinstance(given, list) or len(given) > MAX_EDITS or not all(isinstance(item, dict) for item in given):
+        raise _malformed("fields", given, f"a list of at most {MAX_EDITS} mappings")
+    return [(path_of(item.get("path", [])), item.get("text")) for item in given]
+
+
 def text_of(body: dict[str, Any], key: str) -> str:
     """A text of a request; "" where it has none.
 

@@ -134,8 +134,8 @@ class Editor:
         return JSONResponse({"layout": self.session.storage.layout})
 
     async def expression(self, request: Request) -> Response:
-        """Check one field, while others go on with the document: reading it with the field's text takes its time."""
-        check = await self.exclusively(partial(self.session.check_of_field, await body_of(request)))
+        """Check fields, while others go on with the document: reading it with a field's text takes its time."""
+        check = await self.exclusively(partial(self.session.check_of_fields, await body_of(request)))
         return JSONResponse(await run_sync(check))
 
     async def shapes(self, request: Request) -> Response:

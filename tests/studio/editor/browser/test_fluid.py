@@ -1,15 +1,16 @@
-"""A model of thirty bodies stays fluid: moving it draws nothing anew but what moves; the frames' times are printed."""
+"""A model of thirty bodies stays fluid: moving it draws nothing anew but what moves; subtrees fold, names are found."""
 
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from playwright.sync_api import Page
+from playwright.sync_api import Page, expect
 
 import symofros as sf
 from reference_models.rigid.chain import chain
@@ -53,7 +54,7 @@ def dragged(page: Page, x: float, y: float) -> tuple[list[float], list[str]]:
     return found
 
 
-def test_thirty_bodies_stay_fluid(serve: Callable[..., Server], page: Page, tmp_path: Path) -> None:
+def test_thirty_bodies_stay_fluid_fold_and_are_found(serve: Callable[..., Server], page: Page, tmp_path: Path) -> None:
     sf.save(chain(BODIES), tmp_path / "chain.yaml")
     server = serve("chain.yaml")
     steps.open_editor(page, server.url)
@@ -71,3 +72,30 @@ def test_thirty_bodies_stay_fluid(serve: Callable[..., Server], page: Page, tmp_
         print(what, json.dumps({"median_ms": np.median(times), "95_percent_ms": np.quantile(times, 0.95)}))
     assert runs["pan"][1] == []
     assert runs["drag"][1] == [name]
+
+    # What a body carries folds into it, and what is looked for comes out again.
+    steps.block(page, "bodies/link10").focus()
+    page.keyboard.press("Space")
+    expect(steps.block(page, "bodies/link10")).to_have_class(re.compile("selected"))
+    page.keyboard.press("f")
+    expect(blocks).to_have_count(11)
+    page.keyboard.press("Control+k")
+    page.keyboard.type("link20")
+    page.keyboard.press("Enter")
+    expect(blocks).to_have_count(BODIES + 1)
+    expect(steps.block(page, "bodies/link20")).to_have_class(re.compile("selected"))
+
+    # Of hundreds of parameters a page is drawn; one is found by its name, in the pane and from anywhere.
+    values = page.get_by_label(re.compile("^Value of "))
+    expect(values).to_have_count(50)
+    page.get_by_label("Find a parameter").fill("lx29")
+    expect(values).to_have_count(1)
+    page.keyboard.press("Control+k")
+    page.keyboard.type("ly30")
+    page.keyboard.press("Enter")
+    expect(page.get_by_label("Value of ly30")).to_be_visible()
+
+    # A window asks about all of its formulas at once.
+    with page.expect_response("**/api/expression") as asked:
+        steps.open_window(page, "bodies/link20")
+    assert len(asked.value.json()["checks"]) > 1

@@ -159,7 +159,7 @@ def test_the_catalogue_names_methods_units_targets(client: TestClient) -> None:
     ],
 )
 def test_a_good_formula(client: TestClient, path: list, text: str, expected: dict) -> None:
-    found = client.post("/api/expression", json={"path": path, "text": text}).json()
+    (found,) = client.post("/api/expression", json={"fields": [{"path": path, "text": text}]}).json()["checks"]
     assert expected.items() <= found.items()
 
 
@@ -177,9 +177,22 @@ def test_a_good_formula(client: TestClient, path: list, text: str, expected: dic
 )
 def test_a_bad_formula_says_where(client: TestClient, path: list, text: str, column: int, says: str) -> None:
     before = client.get("/api/document").json()
-    found = client.post("/api/expression", json={"path": path, "text": text}).json()
+    (found,) = client.post("/api/expression", json={"fields": [{"path": path, "text": text}]}).json()["checks"]
     assert not found["ok"] and says in found["error"]["found"] and found["error"]["column"] == column
     assert client.get("/api/document").json() == before
+
+
+def test_fields_of_a_window_are_checked_in_one_request(client: TestClient) -> None:
+    mass = ["bodies", "crank", "inertia", "mass"]
+    fields = [{"path": mass, "text": text} for text in ("2*L", "2*K")]
+    checks = client.post("/api/expression", json={"fields": fields}).json()["checks"]
+    assert [check["ok"] for check in checks] == [True, False]
+
+
+@pytest.mark.parametrize("fields", [None, {}, ["L"], [{"path": "L", "text": "1"}], [{"text": "1"}] * 1001])
+def test_fields_that_are_none_are_refused(client: TestClient, fields: object) -> None:
+    answer = client.post("/api/expression", json={"fields": fields})
+    assert answer.status_code == 422 and "of the request is malformed" in answer.json()["error"]["object"]
 
 
 def test_the_document_can_be_changed_while_a_field_is_checked(
@@ -195,7 +208,7 @@ def test_the_document_can_be_changed_while_a_field_is_checked(
         return {"ok": True, "names": []}
 
     monkeypatch.setattr(session_module, "check_field", slow)
-    asked = threading.Thread(target=lambda: client.post("/api/expression", json={"path": [], "text": "1+1"}))
+    asked = threading.Thread(target=lambda: client.post("/api/expression", json={"fields": [{"text": "1+1"}]}))
     asked.start()
     assert checking.wait(20)
     edit = {"op": "set", "path": ["parameters", "m", "value"], "value": 3}

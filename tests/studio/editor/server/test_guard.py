@@ -260,5 +260,5 @@ def test_hostile_texts_are_told_and_nothing_is_run(client: TestClient, tmp_path:
 )
 def test_hostile_formulas_are_refused(client: TestClient, text: str) -> None:
     for path in ([], ["bodies", "crank", "inertia", "mass"]):
-        found = client.post("/api/expression", json={"path": path, "text": text}).json()
+        (found,) = client.post("/api/expression", json={"fields": [{"path": path, "text": text}]}).json()["checks"]
         assert not found["ok"] and found["error"]["rule"]

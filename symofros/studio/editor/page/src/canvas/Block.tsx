@@ -5,8 +5,19 @@ import type { GraphNode, Port } from "../api/types";
 import { frames, hasJoint, jointHeight, portHeight, size } from "../model/geometry";
 import type { Summary } from "../model/summary";
 import { Glyph } from "../shell/Glyph";
+import { toggleFolds } from "../store/folding";
 
-export type BlockNode = Node<{ node: GraphNode; summary: Summary }, "block">;
+export type BlockNode = Node<
+  {
+    node: GraphNode;
+    summary: Summary;
+    /** How many blocks it carries. */
+    carried: number;
+    /** Whether it stands for them. */
+    folded: boolean;
+  },
+  "block"
+>;
 
 /** Ids of handles; a body's own frame has no name. */
 export const JOINT = "joint";
@@ -15,8 +26,27 @@ export const frameOf = (handle: string): string => handle.slice("frame ".length)
 
 type Props = NodeProps<BlockNode>["data"];
 
+/** Folds what a body carries into it, and back; the key F does so for the chosen blocks. */
+function Fold({ node, carried, folded }: Props) {
+  const label = `${folded ? "Unfold" : "Fold"} the ${carried} that ${node.title} carries`;
+  return (
+    <button
+      type="button"
+      className="block-fold nodrag"
+      tabIndex={-1}
+      aria-expanded={!folded}
+      aria-label={label}
+      title={`${label} (F)`}
+      onClick={() => toggleFolds([node.id])}
+    >
+      {folded ? `+${carried}` : "−"}
+    </button>
+  );
+}
+
 /** What all blocks have: outline and head. */
-function Outline({ node, note, children }: { node: GraphNode; note: string; children: ReactNode }) {
+function Outline({ data, note, children }: { data: Props; note: string; children: ReactNode }) {
+  const { node } = data;
   const [width, height] = size(node);
   return (
     <div className={`block ${node.kind}${node.problems > 0 ? " wrong" : ""}`} style={{ width, height }}>
@@ -25,6 +55,7 @@ function Outline({ node, note, children }: { node: GraphNode; note: string; chil
         <span className="block-title">{node.title}</span>
         {node.problems > 0 ? <span className="block-problems">{node.problems}</span> : null}
         <span className="block-note">{note}</span>
+        {data.carried > 0 ? <Fold {...data} /> : null}
       </div>
       {children}
     </div>
@@ -69,9 +100,10 @@ function FramePort({ node, frame }: { node: GraphNode; frame: Port }) {
 }
 
 /** A body: its joint on the left, the frames that others can be put on at the right. */
-function Body({ node, summary }: Props) {
+function Body(data: Props) {
+  const { node, summary } = data;
   return (
-    <Outline node={node} note={summary.note}>
+    <Outline data={data} note={summary.note}>
       {summary.joint === null ? null : <JointWords joint={summary.joint} />}
       {hasJoint(node) ? (
         <Handle
@@ -92,10 +124,11 @@ function Body({ node, summary }: Props) {
 }
 
 /** A condition on speeds. */
-function Condition({ node, summary }: Props) {
+function Condition(data: Props) {
+  const { node, summary } = data;
   const top = portHeight(node, "");
   return (
-    <Outline node={node} note="">
+    <Outline data={data} note="">
       <div className="block-kind">{summary.note}</div>
       <Handle
         id={JOINT}

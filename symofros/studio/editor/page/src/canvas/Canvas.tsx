@@ -1,7 +1,8 @@
 import { type Connection, ConnectionMode, Panel } from "@xyflow/react";
-import { useCallback } from "react";
+import { useCallback, useMemo } from "react";
 
 import type { Point } from "../api/types";
+import { loads, standIns } from "../model/folding";
 import { size } from "../model/geometry";
 import { add, mount } from "../store/bodies";
 import { insertPart } from "../store/clipboard";
@@ -50,10 +51,18 @@ export function Canvas() {
   const document = useDocument();
   const places = useStore((state) => state.places);
   const selected = useStore((state) => state.selected);
-  const edges = useCallback(() => links(document.graph, selected), [document.graph, selected]);
+  const folded = useStore((state) => state.folded);
+  const folding = useMemo(
+    () => ({ loads: loads(document.graph), folded, standIns: standIns(document.graph, folded) }),
+    [document.graph, folded],
+  );
+  const edges = useCallback(
+    () => links(document.graph, selected, folding.standIns),
+    [document.graph, selected, folding],
+  );
   const drawn = useCallback(
-    (before: readonly BlockNode[]) => blocks(document, places, selected, before),
-    [document, places, selected],
+    (before: readonly BlockNode[]) => blocks(document, places, selected, folding, before),
+    [document, places, selected, folding],
   );
   return (
     <Board

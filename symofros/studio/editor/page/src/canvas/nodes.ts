@@ -9,16 +9,27 @@ import type { Link } from "./links";
 
 type Places = Record<string, Point>;
 
-/** Blocks; those that look as before stay the same object, so that they are not drawn again. */
+interface Folding {
+  /** How many blocks each carries. */
+  loads: ReadonlyMap<string, number>;
+  folded: readonly string[];
+  /** Hidden block -> the one that stands for it. */
+  standIns: ReadonlyMap<string, string>;
+}
+
+/** Blocks that are not folded away; those that look as before stay the same object, so that they are not drawn again. */
 export function blocks(
   document: Document,
   places: Places,
   selected: readonly string[],
+  folding: Folding,
   before: readonly BlockNode[],
 ): BlockNode[] {
   const old = new Map(before.map((node) => [node.id, node]));
-  return document.graph.nodes.map((node) => {
-    const data = { node, summary: summary(node, document.data) };
+  const shown = document.graph.nodes.filter(({ id }) => !folding.standIns.has(id));
+  return shown.map((node) => {
+    const carried = folding.loads.get(node.id) ?? 0;
+    const data = { node, summary: summary(node, document.data), carried, folded: folding.folded.includes(node.id) };
     const [x, y] = places[node.id] ?? [0, 0];
     const isSelected = selected.includes(node.id);
     const previous = old.get(node.id);
@@ -44,20 +55,22 @@ export function blocks(
 const port = (node: GraphNode | undefined, name: string): string =>
   frameHandle(node?.ports.find((each) => each.name === name));
 
+/** A link between blocks that are shown; of one that stands for the link's end, it starts at the body itself. */
 function joined(
   edge: GraphEdge,
   known: ReadonlyMap<string, GraphNode>,
   lane: number | undefined,
   selected: boolean,
+  [source, target]: readonly [string, string],
 ): Link {
   const onJoint = edge.kind === "joint" || edge.kind === "constraint";
   return {
     id: edge.id,
     type: onJoint ? "mount" : "tie",
-    source: edge.source,
-    target: edge.target,
-    sourceHandle: port(known.get(edge.source), edge.source_port),
-    targetHandle: onJoint ? JOINT : port(known.get(edge.target), edge.target_port),
+    source,
+    target,
+    sourceHandle: port(source === edge.source ? known.get(source) : undefined, edge.source_port),
+    targetHandle: onJoint ? JOINT : port(target === edge.target ? known.get(target) : undefined, edge.target_port),
     className: edge.kind,
     selected,
     data: { label: edge.label, lane: lane ?? 0 },
@@ -65,11 +78,14 @@ function joined(
   };
 }
 
-/** Links between blocks that are there. */
-export function links(graph: Graph, selected: readonly string[]): Link[] {
+/** Links between blocks that are there; none within what is folded. */
+export function links(graph: Graph, selected: readonly string[], standIns: ReadonlyMap<string, string>): Link[] {
   const lane = lanes(graph.edges);
   const known = new Map(graph.nodes.map((node) => [node.id, node]));
   return graph.edges
     .filter((edge) => known.has(edge.source) && known.has(edge.target))
-    .map((edge) => joined(edge, known, lane.get(edge.id), selected.includes(edge.id)));
+    .flatMap((edge) => {
+      const ends = [standIns.get(edge.source) ?? edge.source, standIns.get(edge.target) ?? edge.target] as const;
+      return ends[0] === ends[1] ? [] : [joined(edge, known, lane.get(edge.id), selected.includes(edge.id), ends)];
+    });
 }

@@ -1,10 +1,10 @@
 import { useEffect, useState } from "react";
 
-import { post } from "../api/client";
 import type { Checked, Path } from "../api/types";
+import { check } from "./checks";
 import { isNumber } from "./values";
 
-const PAUSE = 180;
+const PAUSE = 160;
 
 /** What the server says of a formula, a moment after it was typed; null while it has not answered. */
 export function useChecked(path: Path, text: string): Checked | null {
@@ -14,7 +14,7 @@ export function useChecked(path: Path, text: string): Checked | null {
     if (text.trim() === "" || isNumber(text)) return undefined;
     let wanted = true;
     const timer = window.setTimeout(() => {
-      post<Checked>("api/expression", { path: JSON.parse(place) as Path, text })
+      check(JSON.parse(place) as Path, text)
         .then((checked) => wanted && setAnswer({ text, checked }))
         // A server that is gone has a banner of its own.
         .catch(() => undefined);

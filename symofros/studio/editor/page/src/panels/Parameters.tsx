@@ -1,3 +1,5 @@
+import { useState } from "react";
+
 import type { Json, Parameter } from "../api/types";
 import { shown, typed } from "../forms/values";
 import { asTyped, keyOf } from "../model/changes";
@@ -5,11 +7,15 @@ import { parameterChange } from "../model/parameters";
 import { fresh, symbols } from "../model/names";
 import { IconButton } from "../shell/IconButton";
 import { edit } from "../store/edits";
-import { useDocument, useStore } from "../store/store";
+import { update, useDocument, useStore } from "../store/store";
 import { Cell } from "./Cell";
 import { ParameterSlider } from "./ParameterSlider";
 
 const UNITS = "units";
+/** Of so many there is a field that finds one. */
+const FEW = 12;
+/** Rows that are drawn at once: hundreds of sliders make each edit of a large model wait. */
+const PAGE = 50;
 
 function Row({ parameter }: { parameter: Parameter }) {
   const { data } = useDocument();
@@ -71,12 +77,27 @@ function Row({ parameter }: { parameter: Parameter }) {
 export function Parameters() {
   const { parameters, data } = useDocument();
   const units = useStore((state) => state.catalogue?.units) ?? [];
+  const filter = useStore((state) => state.filter);
+  const [most, setMost] = useState(PAGE);
+  const named = parameters.filter(({ name }) => name.toLowerCase().includes(filter.trim().toLowerCase()));
+  const left = named.length - most;
   const add = (): void => {
     const name = fresh("p1", symbols(data));
+    update({ filter: "" });
     void edit(`add ${name}`, [{ op: "set", path: ["parameters", name], value: { value: 1 } }]);
   };
   return (
     <div className="pane parameters">
+      {parameters.length <= FEW && filter === "" ? null : (
+        <input
+          type="search"
+          value={filter}
+          placeholder={`Find one of ${parameters.length} parameters`}
+          aria-label="Find a parameter"
+          spellCheck={false}
+          onChange={(event) => update({ filter: event.target.value })}
+        />
+      )}
       <datalist id={UNITS}>
         {units.map((unit) => (
           <option key={unit} value={unit} />
@@ -96,12 +117,17 @@ export function Parameters() {
           </tr>
         </thead>
         <tbody>
-          {parameters.map((parameter) => (
+          {named.slice(0, most).map((parameter) => (
             <Row key={parameter.name} parameter={parameter} />
           ))}
         </tbody>
       </table>
       {parameters.length === 0 ? <p className="quiet">No parameters yet. A name in a formula must be one.</p> : null}
+      {left <= 0 ? null : (
+        <button type="button" className="small" onClick={() => setMost(most + PAGE)}>
+          Show {Math.min(PAGE, left)} of {left} more
+        </button>
+      )}
       <button type="button" className="small" onClick={add}>
         Add parameter
       </button>

@@ -1,10 +1,11 @@
 import type { Problem } from "../api/types";
+import { reveal } from "../store/folding";
 import { show, update, useDocument } from "../store/store";
 import { Glyph } from "../shell/Glyph";
 
 /** Moves the block into sight, and opens its window. */
 function go({ node, path }: Problem): void {
-  if (node !== "") update({ selected: [node], sight: { id: node } });
+  if (node !== "") reveal(node);
   const [section, name] = path;
   if (section === "parameters" || section === "inputs") update({ right: "parameters" });
   else if (section === "simulation" || section === "wires") update({ right: "text" });

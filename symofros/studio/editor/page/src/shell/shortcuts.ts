@@ -5,6 +5,7 @@ import { remove } from "../store/elements";
 import { copy, paste } from "../store/clipboard";
 import { redo, undo } from "../store/edits";
 import { browse, leave, save } from "../store/files";
+import { toggleFolds } from "../store/folding";
 import { now, show, update } from "../store/store";
 
 const isTyping = (target: EventTarget | null): boolean =>
@@ -40,6 +41,7 @@ const WITH_CONTROL: Record<string, () => void> = {
 const ALONE: Record<string, () => void> = {
   "/": () => show({ kind: "search" }),
   "?": () => show({ kind: "keys" }),
+  f: () => toggleFolds(now().selected),
   Delete: () => void remove(now().selected),
   Backspace: () => void remove(now().selected),
 };

@@ -5,6 +5,7 @@ import { frameNames, fresh, symbols } from "../model/names";
 import { isMap, mapAt, textAt } from "../model/paths";
 import { usesOf } from "../model/uses";
 import { edit, place } from "./edits";
+import { reveal } from "./folding";
 import { now, show, update, type Anchor } from "./store";
 
 const data = (): JsonMap => now().document?.data ?? {};
@@ -69,7 +70,7 @@ export async function add(item: PaletteItem, where?: Point): Promise<void> {
   const done = await edit(`add ${name}`, [{ op: "set", path: [item.section, name], value }]);
   if (!done) return;
   if (where !== undefined) await place({ [id]: where });
-  if (item.section === "bodies" || item.section === "nonholonomic") update({ selected: [id], sight: { id } });
+  if (item.section === "bodies" || item.section === "nonholonomic") reveal(id);
   if (isSymbol) update({ right: "parameters" });
   else if (item.section !== "bodies") show({ kind: "properties", path: [item.section, name] });
 }

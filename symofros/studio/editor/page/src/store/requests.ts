@@ -22,6 +22,8 @@ export function accept(document: Document): void {
       diagram === null
         ? completed(graph, fresh ? document.layout : state.places, document.layout)
         : completedDiagram(diagram, fresh ? document.layout : state.places, document.layout),
+    folded: fresh ? [] : state.folded,
+    filter: fresh ? "" : state.filter,
     selected: fresh ? [] : state.selected.filter((id) => ids.has(id)),
     jobs: fresh ? {} : state.jobs,
     live: fresh ? null : state.live,

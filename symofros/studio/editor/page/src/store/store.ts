@@ -50,6 +50,10 @@ export interface State {
   document: Document | null;
   places: Record<string, Point>;
   selected: string[];
+  /** Bodies that stand for all that they carry. */
+  folded: readonly string[];
+  /** What the names of the shown parameters have in them. */
+  filter: string;
   /** A block that the canvas shall move into sight; a new object each time. */
   sight: { id: string } | null;
   dialog: Dialog | null;
@@ -78,6 +82,8 @@ export const useStore = create<State>(() => ({
   document: null,
   places: {},
   selected: [],
+  folded: [],
+  filter: "",
   sight: null,
   dialog: null,
   jobs: {},

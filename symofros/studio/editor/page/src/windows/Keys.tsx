@@ -5,6 +5,7 @@ const KEYS = [
   ["Tab", "next block or link"],
   ["Enter", "properties of the chosen block or link (also double click)"],
   ["Arrows", "move the chosen blocks"],
+  ["F", "fold what the chosen bodies carry into them, and back"],
   ["Delete", "remove what is chosen"],
   ["Ctrl Z, Ctrl Y", "undo, redo"],
   ["Ctrl C, Ctrl X, Ctrl V", "copy, cut, paste bodies or blocks, also in another document"],

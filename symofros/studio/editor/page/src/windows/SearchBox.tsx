@@ -2,12 +2,13 @@ import { type KeyboardEvent, useMemo, useState } from "react";
 
 import { everything, type Hit, search } from "../model/search";
 import { Window } from "../shell/Window";
+import { reveal } from "../store/folding";
 import { dismiss, update, useDocument } from "../store/store";
 
-function go({ id }: Hit): void {
+function go({ id, name, what }: Hit): void {
   dismiss();
-  if (id === "") update({ right: "parameters" });
-  else update({ selected: [id], sight: { id } });
+  if (id === "") update({ right: "parameters", filter: what === "parameter" ? name : "" });
+  else reveal(id);
 }
 
 /** Goes to anything by its name. */

@@ -1,0 +1,36 @@
+/** Questions about formulas, those of one moment in one request: a window asks about each of its fields as it opens. */
+
+import { post } from "../api/client";
+import type { Checked, Path } from "../api/types";
+
+interface Question {
+  path: Path;
+  text: string;
+  answer(checked: Checked): void;
+  fail(reason: unknown): void;
+}
+
+/** Fields pause before they ask; those that were drawn together ask within this time [ms]. */
+const MOMENT = 20;
+
+let waiting: Question[] = [];
+
+async function ask(): Promise<void> {
+  const questions = waiting;
+  waiting = [];
+  try {
+    const fields = questions.map(({ path, text }) => ({ path, text }));
+    const { checks } = await post<{ checks: Checked[] }>("api/expression", { fields });
+    questions.forEach(({ answer }, i) => answer(checks[i] as Checked));
+  } catch (reason) {
+    for (const { fail } of questions) fail(reason);
+  }
+}
+
+/** What the server says of a formula at a place. */
+export function check(path: Path, text: string): Promise<Checked> {
+  return new Promise((answer, fail) => {
+    if (waiting.length === 0) window.setTimeout(() => void ask(), MOMENT);
+    waiting.push({ path, text, answer, fail });
+  });
+}
