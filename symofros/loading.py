@@ -28,6 +28,7 @@ def load(
     floating_base: bool = False,
     snap_tol: float = SNAP_TOL,
     waive: Collection[str] = (),
+    mimic: bool = False,
 ) -> System:
     """Read a description and check it.
 
@@ -36,6 +37,7 @@ def load(
         floating_base: URDF only: put a free joint under the root link.
         snap_tol: URDF and MJCF: numbers this close to exact ones are made exact (`read_urdf`, `read_mjcf`).
         waive: Checks that every body is allowed to fail (WAIVERS), such as "massless_tip".
+        mimic: URDF only: couple joints that mimic others to them (`Coupling`); otherwise they stay independent.
 
     Returns:
         The system; its `notes` say what an importer ignored or changed, and where units of formulas do not fit.
@@ -44,7 +46,7 @@ def load(
         DescriptionError: With every problem of the file and of the mechanism it describes.
     """
     file = Path(path)
-    reading = _waived(_read(file, floating_base, snap_tol), waive)
+    reading = _waived(_read(file, floating_base, snap_tol, mimic), waive)
     problems = find_problems(reading.system, reading.broken) if reading.system is not None else []
     if reading.problems or problems or reading.system is None:
         raise DescriptionError(in_order([*reading.problems, *problems]))
@@ -69,12 +71,12 @@ def _waived(reading: Reading, waive: Collection[str]) -> Reading:
     return replace(reading, system=replace(reading.system, bodies=bodies))
 
 
-def _read(file: Path, floating_base: bool, snap_tol: float) -> Reading:
+def _read(file: Path, floating_base: bool, snap_tol: float, mimic: bool) -> Reading:
     _refuse_suffix(file, _READABLE, "read")
     if not file.exists():
         raise DescriptionError(_missing(file))
     if file.suffix.lower() == ".urdf":
-        return _accept_inertias(read_urdf(file, floating_base=floating_base, snap_tol=snap_tol))
+        return _accept_inertias(read_urdf(file, floating_base=floating_base, snap_tol=snap_tol, mimic=mimic))
     if floating_base:
         raise DescriptionError(
             Problem(

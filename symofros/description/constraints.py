@@ -8,8 +8,9 @@ from typing import Any, Literal, get_args
 
 from symofros.description.entries import refuses_unknown_entries
 from symofros.description.forces import Anchor
-from symofros.description.values import Value, as_value, symbols
+from symofros.description.values import Term, Value, as_value, symbols
 from symofros.errors import DescriptionError, Problem, did_you_mean
+from symofros.expr.expression import Expression
 
 AxisName = Literal["x", "y", "z"]
 AXES: tuple[AxisName, ...] = get_args(AxisName)
@@ -143,6 +144,19 @@ class Coupling:
     def on_speeds(self) -> tuple[str, ...]:
         """None of them binds speeds only."""
         return ()
+
+
+def mimicry(follower: str, leader: str, multiplier: float, offset: float) -> Coupling:
+    """The coupling of a joint that mimics another: q_follower = multiplier q_leader + offset.
+
+    Args:
+        follower: Name of the coordinate that follows.
+        leader: Name of the coordinate that it follows.
+        multiplier: Ratio of the speeds.
+        offset: Coordinate of the follower where that of the leader is zero.
+    """
+    q, leading = (Term(Expression("symbol", name=name)) for name in (follower, leader))
+    return Coupling(f"{follower}_mimics_{leader}", (q - Term(multiplier) * leading - Term(offset)).value)
 
 
 @refuses_unknown_entries

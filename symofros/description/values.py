@@ -198,6 +198,10 @@ class Term:
         """The larger of two."""
         return _combined("max", self, other)
 
+    def minimum(self, other: Term) -> Term:
+        """The smaller of two."""
+        return _combined("min", self, other)
+
     def absolute(self) -> Term:
         """Absolute value."""
         return _combined("abs", self)
@@ -221,6 +225,7 @@ _ON_NUMBERS: dict[str, Callable[..., float]] = {
     "sqrt": math.sqrt,
     "tanh": math.tanh,
     "max": max,
+    "min": min,
     "abs": abs,
 }
 

@@ -146,9 +146,10 @@ def test_limits_and_inputs(tmp_path: Path) -> None:
     system = sf.load(write(tmp_path, MODELS["degrees_and_euler_sequence"] + drive))
     first, second = (system.body(name).joint for name in "ab")
     assert first is not None and second is not None
-    assert (first.kind, first.actuated, second.actuated) == ("revolute", True, False)
+    assert (first.kind, first.actuated, second.actuated) == ("revolute", False, False)
+    assert [str(value) for value in first.effort] == ["50*actuator0"]
     assert first.limits is not None and first.limits.lower == pytest.approx(-np.pi / 2)
-    assert any("<actuator> ignored" in note for note in system.notes)
+    assert [item.name for item in system.inputs] == ["actuator0"]
 
 
 def test_rounded_numbers_are_made_exact_unless_asked_not_to(tmp_path: Path) -> None:
@@ -169,7 +170,17 @@ def test_rounded_numbers_are_made_exact_unless_asked_not_to(tmp_path: Path) -> N
     [
         ('<contact><exclude body1="a" body2="world"/></contact>', "<contact> ignored"),
         ('<sensor><jointpos joint="q"/></sensor>', "<sensor> ignored"),
-        ('<equality><joint name="loop" joint1="q"/></equality>', r"<equality> ignored: 1 element (loop)"),
+        ('<equality><joint name="loop" joint1="q"/></equality>', "hold exactly, in MuJoCo softly: 1 constraint (loop)"),
+        ('<equality><joint joint1="q" active="false"/></equality>', "switched off ignored: 1 constraint (equality0)"),
+        ('<equality><tendon name="t" tendon1="x"/></equality>', "<equality> ignored: 1 element (t)"),
+        ('<actuator><motor name="m" tendon="x"/></actuator>', "<actuator> ignored: 1 element (m)"),
+        (
+            '<actuator><intvelocity joint="q" kp="1" actrange="-1 1"/></actuator>',
+            "activation dynamics: an effort on the joint is the input",
+        ),
+        ('<actuator><position joint="q" kp="1" timeconst="1"/></actuator>', "activation dynamics: an effort"),
+        ('<actuator><motor joint="q" armature="1"/></actuator>', "armature and damping of actuators ignored"),
+        ('<option><flag actuation="disable"/></option><actuator><motor joint="q"/></actuator>', "switched off"),
         ('<tendon><fixed name="t"><joint joint="q" coef="1"/></fixed></tendon>', "<tendon> ignored: 1 element (t)"),
         ('<keyframe><key qpos="1"/></keyframe>', "<keyframe> ignored"),
         ('<extension><plugin plugin="mujoco.pid"/></extension>', "contacts ignored"),

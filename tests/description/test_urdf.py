@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pinocchio
 import pytest
 
 import symofros as sf
@@ -165,3 +166,42 @@ def test_inertias_equal_pinocchios(robot: str) -> None:
         np.testing.assert_allclose(merged.J_BC, inertia.inertia, atol=1e-13)
         np.testing.assert_allclose(mover.X_AP.R, placement.rotation, atol=1e-14)
         np.testing.assert_allclose(mover.X_AP.p, placement.translation, atol=1e-14)
+
+
+FOLLOWER = (
+    '<link name="finger">' + INERTIAL + '</link><joint name="q2" type="prismatic"><parent link="hand"/>'
+    '<child link="finger"/><axis xyz="0 1 0"/><limit lower="-9" upper="9" effort="9" velocity="9"/>'
+    '<mimic joint="q1" multiplier="-0.5" offset="0.2"/></joint></robot>'
+)
+MIMIC = ROBOT.replace("</robot>", FOLLOWER)
+
+
+def test_mimic_joints_move_as_pinocchio_s(tmp_path: Path) -> None:
+    arm = load(tmp_path, MIMIC, mimic=True)
+    model = sf.compile(arm, sf.Options(backend="interpreter"))
+    assert model.names.u == ("q1",)
+    theirs = pinocchio.buildModelFromUrdf(str(tmp_path / "arm.urdf"), mimic=True)
+    q, v, a = np.array([0.3]), np.array([1.4]), np.array([-0.6])
+    T, start = np.array([1.0, -0.5]), np.array([0.0, 0.2])
+    np.testing.assert_allclose(model.constraint(T * q + start), 0.0, atol=1e-15)
+    force = T @ model.inverse_dynamics(T * q + start, T * v, T * a)
+    expected = pinocchio.rnea(theirs, theirs.createData(), q, v, a)
+    np.testing.assert_allclose([force], expected, rtol=1e-13)
+    acceleration = model.forward_dynamics(T * q + start, T * v, [0.8])
+    tau = pinocchio.rnea(theirs, theirs.createData(), q, v, acceleration[:1])
+    np.testing.assert_allclose(tau, [0.8], rtol=1e-11)
+
+
+@pytest.mark.parametrize(
+    ("change", "part"),
+    [
+        (('mimic joint="q1"', 'mimic joint="q7"'), "can't mimic joint 'q7'"),
+        (('mimic joint="q1"', 'mimic joint="weld"'), "type 'fixed'"),
+        (('mimic joint="q1"', 'mimic joint="q2"'), "can't mimic joint 'q2'"),
+        (('mimic joint="q1"', "mimic"), "lacks the attribute 'joint'"),
+        (('multiplier="-0.5"', 'multiplier="half"'), "bad numbers"),
+    ],
+)
+def test_what_can_t_be_mimicked_is_refused(tmp_path: Path, change: tuple[str, str], part: str) -> None:
+    assert part in faults(tmp_path, MIMIC.replace(*change), mimic=True)
+    assert any("mimic ignored" in note for note in load(tmp_path, MIMIC.replace(*change)).notes)

@@ -12,7 +12,7 @@ MuJoCo's: T(a) J(-ref) before a joint and T(-a) behind it. Each joint but the la
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -25,6 +25,7 @@ from symofros.description.joint_kinds import JointKindName
 from symofros.description.mjcf.geometry import Exact, about
 from symofros.description.mjcf.names import Names
 from symofros.description.remarks import Remarks
+from symofros.description.values import Value
 
 # mjtJoint and mjtDisableBit of mujoco/mjmodel.h, which never change: compiled models are stored by them.
 FREE, BALL, SLIDE, HINGE = range(4)
@@ -52,21 +53,36 @@ class Chain:
         return bool(np.any(self.p))
 
 
+@dataclass(frozen=True)
+class JointEfforts:
+    """What actuators do on a joint.
+
+    Attributes:
+        formulas: Efforts, one a speed; none where no actuator is a formula.
+        actuated: Whether an effort on each speed is an input as well.
+    """
+
+    formulas: tuple[Value, ...] = ()
+    actuated: bool = False
+
+
 class JointReader:
     """Reads the joints of a model.
 
     Args:
         model: An MjModel.
         names: Names of the joints.
-        driven: Names of those that an actuator acts on.
+        efforts: Efforts of actuators, by the index of their joint.
         remarks: Remarks on what is ignored.
         exact: Makes numbers exact.
     """
 
-    def __init__(self, model: Any, names: Names, driven: Collection[str], remarks: Remarks, exact: Exact) -> None:
+    def __init__(
+        self, model: Any, names: Names, efforts: Mapping[int, JointEfforts], remarks: Remarks, exact: Exact
+    ) -> None:
         self.model = model
         self.names = names
-        self.driven = driven
+        self.efforts = efforts
         self.remarks = remarks
         self.exact = exact
 
@@ -94,6 +110,7 @@ class JointReader:
         elif ref:
             R = matrix_product(R, about(axis, -ref))
         position, rotation = self.exact.placement(p, R)
+        efforts = self.efforts.get(j, JointEfforts())
         limits = self._limits(j)
         hinge: JointKindName = "revolute" if limits else "continuous"
         kinds: dict[int, JointKindName] = {BALL: "ball", SLIDE: "prismatic", HINGE: hinge}
@@ -107,7 +124,8 @@ class JointReader:
             position,
             rotation,
             (0.0, 0.0, 1.0) if kind == BALL else self.exact.direction(axis),
-            actuated=self.names[j] in self.driven and kind != BALL,
+            actuated=efforts.actuated,
+            effort=efforts.formulas,
             limits=limits,
             elements=tuple(self._elements(j)),
             armature=self._armature(j),

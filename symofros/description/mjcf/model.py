@@ -11,6 +11,8 @@ import numpy as np
 from symofros.description.forces import Load
 from symofros.description.frames import Frame
 from symofros.description.joint import WORLD, Joint
+from symofros.description.mjcf.actuators import ActuatorReader
+from symofros.description.mjcf.equalities import EqualityReader
 from symofros.description.mjcf.geometry import Exact, rotation_of
 from symofros.description.mjcf.joints import FREE, Chain, JointReader
 from symofros.description.mjcf.names import Names
@@ -30,13 +32,11 @@ class Stated:
     Attributes:
         name: Name of the model.
         file: Main file of the model.
-        driven: Joints that an actuator acts on.
-        places: Lines of bodies and joints, as in System.origin.
+        places: Lines of bodies, joints and constraints, as in System.origin.
     """
 
     name: str
     file: str
-    driven: frozenset[str]
     places: Mapping[tuple[str, ...], str]
 
 
@@ -58,7 +58,8 @@ class Importer:
         self.bodies = Names("body", [model.body(i).name for i in range(model.nbody)])
         self.joints = Names("joint", [model.joint(i).name for i in range(model.njnt)])
         self.sites = Names("site", [model.site(i).name for i in range(model.nsite)])
-        self.reader = JointReader(model, self.joints, stated.driven, remarks, self.exact)
+        self.actuators = ActuatorReader(model, self.joints, self.sites, remarks)
+        self.reader = JointReader(model, self.joints, self.actuators.efforts, remarks, self.exact)
         off = model.opt.disableflags & _NO_GRAVITY
         self.gravity = np.zeros(3) if off else np.array(model.opt.gravity)
 
@@ -72,7 +73,10 @@ class Importer:
         problems = [*infinite_numbers(self.model, self.bodies, self.joints, self.sites, places, file)]
         if problems:
             raise DescriptionError(problems)
+        equalities = EqualityReader(self.model, self.bodies, self.joints, self.sites, self.remarks, self.exact)
         frames = self._frames()
+        for i, more in equalities.frames.items():
+            frames[i] = (*frames.get(i, ()), *more)
         bodies = [RigidBody(WORLD, frames=frames.get(0, ()))]
         for i in range(1, self.model.nbody):
             bodies += self._body(i, frames.get(i, ()))
@@ -88,6 +92,8 @@ class Importer:
         return System(
             self.stated.name,
             tuple(bodies),
+            inputs=tuple(self.actuators.inputs),
+            constraints=equalities.constraints,
             gravity=gravity,
             notes=self.remarks.notes(),
             origin=origin,
@@ -126,12 +132,13 @@ class Importer:
         return Inertia(float(m.body_mass[i]), position, tuple(map(float, m.body_inertia[i])), rotation=rotation)
 
     def _loads(self, i: int) -> tuple[Load, ...]:
-        """What a compensation of gravity pushes the body with."""
+        """What a compensation of gravity and actuators push the body with."""
         lift = -float(self.model.body_gravcomp[i]) * float(self.model.body_mass[i])
         x, y, z = (lift * g for g in self.gravity.tolist())
+        acting = self.actuators.loads.get(i, ())
         if not any((x, y, z)) or self.model.body_treeid[i] < 0:
-            return ()
-        return (Load((x, y, z), at="center_of_mass", axes="world"),)
+            return acting
+        return (Load((x, y, z), at="center_of_mass", axes="world"), *acting)
 
     def _frames(self) -> dict[int, tuple[Frame, ...]]:
         """Sites, by the index of their body."""

@@ -98,7 +98,7 @@ def vetted(folder: Folder, remarks: Remarks) -> Document:
     meshes = Meshes(folder, kept, root, remarks)
     meshes.cut()
     pairs = list(_written(kept))
-    stated = Stated(root.attributes.get("model") or folder.main.stem, str(folder.main), sections.driven, _places(kept))
+    stated = Stated(root.attributes.get("model") or folder.main.stem, str(folder.main), _places(kept))
     return Document("\n".join(line for line, _ in pairs), tuple(e for _, e in pairs), meshes.assets, stated)
 
 
@@ -169,10 +169,13 @@ def _written(element: Element) -> Iterator[tuple[str, Element]]:
 
 
 def _places(element: Element) -> dict[tuple[str, ...], str]:
-    """Where named bodies and joints are stated."""
+    """Where named bodies, joints and constraints are stated."""
     kinds = {"body": "body", "joint": "joint", "freejoint": "joint"}
     places: dict[tuple[str, ...], str] = {}
     pending = list(element.children)
+    for item in (item for section in element.all("equality") for item in section.children if "name" in item.attributes):
+        places["constraint", item.attributes["name"]] = item.where
+    pending = [child for child in pending if child.tag != "equality"]
     while pending:
         item = pending.pop()
         pending += item.children

@@ -13,14 +13,12 @@ from symofros.errors import did_you_mean
 # MuJoCo's time for copies grows with the square of their number: seconds for as many.
 MAX_COPIES = 10_000
 
-_KEPT_SECTIONS = frozenset({"compiler", "option", "default", "asset", "worldbody"})
+_KEPT_SECTIONS = frozenset({"compiler", "option", "default", "asset", "worldbody", "equality", "actuator"})
 _IGNORED_SECTIONS = frozenset(
     {
-        "actuator",
         "contact",
         "custom",
         "deformable",
-        "equality",
         "extension",
         "keyframe",
         "sensor",
@@ -34,10 +32,16 @@ _IGNORED_SECTIONS = frozenset(
 _SILENT = frozenset({"custom", "extension", "size", "statistic", "visual"})
 
 _BODY = frozenset({"body", "frame", "replicate", "joint", "freejoint", "inertial", "geom", "site"})
+_EQUALITIES = frozenset({"connect", "weld", "joint"})
+_ACTUATORS = frozenset({"general", "motor", "position", "velocity", "intvelocity", "damper", "cylinder", "muscle"})
+# What an actuator drives that is not kept.
+_ELSEWHERE = frozenset({"tendon", "cranksite", "slidersite", "body"})
 _KEPT: dict[str, frozenset[str]] = {
     "mujoco": _KEPT_SECTIONS,
     "option": frozenset({"flag"}),
-    "default": frozenset({"default", "joint", "geom", "site", "mesh"}),
+    "default": frozenset({"default", "joint", "geom", "site", "mesh", "equality"}) | _ACTUATORS,
+    "equality": _EQUALITIES,
+    "actuator": _ACTUATORS,
     "asset": frozenset({"mesh"}),
     **dict.fromkeys(("worldbody", "body", "frame", "replicate"), _BODY),
 }
@@ -62,22 +66,14 @@ class Sections:
     Attributes:
         folder: Folder of the model, which collects its faults.
         remarks: Remarks on what is ignored.
-        driven: Joints that an actuator acts on.
     """
 
     def __init__(self, folder: Folder, remarks: Remarks) -> None:
         self.folder = folder
         self.remarks = remarks
-        self.driven: frozenset[str] = frozenset()
 
     def kept(self, root: Element) -> Element:
         """The document without what is ignored; everything refused or unknown is noted as a fault."""
-        self.driven = frozenset(
-            name
-            for actuators in root.all("actuator")
-            for actuator in actuators.children
-            if (name := actuator.attributes.get("joint") or actuator.attributes.get("jointinparent"))
-        )
         result = self._kept(root)
         copies = self._expanded(result) - size(result)
         if copies > MAX_COPIES:
@@ -99,7 +95,11 @@ class Sections:
     def _children(self, element: Element) -> Iterator[Element]:
         kept, ignored = _KEPT.get(element.tag, frozenset()), _IGNORED.get(element.tag, frozenset())
         for child in element.children:
-            if child.tag in kept:
+            if element.tag in ("equality", "actuator") and (
+                child.tag not in kept or _ELSEWHERE & child.attributes.keys()
+            ):
+                self._remark(child, element.tag)
+            elif child.tag in kept:
                 yield self._kept(child, element.tag == "asset")
             elif child.tag in _REFUSED:
                 self.folder.fault(
@@ -110,7 +110,7 @@ class Sections:
                     _REFUSED[child.tag],
                 )
             elif child.tag in ignored:
-                self._remark(child, element.tag == "mujoco")
+                self._remark(child, element.tag)
             elif element.tag in ("worldbody", "body", "frame", "replicate", "mujoco"):
                 self.folder.fault(
                     child,
@@ -120,12 +120,15 @@ class Sections:
                     did_you_mean(child.tag, kept | ignored),
                 )
 
-    def _remark(self, element: Element, is_section: bool) -> None:
+    def _remark(self, element: Element, section: str) -> None:
+        """Say that an element is ignored; of a whole section, each element in it."""
         if element.tag in _SILENT:
             return
-        for item in element.children if is_section else [element]:
+        whole = section == "mujoco"
+        for item in element.children if whole else [element]:
             name = item.attributes.get("name") or f"{item.tag} in line {item.line}"
-            self.remarks.add(f"<{element.tag}> ignored", "element", name)
+            tag = section if section in ("equality", "actuator") else element.tag
+            self.remarks.add(f"<{tag}> ignored", "element", name)
 
     def _expanded(self, element: Element) -> int:
         """How many elements MuJoCo makes of one; it takes time for copies of nothing, too."""

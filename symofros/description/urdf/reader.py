@@ -1,6 +1,7 @@
 """URDF in, as Pinocchio understands it: links are bodies, joints carry them, the root is the base.
 
-What a rigid tree has no place for (collisions, damping, transmissions, mimic) is ignored, and System.notes says so.
+What a rigid tree has no place for (collisions, damping, transmissions) is ignored, and System.notes says so.
+Joints that mimic others are independent, as Pinocchio has them by default, or coupled where that is asked for.
 """
 
 from __future__ import annotations
@@ -10,11 +11,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from symofros.description.constraints import Coupling, mimicry
 from symofros.description.joint import WORLD, Joint
 from symofros.description.joint_kinds import KINDS
 from symofros.description.reading import Reading, in_order, read_bytes
 from symofros.description.system import Inertia, RigidBody, System
-from symofros.description.urdf.values import Values
+from symofros.description.urdf.values import Values, finite_numbers
 from symofros.description.urdf.visuals import Visuals
 from symofros.description.visual import Visual
 from symofros.description.xml_nodes import Element, XmlFault, parse_xml
@@ -31,7 +33,14 @@ _KINDS = {row.urdf: row for row in KINDS.values() if row.urdf is not None}
 _USED = frozenset({"link", "joint", "material"})
 
 
-def read_urdf(path: str | os.PathLike[str], *, floating_base: bool = False, snap_tol: float = SNAP_TOL) -> Reading:
+def read_urdf(
+    path: str | os.PathLike[str],
+    *,
+    floating_base: bool = False,
+    snap_tol: float = SNAP_TOL,
+    mimic: bool = False,
+    text: bytes | None = None,
+) -> Reading:
     """Read a URDF file.
 
     Args:
@@ -39,6 +48,8 @@ def read_urdf(path: str | os.PathLike[str], *, floating_base: bool = False, snap
         floating_base: Put the root link on a free joint; otherwise it is the base and never moves.
         snap_tol: Angles this close to a multiple of pi/2 [rad], positions this close to 0 [m] and entries of an axis
             this close to 0 or +-1 are taken for exact, because files carry rounded digits.
+        mimic: Couple joints that mimic others to them; otherwise their coordinates stay independent.
+        text: Content of the file, where that is made of what the file holds (xacro).
 
     Returns:
         The system without the links that could not be read, and every problem.
@@ -50,7 +61,7 @@ def read_urdf(path: str | os.PathLike[str], *, floating_base: bool = False, snap
         raise ValueError(f"snap_tol: found {snap_tol}; rule: 0 <= snap_tol < 0.1, so that it only absorbs rounding")
     file = os.fspath(path)
     try:
-        root = parse_xml(read_bytes(Path(path), MAX_BYTES), file)
+        root = parse_xml(read_bytes(Path(path), MAX_BYTES) if text is None else text, file)
     except XmlFault as error:
         return Reading(None, (error.problem,))
     except DescriptionError as error:
@@ -65,7 +76,7 @@ def read_urdf(path: str | os.PathLike[str], *, floating_base: bool = False, snap
         )
         return Reading(None, (problem,))
     try:
-        return _Importer(Path(path), Values(file, snap_tol), root, floating_base).reading()
+        return _Importer(Path(path), Values(file, snap_tol), root, floating_base, mimic).reading()
     except DescriptionError as error:
         return Reading(None, error.problems)
 
@@ -82,12 +93,14 @@ class _Link:
 
 
 class _Importer:
-    def __init__(self, file: Path, values: Values, robot: Element, floating_base: bool) -> None:
+    def __init__(self, file: Path, values: Values, robot: Element, floating_base: bool, mimic: bool) -> None:
         self.values = values
         self.visuals = Visuals(file, robot, values.remarks)
         self.looks: dict[str, tuple[Visual, ...]] = {}
         self.robot = robot
         self.floating_base = floating_base
+        self.mimic = mimic
+        self.couplings: list[Coupling] = []
         self.links: dict[str, _Link] = {}
         self.broken: set[str] = set()
         self.origin: dict[tuple[str, ...], str] = {("system",): values.where(robot)}
@@ -118,6 +131,7 @@ class _Importer:
         system = System(
             name,
             bodies,
+            constraints=tuple(self.couplings),
             notes=self.values.remarks.notes(),
             origin=self.origin,
             visuals={name: shapes for name, shapes in self.looks.items() if shapes},
@@ -221,14 +235,51 @@ class _Importer:
             return Joint(name, kind.name, parent, position=position, rotation=rotation)
         limits = self.values.limits(element, "limits" in kind.entries, owner)
         axis = self.values.axis(element, owner)
-        return Joint(name, kind.name, parent, None, position, rotation, axis, actuated=True, limits=limits)
+        # What follows another joint has no motor of its own.
+        alone = not (self.mimic and element.first("mimic"))
+        return Joint(name, kind.name, parent, None, position, rotation, axis, actuated=alone, limits=limits)
 
     def remark_ignored(self, element: Element, name: str) -> None:
         dynamics = element.first("dynamics")
         if dynamics is not None and any(self.is_nonzero(text) for text in dynamics.attributes.values()):
             self.values.remarks.add("damping and friction ignored", "joint", name)
-        if element.first("mimic"):
-            self.values.remarks.add("mimic ignored, the coordinate stays independent", "joint", name)
+        mimic = element.first("mimic")
+        if mimic is not None and not self.mimic:
+            text = "mimic ignored, the coordinate stays independent (sf.load(..., mimic=True) couples it)"
+            self.values.remarks.add(text, "joint", name)
+        elif mimic is not None:
+            self.couple(mimic, name)
+
+    def couple(self, mimic: Element, name: str) -> None:
+        """Bind the coordinate of a joint to that of the joint that it mimics."""
+        owner = f"joint '{name}'"
+        leader = self.values.attribute(mimic, "joint", owner)
+        stated = {key: mimic.attributes.get(key, default) for key, default in (("multiplier", "1"), ("offset", "0"))}
+        numbers = finite_numbers(" ".join(stated.values()), 2)
+        single = {
+            joint.attributes.get("name", "")
+            for joint in self.robot.all("joint")
+            if "axis" in getattr(_KINDS.get(joint.attributes.get("type", "")), "entries", ())
+        }
+        if numbers is None:
+            values = ", ".join(f"{key} '{text:.40}'" for key, text in stated.items())
+            self.values.fault(mimic, f"{owner}: <mimic> has bad numbers", values, "finite numbers", "mend the number")
+        elif leader is not None and (leader not in single or name not in single or leader == name):
+            self.values.fault(
+                mimic,
+                f"{owner}: it can't mimic joint '{leader}'",
+                f"type '{self.type_of(leader)}' of '{leader}'",
+                "a joint with one coordinate mimics another one of the file",
+                did_you_mean(leader, single - {name}),
+            )
+        elif leader is not None:
+            self.couplings.append(mimicry(name, leader, *numbers))
+            self.origin["constraint", self.couplings[-1].name] = self.values.where(mimic)
+
+    def type_of(self, joint: str) -> str:
+        """Type of the joint of that name; "none" where there is no such joint."""
+        named = (element for element in self.robot.all("joint") if element.attributes.get("name") == joint)
+        return next((element.attributes.get("type", "none") for element in named), "none")
 
     @staticmethod
     def is_nonzero(text: str) -> bool:
