@@ -40,15 +40,12 @@ def natural_sizes(G: Array, measures: Measures) -> Array:
     nc, nv = G.shape
     sizes = np.zeros((nc, SPEED_KINDS))
     group, unit, speed = (np.array(table, dtype=np.intp) for table in measures)
-    for i in range(nc):
-        of = sizes[group[i]]
-        if unit[i] != FORMULA:
-            np.maximum(of, LEAST_SIZE, out=of)
-        if unit[i] == LENGTH:
-            of[TRANSLATION] = max(of[TRANSLATION], 1.0)
-        if unit[i] == ANGLE:
-            of[ROTATION] = max(of[ROTATION], 1.0)
-        np.maximum.at(of, speed, np.where(np.isnan(G[i]), 0.0, np.abs(G[i])))
+    np.maximum.at(sizes, (group[:, None], speed), np.where(np.isnan(G), 0.0, np.abs(G)))
+    with_unit = group[unit != FORMULA]
+    sizes[with_unit] = np.maximum(sizes[with_unit], LEAST_SIZE)
+    for kind, own in ((LENGTH, TRANSLATION), (ANGLE, ROTATION)):
+        groups = group[unit == kind]
+        sizes[groups, own] = np.maximum(sizes[groups, own], 1.0)
     return np.asarray(sizes[group][:, speed], dtype=np.float64).reshape(nc, nv)
 
 
@@ -104,31 +101,36 @@ def eliminate(G: Array, measures: Measures, inertia: Array) -> Eliminated:
         inertia: Diagonal of M (nv), or ones.
     """
     left, size = G.copy(), natural_sizes(G, measures)
-    moved = inertia[inertia > 0.0]
-    worth = 1.0 / np.sqrt(np.where(inertia > 0.0, inertia, 1e-12 * moved.min() if len(moved) else 1.0))
+    (nc, nv), massive = G.shape, inertia > 0.0
+    worth = 1.0 / np.sqrt(np.where(massive, inertia, 1e-12 * inertia[massive].min() if massive.any() else 1.0))
     own = np.abs(G * worth).max(axis=1, initial=0.0)
-    open_rows, L = own > 0.0, np.zeros((len(G), 0))
+    open_rows = own > 0.0
+    own_or_one = np.where(open_rows, own, 1.0)[:, None]
     rows: list[int] = []
     columns: list[int] = []
-    U = np.zeros((0, G.shape[1]))
-    while len(rows) < G.shape[1]:
-        significant = (np.abs(left) > RANK * size) & open_rows[:, None]
+    lower: list[Array] = []
+    upper: list[Array] = []
+    while len(rows) < nv:
+        magnitude = np.abs(left)
+        significant = (magnitude > RANK * size) & open_rows[:, None]
         open_rows &= significant.any(axis=1)
         if not open_rows.any():
             break
-        weak = (np.abs(left) > WEAK_LEAST * size) & open_rows[:, None] & (inertia > 0.0)
+        weak = (magnitude > WEAK_LEAST * size) & open_rows[:, None] & massive
         counts = np.where(significant, 1.0, np.where(weak, WEAK_WORTH, 0.0))
-        values = counts * np.abs(left) * worth / np.where(own > 0.0, own, 1.0)[:, None]
-        p, d = np.unravel_index(int(np.argmax(values)), values.shape)
+        p, d = divmod(int(np.argmax(counts * magnitude * worth / own_or_one)), nv)
         open_rows[p] = False
         factor = np.where(open_rows, left[:, d] / left[p, d], 0.0)
         of_pivot = size[p] if significant[p, d] else np.maximum(np.abs(left[p]), WEAK_SIZE * size[p])
         size = np.maximum(size, np.abs(factor)[:, None] * of_pivot)
-        U, rows, columns = np.vstack([U, left[p]]), [*rows, int(p)], [*columns, int(d)]
-        left = left - np.outer(factor, left[p])
+        rows.append(p)
+        columns.append(d)
+        upper.append(left[p])
+        left = left - factor[:, None] * left[p]
         left[open_rows, d] = 0.0
         factor[p] = 1.0
-        L = np.column_stack([L, factor])
+        lower.append(factor)
+    L, U = np.array(lower).reshape(len(rows), nc).T.copy(), np.array(upper).reshape(len(rows), nv)
     return Eliminated(L, U, np.array(rows, dtype=np.intp), np.array(columns, dtype=np.intp))
 
 

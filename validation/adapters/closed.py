@@ -15,6 +15,7 @@ import numpy as np
 import symofros as sf
 from validation.adapters.description import evaluate
 from validation.contract.interface import States, Subject, TreeEngine
+from validation.contract.memory import LatestResults
 from validation.contract.quantities import CONSTRAINED
 from validation.mechanics.assembly import Assembly, assemble
 from validation.mechanics.geometry import Array
@@ -67,6 +68,8 @@ class ConstrainedEngine:
         self.name, self.version = tree.name, tree.version
         self.capabilities = tree.capabilities | CONSTRAINED
         self._assembly: Assembly = assemble(subject.system)
+        self._latest_rows: LatestResults[Rows] = LatestResults()
+        self._latest_solutions: LatestResults[tuple[Array, Array]] = LatestResults()
 
     def __getattr__(self, name: str) -> Callable[[States], Array]:
         """Quantities that constraints do not change."""
@@ -94,12 +97,19 @@ class ConstrainedEngine:
         return self._solved(states)[1]
 
     def _solved(self, states: States) -> tuple[Array, Array]:
+        arguments = states.q, states.v, states.u, states.applied
+        return self._latest_solutions.get(arguments, lambda: self._solve(states))
+
+    def _solve(self, states: States) -> tuple[Array, Array]:
         M, rows = self._tree.mass_matrix(states), self._rows(states)
         free = states.applied - self._tree.bias(states)
         solutions = [_solve(*state) for state in zip(M, free, rows.G, rows.gamma, strict=True)]
         return np.array([a for a, _ in solutions]), np.array([lam for _, lam in solutions])
 
     def _rows(self, states: States) -> Rows:
+        return self._latest_rows.get((states.q, states.v, states.u), lambda: self._formed(states))
+
+    def _formed(self, states: States) -> Rows:
         frames = self._kinematics(states)
         parts = [self._one(item, frames, states) for item in self._subject.system.constraints]
         stacked = [np.concatenate(arrays, axis=1) for arrays in zip(*parts, strict=True)]

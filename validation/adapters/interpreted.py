@@ -2,12 +2,34 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
+
 from validation.adapters.compiled import SymofrosEngine, evaluators
-from validation.contract.interface import Subject
+from validation.contract.interface import States, Subject
+from validation.contract.memory import LatestResults
+from validation.mechanics.geometry import Array
 
 NAME = "interpreted"
 
 
-def build(subject: Subject) -> SymofrosEngine:
+@dataclass(frozen=True)
+class InterpretedEngine(SymofrosEngine):
+    """The model on the interpreter, which solves with constraints in Python, state by state: once for each states."""
+
+    _accelerations: LatestResults[Array] = field(default_factory=LatestResults)
+    _multipliers: LatestResults[Array] = field(default_factory=LatestResults)
+
+    def forward_dynamics(self, states: States) -> Array:
+        """M^-1 (Q - h), with the model's own Q."""
+        arguments = states.q, states.v, states.u
+        return self._accelerations.get(arguments, lambda: super(InterpretedEngine, self).forward_dynamics(states))
+
+    def multipliers(self, states: States) -> Array:
+        """Multipliers of the constraints."""
+        arguments = states.q, states.v, states.u
+        return self._multipliers.get(arguments, lambda: super(InterpretedEngine, self).multipliers(states))
+
+
+def build(subject: Subject) -> InterpretedEngine:
     """The model on the interpreter."""
-    return SymofrosEngine(NAME, evaluators(subject).interpreted, subject.frames)
+    return InterpretedEngine(NAME, evaluators(subject).interpreted, subject.frames)

@@ -21,6 +21,7 @@ from validation.adapters.exudyn.system import VERSION
 from validation.adapters.reach import armature, stores_energy
 from validation.contract.conventions import times
 from validation.contract.interface import States, Subject, Unsupported
+from validation.contract.memory import LatestResults
 from validation.contract.quantities import TREE_QUANTITIES
 from validation.mechanics import carried
 from validation.mechanics.assembly import Assembly, FrameSite, assemble
@@ -38,8 +39,6 @@ ACCURACY = {
     **dict.fromkeys(("mass_matrix", "bias", "gravity", "kinetic_energy", "inverse_dynamics"), EXTRAPOLATED),
     **dict.fromkeys(("forward_dynamics", "multipliers"), SOLVED),
 }
-# Terms of the states asked last; a check asks the same states for one quantity after the other.
-_KEPT = 3
 
 
 @dataclass
@@ -71,7 +70,7 @@ class MappedEngine:
     most_states: int
     name: str
     version: str = VERSION
-    _kept: dict[tuple[bytes, ...], Terms] = field(default_factory=dict)
+    _latest: LatestResults[Terms] = field(default_factory=LatestResults)
 
     def mass_matrix(self, states: States) -> Array:
         """M."""
@@ -139,12 +138,8 @@ class MappedEngine:
         return Nodal.of(carried.joined(self._frames(states)), states.v)
 
     def _terms(self, states: States) -> Terms:
-        key = tuple(x.tobytes() for x in (states.q, states.v, states.u[:, self.first_motion :]))
-        if key not in self._kept:
-            if len(self._kept) == _KEPT:
-                del self._kept[next(iter(self._kept))]
-            self._kept[key] = self._evaluated(self._all(states, moving=False))
-        return self._kept[key]
+        arguments = states.q, states.v, states.u[:, self.first_motion :]
+        return self._latest.get(arguments, lambda: self._evaluated(self._all(states, moving=False)))
 
     def _evaluated(self, states: AllSpeeds) -> Terms:
         frames = self._frames(states)
