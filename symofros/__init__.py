@@ -46,6 +46,7 @@ from symofros.description.system import System as System
 from symofros.description.values import Rotation as Rotation
 from symofros.description.values import as_value
 from symofros.errors import ActuationError as ActuationError
+from symofros.errors import ArgumentError as ArgumentError
 from symofros.errors import AssemblyError as AssemblyError
 from symofros.errors import BeamTheoryError as BeamTheoryError
 from symofros.errors import CompileError as CompileError

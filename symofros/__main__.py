@@ -10,6 +10,7 @@ import typer
 from typer.core import TyperGroup
 
 import symofros as sf
+from symofros.errors import did_you_mean
 
 # Name -> module and function. A module is imported when its command is asked for: others need a second of imports.
 _COMMANDS = {
@@ -50,6 +51,21 @@ class Commands(TyperGroup):
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         """A command by its name."""
         return _command(cmd_name) if cmd_name in _COMMANDS else None
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """The command that arguments begin with; another name is refused with the nearest."""
+        if args[0] not in _COMMANDS and not args[0].startswith("-") and not ctx.resilient_parsing:
+            remedy = did_you_mean(args[0], _COMMANDS)
+            typer.echo(str(sf.Problem(f"no command '{args[0]}'", args[0], ", ".join(_COMMANDS), remedy)), err=True)
+            raise typer.Exit(2)
+        return super().resolve_command(ctx, args)
+
+    def invoke(self, ctx: Any) -> Any:
+        """A command; what it does not refuse itself is refused here, and never a traceback."""
+        try:
+            return super().invoke(ctx)
+        except (sf.SymofrosError, OSError) as error:
+            raise import_module("symofros.commands.shared").refuse(error) from None
 
 
 # Help states units in brackets, which are no markup.

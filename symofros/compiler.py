@@ -22,6 +22,7 @@ from collections.abc import Callable, Collection, Iterable, Sequence
 from functools import cache, cached_property, partial
 from pathlib import Path
 
+from symofros.base.arguments import check_argument
 from symofros.base.options import Options
 from symofros.description.beam import Beam
 from symofros.description.system import System
@@ -77,6 +78,7 @@ def compile_library(
         DescriptionError: The system can't be a mechanism.
         CompileError: There is no C compiler, or it failed.
     """
+    check_argument("compile_library: precision", precision, Precision)
     return Compilation(system, options).library(precision)
 
 
@@ -92,6 +94,8 @@ def program_of(system: System, functions: Iterable[str], frames: Iterable[str] =
         DescriptionError: The system can't be a mechanism.
         UnknownNameError: No such function or frame.
     """
+    check_argument("program_of: functions", functions, Iterable[str])
+    check_argument("program_of: frames", frames, Iterable[str])
     return Compilation(system, Options(tuple(functions), tuple(frames))).program
 
 
@@ -120,6 +124,7 @@ class Compilation:
             )
             stated = f"{type(system).__name__} {system!r:.60}"
             raise DescriptionError(Problem("there is no system to compile", stated, "a system is a sf.System", remedy))
+        check_argument("options", options, Options | None)
         self.system, self.options = system, options or Options()
         self._further: tuple[Request, ...] = ()
 

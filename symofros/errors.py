@@ -91,6 +91,10 @@ class ParameterError(SymofrosError, ValueError):
     """Run-time parameters have values that the description's conditions refuse."""
 
 
+class ArgumentError(SymofrosError, TypeError, ValueError):
+    """An argument of a function, or an option, is of another type than its signature states."""
+
+
 class UnknownNameError(SymofrosError, KeyError):
     """A name that is not in the model: a frame, a parameter, a function."""
 
@@ -133,8 +137,8 @@ class InconsistentModelWarning(UserWarning):
 
 def near_name(name: str, known: Iterable[str]) -> str:
     """The question whether the nearest known name, capitals apart, was meant; "" where none is near."""
-    candidates = {other.lower(): other for other in islice(known, _CANDIDATES)}
-    near = difflib.get_close_matches(name.lower(), candidates, n=1, cutoff=0.5)
+    candidates = {str(other).lower(): other for other in islice(known, _CANDIDATES)}
+    near = difflib.get_close_matches(str(name).lower(), candidates, n=1, cutoff=0.5)
     return f"did you mean '{candidates[near[0]]}'?" if near else ""
 
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import difflib
 import os
 from collections.abc import Collection
 from dataclasses import replace
 from pathlib import Path
 
+from symofros.base.arguments import checked
 from symofros.base.atomic import write_atomically
 from symofros.description.reading import YAML_SUFFIXES, Reading, in_order
 from symofros.description.remarks import note
@@ -22,6 +24,7 @@ _PATHS = "check the path; a relative one starts at the current folder"
 _READABLE = (*YAML_SUFFIXES, ".urdf", ".xml")
 
 
+@checked
 def load(
     path: str | os.PathLike[str],
     *,
@@ -96,6 +99,7 @@ def _read(file: Path, floating_base: bool, snap_tol: float, mimic: bool) -> Read
     return read_yaml(file)
 
 
+@checked
 def save(system: System, path: str | os.PathLike[str]) -> None:
     """Write a system as native YAML; the file is there whole or not at all.
 
@@ -131,9 +135,15 @@ def _refuse_suffix(file: Path, known: tuple[str, ...], verb: str) -> None:
                 f"'{file}' can't be {verb}: unknown format",
                 file.suffix or "no suffix",
                 f"the suffix is one of {', '.join(known)}",
-                _CONVERSIONS.get(file.suffix.lower()) or did_you_mean(file.suffix.lower(), known),
+                _CONVERSIONS.get(file.suffix.lower()) or _meant(file.suffix.lower(), known),
             )
         )
+
+
+def _meant(suffix: str, known: tuple[str, ...]) -> str:
+    """The suffix that one letter or two away stands for; a text of another kind is no misspelt model."""
+    near = difflib.get_close_matches(suffix, known, n=1, cutoff=0.75)
+    return f"did you mean '{near[0]}'?" if near else "give a model: native YAML, URDF or MJCF"
 
 
 def _missing(file: Path) -> Problem:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import sys
 from collections.abc import Mapping
 from functools import cache
@@ -11,6 +12,8 @@ from typing import Any
 
 import typer
 from typer.core import TyperGroup
+
+import symofros as sf
 
 BAD_INPUT = 2
 
@@ -23,11 +26,8 @@ def imported(name: str) -> ModuleType:
         missing = (error.name or "").partition(".")[0]
         if missing in ("", "validation", "symofros"):
             raise
-        print(
-            f"the harness needs the package '{missing}', which is not installed\n"
-            "  remedy: pip install 'symofros[validation]'",
-            file=sys.stderr,
-        )
+        stated = f"no module {missing}", "the harness is an extra", "pip install 'symofros[validation]'"
+        print(sf.Problem("the harness: a package is not installed", *stated), file=sys.stderr)
         raise SystemExit(BAD_INPUT) from None
 
 
@@ -56,6 +56,16 @@ class Commands(TyperGroup):
     def list_commands(self, ctx: Any) -> list[str]:
         """Names of all commands."""
         return [*super().list_commands(ctx), *studies()]
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """The command that arguments begin with; another name is refused with the nearest."""
+        if self.get_command(ctx, args[0]) is None and not ctx.resilient_parsing:
+            names = self.list_commands(ctx)
+            near = difflib.get_close_matches(args[0], names, n=1)
+            remedy = f"did you mean '{near[0]}'?" if near else "check MODEL cross-checks a model"
+            print(sf.Problem(f"no command '{args[0]}'", args[0], ", ".join(names), remedy), file=sys.stderr)
+            raise SystemExit(BAD_INPUT)
+        return super().resolve_command(ctx, args)
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         """A command by its name."""

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from symofros.errors import Problem, ShapeError
 
 
-def real_array(values: ArrayLike, dtype: npt.DTypeLike = np.float64) -> npt.NDArray[Any] | None:
+def real_array(values: ArrayLike | None, dtype: npt.DTypeLike = np.float64) -> npt.NDArray[Any] | None:
     """The values as an array of real numbers; None where some are not: texts, dates, complex numbers, None.
 
     NumPy would read texts and dates, make NaN of None, and drop imaginary parts.
@@ -26,7 +26,7 @@ def real_array(values: ArrayLike, dtype: npt.DTypeLike = np.float64) -> npt.NDAr
         if array.dtype.kind == "O" and not all(isinstance(value, numbers.Real) for value in array.flat):
             return None
         return np.asarray(array, dtype=dtype) if array.dtype.kind in "fiubO" else None
-    except (TypeError, ValueError):  # Rows of unequal length, for instance.
+    except (TypeError, ValueError, OverflowError):  # Rows of unequal length, for instance.
         return None
 
 

@@ -13,8 +13,14 @@ def write_atomically(path: Path, content: str | bytes) -> None:
     Args:
         path: Path of the file, in a folder that exists.
         content: The whole of it; text is written as UTF-8.
+
+    Raises:
+        OSError: The folder is not there, or can't be written to; with the name of the file.
     """
-    descriptor, temporary = tempfile.mkstemp(prefix=f".{path.name}-", dir=path.parent)
+    try:
+        descriptor, temporary = tempfile.mkstemp(prefix=f".{path.name}-", dir=path.parent)
+    except OSError as error:
+        raise type(error)(error.errno, error.strerror, str(path)) from None
     try:
         with os.fdopen(descriptor, "wb") as stream:
             stream.write(content.encode("utf-8") if isinstance(content, str) else content)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from symofros.base.arguments import check_fields
+
 
 @dataclass(frozen=True)
 class Options:
@@ -46,3 +48,10 @@ class Options:
     packs: bool = True
     tune: bool = False
     processors: Literal["native", "any"] = "native"
+
+    def __post_init__(self) -> None:
+        """Lists become tuples, which the cache key needs; what is of another type is refused."""
+        for name in ("functions", "frames", "flags"):
+            if isinstance(getattr(self, name), list):
+                object.__setattr__(self, name, tuple(getattr(self, name)))
+        check_fields(self)

@@ -88,4 +88,4 @@ def _finite(value: float) -> float | None:
 
 
 def _number(value: float | None) -> str:
-    return "" if value is None else f"{value:.6g}"
+    return "" if value is None else f"{value + 0.0:.6g}"

@@ -24,12 +24,14 @@ from symofros.commands.shared import (
     numbers,
     out,
     refuse,
+    shown,
     stated_state,
 )
 from symofros.compiler import compile_system
 from symofros.description.system import System
 from symofros.diagrams.files import command as diagrams
 from symofros.diagrams.files.kind import is_diagram
+from symofros.simulation.progress import pace_of
 from symofros.simulation.stepping.methods import METHODS
 
 
@@ -191,12 +193,11 @@ def _tell(run: sf.Trajectory, files: list[str], as_json: bool) -> None:
     out.print(str(run.outcome), markup=False, highlight=False, soft_wrap=True)
     table = Table("name", "first", "last", title=f"{len(run)} states, t = {run.t[0]:g} to {run.t[-1]:g} s")
     for name, column in run.columns().items():
-        table.add_row(name, f"{column[0]:.6g}", f"{column[-1]:.6g}")
+        table.add_row(name, shown(column[0]), shown(column[-1]))
     out.print(table)
-    speed = (run.t[-1] - run.t[0]) / max(cost.seconds, 1e-9)
     out.print(
         f"{cost.steps} steps, {cost.rejected} rejected, {cost.evaluations} evaluations; {cost.seconds:.3g} s,"
-        f" {speed:.3g} times real time; energy changed by {drift:.3g} J",
+        f" {pace_of(run.t[-1] - run.t[0], cost.seconds)}; energy changed by {drift + 0.0:.3g} J",
         markup=False,
     )
     for file in files:

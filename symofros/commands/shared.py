@@ -39,6 +39,9 @@ def load(path: Path, floating_base: bool) -> System:
 
 def refuse(error: Exception) -> typer.Exit:
     """Say what is wrong with the input."""
+    if isinstance(error, OSError) and error.filename is not None:
+        what, rule = f"'{error.filename}' can't be used", "files and folders are there, and open to whoever runs this"
+        error = sf.SymofrosError(sf.Problem(what, error.strerror or str(error), rule, "check the path, and its rights"))
     err.print(str(error), markup=False, highlight=False, soft_wrap=True)
     return typer.Exit(BAD_INPUT)
 
@@ -49,8 +52,8 @@ def assignments(given: list[str], what: str) -> dict[str, str]:
     for item in given:
         name, sign, text = item.partition("=")
         if not sign or not name or not text:
-            err.print(f"{what} '{item}'\n  rule:   NAME=VALUE\n  remedy: for example q1=0.5", markup=False)
-            raise typer.Exit(BAD_INPUT)
+            fault = sf.Problem(f"{what} '{item}'", "no name and value", f"{what} NAME=VALUE", "for example q1=0.5")
+            raise refuse(sf.SymofrosError(fault))
         assigned[name.strip()] = text.strip()
     return assigned
 
@@ -60,8 +63,8 @@ def number(name: str, text: str) -> float:
     try:
         return float(text)
     except ValueError:
-        err.print(f"'{name}': '{text}' is not a number", markup=False)
-        raise typer.Exit(BAD_INPUT) from None
+        fault = sf.Problem(f"'{name}' is given no number", f"'{text}'", "its value is a number", f"write {name}=0.5")
+        raise refuse(sf.SymofrosError(fault)) from None
 
 
 def numbers(name: str, text: str) -> float | list[float]:
@@ -90,9 +93,15 @@ def stated_state(model: sf.Model, given: Mapping[str, str]) -> tuple[sf.Model, A
         else:
             known = (*model.names.q, *(f"d{speed}" for speed in model.names.v), *model.names.par)
             missing = f"--set: no coordinate, speed or run-time parameter '{name}'"
-            err.print(f"{missing}\n  remedy: {did_you_mean(name, known)}", markup=False)
-            raise typer.Exit(BAD_INPUT)
+            listed = ", ".join(known[:12]) + (", …" if len(known) > 12 else "")
+            rule = "--set gives first coordinates, speeds (dNAME) and run-time parameters"
+            raise refuse(sf.UnknownNameError(sf.Problem(missing, listed, rule, did_you_mean(name, known))))
     return model, q, v
+
+
+def shown(value: float) -> str:
+    """A number in a table: six digits, and no sign before zero."""
+    return f"{value + 0.0:.6g}"
 
 
 def names_of(text: str | None) -> list[str] | None:

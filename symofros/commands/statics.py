@@ -19,6 +19,7 @@ from symofros.commands.shared import (
     number,
     out,
     refuse,
+    shown,
     stated_state,
 )
 from symofros.compiler import compile_system
@@ -76,7 +77,7 @@ def _tell(result: dict[str, Any], rest: Equilibrium) -> None:
     kinds = {"coordinates": "coordinate", "efforts": "effort held by", "inputs": "input", "multipliers": "multiplier"}
     for key, kind in kinds.items():
         for name, value in (result[key] or {}).items():
-            table.add_row(kind, name, f"{value:.6g}")
+            table.add_row(kind, name, shown(value))
     out.print(table)
     if rest.inputs is None:
         out.print("no inputs hold this state by themselves", markup=False)

@@ -10,13 +10,11 @@ import typer
 
 import symofros as sf
 from symofros.commands.shared import (
-    BAD_INPUT,
     AsJson,
     FilePath,
     Floating,
     ModelPath,
     assignments,
-    err,
     load,
     names_of,
     number,
@@ -79,9 +77,9 @@ def export_command(
     as_json: AsJson = False,
 ) -> None:
     """Write a model for C, Matlab, Octave, Simulink, FMI, WebAssembly, or as URDF or MJCF; a diagram as a C program."""
-    described = sf.load_diagram(model) if is_diagram(model) else load(model, floating_base)
     start = {key: number(key, text) for key, text in assignments(given, "--set").items()}
     try:
+        described = sf.load_diagram(model) if is_diagram(model) else load(model, floating_base)
         done = sf.export(
             described,
             cast(Any, target),
@@ -126,8 +124,8 @@ def edit(
     except ModuleNotFoundError as error:
         if error.name not in ("starlette", "uvicorn", "anyio"):
             raise
-        err.print(f"the editor needs the package '{error.name}'\n  remedy: pip install 'symofros\\[gui]'")
-        raise typer.Exit(BAD_INPUT) from None
+        missing = f"no module {error.name}", "the editor is an extra", "pip install 'symofros[gui]'"
+        raise refuse(sf.SymofrosError(sf.Problem("edit: a package is not installed", *missing))) from None
     try:
         serve(model, port, token, browser, lambda url: out.print(url, markup=False, highlight=False, soft_wrap=True))
     except (sf.SymofrosError, OSError) as error:

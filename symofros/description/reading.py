@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from symofros.description.system import System
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import ArgumentError, DescriptionError, Problem
 
 # Of native descriptions; stated here, where no parser of YAML is loaded for it.
 YAML_SUFFIXES = (".yaml", ".yml")
@@ -91,3 +91,14 @@ def refuse_size(path: Path, data: bytes, limit: int) -> None:
                 "check that it is the file you meant",
             )
         )
+
+
+def check_snap_tol(snap_tol: float) -> None:
+    """Refuse a tolerance that would change what a file states.
+
+    Raises:
+        ArgumentError: It is not a small number.
+    """
+    if not 0.0 <= snap_tol < 0.1:
+        rule = "0 <= snap_tol < 0.1, so that it absorbs rounding only"
+        raise ArgumentError(Problem("snap_tol is not a small number", str(snap_tol), rule, "leave it out"))

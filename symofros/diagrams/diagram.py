@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from symofros.base.arguments import checked
 from symofros.description.system import System
 from symofros.diagrams.block import Block, ModelFile, ModelSetup
 from symofros.diagrams.program.variants import with_functions
@@ -65,6 +66,7 @@ class Diagram:
         """The "file:line" of an input, or else of its block; "" for what was stated in Python."""
         return self.origin.get(("input", block, port)) or self.origin.get(("block", block), "")
 
+    @checked
     def add_model(
         self,
         name: str,
@@ -88,6 +90,7 @@ class Diagram:
         stated = system if functions is None else with_functions(system, functions)
         self.models[name] = ModelSetup(stated, dict(start or {}), dict(parameters or {}), file)
 
+    @checked
     def add(self, block: Block, **inputs: str) -> Block:
         """Add a block, its inputs fed by `port="block.port"`.
 
@@ -100,6 +103,7 @@ class Diagram:
             self.connect(source, f"{block.name}.{port}")
         return block
 
+    @checked
     def connect(self, source: str, target: str) -> None:
         """Join an output, "block.port", to an input, "block.port".
 
@@ -127,6 +131,7 @@ class Diagram:
             )
         self.wires[block, port] = source
 
+    @checked
     def include(self, name: str, part: Diagram, models: Mapping[str, str] | None = None, **inputs: str) -> None:
         """Put a diagram into this one: its blocks become "name/block", its outlets "name.outlet".
 
@@ -168,6 +173,7 @@ class Diagram:
             inside = f"{name}.{first}" if kind == "outlet" else f"{name}{INSIDE}{first}"
             self.origin[kind, inside, *rest] = line
 
+    @checked
     def with_model(self, name: str, setup: ModelSetup) -> Diagram:
         """The same diagram about another model: rigid in place of flexible, say."""
         if name not in self.models:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from symofros.base.arguments import checked
 from symofros.diagrams.run.plots import draw, plots_of, show_windows, window_figure
 from symofros.diagrams.run.recording import Recording
 from symofros.diagrams.run.saving import save_run
@@ -14,6 +15,7 @@ from symofros.diagrams.settings import Plot
 class DiagramRun(Recording):
     """A recording that can be plotted and saved."""
 
+    @checked
     def save(self, path: str | Path, *signals: str) -> list[Path]:
         """Write signals, "block.port" or "block.port[i]"; all by default: .npz (arrays), .csv or .parquet (columns).
 

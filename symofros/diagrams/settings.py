@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import Any
 
+from symofros.base.arguments import check_fields
+
 
 @dataclass(frozen=True)
 class Plot:
@@ -50,6 +52,10 @@ class RunSettings:
     realtime: float | None = None
     threads: int | None = None
     plots: tuple[Plot, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Refuse what is of another type."""
+        check_fields(self)
 
     def keywords(self) -> dict[str, Any]:
         """Those that are stated, as a run takes them; without t_end."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import cached_property
@@ -9,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.arguments import checked
 from symofros.base.options import Options
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.observer import Observer
@@ -40,6 +42,7 @@ class Simulation:
         DescriptionError: With what is wrong with the diagram.
     """
 
+    @checked
     def __init__(self, diagram: Diagram, options: Options | None = None) -> None:
         self.diagram = diagram
         self.options = options or Options()
@@ -50,6 +53,7 @@ class Simulation:
         """The diagram as C functions."""
         return compile_diagram(self.resolved, self.options)
 
+    @checked
     def run(self, t_end: float | None = None, **settings: Any) -> DiagramRun:
         """Run it in C.
 
@@ -64,6 +68,7 @@ class Simulation:
         stated = self.diagram.simulation
         return run_compiled(self.compiled, _end(self.diagram, t_end), **{**stated.keywords(), **settings})
 
+    @checked
     def interpret(
         self,
         t_end: float,
@@ -98,7 +103,10 @@ class Simulation:
             SymofrosError: The method is implicit or adaptive, or the diagram has crossings.
         """
         resolved = self.resolved
-        if METHODS[method].kind != "explicit" or METHODS[method].adaptive:
+        if not (math.isfinite(dt) and dt > 0.0):
+            what, rule = "diagram: the step is not positive", "dt > 0, and finite"
+            raise SymofrosError(Problem(what, f"dt = {dt}", rule, "1e-3 s suits most arms"))
+        if method not in METHODS or METHODS[method].kind != "explicit" or METHODS[method].adaptive:
             raise SymofrosError(
                 Problem(
                     f"diagram: method '{method}' interpreted",

@@ -10,6 +10,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
+from symofros.base.arguments import checked
 from symofros.base.functions import FRAME_FUNCTIONS, exported
 from symofros.base.options import Options
 from symofros.compiler import GENERATOR, Compilation, compile_system, plan
@@ -39,7 +40,7 @@ from symofros.runtime.beams import BEAM_LIMIT
 from symofros.runtime.calls.kernel import Array, LaneOptions
 from symofros.runtime.model import Model
 from symofros.simulation.analysis.assembly import assemble
-from symofros.simulation.stepping.methods import METHODS
+from symofros.simulation.stepping.methods import METHODS, method_meant
 
 Target = Literal["c", "cuda", "mex", "sfunction", "fmu2", "fmu3", "wasm", "urdf", "mjcf"]
 TARGETS: tuple[Target, ...] = get_args(Target)
@@ -57,6 +58,7 @@ _DIFFERENTIATED = ("fmu2", "fmu3")
 _DESCRIBED: dict[str, Callable[[System, str | None, Path, str], Exported]] = {"urdf": write_urdf, "mjcf": write_mjcf}
 
 
+@checked
 def export(
     model: System | Diagram | str | os.PathLike[str],
     target: Target,
@@ -154,7 +156,7 @@ def _stepping(method: str, dt: float, rtol: float, atol: float) -> Stepping:
     known = [item.name for item in METHODS.values() if not item.family.multistep]
     if method not in known:
         raise UnknownNameError(
-            Problem(f"export: no method '{method}'", method, ", ".join(known), did_you_mean(method, known))
+            Problem(f"export: no method '{method}'", f"'{method}'", ", ".join(known), method_meant(method, known))
         )
     for label, value in (("dt", dt), ("rtol", rtol), ("atol", atol)):
         if not (np.isfinite(value) and value > 0):

@@ -65,7 +65,7 @@ class AdjointFunctions(Functions):
             ShapeError: An input is missing or does not fit, or there is no cotangent.
         """
         known = tuple(row.transposes for row in FUNCTIONS.values() if row.transposes)
-        if name not in known:
+        if not isinstance(name, str) or name not in known:
             what = "differentiable function"
             raise self._unknown(what, str(name)[:80], known, "vector-Jacobian products are of smooth functions")
         weights = cotangents(FUNCTIONS[name])
@@ -79,7 +79,7 @@ class AdjointFunctions(Functions):
                 )
             )
         given = dict(arrays)
-        signature = self._kernel(f"{name}_vjp", self._frame(frame) if frame else "", "frames have names").signature
+        signature = self._kernel(f"{name}_vjp", self._frame_or_none(frame), "frames have names").signature
         sizes = dict(signature.inputs)
         for group, output in weights.items():
             given[group] = self._flat(group, arrays.get(group), output, sizes[group])

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any, Self
 
 from symofros.base.html import html_table
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import ArgumentError, Problem, SymofrosError
 from symofros.runtime.calls.kernel import Array, Precision
 from symofros.runtime.cuda.cuda_model import CudaModel
 from symofros.runtime.parameter_functions import ParameterFunctions
@@ -19,10 +19,10 @@ class CopyFunctions(ParameterFunctions):
         """The same compiled code, large batches of which so many threads share; results do not change by a bit.
 
         Raises:
-            ValueError: Not a whole number above 0.
+            ArgumentError: Not a whole number above 0.
         """
         if not isinstance(threads, int) or threads < 1:
-            raise ValueError(
+            raise ArgumentError(
                 Problem(
                     f"model '{self.record.name}': not a number of threads",
                     repr(threads)[:80],
@@ -44,10 +44,10 @@ class CopyFunctions(ParameterFunctions):
         `sf.simulate_batch` takes accelerations in the precision of the model, of states in double precision.
 
         Raises:
-            ValueError: Neither of them.
+            ArgumentError: Neither of them.
         """
-        if precision not in ("double", "single"):
-            raise ValueError(
+        if not isinstance(precision, str) or precision not in ("double", "single"):
+            raise ArgumentError(
                 Problem(
                     f"model '{self.record.name}': no such precision",
                     repr(precision)[:80],

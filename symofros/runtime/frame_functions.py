@@ -21,7 +21,7 @@ class FrameFunctions(Functions):
         self, frame: str, q: ArrayLike, v: ArrayLike, *, u: ArrayLike | None = None, par: ArrayLike | None = None
     ) -> Array:
         """Velocity of the frame's origin and angular velocity (..., 6)."""
-        return self._one("frame_velocity", {"q": q, "v": v, "u": u}, par, frame)
+        return self._call("frame_velocity", self._frame(frame), {"q": q, "v": v, "u": u}, par)[0]
 
     def frame_acceleration(
         self,
@@ -34,13 +34,13 @@ class FrameFunctions(Functions):
         par: ArrayLike | None = None,
     ) -> Array:
         """The rate of `frame_velocity` when v' = a (..., 6)."""
-        return self._one("frame_acceleration", {"q": q, "v": v, "a": a, "u": u}, par, frame)
+        return self._call("frame_acceleration", self._frame(frame), {"q": q, "v": v, "a": a, "u": u}, par)[0]
 
     def frame_jacobian(
         self, frame: str, q: ArrayLike, *, u: ArrayLike | None = None, par: ArrayLike | None = None
     ) -> Array:
         """Jacobian J (..., 6, nv) with frame_velocity = J v."""
-        return self._one("frame_jacobian", {"q": q, "u": u}, par, frame)
+        return self._call("frame_jacobian", self._frame(frame), {"q": q, "u": u}, par)[0]
 
     def frame_derivatives(
         self,
@@ -60,4 +60,4 @@ class FrameFunctions(Functions):
         self, frame: str, q: ArrayLike, v: ArrayLike, *, u: ArrayLike | None = None, par: ArrayLike | None = None
     ) -> Array:
         """Rate dJ/dt of the Jacobian (..., 6, nv), so that frame_acceleration = J a + dJ/dt v."""
-        return self._one("frame_jacobian_rate", {"q": q, "v": v, "u": u}, par, frame)
+        return self._call("frame_jacobian_rate", self._frame(frame), {"q": q, "v": v, "u": u}, par)[0]

@@ -188,7 +188,7 @@ class Functions:
     def _kernel(self, name: str, frame: str, rule: str) -> Kernel:
         """A function whose name a user gave, of a frame that exists."""
         known = FRAME_FUNCTIONS if frame else MODEL_FUNCTIONS
-        if name not in known:
+        if not isinstance(name, str) or name not in known:
             raise self._unknown("function", str(name)[:80], known, rule)
         return self._kernels.get((name, frame)) or self._make(name, frame)
 
@@ -217,7 +217,7 @@ class Functions:
             UnknownNameError: No such function, frame, input or output.
             ShapeError: An input is missing, or an array does not fit.
         """
-        public = self._frame(frame) if frame else ""
+        public = self._frame_or_none(frame)
         kernel = self._kernel(name, public, "functions of frames are evaluated with their frame")
         for group in inputs:
             if group not in INPUTS:
@@ -248,24 +248,29 @@ class Functions:
     # How a call is made.
 
     def _frame(self, frame: str) -> str:
-        if frame in self.record.frame_names:
-            return frame
-        if frame in self.record.frame_aliases:
-            return self.record.frame_aliases[frame]
+        if isinstance(frame, str):
+            if frame in self.record.frame_names:
+                return frame
+            if frame in self.record.frame_aliases:
+                return self.record.frame_aliases[frame]
         raise self._unknown("frame", frame, self.record.frame_names, "frames are listed in model.names.frames")
+
+    def _frame_or_none(self, frame: str) -> str:
+        """A frame by its name; "" stands for the whole model."""
+        return "" if isinstance(frame, str) and not frame else self._frame(frame)
 
     def _unknown(self, kind: str, name: str, known: tuple[str, ...], rule: str) -> UnknownNameError:
         listed = f"{len(known)} {kind}s" + (": " + ", ".join(known[:12]) if known else "")
-        what = f"model '{self.record.name}': no {kind} '{name}'"
+        what = f"model '{self.record.name}': no {kind} '{str(name)[:80]}'"
         return UnknownNameError(Problem(what, listed, rule, did_you_mean(name, known) or "use another model"))
 
-    def _one(self, name: str, given: Mapping[str, ArrayLike | None], par: ArrayLike | None, frame: str = "") -> Numbers:
-        if par is None and not frame:  # The shortest way: each call on it costs a twentieth of a small function's.
+    def _one(self, name: str, given: Mapping[str, ArrayLike | None], par: ArrayLike | None) -> Numbers:
+        if par is None:  # The shortest way: each call on it costs a twentieth of a small function's.
             single = self._single_calls.prepared.get(name)
             outputs = None if single is None else single(given)
             if outputs is not None:
                 return outputs[0]
-        return self._call(name, self._frame(frame) if frame else "", given, par)[0]
+        return self._call(name, "", given, par)[0]
 
     def _call(
         self, name: str, frame: str, given: Mapping[str, ArrayLike | None], par: ArrayLike | None
@@ -289,7 +294,11 @@ class Functions:
     ) -> list[Numbers]:
         kernel = self._kernels.get((name, frame)) or self._make(name, frame)
         dtype = BatchOptions(precision=self._precision).dtype
-        arrays = [self._array(group, self._given(given[group]), size, dtype) for group, size in kernel.signature.inputs]
+        u = given.get("u")
+        arrays = [
+            self._array(group, self.record.u_default if group == "u" and u is None else given[group], size, dtype)
+            for group, size in kernel.signature.inputs
+        ]
         shapes = [array.shape[:-1] for array in arrays]
         par_array = None
         if par is not None:
@@ -302,10 +311,6 @@ class Functions:
         outputs = kernel.run(n, pre, inputs, BatchOptions(self._threads, by_columns(inputs), self._precision))
         shaped = zip(outputs, kernel.signature.outputs, strict=True)
         return [output.reshape(batch + shape) for output, (_, shape) in shaped]
-
-    def _given(self, values: ArrayLike | None) -> ArrayLike:
-        """What was given; the default inputs where nothing was."""
-        return self.record.u_default if values is None else values
 
     def _pre(self, kernel: Kernel, key: Key, par: Array | None, batch: tuple[int, ...]) -> Array:
         if par is not None:
@@ -346,10 +351,8 @@ class Functions:
         self._kernels.update(self._build(together).kernels)
         return self._kernels[name, frame]
 
-    def _array(self, group: str, values: ArrayLike, size: int, dtype: npt.DTypeLike = np.float64) -> Numbers:
-        array = None if isinstance(values, Mapping) else real_array(values, dtype)
-        if isinstance(values, Mapping):
-            array = np.asarray(self.by_name(group, values), dtype=dtype)
+    def _array(self, group: str, values: ArrayLike | None, size: int, dtype: npt.DTypeLike = np.float64) -> Numbers:
+        array = real_array(self.by_name(group, values) if isinstance(values, Mapping) else values, dtype)
         if array is None:
             raise ShapeError(
                 Problem(
@@ -367,7 +370,7 @@ class Functions:
                     f"model '{self.record.name}': {group} has the wrong shape",
                     str(array.shape),
                     f"{group} has shape (..., {size})",
-                    self._hint(group),
+                    self._hint(group) or f"give {size} numbers, or rows of {size} for a batch",
                 )
             )
         return array
@@ -387,6 +390,7 @@ class Functions:
 
     def _hint(self, group: str) -> str:
         names: dict[str, Any] = {"q": self.names.q, "v": self.names.v, "a": self.names.v, "u": self.names.u}
+        names |= {"dq": self.names.v, "par": self.names.par}
         shown = names.get(group, ())
         listed = ", ".join(shown[:8]) + (", …" if len(shown) > 8 else "")
         return f"its last dimension runs over {listed}" if shown else ""

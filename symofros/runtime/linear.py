@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from symofros.base.arguments import check_argument
 from symofros.base.rotations import skew
 from symofros.errors import Problem, UnknownNameError, did_you_mean
 from symofros.runtime.calls.kernel import Array
@@ -56,6 +57,7 @@ def linearize(
         outputs: Outputs, as of `Model.linearize`.
         frame_derivatives: The derivatives of a frame's motion by its name, at the state and its accelerations.
     """
+    check_argument("linearize: outputs", outputs, Sequence[Output])
     nv, nu = slopes[1].shape[-1], slopes[2].shape[-1]
     batch = slopes[0].shape[:-2]
     both = np.concatenate(slopes, axis=-1)
@@ -70,7 +72,7 @@ def linearize(
     for output in outputs:
         if isinstance(output, tuple) and len(output) == 2 and output[0] in _OF_FRAMES:
             rows.append(_frame_rows(output[0], frame_derivatives(output[1]), known["a"]))
-        elif output in _PLAIN:
+        elif isinstance(output, str) and output in _PLAIN:
             rows.append(known[str(output)])
         else:
             raise _unknown(output)
@@ -85,7 +87,7 @@ def _unknown(output: Output) -> UnknownNameError:
             "linearize: no such output",
             repr(output)[:80],
             "an output is q, v, a, lam, or (frame_pose, frame_velocity or frame_acceleration, frame)",
-            did_you_mean(str(output if isinstance(output, str) else output[0]), known) or "name one of these",
+            did_you_mean(output if isinstance(output, str) else output[0], known) or "name one of these",
         )
     )
 

@@ -9,6 +9,7 @@ from typing import Literal, overload
 import numpy as np
 import numpy.typing as npt
 
+from symofros.base.arguments import check_argument
 from symofros.base.arrays import numeric
 from symofros.base.functions import MODEL_FUNCTIONS, generated_with
 from symofros.runtime import linear, manifold
@@ -52,6 +53,7 @@ class Model(AdjointFunctions, ConstraintFunctions, CopyFunctions, FrameFunctions
 
     def random_state(self, rng: np.random.Generator) -> tuple[Array, Array]:
         """A random q (nq) on the manifold, within the limits, and v (nv)."""
+        check_argument("random_state: rng", rng, np.random.Generator)
         return manifold.random_state(self.record, rng)
 
     def integrate(self, q: ArrayLike, dq: ArrayLike) -> Array:
@@ -78,7 +80,7 @@ class Model(AdjointFunctions, ConstraintFunctions, CopyFunctions, FrameFunctions
             CompileError: The C compiler failed.
         """
         for name in names:
-            if name not in MODEL_FUNCTIONS:
+            if not isinstance(name, str) or name not in MODEL_FUNCTIONS:
                 rule = "functions of frames are made when they are called"
                 raise self._unknown("function", str(name)[:80], MODEL_FUNCTIONS, rule)
         missing = [name for name in names if (name, "") not in self._kernels and self._build is not None]
@@ -124,7 +126,7 @@ class Model(AdjointFunctions, ConstraintFunctions, CopyFunctions, FrameFunctions
                 even steps); or n is below 1.
         """
         values = self.parameter_values if par is None else self.checked_parameters(par)
-        kernel = self._kernel(name, self._frame(frame) if frame else "", "frame functions are bound with their frame")
+        kernel = self._kernel(name, self._frame_or_none(frame), "frame functions are bound with their frame")
         defaults = {"u": np.array(self.record.u_default)}
         if n is None:
             return bind(kernel, values, arrays, defaults)
@@ -200,6 +202,8 @@ class Model(AdjointFunctions, ConstraintFunctions, CopyFunctions, FrameFunctions
                 [1/s]; none: accelerations only, so that errors of phi and G v drift.
             multipliers: Whether to return lam (..., nc) as well: G^T lam are the constraint forces.
         """
+        if multipliers is not False:
+            check_argument("forward_dynamics: multipliers", multipliers, bool)
         if multipliers:
             return self.constrained_dynamics(q, v, u, par=par, t=t, gains=gains)[:2]
         return self._one("forward_dynamics", {"q": q, "v": v, "u": u, "t": t, "gains": self._gains(gains)}, par)
@@ -361,7 +365,8 @@ class Model(AdjointFunctions, ConstraintFunctions, CopyFunctions, FrameFunctions
             return self.frame_derivatives(frame, q, v, a, u=u, par=par)
 
         speeds = np.asarray(self.by_name("v", v), dtype=np.float64)
-        matrices = linear.linearize(self.record.segments, slopes, speeds, outputs or (), frame_derivatives)
+        stated = () if outputs is None else outputs
+        matrices = linear.linearize(self.record.segments, slopes, speeds, stated, frame_derivatives)
         return matrices[:2] if outputs is None else matrices
 
     def residual_derivatives(

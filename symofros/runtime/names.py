@@ -87,7 +87,7 @@ def stacked(record: ModelRecord, par: Array, argument: str, values: Mapping[str,
     given: set[str] = set()
     for stated, value in values.items():
         name = stated
-        if name not in names and kind == "speeds" and name.removeprefix("d") in names:
+        if name not in names and kind == "speeds" and str(name).removeprefix("d") in names:
             name = name.removeprefix("d")
         if name not in names:
             listed = ", ".join(names[:12]) + (", …" if len(names) > 12 else "") or f"no {kind}"

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
-from symofros.errors import Problem
+from symofros.base.arguments import check_fields
 
 _SIGNS = {"both": 0, "rising": 1, "falling": -1}
 
@@ -29,10 +29,7 @@ class Event:
 
     def __post_init__(self) -> None:
         """The direction must be known."""
-        if self.direction not in _SIGNS:
-            raise ValueError(
-                Problem("event: unknown direction", repr(self.direction), ", ".join(_SIGNS), "use one of them")
-            )
+        check_fields(self)
 
     @property
     def sign(self) -> int:

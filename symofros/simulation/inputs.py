@@ -8,6 +8,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from symofros.base.arguments import check_fields
 from symofros.base.arrays import numeric
 from symofros.errors import Problem, ShapeError, UnknownNameError, did_you_mean
 from symofros.runtime.calls.kernel import Array
@@ -31,6 +32,7 @@ class Signal:
 
     def __post_init__(self) -> None:
         """Samples must be numbers in the order of time."""
+        check_fields(self)
         t, values = numeric("signal: t", self.t), numeric("signal: values", self.values)
         object.__setattr__(self, "t", np.ascontiguousarray(t))
         object.__setattr__(self, "values", np.ascontiguousarray(values))
@@ -45,8 +47,6 @@ class Signal:
                     "sort the samples, drop repeated times",
                 )
             )
-        if self.kind not in ("linear", "hold"):
-            raise ValueError(Problem("signal: unknown kind", repr(self.kind), "'linear' or 'hold'", "use one"))
 
 
 Callback = Callable[[float, Array, Array], Any]

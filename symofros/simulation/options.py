@@ -9,6 +9,7 @@ from typing import Any, ClassVar, Literal, Protocol, TypeVar
 
 from numpy.typing import ArrayLike
 
+from symofros.base.arguments import check_fields
 from symofros.errors import Problem, UnknownNameError, did_you_mean
 from symofros.runtime.beams import BEAM_LIMIT
 
@@ -58,6 +59,10 @@ class SimulationOptions:
     gains: ArrayLike | None = None
     beam_limit: float = BEAM_LIMIT
     realtime: float | bool = False
+
+    def __post_init__(self) -> None:
+        """Refuse what is of another type."""
+        check_fields(self)
 
     def changed(self, changes: Mapping[str, Any]) -> SimulationOptions:
         """These options with some fields replaced.

@@ -22,3 +22,9 @@ def bar(wanted: bool | Callable[[float], None], t0: float, t_end: float) -> Iter
         task = progress.add_task("", total=t_end)
         progress.update(task, completed=t0)
         yield lambda t: progress.update(task, completed=t)
+
+
+def pace_of(seconds: float, cost: float) -> str:
+    """How many times faster than the clock so many seconds of motion were computed in that time [s]."""
+    times = seconds / max(cost, 1e-9)
+    return f"{times:.0f} times real time" if times >= 100.0 else f"{times:.3g} times real time"

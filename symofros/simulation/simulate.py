@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.arguments import checked
 from symofros.runtime.calls.binding import native_library
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.events import named_events
@@ -21,9 +22,9 @@ from symofros.simulation.settings import Settings, check_fit, check_start, refus
 from symofros.simulation.stepping.loops import run_own, run_sundials
 from symofros.simulation.stepping.methods import Method
 from symofros.simulation.stepping.stepper import Stepper
-from symofros.simulation.uncompiled import refuse_uncompiled
 
 
+@checked
 def simulate(
     model: Model,
     q0: ArrayLike | None = None,
@@ -66,7 +67,6 @@ def simulate(
         AssemblyError: The first state does not meet the constraints.
         SymofrosError: The options contradict each other.
     """
-    refuse_uncompiled(model)
     settings = Settings.of(model, (options or SimulationOptions()).changed(changes), t_end)
     model = model.with_precision("double")
     values = model.parameter_values

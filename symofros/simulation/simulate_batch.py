@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from symofros.base.arguments import checked
 from symofros.base.arrays import real_array
 from symofros.errors import Problem, ShapeError, SymofrosError
 from symofros.runtime.calls.kernel import Array
@@ -24,9 +25,9 @@ from symofros.simulation.settings import CLOSED, Settings, refuse_lengths
 from symofros.simulation.stepping.batch_stepper import BatchResults, BatchStepper, InitialStates, run_batch_steppers
 from symofros.simulation.stepping.methods import METHODS
 from symofros.simulation.stepping.status import Status
-from symofros.simulation.uncompiled import refuse_uncompiled
 
 
+@checked
 def simulate_batch(
     model: Model,
     q0: ArrayLike | None = None,
@@ -70,7 +71,6 @@ def simulate_batch(
         UnknownNameError: The name of an option, an input or in a formula is unknown.
         SymofrosError: The options contradict each other, are those of single runs, or the method is implicit.
     """
-    refuse_uncompiled(model)
     chosen = (options or SimulationOptions()).changed(changes)
     if chosen.output is None:
         chosen = replace(chosen, output=[t_end])
@@ -91,12 +91,13 @@ def simulate_batch(
     refuse_lengths(model, rows["q0"])
     shape = _batch_shape(rows, given.shapes)
     n = math.prod(shape)
+    count = min(count, max(n, 1))
     inputs = given.spread(model, shape)
     q, v, values = (flat(array, shape) for array in rows.values())
     initial = InitialStates(q, v, values, inputs, n, settings.t0)
     results = BatchResults.empty(model, n, len(settings.grid))
     began = time.perf_counter(), time.process_time()
-    steppers = [BatchStepper(model, settings, initial, results, i, count) for i in range(min(count, n))]
+    steppers = [BatchStepper(model, settings, initial, results, i, count) for i in range(count if n else 0)]
     if steppers:
         results.status[_off(model, settings, initial, steppers[0])] = Status.PROJECTION_FAILED
         infinite = ~np.isfinite(initial.inputs.constant).all(axis=1)

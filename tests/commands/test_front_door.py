@@ -13,6 +13,8 @@ from typer.testing import CliRunner, Result
 
 import symofros as sf
 from symofros.__main__ import app
+from symofros.commands.shared import shown
+from symofros.simulation.progress import pace_of
 
 ROOT = Path(sf.__file__).parents[1]
 CART_POLE = ROOT / "reference_models/rigid/cart_pole.yaml"
@@ -110,6 +112,57 @@ def test_formats_that_are_not_read_say_how_to_convert(suffix: str, remedy: str, 
     assert result.exit_code == 2 and remedy in result.output
 
 
+_PARTS = ("  found:  ", "  rule:   ", "  remedy: ")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("inf",), "did you mean 'info'?"),
+        (("simulate", CART_POLE, "--set", "q=abc"), "'q' is given no number"),
+        (("simulate", CART_POLE, "--set", "q"), "--set NAME=VALUE"),
+        (("simulate", CART_POLE, "--set", "qq=1"), "did you mean 'q'?"),
+        (("simulate", CART_POLE, "--method", "rk45"), "it is called 'dopri5' here"),
+        (("simulate", CART_POLE, "0.01", "-o", "nosuch/run.npz"), "'nosuch/run.npz' can't be used"),
+        (("simulate", CART_POLE, "0.01", "--input", "F=1*/q"), "'/' unexpected"),
+        (("info", "nosuch.urdf"), "'nosuch.urdf' does not exist"),
+        (("info", "README.md"), "give a model: native YAML, URDF or MJCF"),
+        (("info", "robot.yam"), "did you mean '.yaml'?"),
+        (("export", "nosuch.yaml", "-t", "c", "-o", "out"), "'nosuch.yaml' does not exist"),
+        (("export", CART_POLE, "-t", "fmu", "-o", "out"), "did you mean"),
+        (("compile", CART_POLE, "--functions", "mass_matrix", "-o", "file/out"), "'file/out' can't be used"),
+        (("equilibrium", CART_POLE, "--hold", "xx"), "held: no speed 'xx'"),
+        (("advise", CART_POLE, "--scene", "nosuch.yaml"), "nosuch.yaml"),
+        (("equations", "nosuch.yaml"), "'nosuch.yaml' does not exist"),
+        (("kernels", "nosuch.yaml"), "'nosuch.yaml' does not exist"),
+        (("view", "nosuch.yaml"), "'nosuch.yaml' does not exist"),
+    ],
+)
+def test_commands_refuse_wrong_input_in_four_parts(
+    arguments: tuple[object, ...], words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "README.md").touch()
+    (tmp_path / "robot.yam").touch()
+    (tmp_path / "file").touch()
+    result = invoke(*arguments)
+    assert result.exit_code == 2, result.exception
+    assert words in result.output and all(part in result.output for part in _PARTS), result.output
+
+
+def test_without_its_packages_the_editor_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "uvicorn", None)
+    monkeypatch.delitem(sys.modules, "symofros.studio.editor.command", raising=False)
+    result = invoke("edit", CART_POLE)
+    assert result.exit_code == 2 and "pip install 'symofros[gui]'" in result.output
+    assert all(part in result.output for part in _PARTS)
+
+
+def test_tables_show_no_sign_before_zero() -> None:
+    assert [shown(value) for value in (-0.0, 0.0, -1.5)] == ["0", "0", "-1.5"]
+    assert [pace_of(*span) for span in ((1.0, 7e-4), (1.0, 0.5))] == ["1429 times real time", "2 times real time"]
+
+
 def test_the_harness_starts_from_any_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -119,10 +172,11 @@ def test_the_harness_starts_from_any_folder(
     for arguments, code, expected in (
         (("check", "--help"), 0, "Compare our C"),
         (("check", "nobody"), 2, "nobody"),
+        (("check", "nosuch.urdf"), 2, "'nosuch.urdf' does not exist\n  found:  "),
     ):
         status = invoke(*arguments).exit_code
         said = "".join(capfd.readouterr())  # Of the process that runs the harness.
-        assert status == code and expected in said, said
+        assert status == code and expected in said and "DISAGREES" not in said, said
     assert not (tmp_path / "reports").exists()
 
 

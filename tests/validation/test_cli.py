@@ -49,6 +49,22 @@ def test_json_is_all_there_is_on_stdout(run: Any, arm: Path) -> None:
     assert {row["states"] for row in content["comparisons"] if row["engine"] == "mujoco-urdf"} >= {10}
 
 
+def test_what_is_not_there_is_said_in_four_parts_and_disagrees_with_nothing(tmp_path: Path) -> None:
+    for arguments, words in (
+        (["check", str(tmp_path / "nosuch.urdf")], "does not exist"),
+        (["simulatoin"], "did you mean 'simulation'?"),
+    ):
+        result = CliRunner().invoke(app, arguments)
+        assert result.exit_code == 2 and words in result.output and "DISAGREES" not in result.output, result.output
+        assert all(part in result.output for part in ("found:", "rule:", "remedy:")), result.output
+
+
+def test_a_file_that_can_not_be_read_failed_and_disagrees_with_nothing(run: Any, tmp_path: Path) -> None:
+    (tmp_path / "bad.yaml").write_text("symofros: 1\nname: bad\n")
+    result = run(tmp_path / "bad.yaml")
+    assert result.exit_code == 2 and "FAILED" in result.output and "DISAGREES" not in result.output, result.output
+
+
 def test_floating_base(run: Any, arm: Path) -> None:
     content = json.loads(run(arm, "--json", "--floating-base").stdout)
     assert content["ok"] and any(row["engine"] == "pinocchio-urdf" for row in content["comparisons"])

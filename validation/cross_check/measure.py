@@ -22,7 +22,7 @@ from validation.cross_check.speed import Speed, YardstickError
 from validation.cross_check.speed import measure as measure_speed
 from validation.inputs.cases import Case, named, standard_set
 from validation.inputs.sampling import DEFAULT_STATES
-from validation.reporting.command import Run, known
+from validation.reporting.command import Exit, Run, known
 from validation.reporting.record import (
     Data,
 )
@@ -63,6 +63,9 @@ def measure(
         cases = named(models, floating_base) if models else standard_set()
     except (LookupError, FileNotFoundError) as error:
         raise typer.BadParameter(str(error.args[0]), param_hint="MODEL") from None
+    except sf.DescriptionError as error:
+        typer.echo(str(error), err=True)
+        raise typer.Exit(Exit.BAD_INPUT) from None
     first = ", ".join(case.label for case in sorted(cases, key=lambda case: -case.weight)[:workers])
     run.expect(len(cases), f"cross-checking {first}")
     results: dict[str, ModelResult] = {}
@@ -70,9 +73,9 @@ def measure(
     def done(result: ModelResult) -> None:
         results[result.label] = result
         count = len(result.compared)
-        run.advance(
-            f"{result.label}: {f'{count} agree' if result.ok else 'DISAGREES'}, {sum(result.seconds.values()):.1f} s"
-        )
+        differs = any(row.status == "disagree" for row in result.comparisons)
+        verdict = f"{count} agree" if result.ok else "DISAGREES" if differs else "FAILED"
+        run.advance(f"{result.label}: {verdict}, {sum(result.seconds.values()):.1f} s")
 
     with contextlib.suppress(KeyboardInterrupt):  # What was finished is reported.
         run_cases(cases, settings, workers, done)

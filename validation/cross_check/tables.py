@@ -133,7 +133,7 @@ def failures(record: Record) -> list[tuple[str, str, str]]:
 def failure(row: Comparison) -> str:
     """What disagrees or failed, with its numbers."""
     if row.status == "failed":
-        return f"{row.quantity}: {row.note}"
+        return f"{row.quantity}: " + "; ".join(" ".join(line.split()) for line in row.note.splitlines())
     error = "not a number" if row.error is None else f"error {digits(row.error)}"
     place = "" if row.worst_state is None else f" in state {row.worst_state} of {row.states}"
     return f"{row.quantity}: {error}{place}, tolerance {digits(row.tolerance)}" + (f"; {row.note}" if row.note else "")

@@ -19,7 +19,7 @@ from symofros.description.mjcf.files import Folder
 from symofros.description.mjcf.meshes import Meshes
 from symofros.description.mjcf.model import Importer, Stated
 from symofros.description.mjcf.sections import Sections
-from symofros.description.reading import Reading, in_order
+from symofros.description.reading import Reading, check_snap_tol, in_order
 from symofros.description.remarks import Remarks
 from symofros.description.xml_nodes import Element, XmlFault
 from symofros.errors import DescriptionError, Problem
@@ -40,10 +40,9 @@ def read_mjcf(path: str | os.PathLike[str], *, snap_tol: float) -> Reading:
         The system, and every problem.
 
     Raises:
-        ValueError: `snap_tol` is not a small number.
+        ArgumentError: `snap_tol` is not a small number.
     """
-    if not 0.0 <= snap_tol < 0.1:
-        raise ValueError(f"snap_tol: found {snap_tol}; rule: 0 <= snap_tol < 0.1, so that it only absorbs rounding")
+    check_snap_tol(snap_tol)
     folder, remarks = Folder(Path(path)), Remarks()
     try:
         document = vetted(folder, remarks)

@@ -14,7 +14,7 @@ from pathlib import Path
 from symofros.description.constraints import Coupling, mimicry
 from symofros.description.joint import WORLD, Joint
 from symofros.description.joint_kinds import KINDS
-from symofros.description.reading import Reading, in_order, read_bytes
+from symofros.description.reading import Reading, check_snap_tol, in_order, read_bytes
 from symofros.description.system import Inertia, RigidBody, System
 from symofros.description.urdf.values import Values, finite_numbers
 from symofros.description.urdf.visuals import Visuals
@@ -55,10 +55,9 @@ def read_urdf(
         The system without the links that could not be read, and every problem.
 
     Raises:
-        ValueError: `snap_tol` is not a small number.
+        ArgumentError: `snap_tol` is not a small number.
     """
-    if not 0.0 <= snap_tol < 0.1:
-        raise ValueError(f"snap_tol: found {snap_tol}; rule: 0 <= snap_tol < 0.1, so that it only absorbs rounding")
+    check_snap_tol(snap_tol)
     file = os.fspath(path)
     try:
         root = parse_xml(read_bytes(Path(path), MAX_BYTES) if text is None else text, file)

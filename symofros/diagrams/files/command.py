@@ -19,6 +19,7 @@ from symofros.diagrams.run.jitter import Jitter, histogram, jitter_of
 from symofros.diagrams.run.simulate import run_compiled
 from symofros.diagrams.simulation import Simulation
 from symofros.errors import Problem, SymofrosError
+from symofros.simulation.progress import pace_of
 
 WINDOW = "window"
 
@@ -120,10 +121,9 @@ def tell_run(run: DiagramRun, files: list[str], as_json: bool, out: Console) -> 
         return
     out.print(str(outcome), markup=False, highlight=False, soft_wrap=True)
     span = float(run.t[-1] - run.t[0])
-    pace = span / max(cost.seconds, 1e-9)
     out.print(
         f"{len(run.t)} records; {cost.steps} steps, {cost.rejected} rejected, {cost.evaluations} evaluations; "
-        f"{cost.seconds:.3g} s, {pace:.3g} times real time",
+        f"{cost.seconds:.3g} s, {pace_of(span, cost.seconds)}",
         markup=False,
         soft_wrap=True,
     )

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from symofros.base.arguments import checked
 from symofros.description.reading import in_order, read_bytes
 from symofros.description.system import System
 from symofros.description.yaml.files import DIAGRAM
@@ -39,6 +40,7 @@ COMMON = ("kind", "period", "offset", "inputs")
 _ARGUMENTS = frozenset(inspect.signature(Diagram.include).parameters) - {"inputs"}
 
 
+@checked
 def load_diagram(path: str | os.PathLike[str], *, blocks: Iterable[type[Block]] = (), network: bool = False) -> Diagram:
     """Read a diagram and the models it names (docs/diagrams.md).
 

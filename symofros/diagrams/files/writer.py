@@ -12,6 +12,7 @@ from typing import Any
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
+from symofros.base.arguments import checked
 from symofros.base.atomic import write_atomically
 from symofros.description.yaml.yaml_writer import LINE_WIDTH
 from symofros.diagrams.block import Block, ModelSetup
@@ -28,6 +29,7 @@ from symofros.loading import load, save
 Plain = dict[str, Any]
 
 
+@checked
 def save_diagram(diagram: Diagram, path: str | os.PathLike[str]) -> list[Path]:
     """Write a diagram; each file is there whole or not at all.
 

@@ -8,6 +8,7 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
+from symofros.base.arguments import check_fields
 from symofros.runtime.beams import BEAM_LIMIT
 from symofros.runtime.model import Model
 from symofros.simulation.options import SimulationOptions, Stabilisation, with_changes
@@ -43,6 +44,10 @@ class DiagramOptions:
     beam_limit: float = BEAM_LIMIT
     realtime: float | bool = False
     threads: int = 1
+
+    def __post_init__(self) -> None:
+        """Refuse what is of another type."""
+        check_fields(self)
 
     def changed(self, changes: Mapping[str, Any]) -> DiagramOptions:
         """These options with some fields replaced.

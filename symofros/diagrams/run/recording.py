@@ -14,6 +14,7 @@ from symofros.diagrams.block import Shape
 from symofros.diagrams.program.compiled import CompiledDiagram
 from symofros.diagrams.program.fused_functions import AFTER
 from symofros.diagrams.wiring import Source
+from symofros.errors import Problem, UnknownNameError, did_you_mean
 from symofros.runtime.beams import BeamBending
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.results.outcome import Outcome
@@ -162,5 +163,6 @@ class Recording(Records, Mapping[str, Array]):
         layout = self.compiled.resolved.layout
         if block not in layout.q:
             known = ", ".join(layout.q) or "none"
-            raise KeyError(f"block '{block}' moves no mechanism; those that do: {known}")
+            what, remedy = f"block '{block}' moves no mechanism", did_you_mean(block, layout.q) or "name a plant's"
+            raise UnknownNameError(Problem(what, f"those that do: {known}", "motions are of mechanisms", remedy))
         return self.q[:, layout.q[block].slice], self.v[:, layout.v[block].slice]

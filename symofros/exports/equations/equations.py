@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
+from symofros.base.arguments import checked
 from symofros.base.options import Options
 from symofros.compiler import GENERATOR, Compilation, plan
 from symofros.description.system import Parameter, System
@@ -271,6 +272,7 @@ def _array(label: str, rows: Sequence[Sequence[str]], flat: bool, columns: int) 
     return [f"    {label} = np.array([", *(f"        [{', '.join(row)}]," for row in rows), "    ], dtype=float)"]
 
 
+@checked
 def equations(system: System) -> ReadableEquations:
     """The equations of motion for people: SymPy, LaTeX and NumPy source, with the user's names.
 

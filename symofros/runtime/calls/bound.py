@@ -10,11 +10,14 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
+from symofros.base.arguments import check_argument
 from symofros.errors import Problem, ShapeError, UnknownNameError, did_you_mean
 from symofros.runtime.calls.kernel import Array, BatchKernel, Kernel, Numbers, Signature
 from symofros.runtime.calls.layout import columns
 
 Layout = Literal["rows", "columns"]
+# More than any memory holds; sizes of arrays are computed from it without overflow.
+_MOST_STATES = 1 << 40
 
 
 class Bound:
@@ -89,6 +92,7 @@ def into(out: Mapping[str, Numbers], signature: Signature, results: list[Numbers
         UnknownNameError: The function has no such output.
         ShapeError: An array is not a writeable, contiguous one of its output's shape and type; none is changed then.
     """
+    check_argument(f"{signature.name}: out", out, Mapping[str, Any])
     named = dict(zip([name for name, _ in signature.outputs], results, strict=True))
     for name, array in out.items():
         if name not in named:
@@ -130,7 +134,7 @@ def bind_batch(
     """
     signature = kernel.signature
     n = _count(signature, n)
-    if layout not in get_args(Layout):
+    if not isinstance(layout, str) or layout not in get_args(Layout):
         raise _misfit(signature, "layout", repr(layout)[:80], "'rows' or 'columns'", "leave it out for rows")
     shapes = _shapes(signature, given)
     if par.ndim != 1 and par.shape != (n, par.shape[-1]):
@@ -201,7 +205,7 @@ def _count(signature: Signature, n: object) -> int:
         count = operator.index(n)  # type: ignore[arg-type]  # Whatever is none raises TypeError.
     except TypeError:
         count = 0
-    if count < 1 or isinstance(n, bool):
+    if not 1 <= count <= _MOST_STATES or isinstance(n, bool):
         raise _misfit(
             signature,
             "n",

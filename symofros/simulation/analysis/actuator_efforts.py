@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from symofros.base.arguments import checked
 from symofros.base.arrays import numeric
 from symofros.errors import ActuationError, Problem, ShapeError, UnknownNameError, did_you_mean
 from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
@@ -62,6 +63,7 @@ class _State(NamedTuple):
     G: Array
 
 
+@checked
 def actuator_efforts(
     model: Model,
     q: ArrayLike,

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from symofros.base.arguments import checked
 from symofros.base.arrays import numeric
 from symofros.errors import AssemblyError, Problem, UnknownNameError, did_you_mean
 from symofros.runtime.calls.kernel import Array
@@ -21,7 +22,7 @@ from symofros.runtime.constrained import (
     step_factor,
 )
 from symofros.runtime.model import ArrayLike, Model
-from symofros.simulation.uncompiled import refuse_uncompiled
+from symofros.simulation.analysis.targets import finite_array
 
 Indices = npt.NDArray[np.intp]
 
@@ -45,6 +46,7 @@ class Assembled:
     rank: int
 
 
+@checked
 def assemble(
     model: Model,
     q: ArrayLike | None = None,
@@ -75,11 +77,11 @@ def assemble(
         AssemblyError: No such configuration was found; names the constraint that is worst.
         UnknownNameError: `held` names something that is not a speed.
     """
-    refuse_uncompiled(model)
     free = free_speeds(model, held)
     model = model.with_precision("double")
     q = model.neutral() if q is None else numeric("q", model.by_name("q", q))
-    wished = np.zeros(model.nv) if v is None else numeric("v", model.by_name("v", v))
+    speeds = np.zeros(model.nv) if v is None else model.by_name("v", v)
+    wished = finite_array("assemble: v", speeds, (model.nv,), "give one number a speed")
 
     def residual(at: Array) -> Array:
         return model.constraint(at, u=u, par=par, t=t)

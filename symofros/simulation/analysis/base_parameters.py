@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from symofros.base.arguments import checked
+from symofros.errors import ArgumentError, Problem
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
 
@@ -13,6 +15,8 @@ from symofros.runtime.model import Model
 _RANK = 1e-9
 # Of the largest column: smaller ones are zero but for rounding.
 _ROUNDING = 1e-12
+# Largest number of samples and seed.
+_MOST = 1_000_000
 
 
 @dataclass(frozen=True)
@@ -28,6 +32,7 @@ class BaseParameters:
     combine: Array
 
 
+@checked
 def base_parameters(model: Model, samples: int | None = None, seed: int = 0) -> BaseParameters:
     """Find the base parameters of a rigid tree by a pivoted factorisation of its regressor at random states.
 
@@ -37,6 +42,10 @@ def base_parameters(model: Model, samples: int | None = None, seed: int = 0) -> 
         seed: Seed of the random states.
     """
     model = model.with_precision("double")
+    for name, value, least in (("samples", samples, 1), ("seed", seed, 0)):
+        if value is not None and not least <= value <= _MOST:
+            what, rule = f"base_parameters: {name} is out of range", f"{least} <= {name} <= {_MOST}"
+            raise ArgumentError(Problem(what, f"{value:g}" if value < _MOST else "more", rule, "leave it out"))
     rng = np.random.default_rng(seed)
     columns = 10 * (model.regressor(model.neutral(), np.zeros(model.nv), np.zeros(model.nv)).shape[-1] // 10)
     count = samples or max(20, 3 * columns // model.nv)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from symofros.base.arguments import checked
 from symofros.base.arrays import numeric
 from symofros.errors import ActuationError, BeamTheoryError, EquilibriumError, Problem, UnknownNameError
 from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes, largest_bending
@@ -21,7 +22,6 @@ from symofros.simulation.analysis.beam_theory import (
     beyond_critical_load,
     refuse_beyond,
 )
-from symofros.simulation.uncompiled import refuse_uncompiled
 
 # Largest step of a coordinate at once; of a beam's displacements over its length.
 LARGEST_STEP = 0.5
@@ -61,6 +61,7 @@ class Equilibrium:
     inputs: Mapping[str, float] | None = None
 
 
+@checked
 def equilibrium(
     model: Model,
     q: ArrayLike | None = None,
@@ -95,7 +96,6 @@ def equilibrium(
         EquilibriumError: None was found; names the coordinate with the largest imbalance.
         UnknownNameError: `held` names something that is not a speed.
     """
-    refuse_uncompiled(model)
     model = model.with_precision("double")
     free = free_speeds(model, held)
     nv, nc = model.nv, model.nc

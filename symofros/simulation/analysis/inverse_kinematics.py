@@ -8,6 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from symofros.base.arguments import checked
+from symofros.base.arrays import numeric
 from symofros.base.measures import ANGLE, LENGTH, Measures
 from symofros.errors import AssemblyError, Problem, SymofrosError
 from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
@@ -54,6 +56,7 @@ class Reached:
     notes: tuple[str, ...] = ()
 
 
+@checked
 def inverse_kinematics(
     model: Model,
     targets: Mapping[str, Target],
@@ -113,7 +116,7 @@ def inverse_kinematics(
 def _judged(task: Task, reached: Reached, beam_limit: float) -> Reached:
     """The same with its beams as they are when released there; not converged where one is bent beyond the limit."""
     model, given = task.model, task.inputs["u"]
-    u = np.array(model.record.u_default if given is None else model.by_name("u", given), dtype=np.float64)
+    u = numeric("u", model.record.u_default if given is None else model.by_name("u", given))
     bendings = bendings_in_motion(model, reached.q, np.zeros(model.nv), u, task.inputs["par"])
     within = all(bending.error <= beam_limit for bending in bendings)
     return replace(reached, converged=reached.converged and within, bendings=bendings, notes=bending_notes(bendings))
@@ -173,6 +176,7 @@ def _reach_near(task: Task, q: Array, rest: Array, free: Indices, tolerance: flo
     return Reached(q, error, converged, reached.iterations + count, distance, gradient)
 
 
+@checked
 def joint_motion(
     model: Model,
     frame: str,

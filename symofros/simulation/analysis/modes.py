@@ -7,13 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from symofros.base.arguments import checked
 from symofros.base.arrays import numeric
 from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.beam_theory import bendings_in_motion, refuse_beyond
 from symofros.simulation.analysis.state_space import state_space
-from symofros.simulation.uncompiled import refuse_uncompiled
 
 Complex = npt.NDArray[np.complex128]
 
@@ -39,6 +39,7 @@ class Modes:
     notes: tuple[str, ...] = ()
 
 
+@checked
 def modes(
     model: Model,
     q: ArrayLike,
@@ -64,7 +65,6 @@ def modes(
     Raises:
         BeamTheoryError: A beam is bent beyond the limit.
     """
-    refuse_uncompiled(model)
     state = (
         numeric("q", model.by_name("q", q)),
         np.zeros(model.nv) if v is None else numeric("v", model.by_name("v", v)),

@@ -8,12 +8,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike as Numbers
 
+from symofros.base.arguments import checked
 from symofros.base.arrays import real_array
-from symofros.errors import Problem, ShapeError, SymofrosError, did_you_mean
+from symofros.errors import Problem, ShapeError, SymofrosError
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.settings import UNIT_TOLERANCE, vector
-from symofros.simulation.stepping.methods import METHODS
+from symofros.simulation.stepping.methods import METHODS, method_meant
 from symofros.simulation.stepping.tableaus import Tableau
 
 _METHODS = ("euler", "semi_implicit_euler", "rk4")
@@ -158,6 +159,7 @@ class Rollout:
         return _fitting(name, given, shape)
 
 
+@checked
 def rollout(
     model: Model,
     q0: ArrayLike,
@@ -193,7 +195,7 @@ def rollout(
         ShapeError: An array does not fit.
     """
     model = model.with_precision("double")
-    _refuse(model, method, dt)
+    _refuse(model, method, dt, t0)
     held = real_array(u)
     if held is None or held.ndim != 2 or held.shape[1] != model.nu or not len(held) or not np.all(np.isfinite(held)):
         held_shape = type(u).__name__ if held is None else str(held.shape)
@@ -248,12 +250,12 @@ def _stepped(
     return Rollout(t, q, v, u, h, model, method, par, (times, at_q, at_v))
 
 
-def _refuse(model: Model, method: str, dt: float) -> None:
+def _refuse(model: Model, method: str, dt: float, t0: float) -> None:
     fault = ""
     if method not in _METHODS:
-        fault, remedy = f"method '{method}'", did_you_mean(method, _METHODS) or f"use one of {', '.join(_METHODS)}"
-    elif not (isinstance(dt, (int, float)) and np.isfinite(dt) and dt > 0.0):
-        fault, remedy = f"dt = {dt!r:.40}", "give a step above zero, in seconds"
+        fault, remedy = f"method '{method}'", method_meant(method, _METHODS) or f"use one of {', '.join(_METHODS)}"
+    elif not (np.isfinite(dt) and dt > 0.0 and np.isfinite(t0)):
+        fault, remedy = f"dt = {dt}, t0 = {t0}", "give a step above zero and a finite start, in seconds"
     elif model.nc:
         fault, remedy = f"{model.nc} constraints", "cut the loops, and add their forces as springs"
     elif any(segment.kind != "linear" for segment in model.record.segments):

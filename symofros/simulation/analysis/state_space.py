@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from symofros.base.arguments import checked
 from symofros.base.arrays import numeric
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.calls.kernel import Array
@@ -34,6 +35,7 @@ class StateSpace:
     basis: Array
 
 
+@checked
 def state_space(
     model: Model,
     q: ArrayLike,
@@ -63,8 +65,8 @@ def state_space(
         SymofrosError: The accelerations have no derivatives, as where the mass matrix is singular.
     """
     model = model.with_precision("double")
-    v = np.zeros(model.nv) if v is None else np.asarray(model.by_name("v", v), dtype=np.float64)
-    u = np.asarray(model.record.u_default if u is None else model.by_name("u", u), dtype=np.float64)
+    v = np.zeros(model.nv) if v is None else numeric("v", model.by_name("v", v))
+    u = numeric("u", model.record.u_default if u is None else model.by_name("u", u))
     A, B, C, D = model.linearize(q, v, u, outputs=outputs, par=par, t=t)
     if not np.all(np.isfinite(A)):
         configuration = numeric("q", model.by_name("q", q))

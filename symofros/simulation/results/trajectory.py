@@ -9,6 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from symofros.base.arguments import checked
 from symofros.base.html import html_table
 from symofros.errors import Problem, UnknownNameError, did_you_mean
 from symofros.runtime.beams import BeamBending
@@ -228,6 +229,7 @@ class Trajectory:
         title = f"{self.model.record.name}: {self.statistics.method}, {self.outcome.kind} at t = {self.outcome.t:.4g} s"
         return draw(self.t, panels, title)
 
+    @checked
     def save(self, path: str | Path) -> Path:
         """Write the trajectory: .npz (arrays), .csv or .parquet (a column a name).
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cache
 from typing import Literal
 
+from symofros.errors import did_you_mean
 from symofros.simulation.stepping import amplification
 from symofros.simulation.stepping.tableaus import (
     DOP853,
@@ -129,6 +130,32 @@ METHODS: dict[str, Method] = {
         Method("ida", "ida", 5, True, EXPLICIT_EULER, "SUNDIALS, BDF of order 1 to 5; constraints in its equations"),
     )
 }
+
+# Names that other programs have for these methods, or for the nearest.
+_ELSEWHERE = {
+    **dict.fromkeys(("rk45", "ode45", "dormand_prince", "rkf45", "tsit5"), "dopri5"),
+    **dict.fromkeys(("dop8", "ode113", "vern7", "rk8"), "dop853"),
+    **dict.fromkeys(("ode23s", "ode23t", "radau", "rosenbrock", "rodas5"), "rodas4"),
+    **dict.fromkeys(("bdf", "lsoda", "ode15s", "vode"), "cvode"),
+    **dict.fromkeys(("runge_kutta", "runge-kutta", "ode4"), "rk4"),
+    **dict.fromkeys(("symplectic_euler", "semi-implicit-euler", "verlet", "leapfrog"), "semi_implicit_euler"),
+    **dict.fromkeys(("backward_euler", "implicit-euler", "beuler"), "implicit_euler"),
+    **dict.fromkeys(("newmark", "hht", "generalized-alpha"), "generalized_alpha"),
+    **dict.fromkeys(("midpoint", "symplectic"), "variational"),
+}
+
+
+def method_meant(name: str, known: Iterable[str] = METHODS) -> str:
+    """The remedy for the name of a method that is not there: what other programs call so, or the nearest name.
+
+    Args:
+        name: Name as it was written.
+        known: Names of the methods that may be chosen.
+    """
+    known = list(known)
+    meant = _ELSEWHERE.get(name.lower(), "")
+    return f"it is called '{meant}' here" if meant in known else did_you_mean(name, known)
+
 
 # Beyond this |z|, a method that is stable is stable everywhere; an excess of |R| below it is rounding.
 _FAR, _EXCESS = 1e4, 1e-10

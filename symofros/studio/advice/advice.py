@@ -13,7 +13,7 @@ from symofros.base.options import Options
 from symofros.description.reading import YAML_SUFFIXES
 from symofros.description.system import System
 from symofros.description.yaml.files import write_yaml
-from symofros.errors import DescriptionError, Problem, did_you_mean
+from symofros.errors import DescriptionError, Problem, UnknownNameError, did_you_mean
 from symofros.studio.advice.scene import Scene
 from symofros.studio.advice.scene_runner import Cost, Stepping
 
@@ -102,12 +102,14 @@ class Advice:
         """The first choice of a kind, about a subject whose text has this in it.
 
         Raises:
-            KeyError: There is none.
+            UnknownNameError: There is none.
         """
         for one in self.choices:
             if one.kind == kind and subject in one.subject:
                 return one
-        raise KeyError(f"no choice of kind '{kind}' about '{subject}'")
+        listed = ", ".join(dict.fromkeys(one.kind for one in self.choices)) or "none"
+        what, rule = f"no choice of kind '{kind}' about '{subject}'", "a choice has a kind and a subject"
+        raise UnknownNameError(Problem(what, f"kinds: {listed}", rule, "see `choices`"))
 
     def write(self, path: str | os.PathLike[str]) -> None:
         """Write the reduced system as native YAML, headed by what was left out.

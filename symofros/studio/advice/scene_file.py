@@ -8,6 +8,7 @@ from collections.abc import Callable, Collection
 from pathlib import Path
 from typing import Any, TypeVar
 
+from symofros.base.arguments import checked
 from symofros.description.reading import read_bytes
 from symofros.description.values import as_value
 from symofros.description.yaml.yaml_nodes import Node, YamlFault
@@ -23,6 +24,7 @@ _OUTPUT = (*KINDS, "absolute", "relative")
 _SIGNAL = ("t", "values", "kind")
 
 
+@checked
 def load_scene(path: str | os.PathLike[str]) -> Scene:
     """Read a scene.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
+from symofros.base.arguments import checked
 from symofros.base.options import Options
 from symofros.description.beam import Beam
 from symofros.description.system import System
@@ -30,6 +31,7 @@ _ROUNDS = 3
 HOPELESS = 30.0
 
 
+@checked
 def advise(system: System, scene: Scene, tolerance: float | Mapping[str, float] | None = None) -> Advice:
     """Find the cheapest model of a system that a scene can be served with.
 

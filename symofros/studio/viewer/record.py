@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.arguments import checked
 from symofros.base.atomic import write_atomically
 from symofros.description.system import System
 from symofros.diagrams.result import DiagramRun
@@ -64,6 +65,7 @@ class _Recording:
         return (picture(self.drawing, posture, self.layers, camera, *size) for posture in self)
 
 
+@checked
 def record(
     system: System | DiagramRun,
     run: Played | str | Path,

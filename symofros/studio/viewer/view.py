@@ -7,6 +7,7 @@ import webbrowser
 from collections.abc import Sequence
 from typing import Any
 
+from symofros.base.arguments import checked
 from symofros.description.system import System
 from symofros.diagrams.result import DiagramRun
 from symofros.loading import load
@@ -17,6 +18,7 @@ from symofros.studio.viewer.playing.motion import Played
 from symofros.studio.viewer.viewer import Viewer
 
 
+@checked
 def view(
     system: System | DiagramRun | str | os.PathLike[str],
     run: Played | None = None,

@@ -11,6 +11,7 @@ from typing import NamedTuple, NoReturn
 
 import numpy as np
 
+from symofros.base.arrays import numeric
 from symofros.base.npz import TooLargeError, read_npz
 from symofros.errors import Problem, ShapeError, SymofrosError
 from symofros.runtime.model import ArrayLike, Model
@@ -95,6 +96,9 @@ def motion_of(model: Model, given: Played) -> PlayedMotion:
         return _checked(model, given.t, given.q, given.u, given.par, "trajectory")
     if isinstance(given, States):
         return _checked(model, *given, "motion")
+    if not isinstance(given, tuple | list) or len(given) != 2:
+        stated = f"{type(given).__name__} {given!r:.60}"
+        _refuse("motion", stated, "a trajectory, or times (n) and coordinates (n, nq)", "for example (run.t, run.q)")
     t, q = given
     return _checked(model, t, q, None, None, "motion")
 
@@ -217,10 +221,10 @@ def _from_columns(columns: Mapping[str, Array], file: Path, model: Model) -> Pla
 def _checked(
     model: Model, t: ArrayLike, q: ArrayLike, u: ArrayLike | None, par: ArrayLike | None, what: str
 ) -> PlayedMotion:
-    t, q = np.array(t, dtype=np.float64), np.array(q, dtype=np.float64)
+    t, q = (numeric(f"{what}: {name}", model.by_name(name, values)) for name, values in (("t", t), ("q", q)))
     n = t.size
-    u = np.tile(np.array(model.record.u_default), (n, 1)) if u is None else np.array(u, dtype=np.float64)
-    par = np.array(model.parameter_values) if par is None else np.array(par, dtype=np.float64)
+    u = np.tile(np.array(model.record.u_default), (n, 1)) if u is None else numeric(f"{what}: u", model.by_name("u", u))
+    par = np.array(model.parameter_values) if par is None else numeric(f"{what}: par", model.by_name("par", par))
     for name, array, shape in (
         ("t", t, (n,)),
         ("q", q, (n, model.nq)),

@@ -1,0 +1,270 @@
+"""Arguments of public functions, held against the types that their signatures state.
+
+A wrong one is refused in words where it enters, and not by an error from deep inside. Arrays are left to
+`base/arrays.py`, which converts them.
+"""
+
+from __future__ import annotations
+
+import inspect
+import math
+import numbers
+import os
+import types
+from collections.abc import Callable, Collection, Hashable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields
+from functools import cache, wraps
+from pathlib import Path
+from typing import Any, Literal, ParamSpec, TypeVar, Union, get_args, get_origin, get_type_hints
+
+import numpy as np
+
+from symofros.errors import ArgumentError, Problem, did_you_mean
+
+_Parameters = ParamSpec("_Parameters")
+_Result = TypeVar("_Result")
+
+# Class of this package -> how to get an object of it.
+_MAKERS = {
+    "System": "sf.load(path) reads one",
+    "Model": "sf.compile(system) makes one of a System, sf.compile(sf.load(path)) of a file",
+    "Diagram": "sf.load_diagram(path) reads one",
+    "Options": "sf.Options(functions=..., ...)",
+    "SimulationOptions": "sf.SimulationOptions(method=..., ...), or its fields by name",
+    "Target": "sf.Target(position=..., rotation=...)",
+    "Scene": "sf.load_scene(path) reads one",
+}
+
+
+@dataclass(frozen=True)
+class _Kind:
+    """What values an annotation allows.
+
+    Attributes:
+        words: What they are, as in "a number".
+        allows: Whether a value is one of them.
+        remedy: What to do about another one, given it.
+    """
+
+    words: str
+    allows: Callable[[Any], bool]
+    remedy: Callable[[Any], str]
+
+
+def checked(function: Callable[_Parameters, _Result]) -> Callable[_Parameters, _Result]:
+    """Refuse calls of a public function that its signature does not allow.
+
+    Raises:
+        ArgumentError: In each such call.
+    """
+    signature, title = inspect.signature(function), function.__qualname__.removesuffix(".__init__")
+    rest = {p.name for p in signature.parameters.values() if p.kind in (p.VAR_POSITIONAL, p.VAR_KEYWORD)}
+
+    @wraps(function)
+    def call(*args: _Parameters.args, **kwargs: _Parameters.kwargs) -> _Result:
+        try:
+            given = signature.bind(*args, **kwargs).arguments
+        except TypeError as error:
+            raise _misfit(title, signature, str(error), kwargs) from None
+        kinds = _kinds(function)
+        for name, value in given.items():
+            kind = None if name in rest else kinds.get(name)
+            if kind is not None and not kind.allows(value):
+                raise _refusal(f"{title}: {name}", value, kind)
+        return function(*args, **kwargs)
+
+    return call
+
+
+def check_fields(stated: Any) -> None:
+    """Refuse fields of a dataclass whose values its annotations do not allow.
+
+    Raises:
+        ArgumentError: For the first such field.
+    """
+    kinds = _kinds(stated.__class__)
+    for item in fields(stated):
+        kind, value = kinds.get(item.name), getattr(stated, item.name)
+        if kind is not None and not kind.allows(value):
+            raise _refusal(f"{type(stated).__name__}: {item.name}", value, kind)
+
+
+def check_argument(what: str, value: object, annotation: Any) -> None:
+    """Refuse a value that an annotation does not allow.
+
+    Raises:
+        ArgumentError: It is another.
+    """
+    kind = _kind(annotation)
+    if kind is not None and not kind.allows(value):
+        raise _refusal(what, value, kind)
+
+
+def _refusal(what: str, value: object, kind: _Kind) -> ArgumentError:
+    stated = f"{type(value).__name__} {value!r:.60}"
+    return ArgumentError(Problem(f"{what} is not {kind.words}", stated, f"it is {kind.words}", kind.remedy(value)))
+
+
+def _misfit(name: str, signature: inspect.Signature, fault: str, given: Mapping[str, object]) -> ArgumentError:
+    """A call with arguments that are missing, unknown, or too many."""
+    known = list(signature.parameters)
+    unknown = [argument for argument in given if argument not in known]
+    remedy = did_you_mean(unknown[0], known) if unknown else "give what it takes, by name"
+    return ArgumentError(Problem(f"{name}: the arguments do not fit", fault, f"it takes {', '.join(known)}", remedy))
+
+
+@cache
+def _kinds(annotated: Hashable) -> dict[str, _Kind | None]:
+    """What each parameter of a function, or field of a class, allows; None for anything."""
+    return {name: _kind(annotation) for name, annotation in get_type_hints(annotated).items()}
+
+
+def _kind(annotation: Any) -> _Kind | None:
+    """What an annotation allows; None for what is not judged: arrays, protocols, and what says nothing."""
+    origin, parts = get_origin(annotation), get_args(annotation)
+    if annotation in _SIMPLE:
+        return _SIMPLE[annotation]
+    if annotation is None or annotation is type(None):
+        return _Kind("None", lambda value: value is None, lambda _: "leave it out")
+    if origin in (Union, types.UnionType):
+        return _any_of([_kind(part) for part in parts])
+    if origin is Literal:
+        return _one_of(parts)
+    if origin is type:
+        return _class_of(parts[0])
+    if origin is tuple and parts[-1] is not Ellipsis:
+        return _tuple_of([_kind(part) for part in parts])
+    if origin is tuple:
+        return _list_of(_kind(parts[0]), tuple)
+    if origin in (Collection, Sequence, Iterable):
+        return _list_of(_kind(parts[0]), origin)
+    if origin is Mapping:
+        return _mapping_of(*map(_kind, parts))
+    if origin is Callable:
+        return _Kind("a function", callable, lambda _: "give a function, without calling it")
+    if origin is os.PathLike or annotation is Path:
+        return _Kind("a path", lambda value: isinstance(value, os.PathLike), lambda _: "give the path of a file")
+    if inspect.isclass(annotation) and annotation.__module__.startswith("symofros."):
+        return _object_of(annotation)
+    return None
+
+
+def _object_of(stated: Any) -> _Kind:
+    """Objects of a class of this package, or with the methods of a protocol."""
+    words = _with_article(stated.__name__)
+    remedy = _MAKERS.get(stated.__name__, f"give {words}")
+    if not getattr(stated, "_is_protocol", False):
+        return _Kind(words, lambda value: isinstance(value, stated), lambda _: remedy)
+    methods = [name for name in vars(stated) if not name.startswith("_")]
+    remedy = f"it has {', '.join(methods)}"
+    return _Kind(words, lambda value: all(hasattr(value, name) for name in methods), lambda _: remedy)
+
+
+def _class_of(base: type) -> _Kind:
+    words = f"a class derived from {base.__name__}"
+    return _Kind(
+        words, lambda value: isinstance(value, type) and issubclass(value, base), lambda _: "give the class, no object"
+    )
+
+
+def _with_article(name: str) -> str:
+    return f"{'an' if name[0] in 'AEIOU' else 'a'} {name}"
+
+
+def _any_of(kinds: Sequence[_Kind | None]) -> _Kind | None:
+    known = [kind for kind in kinds if kind is not None]
+    if len(known) < len(kinds):
+        return None
+    told = [kind for kind in known if kind.words != "None"]
+    words = " or ".join(dict.fromkeys(kind.words for kind in told)) + ("" if len(told) == len(known) else ", or None")
+    return _Kind(words, lambda value: any(kind.allows(value) for kind in known), told[0].remedy)
+
+
+def _one_of(choices: Sequence[Any]) -> _Kind:
+    def remedy(value: Any) -> str:
+        return did_you_mean(str(value)[:80], map(str, choices)) or "name one of these"
+
+    listed = ", ".join(f"'{choice}'" for choice in choices)
+    return _Kind(f"one of {listed}", lambda value: isinstance(value, str) and value in choices, remedy)
+
+
+def _list_of(item: _Kind | None, container: Any) -> _Kind:
+    def allows(value: Any) -> bool:
+        if isinstance(value, str | bytes | Mapping) or not isinstance(value, container):
+            # An array of texts is a list of names, though not by its class.
+            if container is tuple or not (isinstance(value, np.ndarray) and value.ndim == 1):
+                return False
+        # What can be gone through once only is not looked at.
+        return item is None or not isinstance(value, Collection) or all(item.allows(part) for part in value)
+
+    def remedy(value: Any) -> str:
+        if isinstance(value, str):
+            return f"one alone: ({value[:40]!r},)" if container is tuple else f"one alone: [{value[:40]!r}]"
+        return "put them in a tuple" if container is tuple else "put them in a list"
+
+    what = f", each {item.words}" if item is not None else ""
+    return _Kind(("a tuple" if container is tuple else "a list") + what, allows, remedy)
+
+
+def _tuple_of(items: Sequence[_Kind | None]) -> _Kind:
+    def allows(value: Any) -> bool:
+        return (
+            isinstance(value, tuple | list)
+            and len(value) == len(items)
+            and all(item is None or item.allows(part) for item, part in zip(items, value, strict=True))
+        )
+
+    words = " and ".join("anything" if item is None else item.words for item in items)
+    return _Kind(f"a tuple of {words}", allows, lambda _: f"put {len(items)} in a tuple")
+
+
+def _mapping_of(key: _Kind | None, value: _Kind | None) -> _Kind:
+    def allows(given: Any) -> bool:
+        if not isinstance(given, Mapping):
+            return False
+        return all(
+            (key is None or key.allows(name)) and (value is None or value.allows(part)) for name, part in given.items()
+        )
+
+    parts = [f"{kind.words} for {what}" for what, kind in (("the name", key), ("the value", value)) if kind is not None]
+    words = "a mapping" + (", with " + " and ".join(parts) if parts else "")
+    return _Kind(words, allows, lambda _: "for example {'name': value}")
+
+
+def is_number(value: object) -> bool:
+    """Whether a value is one real number that float64 holds; infinity is, NaN is not."""
+    if isinstance(value, np.ndarray):
+        return value.ndim == 0 and value.dtype.kind in "fiub" and not bool(np.isnan(value))
+    if not isinstance(value, numbers.Real):
+        return False
+    try:
+        return not math.isnan(float(value))
+    except OverflowError:
+        return False
+
+
+def _is_whole(value: object) -> bool:
+    return isinstance(value, numbers.Integral)
+
+
+def _number_of(value: object) -> str:
+    """What to write in place of a text that reads as a number."""
+    try:
+        return f"write {float(value):g}, without quotes" if isinstance(value, str) else "give one number"
+    except ValueError:
+        return "give one number"
+
+
+_SIMPLE: dict[Any, _Kind] = {
+    float: _Kind("a number", is_number, _number_of),
+    int: _Kind("a whole number", _is_whole, lambda value: "give a whole number, such as 10"),
+    bool: _Kind(
+        "True or False", lambda value: isinstance(value, bool | np.bool_ | int), lambda _: "give True or False"
+    ),
+    str: _Kind("a text", lambda value: isinstance(value, str), lambda _: "give a text, in quotes"),
+    np.random.Generator: _Kind(
+        "a generator of random numbers",
+        lambda value: isinstance(value, np.random.Generator),
+        lambda _: "numpy.random.default_rng(seed) makes one",
+    ),
+}

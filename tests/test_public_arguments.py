@@ -1,0 +1,186 @@
+"""Every public function with every argument of a wrong type or value: done, or refused in four parts."""
+
+from __future__ import annotations
+
+import datetime
+import inspect
+import re
+from collections.abc import Callable, Iterable
+from fractions import Fraction
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from symofros import blocks
+from symofros.base.arguments import check_argument, checked
+
+ROOT = Path(sf.__file__).parents[1]
+MODELS = ROOT / "reference_models"
+WRONG: tuple[Any, ...] = (
+    *(None, 3, -1, 0, 2.5, float("nan"), float("inf"), True, 10**400, "abc", "", "1", b"x", object(), int, set()),
+    *([], ["abc"], [1, "a"], [None], [[1, 2], [3]], {}, {"abc": 1}, {1: 2}, {"q": "abc"}, Path("nosuch.yaml")),
+    *(np.array(["a"]), np.array([1 + 2j]), np.zeros((2, 0)), datetime.date(2020, 1, 1)),
+)
+Q, V, U = (0.1, 0.2), (0.0, 0.0), (0.0,)
+TARGETS = {"tip": sf.Target(position=(0.1, 0.0, 0.5))}
+
+
+@cache
+def system() -> sf.System:
+    return sf.load(MODELS / "rigid/cart_pole.yaml")
+
+
+@cache
+def model() -> sf.Model:
+    return sf.compile(system())
+
+
+@cache
+def four_bar() -> sf.Model:
+    return sf.compile(sf.load(MODELS / "closed/four_bar.yaml"))
+
+
+def diagram() -> sf.Diagram:
+    d = sf.Diagram("d")
+    d.add(blocks.Constant(name="one", value=1.0))
+    d.add(blocks.Integrator(name="sum"), u="one.y")
+    return d
+
+
+def motion() -> dict[str, Any]:
+    still = np.zeros((1, 3))
+    return {"positions": model().frame_pose("tip", [Q])[0], "velocities": still, "accelerations": still}
+
+
+# Name -> a function, and arguments that it takes.
+CALLS: dict[str, Callable[[], tuple[Callable[..., Any], dict[str, Any]]]] = {
+    "load": lambda: (sf.load, {"path": MODELS / "arm.urdf"}),
+    "save": lambda: (sf.save, {"system": system(), "path": "saved.yaml"}),
+    "compile": lambda: (sf.compile, {"system": system()}),
+    "compile_library": lambda: (
+        sf.compile_library,
+        {"system": system(), "options": sf.Options(functions=("mass_matrix",))},
+    ),
+    "program_of": lambda: (sf.program_of, {"system": system(), "functions": ["mass_matrix"]}),
+    "equations": lambda: (sf.equations, {"system": system()}),
+    "Options": lambda: (sf.Options, {}),
+    "simulate": lambda: (sf.simulate, {"model": model(), "q0": Q, "t_end": 0.002}),
+    "simulate_batch": lambda: (sf.simulate_batch, {"model": model(), "q0": [Q, Q], "t_end": 0.002}),
+    "SimulationOptions": lambda: (sf.SimulationOptions, {}),
+    "Event": lambda: (sf.Event, {"formula": "q"}),
+    "Signal": lambda: (sf.Signal, {"t": [0, 1], "values": [1, 2]}),
+    "equilibrium": lambda: (sf.equilibrium, {"model": model(), "q": Q, "held": ["x", "q"]}),
+    "modes": lambda: (sf.modes, {"model": model(), "q": Q}),
+    "state_space": lambda: (sf.state_space, {"model": model(), "q": Q}),
+    "assemble": lambda: (sf.assemble, {"model": four_bar(), "q": [1.2, -1.0, 1.3]}),
+    "actuator_efforts": lambda: (sf.actuator_efforts, {"model": model(), "q": Q, "v": V, "a": V}),
+    "inverse_kinematics": lambda: (sf.inverse_kinematics, {"model": model(), "targets": TARGETS, "iterations": 3}),
+    "joint_motion": lambda: (sf.joint_motion, {"model": model(), "frame": "tip", **motion()}),
+    "base_parameters": lambda: (sf.base_parameters, {"model": model(), "samples": 20}),
+    "rollout": lambda: (sf.rollout, {"model": model(), "q0": Q, "v0": V, "u": np.zeros((3, 1)), "dt": 0.01}),
+    "export": lambda: (sf.export, {"model": system(), "target": "urdf", "folder": "out"}),
+    "load_scene": lambda: (sf.load_scene, {"path": MODELS / "flexible/scenes/spinning_beam.yaml"}),
+    "advise": lambda: (sf.advise, {"system": system()}),
+    "load_diagram": lambda: (sf.load_diagram, {"path": "d.yaml"}),
+    "save_diagram": lambda: (sf.save_diagram, {"diagram": diagram(), "path": "d.yaml"}),
+    "Simulation": lambda: (sf.Simulation, {"diagram": diagram()}),
+    "Simulation.run": lambda: (sf.Simulation(diagram()).run, {"t_end": 0.01}),
+    "Simulation.interpret": lambda: (sf.Simulation(diagram()).interpret, {"t_end": 1.0, "dt": 0.5, "compiled": False}),
+    "Diagram.add_model": lambda: (diagram().add_model, {"name": "m", "system": system()}),
+    "Diagram.add": lambda: (diagram().add, {"block": blocks.Constant(name="two", value=2.0)}),
+    "Diagram.connect": lambda: (diagram().connect, {"source": "one.y", "target": "sum.v"}),
+    "Diagram.include": lambda: (diagram().include, {"name": "p", "part": diagram()}),
+    "Diagram.with_model": lambda: (diagram().with_model, {"name": "m"}),
+    "Trajectory.save": lambda: (sf.simulate(model(), Q, t_end=0.002).save, {"path": "run.npz"}),
+    "mass_matrix": lambda: (model().mass_matrix, {"q": Q}),
+    "dynamics": lambda: (model().dynamics, {"q": Q, "v": V, "u": U}),
+    "forward_dynamics": lambda: (model().forward_dynamics, {"q": Q, "v": V, "u": U}),
+    "linearize": lambda: (model().linearize, {"q": Q, "v": V, "u": U}),
+    "frame_pose": lambda: (model().frame_pose, {"frame": "tip", "q": Q}),
+    "frame_jacobian": lambda: (model().frame_jacobian, {"frame": "tip", "q": Q}),
+    "bind": lambda: (model().bind, {"name": "mass_matrix"}),
+    "evaluate": lambda: (model().evaluate, {"name": "mass_matrix", "q": Q}),
+    "vjp": lambda: (model().vjp, {"name": "bias", "q": Q, "v": V, "h_bar": V}),
+    "integrate": lambda: (model().integrate, {"q": Q, "dq": V}),
+    "difference": lambda: (model().difference, {"q0": Q, "q1": Q}),
+    "random_state": lambda: (model().random_state, {"rng": np.random.default_rng(0)}),
+    "with_precision": lambda: (model().with_precision, {"precision": "double"}),
+    "with_threads": lambda: (model().with_threads, {"threads": 2}),
+    "prepare": lambda: (lambda name: model().prepare(name), {"name": "bias"}),
+    "with_parameters": lambda: (lambda m_cart: model().with_parameters(m_cart=m_cart), {"m_cart": 2.0}),
+}
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    sf.save_diagram(diagram(), "d.yaml")
+
+
+@pytest.mark.usefixtures("folder")
+@pytest.mark.parametrize("name", CALLS)
+def test_wrong_arguments_are_refused_in_four_parts(name: str) -> None:
+    function, given = CALLS[name]()
+    kinds = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
+    parameters = [p.name for p in inspect.signature(function).parameters.values() if p.kind in kinds]
+    faults, refused = [], 0
+    for parameter in parameters:
+        for wrong in WRONG:
+            try:
+                function(**{**given, parameter: wrong})
+            except sf.SymofrosError as error:
+                refused += 1
+                if not all(p.what and p.found and p.rule and p.remedy for p in error.problems):
+                    faults.append(f"{parameter} = {wrong!r:.20}: {error}")
+            except OSError:  # Paths that can't be written to.
+                pass
+            except Exception as error:
+                faults.append(f"{parameter} = {wrong!r:.20}: {type(error).__name__}: {error}")
+    assert not faults, "\n".join(faults[:8])
+    assert refused > 3
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: sf.simulate(model(), t_end="1"), "t_end is not a number.*str '1'.*write 1, without quotes"),
+        (lambda: sf.simulate(system()), "model is not a Model.*System.*sf.compile"),
+        (lambda: sf.simulate("cart_pole.yaml"), "model is not a Model.*sf.load"),
+        (lambda: sf.equilibrium(model(), held="q"), r"held is not a list.*one alone: \['q'\]"),
+        (
+            lambda: sf.load("a.yaml", floating=True),
+            "unexpected keyword argument 'floating'.*did you mean 'floating_base'",
+        ),
+        (lambda: sf.compile(system(), sf.Options(backend="d")), "backend is not one of 'c', 'interpreter'"),
+        (lambda: model().frame_pose(["tip"], Q), r"no frame '\['tip'\]'"),
+        (lambda: model().dynamics(Q, V, U, t=None), "t is not an array of numbers"),
+    ],
+)
+def test_what_is_said_of_a_wrong_argument(call: Callable[[], object], words: str) -> None:
+    with pytest.raises(sf.SymofrosError) as refusal:
+        call()
+    assert re.search(words, str(refusal.value), re.DOTALL), str(refusal.value)
+
+
+@pytest.mark.parametrize("number", [1, 1.0, True, np.float32(1), np.int64(1), np.array(1.0), Fraction(1)])
+def test_numbers_of_every_kind_are_numbers(number: Any) -> None:
+    assert sf.simulate(model(), Q, t_end=number / 500).outcome.ok
+
+
+@checked
+def first(names: Iterable[str], pair: tuple[str, str] = ("a", "b"), kind: type[sf.SymofrosError] | None = None) -> str:
+    return next(iter(names))
+
+
+def test_what_can_be_gone_through_once_is_not_used_up() -> None:
+    assert first(iter(["a", "b"]), ["c", "d"], sf.ShapeError) == "a"
+    for wrong in (("a", "b", "c"), ("a", 1), "ab"):
+        with pytest.raises(sf.ArgumentError, match="pair is not a tuple"):
+            first(["a"], wrong)
+    with pytest.raises(sf.ArgumentError, match="a class derived from SymofrosError, or None"):
+        first(["a"], kind=int)
+    check_argument("pair", ("a", "b"), tuple[str, str])
