@@ -11,6 +11,7 @@ notice. Each name has its reason:
 | Evaluators | one program state by state, by vectors, by the interpreter, against each other |
 | ABLATIONS, Ablation | programs generated without one pass |
 | DEFAULT_FLAGS, find_toolchain, cpu_identity | provenance of a measurement, builds of peers by the same compiler |
+| cache_folder, create_cache_folder, is_intact, install | builds of peers in the folder that nobody else can write to |
 | CODE_IDENTITY, source_digest | results that only the same code may continue: campaigns |
 | METHODS | the table of integrators: which adapt their steps, which are implicit |
 | fixed_step_loop | the C loop of an integrator, called without the recording around it: timing |
@@ -46,6 +47,10 @@ from symofros.expr.program import Program as Program
 from symofros.generator.ablation import ABLATIONS as ABLATIONS
 from symofros.generator.ablation import Ablation as Ablation
 from symofros.generator.passes.count import count_program as count_program
+from symofros.runtime.build.cache import cache_folder as cache_folder
+from symofros.runtime.build.cache import create_cache_folder as create_cache_folder
+from symofros.runtime.build.cache import install as install
+from symofros.runtime.build.cache import is_intact as is_intact
 from symofros.runtime.build.identity import CODE_IDENTITY as CODE_IDENTITY
 from symofros.runtime.build.identity import source_digest as source_digest
 from symofros.runtime.build.toolchain import DEFAULT_FLAGS as DEFAULT_FLAGS

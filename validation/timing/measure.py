@@ -65,7 +65,7 @@ def measure(
     left = [*(job.model for job in todo), *([LABEL] if flexible else [])]
     run.expect(sum(len(job.functions) for job in todo) + int(flexible), "compiling the engines")
     try:
-        for failure in prepare({peer for job in todo for peer in job.peers}):
+        for failure in prepare(todo, lambda text: run.advance(text, 0)):
             run.say(failure, bad=True)
         for job in todo:
             _time(job, record, run)
@@ -81,7 +81,12 @@ def measure(
 def _time(job: Job, record: Record, run: Run) -> None:
     """One model; what could not be timed is told."""
     skipped, failed = len(record.skipped), len(record.failed)
-    run_job(job, record, lambda model, function: run.advance(f"{model}: {FUNCTIONS[function]}"))
+
+    def doing(model: str, function: str, part: str) -> None:
+        told = f"{model}: {FUNCTIONS[function]}"
+        run.advance(f"{told}: {part}" if part else told, 0 if part else 1)
+
+    run_job(job, record, doing)
     for notes, bad in ((record.skipped[skipped:], False), (record.failed[failed:], True)):
         for model, function, peer, why in notes:
             run.say(f"not timed: {model}, {function}, {peer}: {why}", bad)

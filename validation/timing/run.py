@@ -17,24 +17,24 @@ from symofros.tools import DEFAULT_FLAGS
 from validation.reporting.plain import restored
 from validation.reporting.provenance import machine
 from validation.timing.contestants.arrays import first_compiler
-from validation.timing.contestants.engines import CLOSED, PINOCCHIO_FLAGS, pinocchio_builds
+from validation.timing.contestants.engines import CLOSED, PINOCCHIO_FLAGS, TREES, pinocchio_builds
 from validation.timing.contestants.generated import BUILDS
-from validation.timing.contestants.programs import BuildError, Skipped, compilers, source
+from validation.timing.contestants.programs import BuildError, Say, Skipped, compilers, source
 from validation.timing.models import TIMED_MODELS
 from validation.timing.race import pin_to_one_cpu
 from validation.timing.record import Entry, Made, Record
 from validation.timing.worker import Job
 
-Done = Callable[[str, str], None]
+Doing = Callable[[str, str, str], None]
 
 
-def run_job(job: Job, record: Record, done: Done = lambda model, function: None) -> None:
+def run_job(job: Job, record: Record, doing: Doing = lambda model, function, part: None) -> None:
     """Time one model in a process of its own; what was measured before it ended, or Ctrl-C, is kept.
 
     Args:
         job: Model, functions and peers to time.
         record: Record that the results are added to.
-        done: Told of each function that is being timed.
+        doing: Told the model, the function and the part of its race that is under way; "" where a function begins.
     """
     stated = {
         "model": job.model,
@@ -49,7 +49,7 @@ def run_job(job: Job, record: Record, done: Done = lambda model, function: None)
         assert worker.stdout is not None
         try:
             for line in worker.stdout:
-                take(line, job, record, done)
+                take(line, job, record, doing)
             status = worker.wait()
         except BaseException:
             worker.kill()
@@ -63,7 +63,7 @@ def run_job(job: Job, record: Record, done: Done = lambda model, function: None)
             record.failed.append((job.model, "what was left", "symofros", f"the worker ended with {status}: {last}"))
 
 
-def take(line: str, job: Job, record: Record, done: Done) -> None:
+def take(line: str, job: Job, record: Record, doing: Doing) -> None:
     """Add what a worker printed to a record; lines of other origin are MuJoCo's or Pinocchio's, and are left."""
     try:
         ((kind, value),) = json.loads(line).items()
@@ -71,7 +71,9 @@ def take(line: str, job: Job, record: Record, done: Done) -> None:
         return
     if kind == "doing":
         record.forget([job.model], [value], job.peers)
-        done(job.model, value)
+        doing(job.model, value, "")
+    elif kind == "part":
+        doing(job.model, *value)
     elif kind == "entry":
         record.entries.append(restored(Entry, value))
     elif kind == "cost":
@@ -99,15 +101,19 @@ def jobs(
     return todo
 
 
-def prepare(peers: Iterable[str]) -> list[str]:
-    """Compile what all models share, by all compilers at the same time; what can't be is told by each model, too.
+def prepare(todo: Iterable[Job], say: Say) -> list[str]:
+    """Compile what the models of some jobs share, by all compilers at the same time; what can't be, each model tells.
+
+    Args:
+        todo: Jobs.
+        say: Told of what is being compiled, which may take minutes.
 
     Returns:
         What went wrong, in words.
     """
-    tasks: list[Callable[[], Any]] = [first_compiler]
-    if "pinocchio" in peers:
-        tasks += [pinocchio_builds, partial(pinocchio_builds, CLOSED)]
+    raced = [TIMED_MODELS[job.model].load() for job in todo if "pinocchio" in job.peers]
+    programs = {CLOSED if system.constraints else TREES for system in raced}
+    tasks: list[Callable[[], Any]] = [first_compiler, *(partial(pinocchio_builds, name, say) for name in programs)]
     failures = []
     with ThreadPoolExecutor() as pool:
         for future in [pool.submit(job) for job in tasks]:

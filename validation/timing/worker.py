@@ -2,7 +2,7 @@
 
 Arguments: a job as JSON: {"model", "peers", "functions", "repeats", "states"}. Prints a JSON object a line:
 {"entry": ...} of a pair of sides, {"cost": ...} of a generated function, {"skipped": ...} of a peer that has no side,
-{"failed": ...} of one that should have, {"doing": ...}.
+{"failed": ...} of one that should have, {"doing": ...} of a function, {"part": ...} of what is done of it.
 """
 
 from __future__ import annotations
@@ -61,6 +61,10 @@ def work(job: Job, say: Say) -> None:
 
 
 def _function(given: Task, job: Job, function: str, say: Say) -> None:
+    def part(text: str) -> None:
+        say("part", [function, text])
+
+    part("compiling ours")
     generated = {loop.variant: loop for loop in our_loops(given, [function])}
     expected = generated[NAME].results()
     for name in generated.keys() - {NAME}:
@@ -69,6 +73,7 @@ def _function(given: Task, job: Job, function: str, say: Say) -> None:
     errors: dict[str, float] = {}
     peers: dict[str, str] = {}
     for peer in job.peers:
+        part(f"building {peer}")
         for loop in _offered(given, job, function, peer, say):
             name = f"{peer}: {loop.variant}"
             try:
@@ -77,6 +82,7 @@ def _function(given: Task, job: Job, function: str, say: Say) -> None:
                 say("failed", [job.model, function, peer, str(error)])
                 continue
             sides[name], peers[name] = loop, peer
+    part(f"racing {len(sides)} sides")
     times = race(sides, job.states, job.repeats)
     for name, peer in peers.items():
         made = Entry(

@@ -13,7 +13,7 @@ from tests.validation.timing.records import cubic, entry, made
 from validation.__main__ import app
 from validation.reporting.command import write
 from validation.reporting.record import Table
-from validation.timing import measure, worker
+from validation.timing import measure, run, worker
 from validation.timing.contestants import engines
 from validation.timing.models import FUNCTIONS, TIMED_MODELS
 from validation.timing.record import Record, as_data
@@ -27,6 +27,7 @@ JOB = Job("panda", ("pinocchio", "sympy"), ("dynamics",), 3, 100)
 
 LINES = [
     json.dumps({"doing": "dynamics"}),
+    json.dumps({"part": ["dynamics", "building sympy"]}),
     "a warning of an engine",
     "3",
     json.dumps({"entry": asdict(entry(peer_time=5.0))}),
@@ -39,7 +40,7 @@ def test_what_a_worker_prints_becomes_a_record() -> None:
     record, told = Record([entry(peer_time=1.0)]), []
     for line in LINES:
         take(line, JOB, record, lambda *what: told.append(what))
-    assert told == [("panda", "dynamics")]
+    assert told == [("panda", "dynamics", ""), ("panda", "dynamics", "building sympy")]
     assert [x.peer_time[1] for x in record.entries] == [5.0], "the old figure is replaced"
     assert record.costs == [made()] and record.skipped == [("panda", "dynamics", "sympy", "too large")]
 
@@ -81,6 +82,14 @@ def test_a_peer_that_disagrees_is_skipped_loudly(monkeypatch: pytest.MonkeyPatch
     worker.work(Job("planar2R", ("mujoco",), ("step",), 3, 64), lambda *what: said.append(what))
     (words,) = [value for kind, value in said if kind == "failed" and isinstance(value, list)]
     assert "differs from ours by" in words[3] and not [value for kind, value in said if kind == "entry"]
+
+
+def test_only_the_programs_that_the_models_need_are_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
+    built: list[str] = []
+    monkeypatch.setattr(run, "pinocchio_builds", lambda program, say: built.append(program))
+    for model, peers in (("planar2R", ("pinocchio",)), ("planar2R", ("mujoco",)), ("four_bar", ("pinocchio",))):
+        assert run.prepare([Job(model, peers, ("forward_dynamics",), 3, 100)], print) == []
+    assert built == [engines.TREES, engines.CLOSED]
 
 
 def test_a_core_has_a_peak() -> None:
@@ -131,7 +140,7 @@ def test_interrupted_it_keeps_what_was_measured(tmp_path: Path, monkeypatch: pyt
         raise KeyboardInterrupt
 
     monkeypatch.setattr(measure, "run_job", half)
-    monkeypatch.setattr(measure, "prepare", lambda peers: [])
+    monkeypatch.setattr(measure, "prepare", lambda todo, say: [])
     arguments = ["timing", "--model", "panda", "--report", str(tmp_path)]
     assert CliRunner().invoke(app, arguments).exit_code == 130
     assert len(json.loads((tmp_path / "timing.json").read_text())["entries"]) == 1

@@ -23,11 +23,13 @@ from validation.timing.contestants.programs import (
     BuildError,
     Built,
     Compiler,
+    Say,
     Skipped,
     build,
     compilers,
     copies,
     declared,
+    silent,
     source,
 )
 from validation.timing.task import START, STEP, Loop, Task, flat
@@ -59,11 +61,12 @@ def _interface() -> Any:
 TREES, CLOSED = "loop_pinocchio.cpp", "loop_closed.cpp"
 
 
-def pinocchio_builds(program: str = TREES) -> tuple[list[tuple[Compiler, Built]], list[str]]:
+def pinocchio_builds(program: str = TREES, say: Say = silent) -> tuple[list[tuple[Compiler, Built]], list[str]]:
     """Pinocchio by each compiler of this machine, and why others failed.
 
     Args:
         program: Program for trees or for closed loops; each takes minutes to compile.
+        say: Told of what is being compiled.
 
     Raises:
         Skipped: Headers are missing, or no compiler could.
@@ -75,7 +78,9 @@ def pinocchio_builds(program: str = TREES) -> tuple[list[tuple[Compiler, Built]]
     built: list[tuple[Compiler, Built]] = []
     failures: list[str] = []
     with ThreadPoolExecutor() as pool:
-        jobs = {compiler: pool.submit(build, compiler, sources, flags, (), version) for compiler in compilers("c++")}
+        jobs = {
+            compiler: pool.submit(build, compiler, sources, flags, (), version, say) for compiler in compilers("c++")
+        }
     for compiler, job in jobs.items():
         try:
             built.append((compiler, job.result()))

@@ -5,18 +5,17 @@ from __future__ import annotations
 import hashlib
 import itertools
 import json
-import os
 import shutil
 import subprocess
 import tempfile
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
 
-from symofros.tools import cpu_identity
+from symofros.tools import cache_folder, cpu_identity, create_cache_folder, install, is_intact, write_atomically
 
 # Linked with these, a library of gcc's up to 12 makes the whole process flush denormal numbers to zero when it loads.
 _LOOSE = ("-ffast-math",)
@@ -26,6 +25,13 @@ _NEWEST, _OLDEST = 25, 11
 COPIES = 6
 _PRIVATE = tempfile.TemporaryDirectory(prefix="symofros-timing-")
 _NUMBERS = itertools.count()
+
+
+Say = Callable[[str], None]
+
+
+def silent(text: str) -> None:
+    """Progress that nobody is told of."""
 
 
 class BuildError(Exception):
@@ -112,8 +118,9 @@ def build(
     flags: Sequence[str],
     link: Sequence[str] = (),
     depends: Sequence[str] = (),
+    say: Say = silent,
 ) -> Built:
-    """The shared library of the first of some sources, compiled unless it is in the cache.
+    """The shared library of the first of some sources, compiled unless it is in the cache of compiled models.
 
     Args:
         compiler: Compiler to use.
@@ -121,21 +128,24 @@ def build(
         flags: Flags for compiling.
         link: Flags for linking.
         depends: Further dependencies: versions of packages.
+        say: Told that it is being compiled.
 
     Raises:
         BuildError: The compiler refused, with its complaint.
+        CompileError: The cache folder can't be trusted.
     """
     parts = [*sources, *sources.values(), *flags, *link, *depends, compiler.version, cpu_identity()]
     key = hashlib.sha256("\0".join(parts).encode()).hexdigest()[:32]
-    library, record = folder() / f"timing-{key}.so", folder() / f"timing-{key}.json"
-    if not (library.exists() and record.exists()):
-        folder().mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(prefix=".timing-", dir=folder()) as private:
+    folder = cache_folder()
+    library, record = folder / f"timing-{key}.so", folder / f"timing-{key}.json"
+    if not (record.exists() and is_intact(library)):
+        say(f"compiling {next(iter(sources))} by {compiler.name}")
+        create_cache_folder(folder)
+        with tempfile.TemporaryDirectory(prefix=f".{key[:8]}-", dir=folder) as private:
             built = _compiled(compiler, Path(private), sources, flags, link)
             facts = {name: value for name, value in asdict(built).items() if name != "path"}
-            (Path(private) / "facts.json").write_text(json.dumps(facts), encoding="utf-8")
-            os.replace(Path(private) / "facts.json", record)
-            os.replace(built.path, library)
+            write_atomically(record, json.dumps(facts))
+            install(built.path, library)
     return Built(library, **json.loads(record.read_text(encoding="utf-8")))
 
 
@@ -181,11 +191,3 @@ def _sections(path: Path) -> dict[str, int]:
     printed = subprocess.run([tool, "-A", str(path)], capture_output=True, text=True, check=True).stdout
     rows = [line.split() for line in printed.splitlines()]
     return {row[0]: int(row[1]) for row in rows if len(row) == 3 and row[1].isdigit()}
-
-
-def folder() -> Path:
-    """Where compiled programs are kept."""
-    stated = os.environ.get("SYMOFROS_CACHE")
-    if stated:
-        return Path(stated)
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "symofros"

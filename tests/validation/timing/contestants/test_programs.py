@@ -43,10 +43,17 @@ def test_one_compiler_of_each_family_and_the_newest_clang(monkeypatch: pytest.Mo
     assert [found.name for found in compilers()] == ["gcc 12.2.0", "clang 19.1.7"]
 
 
-def test_a_program_is_compiled_once_for_its_content(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_program_is_compiled_once_for_its_content_and_anew_where_it_was_damaged(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path))
     compiler, text = compilers()[0], '__attribute__((visibility("default"))) double f(double x) { return 3.5 * x; }\n'
-    first, again = (build(compiler, {"f.c": text}, ("-O2",)) for _ in range(2))
+    told: list[str] = []
+    first, again = (build(compiler, {"f.c": text}, ("-O2",), say=told.append) for _ in range(2))
+    assert told == [f"compiling f.c by {compiler.name}"]
+    first.path.write_bytes(first.path.read_bytes()[:-1])
+    build(compiler, {"f.c": text}, ("-O2",), say=told.append)
+    assert len(told) == 2
     other = build(compiler, {"f.c": text}, ("-O3",))
     assert first == again and other.path != first.path
     assert first.text > 0 and first.constants >= 8 and first.seconds > 0
