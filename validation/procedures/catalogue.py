@@ -12,7 +12,7 @@ import symofros as sf
 from validation.comparison.errors import Comparison
 from validation.mechanics.assembly import Assembly
 from validation.mechanics.geometry import Array
-from validation.procedures import analyses, batches, diagrams, forces, runs
+from validation.procedures import analyses, batches, diagrams, forces, identities, runs
 from validation.procedures.scene import Cell, Manifold, Scene
 
 Procedure = Callable[[Scene], Iterator[Cell]]
@@ -61,6 +61,7 @@ def _oscillations(_: Scene) -> Iterator[Cell]:
 
 
 _MOVED: tuple[Procedure, ...] = (runs.fixed_steps, runs.chosen_steps, analyses.linearised, analyses.differentiated)
+_DIFFERENTIATED: tuple[Procedure, ...] = (identities.transposed, identities.twice_differentiated, identities.momenta)
 PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
     "double_pendulum": (
         _inputs(True, runs.fixed_steps),
@@ -75,14 +76,16 @@ PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
         analyses.linearised,
         analyses.differentiated,
         analyses.identified,
+        *_DIFFERENTIATED,
         lambda scene: analyses.at_rest(scene, scene.q),
         lambda scene: analyses.at_rest(scene, scene.q, ("q2",)),
         lambda scene: analyses.driven(scene, ("q1", "q2")),
     ),
-    "heavy_top": (*_MOVED, runs.small_turns, runs.implicit_steps, batches.trajectories),
-    "torque_free_body": (*_MOVED, runs.implicit_steps),
+    "heavy_top": (*_MOVED, *_DIFFERENTIATED, runs.small_turns, runs.implicit_steps, batches.trajectories),
+    "torque_free_body": (*_MOVED, identities.twice_differentiated, identities.momenta, runs.implicit_steps),
     "four_bar": (
         *_MOVED,
+        identities.transposed,
         runs.implicit_steps,
         runs.stabilised,
         lambda scene: runs.multistep(scene, ("ida", "cvode")),
@@ -104,6 +107,7 @@ PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
         runs.implicit_steps,
         lambda scene: analyses.at_rest(scene, scene.model.neutral() + 0.1),
         runs.mirrored,
+        identities.transposed,
     ),
 }
 

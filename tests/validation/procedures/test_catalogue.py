@@ -10,8 +10,10 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from symofros.base.functions import FUNCTIONS
+from symofros.base.model_function import cotangents
 from validation.mechanics.assembly import assemble
-from validation.procedures import analyses, batches, catalogue, forces, runs, steps
+from validation.procedures import analyses, batches, catalogue, forces, identities, runs, steps
 from validation.procedures.catalogue import PROCEDURES, first_scene, judge_procedures
 from validation.procedures.scene import Cell, Scene
 
@@ -77,6 +79,37 @@ def test_a_trajectory_of_a_batch_that_takes_other_inputs_shows(monkeypatch: pyte
     simulate: Callable[..., sf.Trajectory] = sf.simulate
     monkeypatch.setattr(sf, "simulate", lambda *given, **stated: simulate(*given, **{**stated, "u": None}))
     assert "a batch by rk4" in wrong(batches.trajectories(scene("double_pendulum")))
+
+
+def test_every_function_with_vector_jacobian_products_is_asked_for() -> None:
+    assert set(identities.TRANSPOSED) == {row.transposes for row in FUNCTIONS.values() if row.transposes}
+    for name, (inputs, outputs) in identities.TRANSPOSED.items():
+        assert tuple(inputs.split()) == tuple(group for group in FUNCTIONS[name].inputs if group not in ("t", "gains"))
+        assert tuple(outputs.split()) == tuple(output.name for output in cotangents(FUNCTIONS[name]).values())
+
+
+def test_wrong_signs_in_momenta_and_second_derivatives_show(monkeypatch: pytest.MonkeyPatch) -> None:
+    body, top, kind = scene("torque_free_body"), scene("heavy_top"), sf.Model
+    coriolis, product = kind.coriolis_matrix, kind.inverse_dynamics_hvp
+    monkeypatch.setattr(kind, "coriolis_matrix", lambda model, q, v: coriolis(model, q, v).T)
+    monkeypatch.setattr(kind, "inverse_dynamics_hvp", lambda model, *given: product(model, *given)[::-1])
+    assert wrong(identities.momenta(body)) == ["C v and the weight"]
+    assert wrong(identities.twice_differentiated(top)) == ["Hessian-vector products"]
+
+
+def test_vector_jacobian_products_of_a_beam_that_leave_a_coordinate_out_show(monkeypatch: pytest.MonkeyPatch) -> None:
+    bent, vjp = scene("flexible_pendulum"), sf.Model.vjp
+    assert not wrong(identities.transposed(bent))
+
+    def shortened(model: sf.Model, *given: object, **stated: object) -> dict[str, np.ndarray]:
+        products = vjp(model, *given, **stated)  # type: ignore[arg-type]
+        products["q"][-1] = 0.0
+        return products
+
+    monkeypatch.setattr(sf.Model, "vjp", shortened)
+    assert {"mass_matrix: vector-Jacobian products", "potential_energy: vector-Jacobian products"} <= set(
+        wrong(identities.transposed(bent))
+    )
 
 
 def test_what_a_procedure_raises_is_a_failed_row(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,0 +1,155 @@
+"""Reverse mode, second derivatives, momenta and C(q, v), against the definitions that tie them to other functions.
+
+What they are tied to, M, h, the derivatives of inverse dynamics and frames, is compared with engines.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+
+import numpy as np
+
+import symofros as sf
+from validation.contract.quantities import ROUNDING
+from validation.mechanics.assembly import Mover, assemble
+from validation.mechanics.geometry import Array
+from validation.procedures.analyses import DIFFERENCED, SEED
+from validation.procedures.scene import DIFFERENCE, Cell, Scene, off
+
+# Function that has vector-Jacobian products -> its inputs, and its outputs.
+TRANSPOSED: Mapping[str, tuple[str, str]] = {
+    "mass_matrix": ("q", "M"),
+    "bias": ("q v", "h"),
+    "generalized_force": ("q v u", "Q"),
+    "inverse_dynamics": ("q v a", "tau"),
+    "forward_dynamics": ("q v u", "a lam"),
+    "residual": ("q v a u lam", "R phi phi_rate"),
+    "kinetic_energy": ("q v", "T"),
+    "potential_energy": ("q", "V"),
+    "constraint": ("q", "phi"),
+    "constraint_rate": ("q v", "phi_rate"),
+    "constraint_bias": ("q v", "gamma"),
+    "joint_wrenches": ("q v a u lam", "wrench"),
+    "center_of_mass": ("q", "p_WScm"),
+    "centroidal_momentum": ("q v", "h_G"),
+    "frame_pose": ("q", "p R"),
+    "frame_velocity": ("q v", "V"),
+    "frame_acceleration": ("q v a", "A"),
+    "frame_jacobian": ("q", "J"),
+}
+# What these are asked of is compiled at once.
+_SECOND = sf.Options(
+    ("inverse_dynamics_derivatives", "inverse_dynamics_second_derivatives", "inverse_dynamics_hvp")
+)
+_MOMENTA = (
+    "mass_matrix",
+    "mass_matrix_pattern",
+    "mass_matrix_values",
+    "bias",
+    "coriolis_matrix",
+    "center_of_mass",
+    "centroidal_momentum",
+    "centroidal_momentum_matrix",
+    "centroidal_momentum_rate",
+    "frame_pose",
+    "frame_velocity",
+)
+# Of a direction: beams bend by a few hundredths, and differences take two steps of DIFFERENCE along it.
+_REACH = 0.1
+_OF_CONSTRAINTS = ("constraint", "constraint_rate", "constraint_bias")
+
+
+def transposed(scene: Scene) -> Iterator[Cell]:
+    """Vector-Jacobian products, against the change of the weighted sum of the outputs along one direction."""
+    names = [name for name in TRANSPOSED if scene.model.nc or name not in _OF_CONSTRAINTS]
+    frame = scene.model.names.frames[-1]
+    asked = tuple(text for name in names for text in (name, f"{name}_vjp"))
+    model, rng = sf.compile(scene.system, sf.Options(asked, (frame,))), np.random.default_rng(SEED)
+    sizes = {"v": model.nv, "a": model.nv, "u": model.nu, "lam": model.nc}
+    state = {group: rng.standard_normal(size) for group, size in sizes.items()} | {"q": scene.q, "v": scene.v}
+    steps = {group: _REACH * rng.standard_normal(size) for group, size in {"q": model.nv, **sizes}.items()}
+    for name in names:
+        inputs, outputs = (text.split() for text in TRANSPOSED[name])
+        of, bar = (frame, "_WF_bar") if name.startswith("frame") else ("", "_bar")
+
+        def values(h: float, name: str = name, of: str = of, inputs: list[str] = inputs) -> list[Array]:
+            moved = {group: state[group] + h * steps[group] for group in inputs if group != "q"}
+            return [*model.evaluate(name, of, q=scene.manifold.moved(scene.q, h * steps["q"]), **moved)]
+
+        weights = [rng.standard_normal(np.shape(value)) for value in values(0.0)][: len(outputs)]
+        change = sum(float(np.sum(w * y)) for w, y in zip(weights, _rates(values), strict=False))
+        given = {f"{output}{bar}": w for output, w in zip(outputs, weights, strict=False)}
+        products = model.vjp(name, of, **{group: state[group] for group in inputs}, **given)
+        along = {group: float(products[group] @ steps[group]) for group in inputs}
+        size = max(sum(map(abs, along.values())), abs(change)) or 1.0
+        yield Cell(f"{name}: vector-Jacobian products", abs(sum(along.values()) - change) / size, DIFFERENCED)
+
+
+def twice_differentiated(scene: Scene) -> Iterator[Cell]:
+    """Second derivatives of inverse dynamics against changes of the first; Hessian-vector products against both."""
+    model, q, v, rng = sf.compile(scene.system, _SECOND), scene.q, scene.v, np.random.default_rng(SEED)
+    a, tau_bar, dq, dv, da = rng.standard_normal((5, model.nv))
+    by_qq, by_vv, by_qv, by_aq = model.inverse_dynamics_second_derivatives(q, v, a)
+
+    def first(h: float) -> list[Array]:
+        return [*model.inverse_dynamics_derivatives(scene.manifold.moved(q, h * dq), v + h * dv, a + h * da)]
+
+    qv, aq = by_qv.swapaxes(1, 2), by_aq.swapaxes(1, 2)
+    changes = by_qq @ dq + by_qv @ dv + aq @ da, qv @ dq + by_vv @ dv
+    for by, ours, reference in zip(("coordinates", "speeds"), changes, _rates(first), strict=True):
+        yield Cell(f"second derivatives by {by}", off(ours, reference), DIFFERENCED)
+    products = model.inverse_dynamics_hvp(q, v, a, tau_bar, dq, dv, da)
+    contracted = [tau_bar @ change for change in (*changes, by_aq @ dq)]
+    yield Cell("Hessian-vector products", off(np.concatenate(products), np.concatenate(contracted)), ROUNDING)
+
+
+def momenta(scene: Scene) -> Iterator[Cell]:
+    """C(q, v), M by entries, and the momentum about the mass centre of a tree of rigid bodies."""
+    movers = assemble(scene.system).movers
+    bodies = tuple(mover.body for mover in movers)
+    model, q, v = sf.compile(scene.system, sf.Options(_MOMENTA, bodies)), scene.q, scene.v
+    a = np.random.default_rng(SEED).standard_normal(model.nv)
+    M, C, h = model.mass_matrix(q), model.coriolis_matrix(q, v), model.bias(q, v)
+    dense = np.zeros_like(M)
+    dense[model.mass_matrix_pattern()] = model.mass_matrix_values(q)
+    yield Cell("M by entries", off(dense + np.tril(dense, -1).T, M), ROUNDING)
+    yield Cell("C v and the weight", off(C @ v + model.bias(q, 0.0 * v), h), ROUNDING)
+
+    def moving(t: float) -> list[Array]:
+        at, speeds = scene.manifold.moved(q, t * v), v + t * a
+        return [model.mass_matrix(at), model.centroidal_momentum(at, speeds)]
+
+    by_M, by_momentum = _rates(moving)
+    yield Cell("C and its transpose", off(C + C.T, by_M), DIFFERENCED)
+    rate = model.centroidal_momentum_rate(q, v, a)
+    yield Cell("rate of the momentum about the mass centre", off(rate, by_momentum), DIFFERENCED)
+    center, momentum = _about_mass_center(movers, model, q, v)
+    yield Cell("mass centre", off(model.center_of_mass(q), center), ROUNDING)
+    yield Cell("momentum about the mass centre", off(model.centroidal_momentum(q, v), momentum), ROUNDING)
+    yield Cell("its matrix", off(model.centroidal_momentum_matrix(q) @ v, momentum), ROUNDING)
+
+
+def _about_mass_center(movers: Sequence[Mover], model: sf.Model, q: Array, v: Array) -> tuple[Array, Array]:
+    """Mass centre and momentum about it, body by body from the motion of the frames."""
+    points, masses, spins = [], [], []
+    for mover in movers:
+        p, R = model.frame_pose(mover.body, q)
+        velocity = model.frame_velocity(mover.body, q, v)
+        for part in mover.masses:
+            arm = R @ part.p_BC
+            masses.append(part.mass)
+            points.append([p + arm, velocity[:3] + np.cross(velocity[3:], arm)])
+            spins.append(R @ part.J_BC @ R.T @ velocity[3:])
+    weights, places = np.array(masses)[:, None, None], np.array(points)
+    center = (weights * places).sum(axis=0)[0] / weights.sum()
+    linear = weights[:, 0] * places[:, 1]
+    angular = np.cross(places[:, 0] - center, linear) + np.array(spins)
+    return center, np.concatenate([linear.sum(axis=0), angular.sum(axis=0)])
+
+
+def _rates(values: Callable[[float], list[Array]]) -> list[Array]:
+    """Derivatives at zero of several functions of one number, by central differences of fourth order."""
+    far_back, back, ahead, far = (values(k * DIFFERENCE) for k in (-2, -1, 1, 2))
+    return [
+        (8 * (y - x) - (z - w)) / (12 * DIFFERENCE) for w, x, y, z in zip(far_back, back, ahead, far, strict=True)
+    ]
