@@ -6,6 +6,7 @@ What they are tied to, M, h, the derivatives of inverse dynamics and frames, is 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -38,9 +39,7 @@ TRANSPOSED: Mapping[str, tuple[str, str]] = {
     "frame_jacobian": ("q", "J"),
 }
 # What these are asked of is compiled at once.
-_SECOND = sf.Options(
-    ("inverse_dynamics_derivatives", "inverse_dynamics_second_derivatives", "inverse_dynamics_hvp")
-)
+_SECOND = sf.Options(("inverse_dynamics_derivatives", "inverse_dynamics_second_derivatives", "inverse_dynamics_hvp"))
 _MOMENTA = (
     "mass_matrix",
     "mass_matrix_pattern",
@@ -66,20 +65,24 @@ def transposed(scene: Scene) -> Iterator[Cell]:
     asked = tuple(text for name in names for text in (name, f"{name}_vjp"))
     model, rng = sf.compile(scene.system, sf.Options(asked, (frame,))), np.random.default_rng(SEED)
     sizes = {"v": model.nv, "a": model.nv, "u": model.nu, "lam": model.nc}
-    state = {group: rng.standard_normal(size) for group, size in sizes.items()} | {"q": scene.q, "v": scene.v}
+    state: dict[str, Any] = {group: rng.standard_normal(size) for group, size in sizes.items()} | {
+        "q": scene.q,
+        "v": scene.v,
+    }
     steps = {group: _REACH * rng.standard_normal(size) for group, size in {"q": model.nv, **sizes}.items()}
     for name in names:
         inputs, outputs = (text.split() for text in TRANSPOSED[name])
         of, bar = (frame, "_WF_bar") if name.startswith("frame") else ("", "_bar")
 
         def values(h: float, name: str = name, of: str = of, inputs: list[str] = inputs) -> list[Array]:
-            moved = {group: state[group] + h * steps[group] for group in inputs if group != "q"}
+            moved: dict[str, Any] = {group: state[group] + h * steps[group] for group in inputs if group != "q"}
             return [*model.evaluate(name, of, q=scene.manifold.moved(scene.q, h * steps["q"]), **moved)]
 
         weights = [rng.standard_normal(np.shape(value)) for value in values(0.0)][: len(outputs)]
         change = sum(float(np.sum(w * y)) for w, y in zip(weights, _rates(values), strict=False))
-        given = {f"{output}{bar}": w for output, w in zip(outputs, weights, strict=False)}
-        products = model.vjp(name, of, **{group: state[group] for group in inputs}, **given)
+        given = {group: state[group] for group in inputs}
+        given |= {f"{output}{bar}": w for output, w in zip(outputs, weights, strict=False)}
+        products = model.vjp(name, of, **given)
         along = {group: float(products[group] @ steps[group]) for group in inputs}
         size = max(sum(map(abs, along.values())), abs(change)) or 1.0
         yield Cell(f"{name}: vector-Jacobian products", abs(sum(along.values()) - change) / size, DIFFERENCED)
@@ -150,6 +153,4 @@ def _about_mass_center(movers: Sequence[Mover], model: sf.Model, q: Array, v: Ar
 def _rates(values: Callable[[float], list[Array]]) -> list[Array]:
     """Derivatives at zero of several functions of one number, by central differences of fourth order."""
     far_back, back, ahead, far = (values(k * DIFFERENCE) for k in (-2, -1, 1, 2))
-    return [
-        (8 * (y - x) - (z - w)) / (12 * DIFFERENCE) for w, x, y, z in zip(far_back, back, ahead, far, strict=True)
-    ]
+    return [(8 * (y - x) - (z - w)) / (12 * DIFFERENCE) for w, x, y, z in zip(far_back, back, ahead, far, strict=True)]

@@ -30,8 +30,6 @@ BLOCK, _LEAST_BLOCK, _KEPT = 64, 16, 3 << 17
 _SHARED = {"dynamics": 2, "forward_dynamics": 1, "forward_dynamics_derivatives": 2}
 # More than any race steps through [s].
 _ENDLESS = 1e6
-# A solver finishes these state by state; they have no code by vectors.
-_BY_STATE = ("forward_dynamics_derivatives", "step")
 
 
 def our_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
@@ -45,7 +43,7 @@ def our_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
             yield _steps(task)
             continue
         yield _by_state(task, name)
-        if name not in _BY_STATE and not task.system.constraints:
+        if not task.system.constraints:  # A solver finishes those state by state; they have no code by vectors.
             yield _by_rows(task, name)
             yield _by_columns(task, name, COLUMNS, "double")
             yield _by_columns(task, name, SINGLE, "single")
