@@ -31,6 +31,7 @@ from symofros.studio.viewer.render.camera import Camera
 from symofros.studio.viewer.render.raster import Image, picture
 
 MOST_FRAMES = 20_000  # Eleven minutes at thirty a second.
+_INK = (60, 60, 60)
 _SUFFIXES = (".html", ".mp4", ".gif", ".png")
 
 
@@ -51,11 +52,12 @@ class _Recording:
                     "raise the speed, or lower the pictures a second",
                 )
             )
-        q, u = motion.at(np.minimum(motion.start + speed * period * np.arange(count), motion.end))
+        self.t = np.minimum(motion.start + speed * period * np.arange(count), motion.end)
+        q, u = motion.at(self.t)
         self.drawing = mechanism.drawing(motion.par)
         self.postures = mechanism.posture(q, u, motion.par, exaggeration)
         self.layers = shown_at_first(self.drawing)
-        self.count = count
+        self.count, self.exaggeration = count, exaggeration
 
     def __iter__(self) -> Iterator[Posture]:
         return (self.postures[i] for i in range(self.count))
@@ -63,6 +65,11 @@ class _Recording:
     def pictures(self, size: tuple[int, int]) -> Iterator[Image]:
         camera = Camera.of(self.drawing)
         return (picture(self.drawing, posture, self.layers, camera, *size) for posture in self)
+
+    def captions(self) -> Iterator[str]:
+        """Time of each picture, and how much larger deformations are drawn than they are."""
+        factor = "" if self.exaggeration == 1.0 else f", deformation × {self.exaggeration:g}"
+        return (f"t = {t:.3f} s{factor}" for t in self.t)
 
 
 @checked
@@ -77,6 +84,7 @@ def record(
     paths: Sequence[Sequence[Any]] = (),
     rate: float = 30.0,
     size: tuple[int, int] = (960, 720),
+    caption: bool = False,
 ) -> Path:
     """Write a motion as a file that others can look at without SYMOFROS.
 
@@ -93,6 +101,7 @@ def record(
         paths: Curves drawn beside it, as of `Viewer`.
         rate: Pictures a second; those of a GIF last whole hundredths of a second.
         size: Width and height of films and pictures, even numbers.
+        caption: Whether time and exaggeration are written on films and pictures (Pillow, of the extra `view`).
 
     Returns:
         The path; the file is there whole or not at all.
@@ -115,11 +124,12 @@ def record(
         motion = PlayedMotion(motion.model, motion.t[-1:], motion.q[-1:], motion.u[-1:], motion.par)
     period = max(round(100.0 / rate), 1) / 100.0 if file.suffix == ".gif" else 1.0 / rate
     frames = _Recording(mechanism, motion, period, speed, exaggeration)
+    pictures = _captioned(frames, size) if caption else frames.pictures(size)
     write: dict[str, Callable[[], bytes]] = {
         ".html": lambda: _page(frames),
-        ".mp4": lambda: _film(frames, size),
-        ".gif": lambda: _gif(frames, size),
-        ".png": lambda: _png(frames, size),
+        ".mp4": lambda: _film(pictures, frames.period, size),
+        ".gif": lambda: _gif(pictures, frames.period),
+        ".png": lambda: _png(pictures),
     }
     write_atomically(file, write[file.suffix]())
     return file
@@ -174,7 +184,18 @@ def _page(frames: _Recording) -> bytes:
         stop_server(server)
 
 
-def _film(frames: _Recording, size: tuple[int, int]) -> bytes:
+def _captioned(frames: _Recording, size: tuple[int, int]) -> Iterator[Image]:
+    """Pictures with their captions at the lower left."""
+    images = _extra("PIL.Image", "captions need Pillow", "symofros[view]")
+    pencil = _extra("PIL.ImageDraw", "captions need Pillow", "symofros[view]")
+    height = max(10, size[1] // 30)
+    for image, text in zip(frames.pictures(size), frames.captions(), strict=True):
+        drawn = images.fromarray(image)
+        pencil.Draw(drawn).text((height, size[1] - 2 * height), text, fill=_INK, font_size=height)
+        yield np.asarray(drawn)
+
+
+def _film(pictures: Iterator[Image], period: float, size: tuple[int, int]) -> bytes:
     ffmpeg = _extra("imageio_ffmpeg", "MP4 needs ffmpeg", "symofros[video]")
     with tempfile.TemporaryDirectory() as folder:
         target = Path(folder) / "film.mp4"
@@ -182,34 +203,34 @@ def _film(frames: _Recording, size: tuple[int, int]) -> bytes:
         writer = ffmpeg.write_frames(
             str(target),
             size,
-            fps=1.0 / frames.period,
+            fps=1.0 / period,
             codec="libx264",
             quality=7,
             pix_fmt_out="yuv420p",
             macro_block_size=2,
         )
         writer.send(None)
-        for image in frames.pictures(size):
+        for image in pictures:
             writer.send(np.ascontiguousarray(image))
         writer.close()
         return target.read_bytes()
 
 
-def _gif(frames: _Recording, size: tuple[int, int]) -> bytes:
+def _gif(pictures: Iterator[Image], period: float) -> bytes:
     images = _extra("PIL.Image", "GIF needs Pillow", "symofros[view]")
     # A palette of its own for each picture flickers; that of the first serves all, as the pieces are the same.
-    first, *others = (images.fromarray(image) for image in frames.pictures(size))
+    first, *others = (images.fromarray(image) for image in pictures)
     palette = first.quantize(255)
     paletted = [one.quantize(palette=palette, dither=images.Dither.NONE) for one in others]
     stream = io.BytesIO()
-    palette.save(stream, "GIF", save_all=True, append_images=paletted, duration=round(1000 * frames.period), loop=0)
+    palette.save(stream, "GIF", save_all=True, append_images=paletted, duration=round(1000 * period), loop=0)
     return stream.getvalue()
 
 
-def _png(frames: _Recording, size: tuple[int, int]) -> bytes:
+def _png(pictures: Iterator[Image]) -> bytes:
     images = _extra("PIL.Image", "PNG needs Pillow", "symofros[view]")
     stream = io.BytesIO()
-    images.fromarray(next(frames.pictures(size))).save(stream, "PNG", optimize=True)
+    images.fromarray(next(pictures)).save(stream, "PNG", optimize=True)
     return stream.getvalue()
 
 

@@ -99,3 +99,14 @@ def test_a_missing_extra_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     monkeypatch.setitem(__import__("sys").modules, "imageio_ffmpeg", None)
     with pytest.raises(SymofrosError, match=r"MP4 needs ffmpeg\n(.*\n)*  remedy: pip install 'symofros\[video\]'"):
         sf.record(SYSTEM, swing(0.1), tmp_path / "m.mp4", size=(64, 48))
+
+
+def test_time_and_exaggeration_are_written_on_pictures(tmp_path: Path) -> None:
+    images = import_module("PIL.Image")
+    how = {"size": (320, 240), "exaggeration": 20.0}
+    pictures = []
+    for caption in (False, True):
+        with images.open(sf.record(SYSTEM, swing(1.0), tmp_path / f"{caption}.png", caption=caption, **how)) as image:
+            pictures.append(np.asarray(image.convert("RGB")).astype(int))
+    rows, columns = np.nonzero(np.abs(pictures[1] - pictures[0]).max(axis=2) > 60)
+    assert rows.size > 100 and rows.min() > 200 and columns.max() < 240  # A line at the foot.

@@ -30,6 +30,8 @@ from symofros.studio.editor.document.shape_curves import curves
 from symofros.studio.editor.document.storage import ConflictError
 from symofros.studio.editor.document.workspace import FileError
 from symofros.studio.editor.editing.data_edits import EditError, refusal
+from symofros.studio.editor.jobs.film import MEDIA_TYPES as FILM_TYPES
+from symofros.studio.editor.jobs.film import film_of
 from symofros.studio.editor.jobs.processes import Jobs
 from symofros.studio.editor.jobs.run_table import MEDIA_TYPES, table_of
 from symofros.studio.editor.server.document_viewer import DocumentViewer
@@ -87,6 +89,7 @@ class Editor:
             Route("/api/jobs", self.start_job, methods=["POST"]),
             Route("/api/jobs/{key}", self.job),
             Route("/api/jobs/{key}/table.{suffix}", self.table),
+            Route("/api/jobs/{key}/film.{suffix}", self.film),
             Route("/api/jobs/{key}", self.order_job, methods=["POST"]),
             Route("/api/jobs/{key}", self.cancel_job, methods=["DELETE"]),
             Route("/api/events", self.listen),
@@ -223,6 +226,20 @@ class Editor:
         suffix = request.path_params["suffix"]
         content = await run_sync(partial(table_of, job.kind, job.result, suffix))
         return Response(content, media_type=MEDIA_TYPES[suffix])
+
+    async def film(self, request: Request) -> Response:
+        """A simulated motion as a film."""
+        job, suffix, asked = (
+            self.jobs.get(request.path_params["key"]),
+            request.path_params["suffix"],
+            request.query_params,
+        )
+        result = job.simulated()
+        is_present = job.revision == self.session.document.revision
+        system = await self.exclusively(lambda: self.session.sound_system if is_present else None)
+        factor, speed = asked.get("exaggeration", "1"), asked.get("speed", "1")
+        content = await run_sync(partial(film_of, system, result, suffix, factor, speed))
+        return Response(content, media_type=FILM_TYPES[suffix])
 
     async def watch(self) -> None:
         """Tell when somebody else has written the file: once a time that it changes."""

@@ -13,9 +13,10 @@ import numpy as np
 from symofros.description.system import System
 from symofros.errors import Problem, SymofrosError
 from symofros.studio.editor.editing.data_edits import EditError, four_parts, refusal
+from symofros.studio.editor.jobs.run_states import states_of
 from symofros.studio.editor.jobs.worker import error_of
 from symofros.studio.editor.units import coordinate_units
-from symofros.studio.viewer.playing.motion import PlayedMotion, States, motion_of
+from symofros.studio.viewer.playing.motion import PlayedMotion, motion_of
 from symofros.studio.viewer.viewer import Viewer
 
 Json = dict[str, Any]
@@ -85,7 +86,7 @@ class DocumentViewer:
             self._viewer.set_system(system)
 
     def pose(self, body: Json) -> Json:
-        """Move it: `q` {coordinate: value}, `par` {parameter: value}, `exaggeration`, `dark`, `reset`; any of them.
+        """Move it or change its looks: `q`, `par` {name: value}, `exaggeration`, `dark`, `frames`, `labels`, `reset`.
 
         Returns:
             Where everything stands then, and why loops could not be closed.
@@ -103,6 +104,9 @@ class DocumentViewer:
                 raise _nothing_shown()
             if body.get("reset") is True:
                 viewer.reset()
+            for layer in ("frames", "labels"):
+                if isinstance(body.get(layer), bool):
+                    viewer.set_layer(layer, body[layer])
             if isinstance(body.get("dark"), bool):
                 viewer.set_dark(body["dark"])
             if factor is not None:
@@ -143,7 +147,7 @@ class DocumentViewer:
                 )
             if self._motion is None or self._motion[0] is not run or self._motion[1].model is not model:
                 try:
-                    self._motion = run, motion_of(model, _states(run))
+                    self._motion = run, motion_of(model, states_of(run))
                 except SymofrosError as error:
                     raise EditError(_problem(error_of(error))) from None
             motion = self._motion[1]
@@ -197,17 +201,8 @@ def _stand(viewer: Viewer) -> Json:
         "q": dict(zip(labels, viewer.values.tolist(), strict=True)),
         "exaggeration": viewer.exaggeration,
         "gap": gap,
+        "frames": "frames" in viewer.layers,
     }
-
-
-def _states(run: Json) -> States:
-    """The states of a run, whose values are null where it diverged."""
-
-    def columns(kind: str) -> np.ndarray:
-        values = [series["values"] for series in run["series"] if series["kind"] == kind]
-        return np.array(values, dtype=np.float64).T.reshape(len(run["t"]), len(values))
-
-    return States(np.array(run["t"], dtype=np.float64), columns("q"), columns("u"), run["par"])
 
 
 def _finite(number: Any) -> bool:

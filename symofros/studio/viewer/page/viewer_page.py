@@ -88,6 +88,11 @@ class ViewerPage:
             if self._player is not None:
                 self._player.speed = positive("speed", speed)
 
+    @property
+    def layers(self) -> frozenset[str]:
+        """Layers that are shown."""
+        return self._scene_state.scene.layers
+
     def set_layer(self, layer: str, visible: bool) -> None:
         """Show or hide a layer.
 

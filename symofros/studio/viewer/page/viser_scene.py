@@ -18,7 +18,8 @@ from symofros.studio.viewer.drawing.poses import Posture, Sweep, beam_sweep, con
 from symofros.studio.viewer.render.camera import Camera
 
 _ROOT, _TUBES = "/mechanism", "/tubes"
-SEE_THROUGH = 0.3  # Opacity of boxes of inertia.
+SEE_THROUGH = 0.3  # Opacity of boxes of inertia, and of what frames are shown in.
+_OPAQUE = ("bodies", "joints", "visuals")
 _TRIAD = 0.05  # Length of a frame's axes, of the mechanism's size.
 
 
@@ -57,6 +58,7 @@ class ViserScene:
             ]
             self._hide_spare_tubes()
             self._add_frames()
+            self._see_through()
             self._add_ground()
             self._aim()
             self.move(posture)
@@ -101,6 +103,13 @@ class ViserScene:
         self._shown = self._shown | {layer} if visible else self._shown - {layer}
         for node in self._nodes[layer]:
             node.visible = visible
+        self._see_through()
+
+    def _see_through(self) -> None:
+        """Let frames, which mostly lie within bodies, be seen through them."""
+        for layer in _OPAQUE:
+            for node in self._nodes[layer]:
+                node.opacity = SEE_THROUGH if "frames" in self._shown else None
 
     # Nodes.
 

@@ -59,6 +59,15 @@ def test_a_motion_plays_at_the_cursor_of_the_plots_and_runs_are_compared(
     expect(motion.get_by_role("status")).not_to_have_text("0 s")
     picture("play")
 
+    # Frames are seen through the bodies; the motion is saved as a film.
+    page.get_by_label("Frames").click()
+    expect(page.get_by_label("Frames")).to_be_checked()
+    picture("frames")
+    page.get_by_label("Frames").click()
+    with page.expect_download() as film:
+        results.get_by_label("Film of run 1, GIF").click()
+    assert film.value.suggested_filename == "run_1.gif" and film.value.path().read_bytes()[:6] == b"GIF89a"
+
     # The picture takes the page's colours.
     scheme = page.frame_locator("iframe.view").locator("html")
     for colours in ("dark", "light"):

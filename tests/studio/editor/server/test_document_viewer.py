@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import shutil
 import sys
@@ -11,6 +12,7 @@ from typing import Any
 
 import pyarrow.parquet as parquet
 import pytest
+from PIL import Image
 from starlette.testclient import TestClient, WebSocketTestSession
 from starlette.websockets import WebSocketDisconnect
 
@@ -264,8 +266,21 @@ def test_a_run_is_shown_at_a_time_and_kept_as_a_file(client: TestClient, folder:
     assert table["q1"].to_pylist() == series["q1"] and table.schema.field("q1").metadata == {b"unit": b"rad"}
     assert client.get(f"/api/jobs/{run}/table.exe").status_code == 422
 
+    # A film of it, at a tenth of the speed: 0.2 s in 41 pictures, twenty a second.
+    film = client.get(f"/api/jobs/{run}/film.gif?speed=0.1&exaggeration=5")
+    assert film.status_code == 200 and film.headers["content-type"] == "image/gif"
+    with Image.open(io.BytesIO(film.content)) as gif:
+        assert gif.n_frames == 41 and gif.info["duration"] == 50
+    for asked in ("exe", "gif?speed=0", "gif?speed=soon", "gif?speed=0.001", "gif?exaggeration=nan"):
+        assert client.get(f"/api/jobs/{run}/film.{asked}").status_code == 422
+
+    # Frames are seen through the bodies that they are in.
+    assert not pose(client, t=0, run=run)["frames"] and pose(client, frames=True)["frames"]
+
     # Of another mechanism it can't be shown.
     edit(client, "bodies", "crank", "joint", "name", value="angle")
     look(client)
     refused = client.post("/api/pose", json={"run": run, "t": 0})
     assert refused.status_code == 422 and "does not fit" in refused.json()["error"]["object"]
+    outdated = client.get(f"/api/jobs/{run}/film.gif")
+    assert outdated.status_code == 422 and "has changed since" in outdated.json()["error"]["object"]

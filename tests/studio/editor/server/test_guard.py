@@ -23,6 +23,7 @@ ADDRESSES = (
     ("GET", "events"),
     ("GET", "jobs/1"),
     ("GET", "jobs/1/table.csv"),
+    ("GET", "jobs/1/film.csv"),
     ("POST", "edit"),
     ("POST", "text"),
     ("POST", "undo"),

@@ -243,6 +243,8 @@ export interface Stand {
   exaggeration: number;
   /** Largest residual of the conditions that close loops; null where there are none. */
   gap: number | null;
+  /** Whether frames are drawn. */
+  frames: boolean;
 }
 
 export interface View extends Stand {
@@ -261,6 +263,9 @@ export interface Pose {
   exaggeration?: number;
   reset?: boolean;
   dark?: boolean;
+  /** Whether frames are drawn, and their names; bodies are seen through then. */
+  frames?: boolean;
+  labels?: boolean;
   /** A simulation, whose state at a time is shown. */
   run?: string;
   t?: number;

@@ -1,6 +1,32 @@
+import { useState } from "react";
+
 import type { JobKind } from "../api/jobs";
-import { draw, forget, rename, saveTable } from "../store/runs";
+import type { KeptRun } from "../model/runs";
+import { draw, forget, rename, saveFilm, saveTable } from "../store/runs";
 import { useDocument, useStore } from "../store/store";
+
+/** Draws the motion as a film; that takes seconds. */
+function Film({ run }: { run: KeptRun }) {
+  const [drawing, setDrawing] = useState(false);
+  const draw = async (suffix: "gif" | "mp4"): Promise<void> => {
+    setDrawing(true);
+    await saveFilm(run, suffix);
+    setDrawing(false);
+  };
+  return (["gif", "mp4"] as const).map((suffix) => (
+    <button
+      key={suffix}
+      type="button"
+      className="small"
+      disabled={drawing}
+      aria-label={`Film of ${run.name}, ${suffix.toUpperCase()}`}
+      title="A film at the speed it plays, with time and exaggeration written on it"
+      onClick={() => void draw(suffix)}
+    >
+      {drawing ? "Drawing…" : suffix.toUpperCase()}
+    </button>
+  ));
+}
 
 /** The kept runs of a kind: their names, which are drawn with the newest, and their files. */
 export function Runs({ kind }: { kind: JobKind }) {
@@ -38,6 +64,7 @@ export function Runs({ kind }: { kind: JobKind }) {
           <button type="button" className="small" onClick={() => void saveTable(run, "parquet")}>
             Parquet
           </button>
+          {kind === "simulate" && run.revision === revision ? <Film run={run} /> : null}
           {run.id === newest ? null : (
             <button type="button" className="small" aria-label={`Forget ${run.name}`} onClick={() => forget(run.id)}>
               Forget

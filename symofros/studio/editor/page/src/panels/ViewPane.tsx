@@ -79,6 +79,14 @@ function Controls({ view }: { view: View }) {
         <button type="button" className="small" onClick={() => void move({ reset: true })}>
           Reset
         </button>
+        <label>
+          <input
+            type="checkbox"
+            checked={view.frames}
+            onChange={({ target }) => void move({ frames: target.checked, labels: target.checked })}
+          />{" "}
+          Frames
+        </label>
         <span role="status" className={stuck === "" ? "quiet" : "bad"}>
           {stuck !== ""
             ? "The loops can't be closed there."
