@@ -21,7 +21,7 @@ from symofros.mechanics.topology.physics import has_physical_inertia
 from symofros.mechanics.topology.units import unit_problems
 
 _PATHS = "check the path; a relative one starts at the current folder"
-_READABLE = (*YAML_SUFFIXES, ".urdf", ".xml")
+_READABLE = (*YAML_SUFFIXES, ".urdf", ".sdf", ".world", ".xml")
 
 
 @checked
@@ -36,9 +36,9 @@ def load(
     """Read a description and check it.
 
     Args:
-        path: Native YAML (.yaml, .yml), URDF (.urdf) or MJCF (.xml; needs the package mujoco).
+        path: Native YAML (.yaml, .yml), URDF (.urdf), SDFormat (.sdf, .world) or MJCF (.xml; needs the package mujoco).
         floating_base: URDF only: put a free joint under the root link.
-        snap_tol: URDF and MJCF: numbers this close to exact ones are made exact (`read_urdf`, `read_mjcf`).
+        snap_tol: All but YAML: numbers this close to exact ones are made exact (`read_urdf`, `read_mjcf`).
         waive: Checks that every body is allowed to fail (WAIVERS), such as "massless_tip".
         mimic: URDF only: couple joints that mimic others to them (`Coupling`); otherwise they stay independent.
 
@@ -94,6 +94,10 @@ def _read(file: Path, floating_base: bool, snap_tol: float, mimic: bool) -> Read
         from symofros.description.mjcf.reader import read_mjcf
 
         return _accept_inertias(read_mjcf(file, snap_tol=snap_tol))
+    if file.suffix.lower() in (".sdf", ".world"):
+        from symofros.description.sdf.reader import read_sdf
+
+        return _accept_inertias(read_sdf(file, snap_tol=snap_tol))
     from symofros.description.yaml.files import read_yaml
 
     return read_yaml(file)
@@ -121,8 +125,6 @@ def save(system: System, path: str | os.PathLike[str]) -> None:
 # Formats that people have and we do not read -> how they become one that we do.
 _CONVERSIONS = {
     ".xacro": "expand it before: `xacro robot.xacro > robot.urdf` (pip install xacro, or ROS)",
-    ".sdf": "give the URDF or MJCF that it was made of; `gz sdf` converts URDF to SDF, not back",
-    ".world": "give the URDF or MJCF of one of its models",
     ".usd": "export it as URDF or MJCF (Isaac Sim's exporters, or mujoco's USD converter)",
     ".mjb": "give the XML that the binary was compiled from",
 }

@@ -9,11 +9,12 @@ from xml.parsers import expat
 from symofros.errors import Problem, SymofrosError
 
 MAX_DEPTH = 100
+MAX_TEXT = 4096
 
 
 @dataclass(slots=True)
 class Element:
-    """One element; its text is of no interest to the formats that are read here.
+    """One element.
 
     Attributes:
         tag: Name of the element, as written.
@@ -21,6 +22,7 @@ class Element:
         line: Line of the start tag, counted from 1.
         children: Child elements in order.
         file: Name of the file.
+        text: Text before its end, of all pieces between its children, without white space around it.
     """
 
     tag: str
@@ -28,6 +30,7 @@ class Element:
     line: int
     children: list[Element] = field(default_factory=list)
     file: str = ""
+    text: str = ""
 
     @property
     def where(self) -> str:
@@ -96,6 +99,8 @@ class _Builder:
         self.parser.StartDoctypeDeclHandler = self.doctype
         self.parser.StartElementHandler = self.start
         self.parser.EndElementHandler = self.end
+        self.parser.CharacterDataHandler = self.characters
+        self.parser.buffer_text = True
 
     def fault(self, what: str, found: str, rule: str, remedy: str) -> XmlFault:
         return XmlFault(Problem(what, found, rule, remedy, f"{self.file}:{self.parser.CurrentLineNumber}"))
@@ -123,5 +128,11 @@ class _Builder:
             self.root = element
         self.open.append(element)
 
+    def characters(self, text: str) -> None:
+        # A <pose> is some hundred characters long; long texts belong to plugins, and nobody reads them.
+        if self.open and len(self.open[-1].text) < MAX_TEXT:
+            self.open[-1].text += text[:MAX_TEXT]
+
     def end(self, tag: str) -> None:
-        self.open.pop()
+        element = self.open.pop()
+        element.text = element.text.strip()

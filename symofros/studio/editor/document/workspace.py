@@ -16,7 +16,7 @@ from symofros.errors import Problem, SymofrosError
 
 MAX_LISTED = 1000
 MAX_SCANNED = 20_000
-READABLE = (*YAML_SUFFIXES, ".urdf", ".xml")
+READABLE = (*YAML_SUFFIXES, ".urdf", ".sdf", ".xml")
 
 
 class FileError(SymofrosError):

@@ -1,0 +1,332 @@
+"""SDFormat in, as its specification and Drake read it: models of links, whose roots float unless a joint holds them.
+
+A file is untrusted: its size is bounded, document types are refused, and no other file is read: `<include>` is refused,
+and meshes are only named, where they lie in the file's folder or below.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from symofros.description.constraints import Closure
+from symofros.description.forces import Load
+from symofros.description.frames import Frame
+from symofros.description.joint import WORLD, Joint
+from symofros.description.mjcf.geometry import Exact
+from symofros.description.reading import Reading, in_order, read_bytes
+from symofros.description.remarks import Remarks
+from symofros.description.sdf.frames import MODEL, SEPARATOR, Frames
+from symofros.description.sdf.joints import JointReader, SdfJoint
+from symofros.description.sdf.values import SdfValues
+from symofros.description.sdf.visuals import as_urdf
+from symofros.description.system import RigidBody, System
+from symofros.description.urdf.visuals import Visuals
+from symofros.description.visual import Visual
+from symofros.description.xml_nodes import Element, XmlFault, parse_xml
+from symofros.errors import DescriptionError, Problem
+
+MAX_BYTES = 16 << 20
+MAX_LINKS = 10_000
+# Of no meaning to mechanics, so not worth a remark.
+_SILENT = frozenset(
+    {"pose", "gui", "scene", "light", "physics", "self_collide", "allow_auto_disable", "static", "gravity", "name"}
+    | {"atmosphere", "magnetic_field", "spherical_coordinates", "audio", "state", "must_be_base_link"}
+)
+_VERSIONS = re.compile(r"1\.([5-9]|1[0-9])\Z")
+_READ = frozenset({"model", "link", "joint", "frame"})
+# Gravity of a <world> that states none [m/s^2].
+_GRAVITY = (0.0, 0.0, -9.8)
+
+
+def read_sdf(path: str | os.PathLike[str], *, snap_tol: float) -> Reading:
+    """Read an SDFormat file, of version 1.5 or later.
+
+    Args:
+        path: The file; one <model>, or a <world> of models.
+        snap_tol: Lengths this close to 0 [m], and entries of axes and rotations this close to 0 or +-1, are made
+            exact.
+
+    Returns:
+        The system, and every problem.
+
+    Raises:
+        ValueError: `snap_tol` is not a small number.
+    """
+    if not 0.0 <= snap_tol < 0.1:
+        raise ValueError(f"snap_tol: found {snap_tol}; rule: 0 <= snap_tol < 0.1, so that it only absorbs rounding")
+    file = os.fspath(path)
+    values = SdfValues(file, snap_tol)
+    try:
+        root = parse_xml(read_bytes(Path(path), MAX_BYTES), file)
+        world = _world(root, values)
+        system = _Importer(Path(path), values, world).system() if world is not None else None
+    except XmlFault as error:
+        return Reading(None, (error.problem,))
+    except DescriptionError as error:
+        return Reading(None, error.problems)
+    return Reading(None if values.problems else system, in_order(values.problems))
+
+
+def _world(root: Element, values: SdfValues) -> Element | None:
+    """The element that holds the models: the <world>, or the root."""
+    version = root.attributes.get("version", "")
+    if root.tag != "sdf" or not _VERSIONS.match(version):
+        values.fault(
+            root,
+            "the file is no SDFormat of version 1.5 or later",
+            f'<{root.tag:.60} version="{version:.20}">',
+            "the root element is <sdf>, its version 1.5 to 1.19",
+            "convert an older file by `gz sdf --print FILE`",
+        )
+        return None
+    worlds = list(root.all("world"))
+    if len(worlds) > 1 or (worlds and root.first("model")):
+        values.fault(
+            root,
+            "the file has several worlds, or a world beside a model",
+            f"{len(worlds)} worlds",
+            "one <world>, or one <model>",
+            "keep one of them",
+        )
+        return None
+    return worlds[0] if worlds else root
+
+
+class _Importer:
+    def __init__(self, file: Path, values: SdfValues, world: Element) -> None:
+        self.values, self.world = values, world
+        self.exact = Exact(values.snap_tol)
+        self.frames = Frames(values, world)
+        self.joints = JointReader(values, self.frames, self.exact)
+        self.visuals = Visuals(file, world, values.remarks)
+        self.links: dict[str, Element] = {}
+        self.canonical: dict[str, str] = {}
+        self.static: set[str] = set()
+        self.origin: dict[tuple[str, ...], str] = {("system",): values.where(world)}
+
+    def system(self) -> System:
+        """The description; faults are noted on the way."""
+        models = list(self.world.all("model"))
+        if not models:
+            self.values.fault(self.world, "there is no model", "no <model>", "a file holds a model", "add one")
+            return System("")
+        # A single model's names stand as they are; those of several have the model's name before them.
+        alone = len(models) == 1 and self.world.tag == "sdf"
+        for model in models:
+            self.model(model, "" if alone else self.values.attribute(model, "name", "a model") or "?", "")
+        self.scope(self.world, "", self.world.tag == "world")
+        self.frames.check()
+        if self.values.problems:
+            return System("")
+        bodies, closures, frames = self.tree()
+        placed = [self.with_frames(body, frames) for body in bodies]
+        base = [RigidBody(WORLD, frames=tuple(frames[WORLD]))] if frames.get(WORLD) else []
+        couplings = tuple(self.joints.couplings())
+        remarks: Remarks = self.values.remarks
+        if self.exact.changed:
+            text = f"numbers within {self.exact.tolerance:g} of exact ones made exact"
+            remarks.add(text, "number", f"{self.exact.changed} of them")
+        return System(
+            models[0].attributes.get("name", "model")
+            if len(models) == 1
+            else self.world.attributes.get("name", "world"),
+            (*base, *placed),
+            gravity=self.gravity(),
+            constraints=(*closures, *couplings),
+            notes=remarks.notes(),
+            origin=self.origin,
+            visuals={name: shapes for name, link in self.links.items() if (shapes := self.shapes(name, link))},
+        )
+
+    def model(self, model: Element, scope: str, around: str) -> None:
+        """Take up a model: its frame, and what is in it.
+
+        Args:
+            model: The element.
+            scope: Prefix of its names.
+            around: Prefix of the names of the model that it is nested in; "" in the world.
+        """
+        if self.values.truth(self.values.text(model, "static", "false"), model, f"model '{scope}'"):
+            self.static.add(scope)
+        own = self.frames.full(scope, MODEL)
+        # A model that is placed by one of its frames has its own where that leads it.
+        placed = model.attributes.get("placement_frame")
+        if placed:
+            self.values.fault(
+                model,
+                f"model '{model.attributes.get('name')}' is placed by one of its frames",
+                f"placement_frame '{placed:.60}'",
+                "the pose of a model is that of its own frame",
+                "state the pose of the model's frame, and drop placement_frame",
+            )
+        self.frames.add(own, model, around, self.frames.full(around, MODEL) if around else WORLD)
+        for inner in model.all("model"):
+            name = self.values.attribute(inner, "name", "a model") or "?"
+            self.model(inner, f"{scope}{SEPARATOR}{name}" if scope else name, scope)
+        self.scope(model, scope, True)
+        first = next(model.all("link"), None)
+        named = model.attributes.get("canonical_link") or (
+            first.attributes.get("name", "") if first is not None else ""
+        )
+        inner_models = [inner.attributes.get("name", "") for inner in model.all("model")]
+        if named and own in self.frames.nodes:
+            self.frames.nodes[own].attached_to = self.frames.full(scope, named)
+        elif inner_models and own in self.frames.nodes:
+            self.frames.nodes[own].attached_to = self.frames.full(scope, inner_models[0])
+
+    def scope(self, element: Element, scope: str, remarked: bool) -> None:
+        """Take up links, joints and frames of a model, or of the world."""
+        default = self.frames.full(scope, MODEL)
+        default = default if default in self.frames.nodes else WORLD
+        for child in element.children:
+            if child.tag == "include":
+                self.values.fault(
+                    child,
+                    "included models can't be read",
+                    f"<include> of '{self.values.text(child, 'uri', '?'):.80}'",
+                    "all of a model stands in one file",
+                    "write it whole by `gz sdf --print FILE`",
+                )
+            elif child.tag not in _READ and child.tag not in _SILENT and remarked:
+                name = child.attributes.get("name", f"line {child.line}")
+                self.values.remarks.add(f"<{child.tag:.60}> ignored", "element", name)
+            if child.tag not in _READ - {"model"} or element.tag == "sdf":
+                continue
+            stated = self.values.attribute(child, "name", f"a {child.tag}")
+            if stated is None:
+                continue
+            name = f"{scope}{SEPARATOR}{stated}" if scope else stated
+            if child.tag == "link":
+                self.link(child, name, scope, default)
+            elif child.tag == "joint":
+                self.joints.add(name, child, scope)
+                self.origin["joint", name] = self.origin["constraint", name] = self.values.where(child)
+            else:
+                attached = child.attributes.get("attached_to", "")
+                to = self.frames.full(scope, attached) if attached else default
+                self.frames.add(name, child, scope, to, to)
+                self.origin["frame", name] = self.values.where(child)
+
+    def link(self, element: Element, name: str, scope: str, default: str) -> None:
+        """Take up a link."""
+        self.frames.add(name, element, scope, default)
+        if len(self.links) >= MAX_LINKS:
+            problem = Problem("too many links", f"more than {MAX_LINKS}", f"at most {MAX_LINKS}", "split the model")
+            raise DescriptionError(problem)
+        self.links[name] = element
+        self.origin["body", name] = self.values.where(element)
+        for tag in ("collision", "sensor", "light", "battery", "audio_source", "projector", "particle_emitter"):
+            if element.first(tag):
+                self.values.remarks.add(f"<{tag}> of links ignored", "link", name)
+        for tag in ("kinematic", "enable_wind"):
+            if self.values.truth(self.values.text(element, tag, "false"), element, f"link '{name}'"):
+                self.values.remarks.add(f"<{tag}> ignored", "link", name)
+
+    def tree(self) -> tuple[list[RigidBody], list[Closure], dict[str, list[Frame]]]:
+        """Bodies depth first, closures, and the frames of bodies by their names."""
+        above: dict[str, tuple[SdfJoint, str]] = {}
+        below: dict[str, list[str]] = {}
+        closing: list[SdfJoint] = []
+        for joint in self.joints.joints.values():
+            missing = [end for end in (joint.parent, joint.child) if end not in self.frames.nodes]
+            parent, child = ("" if missing else self.frames.body(end) for end in (joint.parent, joint.child))
+            if missing or child == WORLD or parent == child:
+                ends = f"parent '{joint.parent}', child '{joint.child}'"
+                rule = "a joint joins two different links, and its child is not the world"
+                self.values.fault(
+                    joint.element, f"joint '{joint.name}' joins no two links", ends, rule, "mend its ends"
+                )
+            elif child in above or self.carries(child, parent, above):
+                closing.append(joint)
+            else:
+                above[child] = joint, parent
+                below.setdefault(parent, []).append(child)
+        frames: dict[str, list[Frame]] = {}
+        closures = []
+        for joint in closing:
+            made = self.joints.closing(joint)
+            if made is not None:
+                closures.append(made[0])
+                for body, frame in made[1].items():
+                    frames.setdefault(body, []).append(frame)
+        for name, node in self.frames.nodes.items():
+            if node.element.tag == "frame":
+                body = self.frames.body(name)
+                frames.setdefault(body, []).append(
+                    Frame(name, *self.exact.placement(*self.frames.relative(name, body)))
+                )
+        return list(self.bodies(above, below)), closures, frames
+
+    @staticmethod
+    def carries(child: str, parent: str, above: dict[str, tuple[SdfJoint, str]]) -> bool:
+        """Whether a link carries, through others, the one that is to be its parent."""
+        while parent in above and parent != child:
+            parent = above[parent][1]
+        return parent == child
+
+    def bodies(self, above: dict[str, tuple[SdfJoint, str]], below: dict[str, list[str]]) -> Iterator[RigidBody]:
+        """The bodies, depth first, children in the order of the file."""
+        taken = {*self.joints.joints, *self.links}
+        stack = [name for name in reversed(list(self.links)) if name not in above or above[name][1] == WORLD]
+        while stack:
+            name = stack.pop()
+            stack.extend(reversed(below.get(name, [])))
+            if name not in above:
+                yield self.body(name, self.root_joint(name, taken))
+                continue
+            joint, offset = self.joints.placed(above[name][0], name, above[name][1])
+            if any(offset):
+                # A link that moves about a point that is not its origin.
+                carrier = _fresh(f"{name}_at_{joint.name}", taken)
+                yield RigidBody(carrier, joint)
+                held = _fresh(f"{name}_fixed", taken)
+                joint = Joint(held, "fixed", carrier, None, self.exact.vector(-offset))
+            yield self.body(name, joint)
+
+    def root_joint(self, name: str, taken: set[str]) -> Joint:
+        """The joint of a link that the file states none for: it floats, unless its model is static."""
+        if any(name.startswith(scope) for scope in self.static):
+            self.values.remarks.add("links of static models are fixed to the world", "link", name)
+            placement = self.exact.placement(*self.frames.relative(name, WORLD))
+            return Joint(_fresh(f"{name}_fixed", taken), "fixed", WORLD, None, *placement)
+        self.values.remarks.add("links without a joint to the world float", "link", name)
+        return Joint(_fresh(f"{name}_floating", taken), "free", WORLD)
+
+    def body(self, name: str, joint: Joint) -> RigidBody:
+        """A link with its joint."""
+        element, owner = self.links[name], f"link '{name}'"
+        inertia = self.values.mass_properties(element, owner)
+        loads: tuple[Load, ...] = ()
+        if not self.values.truth(self.values.text(element, "gravity", "true"), element, owner):
+            self.values.remarks.add("gravity of links is switched off by a load", "link", name)
+            mass = float(inertia.mass) if isinstance(inertia.mass, float) else 0.0
+            x, y, z = (-mass * g for g in self.gravity())
+            loads = (Load((x, y, z), at="center_of_mass", axes="world"),)
+        return RigidBody(name, joint, inertia, loads=loads)
+
+    def gravity(self) -> tuple[float, float, float]:
+        """Acceleration of gravity: the world's, or, of a model by itself, that of our descriptions [m/s^2]."""
+        default = _GRAVITY if self.world.tag == "world" else System("").gravity
+        x, y, z = self.values.given(self.world, "gravity", "the world", default)
+        return x, y, z
+
+    @staticmethod
+    def with_frames(body: RigidBody, frames: dict[str, list[Frame]]) -> RigidBody:
+        """The body with its frames."""
+        own = tuple(frames.get(body.name, ()))
+        return RigidBody(body.name, body.joint, body.inertia, own, loads=body.loads) if own else body
+
+    def shapes(self, name: str, link: Element) -> tuple[Visual, ...]:
+        """What a link looks like."""
+        return self.visuals.of(as_urdf(link), name)
+
+
+def _fresh(wanted: str, taken: set[str]) -> str:
+    """The wanted name, with underscores behind it while it is taken; it is taken then."""
+    while wanted in taken:
+        wanted += "_"
+    taken.add(wanted)
+    return wanted

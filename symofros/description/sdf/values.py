@@ -1,0 +1,129 @@
+"""Numbers, vectors, poses and truth values of SDFormat elements; faults and remarks are collected on the way."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from symofros.base.rotations import Array, normalized, quaternion_matrix
+from symofros.description.mjcf.geometry import about
+from symofros.description.system import Inertia
+from symofros.description.urdf.values import Values, finite_numbers
+from symofros.description.values import Rotation
+from symofros.description.xml_nodes import Element
+
+# SDFormat's number for "no bound".
+UNBOUNDED = 1e16
+_TRUTH = {"true": True, "1": True, "false": False, "0": False}
+_MOMENTS = (("ixx", 1.0), ("iyy", 1.0), ("izz", 1.0), ("ixy", 0.0), ("ixz", 0.0), ("iyz", 0.0))
+
+
+class Pose(NamedTuple):
+    """A frame B in a frame A.
+
+    Attributes:
+        p: Position p_AB (3,) [m].
+        R: Rotation R_AB (3, 3).
+    """
+
+    p: Array
+    R: Array
+
+    def __matmul__(self, other: Pose) -> Pose:
+        """The pose in A of a frame whose pose in B is given."""
+        return Pose(self.p + self.R @ other.p, self.R @ other.R)
+
+    def inverse(self) -> Pose:
+        """A in B."""
+        return Pose(-(self.R.T @ self.p), self.R.T)
+
+
+IDENTITY_POSE = Pose(np.zeros(3), np.eye(3))
+
+
+class SdfValues(Values):
+    """Reads the content of elements, which states what attributes do in URDF."""
+
+    def text(self, element: Element, tag: str, default: str = "") -> str:
+        """Content of a child; the default where there is none."""
+        child = element.first(tag)
+        return default if child is None else child.text
+
+    def truth(self, text: str, element: Element, owner: str) -> bool:
+        """A truth value."""
+        if text.lower() not in _TRUTH:
+            self.fault(element, f"{owner}: no truth value", f"'{text:.60}'", "true or false", "write true or false")
+        return _TRUTH.get(text.lower(), False)
+
+    def given(self, element: Element, tag: str, owner: str, defaults: tuple[float, ...]) -> tuple[float, ...]:
+        """The numbers that a child holds; the defaults where there is none, or after a fault."""
+        child = element.first(tag)
+        if child is None:
+            return defaults
+        numbers = finite_numbers(child.text, len(defaults))
+        if numbers is None:
+            count = len(defaults)
+            rule = "a finite number" if count == 1 else f"{count} finite numbers, separated by spaces"
+            self.fault(child, f"{owner}: <{tag}> is bad", f"'{child.text:.60}'", rule, "mend the numbers")
+        return numbers or defaults
+
+    def one(self, element: Element, tag: str, owner: str, default: float) -> float:
+        """One number; the default where there is none."""
+        return self.given(element, tag, owner, (default,))[0]
+
+    def bound(self, element: Element, name: str, owner: str) -> float | None:
+        """A limit; none where it is not given or as good as infinite."""
+        child = element.first(name)
+        if child is None or child.text.lower().lstrip("+-") in ("inf", "infinity"):
+            return None
+        number = self.one(element, name, owner, UNBOUNDED)
+        return None if abs(number) >= UNBOUNDED else number
+
+    def pose(self, element: Element | None, owner: str) -> Pose:
+        """The numbers of a <pose>, by whichever frame it is stated; the identity where there is none."""
+        if element is None or not element.text:
+            return IDENTITY_POSE
+        form = element.attributes.get("rotation_format", "euler_rpy")
+        count = {"euler_rpy": 6, "quat_xyzw": 7}.get(form)
+        numbers = None if count is None else finite_numbers(element.text, count)
+        if numbers is None or (form == "quat_xyzw" and not any(numbers[3:])):
+            self.fault(
+                element,
+                f"{owner}: <pose> is bad",
+                f"'{element.text:.80}' with rotation_format '{form:.40}'",
+                "x y z and roll pitch yaw (euler_rpy), or a quaternion x y z w that is not zero (quat_xyzw)",
+                "mend the numbers",
+            )
+            return IDENTITY_POSE
+        if form == "quat_xyzw":
+            return Pose(np.array(numbers[:3]), quaternion_matrix(normalized(np.array(numbers[3:]))))
+        degrees = self.truth(element.attributes.get("degrees", "false"), element, owner)
+        roll, pitch, yaw = (math.radians(angle) if degrees else angle for angle in numbers[3:])
+        x, y, z = np.eye(3)
+        return Pose(np.array(numbers[:3]), about(z, yaw) @ about(y, pitch) @ about(x, roll))
+
+    def mass_properties(self, link: Element, owner: str) -> Inertia:
+        """Inertia of a link; what is not stated has SDFormat's defaults, 1 kg and a unit matrix."""
+        element = link.first("inertial")
+        if element is None:
+            self.remarks.add("links without <inertial> have SDFormat's 1 kg and unit inertia", "link", owner)
+            return Inertia(1.0, (0.0, 0.0, 0.0), (1.0, 1.0, 1.0, 0.0, 0.0, 0.0))
+        if self.truth(element.attributes.get("auto", "false"), element, owner):
+            self.fault(
+                element,
+                f"{owner}: its inertia is to be computed of its collision shapes",
+                'auto="true"',
+                "inertias are stated",
+                "run `gz sdf --print --expand-auto-inertials` on the file",
+            )
+        if element.first("fluid_added_mass"):
+            self.remarks.add("added mass of fluids ignored", "link", owner)
+        matrix = element.first("inertia") or Element("inertia", {}, element.line)
+        moments = tuple(self.one(matrix, tag, owner, default) for tag, default in _MOMENTS)
+        pose = self.pose(element.first("pose"), owner)
+        x, y, z = map(float, pose.p)
+        R = pose.R
+        turned = Rotation() if np.array_equal(R, np.eye(3)) else Rotation.matrix(R.tolist())
+        return Inertia(self.one(element, "mass", owner, 1.0), (x, y, z), moments, rotation=turned)

@@ -1,0 +1,217 @@
+"""SDFormat: Drake's numbers for the same files, a URDF of the same robot, loops, what is left out, what is refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from symofros.description.yaml.files import read_yaml
+from tests.description.sdf_models import MODELS, document, link
+
+
+def load(folder: Path, text: str, name: str = "model.sdf") -> sf.System:
+    path = folder / name
+    path.write_text(text)
+    return sf.load(path)
+
+
+def interpreted(system: sf.System) -> sf.Model:
+    return sf.compile(system, sf.Options(backend="interpreter"))
+
+
+def faults(folder: Path, text: str) -> str:
+    with pytest.raises(sf.DescriptionError) as caught:
+        load(folder, text)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_drake_has_the_same_equations(tmp_path: Path, name: str) -> None:
+    case = MODELS[name]
+    model = interpreted(load(tmp_path, case.text))
+    n = len(case.coordinates)
+    order = [case.coordinates.index(coordinate) for coordinate in model.names.q]
+    q, v, h = (np.array(values)[order] for values in (case.q, case.v, case.h))
+    M = np.zeros((n, n))
+    M[np.tril_indices(n)] = case.M
+    M = (M + M.T - np.diag(np.diag(M)))[np.ix_(order, order)]
+    # Poses of frames are products of a few rotations; measured: 2e-15 of the largest entry.
+    np.testing.assert_allclose(model.mass_matrix(q), M, atol=1e-13 * np.abs(M).max())
+    np.testing.assert_allclose(model.bias(q, v), h, atol=1e-13 * np.abs(h).max())
+
+
+def test_native_files_hold_what_is_imported(tmp_path: Path) -> None:
+    system = load(tmp_path, MODELS["frames that refer to each other"].text)
+    sf.save(system, tmp_path / "model.yaml")
+    assert read_yaml(tmp_path / "model.yaml").system == system
+
+
+JOINT = '<joint name="{name}" type="{kind}"><parent>{parent}</parent><child>{child}</child>{inside}</joint>'
+AXIS = "<axis><xyz>0 1 0</xyz>{}</axis>"
+
+
+def joint(name: str, parent: str, child: str, inside: str = AXIS.format(""), kind: str = "revolute") -> str:
+    return JOINT.format(name=name, kind=kind, parent=parent, child=child, inside=inside)
+
+
+def test_links_that_no_joint_holds_float_as_a_urdf_with_a_floating_base(tmp_path: Path) -> None:
+    sdf = link("a", "<pose>1 2 3 0 0 0</pose>", 2) + link("b", "<pose>1.5 2 3.1 0 0 0</pose>", 1)
+    ours = interpreted(load(tmp_path, document(sdf + joint("q", "a", "b"))))
+    inertial = (
+        '<inertial><origin xyz="0.1 -0.05 0.2" rpy="0.3 0.1 -0.2"/><mass value="{}"/>'
+        '<inertia ixx="0.2" iyy="0.3" izz="0.25" ixy="0.01" ixz="-0.02" iyz="0.03"/></inertial>'
+    )
+    urdf = "".join(f'<link name="{name}">{inertial.format(mass)}</link>' for name, mass in (("a", 2), ("b", 1)))
+    urdf += '<joint name="q" type="continuous"><parent link="a"/><child link="b"/><origin xyz="0.5 0 0.1"/>'
+    (tmp_path / "robot.urdf").write_text(f'<robot name="r">{urdf}<axis xyz="0 1 0"/></joint></robot>')
+    theirs = interpreted(sf.load(tmp_path / "robot.urdf", floating_base=True))
+    q, v = theirs.random_state(np.random.default_rng(0))
+    np.testing.assert_allclose(ours.mass_matrix(q), theirs.mass_matrix(q), atol=1e-13)
+    np.testing.assert_allclose(ours.bias(q, v), theirs.bias(q, v), atol=1e-12)
+    assert any("float: 1 link (a)" in note for note in load(tmp_path, document(sdf + joint("q", "a", "b"))).notes)
+
+
+def four_bar(kind: str, axis: str) -> str:
+    """A quadrilateral whose last joint closes the loop."""
+    links = link("a", "", 1) + link("b", "<pose>0 0 1 0 0.2 0</pose>", 1) + link("c", "<pose>1 0 0 0 0 0</pose>", 1)
+    tree = joint("q1", "world", "a") + joint("q2", "a", "b") + joint("q3", "world", "c")
+    placed = f'<pose relative_to="b">1 0 0 0.3 0 0</pose>{axis}'
+    return document(links + tree + joint("last", "c", "b", placed, kind))
+
+
+@pytest.mark.parametrize(
+    ("kind", "axis", "conditions"),
+    [
+        ("revolute", '<axis><xyz expressed_in="__model__">0 1 0</xyz></axis>', 5),
+        ("prismatic", "<axis><xyz>1 1 0</xyz></axis>", 5),
+        ("ball", "", 3),
+        ("fixed", "", 6),
+    ],
+)
+def test_joints_that_close_loops_become_closures_that_the_file_satisfies(
+    tmp_path: Path, kind: str, axis: str, conditions: int
+) -> None:
+    system = load(tmp_path, four_bar(kind, axis))
+    model = interpreted(system)
+    assert model.nc == conditions and model.names.q == ("q1", "q2", "q3")
+    np.testing.assert_allclose(model.constraint(np.zeros(3)), 0.0, atol=1e-15)
+    if kind == "revolute":
+        # A planar four-bar keeps the one motion that it has.
+        assert np.linalg.matrix_rank(model.constraint_jacobian(np.zeros(3)), tol=1e-9) == 2
+    assert any("joints that close loops" in note for note in system.notes)
+
+
+def test_springs_dampers_limits_and_mimics(tmp_path: Path) -> None:
+    inside = (
+        "<dynamics><damping>0.3</damping><spring_stiffness>5</spring_stiffness><spring_reference>0.2</spring_reference>"
+        "</dynamics><limit><lower>-1</lower><upper>1e16</upper><effort>-1</effort><velocity>3</velocity></limit>"
+    )
+    follower = '<mimic joint="q1"><multiplier>2</multiplier><offset>0.5</offset><reference>0.1</reference></mimic>'
+    body = link("a", "", 1) + link("b", "<pose>0 0 1 0 0 0</pose>", 1) + joint("q1", "world", "a", AXIS.format(inside))
+    system = load(tmp_path, document(body + joint("q2", "a", "b", AXIS.format(follower))))
+    model = interpreted(system)
+    assert model.names.u == ("q1",)
+    np.testing.assert_allclose(model.constraint([0.3, 2 * (0.3 - 0.1) + 0.5]), 0.0, atol=1e-15)
+    np.testing.assert_allclose(model.generalized_force([0.3, 0.0], [2.0, 1.0], [0.0])[0], -5 * 0.1 - 0.3 * 2)
+    first = system.body("a").joint
+    assert first is not None and first.limits == sf.Limits(-1.0, None, 3.0, None)
+
+
+def test_worlds_have_gravity_and_models_with_their_names(tmp_path: Path) -> None:
+    box = '<model name="{}"><pose>{} 0 0 0 0 0</pose>' + link("l", "", 1) + "{}</model>"
+    models = box.format("m", 0, joint("q", "world", "l")) + box.format("n", 1, "<static>true</static>")
+    world = f'<sdf version="1.10"><world name="w"><gravity>0 0 -1.6</gravity>{models}</world></sdf>'
+    system = load(tmp_path, world, "scene.world")
+    assert system.gravity == (0.0, 0.0, -1.6)
+    assert [body.name for body in system.bodies] == ["m::l", "n::l"]
+    assert interpreted(system).names.q == ("m::q",)
+    assert load(tmp_path, world.replace("<gravity>0 0 -1.6</gravity>", "")).gravity == (0.0, 0.0, -9.8)
+
+
+def test_gravity_of_a_link_can_be_switched_off(tmp_path: Path) -> None:
+    off = link("a", "<gravity>false</gravity>", 2) + joint("q", "world", "a")
+    model = interpreted(load(tmp_path, document(off)))
+    np.testing.assert_allclose(model.bias([0.4], [0.0]), model.generalized_force([0.4], [0.0], [0.0]), atol=1e-13)
+
+
+def test_visual_shapes_are_kept(tmp_path: Path) -> None:
+    shape = (
+        '<visual name="v"><pose>0 0 1 0 0 0</pose><geometry><box><size>1 2 3</size></box></geometry>'
+        "<material><diffuse>1 0 0</diffuse></material></visual>"
+    )
+    system = load(tmp_path, document(link("a", shape, 1) + joint("q", "world", "a")))
+    (visual,) = system.visuals["a"]
+    assert (visual.kind, visual.size, visual.position, visual.color) == ("box", (1, 2, 3), (0, 0, 1), (255, 0, 0))
+
+
+ONE = link("a", "", 1) + joint("q", "world", "a")
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (link("a", "<collision name='c'/>", 1) + joint("q", "world", "a"), "<collision> of links ignored"),
+        (link("a", "<sensor name='c'/>", 1) + joint("q", "world", "a"), "<sensor> of links ignored"),
+        (ONE + '<plugin name="p" filename="x"/>', "<plugin> ignored: 1 element (p)"),
+        ('<link name="a"/>' + joint("q", "world", "a"), "1 kg and unit inertia"),
+        (
+            link("a", "", 1) + joint("q", "world", "a", AXIS.format("<dynamics><friction>1</friction></dynamics>")),
+            "dry friction",
+        ),
+    ],
+)
+def test_what_is_ignored_is_said(tmp_path: Path, text: str, said: str) -> None:
+    assert said in "\n".join(load(tmp_path, document(text)).notes)
+
+
+@pytest.mark.parametrize(
+    ("text", "parts"),
+    [
+        ('<robot name="r"/>', ["no SDFormat", "model.sdf:1"]),
+        ('<sdf version="1.4"><model name="m"/></sdf>', ["no SDFormat of version 1.5"]),
+        ('<sdf version="1.9"/>', ["there is no model"]),
+        (document("<include><uri>model://x</uri></include>" + ONE), ["included models can't be read", "model://x"]),
+        (document('\n<link name="a"><pose>1 2 3</pose></link>' + joint("q", "world", "a")), ["<pose> is bad", ":2"]),
+        (document('<link name="a"><pose relative_to="b">0 0 0 0 0 0</pose></link>'), ["there is no frame 'b'"]),
+        (document('<link name="a"/><link name="a"/>'), ["the name is taken"]),
+        (
+            document(
+                ONE + '<frame name="f"><pose relative_to="g"/></frame><frame name="g"><pose relative_to="f"/></frame>'
+            ),
+            ["its frame refers to itself"],
+        ),
+        (document(ONE + '<frame name="f" attached_to="f"/>'), ["its frame refers to itself"]),
+        (document(link("a", "", 1) + joint("q", "world", "b")), ["there is no frame 'b'"]),
+        (document(link("a", "", 1) + joint("q", "a", "a")), ["joins no two links"]),
+        (document(link("a", "", 1) + joint("q", "a", "world")), ["joins no two links"]),
+        (document(link("a", "", 1) + joint("q", "world", "a", "")), ["an axis is missing"]),
+        (
+            document(link("a", "", 1) + joint("q", "world", "a", kind="gearbox")),
+            ["'gearbox' can't be read", "couple two"],
+        ),
+        (document(link("a", "", 1) + joint("q", "world", "a", kind="revolut")), ["did you mean 'revolute'"]),
+        (document(link("a", "", 1) + joint("q", "world", "a", kind="screw")), ["the screw has no pitch"]),
+        (document(ONE.replace("0 1 0</xyz>", "0 0 0</xyz>")), ["the axis has no direction"]),
+        (document(ONE.replace("<mass>1", "<mass>nan")), ["<mass> is bad"]),
+        (document(ONE.replace("<inertial>", '<inertial auto="true">')), ["computed of its collision shapes"]),
+        (document(ONE).replace('name="arm"', 'name="arm" placement_frame="a"'), ["placed by one of its frames"]),
+        (f'<!DOCTYPE sdf [<!ENTITY e SYSTEM "/etc/passwd">]>{document(ONE)}', ["document types are refused"]),
+        (four_bar("universal", ""), ["closes a loop", "one of revolute"]),
+    ],
+)
+def test_faults_name_the_thing_and_the_rule(tmp_path: Path, text: str, parts: list[str]) -> None:
+    message = faults(tmp_path, text)
+    assert all(part in message for part in parts), message
+
+
+def test_meshes_lie_in_the_folder_of_the_file(tmp_path: Path) -> None:
+    (tmp_path / "part.stl").write_text("solid")
+    (tmp_path / "inner").mkdir()
+    mesh = '<visual name="v"><geometry><mesh><uri>{}</uri></mesh></geometry></visual>'
+    for file, drawn in (("part.stl", 1), ("../part.stl", 0), ("/etc/passwd", 0), ("model://x/../part.stl", 0)):
+        text = document(link("a", mesh.format(file), 1) + joint("q", "world", "a"))
+        folder = tmp_path if drawn else tmp_path / "inner"
+        assert len(load(folder, text).visuals.get("a", ())) == drawn, file
