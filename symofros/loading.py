@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import os
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,7 +21,7 @@ from symofros.mechanics.topology.physics import has_physical_inertia
 from symofros.mechanics.topology.units import unit_problems
 
 _PATHS = "check the path; a relative one starts at the current folder"
-_READABLE = (*YAML_SUFFIXES, ".urdf", ".sdf", ".world", ".xml")
+_READABLE = (*YAML_SUFFIXES, ".urdf", ".xacro", ".sdf", ".world", ".xml")
 
 
 @checked
@@ -32,15 +32,18 @@ def load(
     snap_tol: float = SNAP_TOL,
     waive: Collection[str] = (),
     mimic: bool = False,
+    arguments: Mapping[str, str] | None = None,
 ) -> System:
     """Read a description and check it.
 
     Args:
-        path: Native YAML (.yaml, .yml), URDF (.urdf), SDFormat (.sdf, .world) or MJCF (.xml; needs the package mujoco).
+        path: Native YAML (.yaml, .yml), URDF (.urdf), xacro (.xacro; needs the package xacro), SDFormat (.sdf,
+            .world) or MJCF (.xml; needs the package mujoco).
         floating_base: URDF only: put a free joint under the root link.
         snap_tol: All but YAML: numbers this close to exact ones are made exact (`read_urdf`, `read_mjcf`).
         waive: Checks that every body is allowed to fail (WAIVERS), such as "massless_tip".
         mimic: URDF only: couple joints that mimic others to them (`Coupling`); otherwise they stay independent.
+        arguments: xacro only: values of its <xacro:arg>.
 
     Returns:
         The system; its `notes` say what an importer ignored or changed, and where units of formulas do not fit.
@@ -49,7 +52,7 @@ def load(
         DescriptionError: With every problem of the file and of the mechanism it describes.
     """
     file = Path(path)
-    reading = _waived(_read(file, floating_base, snap_tol, mimic), waive)
+    reading = _waived(_read(file, floating_base, snap_tol, mimic, arguments or {}), waive)
     problems = find_problems(reading.system, reading.broken) if reading.system is not None else []
     if reading.problems or problems or reading.system is None:
         raise DescriptionError(in_order([*reading.problems, *problems]))
@@ -74,12 +77,18 @@ def _waived(reading: Reading, waive: Collection[str]) -> Reading:
     return replace(reading, system=replace(reading.system, bodies=bodies))
 
 
-def _read(file: Path, floating_base: bool, snap_tol: float, mimic: bool) -> Reading:
+def _read(file: Path, floating_base: bool, snap_tol: float, mimic: bool, arguments: Mapping[str, str]) -> Reading:
     _refuse_suffix(file, _READABLE, "read")
     if not file.exists():
         raise DescriptionError(_missing(file))
     if file.suffix.lower() == ".urdf":
         return _accept_inertias(read_urdf(file, floating_base=floating_base, snap_tol=snap_tol, mimic=mimic))
+    if file.suffix.lower() == ".xacro":
+        from symofros.description.urdf.xacro_files import expanded
+
+        text = expanded(file, arguments)
+        reading = read_urdf(file, floating_base=floating_base, snap_tol=snap_tol, mimic=mimic, text=text)
+        return _accept_inertias(reading)
     if floating_base:
         raise DescriptionError(
             Problem(
@@ -124,7 +133,6 @@ def save(system: System, path: str | os.PathLike[str]) -> None:
 
 # Formats that people have and we do not read -> how they become one that we do.
 _CONVERSIONS = {
-    ".xacro": "expand it before: `xacro robot.xacro > robot.urdf` (pip install xacro, or ROS)",
     ".usd": "export it as URDF or MJCF (Isaac Sim's exporters, or mujoco's USD converter)",
     ".mjb": "give the XML that the binary was compiled from",
 }

@@ -22,6 +22,7 @@ from symofros.description.joint_kinds import KINDS, JointKindName
 from symofros.description.mjcf.geometry import Exact
 from symofros.description.sdf.frames import Frames
 from symofros.description.sdf.values import Pose, SdfValues
+from symofros.description.values import Vector
 from symofros.description.xml_nodes import Element
 from symofros.errors import did_you_mean
 
@@ -176,7 +177,7 @@ class JointReader:
         axis = joint.element.first("axis")
         R = np.eye(3)
         if "axis" in KINDS[joint.kind].entries and axis is not None:
-            z = np.array(self._direction(joint, axis, joint.name))
+            z = np.array(self._direction(joint, axis, joint.name), dtype=float)
             x = np.cross(np.eye(3)[int(np.argmin(np.abs(z)))], z)
             x, z = x / np.linalg.norm(x), z / np.linalg.norm(z)
             R = np.column_stack([x, np.cross(z, x), z])
@@ -227,7 +228,7 @@ class JointReader:
             return ""
         return f"{joint.name}.{suffixes[axis]}" if suffixes[axis] else joint.name
 
-    def _direction(self, joint: SdfJoint, axis: Element, into: str) -> tuple[float, float, float]:
+    def _direction(self, joint: SdfJoint, axis: Element, into: str) -> Vector:
         """Direction of an axis in the frame `into`."""
         owner = f"joint '{joint.name}'"
         stated = axis.first("xyz")

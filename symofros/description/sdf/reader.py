@@ -16,7 +16,7 @@ from symofros.description.forces import Load
 from symofros.description.frames import Frame
 from symofros.description.joint import WORLD, Joint
 from symofros.description.mjcf.geometry import Exact
-from symofros.description.reading import Reading, in_order, read_bytes
+from symofros.description.reading import Reading, check_snap_tol, in_order, read_bytes
 from symofros.description.remarks import Remarks
 from symofros.description.sdf.frames import MODEL, SEPARATOR, Frames
 from symofros.description.sdf.joints import JointReader, SdfJoint
@@ -39,6 +39,7 @@ _VERSIONS = re.compile(r"1\.([5-9]|1[0-9])\Z")
 _READ = frozenset({"model", "link", "joint", "frame"})
 # Gravity of a <world> that states none [m/s^2].
 _GRAVITY = (0.0, 0.0, -9.8)
+_GRAVITY_OF_SYSTEMS = (0.0, 0.0, -9.81)  # Default of System.
 
 
 def read_sdf(path: str | os.PathLike[str], *, snap_tol: float) -> Reading:
@@ -53,10 +54,9 @@ def read_sdf(path: str | os.PathLike[str], *, snap_tol: float) -> Reading:
         The system, and every problem.
 
     Raises:
-        ValueError: `snap_tol` is not a small number.
+        ArgumentError: `snap_tol` is not a small number.
     """
-    if not 0.0 <= snap_tol < 0.1:
-        raise ValueError(f"snap_tol: found {snap_tol}; rule: 0 <= snap_tol < 0.1, so that it only absorbs rounding")
+    check_snap_tol(snap_tol)
     file = os.fspath(path)
     values = SdfValues(file, snap_tol)
     try:
@@ -309,7 +309,7 @@ class _Importer:
 
     def gravity(self) -> tuple[float, float, float]:
         """Acceleration of gravity: the world's, or, of a model by itself, that of our descriptions [m/s^2]."""
-        default = _GRAVITY if self.world.tag == "world" else System("").gravity
+        default = _GRAVITY if self.world.tag == "world" else _GRAVITY_OF_SYSTEMS
         x, y, z = self.values.given(self.world, "gravity", "the world", default)
         return x, y, z
 

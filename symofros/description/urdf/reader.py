@@ -49,7 +49,7 @@ def read_urdf(
         snap_tol: Angles this close to a multiple of pi/2 [rad], positions this close to 0 [m] and entries of an axis
             this close to 0 or +-1 are taken for exact, because files carry rounded digits.
         mimic: Couple joints that mimic others to them; otherwise their coordinates stay independent.
-        text: Content of the file, where that is made of what the file holds (xacro).
+        text: URDF that was made of the file (xacro), whose lines problems then name.
 
     Returns:
         The system without the links that could not be read, and every problem.
@@ -58,7 +58,7 @@ def read_urdf(
         ArgumentError: `snap_tol` is not a small number.
     """
     check_snap_tol(snap_tol)
-    file = os.fspath(path)
+    file = os.fspath(path) if text is None else f"{os.fspath(path)} (expanded)"
     try:
         root = parse_xml(read_bytes(Path(path), MAX_BYTES) if text is None else text, file)
     except XmlFault as error:

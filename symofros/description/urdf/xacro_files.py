@@ -1,0 +1,75 @@
+"""xacro in: a process with few rights expands the file, and the text is read as URDF."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from symofros.description.reading import read_bytes
+from symofros.description.urdf import xacro_worker
+from symofros.errors import DescriptionError, Problem
+
+# Wall time of the process [s]; its processor time is bounded by itself.
+TIMEOUT = 60
+_RULE = (
+    "expressions compute (arithmetic, comparisons, indexing, functions of math and a few of Python); files lie in the "
+    "package of the file, or in its folder; environment and other packages are not there"
+)
+
+
+def expanded(path: str | os.PathLike[str], arguments: Mapping[str, str]) -> bytes:
+    """The URDF text of a xacro file.
+
+    Args:
+        path: The file.
+        arguments: Values of its <xacro:arg>.
+
+    Raises:
+        DescriptionError: xacro is not installed, the file can't be expanded, or it asks for what is not allowed.
+    """
+    file = Path(path).resolve()
+    read_bytes(Path(path), xacro_worker.MAX_BYTES)
+    task = {"file": str(file), "folder": str(_package(file)), "arguments": {k: str(v) for k, v in arguments.items()}}
+    answer = _answer(task)
+    if "absent" in answer:
+        raise DescriptionError(
+            Problem(
+                f"'{path}' can't be read: xacro is not installed",
+                "no module 'xacro'",
+                "xacro expands .xacro files",
+                "pip install 'symofros[xacro]'",
+            )
+        )
+    if "text" not in answer:
+        raise DescriptionError(
+            Problem(
+                "xacro can't expand the file",
+                f"{answer.get('fault', 'nothing'):.500}",
+                _RULE,
+                "mend it; of a file that you trust, `xacro FILE > robot.urdf` (ROS's own) makes a URDF",
+                str(path),
+            )
+        )
+    return str(answer["text"]).encode()
+
+
+def _package(file: Path) -> Path:
+    """The nearest folder above a file with a package.xml, or its own folder."""
+    return next((folder for folder in file.parents if (folder / "package.xml").is_file()), file.parent)
+
+
+def _answer(task: Mapping[str, Any]) -> dict[str, Any]:
+    worker = [sys.executable, "-I", xacro_worker.__file__]
+    try:
+        done = subprocess.run(worker, input=json.dumps(task).encode(), capture_output=True, timeout=TIMEOUT, env={})
+    except subprocess.TimeoutExpired:
+        return {"fault": f"it takes longer than {TIMEOUT} s"}
+    if done.returncode:
+        return {"fault": f"it takes more than {xacro_worker.SECONDS} s of processor time, or too much memory"}
+    answer: dict[str, Any] = json.loads(done.stdout)
+    return answer
