@@ -25,6 +25,8 @@ from symofros.simulation.stepping.tableaus import Tableau
 
 # How often an observer gets records [s], and how much earlier than its stop an instant may be, by rounding [s].
 _SENT_EVERY, _SLACK = 0.05, 1e-12
+# Of states, about, from which on compiled runs end as diverged, too (SYM_BEYOND_MOTION in native/stepping/system.c).
+_BEYOND_MOTION = 1e100
 
 # An instant of a run: its time, what is due, whether to record. A record: t, q, v.
 Instant = tuple[float, frozenset[str], bool]
@@ -334,7 +336,7 @@ def run_interpreted(
                     failed = True
                     break
                 steps += 1
-                failed = not np.isfinite(np.concatenate([blocks.q, blocks.v])).all()
+                failed = not (np.abs(np.concatenate([blocks.q, blocks.v])) < _BEYOND_MOTION).all()
                 if last:
                     blocks.t[0] = until
                 within = watch.judge(blocks.q, float(blocks.t[0]))
@@ -384,7 +386,7 @@ def _outcome(watch: BeamWatch, t: float, steps: int, fault: str, *, failed: bool
         if fault:
             return Outcome("input failed", t, fault, "outputs that are finite at all samples", notes)
         return Outcome(
-            "diverged", t, "a state is no longer finite", "a smaller dt; look for gains that are too high", notes
+            "diverged", t, "a state has grown without bound", "a smaller dt; look for gains that are too high", notes
         )
     worst = largest_bending(watch.bendings)
     if worst is not None and not (within and worst.error <= watch.limit):

@@ -95,11 +95,24 @@ static double sym_next_step_size(sym_run *r, double h, double error) {
     return h * factor;
 }
 
+/* Size of a state that has grown without bound: what follows is soon beyond what sym_all_finite allows. */
+#define SYM_EXPLODED 1e80
+
+/* Why adaptive steps have become too short: a motion without bound, which no step continues, or the tolerances. */
+static int32_t sym_too_short(const sym_run *r) {
+    int32_t i;
+    for (i = 0; i < r->system->nq; ++i)
+        if (fabs(r->q[i]) > SYM_EXPLODED) return SYM_DIVERGED;
+    for (i = 0; i < r->system->nv; ++i)
+        if (fabs(r->v[i]) > SYM_EXPLODED) return SYM_DIVERGED;
+    return SYM_STEP_TOO_SMALL;
+}
+
 /* The step to try next: its length h and the time t1 at its end. Returns 0 or a status. */
 static int32_t sym_propose_step(sym_run *r, sym_workspace *w, double *h, double *t1) {
     *h = r->adaptive ? r->next_step : r->h;
     *t1 = r->adaptive ? r->t + *h : r->t0 + (double)(r->steps + 1) * r->h;
-    if (r->adaptive && *h < 16.0 * 2.2e-16 * fabs(r->t) + 1e-300) return SYM_STEP_TOO_SMALL;
+    if (r->adaptive && *h < 16.0 * 2.2e-16 * fabs(r->t) + 1e-300) return sym_too_short(r);
     if (*t1 >= r->t_end - 1e-9 * *h) *t1 = r->t_end; /* no sliver of a last step */
     if (r->adaptive && r->max_step > 0.0 && *t1 - r->t > r->max_step) *t1 = r->t + r->max_step;
     *h = *t1 - r->t;

@@ -91,10 +91,15 @@ static int32_t sym_evaluate_inputs(sym_system *s) {
     return 0;
 }
 
+/* Times a number beyond some 1e100 it overflows. Such a state is no motion any more in any unit, and the squares in its
+ * energies overflow soon, though it is itself a number. */
+#define SYM_BEYOND_MOTION 1e208
+
+/* Whether all are numbers of a size that a motion may have. */
 static int32_t sym_all_finite(int32_t n, const double *x) {
     double s = 0.0;
     int32_t i;
-    for (i = 0; i < n; ++i) s += x[i] * 0.0;
+    for (i = 0; i < n; ++i) s += x[i] * SYM_BEYOND_MOTION * 0.0;
     return s == 0.0;
 }
 

@@ -107,7 +107,7 @@ def _outcome(
     if massless:
         return outcome("singular", massless, ADVICE)
     if status == Status.DIVERGED:
-        return outcome("diverged", f"a state is no longer finite; {_largest(stepper, q, v)}", _steady(settings))
+        return outcome("diverged", f"a state has grown without bound; {_largest(stepper, q, v)}", _steady(settings))
     if status == Status.SINGULAR:
         return outcome(
             "singular",

@@ -27,7 +27,7 @@ _ENDS: dict[int, tuple[Kind, str, str]] = {
     Status.RUNNING: ("interrupted", "max_steps are done, or Ctrl-C", ""),
     Status.DIVERGED: (
         "diverged",
-        "a state is no longer finite",
+        "a state has grown without bound",
         "a smaller dt or an adaptive method; sf.simulate from this state says more",
     ),
     Status.SINGULAR: (

@@ -22,7 +22,7 @@ from symofros.simulation.stepping.resolution import Resolution
 from symofros.simulation.stepping.status import Status
 
 _ENDS: dict[int, tuple[Kind, str, str]] = {
-    Status.DIVERGED: ("diverged", "a state is no longer finite", "a smaller dt; look for gains that are too high"),
+    Status.DIVERGED: ("diverged", "a state has grown without bound", "a smaller dt; look for gains that are too high"),
     Status.SINGULAR: ("singular", "no accelerations exist", "give every speed an inertia or a constraint"),
     Status.STEP_TOO_SMALL: ("step too small", "the tolerances ask for steps below rounding", "loosen rtol"),
     Status.ENERGY_LOST: (

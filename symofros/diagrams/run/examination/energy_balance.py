@@ -28,6 +28,9 @@ _SMOOTH = 0.25
 _REPEATED, _CHANGED = 4, 0.3
 # Or share of the largest kinetic energy: beside the work of a contact between records all else is small.
 _CHANGED_MOTION = 0.1
+# What the changes of all intervals may add up to, relative to the kinetic energy that the motion has had by then, if
+# each changes as the repeated ones do: each of many contacts may give a little. Half of what errors of first order are.
+_DRIFT = 0.15
 
 # Accelerations (n, nv) at some of the records, by number.
 Accelerations = Callable[[Array], Array]
@@ -103,7 +106,7 @@ def energy_note(energies: Energies, states: States, steps: int, accelerations: A
             if not np.any(unexplained - uncertain > _NOTED * kinetic.max()):
                 continue
             largest = float(kinetic.max())
-            if _is_numerical(energies, name, states, rows, gained, largest, repeat):
+            if _is_numerical(energies, name, states, rows, gained, kinetic, repeat):
                 return (
                     f"the energy of '{name}' changes by {unexplained.max():.3g} J beside the work done on it, where its"
                     f" motion has {largest:.3g} J at most: finer steps change that; a smaller dt or tighter"
@@ -113,15 +116,20 @@ def energy_note(energies: Energies, states: States, steps: int, accelerations: A
 
 
 def _is_numerical(
-    energies: Energies, name: str, states: States, rows: Array, gained: Array, largest: float, repeat: Repeat
+    energies: Energies, name: str, states: States, rows: Array, gained: Array, kinetic: Array, repeat: Repeat
 ) -> bool:
     """Whether finer steps change what the intervals with most unexplained energy gain."""
-    share = changed = 0.0
-    for i in np.argsort(-np.abs(gained))[:_REPEATED]:
+    sizes = np.maximum.accumulate(np.maximum(kinetic[1:], 1e-300))
+    chosen = np.argsort(-np.abs(gained))[:_REPEATED]
+    changes = np.empty(len(chosen))
+    for k, i in enumerate(chosen):
         first, last = int(rows[i]), int(rows[i + 1])
         finer = repeat(first, float(states[0][last]), True)
         if finer is None:
             return True
         _, energy = energies.of(name, *(np.stack([x[last], y[-1]]) for x, y in zip(states[:3], finer[:3], strict=True)))
-        share, changed = share + abs(float(gained[i])), changed + abs(float(energy[1] - energy[0]))
-    return changed >= min(_CHANGED * share, _CHANGED_MOTION * largest)
+        changes[k] = energy[1] - energy[0]
+    relative = np.abs(gained) / sizes
+    drift = abs(float((changes / sizes[chosen]).sum())) * float(relative.sum() / relative[chosen].sum())
+    share = min(_CHANGED * float(np.abs(gained[chosen]).sum()), _CHANGED_MOTION * float(kinetic.max()))
+    return float(np.abs(changes).sum()) >= share or drift >= _DRIFT

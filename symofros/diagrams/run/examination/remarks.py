@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.run.examination.energy_balance import Accelerations, Energies, energy_note
 from symofros.diagrams.run.examination.step_check import Repeat, States, step_note
 from symofros.diagrams.run.python_blocks import NotKeptError
@@ -52,12 +53,20 @@ def remarks(run: Examined, modes: Resolution) -> tuple[str, ...]:
     try:
         note = ""
         if (worst is None and not modes.evident) or (run.h == 0.0 and _is_loose(run)):
-            external = any(piece.is_external for piece in run.energies.resolved.pieces.values())
-            note = step_note(layout, states, run.repeat, run.h, run.steps, answers_are_kept=external)
+            external = _answers(run.energies.resolved)
+            note = step_note(layout, states, run.repeat, run.h, run.steps, external=external)
         note = note or energy_note(run.energies, states, run.steps, run.accelerations, run.repeat)
         return (note,) if note else ()
     except NotKeptError:  # External blocks were called more often than is kept.
         return ()
+
+
+def _answers(resolved: Resolved) -> str:
+    """The first external block that answers to the motion: one with inputs and outputs; "" where there is none."""
+    wired = resolved.wired
+    listening = {block for block, _ in wired.sources}
+    external = (name for name, piece in resolved.pieces.items() if piece.is_external and wired.ports[name].outputs)
+    return next((name for name in external if name in listening), "")
 
 
 def _is_loose(run: Examined) -> bool:

@@ -1,4 +1,4 @@
-"""What half the step makes of a diagram's run with fixed steps: of all of a short one, of windows of a long one.
+"""What half the step makes of a diagram's run with fixed steps: of all of it, or of windows of a long one.
 
 docs/theory/diagrams.md, section 7; docs/theory/simulation.md, (17).
 """
@@ -6,6 +6,7 @@ docs/theory/diagrams.md, section 7; docs/theory/simulation.md, (17).
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -20,6 +21,10 @@ from symofros.simulation.stepping.windows import WHOLE, windows
 _POSITIONS = 3.0
 # Share of the tolerance that is allowed where external blocks do not answer to the change.
 _UNANSWERED = 0.08
+# Power of time with which the change in a window may grow over the run: errors of amplitudes turn into those of phases.
+_GROWTH = 2.0
+# Longest part of a run, in steps, that is made once more where the change in a window may grow to a note.
+_REPEATED = 20_000
 
 # Records: t (n), q (n, nq), v (n, nv), and what else a run keeps.
 States = Sequence[Array]
@@ -28,9 +33,38 @@ States = Sequence[Array]
 Repeat = Callable[[int, float, bool], States | None]
 
 
-def step_note(
-    layout: Layout, states: States, repeat: Repeat, h: float, steps: int, *, answers_are_kept: bool = False
-) -> str:
+# Records (n, m) of a vector -> its size.
+Norm = Callable[[Array], float]
+
+
+def _largest(rows: Array) -> float:
+    """Largest norm of a row."""
+    return float(np.sqrt(np.square(rows).sum(axis=1)).max(initial=0.0))
+
+
+def _mean(rows: Array) -> float:
+    """Root mean square of the rows: where speeds jump, an instant earlier or later is no other motion."""
+    return float(np.sqrt(np.square(rows).sum(axis=1).mean()))
+
+
+@dataclass(frozen=True)
+class _Changed:
+    """What finer steps change most of a part of a run.
+
+    Attributes:
+        share: Change, relative to the largest speed or displacement.
+        block: Block of the mechanism.
+        t: Time at which the part begins [s].
+        span: Length of the part [s].
+    """
+
+    share: float
+    block: str
+    t: float
+    span: float
+
+
+def step_note(layout: Layout, states: States, repeat: Repeat, h: float, steps: int, *, external: str = "") -> str:
     """Which mechanism moves otherwise by finer steps, in words; nothing where all move nearly the same.
 
     Each mechanism is judged by itself, in its own speeds: those of others may be of another size.
@@ -41,33 +75,60 @@ def step_note(
         repeat: Makes a part of the run once more.
         h: Step [s]; 0: it adapts.
         steps: Number of steps.
-        answers_are_kept: Whether external blocks answer as they did: what they make of a change is not seen then, so
-            that a smaller one counts.
+        external: An external block that answers to the motion, if there is one: in what is repeated it answers as it
+            did, so that a smaller change counts.
     """
-    worst, block, t, mean = 0.0, "", 0.0, h or float(states[0][-1] - states[0][0]) / steps
-    stepping = f"steps of {h:.4g} s do" if h else "the tolerances do"
+    stepping = f"steps of {h:.4g} s" if h else "the tolerances"
     finer, cure = ("half of that", "a smaller dt") if h else ("a hundredth of them", "tighter tolerances")
-    for window in windows(states[0], states[2], mean, steps):
+    duration, short = float(states[0][-1] - states[0][0]), steps <= WHOLE
+    chosen = windows(states[0], states[2], h or duration / steps, steps)
+    worst = _Changed(0.0, "", 0.0, duration)
+    for window in chosen:
         rows = slice(window.first, window.last + 1) if window.last is not None else None
         coarse = [x[rows] for x in states] if rows else repeat(window.first, window.t_end, False)
         fine = repeat(window.first, window.t_end, True)
         if coarse is None or fine is None:
-            begin = "" if steps <= WHOLE else f" from t = {float(states[0][window.first]):.6g} s"
-            return f"{stepping} not show the motion: with {finer} it does not come to this end{begin}; {cure}"
-        for name in layout.v:
-            change = _change(layout, name, None if steps <= WHOLE else states, coarse, fine)
-            if change > worst or not change >= 0.0:
-                worst, block, t = change, name, float(states[0][window.first])
-    if worst <= (_UNANSWERED if answers_are_kept else 1.0) * TOLERANCE:
+            begin = "" if short else f" from t = {float(states[0][window.first]):.6g} s"
+            return f"{stepping} do not show the motion: with {finer} it does not come to this end{begin}; {cure}"
+        worst = max(worst, _changed(layout, None if short else states, coarse, fine), key=_size)
+    grown = worst.share * (duration / worst.span) ** _GROWTH
+    seen = "" if short else f" (seen at t = {worst.t:.4g} s)"
+    if not worst.share > (_UNANSWERED if external else 1.0) * TOLERANCE and grown > TOLERANCE and not short:
+        if external:
+            if grown <= 1.0:
+                return ""
+            return (
+                f"{stepping} are not held against {finer} over all of the run, as '{external}' is not called again:"
+                f" {worst.span:.3g} s of the motion of '{worst.block}' change by {100.0 * worst.share:.2g} %{seen},"
+                f" which adds up; compare with {cure}"
+            )
+        last = int(np.searchsorted(states[0], states[0][0] + duration * min(1.0, _REPEATED / steps)))
+        last, seen = min(last, len(states[0]) - 1), ""
+        fine = repeat(0, float(states[0][last]), True)
+        if fine is None:
+            return f"{stepping} do not show the motion: with {finer} it does not come to this end; {cure}"
+        worst = _changed(layout, None, [x[: last + 1] for x in states], fine, _mean)
+    if worst.share <= (_UNANSWERED if external else 1.0) * TOLERANCE:
         return ""
-    by = f"{100.0 * worst:.2g} %" if worst < 1.0 else "more than 100 %"
-    same = ", even where external blocks answer as they did" if answers_are_kept else ""
-    seen = "" if steps <= WHOLE else f" (seen at t = {t:.4g} s)"
-    return f"{stepping} not determine the motion of '{block}': {finer} changes it by {by}{seen}{same}; {cure}"
+    by = f"{100.0 * worst.share:.2g} %" if worst.share < 1.0 else "more than 100 %"
+    same = ", even where external blocks answer as they did" if external else ""
+    return f"{stepping} do not determine the motion of '{worst.block}': {finer} changes it by {by}{seen}{same}; {cure}"
 
 
-def _change(layout: Layout, block: str, run: States | None, coarse: States, fine: States) -> float:
-    """Largest difference of a mechanism's speeds and displacements, relative to the largest of each.
+def _size(changed: _Changed) -> float:
+    """The change, one that is not a number above all."""
+    return changed.share if changed.share >= 0.0 else np.inf
+
+
+def _changed(layout: Layout, run: States | None, coarse: States, fine: States, norm: Norm = _largest) -> _Changed:
+    """The mechanism that finer steps change most in a part of a run; arguments as those of `_change`."""
+    t, span = float(fine[0][0]), float(fine[0][-1] - fine[0][0])
+    shares = {name: _change(layout, name, run, coarse, fine, norm) for name in layout.v}
+    return max((_Changed(share, name, t, span) for name, share in shares.items()), key=_size)
+
+
+def _change(layout: Layout, block: str, run: States | None, coarse: States, fine: States, norm: Norm) -> float:
+    """Difference of a mechanism's speeds and displacements, relative to the size of each.
 
     Args:
         layout: Layout of the diagram's vectors.
@@ -76,6 +137,7 @@ def _change(layout: Layout, block: str, run: States | None, coarse: States, fine
             the window's time.
         coarse: Records by the step.
         fine: Records by half of it.
+        norm: What counts of the records.
     """
     at = layout.v[block].slice
     with np.errstate(all="ignore"):  # What has exploded overflows.
@@ -83,15 +145,10 @@ def _change(layout: Layout, block: str, run: States | None, coarse: States, fine
         q, v, q_half, v_half = coarse[1][i], coarse[2][i], fine[1][j], fine[2][j]
         moved = difference(layout.segments, np.broadcast_to(q_half[0], q_half.shape), q_half)[:, at]
         apart = difference(layout.segments, q_half, q)[:, at]
-        fastest, faster = _largest(v_half[:, at]), _largest((v - v_half)[:, at])
+        fastest, faster = norm(v_half[:, at]), norm((v - v_half)[:, at])
         span = float(fine[0][-1] - fine[0][0])
-        reach = _largest(moved)
+        reach = norm(moved)
         if run is not None:
-            largest = _largest(run[2][:, at])
+            largest = norm(run[2][:, at])
             fastest, reach = max(fastest, largest), max(reach, largest * span)
-        return max(faster / max(fastest, STILL), _largest(apart) / max(reach, STILL * span, 1e-300) / _POSITIONS)
-
-
-def _largest(rows: Array) -> float:
-    """Largest norm of a row."""
-    return float(np.sqrt(np.square(rows).sum(axis=1)).max(initial=0.0))
+        return max(faster / max(fastest, STILL), norm(apart) / max(reach, STILL * span, 1e-300) / _POSITIONS)

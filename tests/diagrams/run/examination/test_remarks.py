@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -62,6 +63,65 @@ def test_a_contact_that_steps_leap_over_is_told_and_one_that_they_follow_is_not(
     coarse, fine = (simulation.run(10.0, dt=dt, record=record) for dt in (1e-2, 2e-4))
     assert coarse.outcome.notes and not fine.outcome.notes, (coarse.outcome, fine.outcome)
     assert np.abs(coarse.v - fine.v).max() > 0.3 * np.abs(fine.v).max()
+
+
+def sampled_loop(law: str) -> sf.Simulation:
+    """A mass of 1 kg that a sampled law holds with 100 N/m and 2 N s/m, too late to hold it still."""
+    diagram = sf.Diagram("loop")
+    diagram.add_model("plant", oscillator_system(k=1.0), start={"x": 1.0})
+    given = {"x": "plant.q", "v": "plant.v"}
+    if law == "formula":
+        diagram.add(Formula(name="law", formulas={"force": ["-100*x[0] - 2*v[0]"]}, period=0.1), **given)
+    else:
+        ports = {"x": (1,), "v": (1,)}
+        diagram.add(PythonBlock(name="law", function=_held, inputs=ports, outputs={"force": (1,)}, period=0.1), **given)
+    diagram.add(ForwardDynamics(name="plant", model="plant"), u="law.force")
+    return sf.Simulation(diagram)
+
+
+def _held(t: float, inputs: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    return {"force": -100.0 * inputs["x"] - 2.0 * inputs["v"]}
+
+
+@pytest.mark.parametrize("law", ["formula", "python"])
+@pytest.mark.parametrize("method", ["euler", "semi_implicit_euler"])
+@pytest.mark.parametrize("dt", [0.01, 0.003])
+@pytest.mark.parametrize("t_end", [5.0, 15.0])
+def test_errors_that_add_up_through_samples_are_told(law: str, method: str, dt: float, t_end: float) -> None:
+    """A window shows a percent: held between samples, the motion knows nothing of the loop that amplifies it."""
+    simulation = sampled_loop(law)
+    coarse, fine = (simulation.run(t_end, dt=h, record=0.1, method=m) for h, m in ((dt, method), (dt, "rk4")))
+    assert np.abs(coarse.v - fine.v)[-1] > 0.1 * np.abs(fine.v).max()
+    assert coarse.outcome.notes and not fine.outcome.notes, (coarse.outcome, fine.outcome)
+
+
+@pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
+def test_phases_that_drift_by_errors_of_amplitudes_are_told(size: float) -> None:
+    """Half the step changes a window by less than a thousandth, and the run by all of it."""
+    simulation = pushed("formula", f"-{1e3 / size**2}*x[0]^3", x=size)
+    coarse, fine = (simulation.run(8.0, dt=dt, record=0.05) for dt in (1e-2, 2e-3))
+    assert np.abs(coarse.v - fine.v).max() > 0.3 * np.abs(fine.v).max()
+    assert coarse.outcome.notes and not fine.outcome.notes, (coarse.outcome, fine.outcome)
+
+
+@pytest.mark.parametrize("law", ["formula", "python"])
+def test_energy_that_each_of_many_contacts_takes_is_told(law: str) -> None:
+    simulation = pushed(law, "-9.81 + max(0, -1e3*x[0])", x=1.0)
+    coarse, fine = (simulation.run(20.0, method=m, dt=1e-3, record=0.1) for m in ("euler", "rk4"))
+    assert np.abs(coarse.v).max() > 1.5 * np.abs(fine.v).max()
+    assert coarse.outcome.notes and not fine.outcome.notes, (coarse.outcome, fine.outcome)
+
+
+@pytest.mark.parametrize("method", ["rk4", "dopri5"])
+def test_motion_that_grows_without_bound_has_diverged_before_its_energy_overflows(method: str) -> None:
+    simulation = pushed("formula", "4e3*x[0]", x=1.0)
+    options = {"dt": 1e-3} if method == "rk4" else {}
+    runs = [simulation.run(20.0, method=method, **options)]
+    if method == "rk4":
+        runs.append(simulation.interpret(20.0, method=method, dt=1e-3, record=0.1))
+    for run in runs:
+        assert run.outcome.kind == "diverged", run.outcome
+        assert np.isfinite(np.square(run.v)).all()
 
 
 def test_interpreted_runs_are_judged_alike() -> None:
