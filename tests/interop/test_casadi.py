@@ -9,8 +9,9 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from tests.late import late
 
-casadi = pytest.importorskip("casadi", reason="the package casadi is not installed: pip install 'symofros[casadi]'")
+casadi = late("casadi", extra="casadi")
 
 
 @pytest.fixture(scope="module")

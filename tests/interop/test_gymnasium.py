@@ -9,10 +9,9 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from tests.late import late
 
-gymnasium = pytest.importorskip(
-    "gymnasium", reason="the package gymnasium is not installed: pip install 'symofros[gymnasium]'"
-)
+late("gymnasium", extra="gymnasium")
 
 
 @pytest.fixture(scope="module")

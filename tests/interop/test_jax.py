@@ -10,8 +10,9 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from tests.late import late
 
-jax = pytest.importorskip("jax", reason="the package jax is not installed: pip install 'symofros[jax]'")
+jax = late("jax", extra="jax")
 
 
 @pytest.fixture(autouse=True, scope="module")

@@ -9,8 +9,9 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from tests.late import late
 
-torch = pytest.importorskip("torch", reason="the package torch is not installed: pip install 'symofros[torch]'")
+torch = late("torch", extra="torch")
 
 
 @pytest.fixture(scope="module")

@@ -16,7 +16,7 @@ from pathlib import Path
 from validation.comparison.errors import Comparison
 from validation.cross_check.record import SCHEMA, Record
 from validation.cross_check.speed import Speed
-from validation.procedures.catalogue import ENGINE as FORMULAS
+from validation.procedures import ENGINE as FORMULAS
 from validation.reporting.numbers import digits
 from validation.reporting.record import Data
 

@@ -10,7 +10,7 @@ from validation.cross_check import tables
 from validation.cross_check.figures import error_against_condition, error_distributions
 from validation.cross_check.measure import measure
 from validation.cross_check.record import Record
-from validation.procedures.catalogue import ENGINE as FORMULAS
+from validation.procedures import ENGINE as FORMULAS
 from validation.reporting.figures import Figure
 from validation.reporting.numbers import counted, digits
 from validation.reporting.record import MISSED, Block, Bullets, Data, Fact, Report, Section, Table, Text, Topic, verdict

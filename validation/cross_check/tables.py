@@ -10,7 +10,7 @@ from validation.check import ModelResult
 from validation.comparison.errors import Comparison
 from validation.contract.quantities import MOTION_ENERGY, QUANTITIES
 from validation.cross_check.record import Record
-from validation.procedures.catalogue import ENGINE as FORMULAS
+from validation.procedures import ENGINE as FORMULAS
 from validation.reporting.numbers import counted, digits
 from validation.reporting.record import Cell, Table, verdict
 

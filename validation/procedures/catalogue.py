@@ -12,12 +12,10 @@ import symofros as sf
 from validation.comparison.errors import Comparison
 from validation.mechanics.assembly import Assembly
 from validation.mechanics.geometry import Array
-from validation.procedures import analyses, batches, diagrams, forces, identities, runs
+from validation.procedures import ENGINE, analyses, batches, diagrams, forces, identities, runs
 from validation.procedures.scene import Cell, Manifold, Scene
 
 Procedure = Callable[[Scene], Iterator[Cell]]
-# Name of the other side of these rows: what is compared with is no engine.
-ENGINE = "formulas"
 SEED = 3
 SMALL = 0.03
 

@@ -33,54 +33,65 @@ def needed_nodes(graph: Graph, edges: Sequence[Edge], given: Collection[int] = (
     return sorted(node for node in seen.difference(given) if args[node])  # Inputs and numbers have no operands.
 
 
+class Evaluation:
+    """Some edges of a program, for inputs that change: which nodes they need, in which order, is found once."""
+
+    def __init__(self, program: Program, edges: Sequence[Edge], given: Mapping[int, Slot]) -> None:
+        """Prepare the values of some edges.
+
+        Args:
+            program: Program whose graph is evaluated.
+            edges: Edges to evaluate.
+            given: Nodes to read from an input group instead of computing them.
+        """
+        graph = program.graph
+        nodes = needed_nodes(graph, edges, given.keys())
+        self._edges = edges
+        self._steps = [(node, OPS[graph.op[node]].rule, graph.args[node]) for node in nodes]
+        read = {abs(edge) for edge in edges}.union(*(map(abs, args) for _, _, args in self._steps)).difference(nodes)
+        self._numbers: dict[int, Array | float] = {0: 0.0}
+        self._numbers |= {node: graph.value[node] for node in read if node in graph.value}
+        self._slots = {node: given.get(node) or graph.slot[node] for node in read.difference(self._numbers)}
+
+    def __call__(self, inputs: Mapping[str, Array]) -> list[Array | float]:
+        """The values of the edges, each (n,) or a number; inputs are (n or 1, size), by group."""
+        values = dict(self._numbers)
+        for node, slot in self._slots.items():
+            values[node] = inputs[slot.group][:, slot.index]
+        for node, rule, args in self._steps:
+            values[node] = rule(*[values[edge] if edge >= 0 else -values[-edge] for edge in args])
+        return [values[edge] if edge >= 0 else -values[-edge] for edge in self._edges]
+
+
+class FunctionEvaluation:
+    """One function of a program, staged or not, evaluated over batches."""
+
+    def __init__(self, program: Program, function: Function) -> None:
+        self._outputs = function.outputs
+        edges = [edge for output in function.outputs for edge in output.edges]
+        self._evaluation = Evaluation(program, edges, program.pre)
+
+    def __call__(self, inputs: Mapping[str, Array], n: int) -> list[Array]:
+        """One array an output, (n, *shape), for n states; inputs are (n or 1, size), by group."""
+        columns = self._evaluation(inputs)
+        results, first = [], 0
+        for output in self._outputs:
+            size = len(output.edges)
+            flat = np.empty((n, size))
+            for i in range(size):
+                flat[:, i] = columns[first + i]
+            first += size
+            results.append(flat.reshape(n, *output.shape))
+        return results
+
+
 def interpret(program: Program, function: Function, inputs: Mapping[str, Array], n: int) -> list[Array]:
-    """Evaluate one function over a batch.
-
-    Args:
-        program: Staged or not.
-        function: One of its functions.
-        inputs: Each group as (n or 1, size).
-        n: Number of states.
-
-    Returns:
-        One array an output, (n, *shape).
-    """
-    edges = [edge for output in function.outputs for edge in output.edges]
-    columns = evaluate_edges(program, edges, inputs, program.pre)
-    results, first = [], 0
-    for output in function.outputs:
-        size = len(output.edges)
-        flat = np.empty((n, size))
-        for i in range(size):
-            flat[:, i] = columns[first + i]
-        first += size
-        results.append(flat.reshape(n, *output.shape))
-    return results
+    """Evaluate one function once, as `FunctionEvaluation` does."""
+    return FunctionEvaluation(program, function)(inputs, n)
 
 
 def evaluate_edges(
     program: Program, edges: Sequence[Edge], inputs: Mapping[str, Array], given: Mapping[int, Slot]
 ) -> list[Array | float]:
-    """The values of some edges, each (n,) or a number.
-
-    Args:
-        program: Program whose graph is evaluated.
-        edges: Edges to evaluate.
-        inputs: Each group as (n or 1, size).
-        given: Nodes to read from an input group instead of computing them.
-    """
-    graph = program.graph
-    values: dict[int, Array | float] = dict(graph.value)
-
-    def value(edge: Edge) -> Array | float:
-        node = abs(edge)
-        if node == 0:
-            return 0.0
-        if node not in values:
-            slot = given.get(node) or graph.slot[node]
-            values[node] = inputs[slot.group][:, slot.index]
-        return values[node] if edge > 0 else -values[node]
-
-    for node in needed_nodes(graph, edges, given.keys()):
-        values[node] = OPS[graph.op[node]].rule(*map(value, graph.args[node]))
-    return [value(edge) for edge in edges]
+    """The values of some edges once, as `Evaluation` gives them."""
+    return Evaluation(program, edges, given)(inputs)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from symofros.base.measures import Measures
-from symofros.expr.numerics.evaluate import evaluate_edges, interpret
+from symofros.expr.numerics.evaluate import FunctionEvaluation, evaluate_edges
 from symofros.expr.program import Function, Program, Solver
 from symofros.runtime.calls.kernel import DEFAULT_OPTIONS, Array, BatchOptions, Kernel, Numbers, Signature
 from symofros.runtime.constrained import constrained, differentiate, project
@@ -28,6 +28,7 @@ class InterpretedKernel:
     def __init__(self, program: Program, function: Function) -> None:
         self._program = program
         self._function = function
+        self._evaluations: dict[int, FunctionEvaluation] = {}
         self.signature = Signature(
             function.name,
             function.frame,
@@ -45,7 +46,7 @@ class InterpretedKernel:
     def run(self, n: int, pre: Array, inputs: list[Numbers], options: BatchOptions = DEFAULT_OPTIONS) -> list[Numbers]:
         """Evaluate n states; in one thread, since the interpreter keeps its lock, and in double precision."""
         named = dict(zip(self._function.inputs, [x.astype(np.float64, copy=False) for x in inputs], strict=True))
-        outputs = interpret(self._program, self._function, named | {"pre": pre}, n)
+        outputs = self._interpret(self._function, named | {"pre": pre}, n)
         solver = self._function.solver
         results = outputs if solver is None else _TWINS[solver.routine](self, solver, named | {"pre": pre}, outputs)
         return [options.of(output) for output in results]
@@ -61,7 +62,14 @@ class InterpretedKernel:
 
     def evaluate(self, function: Function, named: Mapping[str, Array]) -> list[Array]:
         """The outputs of this function, or of a part of it, for one state."""
-        return [output[0] for output in interpret(self._program, function, named, 1)]
+        return [output[0] for output in self._interpret(function, named, 1)]
+
+    def _interpret(self, function: Function, inputs: Mapping[str, Array], n: int) -> list[Array]:
+        """This function or a part of it over n states; which nodes it needs is found at its first call."""
+        evaluation = self._evaluations.get(id(function))
+        if evaluation is None:
+            evaluation = self._evaluations[id(function)] = FunctionEvaluation(self._program, function)
+        return evaluation(inputs, n)
 
     def _constrained(self, solver: Solver, _: Mapping[str, Array], outputs: list[Array]) -> list[Array]:
         """Both forms: they have one solution."""
@@ -73,7 +81,7 @@ class InterpretedKernel:
         M, r, G, c = outputs
         measures = Measures(*solver.tables)
         a, lam, _ = constrained(M, r, G, c, measures)
-        slopes = interpret(self._program, solver.parts[0], {**named, "a": a, "lam": lam}, len(a))
+        slopes = self._interpret(solver.parts[0], {**named, "a": a, "lam": lam}, len(a))
         states = zip(M, G, zip(*slopes, strict=True), strict=True)
         derivatives = zip(*(differentiate(m, g, list(of), measures) for m, g, of in states), strict=True)
         return [np.array(values) for values in derivatives]
@@ -86,7 +94,7 @@ class InterpretedKernel:
         weights = (np.broadcast_to(named[group], of.shape) for group, of in (("a_bar", a), ("lam_bar", lam)))
         mu, nu, _ = constrained(M, -next(weights), G, next(weights), measures)
         at = {**named, "a": a, "lam": lam, "a_bar": mu, "lam_bar": -nu}
-        return interpret(self._program, solver.parts[0], at, len(a))
+        return self._interpret(solver.parts[0], at, len(a))
 
     def _project(self, solver: Solver, named: Mapping[str, Array], outputs: list[Array]) -> list[Array]:
         """State by state."""

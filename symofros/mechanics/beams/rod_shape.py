@@ -13,7 +13,7 @@ from symofros.description.values import Value
 from symofros.expr.edges import Edge
 from symofros.expr.expression import evaluate
 from symofros.expr.graph import Graph
-from symofros.expr.numerics.evaluate import evaluate_edges
+from symofros.expr.numerics.evaluate import Evaluation
 from symofros.expr.program import Program
 from symofros.mechanics.beams.rod import rod_of
 from symofros.mechanics.beams.strains import strains_of
@@ -41,15 +41,16 @@ class RodShape:
 
         rod = rod_of(g, lower, beam, tuple(g.input("q", i) for i in range(beam.modes)))
         inverse = g.div(g.constant(1.0), rod.along.L)
-        self._edges: list[Edge] = []
+        edges: list[Edge] = []
         for xi in stations:
-            self._edges += [*rod.position(xi).scaled(inverse), *rod.section_at(xi).R_BS.entries]
-        self._program, self._stations = Program(beam.name, g, {"q": beam.modes}, ()), len(stations)
+            edges += [*rod.position(xi).scaled(inverse), *rod.section_at(xi).R_BS.entries]
+        self._evaluate = Evaluation(Program(beam.name, g, {"q": beam.modes}, ()), edges, {})
+        self._stations = len(stations)
 
     def sections(self, q: Array) -> tuple[Array, Array]:
         """Positions over the length (..., S, 3) and rotations R_BS (..., S, 3, 3) for coordinates (..., n)."""
         flat = np.reshape(q, (-1, q.shape[-1]))
-        values = evaluate_edges(self._program, self._edges, {"q": flat}, {})
+        values = self._evaluate({"q": flat})
         table = np.empty((len(flat), len(values)))
         for k, value in enumerate(values):
             table[:, k] = value

@@ -7,11 +7,13 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from scipy import signal
 
 import symofros as sf
 from symofros.blocks import Constant, Derivative, Integrator, Ramp, Sine, StateSpace, TransferFunction
 from tests.blocks.support import STEP, refused, run
+from tests.late import late
+
+signal = late("scipy.signal")
 
 A, B, C, D = [[0.0, 1.0], [-4.0, -0.6]], [[0.0, 0.3], [1.0, 0.0]], [[1.0, 0.5]], [[0.2, 0.0]]
 # Runge-Kutta's error with steps of 0.01 s at 2 rad/s.

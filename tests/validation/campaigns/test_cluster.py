@@ -20,14 +20,15 @@ import pyarrow.parquet as parquet
 import pytest
 from typer.testing import CliRunner
 
+from tests.late import late
 from tests.validation.campaigns.test_killed import busy_worker, events, journal
 from validation.__main__ import app
 from validation.campaigns.errors import ClusterError
 from validation.campaigns.plan import make
-from validation.campaigns.runner import ANSWER, Pool
-from validation.campaigns.session import begin
 from validation.campaigns.tasks import tasks
 
+runner = late("validation.campaigns.runner")
+session = late("validation.campaigns.session")
 ROOT = Path(__file__).parents[3]
 PLAN = {
     "kind": "check",
@@ -159,7 +160,7 @@ def test_a_dead_worker_leaves_its_batches_to_the_others(tmp_path: Path) -> None:
     with cluster(tmp_path / "cluster") as made:
         killer = Thread(target=killing(folder, lambda: os.kill(busy_worker(folder), signal.SIGKILL), 2))
         killer.start()
-        begin(make(PLAN, "test"), folder, Pool(scheduler=made.address))
+        session.begin(make(PLAN, "test"), folder, runner.Pool(scheduler=made.address))
         killer.join()
         assert sorted(worker.poll() is None for worker in made.workers) == [False, True]
     assert set(events(folder, "done").values()) == {1}
@@ -168,7 +169,7 @@ def test_a_dead_worker_leaves_its_batches_to_the_others(tmp_path: Path) -> None:
 
 def test_a_cluster_without_workers_is_told(tmp_path: Path) -> None:
     with cluster(tmp_path / "cluster", workers=0) as made, pytest.raises(ClusterError, match="no worker for 0.5 s"):
-        begin(make(PLAN, "test"), tmp_path / "c", Pool(scheduler=made.address, patience=0.5))
+        session.begin(make(PLAN, "test"), tmp_path / "c", runner.Pool(scheduler=made.address, patience=0.5))
 
 
 @pytest.mark.parametrize(
@@ -188,5 +189,5 @@ def test_nobody_there_is_told_at_once(tmp_path: Path, address: str, found: str) 
         start = time.monotonic()
         words = ["campaign", "run", "-o", str(tmp_path / "c"), "--models", "pendulum", "--states", "4"]
         result = CliRunner().invoke(app, [*words, "--scheduler", asked])
-    assert result.exit_code == 2 and time.monotonic() - start < ANSWER
+    assert result.exit_code == 2 and time.monotonic() - start < runner.ANSWER
     assert f"scheduler '{asked}'" in result.output and found in result.output and "remedy: " in result.output

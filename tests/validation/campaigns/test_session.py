@@ -11,18 +11,19 @@ import pyarrow as pa
 import pytest
 from typer.testing import CliRunner
 
+from tests.late import late
 from tests.validation.campaigns.scripted import Scripted, with_a_damaged_page
 from validation.__main__ import app
-from validation.campaigns import session
 from validation.campaigns.errors import Unfinished
 from validation.campaigns.plan import CheckPlan, as_text, cases, identities, plan_hash, read
 from validation.campaigns.report import compose
-from validation.campaigns.runner import Pool, execute, run, sources
 from validation.campaigns.store import Store
 from validation.campaigns.summary import checked, effort, swept
 from validation.campaigns.sweep import DONE
 from validation.campaigns.tasks import CHECKED
 
+runner = late("validation.campaigns.runner")
+session = late("validation.campaigns.session")
 MANIFEST: dict[str, Any] = {"hash": "abc", "plan": {}, "models": {}, "versions": {}, "begun": ""}
 
 
@@ -32,27 +33,27 @@ def store(tmp_path: Path) -> Store:
 
 
 def test_a_worker_does_not_do_again_what_is_done(store: Store) -> None:
-    first = execute(Scripted(4), store.folder, "abc", sources())
-    assert execute(Scripted(4, "raise"), store.folder, "abc", sources()) == first == store.part(4)
+    first = runner.execute(Scripted(4), store.folder, "abc", runner.sources())
+    assert runner.execute(Scripted(4, "raise"), store.folder, "abc", runner.sources()) == first == store.part(4)
     assert [line["event"] for line in store.journal()] == ["begun", "done"]
 
 
 def test_a_worker_that_does_not_see_the_folder_hands_its_part_over(store: Store, tmp_path: Path) -> None:
-    handed = execute(Scripted(2), tmp_path / "elsewhere", "abc", sources())
+    handed = runner.execute(Scripted(2), tmp_path / "elsewhere", "abc", runner.sources())
     store.write(2, handed)
     assert store.finished()[0] == {2} and not (tmp_path / "elsewhere").exists()
 
 
 def test_a_worker_of_other_code_does_nothing(store: Store) -> None:
     with pytest.raises(RuntimeError, match="other code than the client"):
-        execute(Scripted(4), store.folder, "abc", sources() | {"source of symofros": "0"})
+        runner.execute(Scripted(4), store.folder, "abc", runner.sources() | {"source of symofros": "0"})
     assert not store.journal()
 
 
 def test_batches_that_can_not_be_done_leave_the_others_alone(store: Store) -> None:
     done: list[int] = []
     tasks = [Scripted(0), Scripted(1, "raise"), Scripted(2, "die"), *(Scripted(k) for k in range(3, 12))]
-    failures = run(store, tasks, Pool(workers=1), lambda task: done.append(task.number))
+    failures = runner.run(store, tasks, runner.Pool(workers=1), lambda task: done.append(task.number))
     assert sorted(done) == [0, *range(3, 12)] and store.finished()[0] == set(done)
     assert failures[1] == "scripted: ZeroDivisionError: a fault"
     assert failures[2] == "scripted: the process that did it died, each time it was tried"
@@ -60,7 +61,7 @@ def test_batches_that_can_not_be_done_leave_the_others_alone(store: Store) -> No
 
 def test_nothing_listens_but_on_the_loopback() -> None:
     """Neither scheduler nor workers nor pages of dask."""
-    with Pool(workers=1).client() as client:
+    with runner.Pool(workers=1).client() as client:
         addresses = [client.scheduler.address, *client.scheduler_info()["workers"]]
         assert all(address.startswith("tcp://127.0.0.1:") for address in addresses)
         hosts = {address for address, _ in listening(os.getpid())}
@@ -184,10 +185,12 @@ def test_a_campaign_from_the_command_line_and_what_is_said_of_it_later(tmp_path:
 def test_a_damaged_part_is_named_on_resume_and_done_again(store: Store) -> None:
     def complete() -> str:
         with redirect_stderr(io.StringIO()) as said, pytest.MonkeyPatch.context() as patch:
-            patch.setattr(session, "tasks", lambda plan: [Scripted(number) for number in range(3)])
-            patch.setattr(session, "run", lambda store, left, *_: {task.number: "not done" for task in left})
+            patch.setattr("validation.campaigns.session.tasks", lambda plan: [Scripted(number) for number in range(3)])
+            patch.setattr(
+                "validation.campaigns.session.run", lambda store, left, *_: {task.number: "not done" for task in left}
+            )
             with pytest.raises(Unfinished) as caught:
-                session._complete(store, CheckPlan(models=("pendulum",), states=3, batch=1), Pool(workers=1))
+                session._complete(store, CheckPlan(models=("pendulum",), states=3, batch=1), runner.Pool(workers=1))
         return f"{said.getvalue()}{caught.value}"
 
     for number in (0, 1):
@@ -196,14 +199,16 @@ def test_a_damaged_part_is_named_on_resume_and_done_again(store: Store) -> None:
     part.write_bytes(with_a_damaged_page(part.read_bytes()))
     said = complete()
     assert "000001.parquet is damaged, its batch is done again: " in said and "2 batches could not be done" in said
-    assert execute(Scripted(1), store.folder, "abc", sources()) == store.part(1)
+    assert runner.execute(Scripted(1), store.folder, "abc", runner.sources()) == store.part(1)
     assert "is damaged" not in complete()
 
 
 def test_rows_of_two_generators_do_not_stand_in_one_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     plan = CheckPlan(models=("pendulum",), states=10)
     Store.create(tmp_path / "c", session._manifest(plan))
-    monkeypatch.setattr(session, "sources", lambda: sources() | {"source of symofros": "of another state"})
+    monkeypatch.setattr(
+        "validation.campaigns.session.sources", lambda: runner.sources() | {"source of symofros": "of another state"}
+    )
     code, said = called("resume", str(tmp_path / "c"))
     assert code == 2 and "versions changed since: source of symofros: " in said
 

@@ -12,13 +12,15 @@ from symofros.studio.viewer.drawing.meshes import Array, Mesh
 
 LINE = np.array([[0.0, 0.0, 0.0], [0.5, 0.1, 0.0], [1.0, 0.3, 0.2], [1.2, 0.8, 0.5]])
 MESHES = {
-    "box": meshes.box(np.array([1.0, 2.0, 3.0])),
-    "sphere": meshes.sphere(2.0),
-    "cylinder": meshes.cylinder(np.array([0.0, 0.0, 1.0]), np.array([1.0, 2.0, 0.0]), 0.1),
-    "cone": meshes.cone(np.array([0.0, 0.0, 1.0]), np.array([1.0, 2.0, 0.0]), 0.1),
-    "disc": meshes.disc(1.0, 0.1),
-    "tube": meshes.tube(meshes.ellipse(0.05, 0.1), LINE, np.stack([meshes.axes_along(np.ones(3))] * 4)),
-    "merged": meshes.merged([meshes.disc(1.0, 0.1), meshes.box(np.ones(3)).transformed(5 * np.ones(3), np.eye(3))]),
+    "box": lambda: meshes.box(np.array([1.0, 2.0, 3.0])),
+    "sphere": lambda: meshes.sphere(2.0),
+    "cylinder": lambda: meshes.cylinder(np.array([0.0, 0.0, 1.0]), np.array([1.0, 2.0, 0.0]), 0.1),
+    "cone": lambda: meshes.cone(np.array([0.0, 0.0, 1.0]), np.array([1.0, 2.0, 0.0]), 0.1),
+    "disc": lambda: meshes.disc(1.0, 0.1),
+    "tube": lambda: meshes.tube(meshes.ellipse(0.05, 0.1), LINE, np.stack([meshes.axes_along(np.ones(3))] * 4)),
+    "merged": lambda: meshes.merged(
+        [meshes.disc(1.0, 0.1), meshes.box(np.ones(3)).transformed(5 * np.ones(3), np.eye(3))]
+    ),
 }
 # Areas of regular polygons over those of their circles.
 TWELVE_SIDES, WHEEL = (n / (2 * np.pi) * np.sin(2 * np.pi / n) for n in (12, 48))
@@ -32,7 +34,7 @@ def volume(mesh: Mesh) -> float:
 
 @pytest.mark.parametrize("name", MESHES)
 def test_every_edge_has_two_faces_that_run_along_it_both_ways(name: str) -> None:
-    mesh = MESHES[name]
+    mesh = MESHES[name]()
     _, place = np.unique(np.round(mesh.vertices, 9), axis=0, return_inverse=True)
     corners = place.reshape(-1)[mesh.faces]
     edges = Counter((a, b) for face in corners for a, b in zip(face, np.roll(face, -1), strict=True) if a != b)
@@ -51,11 +53,11 @@ def test_every_edge_has_two_faces_that_run_along_it_both_ways(name: str) -> None
     ],
 )
 def test_volumes(name: str, expected: float) -> None:
-    assert volume(MESHES[name]) == pytest.approx(expected, rel=1e-12)
+    assert volume(MESHES[name]()) == pytest.approx(expected, rel=1e-12)
 
 
 def test_a_sphere_is_nearly_round() -> None:
-    mesh = MESHES["sphere"]
+    mesh = MESHES["sphere"]()
     assert np.allclose(np.linalg.norm(mesh.vertices, axis=1), 2.0)
     assert 0.85 < volume(mesh) / (4 / 3 * np.pi * 8) < 1.0
 

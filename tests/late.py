@@ -1,0 +1,31 @@
+"""Packages that take a second to import: every worker collects all files, and few run the tests that need them."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from importlib.util import find_spec
+from typing import Any
+
+import pytest
+
+
+class LateModule:
+    """A module that is imported when an attribute of it is first asked for.
+
+    Unlike a module of `importlib.util.LazyLoader`, it is not in `sys.modules` before: SciPy looks there for packages of
+    arrays.
+    """
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def __getattr__(self, attribute: str) -> Any:
+        return getattr(import_module(self._name), attribute)
+
+
+def late(name: str, extra: str = "") -> Any:
+    """A module for the tests of a file; they are skipped where it is of an extra that is not installed."""
+    if extra and find_spec(name) is None:
+        reason = f"the package {name} is not installed: pip install 'symofros[{extra}]'"
+        pytest.skip(reason, allow_module_level=True)
+    return LateModule(name)
