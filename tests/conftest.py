@@ -29,9 +29,9 @@ os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
 
 # Compiling is half of a run's time, and half of that is optimisation. Tests of other things than generated code and its
-# compilation do without, but for runs with --slow or a part of it, which compile as users do.
+# compilation do without, but for runs with --slow or a part of it and for benchmarks, which compile as users do.
 _STATED_FLAGS = os.environ.get("SYMOFROS_CFLAGS")
-_OPTIMISED = {"benchmarks", "exports", "generator", "native", "runtime"}
+_OPTIMISED = {"exports", "generator", "native", "runtime"}
 
 # The browser's tests name Playwright's types as they are collected.
 _PLAYWRIGHT = find_spec("playwright") is not None
@@ -89,8 +89,8 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 def pytest_runtest_setup(item: pytest.Item) -> None:
     """Flags of the compiler for a test, its fixtures and the processes that it starts."""
     if _STATED_FLAGS is None:
-        slow = item.config.getoption("--slow") or item.config.getoption("--slow-part")
-        as_users_do = slow or item.path.relative_to(Path(__file__).parent).parts[0] in _OPTIMISED
+        asked = any(map(item.config.getoption, ("--slow", "--slow-part", "--benchmark-enable")))
+        as_users_do = asked or item.path.relative_to(Path(__file__).parent).parts[0] in _OPTIMISED
         os.environ["SYMOFROS_CFLAGS"] = "" if as_users_do else "-O0"
 
 

@@ -130,17 +130,20 @@ ADAPTERS = {name: name for name in ENGINES} | {
 
 
 @cache
-def tree(path: Path) -> ast.Module:
-    return ast.parse(path.read_text())
+def import_statements(path: Path) -> tuple[ast.Import | ast.ImportFrom, ...]:
+    """Those of a file, within functions, too; found once for all rules."""
+    return tuple(
+        node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Import | ast.ImportFrom)
+    )
 
 
 @cache
 def imported(path: Path) -> tuple[str, ...]:
     modules: list[str] = []
-    for node in ast.walk(tree(path)):
+    for node in import_statements(path):
         if isinstance(node, ast.Import):
             modules += (alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
+        else:
             assert node.level == 0, f"{path}: relative import"
             module = node.module or ""
             if module in ("validation", "validation.adapters"):  # What is taken from them may be a layer.
@@ -201,7 +204,7 @@ PACKAGE_MODULES = {".".join(path.relative_to(ROOT).with_suffix("").parts).remove
 
 def test_the_harness_imports_public_modules_only() -> None:
     def faults(path: Path) -> Iterator[str]:
-        for node in ast.walk(tree(path)):
+        for node in import_statements(path):
             if isinstance(node, ast.Import):
                 modules = {alias.name for alias in node.names}
             elif isinstance(node, ast.ImportFrom) and node.module is not None:
@@ -268,7 +271,7 @@ def _modules() -> dict[str, Path]:
 def _imported_modules(path: Path, known: Collection[str]) -> set[str]:
     """The modules of ours that a file imports, for type checkers and within functions, too."""
     names: set[str] = set()
-    for node in ast.walk(tree(path)):
+    for node in import_statements(path):
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.module is not None:

@@ -1,15 +1,15 @@
-"""One block at a time: fed by samples, run compiled and interpreted, which must agree."""
+"""Blocks fed by samples, run compiled and interpreted, which must agree."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import pytest
 
 import symofros as sf
-from symofros.blocks import Reshape, Sequence
+from symofros import blocks
 from symofros.diagrams.block import Block
 from symofros.errors import Problem
 
@@ -19,21 +19,26 @@ ROUNDING = 1e-12
 STEP = 0.01
 
 
-def run(
-    block: Block,
-    inputs: Mapping[str, Any] | None = None,
+def run(block: Block, inputs: Mapping[str, Any] | None = None, **options: Any) -> Mapping[str, np.ndarray]:
+    """Outputs of a block over time, by port, and "t"; inputs by port, options as of `run_each`."""
+    return run_each([(block, inputs or {})], **options)[0]
+
+
+def run_each(
+    fed: Sequence[tuple[Block, Mapping[str, Any]]],
     t_end: float | None = None,
     models: Mapping[str, tuple[sf.System, Mapping[str, float]]] | None = None,
     kind: str = "hold",
     dt: float = STEP,
     compare: float = ROUNDING,
     compiled: bool = False,
-) -> Mapping[str, np.ndarray]:
-    """Outputs of a block over time, by port, and "t"; what the interpreted run gives is compared.
+) -> list[Mapping[str, np.ndarray]]:
+    """Outputs of blocks over time, by port, and "t"; what the interpreted run gives is compared.
+
+    The blocks stand in one diagram, so that the compiler is called once for all.
 
     Args:
-        block: The block.
-        inputs: Port -> its values over time, one row a multiple of dt.
+        fed: Blocks, each with port -> its values over time, one row a multiple of dt.
         t_end: Where to end; by default with the inputs.
         models: Name -> system, start.
         kind: Of the inputs between samples.
@@ -41,28 +46,35 @@ def run(
         compare: Largest difference, absolute or relative; 0 leaves the interpreted run out.
         compiled: Whether C evaluates single blocks in the interpreted run; else NumPy does.
     """
-    diagram = sf.Diagram("one")
+    diagram = sf.Diagram("blocks")
     for name, (system, start) in (models or {}).items():
         diagram.add_model(name, system, start)
-    values = {port: np.asarray(value, dtype=float) for port, value in (inputs or {}).items()}
-    sources = {}
-    for port, value in values.items():
-        rows = value.reshape(len(value), -1)
-        diagram.add(Sequence(name=f"source_{port}", t=dt * np.arange(len(value)), values=rows, kind=kind))
-        diagram.add(Reshape(name=f"given_{port}", shape=value.shape[1:]), u=f"source_{port}.y")
-        sources[port] = f"given_{port}.y"
-    diagram.add(block, **sources)
-    end = t_end if t_end is not None else dt * (max(map(len, values.values())) - 1)
+    rows = 0
+    for block, inputs in fed:
+        sources = {}
+        for port, given in inputs.items():
+            value = np.asarray(given, dtype=float)
+            rows = max(rows, len(value))
+            sequence, reshape = f"source_{block.name}_{port}", f"given_{block.name}_{port}"
+            samples = value.reshape(len(value), -1)
+            diagram.add(blocks.Sequence(name=sequence, t=dt * np.arange(len(value)), values=samples, kind=kind))
+            diagram.add(blocks.Reshape(name=reshape, shape=value.shape[1:]), u=f"{sequence}.y")
+            sources[port] = f"{reshape}.y"
+        diagram.add(block, **sources)
+    end = t_end if t_end is not None else dt * (rows - 1)
     simulation = sf.Simulation(diagram)
-    found = simulation.run(end, dt=dt, record=dt)
-    assert found.outcome.ok, found.outcome
-    ports = [port.name for port in simulation.resolved.wired.ports[block.name].outputs]
-    signals = {port: np.asarray(found[f"{block.name}.{port}"]) for port in ports}
-    if compare:
-        other = simulation.interpret(end, dt=dt, record=dt, compiled=compiled)
-        for port, value in signals.items():
-            np.testing.assert_allclose(other[f"{block.name}.{port}"], value, rtol=compare, atol=compare, err_msg=port)
-    return {"t": np.asarray(found.t), **signals}
+    record = simulation.run(end, dt=dt, record=dt)
+    assert record.outcome.ok, record.outcome
+    other = simulation.interpret(end, dt=dt, record=dt, compiled=compiled) if compare else None
+    outputs = []
+    for block, _ in fed:
+        ports = [port.name for port in simulation.resolved.wired.ports[block.name].outputs]
+        signals = {port: np.asarray(record[f"{block.name}.{port}"]) for port in ports}
+        for port, value in signals.items() if other is not None else ():
+            signal = f"{block.name}.{port}"
+            np.testing.assert_allclose(other[signal], value, rtol=compare, atol=compare, err_msg=signal)
+        outputs.append({"t": np.asarray(record.t), **signals})
+    return outputs
 
 
 def refused(make: Callable[[], object], found: str, remedy: str = "") -> Problem:

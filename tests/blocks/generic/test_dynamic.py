@@ -10,7 +10,7 @@ import pytest
 
 import symofros as sf
 from symofros.blocks import Constant, Derivative, Integrator, Ramp, Sine, StateSpace, TransferFunction
-from tests.blocks.support import STEP, refused, run
+from tests.blocks.support import STEP, refused, run, run_each
 from tests.late import late
 
 signal = late("scipy.signal")
@@ -36,20 +36,27 @@ def test_sampled_state_space_follows_its_recursion(rng: np.random.Generator) -> 
     np.testing.assert_allclose(found, y, atol=1e-13)
 
 
-@pytest.mark.parametrize(
-    ("num", "den"),
-    [([1.0], [1.0, 0.6, 4.0]), ([2.0, 0.0, 1.0], [2.0, 1.0, 8.0]), ([3.0], [2.0]), ([1.0, 2.0], [1.0, 1.0])],
-)
-def test_transfer_function_follows_scipy(num: list[float], den: list[float]) -> None:
+FRACTIONS = (([1.0], [1.0, 0.6, 4.0]), ([2.0, 0.0, 1.0], [2.0, 1.0, 8.0]), ([3.0], [2.0]), ([1.0, 2.0], [1.0, 1.0]))
+
+
+def test_transfer_functions_follow_scipy() -> None:
     t = STEP * np.arange(300)
     u = np.sin(3 * t)
-    y = signal.lsim((num, den), u, t)[1] if len(den) > 1 else u * num[0] / den[0]
-    np.testing.assert_allclose(
-        run(TransferFunction(name="f", num=num, den=den), {"u": u}, kind="linear")["y"], y, atol=1e-6
-    )
-    sampled = run(TransferFunction(name="f", num=num, den=[8.0 * den[0], *den[1:]], period=STEP), {"u": u})["y"]
-    padded = [0.0] * (len(den) - len(num)) + num
-    np.testing.assert_allclose(sampled, signal.lfilter(padded, [8.0 * den[0], *den[1:]], u), atol=1e-12)
+    blocks = [TransferFunction(name=f"f{i}", num=num, den=den) for i, (num, den) in enumerate(FRACTIONS)]
+    for (num, den), outputs in zip(
+        FRACTIONS, run_each([(block, {"u": u}) for block in blocks], kind="linear"), strict=True
+    ):
+        y = signal.lsim((num, den), u, t)[1] if len(den) > 1 else u * num[0] / den[0]
+        np.testing.assert_allclose(outputs["y"], y, atol=1e-6, err_msg=f"{num} {den}")
+
+
+def test_sampled_transfer_functions_follow_scipys_filter() -> None:
+    u = np.sin(3 * STEP * np.arange(300))
+    stable = [(num, [8.0 * den[0], *den[1:]]) for num, den in FRACTIONS]
+    blocks = [TransferFunction(name=f"f{i}", num=num, den=den, period=STEP) for i, (num, den) in enumerate(stable)]
+    for (num, den), outputs in zip(stable, run_each([(block, {"u": u}) for block in blocks]), strict=True):
+        padded = [0.0] * (len(den) - len(num)) + num
+        np.testing.assert_allclose(outputs["y"], signal.lfilter(padded, den, u), atol=1e-12, err_msg=f"{num} {den}")
 
 
 def test_an_integrator_stands_at_its_limits_and_leaves_them_at_once() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
+from itertools import product
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ import symofros as sf
 from reference_models import MODELS
 from symofros.blocks import FrameTransform, Orientation, OrientationError, Transform
 from symofros.blocks.rotations import EULER
-from tests.blocks.support import refused, run
+from tests.blocks.support import refused, run, run_each
 
 # Angles at which formulas lose digits: none, tiny, a right angle, half a turn and about it.
 TURNS = np.array(
@@ -62,29 +63,29 @@ def back(form: str, value: np.ndarray) -> np.ndarray:
     return Rotation.from_euler(form[-3:].upper(), value).as_matrix()
 
 
-@pytest.mark.parametrize(
-    ("source", "target"),
-    # All go by way of the matrix: into it and out of it in every run.
-    [
-        pytest.param(source, target, marks=[] if "matrix" in (source, target) else [pytest.mark.slow])
-        for source in FORMS
-        for target in FORMS
-    ],
-)
-def test_orientations_keep_their_digits_at_every_angle(source: str, target: str) -> None:
-    found = run(Orientation(name="o", source=source, target=target), {"u": FORMS[source]})["y"]
-    # Euler angles near their singular attitude keep half the digits, as an arc sine does.
-    np.testing.assert_allclose(back(target, found), FORMS["matrix"], atol=2e-8 if "euler" in target else 1e-14)
+# All go by way of the matrix: into it and out of it in every run.
+@pytest.mark.parametrize("by_matrix", [True, pytest.param(False, marks=pytest.mark.slow)])
+def test_orientations_keep_their_digits_at_every_angle(by_matrix: bool) -> None:
+    pairs = [pair for pair in product(FORMS, FORMS) if ("matrix" in pair) == by_matrix]
+    blocks = [Orientation(name=f"{source}_to_{target}", source=source, target=target) for source, target in pairs]
+    fed = [(block, {"u": FORMS[source]}) for block, (source, _) in zip(blocks, pairs, strict=True)]
+    for (block, _), (_, target), outputs in zip(fed, pairs, run_each(fed), strict=True):
+        # Euler angles near their singular attitude keep half the digits, as an arc sine does.
+        atol = 2e-8 if "euler" in target else 1e-14
+        np.testing.assert_allclose(back(target, outputs["y"]), FORMS["matrix"], atol=atol, err_msg=block.name)
 
 
-@pytest.mark.parametrize("sequence", EULER)
-def test_all_sequences_of_euler_angles(sequence: str, rng: np.random.Generator) -> None:
+def test_all_sequences_of_euler_angles(rng: np.random.Generator) -> None:
     angles = rng.uniform(-3, 3, size=(20, 3))
-    R = Rotation.from_euler(sequence.upper(), angles).as_matrix()
-    to = run(Orientation(name="o", source=f"euler_{sequence}", target="matrix"), {"u": angles})["y"]
-    np.testing.assert_allclose(to, R, atol=1e-14)
-    found = run(Orientation(name="o", source="matrix", target=f"euler_{sequence}"), {"u": R})["y"]
-    np.testing.assert_allclose(found, Rotation.from_matrix(R).as_euler(sequence.upper()), atol=1e-11)
+    R = {sequence: Rotation.from_euler(sequence.upper(), angles) for sequence in EULER}
+    to = [(Orientation(name=f"to_{s}", source=f"euler_{s}", target="matrix"), {"u": angles}) for s in EULER]
+    out_of = [
+        (Orientation(name=f"of_{s}", source="matrix", target=f"euler_{s}"), {"u": R[s].as_matrix()}) for s in EULER
+    ]
+    outputs = [each["y"] for each in run_each(to + out_of)]
+    for sequence, matrix, found in zip(EULER, outputs[: len(to)], outputs[len(to) :], strict=True):
+        np.testing.assert_allclose(matrix, R[sequence].as_matrix(), atol=1e-14, err_msg=sequence)
+        np.testing.assert_allclose(found, R[sequence].as_euler(sequence.upper()), atol=1e-11, err_msg=sequence)
 
 
 def test_quaternions_have_no_negative_w_and_turns_are_of_at_most_half_a_revolution() -> None:
