@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
@@ -26,7 +27,7 @@ from symofros.blocks import (
 from symofros.description.forces import Friction
 from symofros.diagrams.block import Block
 from symofros.diagrams.program.variants import friction_only
-from tests.blocks.support import run
+from tests.blocks.support import run, run_each
 from tests.models import sampled
 
 # Model -> a frame at the end of what moves.
@@ -90,7 +91,11 @@ def states(name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def through(name: str, block: Block, **inputs: np.ndarray) -> dict[str, np.ndarray]:
-    return dict(run(block, inputs, models={"m": (system(name), {})}, compare=1e-10))
+    return dict(through_each(name, (block, inputs))[0])
+
+
+def through_each(name: str, *fed: tuple[Block, dict[str, np.ndarray]]) -> list[Mapping[str, np.ndarray]]:
+    return run_each(fed, models={"m": (system(name), {})}, compare=1e-10)
 
 
 # Closed; on a free base. Flexible, with friction and rotors: where forces are asked for.
@@ -146,13 +151,18 @@ def test_inverse_dynamics_and_compensations(name: str) -> None:
     rubs = friction(name, q, v)
     tau = m.inverse_dynamics(q, v, a)
     scale = {"rtol": 1e-9, "atol": 1e-10 * max(1.0, np.abs(tau).max())}
-    np.testing.assert_allclose(through(name, InverseDynamics(name="b", model="m"), q=q, v=v, a=a)["tau"], tau, **scale)
-    without = through(name, InverseDynamics(name="b", model="m", with_friction=False), q=q, v=v, a=a)["tau"]
-    np.testing.assert_allclose(without, tau + rubs, **scale)
-    found = through(name, FrictionCompensation(name="b", model="m", factor=0.8), q=q, v=v)["effort"]
-    np.testing.assert_allclose(found, -0.8 * rubs, **scale)
-    held = through(name, GravityCompensation(name="b", model="m"), q=q)["effort"]
-    np.testing.assert_allclose(held, m.inverse_dynamics(q, 0 * v, 0 * a), **scale)
+    motion = {"q": q, "v": v, "a": a}
+    whole, without, friction_alone, held = through_each(
+        name,
+        (InverseDynamics(name="whole", model="m"), motion),
+        (InverseDynamics(name="without", model="m", with_friction=False), motion),
+        (FrictionCompensation(name="friction", model="m", factor=0.8), {"q": q, "v": v}),
+        (GravityCompensation(name="gravity", model="m"), {"q": q}),
+    )
+    np.testing.assert_allclose(whole["tau"], tau, **scale)
+    np.testing.assert_allclose(without["tau"], tau + rubs, **scale)
+    np.testing.assert_allclose(friction_alone["effort"], -0.8 * rubs, **scale)
+    np.testing.assert_allclose(held["effort"], m.inverse_dynamics(q, 0 * v, 0 * a), **scale)
 
 
 def friction(name: str, q: np.ndarray, v: np.ndarray) -> np.ndarray:
