@@ -24,7 +24,7 @@ from symofros.errors import ArgumentError, Problem, did_you_mean
 _Parameters = ParamSpec("_Parameters")
 _Result = TypeVar("_Result")
 
-# Class of this package -> how to get an object of it.
+# Name of a class -> how to get an object of it.
 _MAKERS = {
     "System": "sf.load(path) reads one",
     "Model": "sf.compile(system) makes one of a System, sf.compile(sf.load(path)) of a file",
@@ -33,6 +33,7 @@ _MAKERS = {
     "SimulationOptions": "sf.SimulationOptions(method=..., ...), or its fields by name",
     "Target": "sf.Target(position=..., rotation=...)",
     "Scene": "sf.load_scene(path) reads one",
+    "Generator": "numpy.random.default_rng(seed) makes one",
 }
 
 
@@ -144,13 +145,13 @@ def _kind(annotation: Any) -> _Kind | None:
         return _Kind("a function", callable, lambda _: "give a function, without calling it")
     if origin is os.PathLike or annotation is Path:
         return _Kind("a path", lambda value: isinstance(value, os.PathLike), lambda _: "give the path of a file")
-    if inspect.isclass(annotation) and annotation.__module__.startswith("symofros."):
+    if inspect.isclass(annotation) and annotation.__module__.startswith(("symofros.", "numpy.random.")):
         return _object_of(annotation)
     return None
 
 
 def _object_of(stated: Any) -> _Kind:
-    """Objects of a class of this package, or with the methods of a protocol."""
+    """Objects of a class, or with the methods of a protocol."""
     words = _with_article(stated.__name__)
     remedy = _MAKERS.get(stated.__name__, f"give {words}")
     if not getattr(stated, "_is_protocol", False):
@@ -262,9 +263,4 @@ _SIMPLE: dict[Any, _Kind] = {
         "True or False", lambda value: isinstance(value, bool | np.bool_ | int), lambda _: "give True or False"
     ),
     str: _Kind("a text", lambda value: isinstance(value, str), lambda _: "give a text, in quotes"),
-    np.random.Generator: _Kind(
-        "a generator of random numbers",
-        lambda value: isinstance(value, np.random.Generator),
-        lambda _: "numpy.random.default_rng(seed) makes one",
-    ),
 }

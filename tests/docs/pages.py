@@ -1,7 +1,8 @@
 """Pages of the documentation as the tests take them: their blocks of code, and what each block may need.
 
 A comment before a block says what GitHub and the site do not show: `<!-- file: arm.yaml -->`, the block is that file
-for what follows on the page; `<!-- part of bodies -->`, it belongs under that entry; `<!-- not run: reason -->`.
+for what follows on the page; `<!-- part of bodies -->`, it belongs under that entry; `<!-- needs jax -->`, it runs
+where that package is installed; `<!-- not run: reason -->`.
 """
 
 from __future__ import annotations

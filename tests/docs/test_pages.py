@@ -6,6 +6,7 @@ import json
 import re
 import shutil
 import tomllib
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +21,13 @@ from validation.campaigns import plan
 
 LANGUAGES = {"python", "sh", "yaml", "toml", "xml", "c", "js", "text"}
 SCHEMA = json.loads((ROOT / "symofros/description/yaml/schema.json").read_text())
-WITH_CODE = [page for page in pages() if blocks(page) and page not in ELSEWHERE and "tutorial/" not in page]
+# Pages whose code takes minutes: frameworks that compile and train.
+LONG = {"docs/interop.md": 4}
+WITH_CODE = [
+    pytest.param(page, marks=pytest.mark.slow(minutes=LONG[page])) if page in LONG else page
+    for page in pages()
+    if blocks(page) and page not in ELSEWHERE and "tutorial/" not in page
+]
 
 
 def validated(block: Block, folder: Path) -> None:
@@ -66,7 +73,8 @@ def folder(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_the_code_of_a_page_runs(page: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     names: dict[str, Any] = {"__name__": "__main__"}
     for block in blocks(page):
-        if not block.runs:
+        package = block.said("needs ")
+        if not block.runs or (package and find_spec(package) is None):
             continue
         where = f"{page}:{block.line}"
         if block.language == "python":
@@ -92,7 +100,7 @@ def test_pages_that_other_tests_run_are_read_by_those(page: str, folder: Path) -
 
 def test_what_does_not_run_says_why() -> None:
     unmarked = [block for page in pages() for block in blocks(page) if block.mark]
-    assert all(re.match(r"(not run: .{12,}|file: [\w./]+|part of \w+)$", block.mark) for block in unmarked)
+    assert all(re.match(r"(not run: .{12,}|file: [\w./]+|part of \w+|needs \w+)$", block.mark) for block in unmarked)
     left_out = [block for block in unmarked if not block.runs]
     assert len(left_out) <= 8, [f"{block.page}:{block.line}" for block in left_out]
 

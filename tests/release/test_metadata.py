@@ -61,6 +61,34 @@ def test_all_extras_are_named_where_one_looks_for_them() -> None:
         assert set(extra.split(",")) <= PROJECT["project"]["optional-dependencies"].keys()
 
 
+EXTRAS = PROJECT["project"]["optional-dependencies"]
+
+
+def packages(extra: str) -> set[str]:
+    """Requirements of an extra, those of extras that it names among them."""
+    stated = set()
+    for requirement in EXTRAS[extra]:
+        inner = re.fullmatch(r"symofros\[([\w,-]+)\]", requirement)
+        stated |= set().union(*map(packages, inner[1].split(","))) if inner else {requirement}
+    return stated
+
+
+def test_a_package_has_one_range_in_all_extras() -> None:
+    """Two ranges would let one extra bring what another refuses."""
+    ranges: dict[str, set[str]] = {}
+    for requirement in [*PROJECT["project"]["dependencies"], *(r for listed in EXTRAS.values() for r in listed)]:
+        if not requirement.startswith("symofros["):
+            ranges.setdefault(re.split(r"[<>=]", requirement)[0], set()).add(requirement)
+    assert {name: stated for name, stated in ranges.items() if len(stated) > 1} == {}
+
+
+def test_the_extra_all_brings_what_it_says() -> None:
+    left_out = {"all", "torch", "engines", "test", "dev", "docs", "release"}
+    wanted = {extra for extra in EXTRAS if extra not in left_out and not extra.startswith("engine-")}
+    assert {extra for extra in wanted if not packages(extra) <= packages("all")} == set()
+    assert not packages("torch") & packages("all") and "ruff>=0.5,<1" not in packages("all")
+
+
 def test_import_loads_numpy_alone() -> None:
     """What else the base installation brings is loaded by what needs it: import takes 0.04 s beside NumPy's own."""
     code = (
