@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from itertools import pairwise
 from numbers import Real
@@ -137,8 +138,8 @@ class Beam:
         EI_y: Stiffness against bending in the x-z plane [N m^2].
         GJ: Stiffness against twist [N m^2].
         rhoJ: Polar moment of inertia per length, about x [kg m].
-        rhoI_y: Moment of inertia per length about y, counted with rotary_inertia [kg m].
-        rhoI_z: Moment of inertia per length about z, counted with rotary_inertia [kg m].
+        rhoI_y: Moment of inertia per length about y; counts with rotary_inertia, without it is drawn alone [kg m].
+        rhoI_z: Moment of inertia per length about z, as rhoI_y [kg m].
         bend_y: Number of shape functions for the displacement along y; 0 is rigid.
         bend_z: Number of shape functions for the displacement along z; 0 is rigid.
         twist: Number of shape functions for the rotation about x; 0 is rigid.
@@ -234,17 +235,7 @@ class Beam:
                     )
                 )
         self._check_theory(what)
-        self._check_stations(what)
-        for key in given:
-            if key not in STRAINS:
-                raise DescriptionError(
-                    Problem(
-                        f"{what}: shapes for an unknown direction",
-                        f"'{key}'",
-                        f"one of {', '.join(STRAINS)}",
-                        did_you_mean(str(key), STRAINS),
-                    )
-                )
+        self._check_shapes(what, given)
         for direction in STRAINS:
             if not _is_count(getattr(self, direction), 0):
                 raise DescriptionError(
@@ -264,6 +255,7 @@ class Beam:
                     "1 leaves the beam in one piece",
                 )
             )
+        self._check_stations(what)
 
     def _check_stations(self, what: str) -> None:
         """Convert the stations of section forces, and check that they rise along the beam."""
@@ -278,6 +270,37 @@ class Beam:
                     "divide them by the length, and sort them",
                 )
             )
+        if not self.modes and self.stations != STATIONS:
+            raise DescriptionError(
+                Problem(
+                    f"{what}: stations of section forces on a rigid beam",
+                    ", ".join(f"{xi:g}" for xi in self.stations),
+                    "section forces are those of beams with shape functions; a rigid beam is one rigid body",
+                    "leave stations out, or state functions of bend_y, bend_z or twist",
+                )
+            )
+
+    def _check_shapes(self, what: str, given: Iterable[str]) -> None:
+        """Functions of the user, which one family alone has."""
+        if self.shapes and self.family != "user":
+            raise DescriptionError(
+                Problem(
+                    f"{what}: shapes with family '{self.family}'",
+                    ", ".join(key for key, _ in self.shapes),
+                    "functions of the user are those of family 'user'; other families have their own",
+                    "state family: user, or leave shapes out",
+                )
+            )
+        for key in given:
+            if key not in STRAINS:
+                raise DescriptionError(
+                    Problem(
+                        f"{what}: shapes for an unknown direction",
+                        f"'{key}'",
+                        f"one of {', '.join(STRAINS)}",
+                        did_you_mean(str(key), STRAINS),
+                    )
+                )
 
     def _check_theory(self, what: str) -> None:
         """Entries that one theory has and the other lacks."""

@@ -18,8 +18,8 @@ from symofros.description.values import Term, Value, Vector, substituted
 from symofros.errors import DescriptionError, Problem
 from symofros.expr.expression import Expression
 
-# Extremity frame of each segment but the last.
-END = "end"
+# Extremity frame of each segment but the last, that carries the next; with underscores where the beam has one of that name.
+_END = "end"
 
 
 def segment_names(beam: Beam) -> tuple[str, ...]:
@@ -48,12 +48,14 @@ def segments_of(beam: Beam) -> tuple[Beam, ...]:
                     "give the load along axes of the world, or put a rigid body with a load on the tip",
                 )
             )
-    names, n = segment_names(beam), beam.segments
+    names, n, end = segment_names(beam), beam.segments, _END
+    while any(frame.name == end for frame in beam.frames):
+        end += "_"
     length = (Term(beam.length) / Term(float(n))).value
     segments = []
     for k, name in enumerate(names):
         station = _station(beam.length, k, n)
-        clamp = Joint(f"{name}.clamp", "fixed", names[k - 1], END)
+        clamp = Joint(f"{name}.clamp", "fixed", names[k - 1], end)
         section: dict[str, Any] = {
             label: substituted(getattr(beam, label), STATION, station) for label in (*SECTION, *PRE_STRAINS)
         }
@@ -63,10 +65,10 @@ def segments_of(beam: Beam) -> tuple[Beam, ...]:
                 name=name,
                 joint=clamp if k else beam.joint,
                 length=length,
-                frames=tuple(_frames(beam.frames, k, n)),
+                frames=tuple(_frames(beam.frames, k, n, end)),
                 loads=tuple(_loads(beam.loads, k, n, station)),
                 segments=1,
-                stations=tuple(xi for on, xi in (_segment_at(x, n) for x in beam.stations) if on == k),
+                stations=tuple(_stations(beam, k)),
                 **section,
             )
         )
@@ -85,14 +87,21 @@ def _segment_at(xi: float, n: int) -> tuple[int, float]:
     return k, min(max(xi * n - k, 0.0), 1.0)
 
 
-def _frames(frames: Iterable[Frame], k: int, n: int) -> Iterator[Frame]:
-    """The frames of segment k, and the one that carries the next segment."""
+def _frames(frames: Iterable[Frame], k: int, n: int, end: str) -> Iterator[Frame]:
+    """The frames of segment k, and the one, of a name that is none of theirs, that carries the next segment."""
     if k < n - 1:
-        yield Frame(END)
+        yield Frame(end)
     for frame in frames:
         on, xi = _segment_at(frame.station, n)
         if on == k:
             yield frame if frame.at is None else replace(frame, at=xi)
+
+
+def _stations(beam: Beam, k: int) -> Iterable[float]:
+    """The stations of section forces on segment k; those of a rigid beam have none."""
+    if not beam.modes:
+        return beam.stations
+    return (xi for on, xi in (_segment_at(x, beam.segments) for x in beam.stations) if on == k)
 
 
 def _loads(loads: Iterable[BeamLoad], k: int, n: int, station: Value) -> Iterator[BeamLoad]:

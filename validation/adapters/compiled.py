@@ -20,6 +20,10 @@ NAME = "symofros"
 
 _FUNCTIONS = tuple(name for name in QUANTITIES if name not in {"gravity", "multipliers", *LOOPS})
 
+# Sections an interval beyond the number of functions, with which rods err by less than 1e-9 of M and h at the states that
+# are drawn.
+MORE_SECTIONS = 5
+
 
 @dataclass(frozen=True)
 class SymofrosEngine:
@@ -177,10 +181,18 @@ def untruncated(system: sf.System) -> sf.System:
 
 
 def without_rotary(system: sf.System) -> sf.System:
-    """The untruncated system, the sections of its beams without rotary inertia but that of twist."""
-    whole = untruncated(system).bodies
-    bodies = [replace(body, rotary_inertia=False) if isinstance(body, sf.Beam) else body for body in whole]
-    return replace(system, bodies=tuple(bodies))
+    """The untruncated system, the sections of its beams without rotary inertia but that of twist.
+
+    Rods, whose sections turn exactly, keep theirs; they have as many sections as rods without the error of these.
+    """
+    bodies = tuple(_of_elements(body) if isinstance(body, sf.Beam) else body for body in untruncated(system).bodies)
+    return replace(system, bodies=bodies)
+
+
+def _of_elements(beam: sf.Beam) -> sf.Beam:
+    if beam.theory == "strain":
+        return replace(beam, sections=max(beam.sections, max(beam.counts) + MORE_SECTIONS))
+    return replace(beam, rotary_inertia=False)
 
 
 def build_weightless(subject: Subject) -> sf.Model | None:

@@ -160,11 +160,6 @@ def evaluate(
     return rules[formula.kind](*(evaluate(arg, values, rules) for arg in formula.args))
 
 
-def rods(system: sf.System) -> list[str]:
-    """Names of the geometrically exact rods of a system."""
-    return [body.name for body in system.bodies if isinstance(body, sf.Beam) and body.theory == "strain"]
-
-
 def build(subject: Subject) -> StatedForces | Unsupported:
     """From the description alone."""
     kinds = {

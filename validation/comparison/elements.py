@@ -2,8 +2,9 @@
 
 M and h of elements that move as our beams do are compared like any engine's, after extrapolation. What is told beside
 that (docs/theory/elements.md): that each kind of element converges at the rate that it is extrapolated by; that elastic
-forces differ by the third power of the deflection, which is what our strain energy leaves out; that rotary inertia,
-whose spins are of second order in ours, differs by the second.
+forces differ by the third power of the deflection, which is what our strain energy leaves out, and not at all where
+the beam is a geometrically exact rod; that rotary inertia, whose spins are of second order in ours, differs by the
+second.
 """
 
 from __future__ import annotations
@@ -28,7 +29,8 @@ from validation.mechanics.extrapolation import Refined
 from validation.mechanics.geometry import Array
 
 RATE, STRAIN, DAMPING, ROTARY = "mesh_rate", "strain_order", "strain_damping", "rotary_order"
-ROWS = frozenset({RATE, STRAIN, DAMPING, ROTARY})
+EXACT = "strain_forces"
+ROWS = frozenset({RATE, STRAIN, EXACT, DAMPING, ROTARY})
 # States of these rows: each takes every mesh by itself.
 STATES = 10
 # By how much the rate of the finest meshes may stay below the stated one: half a power, where the next one is two
@@ -59,6 +61,10 @@ class BeamElements(Protocol):
     def v(self) -> slice:
         """Elastic speeds among all."""
 
+    @property
+    def is_rod(self) -> bool:
+        """Whether it is geometrically exact, so that its elastic forces are the elements' own."""
+
     def strain(self, q: Array) -> list[Refined]:
         """Elastic forces of the clamped beam (N, n)."""
 
@@ -85,8 +91,12 @@ def judge_elements(one: Participant, assembly: Assembly, variants: ModelVariants
     for beam in beams:
         ours = clamped(system, beam.described.name)
         q, v = states.q[:, beam.q], states.v[:, beam.v]
-        refined += beam.strain(q)
-        yield judge_strain(label, one.name, beam, ours, q)
+        strained = beam.strain(q)
+        refined += strained
+        if not beam.is_rod:
+            yield judge_strain(label, one.name, beam, ours, q)
+        elif strained:
+            yield judge_exact_strain(label, one.name, strained, ours, q)
         if beam.described.damping != 0.0:
             yield judge_damping(label, one.name, beam, ours, v)
     yield judge_rates(label, one.name, refined)
@@ -105,7 +115,9 @@ def clamped(system: sf.System, name: str) -> sf.Model:
     beam = system.body(name)
     assert isinstance(beam, sf.Beam)
     held = sf.Joint("clamp", "fixed")
-    alone = replace(beam, joint=held, frames=(), loads=(), retain="all")
+    alone = replace(beam, joint=held, frames=(), loads=())
+    if beam.theory == "second_order":
+        alone = replace(alone, retain="all")
     described = sf.System(f"{name}, clamped", (alone,), system.parameters, gravity=(0.0, 0.0, 0.0))
     return sf.compile(described, sf.Options(functions=("generalized_force",)))
 
@@ -153,6 +165,24 @@ def judge_strain(label: str, engine: str, beam: BeamElements, ours: sf.Model, q:
         forces = _forces(ours, eps * q)
         at[eps] = {one.name: float(np.abs(one.limit() - forces).max()) / size for one in beam.strain(eps * q)}
     return _by_powers(Comparison(label, engine, STRAIN, "agree", len(q)), STRAIN_POWER, at, STRAIN_RESOLVED)
+
+
+def judge_exact_strain(label: str, engine: str, strained: Sequence[Refined], ours: sf.Model, q: Array) -> Comparison:
+    """Whether elastic forces of a rod are those of elements, whatever the deflection.
+
+    Args:
+        label: Label of the model.
+        engine: Name of the engine.
+        strained: The elements' elastic forces, by kinds of elements.
+        ours: The same rod of ours, clamped.
+        q: Strain coordinates (N, n).
+    """
+    forces = _forces(ours, q)
+    size = float(np.abs(forces).max()) or 1.0
+    errors = {one.name: float(np.abs(one.limit() - forces).max()) / size for one in strained}
+    error = max(errors.values())
+    verdict: Status = "agree" if error <= EQUAL else "disagree"
+    return Comparison(label, engine, EXACT, verdict, len(q), error, EQUAL, note=", ".join(errors))
 
 
 def judge_damping(label: str, engine: str, beam: BeamElements, ours: sf.Model, v: Array) -> Comparison:

@@ -20,6 +20,7 @@ SLIDE = 1.0  # [m]
 SPEED = 2.0  # [rad/s, m/s]
 ACCELERATION = 5.0  # [rad/s^2, m/s^2]
 DEFLECTION = 0.1  # [rad, and m per m of length]: what second-order beam theory is good for.
+TURN = 0.3  # [rad, and stretch and shear without dimension]: of exact rods, all coordinates together.
 INPUT = 10.0  # [N m, N]
 MANY_TURNS = 100.0  # [rad]
 FAST = 20.0  # [rad/s, m/s]
@@ -81,7 +82,8 @@ def _coordinates(mover: Mover, rng: np.random.Generator, count: int) -> Array:
         return rng.uniform(-SLIDE, SLIDE, (count, mover.part.coordinates))
     if sampling == "deflection":
         n = mover.part.coordinates
-        return rng.uniform(-DEFLECTION, DEFLECTION, (count, n)) / max(n, 1) * min(1.0, mover.length)
+        most = TURN if mover.is_rod else DEFLECTION * min(1.0, mover.length)
+        return rng.uniform(-most, most, (count, n)) / max(n, 1)
     quaternion = rng.standard_normal((count, 4))  # Normal in four directions: uniform on the sphere.
     quaternion /= np.linalg.norm(quaternion, axis=1, keepdims=True)
     if sampling == "quaternion":

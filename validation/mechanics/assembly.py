@@ -58,6 +58,7 @@ class Mover:
         v: Slice of our speeds, likewise.
         pitch: Pitch of a screw [m/rad].
         length: Length of a beam whose elastic coordinates it stands for; of a section before the tip, its station [m].
+        is_rod: Whether it stands for strains of a geometrically exact rod.
         masses: Masses of the body and of everything fixed to it.
     """
 
@@ -73,6 +74,7 @@ class Mover:
     v: slice
     pitch: float = 0.0
     length: float = 0.0
+    is_rod: bool = False
     masses: list[Mass] = field(default_factory=list)
 
     @property
@@ -270,8 +272,10 @@ class _AssemblyBuilder:
         self.joints.append(described)
         part, along_x = Part("elastic", joint.axis, 0, n, n), np.array([1.0, 0.0, 0.0])
         length = float(self.numbers([beam.length])[0])
+        own = described.q, described.v
+        is_rod = beam.theory == "strain"
         mover = Mover(
-            beam.name, joint.name, joint, part, False, root, X_BF, along_x, described.q, described.v, length=length
+            beam.name, joint.name, joint, part, False, root, X_BF, along_x, *own, length=length, is_rod=is_rod
         )
         self.movers.append(mover)
 

@@ -17,6 +17,7 @@ from validation.mechanics.elastic import Curve, ElasticBeam, Turn
 from validation.mechanics.geometry import Array, Placement, quaternion_matrix, skew
 from validation.mechanics.joint_kinds import PartKind
 from validation.mechanics.parts import coordinate_symbols, speed_symbols
+from validation.mechanics.rod import StrainRod
 
 # Kinds of simple joints whose motion is stated here.
 KINDS: frozenset[PartKind] = frozenset({"revolute", "prismatic", "screw", "ball", "free", "elastic"})
@@ -95,12 +96,12 @@ def slots(assembly: Assembly) -> list[tuple[slice, slice]]:
     return places
 
 
-def bodies(assembly: Assembly, beams: Mapping[str, ElasticBeam], states: AllSpeeds) -> list[Carried]:
+def bodies(assembly: Assembly, beams: Mapping[str, ElasticBeam | StrainRod], states: AllSpeeds) -> list[Carried]:
     """The frame of every mover (K = 1); that of elastic coordinates is the beam's tip.
 
     Args:
         assembly: The tree.
-        beams: Its beams by name.
+        beams: Its beams and rods by name.
         states: The states.
     """
     frames: list[Carried] = []

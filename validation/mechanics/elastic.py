@@ -57,8 +57,8 @@ class Turn:
     bend: Array
 
 
-class ElasticBeam:
-    """A beam of a description at the default parameters.
+class BeamSection:
+    """The section of a beam of a description at the default parameters.
 
     Args:
         beam: The beam.
@@ -67,12 +67,36 @@ class ElasticBeam:
     Attributes:
         beam: The beam.
         length: Length [m].
-        knots: Ends of the intervals on which shape functions are smooth, from 0 to the length (k,) [m].
     """
 
     def __init__(self, beam: sf.Beam, parameters: dict[str, float]) -> None:
         self.beam, self._parameters = beam, parameters
-        self.length = L = float(sf.evaluate(beam.length, parameters))
+        self.length = self.number(beam.length)
+
+    def section(self, name: str, x: Array) -> Array:
+        """A property of the section at stations (K,)."""
+        value = getattr(self.beam, name)
+        return np.array([self.number(value, **{STATION: at}) for at in x.tolist()])
+
+    def number(self, value: sf.Expression | float, **symbols: float) -> float:
+        """A formula of parameters, and of symbols with values of their own."""
+        return float(sf.evaluate(value, {**self._parameters, **symbols}))
+
+
+class ElasticBeam(BeamSection):
+    """A beam of second order in its displacements, of a description at the default parameters.
+
+    Args:
+        beam: The beam.
+        parameters: Values of the description's parameters.
+
+    Attributes:
+        knots: Ends of the intervals on which shape functions are smooth, from 0 to the length (k,) [m].
+    """
+
+    def __init__(self, beam: sf.Beam, parameters: dict[str, float]) -> None:
+        super().__init__(beam, parameters)
+        L = self.length
         counts = {"bend_y": beam.bend_y, "bend_z": beam.bend_z, "twist": beam.twist}
         functions, knots = [], {0.0, L}
         for direction, count in counts.items():
@@ -81,15 +105,6 @@ class ElasticBeam:
             knots |= {at for at in breaks if 0.0 < at < L}
         self.knots = tuple(sorted(knots))
         self._v, self._w, self._twist = functions
-
-    def section(self, name: str, x: Array) -> Array:
-        """A property of the section at stations (K,)."""
-        value = getattr(self.beam, name)
-        return np.array([sf.evaluate(value, {**self._parameters, STATION: at}) for at in x.tolist()])
-
-    def number(self, value: sf.Expression | float) -> float:
-        """A formula of parameters."""
-        return float(sf.evaluate(value, self._parameters))
 
     def axis(self, x: Array, q: Array, v: Array) -> Curve:
         """Places of the axis at rising stations x (K,), for elastic coordinates and speeds (N, n)."""
@@ -191,7 +206,7 @@ class ElasticBeam:
         """A formula of xi as a polynomial through Chebyshev's nodes, and its derivatives."""
 
         def values(xi: Array) -> Array:
-            return np.array([sf.evaluate(stated, {**self._parameters, XI: at}) for at in xi.tolist()])
+            return np.array([self.number(stated, **{XI: at}) for at in xi.tolist()])
 
         p = np.polynomial.Chebyshev.interpolate(values, DEGREE, domain=[0.0, 1.0])
         return stretched(p, p.deriv(), p.deriv(2), self.length)

@@ -159,3 +159,21 @@ def of_family(family: str, count: int, L: float, bending: bool) -> tuple[tuple[S
     if family == "hermite":
         return (hermite(L) if bending else monomials(1, 1, L))[:count], ()
     return {"polynomial": monomials, "legendre": legendre}[family](first, count, L), ()
+
+
+def strain_family(name: str, count: int) -> tuple[list[Curve], tuple[float, ...]]:
+    """Strain functions of a rod over xi = x/L of any family but "user", and where they are not smooth.
+
+    Args:
+        name: Name of the family.
+        count: Number of functions.
+    """
+    if name == "legendre":
+        return [np.polynomial.Legendre.basis(k, domain=[0, 1]) for k in range(count)], ()
+    if name == "polynomial" or not count:
+        return [np.polynomial.Polynomial.basis(k) for k in range(count)], ()
+    degree = min(3, count - 1)
+    spans = count - degree
+    ends = np.linspace(0.0, 1.0, spans + 1)
+    knots = np.concatenate([np.zeros(degree), ends, np.ones(degree)])
+    return [scipy.interpolate.BSpline(knots, row, degree) for row in np.eye(count)], tuple(ends[1:-1].tolist())

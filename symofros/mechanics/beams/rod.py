@@ -16,7 +16,7 @@ from symofros.mechanics.beams.fields import Form, no_form
 from symofros.mechanics.beams.integrals import LengthIntegrator, Lower, at_station
 from symofros.mechanics.beams.piecewise import gauss
 from symofros.mechanics.beams.strains import TURNING, Rows, Strains, strains_of
-from symofros.mechanics.beams.turn import Turn
+from symofros.mechanics.beams.turn import Moments, Turn
 
 # Gauss nodes for the integral of a pre-strain between two sections.
 _PRE_STRAIN_POINTS = 4
@@ -128,17 +128,37 @@ class Rod:
         return tuple(self._step(a, b) for a, b in zip(ends, ends[1:], strict=False))
 
     def _step(self, a: float, b: float) -> Turn:
-        """The turn between two stations, by Magnus's series to fourth order (5)-(7)."""
-        g = self.g
-        tables = self.strains.moments(a, b)
+        """The turn between two stations, by Magnus's series (5)-(7)."""
+        tables = self.strains.moments(a, b)[: self._moments_counted]
         pre = [self._pre_moments(axis, a, b) for axis in range(3)]
-        zeroth, first = (
-            Vec3(g, *(self._superposition(axis, table, self.coordinates, pre[axis][k]) for axis in range(3)))
-            for k, table in enumerate(tables)
-        )
-        return Turn.of(zeroth, first, tables)
+        starts = list(zip(*pre, strict=True))
+        return Turn.of(self._moments(tables, self.coordinates, starts), tables)
 
-    def _superposition(self, axis: int, table: Sequence[float], values: Sequence[Edge], start: Edge = ZERO) -> Edge:
+    @cached_property
+    def _moments_counted(self) -> int:
+        """Number of moments of the strains in a step: three for the sixth order, two for the fourth.
+
+        The fourth serves strains that are at most linear, at as many sections as were chosen for them: what such functions
+        leave out is more.
+        """
+        beam = self.beam
+        varies = beam.family == "user" or any(STATION in symbols(getattr(beam, label)) for label in PRE_STRAINS)
+        return 3 if varies or beam.sections or max(beam.counts[:TURNING]) > 2 else 2
+
+    def _moments(
+        self,
+        tables: Sequence[Sequence[float]],
+        values: Sequence[Edge],
+        starts: Sequence[Sequence[Edge]] = ((ZERO, ZERO, ZERO),) * 3,
+    ) -> Moments:
+        """Moments of the strains of coordinates or of their rates."""
+        vectors = [
+            Vec3(self.g, *(self._superposition(axis, table, values, start[axis]) for axis in range(3)))
+            for table, start in zip(tables, starts, strict=False)
+        ]
+        return Moments(vectors[0], vectors[1], vectors[2] if len(vectors) == 3 else None)
+
+    def _superposition(self, axis: int, table: Sequence[float], values: Sequence[Edge], start: Edge) -> Edge:
         """The sum of coordinates or their rates about one axis, with weights."""
         g = self.g
         for (k, _), value, number in zip(self.strains.axes, values, table, strict=True):
@@ -146,34 +166,34 @@ class Rod:
                 start = g.add(start, g.mul(g.constant(number), value))
         return start
 
-    def _pre_moments(self, axis: int, a: float, b: float) -> tuple[Edge, Edge]:
-        """Integral of a pre-strain over an interval and its first moment about the middle, as of the functions (5)."""
+    def _pre_moments(self, axis: int, a: float, b: float) -> tuple[Edge, Edge, Edge]:
+        """Moments of a pre-strain over an interval, as of the functions (5)."""
         g, stated = self.g, getattr(self.beam, PRE_STRAINS[axis])
         if STATION not in symbols(stated):
-            return g.mul(g.constant(b - a), g.mul(self.along.lower(stated), self.along.L)), ZERO
+            return g.mul(g.constant(b - a), g.mul(self.along.lower(stated), self.along.L)), ZERO, ZERO
         assert isinstance(stated, Expression)
-        zeroth, first = ZERO, ZERO
+        moments = [ZERO, ZERO, ZERO]
         for node, weight in zip(*gauss(_PRE_STRAIN_POINTS), strict=True):
             value = self.along.lower(at_station(stated, self.along.length, a + (b - a) * node))
             share = g.mul(g.constant(weight * (b - a)), g.mul(value, self.along.L))
-            zeroth = g.add(zeroth, share)
-            first = g.add(first, g.mul(g.constant(node - 0.5), share))
-        return zeroth, first
+            for k, factor in enumerate((1.0, node - 0.5, (node - 0.5) ** 2 - 1.0 / 12.0)):
+                moments[k] = g.add(moments[k], g.mul(g.constant(factor), share))
+        zeroth, first, second = moments
+        return zeroth, first, second
 
     def _after(self, section: Section, step: Turn) -> Section:
         """The section at the end of a step (8), (9)."""
-        g, units = self.g, [Vec3.unit(self.g, k) for k in range(3)]
+        g, none = self.g, Vec3(self.g)
         T = section.R_BS @ step.spinning
         spins = list(section.spins)
-        by_axis = {
-            axis: (T.times(units[axis] + units[axis].cross(step.first)), T.times(units[axis].cross(step.zeroth)))
-            for axis, _ in self.strains.axes
-            if axis < TURNING
-        }
-        for i, ((axis, _), z, m) in enumerate(zip(self.strains.axes, *step.tables, strict=True)):
-            if axis in by_axis:
-                whole, moment = by_axis[axis]
-                spins[i] = spins[i] + (whole.scaled(g.constant(z)) - moment.scaled(g.constant(m)))
+        of_axis = {}
+        for axis in sorted({axis for axis, _ in self.strains.axes if axis < TURNING}):
+            e = Vec3.unit(g, axis)
+            changes = Moments(e, none, none), Moments(none, e, none), Moments(none, none, e)
+            of_axis[axis] = [T.times(step.vector_change(change)) for change in changes[: len(step.tables)]]
+        for i, ((axis, _), *weights) in enumerate(zip(self.strains.axes, *step.tables, strict=True)):
+            if axis in of_axis:
+                spins[i] = spins[i] + self.combined(weights, of_axis[axis])
         return Section(section.R_BS @ step.rotation, tuple(spins))
 
     # Positions: sums of tangents, with weights that are numbers.
@@ -235,10 +255,8 @@ class Rod:
             return [(self.spin(section, speeds), Vec3(g)) for section in self.sections]
         rates, w, alpha, section = [], Vec3(g), Vec3(g), self.root
         for step, following in zip(self._steps, self.sections, strict=True):
-            moments = (
-                Vec3(g, *(self._superposition(axis, table, speeds) for axis in range(3))) for table in step.tables
-            )
-            relative, relative_rate = (section.R_BS.times(x) for x in step.rates(*moments))
+            change = self._moments(step.tables, speeds)
+            relative, relative_rate = (section.R_BS.times(x) for x in step.rates(change))
             alpha = alpha + (w.cross(relative) + relative_rate)
             w, section = w + relative, following
             rates.append((w, alpha))
@@ -260,13 +278,17 @@ class Rod:
         if STATION not in symbols(self.beam.rhoA):
             whole = g.mul(self.along.lower(self.beam.rhoA), g.mul(L, g.mul(L, L)))
             return self.strains.mass_points, (whole,)
-        return self.strains.positions, tuple(g.mul(share, g.mul(L, L)) for share in self.shares(self.beam.rhoA))
+        return self.strains.positions, tuple(g.mul(share, g.mul(L, L)) for share in self.masses())
 
-    def shares(self, weight: Value, weights: Sequence[float] | None = None) -> tuple[Edge, ...]:
-        """Integral of a property of the section over the length, by sections; over a part, with its weights."""
+    def masses(self, weights: Sequence[float] | None = None) -> tuple[Edge, ...]:
+        """Mass at each of the stations of masses; of a part, with its weights."""
+        stations, whole = self.strains.masses.stations
+        return self.shares(self.beam.rhoA, stations, weights or whole)
+
+    def shares(self, weight: Value, stations: Sequence[float], weights: Sequence[float]) -> tuple[Edge, ...]:
+        """Integral of a property of the section over the length, by stations."""
         g, shares = self.g, []
-        stations, whole = self.strains.stations
-        for xi, w in zip(stations, weights or whole, strict=True):
+        for xi, w in zip(stations, weights, strict=True):
             value = at_station(weight, self.along.length, xi) if isinstance(weight, Expression) else weight
             shares.append(g.mul(g.constant(w), g.mul(self.along.lower(value), self.along.L)))
         return tuple(shares)
@@ -295,7 +317,7 @@ class Rod:
             InertiaAxis(k, share, section.R_BS.column(axis))
             for axis, per_length in enumerate(stated)
             if per_length != 0.0
-            for k, (section, share) in enumerate(zip(self.sections, self.shares(per_length, weights), strict=True))
+            for k, (section, share) in enumerate(zip(self.sections, self.shares(per_length, self.strains.stations[0], weights), strict=True))
         )
 
     @cached_property
@@ -303,18 +325,33 @@ class Rod:
         """The rod's mass."""
         if STATION not in symbols(self.beam.rhoA):
             return self.g.mul(self.along.lower(self.beam.rhoA), self.along.L)
-        return self.g.sum(self.shares(self.beam.rhoA))
+        return self.g.sum(self.masses())
 
     def first_moment(self, vectors: Sequence[Vec3]) -> Vec3:
         """Mass times the position that vectors in place of the tangents give to the mass centre, S of section 4."""
-        g, L = self.g, self.along.L
         if STATION not in symbols(self.beam.rhoA):
-            scale = g.mul(self.along.lower(self.beam.rhoA), g.mul(L, L))
-            return self.combined(self.strains.first_moments, vectors).scaled(scale)
-        total = Vec3(g)
-        for row, share in zip(self.strains.positions, self.shares(self.beam.rhoA), strict=True):
-            total = total + self.combined(row, vectors).scaled(g.mul(share, L))
+            return self.combined(self.strains.first_moments, vectors).scaled(self.mass_length)
+        total = Vec3(self.g)
+        for weight, vector in zip(self.first_moment_weights, vectors, strict=True):
+            total = total + vector.scaled(weight)
         return total
+
+    @cached_property
+    def mass_length(self) -> Edge:
+        """Mass times length of a rod whose section does not change."""
+        return self.g.mul(self.mass, self.along.L)
+
+    @cached_property
+    def first_moment_weights(self) -> tuple[Edge, ...]:
+        """Weights of the vectors in `first_moment`."""
+        g = self.g
+        if STATION not in symbols(self.beam.rhoA):
+            return tuple(g.mul(g.constant(weight), self.mass_length) for weight in self.strains.first_moments)
+        columns = zip(*self.strains.positions, strict=True)
+        return tuple(
+            g.mul(g.sum(g.mul(g.constant(row), mass) for row, mass in zip(column, self.masses(), strict=True)), self.along.L)
+            for column in columns
+        )
 
     @cached_property
     def strain_energy(self) -> Form:

@@ -13,6 +13,7 @@ from symofros.expr.edges import Edge
 from symofros.expr.vector import Sym3, Vec3
 from symofros.mechanics.beams.elastic import PAIRS
 from symofros.mechanics.beams.rod import InertiaAxis, Rod
+from symofros.mechanics.beams.strains import TURNING
 
 
 def _weighted(rod: Rod, terms: Sequence[Edge]) -> Edge:
@@ -77,27 +78,24 @@ def rod_forces(
     Returns:
         Force and moment on the root, in B, and the force on each coordinate.
     """
-    g, n = rod.g, len(rod.coordinates)
     motion = _section_motion(rod, w, alpha, speeds, rates)
     curves = motion.curves
     rows, masses = rod.mass_points
     points = [rod.combined(row, curves) for row in rows]
     if len(masses) > 1:
         points = [point.scaled(mass) for point, mass in zip(points, masses, strict=True)]
-    # Force per unit change of each tangent.
+    # Force per unit change of each tangent, f_k of (16).
     arms = [rod.combined(column, points) for column in zip(*rows, strict=True)]
     if len(masses) == 1:
         arms = [arm.scaled(masses[0]) for arm in arms]
-    first = rod.first_moment(rod.tangents)
-    f, moment = rod.first_moment(curves), first.cross(a)
-    for t, arm in zip(rod.tangents, arms, strict=True):
-        moment = moment + t.cross(arm)
-    forces = [g.add(rod.first_moment(rod.partial_tangents[i]).dot(a), _power(rod, i, arms)) for i in range(n)]
+    arms = [arm + a.scaled(weight) for arm, weight in zip(arms, rod.first_moment_weights, strict=True)]
+    torques = [t.cross(arm) for t, arm in zip(rod.tangents, arms, strict=True)]
     for axis in rod.inertia_axes:
-        torque = _torque(axis, motion)
+        torques[axis.section] = torques[axis.section] + _torque(axis, motion)
+    moment = Vec3(rod.g)
+    for torque in torques:
         moment = moment + torque
-        forces = [g.add(x, torque.dot(rod.sections[axis.section].spins[i])) for i, x in enumerate(forces)]
-    return f, moment, forces
+    return rod.first_moment(curves), moment, [_power(rod, i, arms, torques) for i in range(len(rod.coordinates))]
 
 
 class _SectionMotion(NamedTuple):
@@ -157,17 +155,20 @@ def wrenches_beyond(
         for vectors in (rod.tangents, motion.curves)
     )
     for xi in stations:
-        weights = rod.strains.weights_beyond(xi)
+        weights = rod.strains.masses.weights_beyond(xi)
         f, n = Vec3(rod.g), Vec3(rod.g)
-        for p, acceleration, share in zip(positions, relative, rod.shares(rod.beam.rhoA, weights), strict=True):
+        for p, acceleration, share in zip(positions, relative, rod.masses(weights), strict=True):
             force = (a + acceleration).scaled(share)
             f, n = f + force, n + p.cross(force)
-        for axis in rod.inertia_axes_of(weights):
+        for axis in rod.inertia_axes_of(rod.strains.weights_beyond(xi)):
             n = n + _torque(axis, motion)
         yield f, n
 
 
-def _power(rod: Rod, i: int, arms: Sequence[Vec3]) -> Edge:
+def _power(rod: Rod, i: int, arms: Sequence[Vec3], torques: Sequence[Vec3]) -> Edge:
+    """Power per unit rate of a coordinate: of torques where it turns sections, else of forces."""
+    if rod.strains.axes[i][0] < TURNING:
+        return rod.g.sum(section.spins[i].dot(torque) for section, torque in zip(rod.sections, torques, strict=True))
     return rod.g.sum(d.dot(arm) for d, arm in zip(rod.partial_tangents[i], arms, strict=True))
 
 

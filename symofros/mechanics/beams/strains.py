@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from bisect import bisect_right
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
 from itertools import pairwise
@@ -32,8 +32,9 @@ AXES: dict[Direction, tuple[int, int]] = {
 }
 # Number of strains that turn sections.
 TURNING = 3
-# Sections an interval beyond the number of functions, and the fewest: what the elastica and a full circle ask for.
-_MORE_SECTIONS, _FEWEST_SECTIONS = 2, 4
+# The fewest sections an interval; one more than functions integrates small turns exactly. From four functions on, and of
+# the user's, which may be of any degree, there are two more: what such functions leave out is less than what a section is worth.
+_FEWEST_SECTIONS, _FEWEST_SECTIONS_OF_USER, _FEW_FUNCTIONS = 3, 4, 3
 # Sections an interval where knots divide the rod: the cubic between them is smooth.
 _SECTIONS_A_SPAN = 4
 # Largest angle [rad] by which the strains of one direction turn the tip in random states; largest stretch and shear.
@@ -99,21 +100,24 @@ class Strains:
         ]
         return tuple(zip(*columns, strict=True)) if columns else tuple(() for _ in xi)
 
-    def moments(self, start: float, end: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Integral of each strain function over an interval; its first moment about the middle, over the length (5)."""
-        zeroth, first = [], []
+    def moments(self, start: float, end: float) -> Rows:
+        """Three moments of each strain function over an interval (5).
+
+        Its integral; the first moment about the middle, over the length; the second one over the length's square,
+        less a twelfth of the integral, so that a constant has none.
+        """
+        rows: list[tuple[float, float, float]] = []
         a, b = Fraction(start), Fraction(end)
-        middle = (a + b) / 2
+        middle, h = (a + b) / 2, b - a
+        weights = polynomial(1), polynomial(-middle, 1), polynomial(middle**2 - h**2 / 12, -2 * middle, 1)
         for f, (axis, s) in zip(self.functions, self.axes, strict=True):
             if axis >= TURNING:
-                zeroth.append(0.0)
-                first.append(0.0)
+                rows.append((0.0, 0.0, 0.0))
                 continue
-            whole = f.antiderivative()
-            moment = (f * polynomial(-middle, 1)).antiderivative()
-            zeroth.append(float(s * (whole(b) - whole(a))))
-            first.append(float(s * (moment(b) - moment(a)) / (b - a)))
-        return tuple(zeroth), tuple(first)
+            wholes = ((f * weight).antiderivative() for weight in weights)
+            zeroth, first, second = (float(s * (w(b) - w(a)) / h**k) for k, w in enumerate(wholes))
+            rows.append((zeroth, first, second))
+        return tuple(zip(*rows, strict=True)) if rows else ((), (), ())
 
     def from_root(self, xi: float) -> tuple[float, ...]:
         """Weights of the sections in the integral from the root to a station, by the polynomials through them (10)."""
@@ -134,20 +138,25 @@ class Strains:
         return tuple(w - a for w, a in zip(self.stations[1], self.from_root(xi), strict=True))
 
     @cached_property
+    def masses(self) -> Strains:
+        """The same fields at one station more an interval, by which products of two positions are integrated exactly."""
+        return replace(self, points=self.points + 1)
+
+    @cached_property
     def positions(self) -> Rows:
-        """Rows of `from_root` at the sections themselves (N, N)."""
-        return tuple(self.from_root(xi) for xi in self.stations[0])
+        """Rows of `from_root` at the stations of `masses`."""
+        return tuple(self.from_root(xi) for xi in self.masses.stations[0])
 
     @cached_property
     def first_moments(self) -> tuple[float, ...]:
         """Weights of the tangents in the integral of the position, for a section that does not change (N)."""
-        w = self.stations[1]
-        return tuple(sum(a * row[k] for a, row in zip(w, self.positions, strict=True)) for k in range(len(w)))
+        w, n = self.masses.stations[1], len(self.stations[1])
+        return tuple(sum(a * row[k] for a, row in zip(w, self.positions, strict=True)) for k in range(n))
 
     @cached_property
     def mass_points(self) -> Rows:
         """Rows C, upper triangular, of points with C^T C the second moment of the positions: of a uniform rod (12)."""
-        w, n = self.stations[1], len(self.stations[1])
+        w, n = self.masses.stations[1], len(self.stations[1])
         second = [
             [sum(a * row[i] * row[j] for a, row in zip(w, self.positions, strict=True)) for j in range(n)]
             for i in range(n)
@@ -210,7 +219,12 @@ def _shared_strains(
     for count, stated in zip(counts, user, strict=True):
         functions += strain_functions(family, count, stated)
     is_divided = any(len(f.pieces) > 1 for f in functions)
-    chosen = _SECTIONS_A_SPAN if is_divided else max(_FEWEST_SECTIONS, max(counts) + _MORE_SECTIONS)
+    most = max(counts)
+    if family == "user":
+        chosen = max(_FEWEST_SECTIONS_OF_USER, most + 2)
+    else:
+        chosen = max(_FEWEST_SECTIONS, most + (1 if most <= _FEW_FUNCTIONS else 2))
+    chosen = _SECTIONS_A_SPAN if is_divided else chosen
     return Strains(tuple(functions), counts, sections or chosen)
 
 

@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from symofros.description.beam import DIRECTIONS, Beam, Direction
+from symofros.description.beam import DIRECTIONS, STATIONS, Beam, Direction
 from symofros.description.forces import Spring
 from symofros.description.joint import Joint
 from symofros.description.system import System
@@ -133,7 +133,7 @@ def _of_beam(loads: BeamLoads) -> Iterator[Reduction]:
         "rigid",
         total,
         f"{reason}; simulated, its tip moves {_length(loads.tip)} across",
-        changed_beam(beam.name, **none),
+        changed_beam(beam.name, **none, stations=STATIONS),
         numbers,
     )
     if len(flexible) > 1:

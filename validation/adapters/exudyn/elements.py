@@ -20,11 +20,14 @@ from validation.mechanics.carried import AllSpeeds, Carried
 from validation.mechanics.elastic import ElasticBeam
 from validation.mechanics.extrapolation import Refined
 from validation.mechanics.geometry import Array
+from validation.mechanics.rod import PRE_STRAINS, StrainRod
 
 # Meshes of a beam.
 MESHES = 5
 # Powers of the element length by which meshes err: (6), cubic elements of a uniform section; (7), all else.
 CUBIC, LINEAR = (4, 6, 8, 10), (2, 4, 6, 8)
+# Coordinates of a node that turns.
+_NODAL = 7
 # Stations at which a section is looked at to find whether it varies.
 _SAMPLES = 33
 
@@ -53,7 +56,7 @@ class Elements:
     mover: Mover
     q: slice
     v: slice
-    beam: ElasticBeam
+    beam: ElasticBeam | StrainRod
     meshes: tuple[Mesh, ...]
     mass_powers: tuple[int, ...]
     strain_powers: tuple[int, ...]
@@ -82,7 +85,12 @@ class Elements:
             yield self._refined("rotary inertia", LINEAR, turning)
 
     def strain(self, q: Array) -> list[Refined]:
-        """Elastic forces (N, n) of the clamped beam: of sections that turn; of cables, where it bends in one plane."""
+        """Elastic forces (N, n) of the clamped beam: of sections that turn; of cables, where it bends in one plane.
+
+        None of a rod that is curved or twisted without stress, which Exudyn's elements here are not.
+        """
+        if any(getattr(self.described, label) != 0.0 for label in PRE_STRAINS):
+            return []
         forces = [self._turned(part.strained, part.x, q) for part in self.meshes]
         refined = [Refined(f"strain of sections of '{self.name}'", LINEAR, forces)]
         bent = [self._bent(part.bent, part.x, q) for part in self.meshes if part.bent]
@@ -98,6 +106,11 @@ class Elements:
             K = nodal.J[0].T @ part.strained.stiffness(nodal.x[0]) @ nodal.J[0]
             forces.append(-delay * v @ K)
         return Refined(f"damping of '{self.name}'", LINEAR, forces)
+
+    @property
+    def is_rod(self) -> bool:
+        """Whether it is geometrically exact, so that its elastic forces are the elements' own."""
+        return isinstance(self.beam, StrainRod)
 
     def _refined(self, name: str, powers: tuple[int, ...], terms: list[Terms]) -> tuple[Refined, Refined]:
         title = f"{name} of '{self.name}'"
@@ -115,9 +128,12 @@ class Elements:
         return Terms(J_x.swapaxes(1, 2) @ (part.M @ J_x), np.einsum("nxi,nx->ni", J_x, forces))
 
     def _turning(self, system: ExudynSystem, x: Array, root: Carried, states: AllSpeeds) -> Terms:
-        """Of what turns; without rotary inertia sections turn about the axis of the root alone."""
+        """Of what turns; without rotary inertia sections turn about one axis alone, the root's or of a rod their own."""
         q, v = states.q[:, self.q], states.v[:, self.v]
-        sections = self.beam.rotation(x, q, v, bending=self.beam.beam.rotary_inertia)
+        if isinstance(self.beam, StrainRod):
+            sections = self.beam.rotation(x, q, v)
+        else:
+            sections = self.beam.rotation(x, q, v, bending=self.beam.beam.rotary_inertia)
         triads = carried.led(root, states, self.v, self.beam.axis(x, q, v), sections)
         return Terms(*inertial(system, Nodal.of(triads, states.v, places=False), states.v))
 
@@ -127,7 +143,11 @@ class Elements:
         states = AllSpeeds(q, still, still)
         place, turn = self.beam.axis(x, q, still), self.beam.rotation(x, q, still)
         triads = carried.led(carried.ground(states), states, slice(None), place, turn)
-        return Nodal.of(triads, still, places=False)
+        nodal = Nodal.of(triads, still, places=self.is_rod)
+        if self.is_rod:
+            # Places of its nodes count as well, from those of the mesh.
+            nodal.x[:, ::_NODAL] -= x
+        return nodal
 
     def _turned(self, system: ExudynSystem, x: Array, q: Array) -> Array:
         nodal = self._clamped(x, q)
@@ -157,11 +177,12 @@ def elements(system: sf.System, mover: Mover, slot: tuple[slice, slice], gravity
     """
     described = system.body(mover.body)
     assert isinstance(described, sf.Beam)
-    beam = ElasticBeam(described, system.parameter_values())
+    kind = StrainRod if described.theory == "strain" else ElasticBeam
+    beam = kind(described, system.parameter_values())
     between = np.linspace(0.0, beam.length, _SAMPLES)
     tapered = {name for name in ("rhoA", "EI_y", "EI_z") if np.any(np.diff(beam.section(name, between)))}
     # The more functions, the shorter their waves; a taper leaves errors of a lower power.
-    most = max(described.bend_y, described.bend_z, described.twist)
+    most = max(described.counts)
     coarsest = max(1, math.ceil(2 * (most - 1) / (len(beam.knots) - 1))) * (2 if "rhoA" in tapered else 1)
     meshes = tuple(mesh(beam, coarsest * 2**k, gravity) for k in range(MESHES))
     stiff = LINEAR if tapered - {"rhoA"} else CUBIC

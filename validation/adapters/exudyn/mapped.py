@@ -13,8 +13,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 import symofros as sf
-from validation.adapters.compiled import untruncated, without_rotary
-from validation.adapters.description import rods
+from validation.adapters.compiled import without_rotary
 from validation.adapters.exudyn.elements import Elements, Terms, elements
 from validation.adapters.exudyn.solids import Nodal, Solids, inertial, solids
 from validation.adapters.exudyn.system import VERSION
@@ -39,6 +38,8 @@ ACCURACY = {
     **dict.fromkeys(("mass_matrix", "bias", "gravity", "kinetic_energy", "inverse_dynamics"), EXTRAPOLATED),
     **dict.fromkeys(("forward_dynamics", "multipliers"), SOLVED),
 }
+# Frames that a rod carries, which sections place as they integrate it (rods.md, section 6): 1e-9 at the states drawn.
+INTEGRATED = dict.fromkeys(("frame_pose", "frame_velocity", "frame_acceleration", "frame_jacobian"), EXTRAPOLATED)
 
 
 @dataclass
@@ -53,7 +54,7 @@ class MappedEngine:
         sites: The subject's frames.
         first_motion: Index of the first input that prescribes a motion.
         capabilities: Quantities that it offers for this system.
-        rotary: The same with the beams' rotary inertia, which ours has to second order; None where they have none.
+        rotary: The same with rotary inertia of beams that have it to second order; None where none do.
         accuracy: Tolerances, relative to the largest entry, of quantities that are not exact.
         most_states: Largest number of states in one call.
     """
@@ -168,16 +169,17 @@ def engine(subject: Subject, name: str) -> MappedEngine | Unsupported:
         subject: Subject, with or without beams.
         name: Name of the engine in tables.
     """
-    exact = rods(subject.system)
-    if exact:
-        return Unsupported(f"beam '{exact[0]}': a geometrically exact rod; elements are compared with displacements")
     assembly = assemble(subject.system)
     for mover in assembly.movers:
         if mover.kind not in carried.KINDS:
             what = "a section of a beam" if mover.kind == "section" else "a motion by formulas"
             return Unsupported(f"joint '{mover.joint.name}': {what}")
     plain = without_rotary(subject.system)
-    turning = None if plain == untruncated(subject.system) else _engine(subject, subject.system, assembly, name)
+    approximate = any(
+        isinstance(body, sf.Beam) and body.theory == "second_order" and body.rotary_inertia
+        for body in subject.system.bodies
+    )
+    turning = _engine(subject, subject.system, assembly, name) if approximate else None
     return replace(_engine(subject, plain, assembly, name), rotary=turning)
 
 
@@ -200,7 +202,7 @@ def _engine(subject: Subject, system: sf.System, assembly: Assembly, name: str) 
         len(system.inputs) + assembly.motors,
         offered(system),
         None,
-        ACCURACY if made else {},
+        (ACCURACY | INTEGRATED if any(one.is_rod for one in made) else ACCURACY) if made else {},
         MOST_STATES if made else MOST_RIGID_STATES,
         name,
     )

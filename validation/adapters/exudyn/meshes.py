@@ -21,6 +21,7 @@ from validation.adapters.exudyn.system import ExudynSystem, assembled
 from validation.mechanics.elastic import POINTS, ElasticBeam
 from validation.mechanics.geometry import Array
 from validation.mechanics.quadrature import gauss_stations
+from validation.mechanics.rod import StrainRod
 
 _NO_TURN = (1.0, 0.0, 0.0, 0.0)
 
@@ -46,13 +47,13 @@ class Mesh:
     bent: ExudynSystem | None
 
 
-def stations(beam: ElasticBeam, elements: int) -> Array:
+def stations(beam: ElasticBeam | StrainRod, elements: int) -> Array:
     """Nodes (K,) of so many equal elements on each interval on which shape functions are smooth."""
     ends = [np.linspace(a, b, elements + 1)[:-1] for a, b in pairwise(beam.knots)]
     return np.concatenate([*ends, [beam.length]])
 
 
-def mesh(beam: ElasticBeam, elements: int, gravity: Array) -> Mesh:
+def mesh(beam: ElasticBeam | StrainRod, elements: int, gravity: Array) -> Mesh:
     """Exudyn's elements of a beam.
 
     Args:
@@ -67,28 +68,28 @@ def mesh(beam: ElasticBeam, elements: int, gravity: Array) -> Mesh:
     inertia = [_averages(beam, name, x) for name in ("rhoJ", "rhoI_y", "rhoI_z")]
     if not beam.beam.rotary_inertia:
         inertia[1:] = [0.0 * inertia[0]] * 2
-    stiffness = [_averages(beam, name, x) for name in ("GJ", "EI_y", "EI_z")]
-    still = [0.0 * values for values in stiffness]
+    stiffness = [_averages(beam, name, x) for name in ("EA", "GA_y", "GA_z", "GJ", "EI_y", "EI_z")]
+    still = [0.0 * stiffness[0]] * 6
     turning = _rotating(x, inertia, still) if np.any(inertia) else None
-    planes = [stiffness[k] for k, count in ((2, beam.beam.bend_y), (1, beam.beam.bend_z)) if count]
-    planar = len(planes) == 1 and not beam.beam.twist
+    planes = [stiffness[k] for k, count in ((5, beam.beam.bend_y), (4, beam.beam.bend_z)) if count]
+    planar = len(planes) == 1 and sum(beam.beam.counts) == max(beam.beam.bend_y, beam.beam.bend_z)
     bent = _cables(beam, x, planes[0], np.zeros(3)) if planar else None
-    return Mesh(x, M, weight, turning, _rotating(x, still, stiffness), bent)
+    return Mesh(x, M, weight, turning, _rotating(x, still[:3], stiffness), bent)
 
 
-def _averages(beam: ElasticBeam, name: str, x: Array) -> Array:
+def _averages(beam: ElasticBeam | StrainRod, name: str, x: Array) -> Array:
     """Averages (K - 1,) of a property of the section over each element."""
     if not np.any(np.diff(beam.section(name, x))):
         return beam.section(name, x[:-1])
     return np.array([_average(beam, name, a, b) for a, b in pairwise(x.tolist())])
 
 
-def _average(beam: ElasticBeam, name: str, a: float, b: float) -> float:
+def _average(beam: ElasticBeam | StrainRod, name: str, a: float, b: float) -> float:
     inner, weights = gauss_stations((a, b), POINTS)
     return float(weights @ beam.section(name, inner) / (b - a))
 
 
-def _cables(beam: ElasticBeam, x: Array, EI: Array, gravity: Array) -> ExudynSystem:
+def _cables(beam: ElasticBeam | StrainRod, x: Array, EI: Array, gravity: Array) -> ExudynSystem:
     container = exudyn.SystemContainer()
     system: Any = container.AddSystem()
     nodes = [system.AddNode(items.NodePointSlope1(referenceCoordinates=[at, 0, 0, 1, 0, 0])) for at in x]
@@ -106,7 +107,13 @@ def _cables(beam: ElasticBeam, x: Array, EI: Array, gravity: Array) -> ExudynSys
 
 
 def _rotating(x: Array, inertia: Sequence[Array], stiffness: Sequence[Array]) -> ExudynSystem:
-    """Geometrically exact elements with moments of inertia per length and stiffnesses about the section's axes."""
+    """Geometrically exact elements with moments of inertia per length about the section's axes and six stiffnesses.
+
+    Args:
+        x: Stations of the nodes (K,) [m].
+        inertia: About x, y, z, of each element.
+        stiffness: Against stretch, shear along y and z, twist, bending about y and z, of each element.
+    """
     container = exudyn.SystemContainer()
     system: Any = container.AddSystem()
     nodes = [system.AddNode(items.NodeRigidBodyEP(referenceCoordinates=[at, 0, 0, *_NO_TURN])) for at in x]
@@ -114,7 +121,7 @@ def _rotating(x: Array, inertia: Sequence[Array], stiffness: Sequence[Array]) ->
         section: Any = exudyn.BeamSection()
         section.massPerLength = 0.0
         section.inertia = np.diag([values[k] for values in inertia])
-        section.stiffnessMatrix = np.diag([0.0] * 3 + [values[k] for values in stiffness])
+        section.stiffnessMatrix = np.diag([values[k] for values in stiffness])
         element = items.ObjectBeamGeometricallyExact(
             nodeNumbers=nodes[k : k + 2], length=x[k + 1] - x[k], sectionData=section
         )

@@ -20,6 +20,7 @@ from validation.mechanics import shape_functions as families
 from validation.mechanics.assembly import Assembly, Mover
 from validation.mechanics.geometry import Array, Placement
 from validation.mechanics.parts import coordinate_symbols, rate_symbols, speed_symbols
+from validation.mechanics.rod import STRAINS
 from validation.mechanics.shape_functions import Shape
 
 _CASADI: Mapping[str, Callable[..., SX]] = {
@@ -49,15 +50,6 @@ _CASADI: Mapping[str, Callable[..., SX]] = {
 }
 
 SECTION = ("rhoA", "EI_z", "EI_y", "GJ", "rhoJ", "rhoI_y", "rhoI_z")
-# Strain that a rod's coordinates of a direction are of, and their sign.
-STRAINS = {
-    "bend_y": (2, 1.0),
-    "bend_z": (1, -1.0),
-    "twist": (0, 1.0),
-    "stretch": (3, 1.0),
-    "shear_y": (4, 1.0),
-    "shear_z": (5, 1.0),
-}
 
 
 class Translation:
@@ -202,26 +194,23 @@ class Translation:
         for count, (direction, (axis, sign)) in zip(counts, STRAINS.items(), strict=True):
             if beam.family == "user":
                 functions = [self._strain(stated) for stated in beam.user_shapes(direction)]  # type: ignore[arg-type]
-            elif count:
-                functions, ends = rods.family(beam.family, count)
-                breaks |= {L * end for end in ends}
             else:
-                functions = []
+                functions, ends = families.strain_family(beam.family, count)
+                breaks |= {L * end for end in ends}
             strains += [Strain(axis, sign, value) for value in functions]
         labels = (*SECTION, "EA", "GA_y", "GA_z")
         sections: dict[str, Any] = {name: self._section(getattr(beam, name)) for name in labels}
+        pre = beam.twist_rate, beam.curvature_y, beam.curvature_z
+        unstressed = self._section(pre[0]), self._section(pre[1]), self._section(pre[2])
         return ExactRod(
             L,
             strains=tuple(strains),
-            unstressed=(
-                self._section(beam.twist_rate),
-                self._section(beam.curvature_y),
-                self._section(beam.curvature_z),
-            ),
+            unstressed=unstressed,
             breaks=tuple(sorted(breaks)),
-            points=beam.sections or rods.sections_chosen(counts, bool(breaks)),
+            points=beam.sections or rods.sections_chosen(counts, beam.family, bool(breaks)),
             damping=self.number(beam.damping),
             rotary_inertia=beam.rotary_inertia,
+            sixth=bool(beam.sections) or beam.family == "user" or max(counts[:3]) > 2 or any(map(callable, unstressed)),
             **sections,
         )
 

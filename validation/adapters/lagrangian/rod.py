@@ -13,7 +13,6 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-from scipy.interpolate import BSpline
 
 from validation.adapters.lagrangian.beam import Line, Section, at_stations, rotation_about, stations
 from validation.mechanics.geometry import Array
@@ -22,8 +21,8 @@ SX = Any  # CasADi has no types.
 
 # Gauss nodes of an interval's moments and energies: exact for strains of degree 15.
 NODES = 16
-# Sections an interval that the description leaves to the generator: beyond the functions, at least; between knots.
-MORE, FEWEST, A_SPAN = 2, 4, 4
+# Sections an interval that the description leaves to the generator, between knots.
+A_SPAN = 4
 
 
 @dataclass(frozen=True)
@@ -56,6 +55,7 @@ class ExactRod:
     rhoI_z: Section = 0.0
     damping: float = 0.0
     rotary_inertia: bool = False
+    sixth: bool = True  # Order of Magnus's series; else the fourth.
     loads: tuple[Line, ...] = ()
 
     @property
@@ -87,57 +87,56 @@ class ExactRod:
             values[:, strain.axis, i] = scale * strain.value(x / self.length)
         return values
 
-    def moments(self, a: float, b: float, q: SX) -> tuple[SX, SX]:
-        """Integral of the strains over an interval, and their first moment about its middle, over its length (5)."""
+    def moments(self, a: float, b: float, q: SX) -> tuple[SX, SX, SX]:
+        """Integral of the strains over an interval, and their first and second moments about its middle (5)."""
         node, w = np.polynomial.legendre.leggauss(NODES)
         # Pieces between knots: the moment of a spline is not that of one polynomial.
         inner = [a, *(end for end in self.ends if a < end < b), b]
-        zeroth, first = ca.SX.zeros(3), ca.SX.zeros(3)
+        zeroth, first, second = ca.SX.zeros(3), ca.SX.zeros(3), ca.SX.zeros(3)
         for left, right in zip(inner, inner[1:], strict=False):
             x, weight = left + (right - left) * (node + 1) / 2, (right - left) * w / 2
             stressless = np.stack([at_stations(value, x) for value in self.unstressed], axis=1)
             for k, share in enumerate(weight):
                 strain = ca.SX(stressless[k]) + ca.SX(self.table(x[k : k + 1])[0, :3]) @ q
                 zeroth += share * strain
-                first += share * (x[k] - (a + b) / 2) / (b - a) * strain
-        return zeroth, first
+                at = (x[k] - (a + b) / 2) / (b - a)
+                first += share * at * strain
+                second += share * (at**2 - 1 / 12) * strain
+        return zeroth, first, second
 
 
-def family(name: str, count: int) -> tuple[list[Callable[[Array], Array]], Sequence[float]]:
-    """Strain functions of a family over xi, and where they are not smooth."""
-    if name == "legendre":
-        return [np.polynomial.Legendre.basis(k, domain=[0, 1]) for k in range(count)], ()
-    if name == "polynomial":
-        return [np.polynomial.Polynomial.basis(k) for k in range(count)], ()
-    degree = min(3, count - 1)
-    spans = count - degree
-    knots = np.concatenate([np.zeros(degree), np.linspace(0, 1, spans + 1), np.ones(degree)])
-    splines = [BSpline(knots, row, degree) for row in np.eye(count)]
-    return splines, np.linspace(0, 1, spans + 1)[1:-1].tolist()
-
-
-def sections_chosen(counts: Sequence[int], divided: bool) -> int:
+def sections_chosen(counts: Sequence[int], family: str, divided: bool) -> int:
     """Number of sections an interval between knots where the description states none."""
-    return A_SPAN if divided else max(FEWEST, max(counts) + MORE)
+    most = max(counts)
+    if divided:
+        return A_SPAN
+    if family == "user":
+        return max(4, most + 2)
+    return max(3, most + (1 if most <= 3 else 2))
 
 
 def rotation(rod: ExactRod, x: float, q: SX) -> SX:
     """R_BS at a station."""
     if len(rod.axes) == 1:
         (axis,) = rod.axes
-        total, _ = rod.moments(0.0, x, q)
+        total, *_ = rod.moments(0.0, x, q)
         return rotation_about(np.eye(3)[axis].tolist(), total[axis])
     before = [at for at in rod.at.tolist() if at <= x]
     R, start = ca.SX.eye(3), 0.0
     for end in [*before, x]:
         if end > start:
-            R, start = R @ _turn(*rod.moments(start, end, q)), end
+            R, start = R @ _turn(rod, start, end, q), end
     return R
 
 
-def _turn(zeroth: SX, first: SX) -> SX:
-    """The turn of one step (6)-(8)."""
-    X = zeroth + ca.cross(zeroth, first)
+def _turn(rod: ExactRod, start: float, end: float, q: SX) -> SX:
+    """The turn of one step (6)-(8), commutators in full."""
+    zeroth, first, second = rod.moments(start, end, q)
+    across = ca.cross(zeroth, first)
+    X = zeroth + across
+    if rod.sixth:
+        X += ca.cross(zeroth, ca.cross(zeroth, second)) / 2 - 6 * ca.cross(second, first)
+        X += 3 / 5 * ca.cross(across, first) - ca.cross(zeroth, ca.cross(zeroth, across)) / 60
     s = ca.dot(X, X) / 4
     a = (105 - 10 * s) / (210 - 90 * s + 2 * s**2) * X
     K = ca.skew(a)
@@ -150,7 +149,7 @@ def rotations(rod: ExactRod, q: SX) -> list[SX]:
         return [rotation(rod, x, q) for x in rod.at.tolist()]
     turned, R, start = [], ca.SX.eye(3), 0.0
     for end in rod.at.tolist():
-        R, start = R @ _turn(*rod.moments(start, end, q)), end
+        R, start = R @ _turn(rod, start, end, q), end
         turned.append(R)
     return turned
 

@@ -242,7 +242,9 @@ class Lagrangian:
         def rate(expression: SX) -> SX:
             return _rate(expression, e, rates)
 
-        at, weight = beams.stations(beam.length, beam.breaks, beam.points)
+        # One more than a rod has sections: products of two places are integrated exactly.
+        points = beam.points + 1 if isinstance(beam, ExactRod) else beam.points
+        at, weight = beams.stations(beam.length, beam.breaks, points)
         rhoA = ca.SX(beams.at_stations(beam.rhoA, at) * weight)
         r = theory.centroids(beam, at, q)
         places, velocities = pose.place(r, rate(r))

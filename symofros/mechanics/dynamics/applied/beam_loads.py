@@ -84,7 +84,7 @@ def _points(rod: Rod, load: BeamLoad, k: int, d: Vec3, weights: Sequence[float])
         xis, sections = (load.at,), (rod.section_at(load.at),)
         shares = [[rod.along.lower(value)] for value in (force, torque)]
     else:
-        shares = [list(rod.shares(value, weights)) for value in (force, torque)]
+        shares = [list(rod.shares(value, xis, weights)) for value in (force, torque)]
     points = []
     for xi, section, f, m in zip(xis, sections, *shares, strict=True):
         along = section.R_BS.column(k) if load.axes == "section" else d
