@@ -18,7 +18,7 @@ from symofros.description.values import Term, Value, Vector, substituted
 from symofros.errors import DescriptionError, Problem
 from symofros.expr.expression import Expression
 
-# Extremity frame of each segment but the last, that carries the next; with underscores where the beam has one of that name.
+# Extremity frame of each segment but the last, that carries the next; underscores follow where the beam has such one.
 _END = "end"
 
 

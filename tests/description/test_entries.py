@@ -59,6 +59,18 @@ def test_a_beam_of_second_order_takes_no_functions_for_stretch() -> None:
         sf.Beam("b", sf.Joint("q", "fixed"), 1.0, 1.0, EI_z=1.0, bend_y=1, family="user", shapes=shapes)
 
 
+@pytest.mark.parametrize(
+    ("entries", "words"),
+    [
+        ({"bend_y": 1, "EI_z": 1.0, "shapes": {"bend_y": ("xi^2",)}}, "shapes with family 'spline'"),
+        ({"stations": (0.0, 0.5)}, "stations of section forces on a rigid beam"),
+    ],
+)
+def test_entries_of_a_beam_that_nothing_would_use_are_refused(entries: dict[str, Any], words: str) -> None:
+    with pytest.raises(sf.DescriptionError, match=rf"beam 'b': {words}"):
+        sf.Beam("b", sf.Joint("q", "fixed"), 1.0, 1.0, **entries)
+
+
 @pytest.mark.parametrize("cls", [partial(sf.Frame, "f"), sf.BeamLoad])
 @pytest.mark.parametrize("at", ["L/2", float("nan"), 1.5])
 def test_a_station_is_a_number_from_root_to_tip(cls: Any, at: Any) -> None:

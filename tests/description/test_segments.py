@@ -121,3 +121,10 @@ def test_a_number_of_segments_is_a_whole_number(segments: Any) -> None:
 def test_a_load_along_axes_that_turn_with_the_segments_is_refused() -> None:
     with pytest.raises(sf.DescriptionError, match="axes of the undeformed beam"):
         arm(2, loads=(sf.BeamLoad((0, 1, 0)),))
+
+
+def test_a_frame_may_bear_the_name_of_what_joins_segments() -> None:
+    beam = sf.Beam("link", sf.Joint("hub", "revolute"), 2.0, 1.0, segments=3, frames=(sf.Frame("end"),))
+    m = sf.compile(sf.System("s", (beam,)), sf.Options(("frame_pose",), ("end",), backend="interpreter"))
+    p, _ = m.frame_pose("end", m.neutral())
+    np.testing.assert_allclose(p, (2.0, 0.0, 0.0), atol=1e-15)

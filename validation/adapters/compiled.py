@@ -20,8 +20,8 @@ NAME = "symofros"
 
 _FUNCTIONS = tuple(name for name in QUANTITIES if name not in {"gravity", "multipliers", *LOOPS})
 
-# Sections an interval beyond the number of functions, with which rods err by less than 1e-9 of M and h at the states that
-# are drawn.
+# Sections an interval beyond the number of functions, with which rods err by less than 1e-8 of M and h at the states
+# that are drawn.
 MORE_SECTIONS = 5
 
 

@@ -1,8 +1,8 @@
 """A geometrically exact rod as numbers: its sections' places, tangents and rotations with their derivatives.
 
-The field of docs/theory/rods.md, (1) and (1a), by collocation in its differential equations along the axis (section 3 of
-docs/theory/elements.md): no series of Magnus, no Gibbs vector, no tangents at a few sections. Between knots all fields
-are polynomials through many Gauss nodes; what is left is below 1e-12 for turns of up to two radians.
+The field of docs/theory/rods.md, (1) and (1a), by collocation in its differential equations along the axis (section 2
+of docs/theory/elements.md): no series of Magnus, no Gibbs vector, no tangents at a few sections. Between knots all
+fields are polynomials through many Gauss nodes; what is left is below 1e-12 for turns of up to two radians.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from validation.mechanics.elastic import XI, BeamSection, Curve, Turn
 from validation.mechanics.geometry import Array, skew
 from validation.mechanics.shape_functions import strain_family
 
-# Strain that a rod's coordinates of a direction are of (0 to 2 turn sections, 3 to 5 stretch and shear), and their sign.
+# Strain that a rod's coordinates of a direction are of (0 to 2 turn sections, 3 to 5 stretch, shear), and their sign.
 STRAINS: dict[str, tuple[int, float]] = {
     "bend_y": (2, 1.0),
     "bend_z": (1, -1.0),
@@ -129,7 +129,7 @@ class StrainRod(BeamSection):
         return _Fields(*(np.concatenate(arrays, axis=1) for arrays in zip(*parts, strict=True)))
 
     def _solution(self, q: Array, v: Array) -> list[tuple[_Fields, _Fields]]:
-        """Fields at the start of each interval (K = 1), and their derivatives by x at its nodes; the latest are kept."""
+        """Fields at the start of each interval (K = 1), their derivatives by x at its nodes; the latest are kept."""
         key = q.tobytes() + v.tobytes()
         if self._solved is None or self._solved[0] != key:
             count, n = q.shape
@@ -205,4 +205,3 @@ def _tangents(at: _Fields, table: Array, q: Array, v: Array) -> Curve:
 
 def _of_speeds(J: Array, v: Array) -> Array:
     return np.asarray((J @ v[:, None, :, None])[..., 0])
-

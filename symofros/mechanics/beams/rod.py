@@ -138,8 +138,8 @@ class Rod:
     def _moments_counted(self) -> int:
         """Number of moments of the strains in a step: three for the sixth order, two for the fourth.
 
-        The fourth serves strains that are at most linear, at as many sections as were chosen for them: what such functions
-        leave out is more.
+        The fourth serves strains that are at most linear, at the sections chosen for them: what such functions leave
+        out is more.
         """
         beam = self.beam
         varies = beam.family == "user" or any(STATION in symbols(getattr(beam, label)) for label in PRE_STRAINS)
@@ -317,7 +317,9 @@ class Rod:
             InertiaAxis(k, share, section.R_BS.column(axis))
             for axis, per_length in enumerate(stated)
             if per_length != 0.0
-            for k, (section, share) in enumerate(zip(self.sections, self.shares(per_length, self.strains.stations[0], weights), strict=True))
+            for k, (section, share) in enumerate(
+                zip(self.sections, self.shares(per_length, self.strains.stations[0], weights), strict=True)
+            )
         )
 
     @cached_property
@@ -349,7 +351,10 @@ class Rod:
             return tuple(g.mul(g.constant(weight), self.mass_length) for weight in self.strains.first_moments)
         columns = zip(*self.strains.positions, strict=True)
         return tuple(
-            g.mul(g.sum(g.mul(g.constant(row), mass) for row, mass in zip(column, self.masses(), strict=True)), self.along.L)
+            g.mul(
+                g.sum(g.mul(g.constant(row), mass) for row, mass in zip(column, self.masses(), strict=True)),
+                self.along.L,
+            )
             for column in columns
         )
 

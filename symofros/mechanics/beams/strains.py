@@ -32,8 +32,8 @@ AXES: dict[Direction, tuple[int, int]] = {
 }
 # Number of strains that turn sections.
 TURNING = 3
-# The fewest sections an interval; one more than functions integrates small turns exactly. From four functions on, and of
-# the user's, which may be of any degree, there are two more: what such functions leave out is less than what a section is worth.
+# The fewest sections an interval; one more than functions integrates small turns exactly. There are two more of four
+# functions on, which leave less out than a section is worth, and of the user's, which may be of any degree.
 _FEWEST_SECTIONS, _FEWEST_SECTIONS_OF_USER, _FEW_FUNCTIONS = 3, 4, 3
 # Sections an interval where knots divide the rod: the cubic between them is smooth.
 _SECTIONS_A_SPAN = 4
@@ -139,7 +139,7 @@ class Strains:
 
     @cached_property
     def masses(self) -> Strains:
-        """The same fields at one station more an interval, by which products of two positions are integrated exactly."""
+        """The same fields at a station more an interval, which integrate products of two positions exactly."""
         return replace(self, points=self.points + 1)
 
     @cached_property

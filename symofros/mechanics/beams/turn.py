@@ -1,4 +1,4 @@
-"""The turn from one section of a rod to the next, by Magnus's series to fourth or sixth order (docs/theory/rods.md, 5 to 11)."""
+"""The turn from one section of a rod to the next, by Magnus's series (docs/theory/rods.md, 5 to 11)."""
 
 from __future__ import annotations
 

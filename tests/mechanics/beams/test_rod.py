@@ -62,9 +62,7 @@ def test_turns_converge_with_the_sixth_power_of_the_number_of_sections(counts: t
     if counts[0] == 2:
         q = q[[0, 1, 3, 4, 6, 7]]
     _, (expected,) = integrated(counts, q, np.array([1.0]))
-    errors = [
-        np.abs(RodShape(rod(counts, sections=n), {}, [1.0]).sections(q)[1][0] - expected).max() for n in (8, 16)
-    ]
+    errors = [np.abs(RodShape(rod(counts, sections=n), {}, [1.0]).sections(q)[1][0] - expected).max() for n in (8, 16)]
     assert 5.4 < np.log2(errors[0] / errors[1]) < 7.5
 
 

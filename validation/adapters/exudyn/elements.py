@@ -128,7 +128,7 @@ class Elements:
         return Terms(J_x.swapaxes(1, 2) @ (part.M @ J_x), np.einsum("nxi,nx->ni", J_x, forces))
 
     def _turning(self, system: ExudynSystem, x: Array, root: Carried, states: AllSpeeds) -> Terms:
-        """Of what turns; without rotary inertia sections turn about one axis alone, the root's or of a rod their own."""
+        """Of what turns; without rotary inertia sections turn about one axis alone, the root's or a rod's own."""
         q, v = states.q[:, self.q], states.v[:, self.v]
         if isinstance(self.beam, StrainRod):
             sections = self.beam.rotation(x, q, v)

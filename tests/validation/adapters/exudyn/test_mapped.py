@@ -5,18 +5,22 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 
 import reference_models
 import symofros as sf
+from tests.mechanics.beams.rods import GRAVITY, HUB, STIFF, rod
 from tests.models import sampled
 from tests.validation.adapters.lagrangian.test_engine import beam
 from tests.validation.subjects import UNIT
 from validation.adapters.exudyn import mapped
 from validation.check import ModelResult, Settings, check
-from validation.contract.interface import Subject
+from validation.contract.interface import Subject, Unsupported
 from validation.contract.quantities import FRAME_QUANTITIES, TREE_QUANTITIES
+from validation.inputs.sampling import sample
 from validation.mechanics import elastic
+from validation.mechanics.assembly import assemble
 from validation.mechanics.elastic import Curve, ElasticBeam
 from validation.mechanics.geometry import Array
 
@@ -48,6 +52,37 @@ def test_elements_that_move_as_our_beams_have_their_mechanics(name: str) -> None
     assert all(rows[quantity].error < 1e-13 for quantity in FRAME_QUANTITIES & OFFERED)
     if not any(isinstance(b, sf.Beam) and b.rotary_inertia for b in reference_models.MODELS[name].bodies):
         assert all(rows[quantity].error < 1e-8 for quantity in OFFERED)
+
+
+RODS: dict[str, sf.Beam] = {
+    "in a plane": rod((3, 0, 0), HUB, rhoJ=0.0, sections=8),
+    "in space, with rotary inertia": rod((2, 1, 1), HUB, rotary_inertia=True, sections=8),
+    "of splines, tapered": rod((4, 0, 0), HUB, family="spline", rhoA="2 + x", sections=9),
+    "stretched and sheared": rod((2, 0, 0), HUB, stretch=1, shear_y=2, sections=7, **STIFF),
+    "curved and twisted without stress": rod((1, 1, 1), HUB, curvature_y=0.3, twist_rate="0.2*x", sections=8),
+}
+
+
+@pytest.mark.parametrize("name", RODS)
+def test_rods_have_the_mechanics_and_the_elastic_forces_of_exact_elements(name: str) -> None:
+    subject = Subject("s", sf.System("s", (RODS[name],), gravity=GRAVITY))
+    engine = mapped.build(subject)
+    assert not isinstance(engine, Unsupported)
+    states = sample(assemble(subject.system), 0, 12)
+    m = sf.compile(subject.system, sf.Options(("mass_matrix", "bias", "generalized_force"), backend="interpreter"))
+    for right, ours in ((engine.mass_matrix, m.mass_matrix(states.q)), (engine.bias, m.bias(states.q, states.v))):
+        assert np.abs(right(states) - ours).max() < mapped.EXTRAPOLATED * np.abs(ours).max()
+    (one,) = engine.elements
+    forces = m.generalized_force(states.q, 0 * states.v, ())[:, one.v]
+    for elastic_forces in one.strain(states.q[:, one.q]):
+        assert np.abs(elastic_forces.limit() - forces).max() < 1e-11 * np.abs(forces).max()
+
+
+def test_a_rod_of_another_stiffness_is_found() -> None:
+    system = sf.System("s", (rod((2, 0, 0), HUB, rhoJ=0.0, sections=7),))
+    other = replace(system, bodies=(replace(system.body("rod"), EI_z=3.00001),))
+    factories = {NAME: lambda subject: mapped.build(replace(subject, system=other))}
+    assert disagreeing(check(Subject("s", system), SETTINGS, factories)) == {"strain_forces"}
 
 
 @pytest.mark.parametrize("kind", sampled(("free", "ball", "universal", "cylindrical", "planar", "screw"), ("screw",)))
