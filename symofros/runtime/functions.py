@@ -13,7 +13,7 @@ from symofros.base.arrays import real_array
 from symofros.base.functions import FRAME_FUNCTIONS, FUNCTIONS, INPUTS, MODEL_FUNCTIONS, generated_with
 from symofros.errors import ParameterError, Problem, ShapeError, SymofrosError, UnknownNameError, did_you_mean
 from symofros.runtime.beams import ElasticBeam
-from symofros.runtime.calls.bound import into
+from symofros.runtime.calls.bound import into, receivers
 from symofros.runtime.calls.kernel import Array, BatchOptions, Kernel, Numbers, Precision, Unit
 from symofros.runtime.calls.layout import by_columns, flat, states
 from symofros.runtime.calls.single import SingleCall, SingleCalls, single_call
@@ -207,7 +207,8 @@ class Functions:
             name: The function; most have a method of that name.
             frame: Frame of a frame function.
             par: Run-time parameters.
-            out: Arrays by names of outputs, which receive these and are returned; `bind` computes in place.
+            out: Arrays by names of outputs, which receive these and are returned. Batches are computed in place, unless
+                an array overlaps an input.
             inputs: The function's inputs by name; `t` is 0 and `u` the default inputs where they are left out.
 
         Returns:
@@ -227,8 +228,7 @@ class Functions:
             if group not in values:
                 takes = ", ".join(FUNCTIONS[name].inputs)
                 raise ShapeError(Problem(f"{name}: no {group}", f"{', '.join(inputs) or 'nothing'}", takes, "add it"))
-        results = self._call(name, public, values, par)
-        return results if out is None else into(out, kernel.signature, results)
+        return self._call(name, public, values, par, out)
 
     def formulas(self, formulas: Sequence[Any], derivatives: bool = True) -> Kernel:
         """Formulas over the model's names, compiled: (q, v, u, t) -> values, and derivatives by q and by v.
@@ -273,15 +273,20 @@ class Functions:
         return self._call(name, "", given, par)[0]
 
     def _call(
-        self, name: str, frame: str, given: Mapping[str, ArrayLike | None], par: ArrayLike | None
+        self,
+        name: str,
+        frame: str,
+        given: Mapping[str, ArrayLike | None],
+        par: ArrayLike | None,
+        out: Mapping[str, Numbers] | None = None,
     ) -> list[Numbers]:
         if par is None and self._precision == "double":
             single = self._single_calls.prepared.get((name, frame) if frame else name)
             single = single or self._prepare_single(name, frame)
             outputs = single(given)
             if outputs is not None:
-                return outputs
-        return self._call_batch(name, frame, given, par)
+                return outputs if out is None else into(out, self._kernels[name, frame].signature, outputs)
+        return self._call_batch(name, frame, given, par, out)
 
     def _prepare_single(self, name: str, frame: str) -> SingleCall:
         kernel = self._kernels.get((name, frame)) or self._make(name, frame)
@@ -290,7 +295,12 @@ class Functions:
         return single
 
     def _call_batch(
-        self, name: str, frame: str, given: Mapping[str, ArrayLike | None], par: ArrayLike | None
+        self,
+        name: str,
+        frame: str,
+        given: Mapping[str, ArrayLike | None],
+        par: ArrayLike | None,
+        out: Mapping[str, Numbers] | None = None,
     ) -> list[Numbers]:
         kernel = self._kernels.get((name, frame)) or self._make(name, frame)
         dtype = BatchOptions(precision=self._precision).dtype
@@ -308,9 +318,25 @@ class Functions:
         n = int(np.prod(batch))
         pre = self._pre(kernel, (name, frame), par_array, batch)
         inputs = [states(array, batch) for array in arrays]
-        outputs = kernel.run(n, pre, inputs, BatchOptions(self._threads, by_columns(inputs), self._precision))
-        shaped = zip(outputs, kernel.signature.outputs, strict=True)
-        return [output.reshape(batch + shape) for output, (_, shape) in shaped]
+        options = BatchOptions(self._threads, by_columns(inputs), self._precision)
+        shapes_out = [shape for _, shape in kernel.signature.outputs]
+        if out is None:
+            outputs = kernel.run(n, pre, inputs, options)
+            return [output.reshape(batch + shape) for output, shape in zip(outputs, shapes_out, strict=True)]
+        places = receivers(out, kernel.signature, batch, dtype)
+        # What is written into while inputs are read must not be one of them.
+        rows = [
+            None if place is None or any(np.may_share_memory(place, x) for x in inputs) else place.reshape(n, *shape)
+            for place, shape in zip(places, shapes_out, strict=True)
+        ]
+        outputs = kernel.run(n, pre, inputs, options, rows)
+        for place, row, output in zip(places, rows, outputs, strict=True):
+            if place is not None and output is not row:
+                place[...] = output.reshape(place.shape)
+        return [
+            output.reshape(batch + shape) if place is None else place
+            for place, output, shape in zip(places, outputs, shapes_out, strict=True)
+        ]
 
     def _pre(self, kernel: Kernel, key: Key, par: Array | None, batch: tuple[int, ...]) -> Array:
         if par is not None:

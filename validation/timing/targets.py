@@ -62,21 +62,25 @@ def _of(model: str, function: str, **least: float) -> list[Target]:
     return [Target(model, function, peer, ratio) for peer, ratio in least.items()]
 
 
+_DERIVATIVES = ("inverse_dynamics_derivatives", "forward_dynamics_derivatives")
 TARGETS: tuple[Target, ...] = (
     *_of("panda", "dynamics", pinocchio=7.0, mujoco=6.0, casadi=1.5),
     Target("panda", "dynamics", "pinocchio", 10.0, family="gcc"),
-    *_of("ur5", "dynamics", pinocchio=7.0, mujoco=6.0, casadi=1.5),
-    *_of("talos", "dynamics", pinocchio=4.5, mujoco=3.5, casadi=1.5),
+    *_of("ur5", "dynamics", pinocchio=7.0, mujoco=6.0, casadi=1.6),
+    *_of("talos", "dynamics", pinocchio=6.5, mujoco=3.5, casadi=1.5),
     *_of("mss", "dynamics", pinocchio=3.5, mujoco=2.6, casadi=1.5),
-    *_of("chain52", "dynamics", pinocchio=1.9, mujoco=1.5, casadi=1.5),
+    *_of("chain52", "dynamics", pinocchio=7.0, mujoco=1.5, casadi=1.5),
     *_of("panda", "forward_dynamics", pinocchio=4.5, mujoco=3.7),
-    *_of("talos", "forward_dynamics", pinocchio=2.8, mujoco=2.8),
-    *_of("panda", "inverse_dynamics_derivatives", pinocchio=3.0),
-    *_of("panda", "forward_dynamics_derivatives", pinocchio=3.0),
+    *_of("talos", "forward_dynamics", pinocchio=6.0, mujoco=2.8),
+    *(t for n in (22, 32, 52) for t in _of(f"chain{n}", "forward_dynamics", pinocchio=6.0)),
+    *(t for model in ("panda", "ur5") for name in _DERIVATIVES for t in _of(model, name, pinocchio=6.0)),
+    *(t for model in ("talos", "mss") for name in _DERIVATIVES for t in _of(model, name, pinocchio=4.0)),
+    *(t for name in _DERIVATIVES for t in _of("chain52", name, pinocchio=3.0)),
     Target("panda", "dynamics", "pinocchio", 45.0, "batch by columns"),
     Target("panda", "dynamics", "mujoco", 36.0, "batch by columns"),
     Target("mss", "dynamics", "pinocchio", 20.0, "batch by columns"),
     Target("chain52", "dynamics", "pinocchio", 14.0, "batch by columns"),
+    *(Target(arm, name, "pinocchio", 15.0, "batch by columns") for arm in ("panda", "ur5") for name in _DERIVATIVES),
 )
 
 

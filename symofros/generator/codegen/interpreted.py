@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -43,8 +43,15 @@ class InterpretedKernel:
             pre[:, i] = column
         return pre
 
-    def run(self, n: int, pre: Array, inputs: list[Numbers], options: BatchOptions = DEFAULT_OPTIONS) -> list[Numbers]:
-        """Evaluate n states; in one thread, since the interpreter keeps its lock, and in double precision."""
+    def run(
+        self,
+        n: int,
+        pre: Array,
+        inputs: list[Numbers],
+        options: BatchOptions = DEFAULT_OPTIONS,
+        places: Sequence[Numbers | None] = (),
+    ) -> list[Numbers]:
+        """Evaluate n states, none in place; in one thread, as the interpreter keeps its lock, in double precision."""
         named = dict(zip(self._function.inputs, [x.astype(np.float64, copy=False) for x in inputs], strict=True))
         outputs = self._interpret(self._function, named | {"pre": pre}, n)
         solver = self._function.solver

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from itertools import accumulate, chain
 from typing import Any, NamedTuple
 
 from symofros.base.functions import FUNCTIONS, INPUTS, ModelFunction, OutputArray, size_of
@@ -21,7 +20,6 @@ from symofros.mechanics.dynamics.derivatives.adjoints import weighted_derivative
 from symofros.mechanics.dynamics.derivatives.second_derivatives import hessian_vector_product, second_derivatives
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.dynamics.frame_equations import FrameEquations
-from symofros.mechanics.dynamics.mass_matrix import Matrix
 from symofros.mechanics.topology.tree import prescribed_speeds, section_names
 
 
@@ -180,24 +178,16 @@ def _forward_slopes(e: Equations, row: ModelFunction, methods: Methods, known: M
     columns = sum(array.sizes(known)[1] for array in row.outputs)
     if e.constraints or e.factors.entries * columns > _MOST_STEPS * WIDTH:
         return _forward_slopes_by_routine(e, row, known)
-    slopes = [e.slopes_in_motion(array.name) for array in row.outputs]
-    solved = _solved(e, slopes)
-    outputs = [_matrix(array.name, (e.nv, len(rows[0])), rows) for array, rows in zip(row.outputs, solved, strict=True)]
+    slopes = [_output(array, e.slopes_in_motion(array.name), known) for array in row.outputs]
+    outputs = [_matrix(output.name, (e.nv, output.shape[1]), _solved(e, output)) for output in slopes]
     return Function(row.name, "", row.inputs, tuple(outputs))
 
 
-def _solved(e: Equations, slopes: Sequence[Matrix]) -> list[Matrix]:
-    """-M^-1 times each of some matrices; side by side where that takes fewer vectors."""
-    widths = [len(rows[0]) for rows in slopes]
-    if -(-sum(widths) // WIDTH) == sum(-(-width // WIDTH) for width in widths):
-        return [_minus(e.factors.solve_columns(rows)) for rows in slopes]
-    solved = _minus(e.factors.solve_columns([list(chain(*rows)) for rows in zip(*slopes, strict=True)]))
-    ends = list(accumulate(widths))
-    return [[row[end - width : end] for row in solved] for width, end in zip(widths, ends, strict=True)]
-
-
-def _minus(rows: Matrix) -> Matrix:
-    return [[-edge for edge in row] for row in rows]
+def _solved(e: Equations, slopes: Output) -> list[list[Edge]]:
+    """-M^-1 times a matrix."""
+    rows, columns = slopes.shape
+    solved = e.factors.solve_columns([list(slopes.edges[i * columns : (i + 1) * columns]) for i in range(rows)])
+    return [[-edge for edge in row] for row in solved]
 
 
 def _forward_slopes_by_routine(e: Equations, row: ModelFunction, known: Mapping[str, int]) -> Function:

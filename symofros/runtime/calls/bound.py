@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from math import prod
 from types import MappingProxyType
 from typing import Any, Literal, get_args
@@ -80,32 +80,41 @@ def bind(kernel: Kernel, par: Array, given: Mapping[str, Array], defaults: Mappi
     return Bound(kernel.bind(pre, read, written), arrays, signature, (kernel, pre))
 
 
-def into(out: Mapping[str, Numbers], signature: Signature, results: list[Numbers]) -> list[Numbers]:
-    """Results of a plain call, copied into arrays of the caller's where there are some.
+def receivers(
+    out: Mapping[str, Numbers], signature: Signature, batch: tuple[int, ...], dtype: type[np.floating]
+) -> list[Numbers | None]:
+    """The caller's arrays that receive the outputs of a plain call, in the signature's order; None where there is none.
 
     Args:
         out: Arrays by names of outputs.
         signature: Signature of the function.
-        results: What the call returned.
+        batch: Leading dimensions of the outputs.
+        dtype: Their type.
 
     Raises:
         UnknownNameError: The function has no such output.
-        ShapeError: An array is not a writeable, contiguous one of its output's shape and type; none is changed then.
+        ShapeError: An array is not a writeable, contiguous one of its output's shape and type.
     """
     check_argument(f"{signature.name}: out", out, Mapping[str, Any])
-    named = dict(zip([name for name, _ in signature.outputs], results, strict=True))
+    shapes = {name: batch + shape for name, shape in signature.outputs}
     for name, array in out.items():
-        if name not in named:
-            what, hint = f"{signature.name}: no output '{name}'", did_you_mean(name, named) or "leave it out"
-            raise UnknownNameError(Problem(what, ", ".join(named), "arrays receive outputs by these names", hint))
-        of = named[name]
-        kind = isinstance(array, np.ndarray) and array.dtype == of.dtype and bool(array.flags.carray)
-        if not kind or array.shape != of.shape:
-            rule = f"a writeable C-contiguous {of.dtype} array of shape {of.shape}"
+        if name not in shapes:
+            what, hint = f"{signature.name}: no output '{name}'", did_you_mean(name, shapes) or "leave it out"
+            raise UnknownNameError(Problem(what, ", ".join(shapes), "arrays receive outputs by these names", hint))
+        kind = isinstance(array, np.ndarray) and array.dtype == dtype and bool(array.flags.carray)
+        if not kind or array.shape != shapes[name]:
+            rule = f"a writeable C-contiguous {np.dtype(dtype)} array of shape {shapes[name]}"
             raise _misfit(signature, name, _seen(array), rule, "pass np.empty(shape), or leave it out")
-    for name, array in out.items():
-        array[...] = named[name]
-    return [out.get(name, result) for name, result in named.items()]
+    return [out.get(name) for name in shapes]
+
+
+def into(out: Mapping[str, Numbers], signature: Signature, results: Sequence[Array]) -> list[Array]:
+    """Results for one state, copied into arrays of the caller's where there are some; raises as `receivers`."""
+    places = receivers(out, signature, (), np.float64)
+    for place, result in zip(places, results, strict=True):
+        if place is not None:
+            place[...] = result
+    return [result if place is None else place for place, result in zip(places, results, strict=True)]
 
 
 def bind_batch(

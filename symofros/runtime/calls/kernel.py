@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import prod
 from typing import Literal, Protocol, runtime_checkable
@@ -111,7 +111,14 @@ class Kernel(Protocol):
         """
         ...
 
-    def run(self, n: int, pre: Array, inputs: list[Numbers], options: BatchOptions = DEFAULT_OPTIONS) -> list[Numbers]:
+    def run(
+        self,
+        n: int,
+        pre: Array,
+        inputs: list[Numbers],
+        options: BatchOptions = DEFAULT_OPTIONS,
+        places: Sequence[Numbers | None] = (),
+    ) -> list[Numbers]:
         """Evaluate n states.
 
         Args:
@@ -119,9 +126,11 @@ class Kernel(Protocol):
             pre: (n or 1, npre), from `prepare`.
             inputs: Each (n or 1, size), with any strides, in the signature's order.
             options: Threads, layout and precision.
+            places: C-contiguous arrays (n, *shape) in which outputs may be computed, in the signature's order; they
+                overlap no input.
 
         Returns:
-            One array an output, (n, *shape).
+            One array an output, (n, *shape): its place, where it was computed there.
         """
         ...
 

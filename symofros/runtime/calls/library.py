@@ -5,8 +5,9 @@ from __future__ import annotations
 import ctypes
 import math
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -166,12 +167,21 @@ class CompiledKernel:
             self._lanes[lanes] = (make(key, lanes) if make is not None else None) or self
         return self._lanes[lanes]
 
-    def run(self, n: int, pre: Array, inputs: list[Numbers], options: BatchOptions = DEFAULT_OPTIONS) -> list[Numbers]:
+    def run(
+        self,
+        n: int,
+        pre: Array,
+        inputs: list[Numbers],
+        options: BatchOptions = DEFAULT_OPTIONS,
+        places: Sequence[Numbers | None] = (),
+    ) -> list[Numbers]:
         """Evaluate n states in C: by vectors if they are many, or wanted in single precision; else one by one."""
         kernel = self._for_many(n, pre, options.precision)
         if kernel is not None:
-            return kernel._by_lanes(n, pre, inputs, options)
+            return kernel._by_lanes(n, pre, inputs, options, places)
         rows = [np.ascontiguousarray(x, dtype=np.float64) for x in (pre, *inputs)]
+        if options.precision == "double" and not options.columns:
+            return self._by_rows(n, rows, options.threads, places)
         return [options.of(output) for output in self._by_rows(n, rows, options.threads)]
 
     def _for_many(self, n: int, pre: Array, precision: Precision = "double") -> CompiledKernel | None:
@@ -182,21 +192,24 @@ class CompiledKernel:
         kernel = self.in_lanes(lanes)
         return kernel if kernel.has(lanes) else None
 
-    def _by_lanes(self, n: int, pre: Array, inputs: list[Numbers], options: BatchOptions) -> list[Numbers]:
+    def _by_lanes(
+        self, n: int, pre: Array, inputs: list[Numbers], options: BatchOptions, places: Sequence[Numbers | None]
+    ) -> list[Numbers]:
         """By vectors of this library; contiguous rows are passed by their addresses alone, which costs less."""
         if options.precision == "double" and not options.columns and all(x.flags.c_contiguous for x in inputs):
-            return self._by_rows(n, [pre, *inputs], options.threads)
-        return self._in_place(n, pre, inputs, options)
+            return self._by_rows(n, [pre, *inputs], options.threads, places)
+        return self._in_place(n, pre, inputs, options, places)
 
     def has(self, lanes: LaneOptions) -> bool:
         """Whether there is code by such vectors in this library."""
         of = self._by_vectors
         return of is not None and (of.bytes == 4) == lanes.single and bool(of.own or not lanes.own_parameters)
 
-    def _by_rows(self, n: int, arrays: list[Array], threads: int) -> list[Array]:
+    def _by_rows(self, n: int, arrays: list[Array], threads: int, places: Sequence[Numbers | None] = ()) -> list[Array]:
         """Contiguous arrays through `batch`."""
         ffi = self._unit.ffi
-        outputs = [np.empty((n, *shape)) for _, shape in self.signature.outputs]
+        made = zip_longest(places, self.signature.outputs)
+        outputs: list[Array] = [np.empty((n, *shape)) if place is None else place for place, (_, shape) in made]
         # from_buffer keeps each array alive for the duration of the call.
         rows_in = [ffi.from_buffer("double[]", x) for x in arrays]
         rows_out = [ffi.from_buffer("double[]", y) for y in outputs]
@@ -216,10 +229,16 @@ class CompiledKernel:
         share(n, threads, part)
         return outputs
 
-    def _in_place(self, n: int, pre: Array, inputs: list[Numbers], options: BatchOptions) -> list[Numbers]:
+    def _in_place(
+        self, n: int, pre: Array, inputs: list[Numbers], options: BatchOptions, places: Sequence[Numbers | None]
+    ) -> list[Numbers]:
         """Arrays as they lie, by vectors."""
         ffi, nowhere = self._unit.ffi, self._unit.nowhere
-        flat = [options.empty(n, math.prod(shape)) for _, shape in self.signature.outputs]
+        sizes = [math.prod(shape) for _, shape in self.signature.outputs]
+        flat = [
+            options.empty(n, size) if place is None else place.reshape(n, size)
+            for place, size in zip_longest(places, sizes)
+        ]
         read = [Strided.of(pre, np.float64), *(Strided.of(x, options.dtype) for x in inputs)]
         written = [Strided.of(y, options.dtype) for y in flat]
 
@@ -231,7 +250,8 @@ class CompiledKernel:
 
         share(n, options.threads, part)
         # Splits an axis, so that these are views.
-        return [y.reshape(n, *shape) for y, (_, shape) in zip(flat, self.signature.outputs, strict=True)]
+        made = zip_longest(places, flat, self.signature.outputs)
+        return [y.reshape(n, *shape) if place is None else place for place, y, (_, shape) in made]
 
     def _own_work(self) -> Any:
         """Of this thread."""

@@ -108,6 +108,26 @@ def test_plain_calls_write_into_arrays_of_the_callers(rng: np.random.Generator) 
     assert np.array_equal(M, m.mass_matrix(q))
 
 
+@pytest.mark.parametrize("n", [3, 600], ids=["state by state", "by vectors"])
+@pytest.mark.parametrize("order", ["C", "F"], ids=["rows", "columns"])
+@pytest.mark.parametrize("precision", ["double", "single"])
+def test_batches_are_computed_in_the_arrays_of_the_caller_and_beside_inputs_that_overlap_them(
+    n: int, order: Any, precision: Any, rng: np.random.Generator
+) -> None:
+    m = model("double_pendulum").with_precision(precision)
+    dtype = np.float32 if precision == "single" else np.float64
+    q, v, u = (np.asarray(rng.normal(size=(n, m.nv)), dtype, order) for _ in range(3))
+    expected = m.dynamics(q, v, u)
+    M, h = np.full((n, m.nv, m.nv), np.nan, dtype), np.full((n, m.nv), np.nan, dtype)
+    results = m.evaluate("dynamics", q=q, v=v, u=u, out={"M": M, "h": h})
+    assert results[0] is M and results[1] is h
+    for result, value in zip(results, expected, strict=True):
+        np.testing.assert_array_equal(result, value)
+    over = np.array(v, order="C")
+    m.evaluate("dynamics", q=q, v=over, u=u, out={"h": over})
+    np.testing.assert_array_equal(over, expected[1])
+
+
 @pytest.mark.parametrize(
     ("out", "words"),
     [

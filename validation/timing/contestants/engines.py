@@ -58,6 +58,8 @@ def _interface() -> Any:
     return ffi
 
 
+# Conditions of a loop's model: Pinocchio factors all of them as one full matrix, which takes seconds a state beyond.
+MOST_CONDITIONS = 200
 TREES, CLOSED = "loop_pinocchio.cpp", "loop_closed.cpp"
 
 
@@ -125,6 +127,9 @@ def pinocchio_loops(task: Task, functions: Sequence[str], warn: Callable[[str], 
     Raises:
         Skipped: Pinocchio can't be built.
     """
+    conditions = sum(len(constraint.conditions) for constraint in task.system.constraints)
+    if conditions > MOST_CONDITIONS:
+        raise Skipped(f"{conditions} conditions: timed up to {MOST_CONDITIONS}, beyond which a state takes seconds")
     builds, failures = pinocchio_builds(CLOSED if task.system.constraints else TREES)
     for failure in failures:
         warn(failure)

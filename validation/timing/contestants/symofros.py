@@ -30,6 +30,9 @@ BLOCK, _LEAST_BLOCK, _KEPT = 64, 16, 3 << 17
 _SHARED = {"dynamics": 2, "forward_dynamics": 1, "forward_dynamics_derivatives": 2}
 # More than any race steps through [s].
 _ENDLESS = 1e6
+# Speeds up to which derivatives of forward dynamics are timed by vectors: beyond, their code takes minutes to compile,
+# and of long chains a solver finishes them.
+MOST_BY_VECTORS = 10
 
 
 def our_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
@@ -43,10 +46,16 @@ def our_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
             yield _steps(task)
             continue
         yield _by_state(task, name)
-        if not task.system.constraints:  # A solver finishes those state by state; they have no code by vectors.
+        if _by_vectors(task, name):
             yield _by_rows(task, name)
             yield _by_columns(task, name, COLUMNS, "double")
             yield _by_columns(task, name, SINGLE, "single")
+
+
+def _by_vectors(task: Task, name: str) -> bool:
+    """Whether a function is timed by vectors: where a solver finishes it state by state, there is no such code."""
+    is_long = name == "forward_dynamics_derivatives" and task.assembly.nv > MOST_BY_VECTORS
+    return not (task.system.constraints or is_long)
 
 
 def _frames(task: Task, name: str) -> tuple[str, ...]:
