@@ -8,6 +8,7 @@ from symofros.base.options import Options
 from symofros.description.beam import Beam
 from symofros.description.constraints import AXES, Closure
 from symofros.description.system import System
+from symofros.description.values import symbols
 from symofros.expr.expression import evaluate
 from symofros.mechanics.beams.deformation import small_coordinates
 from symofros.mechanics.beams.strains import strains_of
@@ -15,6 +16,7 @@ from symofros.mechanics.dynamics.constraints.measures import measures_of
 from symofros.mechanics.dynamics.constraints.wrenches import acts_on_bodies
 from symofros.mechanics.kinematics.joint import neutral_coordinates
 from symofros.mechanics.topology.coordinates import angles, joint_sizes
+from symofros.mechanics.topology.formulas import TIME, stated_values
 from symofros.mechanics.topology.tree import SpanningTree, frame_of, joint_names, prescribed_speeds, section_names
 from symofros.runtime.record import ClosureRecord, ModelRecord, Segment
 
@@ -75,6 +77,7 @@ def model_record(tree: SpanningTree, options: Options) -> ModelRecord:
         driven=len(driven),
         quaternion_inputs=tuple(quaternions),
         measures=measures_of(tree),
+        timed=any(TIME in symbols(stated.value) for stated in stated_values(tree.system)),
     )
 
 

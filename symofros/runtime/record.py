@@ -83,6 +83,7 @@ class ModelRecord:
         driven: Inputs that prescribe motion, the last of u.
         quaternion_inputs: First index in u of each quaternion among these.
         measures: Measures of the rows and columns of the constraint Jacobian.
+        timed: Whether a formula depends on the time t.
     """
 
     name: str
@@ -110,6 +111,7 @@ class ModelRecord:
     driven: int = 0
     quaternion_inputs: tuple[int, ...] = ()
     measures: Measures = Measures()
+    timed: bool = False
 
     @property
     def nc(self) -> int:

@@ -46,7 +46,8 @@ void SYM_JS(js_batch)(int32_t i, size_t n, const double *const *in, const size_t
 /* Instances, and their arrays in the order q, v, u, par, a, lam, pre. */
 sym_instance *SYM_JS(js_instance)(void) {
     const size_t size = sym_instance_size(sym_js_plant());
-    return sym_instance_init(malloc(size), size, sym_js_plant());
+    void *memory = malloc(size);
+    return memory == NULL ? NULL : sym_instance_init(memory, size, sym_js_plant());
 }
 double *SYM_JS(js_array)(sym_instance *s, int32_t what) {
     double *const arrays[] = {s->q, s->v, s->u, s->par, s->a, s->lam, s->pre};

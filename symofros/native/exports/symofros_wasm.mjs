@@ -5,7 +5,17 @@
 //     const arm = model.instance();  arm.u[0] = 1.5;  arm.advance(2.0);  arm.q;
 //
 // Arrays are Float64Array, matrices row by row; q, v, u, par, a, lam of an instance are views of its memory, to be taken anew
-// after other calls: memory that grows ends them.
+// after other calls: memory that grows ends them. Instances and prepared batches keep their memory until `free()`; a model
+// keeps that of the last call of each function.
+
+// Of 32-bit memory; a multiplication in JavaScript would pass it unnoticed.
+const MOST_BYTES = 2 ** 31;
+
+/** A number of states. */
+function count(n) {
+  if (!Number.isInteger(n) || n < 0) throw new RangeError(`a batch has ${n} states; it takes a whole number`);
+  return n;
+}
 
 export class Model {
   /** Compile a module and read what it has. `bytes`: the .wasm file. */
@@ -19,8 +29,8 @@ export class Model {
     exports._initialize?.();
     this.functions = [];
     for (let i = 0; i < exports.js_functions(); ++i) this.functions.push(this.#read(i));
-    this.work = exports.js_allocate(8 * exports.js_size(1));
-    this.pre = exports.js_allocate(8 * Math.max(1, exports.js_size(0)));
+    this.work = this.allocate(8 * Math.max(1, exports.js_size(1)));
+    this.pre = this.allocate(8 * Math.max(1, exports.js_size(0)));
     this.par = exports.js_constant(0);
     exports.js_prepare(this.par, this.pre);
     this.buffers = new Map();
@@ -48,24 +58,35 @@ export class Model {
 
   /** Evaluate a function of n states, arrays state by state; several are computed at a time. */
   batch(name, n, inputs, frame = null) {
-    const f = this.find(name, frame), call = this.#call(f, n);
+    const f = this.find(name, frame), call = this.#call(f, count(n));
     this.#fill(f, call, inputs, n);
     this.wasm.js_batch(f.index, n, call.in, call.stride, call.out, this.work);
     return this.#results(f, call, n);
   }
 
-  /** A batch whose memory is kept: fill `inputs`, `run()`, read `outputs`; nothing is copied. */
+  /** A batch whose memory is kept until `free()`: fill `inputs`, `run()`, read `outputs`; nothing is copied. */
   prepareBatch(name, n, frame = null) {
-    const f = this.find(name, frame), call = this.#call(f, n, true);
+    const f = this.find(name, frame), call = this.#made(f, count(n));
     const view = (arrays, at) => Object.fromEntries(arrays.map((a, k) => [a.name, this.view(at[k], n * a.size)]));
     return {
       inputs: view(f.in.slice(1), call.inputs.slice(1)), outputs: view(f.out, call.outputs),
-      run: () => this.wasm.js_batch(f.index, n, call.in, call.stride, call.out, this.work),
+      run: () => {
+        if (!call.memory.length) throw new Error(`${name}: the batch was freed`);
+        this.wasm.js_batch(f.index, n, call.in, call.stride, call.out, this.work);
+      },
+      free: () => this.#free(call),
     };
   }
 
   /** A simulated model with its own state and parameters. */
   instance() { return new Instance(this); }
+
+  /** Address of new memory; throws where there is none left. */
+  allocate(bytes) {
+    const at = bytes <= MOST_BYTES ? this.wasm.js_allocate(bytes) : 0;
+    if (!at) throw new RangeError(`no memory for ${bytes} bytes`);
+    return at;
+  }
 
   /** A view of n doubles in memory. */
   view(at, n) { return new Float64Array(this.wasm.memory.buffer, at, n); }
@@ -86,20 +107,47 @@ export class Model {
     return { index, name: this.text(w.js_function_name(index)), frame, in: arrays(0), out: arrays(1) };
   }
 
-  #call(f, n, own = false) {
-    const key = `${f.index} ${n}`;
-    if (!own && this.buffers.has(key)) return this.buffers.get(key);
-    const allocate = (a) => this.wasm.js_allocate(8 * Math.max(1, n * a.size));
-    const inputs = f.in.map((a, k) => (k === 0 ? this.pre : allocate(a))), outputs = f.out.map(allocate);
+  /** Memory of a function's arrays for n states, kept until the function is called for another number of them. */
+  #call(f, n) {
+    const kept = this.buffers.get(f.index);
+    if (kept?.n === n) return kept;
+    if (kept) {
+      this.buffers.delete(f.index);
+      this.#free(kept);
+    }
+    const call = this.#made(f, n);
+    this.buffers.set(f.index, call);
+    return call;
+  }
+
+  #made(f, n) {
+    const call = { n, memory: [] };
+    const allocate = (bytes) => {
+      const at = this.allocate(bytes);
+      call.memory.push(at);
+      return at;
+    };
     const pointers = (values) => {
-      const at = this.wasm.js_allocate(4 * Math.max(1, values.length));
+      const at = allocate(4 * Math.max(1, values.length));
       new Uint32Array(this.wasm.memory.buffer, at, values.length).set(values);
       return at;
     };
-    const stride = f.in.map((a, k) => (k === 0 ? 0 : a.size));
-    const call = { inputs, outputs, in: pointers(inputs), out: pointers(outputs), stride: pointers(stride) };
-    if (!own) this.buffers.set(key, call);
+    const array = (a) => allocate(8 * Math.max(1, n * a.size));
+    try {
+      call.inputs = f.in.map((a, k) => (k === 0 ? this.pre : array(a)));
+      call.outputs = f.out.map(array);
+      call.in = pointers(call.inputs);
+      call.out = pointers(call.outputs);
+      call.stride = pointers(f.in.map((a, k) => (k === 0 ? 0 : a.size)));
+    } catch (error) {
+      this.#free(call); // What was there before the memory ran out.
+      throw error;
+    }
     return call;
+  }
+
+  #free(call) {
+    for (const at of call.memory.splice(0)) this.wasm.js_free(at);
   }
 
   #fill(f, call, inputs, n) {
@@ -125,6 +173,12 @@ export class Instance {
     if (!this.at) throw new Error("no memory for an instance");
     const size = (name) => model.sizes?.[name] ?? 0;
     this.sizes = [size("nq"), size("nv"), size("nu"), size("npar"), size("nv"), size("nc")];
+  }
+
+  /** Give the memory back; the instance is not to be used any more. */
+  free() {
+    if (this.at) this.model.wasm.js_free(this.at);
+    this.at = 0;
   }
 
   get t() { return this.model.wasm.js_time(this.at); }

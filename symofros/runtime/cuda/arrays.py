@@ -130,6 +130,9 @@ def placed(name: str, array: Any, dtype: npt.DTypeLike, driver: Driver) -> Place
         ShapeError: It is of another type or on another device.
     """
     wanted = np.dtype(dtype)
+    kind, ordinal = map(int, array.__dlpack_device__()) if hasattr(array, "__dlpack_device__") else (0, 0)
+    if kind == _CUDA and ordinal != driver.ordinal:
+        raise _unfit(name, f"an array on graphics processor {ordinal}; the kernels are on {driver.ordinal}", wanted)
     interface = getattr(array, "__cuda_array_interface__", None)
     if interface is not None:
         if np.dtype(interface["typestr"]) != wanted:
@@ -140,7 +143,7 @@ def placed(name: str, array: Any, dtype: npt.DTypeLike, driver: Driver) -> Place
         stated = interface.get("strides")
         strides = tuple(x // wanted.itemsize for x in stated) if stated is not None else _compact(shape)
         return Placed(interface["data"][0], shape, strides, array)
-    if hasattr(array, "__dlpack_device__") and int(array.__dlpack_device__()[0]) == _CUDA:
+    if kind == _CUDA:
         return _of_dlpack(name, array.__dlpack__(stream=_DEFAULT_STREAM), wanted)
     host = np.asarray(array, dtype=wanted)
     device = DeviceArray(driver, host.shape or (1,), wanted)

@@ -20,9 +20,14 @@ class Driver:
     Args:
         library: The driver's library.
 
+    Attributes:
+        ordinal: Number of the processor.
+
     Raises:
         SymofrosError: There is no such processor.
     """
+
+    ordinal = 0
 
     def __init__(self, library: ctypes.CDLL) -> None:
         self._library = library
@@ -30,7 +35,7 @@ class Driver:
         status = library.cuInit(0) or library.cuDeviceGetCount(ctypes.byref(count))
         if status or not count.value:
             raise _absent(f"the driver finds none (error {status})")
-        self._check("cuDeviceGet", ctypes.byref(self._device), 0)
+        self._check("cuDeviceGet", ctypes.byref(self._device), self.ordinal)
         self._check("cuDevicePrimaryCtxRetain", ctypes.byref(context), self._device)
         self._context = context
 

@@ -67,11 +67,11 @@ class OnDevice:
 class Exchanged:
     """An array of another library, by DLPack; NumPy's, said to be of the device."""
 
-    def __init__(self, array: np.ndarray, device_type: int = 2) -> None:
-        self.array, self.device_type = array, device_type
+    def __init__(self, array: np.ndarray, device_type: int = 2, ordinal: int = 0) -> None:
+        self.array, self.device_type, self.ordinal = array, device_type, ordinal
 
     def __dlpack_device__(self) -> tuple[int, int]:
-        return 2, 0
+        return 2, self.ordinal
 
     def __dlpack__(self, stream: int) -> object:
         assert stream == 1
@@ -155,6 +155,7 @@ def test_rollouts_hold_the_inputs_of_each_step(on_device: CudaModel, method: str
         (lambda g: g.evaluate("dynamics", q=np.zeros((3, 2)), v=np.zeros((3, 2)), w=1.0), "no input 'w'"),
         (lambda g: g.evaluate("dynamics", q=OnDevice(np.zeros((3, 2), "f4")), v=np.zeros((3, 2))), "float64"),
         (lambda g: g.evaluate("dynamics", q=Exchanged(np.zeros((3, 2)), 1), v=np.zeros(2)), "device 1 of DLPack"),
+        (lambda g: g.evaluate("dynamics", q=Exchanged(np.zeros((3, 2)), 2, 1), v=np.zeros(2)), "graphics processor 1;"),
         (lambda g: g.evaluate("dynamics", q=Exchanged(np.zeros((3, 2), "i8")), v=np.zeros(2)), "type 0 of DLPack"),
         (lambda g: g.evaluate("dynamics", q=np.zeros((3, 2)), v=np.zeros((3, 2)), t=np.zeros(4)), "one number of"),
         (lambda g: g.rollout(np.zeros((3, 2)), np.zeros((3, 2)), dt=0.1, steps=2, every=3), "no such rollout"),
