@@ -54,6 +54,8 @@ _COMPILED: dict[str, Callable[[Material, Path], Exported]] = {
     "wasm": write_wasm,
 }
 # Targets that give exact derivatives of their outputs, by inputs too.
+# Functions of reactions, in packages of C alone.
+REACTIONS = ("joint_wrenches", "prescribed_efforts", "section_forces")
 _DIFFERENTIATED = ("fmu2", "fmu3")
 _DESCRIBED: dict[str, Callable[[System, str | None, Path, str], Exported]] = {"urdf": write_urdf, "mjcf": write_mjcf}
 
@@ -216,8 +218,8 @@ def _reactions(system: System) -> tuple[str, ...]:
     """Names of the functions of reactions: efforts of drives and forces inside beams where there are any."""
     prescribed = any(body.joint is not None and body.joint.prescribed for body in system.bodies)
     inside = any(isinstance(body, Beam) and body.modes and body.stations for body in system.bodies)
-    further = {"prescribed_efforts": prescribed, "section_forces": inside}
-    return ("joint_wrenches", *(name for name, wanted in further.items() if wanted))
+    wanted = {"joint_wrenches": True, "prescribed_efforts": prescribed, "section_forces": inside}
+    return tuple(name for name in REACTIONS if wanted[name])
 
 
 def _refuse_variational(system: System, stepping: Stepping) -> None:

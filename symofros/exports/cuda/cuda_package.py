@@ -21,7 +21,7 @@ from symofros.runtime.calls.kernel import Precision
 from symofros.runtime.cuda.device_code import DeviceCode
 
 # What users of batches ask for; each kernel takes seconds to compile.
-_FUNCTIONS = (
+FUNCTIONS = (
     "dynamics",
     "forward_dynamics",
     "inverse_dynamics",
@@ -51,7 +51,7 @@ def write_cuda_package(system: System, name: str | None, frames: Sequence[str] |
     """
     made = Compilation(system)
     chosen = made.record.frame_names[-1:] if frames is None else tuple(frames)
-    functions = _FUNCTIONS if chosen else tuple(x for x in _FUNCTIONS if x not in FRAME_FUNCTIONS)
+    functions = FUNCTIONS if chosen else tuple(x for x in FUNCTIONS if x not in FRAME_FUNCTIONS)
     made = Compilation(system, Options(functions, chosen))
     program, record = made.program, made.record
     c_name = identifier(name or record.name)

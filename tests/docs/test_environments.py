@@ -1,0 +1,29 @@
+"""docs/environments.md says which functions each environment has, as the environments' own lists do."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+import pytest
+
+from symofros.base.functions import FUNCTIONS
+from tests.docs.pages import ROOT
+
+
+@pytest.fixture
+def made(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """What makes the page's tables."""
+    monkeypatch.syspath_prepend(ROOT / "docs")
+    return import_module("site_extensions.environments")
+
+
+def test_the_page_is_what_the_lists_say(made: Any) -> None:
+    page = made.PAGE.read_text(encoding="utf-8")
+    assert made.rendered(page) == page, "run: python -m docs.site_extensions.environments"
+
+
+def test_environments_have_functions_of_the_table_and_tests_that_are_there(made: Any) -> None:
+    for environment in made.environments():
+        assert environment.functions and environment.functions <= FUNCTIONS.keys(), environment.name
+        assert all((ROOT / test).exists() for test in environment.tests), environment.name
