@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from symofros.description.system import System
+from symofros.studio.editor.document.beam_figures import beam_figures
 from symofros.studio.editor.document.document import EditedDocument, refuse_text
 from symofros.studio.editor.document.expressions import check_field
 from symofros.studio.editor.document.parts import insertion
@@ -192,6 +193,12 @@ class Session:
             for path, typed in fields_of(body.get("fields"))
         ]
         return lambda: {"checks": [check() for check in checks]}
+
+    def beam_figures(self, body: Json) -> Json:
+        """Section and frequencies of a beam under edit, at the document's parameters."""
+        parameters = self.document.analysis.parameters
+        known = {item["name"]: item["number"] for item in parameters if item["number"] is not None}
+        return beam_figures(body.get("beam"), known)
 
     def job_request(self, body: Json) -> tuple[str, Json]:
         """The kind of a job, and what its worker needs.

@@ -82,6 +82,7 @@ class Editor:
             Route("/api/layout", self.layout, methods=["POST"]),
             Route("/api/expression", self.expression, methods=["POST"]),
             Route("/api/shapes", self.shapes, methods=["POST"]),
+            Route("/api/beam", self.beam, methods=["POST"]),
             Route("/api/files", self.files),
             Route("/api/parts", self.parts),
             Route("/api/parts", self.keep_part, methods=["POST"]),
@@ -144,6 +145,10 @@ class Editor:
     async def shapes(self, request: Request) -> Response:
         """Shape functions of a beam."""
         return JSONResponse(await run_sync(curves, await body_of(request)))
+
+    async def beam(self, request: Request) -> Response:
+        """Section and natural frequencies of a beam."""
+        return JSONResponse(await self.exclusively(partial(self.session.beam_figures, await body_of(request))))
 
     async def files(self, _: Request) -> Response:
         """What can be opened."""

@@ -51,6 +51,25 @@ def test_beams_become_rigid_and_the_engines_agree(
     assert len(changed) == 2
 
 
+def test_a_beam_is_stated_by_material_and_shape_and_shows_its_frequencies(
+    serve: Callable[..., Server], page: Page, picture: Callable[[str], None]
+) -> None:
+    server = serve("pendulum.yaml", source=ROBOT.with_name("flexible_pendulum.yaml"))
+    steps.open_editor(page, server.url)
+    steps.open_window(page, "bodies/rod")
+    figures = steps.window(page).get_by_role("status", name="What the section brings")
+    expect(figures).to_contain_text("Hz")
+    steps.window(page).get_by_label("stated by").select_option("shape")
+    expect(figures).to_contain_text("rhoA 0.27 kg/m")
+    steps.fill(page, "Rho", "5400")
+    expect(figures).to_contain_text("rhoA 0.54 kg/m")
+    expect(figures).to_contain_text("bending along y 11.63")
+    figures.scroll_into_view_if_needed()
+    picture("beam-section")
+    steps.accept(page)
+    steps.problems(page, 0)
+
+
 def test_a_job_is_cancelled(serve: Callable[..., Server], page: Page) -> None:
     server = serve("robot.yaml", source=ROBOT)
     steps.open_editor(page, server.url)

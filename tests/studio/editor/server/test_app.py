@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from pathlib import Path
 
+import numpy as np
 import pytest
 from jsonschema import Draft202012Validator
 from starlette.testclient import TestClient
@@ -187,6 +188,31 @@ def test_fields_of_a_window_are_checked_in_one_request(client: TestClient) -> No
     fields = [{"path": mass, "text": text} for text in ("2*L", "2*K")]
     checks = client.post("/api/expression", json={"fields": fields}).json()["checks"]
     assert [check["ok"] for check in checks] == [True, False]
+
+
+def test_frequencies_of_a_beam_follow_from_its_section(client: TestClient) -> None:
+    section = {"shape": "rectangle", "E": 70e9, "G": 26e9, "rho": 2700, "y": 0.02, "z": "0.005*L"}
+    beam = {"length": "2*L", "section": section, "bend_y": 2, "twist": 1}
+    figures = client.post("/api/beam", json={"beam": beam}).json()
+    # L = 1: a strip 2 m long, 20 mm along y, 5 mm along z.
+    assert figures["section"]["rhoA"] == pytest.approx(0.27)
+    assert figures["section"]["EI_z"] == pytest.approx(70e9 * 0.005 * 0.02**3 / 12)
+    first = 1.8751041**2 / (2 * np.pi * 4) * np.sqrt(70e9 * 0.02**2 / 12 / 2700)
+    assert figures["frequencies"]["bend_y"][0] == pytest.approx(first)
+    assert figures["frequencies"]["bend_z"][0] == pytest.approx(first / 4)
+    twist = np.sqrt(figures["section"]["GJ"] / figures["section"]["rhoJ"]) / 8
+    assert figures["frequencies"]["twist"] == pytest.approx([twist, 3 * twist, 5 * twist])
+
+
+def test_a_beam_that_tapers_has_no_frequencies_of_a_uniform_one(client: TestClient) -> None:
+    beam = {"length": 1, "rhoA": "1 - x/2", "EI_z": 10, "bend_y": 1}
+    figures = client.post("/api/beam", json={"beam": beam}).json()
+    assert figures["frequencies"] == {} and figures["section"]["EI_z"] == 10 and "rhoA" not in figures["section"]
+
+
+@pytest.mark.parametrize("beam", [None, {}, {"length": 1, "rhoA": -1, "E": 2}, {"length": "1 +", "rhoA": 1}])
+def test_what_is_no_beam_has_no_figures(client: TestClient, beam: object) -> None:
+    assert client.post("/api/beam", json={"beam": beam}).status_code == 422
 
 
 @pytest.mark.parametrize("fields", [None, {}, ["L"], [{"path": "L", "text": "1"}], [{"text": "1"}] * 1001])

@@ -38,6 +38,7 @@ ADDRESSES = (
     ("POST", "layout"),
     ("POST", "expression"),
     ("POST", "shapes"),
+    ("POST", "beam"),
     ("POST", "import"),
     ("POST", "parts"),
     ("POST", "parts/insert"),

@@ -228,6 +228,12 @@ export interface Curves {
   curves: { values: number[]; length: boolean }[];
 }
 
+/** What a beam's section brings, and the first natural frequencies of each direction [Hz]. */
+export interface BeamFigures {
+  section: Record<string, number>;
+  frequencies: Record<string, number[]>;
+}
+
 /** What moves the 3-D view: one degree of freedom. */
 export interface Coordinate {
   name: string;

@@ -8,6 +8,7 @@ import { RecordField } from "../forms/Record";
 import { definition, label } from "../forms/schema";
 import { mapAt } from "../model/paths";
 import { Curve } from "../panels/Curve";
+import { BeamSection } from "./BeamSection";
 
 /** Shape functions of one direction, drawn over the length. */
 function Shapes({ beam, direction }: { beam: JsonMap; direction: string }) {
@@ -72,7 +73,7 @@ export function BeamForm({ value, onChange, path }: Props) {
         </div>
       </div>
       <h3>Section</h3>
-      <RecordField {...props} only={groups.section} />
+      <BeamSection beam={value} onChange={onChange} path={path} properties={groups.section} others={groups.formulas} />
       <h3>Model</h3>
       <RecordField {...props} only={groups.model} />
     </>

@@ -1,0 +1,74 @@
+"""What a beam's section brings, and the natural frequencies that follow from it, for the beam's window."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import isfinite, pi, sqrt
+from typing import Any
+
+from pydantic import ValidationError
+
+from symofros.description.values import Value
+from symofros.description.yaml.schema_beam import BeamEntry
+from symofros.errors import DescriptionError
+from symofros.expr.expression import Expression, evaluate
+from symofros.studio.editor.editing.data_edits import refusal
+
+Json = dict[str, Any]
+
+# Roots of 1 + cos(b) cosh(b) = 0: bending of a uniform cantilever (Blevins, Formulas for Natural Frequency, table 8-1).
+_BENDING = (1.875104068711961, 4.694091132974174, 7.854757438237612)
+# Of twist and stretch: odd quarters of a wave.
+_QUARTERS = (pi / 2, 3 * pi / 2, 5 * pi / 2)
+_SHOWN = ("rhoA", "EI_y", "EI_z", "GJ", "EA", "rhoJ")
+# Direction -> stiffness, inertia per length, roots, power of root/length in the angular frequency.
+_MOTIONS = {
+    "bend_y": ("EI_z", "rhoA", _BENDING, 2),
+    "bend_z": ("EI_y", "rhoA", _BENDING, 2),
+    "twist": ("GJ", "rhoJ", _QUARTERS, 1),
+    "stretch": ("EA", "rhoA", _QUARTERS, 1),
+}
+
+
+def beam_figures(entry: Any, known: Mapping[str, float]) -> Json:
+    """Figures of a beam at the parameters' defaults.
+
+    Args:
+        entry: Beam as the file states it.
+        known: Number of each parameter.
+
+    Returns:
+        `section`: property -> number, without those that vary along the beam or have none; `frequencies`: direction ->
+        the first three of the uniform slender beam, clamped at its root and free at its tip [Hz]. Rotary inertia,
+        shear, gravity and loads are left out.
+
+    Raises:
+        EditError: The entry is no beam yet.
+    """
+    try:
+        stated = BeamEntry.model_validate(entry).stated()
+    except (ValidationError, DescriptionError) as error:
+        rule = "figures are of a beam that can be read"
+        raise refusal("the beam is not complete", f"{str(error)[:100]}", rule, "fill in what is marked") from None
+    numbers = {name: _number(stated.get(name), known) for name in (*_SHOWN, "length")}
+    figures = {name: number for name, number in numbers.items() if number is not None}
+    if figures.get("rhoJ") == 0.0:  # Not stated: twist without inertia of its own.
+        del figures["rhoJ"]
+    length = figures.pop("length", 0.0)
+    frequencies = {
+        direction: [(root / length) ** power * sqrt(figures[stiffness] / figures[inertia]) / (2 * pi) for root in roots]
+        for direction, (stiffness, inertia, roots, power) in _MOTIONS.items()
+        if length > 0.0 and figures.get(stiffness, 0.0) > 0.0 and figures.get(inertia, 0.0) > 0.0
+    }
+    return {"section": figures, "frequencies": frequencies}
+
+
+def _number(value: Value | None, known: Mapping[str, float]) -> float | None:
+    """The number of a property; None where it has none, or varies along the beam."""
+    if value is None:
+        return None
+    try:
+        number = evaluate(value if isinstance(value, Expression) else float(value), known)
+    except (KeyError, ArithmeticError):
+        return None
+    return number if isfinite(number) else None
