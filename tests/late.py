@@ -20,6 +20,8 @@ class LateModule:
         self._name = name
 
     def __getattr__(self, attribute: str) -> Any:
+        if attribute.startswith("__") or attribute == "_mock_name":  # Pytest asks for these of every name in a file.
+            raise AttributeError(attribute)
         return getattr(import_module(self._name), attribute)
 
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy import stats
 
 from symofros.blocks import Noise
 from symofros.blocks.generic.noise import stream
 from tests.blocks.support import STEP, refused, run
+from tests.late import late
+
+stats = late("scipy.stats")
 
 M1, M2 = 2**32 - 209, 2**32 - 22853
 

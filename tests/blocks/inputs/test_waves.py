@@ -6,10 +6,12 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from scipy import signal
 
 from symofros.blocks import Chirp, Pulse, Ramp, Sine, Step
 from tests.blocks.support import refused, run
+from tests.late import late
+
+signal = late("scipy.signal")
 
 T = 0.01 * np.arange(201)
 
