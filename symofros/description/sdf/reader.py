@@ -298,7 +298,7 @@ class _Importer:
     def body(self, name: str, joint: Joint) -> RigidBody:
         """A link with its joint."""
         element, owner = self.links[name], f"link '{name}'"
-        inertia = self.values.mass_properties(element, owner)
+        inertia = self.values.mass_properties(element, name)
         loads: tuple[Load, ...] = ()
         if not self.values.truth(self.values.text(element, "gravity", "true"), element, owner):
             self.values.remarks.add("gravity of links is switched off by a load", "link", name)

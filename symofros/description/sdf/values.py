@@ -104,11 +104,11 @@ class SdfValues(Values):
         x, y, z = np.eye(3)
         return Pose(np.array(numbers[:3]), about(z, yaw) @ about(y, pitch) @ about(x, roll))
 
-    def mass_properties(self, link: Element, owner: str) -> Inertia:
+    def mass_properties(self, link: Element, name: str) -> Inertia:
         """Inertia of a link; what is not stated has SDFormat's defaults, 1 kg and a unit matrix."""
-        element = link.first("inertial")
+        element, owner = link.first("inertial"), f"link '{name}'"
         if element is None:
-            self.remarks.add("links without <inertial> have SDFormat's 1 kg and unit inertia", "link", owner)
+            self.remarks.add("links without <inertial> have SDFormat's 1 kg and unit inertia", "link", name)
             return Inertia(1.0, (0.0, 0.0, 0.0), (1.0, 1.0, 1.0, 0.0, 0.0, 0.0))
         if self.truth(element.attributes.get("auto", "false"), element, owner):
             self.fault(
@@ -119,7 +119,7 @@ class SdfValues(Values):
                 "run `gz sdf --print --expand-auto-inertials` on the file",
             )
         if element.first("fluid_added_mass"):
-            self.remarks.add("added mass of fluids ignored", "link", owner)
+            self.remarks.add("added mass of fluids ignored", "link", name)
         matrix = element.first("inertia") or Element("inertia", {}, element.line)
         moments = tuple(self.one(matrix, tag, owner, default) for tag, default in _MOMENTS)
         pose = self.pose(element.first("pose"), owner)
