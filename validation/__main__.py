@@ -73,6 +73,9 @@ class Commands(TyperGroup):
         return known or (campaign() if cmd_name == "campaign" else studies().get(cmd_name))
 
 
+if __name__ == "__main__" and not {"--help", "--json"} & set(sys.argv):
+    # Engines take seconds to load on a busy machine: something is said before.
+    print("loading the engines", file=sys.stderr, flush=True)
 app = typer.Typer(cls=Commands, add_completion=False, no_args_is_help=False, pretty_exceptions_enable=False)
 imported("validation.reporting.command").add_command(app, imported("validation.cross_check.report").TOPIC)
 
