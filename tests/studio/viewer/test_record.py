@@ -78,7 +78,7 @@ def test_a_page_holds_all_states_and_asks_for_nothing_else(tmp_path: Path) -> No
     [
         ("m.avi", {}, r"can't write 'm.avi'\n  found:  .avi\n  rule:   one of .html, .mp4, .gif, .png"),
         ("m.gif", {"speed": 0.0}, r"no such speed\n  found:  0.0\n  rule:   speed is a finite number above 0"),
-        ("m.gif", {"rate": float("nan")}, "no such rate"),
+        ("m.gif", {"rate": float("nan")}, "rate is not a number"),
         ("m.gif", {"exaggeration": float("inf")}, "exaggeration is a finite number\n"),
         ("m.mp4", {"size": (161, 120)}, r"no such size\n  found:  \(161, 120\)\n  rule:   even numbers"),
         ("m.gif", {"speed": 1e-6}, r"too long\n  found:  \d+ pictures\n  rule:   20000 at most"),
