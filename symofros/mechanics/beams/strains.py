@@ -32,9 +32,9 @@ AXES: dict[Direction, tuple[int, int]] = {
 }
 # Number of strains that turn sections.
 TURNING = 3
-# The fewest sections an interval; one more than functions integrates small turns exactly. There are two more of four
+# The fewest sections an interval; one more than functions integrates small turns exactly. There are two more of three
 # functions on, which leave less out than a section is worth, and of the user's, which may be of any degree.
-_FEWEST_SECTIONS, _FEWEST_SECTIONS_OF_USER, _FEW_FUNCTIONS = 3, 4, 3
+_FEWEST_SECTIONS, _FEWEST_SECTIONS_OF_USER, _FEW_FUNCTIONS = 3, 4, 2
 # Sections an interval where knots divide the rod: the cubic between them is smooth.
 _SECTIONS_A_SPAN = 4
 # Largest angle [rad] by which the strains of one direction turn the tip in random states; largest stretch and shear.

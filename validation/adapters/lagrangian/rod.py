@@ -112,7 +112,7 @@ def sections_chosen(counts: Sequence[int], family: str, divided: bool) -> int:
         return A_SPAN
     if family == "user":
         return max(4, most + 2)
-    return max(3, most + (1 if most <= 3 else 2))
+    return max(3, most + (1 if most < 3 else 2))
 
 
 def rotation(rod: ExactRod, x: float, q: SX) -> SX:
