@@ -31,8 +31,8 @@ GENERAL = (
     "flexible_pendulum",
     "soft_pendulum",
 )
-BEAMS = ("spinning_beam", "soft_pendulum", "flexible_slider_crank", "planar_robot", "double_pendulum")
-RODS = ("soft_pendulum", "spinning_beam")
+BEAMS = ("spinning_beam", "soft_pendulum", "beam_zoo", "flexible_slider_crank", "planar_robot", "double_pendulum")
+RODS = ("soft_pendulum", "beam_zoo", "spinning_beam")
 READ = {"urdf": ("sampler", "ur5"), "mjcf": ("creature",)}
 # Compared compiled, free motion included: what writes C shows there only.
 WRITTEN = ("double_pendulum", "heavy_top", "friction_arm", "rolling_disc", "four_bar", "spinning_beam")

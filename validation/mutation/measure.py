@@ -59,7 +59,7 @@ def as_data(study: Study) -> dict[str, Any]:
     """What is known of each fault, as plain data; faults that no judge was asked about are left out."""
     rows = []
     for fault in study.faults:
-        answers = {stage: study.store.get(fault.id, stage) for stage in (CHECK, TESTS, OUTPUTS)}
+        answers = {stage: study.store.get(fault.id, stage) for stage in (CHECK, OUTPUTS)} | {TESTS: study.tested(fault)}
         check = answers[CHECK]
         if any(answer is not None for answer in answers.values()) or fault.id in study.argued:
             rows.append(

@@ -21,6 +21,18 @@ the tests were not asked yet, or their time was over before all had run. The tes
 what they do not see; of a sample of the faults, {} that change a result, `check` is asked first, and its score is of
 these. **tests**: seen by the tests, `check` blind or not asked. {} that the C compiler refuses are left out. Of the
 tests alone: {:.1%} of the {} of the sample that they were asked about."""
+# What `check` is for, in parts: its score of each. The first folder that fits counts.
+_PARTS = {
+    "mechanics, formulas, generator": (
+        "symofros/mechanics/",
+        "symofros/expr/",
+        "symofros/generator/",
+        "symofros/native/model/",
+    ),
+    "stepping": ("symofros/native/", "symofros/simulation/stepping/"),
+    "analyses, inputs and results of motions": ("symofros/simulation/",),
+    "descriptions and files": ("symofros/description/",),
+}
 _HEAD = "planted | check | tests | neither | no result changed | does not end | open"
 
 
@@ -40,6 +52,18 @@ def _table(title: str, rows: Sequence[Data], group: Callable[[Data], str], label
         planted, check, tests, survived, *rest = _counts([row for row in rows if group(row) == label])
         lines.append((label, *map(str, (planted, check, tests, verdict(survived, not survived), *rest))))
     return Table.of(f"{title} | {_HEAD}", lines)
+
+
+def _by_part(rows: Sequence[Data]) -> Table:
+    """Which share of the faults that change a result `check` alone sees, by part of the source."""
+    sample = [row for row in rows if row["sampled"] and row["fate"] in (CAUGHT, SURVIVED)]
+    lines, left = [], sample
+    for part, folders in _PARTS.items():
+        of_part = [row for row in left if row["module"].startswith(folders)]
+        left = [row for row in left if row not in of_part]
+        seen = sum(bool(row["seen_by_check"]) for row in of_part)
+        lines.append((part, str(len(of_part)), str(seen), f"{seen / max(1, len(of_part)):.0%}"))
+    return Table.of("part of the source | change a result | seen by check alone | share", lines)
 
 
 def compose(data: Data) -> Report:
@@ -62,6 +86,7 @@ def compose(data: Data) -> Report:
         bool(data["ok"]),
         (text,),
         (
+            Section("What check alone sees", (_by_part(rows),)),
             Section("By folder", (_table("folder", rows, lambda row: str(row["module"].rpartition("/")[0])),)),
             Section("By kind of fault", (_table("kind of fault", rows, lambda row: str(row["kind"]), KINDS),)),
             Section("By module", (Section("All modules", (_table("module", rows, lambda row: str(row["module"])),)),)),

@@ -16,15 +16,17 @@ from validation.mutation.sampling import drawn
 from validation.mutation.store import Store
 from validation.mutation.tests_judge import chosen
 
-CHECK, OUTPUTS, TESTS, SOUND = "check", "outputs", "tests", "sound"
+CHECK, OUTPUTS, TESTS, LONGER, SOUND = "check", "outputs", "tests", "tests with more time", "sound"
 # Fates of a fault. "stillborn": the C compiler refuses it, so that nobody could use it; "halted": check does not end,
 # or its process crashes, which is seen by whoever runs it, but is no verdict; "argued": looked at by a person.
 STILLBORN, CAUGHT, UNCHANGED, SURVIVED, OPEN = "stillborn", "caught", "no result changed", "survived", "open"
 HALTED, ARGUED = "halted", "argued"
 # Processor times [s].
 CHECK_LIMIT, OUTPUTS_LIMIT, TESTS_LIMIT, SOUND_LIMIT = 90.0, 120.0, 90.0, 600.0
+LONGER_LIMIT = 300.0
 SAMPLE = 4  # One fault in so many goes to `check` first.
 TESTS_BUDGET = 15.0  # Processor time after which no further test of a fault begins [s].
+LONGER_BUDGET = 120.0  # The same where nobody has seen a fault, and tests were left [s].
 _ARGUED = Path(__file__).with_name("argued.json")
 _CHECK_JUDGE, _TESTS_JUDGE = "validation.mutation.check_judge", "validation.mutation.tests_judge"
 _OUTPUTS = "validation.mutation.outputs"
@@ -68,6 +70,7 @@ class Study:
         Its tests are asked first, which is cheap; what they do not see goes to `check`. Of one fault in SAMPLE it is
         the other way round, so that these give the score of `check` alone, and at the end the tests are asked about
         what it sees of them, for a score of their own. What neither sees is compared with the sound package's outputs.
+        Tests whose time was over are given more in the end, those of faults that are known to change a result first.
 
         Args:
             seconds: Time after which no further fault is begun [s].
@@ -88,6 +91,11 @@ class Study:
             check = self.store.get(fault.id, CHECK)
             if self.sampled(fault) and seen_by_check(check) and not stillborn(fault, check):
                 self._asked(fault, TESTS, self._test)
+        still_open = [fault for fault in self.faults if self.fate(fault) == OPEN]
+        for fault in sorted(still_open, key=lambda one: unchanged(self.store.get(one.id, OUTPUTS))):
+            if time.monotonic() > end:
+                return
+            self._asked(fault, LONGER, lambda one: self._test(one, LONGER_BUDGET, LONGER_LIMIT))
 
     def sampled(self, fault: SourceFault) -> bool:
         """Whether `check` is asked about a fault before its tests are."""
@@ -109,7 +117,7 @@ class Study:
             return answer
         with self.overlay.planted(fault):
             answer = ask(fault)
-        if stage == TESTS and seen_by_tests(answer) and self._fails_without(answer):
+        if stage in (TESTS, LONGER) and seen_by_tests(answer) and self._fails_without(answer):
             return self._asked(fault, stage, ask)
         self.store.put(fault.id, stage, answer, fault.module)
         self.report(f"{stage}: {fault.module}")
@@ -148,14 +156,18 @@ class Study:
     def _compare(self, fault: SourceFault) -> Answer:
         return self.overlay.ask(_OUTPUTS, "compare", OUTPUTS_LIMIT, path=str(self.folder / "outputs.npz"))
 
-    def _test(self, fault: SourceFault) -> Answer:
+    def _test(self, fault: SourceFault, budget: float = TESTS_BUDGET, limit: float = TESTS_LIMIT) -> Answer:
         files = chosen(self.overlay.tree, fault.module)
-        asked = {"files": files, "deselected": sorted(self.failing), "budget": TESTS_BUDGET}
-        return self.overlay.ask(_TESTS_JUDGE, "judge", TESTS_LIMIT, **asked)
+        asked = {"files": files, "deselected": sorted(self.failing), "budget": budget}
+        return self.overlay.ask(_TESTS_JUDGE, "judge", limit, **asked)
+
+    def tested(self, fault: SourceFault) -> Answer | None:
+        """The last answer of the tests."""
+        return self.store.get(fault.id, LONGER) or self.store.get(fault.id, TESTS)
 
     def fate(self, fault: SourceFault) -> str:
         """What became of a fault, as far as it is known."""
-        check, tests = self.store.get(fault.id, CHECK), self.store.get(fault.id, TESTS)
+        check, tests = self.store.get(fault.id, CHECK), self.tested(fault)
         outputs = self.store.get(fault.id, OUTPUTS)
         if stillborn(fault, check) or stillborn(fault, outputs):
             return STILLBORN

@@ -1,7 +1,7 @@
 """The tests as a judge of faults: those of the module, the likeliest first, until one fails.
 
-Which tests belong to a module is read off the tests: the file that mirrors it, files that import it, files of the
-folder that mirrors its own.
+Which tests belong to a module is read off the tests: the file that mirrors it, files whose path has the words of its
+name, files that import it, files of the folder that mirrors its own.
 """
 
 from __future__ import annotations
@@ -22,6 +22,11 @@ FOLDERS = (
 LIMIT = 300  # Of one test [s]: one that takes longer with a fault than this hangs.
 HUNG = 77
 MOST = 8  # Files of tests a module: all of them are imported before the first one runs.
+_BEAM_LIMITS = (
+    "tests/simulation/test_beam_limit.py",
+    "tests/simulation/test_stated_error.py",
+    "tests/simulation/analysis/test_beam_theory.py",
+)
 # The tests of C lie with what calls it: folders of tests of a folder, files of tests of a file.
 _MIRRORS = {
     "symofros/native/model": (
@@ -34,6 +39,10 @@ _MIRRORS = {
     # What packages alone call.
     "symofros/native/stepping/instance.c": ("tests/exports/c/test_c_package.py", "tests/exports/fmi/test_fmu.py"),
     "symofros/native/stepping/linearize.c": ("tests/exports/fmi/test_fmu.py",),
+    # What judges the bending of beams, by tables of the generator.
+    "symofros/native/stepping/beams.c": _BEAM_LIMITS,
+    "symofros/native/stepping/axial_loads.c": _BEAM_LIMITS,
+    "symofros/generator/beams.py": (*_BEAM_LIMITS, "tests/mechanics/beams/test_rod_services.py"),
     "symofros/native/diagrams": ("tests/diagrams/run", "tests/blocks/generic", "tests/diagrams/program"),
 }
 # What watches the whole of the mechanics, of motions.
@@ -122,6 +131,11 @@ def test_files(root: Path) -> list[str]:
     return sorted(path.relative_to(root).as_posix() for path in files)
 
 
+def _words(path: Path) -> frozenset[str]:
+    """Words of a path's folders and name, in the singular."""
+    return frozenset(word.removesuffix("s") for part in path.with_suffix("").parts for word in part.split("_"))
+
+
 def chosen(root: Path, module: str) -> list[str]:
     """The tests of a module, the likeliest to see a fault first.
 
@@ -134,19 +148,22 @@ def chosen(root: Path, module: str) -> list[str]:
     mirror = (folder_of_tests if (root / folder_of_tests).is_dir() else folder_of_tests.parent).as_posix()
     mirrors = _MIRRORS.get(module, _MIRRORS.get(path.parent.as_posix(), (mirror,)))
     general = _GENERAL["/".join(path.parts[:2])]
+    name = _words(Path(path.name.partition(".")[0]))
     ranked = []
     for file in test_files(root):
-        folder = file.rpartition("/")[0]
+        folder, beside = file.rpartition("/")[0], file.split("/")[1] == mirrors[0].split("/")[1]
         if file in (f"{mirror}/test_{path.stem}.py", f"{mirror}/test_{path.parent.name}.py", *mirrors):
             rank = 0
+        elif beside and name <= _words(Path(file)):
+            rank = 1
         elif module.removesuffix(".py") in _imports(root / file):
-            rank = 1 if file.split("/")[1] == mirrors[0].split("/")[1] else 7
+            rank = 2 if beside else 9
         elif folder in mirrors:
-            rank = 2 + mirrors.index(folder)
+            rank = 3 if name & _words(Path(file).relative_to(folder)) else 4 + mirrors.index(folder)
         elif file in general:
-            rank = 8
+            rank = 10
         elif any(file.startswith(f"{place}/") for place in mirrors):
-            rank = 9
+            rank = 11
         else:
             continue
         ranked.append((rank, (root / file).stat().st_size, file))

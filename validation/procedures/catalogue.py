@@ -12,7 +12,7 @@ import symofros as sf
 from validation.comparison.errors import Comparison
 from validation.mechanics.assembly import Assembly
 from validation.mechanics.geometry import Array
-from validation.procedures import ENGINE, analyses, batches, diagrams, forces, identities, runs
+from validation.procedures import ENGINE, analyses, batches, diagrams, forces, identities, reactions, runs
 from validation.procedures.scene import Cell, Manifold, Scene
 
 Procedure = Callable[[Scene], Iterator[Cell]]
@@ -91,16 +91,29 @@ PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
         lambda scene: analyses.closed(scene, "q1"),
         lambda scene: analyses.at_rest(scene, scene.q),
         lambda scene: analyses.driven(scene, ("q1", "q2")),
+        reactions.of_constraints,
     ),
     "sleigh": (runs.implicit_steps,),
-    "rolling_disc": (runs.fixed_steps, runs.chosen_steps, lambda scene: analyses.closed(scene, scene.model.names.v[3])),
+    "rolling_disc": (
+        runs.fixed_steps,
+        runs.chosen_steps,
+        reactions.of_constraints,
+        lambda scene: analyses.closed(scene, scene.model.names.v[3]),
+    ),
     "puma560": (
         lambda scene: analyses.reached(scene, scene.model.names.frames[-1]),
         lambda scene: analyses.traced(scene, scene.model.names.frames[-1]),
     ),
-    "pendulum": (forces.formulas, forces.applied, forces.rods, _oscillations, lambda _: diagrams.switched()),
+    "pendulum": (
+        forces.formulas,
+        forces.applied,
+        forces.rods,
+        reactions.of_drives,
+        _oscillations,
+        lambda _: diagrams.switched(),
+    ),
     "cart_pole": (lambda scene: diagrams.looped(scene.system),),
-    "stewart": (lambda scene: analyses.driven(scene, scene.model.names.u),),
+    "stewart": (lambda scene: analyses.driven(scene, scene.model.names.u), reactions.of_constraints),
     "flexible_pendulum": (
         runs.implicit_steps,
         lambda scene: analyses.at_rest(scene, scene.model.neutral() + 0.1),

@@ -16,7 +16,7 @@ from validation.mutation.measure import as_data
 from validation.mutation.overlay import Overlay
 from validation.mutation.report import compose
 from validation.mutation.store import Store
-from validation.mutation.study import CHECK, OUTPUTS, TESTS, Study
+from validation.mutation.study import CHECK, LONGER_BUDGET, OUTPUTS, TESTS, TESTS_BUDGET, Study
 from validation.mutation.tests_judge import chosen
 
 ROOT = Path(__file__).parents[3]
@@ -164,7 +164,41 @@ def test_each_fault_is_settled_by_the_cheaper_judge_but_for_a_sample(
     [
         ("symofros/mechanics/beams/fields.py", "tests/mechanics/beams/test_fields.py"),
         ("symofros/native/stepping/events.c", "tests/simulation/stepping/"),
+        # No file of the same name: one with the words of it, which eight smaller files stood before.
+        ("symofros/mechanics/dynamics/applied/beam_loads.py", "tests/mechanics/beams/test_loads.py"),
+        ("symofros/mechanics/beams/rod_inertia.py", "tests/mechanics/beams/test_rod"),
+        ("symofros/native/stepping/axial_loads.c", "tests/simulation/test_"),
     ],
 )
 def test_the_tests_of_a_module_begin_with_its_mirror(module: str, first: str) -> None:
     assert chosen(ROOT, module)[0].startswith(first)
+
+
+def test_tests_that_ran_out_of_time_are_given_more_once_all_others_are_settled(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "m.py").write_text("a\n")
+    faults = tuple(SourceFault("m.py", line, SIGN, 0, "a", "b") for line in range(3))
+    asked: list[tuple[int, float]] = []
+
+    def test(_: Study, fault: SourceFault, budget: float = TESTS_BUDGET, limit: float = 0.0) -> Any:
+        asked.append((fault.line, budget))
+        late = budget > TESTS_BUDGET
+        answer = {"status": "failed", "test": "t"} if late and fault.line == 1 else {"status": "passed", "whole": late}
+        return {"fate": "answered", "answer": answer, "seconds": 1.0}
+
+    def answers(of: Any) -> Any:
+        return lambda _, fault: {"fate": "answered", "answer": {"status": of(fault)}, "seconds": 1.0}
+
+    monkeypatch.setattr(Study, "_check", answers(lambda _: "passed"))
+    monkeypatch.setattr(Study, "_test", test)
+    monkeypatch.setattr(Study, "_compare", answers(lambda fault: "same bits" if fault.line == 0 else "changed"))
+    monkeypatch.setattr(Study, "_require_sound", lambda _: None)
+    monkeypatch.setattr(Study, "_fails_without", lambda _, __: False)
+    untouched = type("Untouched", (), {"planted": lambda _, __: nullcontext()})()
+    study = Study(faults, Store(tmp_path / "answers.jsonl", tmp_path), untouched, tmp_path, lambda _: None)
+    study.run(60.0)
+    assert asked[3:] == [(1, LONGER_BUDGET), (2, LONGER_BUDGET), (0, LONGER_BUDGET)]
+    assert [study.fate(fault) for fault in faults] == ["no result changed", "caught", "survived"]
+    study.run(60.0)
+    assert len(asked) == 6  # What is still to be seen after that is a survivor.

@@ -13,7 +13,7 @@ from reference_models import MODELS
 from symofros.base.functions import FUNCTIONS
 from symofros.base.model_function import cotangents
 from validation.mechanics.assembly import assemble
-from validation.procedures import analyses, batches, catalogue, forces, identities, runs, steps
+from validation.procedures import analyses, batches, catalogue, forces, identities, reactions, runs, steps
 from validation.procedures.catalogue import PROCEDURES, first_scene, judge_procedures
 from validation.procedures.scene import Cell, Scene
 
@@ -120,3 +120,14 @@ def test_what_a_procedure_raises_is_a_failed_row(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(catalogue, "PROCEDURES", {"heavy_top": (refused,)})
     rows = list(judge_procedures("heavy_top", MODELS["heavy_top"], assemble(MODELS["heavy_top"])))
     assert [row.status for row in rows] == ["agree", "failed"]
+
+
+def test_reactions_that_are_wrong_by_a_millionth_show(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing in check asked for wrenches of constraints or efforts of drives."""
+    four_bar = scene("four_bar")
+    assert not wrong(reactions.of_constraints(four_bar)) and not wrong(reactions.of_drives(four_bar))
+    for name in ("closure_wrench", "prescribed_efforts"):
+        right = getattr(sf.Model, name)
+        monkeypatch.setattr(sf.Model, name, lambda *given, right=right, **more: (1 + 1e-6) * right(*given, **more))
+    assert wrong(reactions.of_constraints(four_bar)) == ["wrenches of constraints"]
+    assert wrong(reactions.of_drives(four_bar)) == ["power of drives"]

@@ -17,6 +17,8 @@ from validation.mechanics.carried import Carried
 from validation.mechanics.geometry import Array, matrix_quaternion
 
 NO_TURN = (1.0, 0.0, 0.0, 0.0)
+# Coordinates of a node: a place and Euler parameters.
+COORDINATES = 7
 
 
 @dataclass(frozen=True)
@@ -128,17 +130,26 @@ class Solids:
         return self._outputs(nodal, rates, sites, kind.Acceleration, kind.AngularAcceleration)
 
     def jacobian(self, nodal: Nodal, sites: Sequence[FrameSite]) -> Array:
-        """Velocities of unit speeds (N, F, 6, n)."""
-        columns = [self.twist(nodal, nodal.J[:, :, i], sites) for i in range(nodal.J.shape[2])]
-        return np.stack(columns, axis=-1)
+        """Velocities of unit speeds (N, F, 6, n): those of unit rates of a body's 7 coordinates, times J."""
+        J = np.zeros((len(nodal.x), len(sites), 6, nodal.J.shape[2]))
+        for k in range(COORDINATES):
+            rates = np.zeros_like(nodal.x)
+            rates[:, k::COORDINATES] = 1.0  # Of all bodies at once: each moves by its own.
+            unit = self.twist(nodal, rates, sites)
+            for i, site in enumerate(sites):
+                if site.mover != BASE:
+                    J[:, i] += unit[:, i, :, None] * nodal.J[:, None, COORDINATES * site.mover + k]
+        return J
 
     def _outputs(self, nodal: Nodal, rates: Array, sites: Sequence[FrameSite], linear: Any, angular: Any) -> Array:
-        def one(site: FrameSite) -> Array:
-            if site.mover == BASE:
-                return np.zeros(6)
-            return np.concatenate([self._output(site.mover, kind, site.X_BF.p) for kind in (linear, angular)])
-
-        return np.array([[one(site) for site in sites] for _ in self._at(nodal, rates)])
+        read, current = self.system.system.GetObjectOutputBody, exudyn.ConfigurationType.Current
+        places = [(i, self.numbers[one.mover], one.X_BF.p) for i, one in enumerate(sites) if one.mover != BASE]
+        outputs = np.zeros((len(nodal.x), len(sites), 6))
+        for output, _ in zip(outputs, self._at(nodal, rates), strict=True):
+            for i, number, local in places:
+                output[i, :3] = read(number, linear, local, current)
+                output[i, 3:] = read(number, angular, local, current)
+        return outputs
 
     def _output(self, mover: int, kind: Any, local: Array) -> Array:
         system = self.system.system
