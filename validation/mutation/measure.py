@@ -18,8 +18,7 @@ from validation.mutation.study import (
     SURVIVED,
     TESTS,
     Study,
-    seen_by_check,
-    seen_by_tests,
+    seen,
 )
 from validation.reporting.command import Run
 from validation.reporting.record import Data
@@ -70,8 +69,8 @@ def as_data(study: Study) -> dict[str, Any]:
                     "fate": study.fate(fault),
                     "argued": study.argued.get(fault.id, ""),
                     "sampled": study.sampled(fault),
-                    "seen_by_check": None if check is None else seen_by_check(check),
-                    "seen_by_tests": None if answers[TESTS] is None else seen_by_tests(answers[TESTS]),
+                    "seen_by_check": None if check is None else seen(check),
+                    "seen_by_tests": None if answers[TESTS] is None else seen(answers[TESTS]),
                     "said": _said(answers).replace(f"{study.folder}/tree/", ""),
                     "seconds": sum(answer["seconds"] for answer in answers.values() if answer is not None),
                 }
@@ -112,5 +111,5 @@ def _scores(rows: Sequence[dict[str, Any]]) -> dict[str, float]:
     }
 
 
-def _share(seen: Sequence[bool]) -> float:
-    return sum(seen) / len(seen) if seen else 0.0
+def _share(verdicts: Sequence[bool]) -> float:
+    return sum(verdicts) / len(verdicts) if verdicts else 0.0

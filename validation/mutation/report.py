@@ -15,8 +15,9 @@ _TEXT = """A fault is one change of a source file, in Python by the syntax tree,
 index, a frame or a transpose, a dropped term, the edge of a comparison, a constant, swapped arguments. The package with
 the fault is judged by `check` over a few small models, and by the tests of the module. **No result changed**: neither
 judge sees it, and the C text, the values of functions, motions and analyses of a battery are those of the sound package
-but for rounding; or a person has argued that no result depends on it, with the reason below. **Does not end**: the
-process of `check` crashes or runs on, which is no verdict; such faults count neither as seen nor as missed. **Open**:
+but for rounding; or a person has argued that no result depends on it, with the reason below. A judge whose process
+crashes has seen the fault: `check` reports that as a failed row. **Does not end**: the process of `check` runs on,
+which is no verdict; such faults count neither as seen nor as missed. **Open**:
 the tests were not asked yet, or their time was over before all had run. The tests are asked first, and `check` about
 what they do not see; of a sample of the faults, {} that change a result, `check` is asked first, and its score is of
 these. **tests**: seen by the tests, `check` blind or not asked. {} that the C compiler refuses are left out. Of the
@@ -91,7 +92,7 @@ def compose(data: Data) -> Report:
             Section("By kind of fault", (_table("kind of fault", rows, lambda row: str(row["kind"]), KINDS),)),
             Section("By module", (Section("All modules", (_table("module", rows, lambda row: str(row["module"])),)),)),
             Section("What survived", (Bullets(listed(SURVIVED, "said")),)),
-            Section("What makes check crash, or not end", (Bullets(listed(HALTED, "said")),)),
+            Section("What makes check run on", (Bullets(listed(HALTED, "said")),)),
             Section("What changed no result", (Section("All", (Bullets(unchanged + listed(ARGUED, "argued")),)),)),
         ),
         facts=(

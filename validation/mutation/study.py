@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import signal
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -18,7 +19,7 @@ from validation.mutation.tests_judge import chosen
 
 CHECK, OUTPUTS, TESTS, LONGER, SOUND = "check", "outputs", "tests", "tests with more time", "sound"
 # Fates of a fault. "stillborn": the C compiler refuses it, so that nobody could use it; "halted": check does not end,
-# or its process crashes, which is seen by whoever runs it, but is no verdict; "argued": looked at by a person.
+# which is seen by whoever runs it, but is no verdict; "argued": looked at by a person.
 STILLBORN, CAUGHT, UNCHANGED, SURVIVED, OPEN = "stillborn", "caught", "no result changed", "survived", "open"
 HALTED, ARGUED = "halted", "argued"
 # Processor times [s].
@@ -27,6 +28,9 @@ LONGER_LIMIT = 300.0
 SAMPLE = 4  # One fault in so many goes to `check` first.
 TESTS_BUDGET = 15.0  # Processor time after which no further test of a fault begins [s].
 LONGER_BUDGET = 120.0  # The same where nobody has seen a fault, and tests were left [s].
+# Ends of a process that are its own doing. `check` reports them as a failed row, a run of the tests fails. Not among
+# them: SIGKILL and SIGBUS, which lack of memory or disk space brings, too.
+_CRASHES = {-signal.SIGSEGV, -signal.SIGABRT, -signal.SIGFPE, -signal.SIGILL}
 _ARGUED = Path(__file__).with_name("argued.json")
 _CHECK_JUDGE, _TESTS_JUDGE = "validation.mutation.check_judge", "validation.mutation.tests_judge"
 _OUTPUTS = "validation.mutation.outputs"
@@ -89,7 +93,7 @@ class Study:
             if time.monotonic() > end:
                 return
             check = self.store.get(fault.id, CHECK)
-            if self.sampled(fault) and seen_by_check(check) and not stillborn(fault, check):
+            if self.sampled(fault) and seen(check) and not stillborn(fault, check):
                 self._asked(fault, TESTS, self._test)
         still_open = [fault for fault in self.faults if self.fate(fault) == OPEN]
         for fault in sorted(still_open, key=lambda one: unchanged(self.store.get(one.id, OUTPUTS))):
@@ -103,8 +107,8 @@ class Study:
 
     def _settle(self, fault: SourceFault) -> None:
         """Ask about one fault until a judge sees it, or none does."""
-        judges = ((CHECK, self._check, seen_by_check), (TESTS, self._test, seen_by_tests))
-        for stage, ask, seen in judges if self.sampled(fault) else judges[::-1]:
+        judges = ((CHECK, self._check), (TESTS, self._test))
+        for stage, ask in judges if self.sampled(fault) else judges[::-1]:
             answer = self._asked(fault, stage, ask)
             if seen(answer) or (stage == CHECK and halted(answer)):
                 return
@@ -117,7 +121,7 @@ class Study:
             return answer
         with self.overlay.planted(fault):
             answer = ask(fault)
-        if stage in (TESTS, LONGER) and seen_by_tests(answer) and self._fails_without(answer):
+        if stage in (TESTS, LONGER) and seen(answer) and self._fails_without(answer):
             return self._asked(fault, stage, ask)
         self.store.put(fault.id, stage, answer, fault.module)
         self.report(f"{stage}: {fault.module}")
@@ -131,7 +135,7 @@ class Study:
         if self.store.get(test, SOUND) is None:
             asked = {"files": [test], "deselected": [], "budget": TESTS_BUDGET}
             self.store.put(test, SOUND, self.overlay.ask(_TESTS_JUDGE, "judge", TESTS_LIMIT, **asked))
-        if not seen_by_tests(self.store.get(test, SOUND)):
+        if not seen(self.store.get(test, SOUND)):
             return False
         self.failing.add(test)
         return True
@@ -171,7 +175,7 @@ class Study:
         outputs = self.store.get(fault.id, OUTPUTS)
         if stillborn(fault, check) or stillborn(fault, outputs):
             return STILLBORN
-        if seen_by_check(check) or seen_by_tests(tests):
+        if seen(check) or seen(tests):
             return CAUGHT
         if halted(check):
             return HALTED
@@ -193,18 +197,17 @@ def unchanged(answer: Answer | None) -> bool:
     return ((answer or {}).get("answer") or {}).get("status") in ("same bits", "other text", "rounding")
 
 
-def seen_by_check(answer: Answer | None) -> bool:
-    """Whether `check` said so."""
+def seen(answer: Answer | None) -> bool:
+    """Whether `check` or a test failed, or crashed; one that does not end has seen nothing."""
     said = (answer or {}).get("answer") or {}
-    return bool(said.get("status", "passed") != "passed")
+    return bool(said.get("status", "passed") != "passed") or crashed(answer)
+
+
+def crashed(answer: Answer | None) -> bool:
+    """Whether a judge's process ended by a signal that a fault brings about."""
+    return answer is not None and answer["answer"] is None and answer.get("code") in _CRASHES
 
 
 def halted(answer: Answer | None) -> bool:
-    """Whether `check` did not end, or its process crashed."""
-    return answer is not None and answer["answer"] is None
-
-
-def seen_by_tests(answer: Answer | None) -> bool:
-    """Whether a test failed; one that crashes or does not end has seen nothing."""
-    said = (answer or {}).get("answer") or {}
-    return bool(said.get("status", "passed") != "passed")
+    """Whether `check` did not end."""
+    return answer is not None and answer["answer"] is None and not crashed(answer)

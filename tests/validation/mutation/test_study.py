@@ -202,3 +202,17 @@ def test_tests_that_ran_out_of_time_are_given_more_once_all_others_are_settled(
     assert [study.fate(fault) for fault in faults] == ["no result changed", "caught", "survived"]
     study.run(60.0)
     assert len(asked) == 6  # What is still to be seen after that is a survivor.
+
+
+@pytest.mark.parametrize(
+    ("fate", "code", "expected"),
+    [("crashed", -11, "caught"), ("crashed", -6, "caught"), ("crashed", -7, "halted"), ("timed out", -24, "halted")],
+)
+def test_a_crash_of_check_is_a_failed_row_of_it_and_no_end_is_no_verdict(
+    tmp_path: Path, fate: str, code: int, expected: str
+) -> None:
+    (tmp_path / "m.py").write_text("a\n")
+    store, fault = Store(tmp_path / "answers.jsonl", tmp_path), SourceFault("m.py", 1, SIGN, 0, "a", "b")
+    store.put(fault.id, CHECK, {"fate": fate, "code": code, "answer": None, "seconds": 1.0}, "m.py")
+    study = Study((fault,), store, None, tmp_path, print)  # type: ignore[arg-type]
+    assert study.fate(fault) == expected
