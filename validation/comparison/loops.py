@@ -37,8 +37,19 @@ def assembled_states(system: sf.System, states: States) -> States:
         states: States to start from; accelerations and inputs stay as they are, forces are computed anew.
     """
     model = sf.compile(system, sf.Options(functions=FUNCTIONS))
+    parts: list[States] = []
+    for first in range(0, min(len(states), TRIED), MOST):
+        parts.append(_assembled(model, states[first : first + MOST]))
+        if sum(map(len, parts)) >= MOST:
+            break
+    joined = [np.concatenate([getattr(part, item.name) for part in parts]) for item in fields(States)]
+    return States(*joined)[:MOST]
+
+
+def _assembled(model: sf.Model, states: States) -> States:
+    """Those of some states from which loops could be closed."""
     assemblies, kept = [], []
-    for i in range(min(len(states), TRIED)):
+    for i in range(len(states)):
         try:
             assemblies.append(sf.assemble(model, states.q[i], states.v[i], u=states.u[i]))
         except sf.AssemblyError:
@@ -49,8 +60,7 @@ def assembled_states(system: sf.System, states: States) -> States:
     q, v = np.array([one.q for one in assemblies]), np.array([one.v for one in assemblies])
     sound = _sound(model, q, states.u[kept])
     sound[sound] = _consistent(model, q[sound], v[sound], states.u[kept][sound])
-    started = _chosen(states, np.array(kept)[sound])
-    return replace(started, q=q[sound], v=v[sound])[:MOST]
+    return replace(_chosen(states, np.array(kept)[sound]), q=q[sound], v=v[sound])
 
 
 def of_unique_multipliers(engine: SymofrosEngine, states: States) -> States:
