@@ -51,7 +51,7 @@ def measure(
         unfinished = [fault.id for fault in study.faults if study.fate(fault) == OPEN]
     finally:
         study.overlay.close()
-    return as_data(study) | {"seed": seed, "unfinished": unfinished}
+    return as_data(study) | {"seed": seed, "copied": study.overlay.revision, "unfinished": unfinished}
 
 
 def as_data(study: Study) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from validation.mutation.fault import SourceFault
+from validation.reporting.provenance import revision
 
 # What tests read, beside the packages.
 COPIED = ("symofros", "validation", "reference_models", "tests", "docs", "reports", "README.md", "pyproject.toml")
@@ -31,6 +32,9 @@ class Overlay:
         root: Folder of the repository.
         folder: Folder that gets the copy.
         cache: Folder of models that are compiled already; None: none are.
+
+    Attributes:
+        revision: Revision of the repository that was copied; "" if it is not known.
     """
 
     def __init__(self, root: Path, folder: Path, cache: Path | None = None) -> None:
@@ -38,9 +42,12 @@ class Overlay:
         self.tree, self.cache, self.log = folder / "tree", folder / "cache", folder / "log"
         self._compiler = folder / "cc"
         folder.mkdir(parents=True, exist_ok=True)
+        origin = folder / "revision"
         if not self.tree.exists():
             _copy_tree(root, self.tree)
             _fix_identity(self.tree)
+            origin.write_text(revision(root), encoding="utf-8")
+        self.revision = origin.read_text(encoding="utf-8").strip() if origin.exists() else ""
         self._backup = folder / "planted.json"  # Of the file that holds a fault, if the process is killed meanwhile.
         self._restore()
         self.cache.mkdir(mode=0o700, exist_ok=True)

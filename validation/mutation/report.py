@@ -80,7 +80,9 @@ def compose(data: Data) -> Report:
     seen = f"{scores['check']:.1%} of those known to change a result, `check` and tests {scores['both']:.1%}"
     modules = counted(len({row["module"] for row in rows}), "module")
     refused = counted(len(rows) - planted, "fault")
-    text = _TEXT.format(scores["check_asked"], refused, scores["tests"], scores["tests_asked"])
+    copied = str(data.get("copied", ""))
+    origin = f" They stand in a copy of revision `{copied}`." if copied else ""
+    text = _TEXT.format(scores["check_asked"], refused, scores["tests"], scores["tests_asked"]) + origin
     return Report(
         "Faults planted in the source",
         f"{counted(planted, 'fault')} in {modules}: `check` alone sees {seen}; {still_open} open.",
