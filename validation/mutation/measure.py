@@ -71,7 +71,7 @@ def as_data(study: Study) -> dict[str, Any]:
                     "sampled": study.sampled(fault),
                     "seen_by_check": None if check is None else seen(check),
                     "seen_by_tests": None if answers[TESTS] is None else seen(answers[TESTS]),
-                    "said": _said(answers).replace(f"{study.folder}/tree/", ""),
+                    "said": _said(answers).replace(f"{study.folder}/tree/", "").replace(f"{study.folder}/", ""),
                     "seconds": sum(answer["seconds"] for answer in answers.values() if answer is not None),
                 }
             )
