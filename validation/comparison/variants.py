@@ -43,8 +43,10 @@ class ModelVariants:
         """The states that the engine of a route is asked at, with the forces of the variant it is compared with."""
         if route.loops:
             return self.assembled
-        # Rotary inertia makes no forces of Q.
-        return self._untruncated_states if route.beams else self.states
+        if not route.beams:
+            return self.states
+        exact = self.model_for(route) is not self.untruncated
+        return self._without_rotary_states if exact else self._untruncated_states
 
     @cached_property
     def assembled(self) -> States:
@@ -76,6 +78,11 @@ class ModelVariants:
         subject = replace(self.subject, system=system)
         finer = any(isinstance(body, sf.Beam) and body.theory == "strain" for body in system.bodies)
         return interpreted.build(subject) if finer else compiled.build(subject)
+
+    @cached_property
+    def _without_rotary_states(self) -> States:
+        # Rotary inertia makes no forces of Q; loads along a rod do by its sections, of which this variant has more.
+        return with_forces(self.without_rotary, self.states, self._efforts)
 
     @cached_property
     def _untruncated_states(self) -> States:
