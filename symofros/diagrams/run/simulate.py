@@ -18,6 +18,7 @@ from symofros.diagrams.result import DiagramRun
 from symofros.diagrams.run.examination.diagnosis import Ended, diagnose
 from symofros.diagrams.run.examination.energy_balance import Energies
 from symofros.diagrams.run.examination.remarks import Examined, remarks
+from symofros.diagrams.run.examination.rotations import refuse_no_rotation
 from symofros.diagrams.run.loop import RECORD, Loop, Task
 from symofros.diagrams.run.options import DiagramOptions
 from symofros.diagrams.run.parts import Start, place_parts, start_parts
@@ -76,6 +77,8 @@ def run_compiled(
     if outcome.kind == "finished" and not options.realtime:
         notes = remarks(_examined(task, ended, called.given), modes)
         outcome = replace(outcome, notes=(*outcome.notes, *notes))
+    records = Records(compiled, *ended.states, par)
+    outcome = refuse_no_rotation(outcome, resolved, records.t, lambda source: records[".".join(source)])
     return _recorded(task, ended, outcome, bendings, kept)
 
 

@@ -22,6 +22,7 @@ from symofros.simulation.analysis.beam_theory import (
     beyond_critical_load,
     refuse_beyond,
 )
+from symofros.simulation.analysis.input_rotations import given_inputs
 
 # Largest step of a coordinate at once; of a beam's displacements over its length.
 LARGEST_STEP = 0.5
@@ -101,7 +102,7 @@ def equilibrium(
     nv, nc = model.nv, model.nc
     q = model.neutral() if q is None else numeric("q", model.by_name("q", q))
     v = np.zeros(nv) if v is None else numeric("v", model.by_name("v", v))
-    u = numeric("u", model.record.u_default if u is None else model.by_name("u", u))
+    u = given_inputs(model, u)
     lam = np.zeros(nc)
 
     def residual(at: Array, lam: Array) -> tuple[Array, float]:

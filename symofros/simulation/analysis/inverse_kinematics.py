@@ -9,7 +9,6 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arguments import checked
-from symofros.base.arrays import numeric
 from symofros.base.measures import ANGLE, LENGTH, Measures
 from symofros.errors import AssemblyError, Problem, SymofrosError
 from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
@@ -18,6 +17,7 @@ from symofros.runtime.constrained import LARGEST_STEP, pseudo_inverse
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.assembly import Indices, free_speeds
 from symofros.simulation.analysis.beam_theory import bendings_in_motion
+from symofros.simulation.analysis.input_rotations import given_inputs
 from symofros.simulation.analysis.nearest_posture import OPTIMALITY, NearestPosture, coordinate_limits
 from symofros.simulation.analysis.targets import Target as Target
 from symofros.simulation.analysis.targets import Task, finite_array, rotations_checked
@@ -116,7 +116,7 @@ def inverse_kinematics(
 def _judged(task: Task, reached: Reached, beam_limit: float) -> Reached:
     """The same with its beams as they are when released there; not converged where one is bent beyond the limit."""
     model, given = task.model, task.inputs["u"]
-    u = numeric("u", model.record.u_default if given is None else model.by_name("u", given))
+    u = given_inputs(model, given)
     bendings = bendings_in_motion(model, reached.q, np.zeros(model.nv), u, task.inputs["par"])
     within = all(bending.error <= beam_limit for bending in bendings)
     return replace(reached, converged=reached.converged and within, bendings=bendings, notes=bending_notes(bendings))

@@ -13,6 +13,7 @@ from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.beam_theory import bendings_in_motion, refuse_beyond
+from symofros.simulation.analysis.input_rotations import given_inputs
 from symofros.simulation.analysis.state_space import state_space
 
 Complex = npt.NDArray[np.complex128]
@@ -68,7 +69,7 @@ def modes(
     state = (
         numeric("q", model.by_name("q", q)),
         np.zeros(model.nv) if v is None else numeric("v", model.by_name("v", v)),
-        numeric("u", model.record.u_default if u is None else model.by_name("u", u)),
+        given_inputs(model, u),
     )
     linear_model = state_space(model, *state, par=par, t=t)
     # Without constraints A holds the derivatives of the accelerations.

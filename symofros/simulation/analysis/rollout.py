@@ -13,7 +13,8 @@ from symofros.base.arrays import real_array
 from symofros.errors import Problem, ShapeError, SymofrosError
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
-from symofros.simulation.settings import UNIT_TOLERANCE, vector
+from symofros.simulation.analysis.input_rotations import refuse_no_rotation
+from symofros.simulation.settings import vector
 from symofros.simulation.stepping.methods import METHODS, method_meant
 from symofros.simulation.stepping.tableaus import Tableau
 
@@ -208,7 +209,7 @@ def rollout(
             )
         )
     held = held.copy()  # The derivatives read it later, when the caller may have moved on.
-    _refuse_inputs(model, held)
+    refuse_no_rotation(model, held)
     values = model.parameter_values if par is None else vector(model, "par", model.checked_parameters(par), model.npar)
     tableau = METHODS[method].tableau
     first = vector(model, "q0", q0, model.nq), vector(model, "v0", v0, model.nv)
@@ -262,23 +263,6 @@ def _refuse(model: Model, method: str, dt: float, t0: float) -> None:
         fault, remedy = "a ball or free joint", "state it by three revolute joints"
     if fault:
         raise SymofrosError(Problem(f"model '{model.record.name}': no derivatives of its motion", fault, _RULE, remedy))
-
-
-def _refuse_inputs(model: Model, u: Array) -> None:
-    """Refuse quaternions among the inputs (n, nu) that are of another length than one."""
-    for first in model.record.quaternion_inputs:
-        lengths = np.linalg.norm(u[:, first : first + 4], axis=1)
-        wrong = np.flatnonzero(np.abs(lengths - 1.0) > UNIT_TOLERANCE)
-        if len(wrong):
-            names = ", ".join(model.names.u[first : first + 4])
-            raise SymofrosError(
-                Problem(
-                    f"model '{model.record.name}': inputs {names} are no rotation",
-                    f"a quaternion of length {lengths[wrong[0]]:.6g} in step {wrong[0]}",
-                    f"quaternions are of unit length, to {UNIT_TOLERANCE:g}",
-                    "divide each quaternion by its length",
-                )
-            )
 
 
 def _fitting(name: str, given: Numbers | None, shape: tuple[int, ...]) -> Array:

@@ -13,6 +13,7 @@ from symofros.errors import Problem, SymofrosError
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import null_space, pseudo_inverse
 from symofros.runtime.model import ArrayLike, Model, Output
+from symofros.simulation.analysis.input_rotations import given_inputs
 from symofros.simulation.analysis.singular_mass import ADVICE, singular_mass
 
 
@@ -66,7 +67,7 @@ def state_space(
     """
     model = model.with_precision("double")
     v = np.zeros(model.nv) if v is None else numeric("v", model.by_name("v", v))
-    u = numeric("u", model.record.u_default if u is None else model.by_name("u", u))
+    u = given_inputs(model, u)
     A, B, C, D = model.linearize(q, v, u, outputs=outputs, par=par, t=t)
     if not np.all(np.isfinite(A)):
         configuration = numeric("q", model.by_name("q", q))

@@ -126,3 +126,22 @@ def test_a_step_past_the_limit_of_stability_is_told(method: str) -> None:
     assert "past the limit of stability" in note and "oscillates at 1000 rad/s" in note
     far = simulation.run(20.0, method=method, dt=5e-3, record=PERIOD).outcome
     assert far.kind == "diverged" and "stability" in far.reason and "dt below 0.00" in far.advice
+
+
+@pytest.mark.parametrize("length", [1.0, 0.9, 1.5])
+@pytest.mark.parametrize("interpreted", [False, True])
+def test_a_wire_prescribes_rotations_alone(length: float, interpreted: bool) -> None:
+    """A quaternion of another length would turn and stretch what it carries, without a word."""
+    base = sf.RigidBody("base", sf.Joint("p", "ball", prescribed=True), sf.Inertia(1.0, moments=(1, 1, 1)))
+    arm = sf.RigidBody("arm", sf.Joint("q", "revolute", "base", axis=(0, 1, 0)), sf.Inertia(1.0, (0.5, 0, 0)))
+    diagram = sf.Diagram("turned")
+    diagram.add_model("plant", sf.System("turned", (base, arm)))
+    diagram.add(Formula(name="turn", formulas={"u": ["0*t", "0", "0", f"1 + {length - 1.0}*t", *["0"] * 6]}))
+    diagram.add(ForwardDynamics(name="plant", model="plant"), u="turn.u")
+    simulation = sf.Simulation(diagram)
+    run = simulation.interpret(1.0, dt=0.01, compiled=False) if interpreted else simulation.run(1.0, dt=0.01)
+    if length == 1.0:
+        assert run.outcome.ok
+    else:
+        assert run.outcome.kind == "input failed" and "block 'turn': output 'u' prescribes" in run.outcome.reason
+        assert 0.0 < run.outcome.t < 0.1

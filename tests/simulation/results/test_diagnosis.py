@@ -112,6 +112,23 @@ TURNED = sf.System(
 )
 
 
+@pytest.mark.parametrize("length", [1.0, 0.9, 1.5, np.nan])
+def test_analyses_take_rotations_alone_for_inputs(length: float) -> None:
+    model = sf.compile(TURNED)
+    u = np.array([0, 0, 0, length, *[0.0] * 6])
+    analyses = (
+        lambda: sf.equilibrium(model, [1.5], u=u),
+        lambda: sf.modes(model, [0.5 * np.pi], u=u),
+        lambda: sf.state_space(model, [0.5 * np.pi], u=u),
+    )
+    for analysis in analyses:
+        if length == 1.0:
+            analysis()
+        else:
+            with pytest.raises(sf.SymofrosError, match="p.qx, p.qy, p.qz, p.qw are no rotation|finite"):
+                analysis()
+
+
 METHODS = ["rk4", "dopri5", "semi_implicit_euler", "rodas4", "generalized_alpha"]
 CASES = [(method, kind) for method in METHODS for kind in ("number", "formula", "samples")]
 

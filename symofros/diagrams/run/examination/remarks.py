@@ -11,6 +11,7 @@ from symofros.diagrams.run.examination.energy_balance import Accelerations, Ener
 from symofros.diagrams.run.examination.step_check import Repeat, States, step_note
 from symofros.diagrams.run.python_blocks import NotKeptError
 from symofros.simulation.stepping.resolution import Resolution
+from symofros.simulation.stepping.windows import WHOLE
 
 # Share of a mechanism's largest speed that the absolute tolerance may allow as the error of a step, and displacements
 # over it that are a motion: as of `sf.simulate`.
@@ -52,7 +53,10 @@ def remarks(run: Examined, modes: Resolution) -> tuple[str, ...]:
         return ()
     try:
         note = ""
-        if (worst is None and not modes.evident) or (run.h == 0.0 and _is_loose(run)):
+        examined = not modes.evident or (
+            run.h > 0.0 and run.steps <= WHOLE
+        )  # No mode at a few states knows of contacts.
+        if (worst is None and examined) or (run.h == 0.0 and _is_loose(run)):
             external = _answers(run.energies.resolved)
             note = step_note(layout, states, run.repeat, run.h, run.steps, external=external)
         note = note or energy_note(run.energies, states, run.steps, run.accelerations, run.repeat)

@@ -23,6 +23,8 @@ _POSITIONS = 3.0
 _UNANSWERED = 0.08
 # Power of time with which the change in a window may grow over the run: errors of amplitudes turn into those of phases.
 _GROWTH = 2.0
+# What it may grow to where external blocks answer to the motion, so that the run is not made once more.
+_ADDS_UP = 0.3
 # Longest part of a run, in steps, that is made once more where the change in a window may grow to a note.
 _REPEATED = 20_000
 
@@ -80,8 +82,9 @@ def step_note(layout: Layout, states: States, repeat: Repeat, h: float, steps: i
     """
     stepping = f"steps of {h:.4g} s" if h else "the tolerances"
     finer, cure = ("half of that", "a smaller dt") if h else ("a hundredth of them", "tighter tolerances")
-    duration, short = float(states[0][-1] - states[0][0]), steps <= WHOLE
-    chosen = windows(states[0], states[2], h or duration / steps, steps)
+    # All of a run would show nothing of what an external block makes of errors from one call to the next.
+    duration, short = float(states[0][-1] - states[0][0]), steps <= WHOLE and not external
+    chosen = windows(states[0], states[2], h or duration / steps, steps if short else max(steps, WHOLE + 1))
     worst = _Changed(0.0, "", 0.0, duration)
     for window in chosen:
         rows = slice(window.first, window.last + 1) if window.last is not None else None
@@ -95,7 +98,7 @@ def step_note(layout: Layout, states: States, repeat: Repeat, h: float, steps: i
     seen = "" if short else f" (seen at t = {worst.t:.4g} s)"
     if not worst.share > (_UNANSWERED if external else 1.0) * TOLERANCE and grown > TOLERANCE and not short:
         if external:
-            if grown <= 1.0:
+            if grown <= _ADDS_UP:
                 return ""
             return (
                 f"{stepping} are not held against {finer} over all of the run, as '{external}' is not called again:"

@@ -1,0 +1,46 @@
+"""Whether the rotations that wires prescribe to mechanisms are rotations."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from symofros.diagrams.program.compiled import Resolved
+from symofros.diagrams.wiring import Source
+from symofros.runtime.calls.kernel import Array
+from symofros.simulation.results.outcome import Outcome
+from symofros.simulation.settings import UNIT_TOLERANCE
+
+
+def refuse_no_rotation(outcome: Outcome, resolved: Resolved, t: Array, signal: Callable[[Source], Array]) -> Outcome:
+    """The outcome of a run, "input failed" where a wire prescribes a quaternion that is no rotation.
+
+    Args:
+        outcome: Outcome of the run.
+        resolved: Diagram that ran.
+        t: Times of its records (n) [s].
+        signal: Signal at the records (n, *shape) of an output.
+    """
+    if not outcome.ok:
+        return outcome
+    wired = resolved.wired
+    for name, piece in resolved.pieces.items():
+        mechanism, source = piece.block.mechanism(), wired.sources.get((name, "u"))
+        if not mechanism or source is None:
+            continue
+        for first in wired.models.record(mechanism).quaternion_inputs:
+            lengths = np.linalg.norm(signal(source)[:, first : first + 4], axis=1)
+            wrong = np.flatnonzero(~(np.abs(lengths - 1.0) <= UNIT_TOLERANCE))
+            if len(wrong):
+                row = int(wrong[0])
+                return replace(
+                    outcome,
+                    kind="input failed",
+                    t=float(t[row]),
+                    reason=f"block '{source[0]}': output '{source[1]}' prescribes to '{name}' a quaternion of length"
+                    f" {lengths[row]:.6g} from t = {t[row]:.6g} s on, which is no rotation",
+                    advice="divide the quaternion by its length",
+                )
+    return outcome
