@@ -104,19 +104,14 @@ def export(
     Raises:
         ExportError: The folder is not ours, or the format can't hold the model.
         DescriptionError: The description can't be a mechanism.
-        UnknownNameError: No such target, frame, coordinate or method.
+        ArgumentError: No such target, or an argument of another type.
+        UnknownNameError: No such frame, coordinate or method.
         AssemblyError: No state near the start meets the constraints.
         CompileError: An FMU's binary or a WebAssembly module does not compile.
     """
     if isinstance(model, Diagram):
         return _export_diagram(model, target, Path(folder), outputs, method, dt)
     system = model if isinstance(model, System) else load(model)
-    if target not in TARGETS:
-        raise UnknownNameError(
-            Problem(
-                f"export: no target '{target}'", str(target), ", ".join(TARGETS), did_you_mean(str(target), TARGETS)
-            )
-        )
     place = Path(folder)
     check_folder(place)  # Before the work, not only after it.
     if target in _DESCRIBED:

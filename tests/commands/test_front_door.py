@@ -102,9 +102,7 @@ def test_a_name_that_is_not_there_and_a_mass_below_zero_are_refused() -> None:
     assert result.exit_code == 2 and "m_cart" in result.output
 
 
-@pytest.mark.parametrize(
-    ("suffix", "remedy"), [(".xacro", "xacro robot.xacro"), (".sdf", "URDF or MJCF"), (".usd", "export")]
-)
+@pytest.mark.parametrize(("suffix", "remedy"), [(".mjb", "compiled from"), (".usd", "export")])
 def test_formats_that_are_not_read_say_how_to_convert(suffix: str, remedy: str, tmp_path: Path) -> None:
     path = tmp_path / f"robot{suffix}"
     path.write_text("<robot/>")

@@ -40,7 +40,7 @@ def test_it_writes_a_package(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "says"),
     [
-        (["--target", "excel"], "no target 'excel'"),
+        (["--target", "excel"], "target is not one of 'c'"),
         (["--target", "c", "--set", "q9=1"], "no coordinate or speed 'q9'"),
         (["--target", "c", "--frames", "nowhere"], "no frame 'nowhere'"),
     ],
