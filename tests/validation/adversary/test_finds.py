@@ -516,6 +516,21 @@ FINDS: list[tuple[str, Scene, str]] = [
         },
         "short runs with a block of Python are judged by windows, too",
     ),
+    (
+        "diagram_runs",
+        {
+            "force": "none",
+            "law": "python",
+            "method": "semi_implicit_euler",
+            "m": 0.01,
+            "k": 0.01,
+            "c": 0.0,
+            "step": 0.01,
+            "record": 0.01,
+            "span": 1.0,
+        },
+        "short runs with a block of Python are judged by windows in every part",
+    ),
 ]
 
 
