@@ -77,7 +77,8 @@ def run_compiled(
     if outcome.kind == "finished" and not options.realtime:
         notes = remarks(_examined(task, ended, called.given), modes)
         outcome = replace(outcome, notes=(*outcome.notes, *notes))
-    records = Records(compiled, *ended.states, par)
+    t, q, v, u = ended.states
+    records = Records(compiled, t, q, v, u, par)
     outcome = refuse_no_rotation(outcome, resolved, records.t, lambda source: records[".".join(source)])
     return _recorded(task, ended, outcome, bendings, kept)
 
