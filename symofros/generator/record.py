@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import math
 
 from symofros.base.options import Options
 from symofros.description.beam import Beam
@@ -78,7 +79,21 @@ def model_record(tree: SpanningTree, options: Options) -> ModelRecord:
         quaternion_inputs=tuple(quaternions),
         measures=measures_of(tree),
         timed=any(TIME in symbols(stated.value) for stated in stated_values(tree.system)),
+        joint_limits=joint_limits(tree),
     )
+
+
+def joint_limits(tree: SpanningTree) -> tuple[tuple[int, float, float], ...]:
+    """Limits of joints that state them: index in q, least and greatest coordinate; infinite where one is left out."""
+    stated = []
+    for link in tree.links:
+        limits = link.joint.limits
+        if limits is None or link.joint.prescribed or (limits.lower is None and limits.upper is None):
+            continue
+        lower = -math.inf if limits.lower is None else limits.lower
+        upper = math.inf if limits.upper is None else limits.upper
+        stated += [(i, lower, upper) for i in range(link.q[0], sum(link.q))]
+    return tuple(stated)
 
 
 def _sizes(tree: SpanningTree, beam: Beam) -> tuple[float, ...]:

@@ -64,7 +64,7 @@ class ModelRecord:
     Attributes:
         name: Name of the system.
         hash: Hash of description, options and generator.
-        q_names: Coordinates; likewise speeds, inputs, run-time parameters, frames.
+        q_names: Coordinates, as v_names are speeds, u_names inputs, par_names run-time parameters.
         frame_aliases: Qualified name -> public name of a frame.
         u_default: Inputs where none are given: zeros, and prescribed quaternions of no rotation.
         par_default: Values of the run-time parameters.
@@ -84,6 +84,7 @@ class ModelRecord:
         quaternion_inputs: First index in u of each quaternion among these.
         measures: Measures of the rows and columns of the constraint Jacobian.
         timed: Whether a formula depends on the time t.
+        joint_limits: Limits of joints that state them: index in q, least and greatest coordinate.
     """
 
     name: str
@@ -112,6 +113,7 @@ class ModelRecord:
     quaternion_inputs: tuple[int, ...] = ()
     measures: Measures = Measures()
     timed: bool = False
+    joint_limits: tuple[tuple[int, float, float], ...] = ()
 
     @property
     def nc(self) -> int:

@@ -1,4 +1,4 @@
-"""Postures in which constraints all but repeat each other, or turn into others at once, met on the way."""
+"""Postures met on the way that say something of a run: singular ones, and those beyond the limits of joints."""
 
 from __future__ import annotations
 
@@ -21,6 +21,8 @@ FAR, MOST_BETWEEN = 0.05, 16
 # Change of a row of G, relative to its size, while the configuration changes by MOST_CHANGE [rad, m], halved BISECTIONS
 # times: a smooth row changes by far less.
 TURN, MOST_CHANGE, BISECTIONS = 0.3, 0.02, 16
+# What lies beyond a limit by this share of it, or by so much [rad, m], is the error of a motion that ends there.
+AT_LIMIT = 1e-6
 
 
 class Jump(NamedTuple):
@@ -170,3 +172,30 @@ def _between(model: Model, most: int, t: Array, q: Array, u: Array) -> tuple[Arr
     )
     times = (t[:-1, np.newaxis] + shares * np.diff(t)[:, np.newaxis]).ravel()
     return np.append(times, t[-1]), np.vstack([inner, q[-1:]]), np.vstack([np.repeat(u[:-1], parts, axis=0), u[-1:]])
+
+
+def limit_notes(model: Model, t: Array, q: Array) -> tuple[str, ...]:
+    """A note where a run left the limits of its joints, which no force keeps.
+
+    Args:
+        model: Model.
+        t: Recorded times (n).
+        q: States (n, nq).
+    """
+    if not model.record.joint_limits:
+        return ()
+    index, lower, upper = (np.array(column) for column in zip(*model.record.joint_limits, strict=True))
+    reached = q[:, index]
+    below, above = lower - AT_LIMIT * (1.0 + np.abs(lower)), upper + AT_LIMIT * (1.0 + np.abs(upper))
+    excess = np.fmax(below - reached, reached - above)
+    beyond = excess > 0.0
+    left = np.flatnonzero(beyond.any(axis=0))
+    if not len(left):
+        return ()
+    first = int(left[np.argmin(beyond[:, left].argmax(axis=0))])
+    others = f", as do {len(left) - 1} more coordinates" if len(left) > 2 else ", as does one more" * (len(left) == 2)
+    when, most = t[beyond[:, first].argmax()], np.nanmax(excess[:, first])
+    return (
+        f"'{model.record.q_names[index[first]]}' leaves its limits, {lower[first]:.6g} to {upper[first]:.6g}, at"
+        f" t = {when:.6g} s, by up to {most:.3g}{others}: limits are data here, no stops",
+    )

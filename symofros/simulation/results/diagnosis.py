@@ -11,7 +11,7 @@ import numpy as np
 from symofros.runtime.beams import BeamBending, bending_notes, largest_bending
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.analysis.beam_theory import UNAMPLIFIED, amplifications
-from symofros.simulation.analysis.postures import nearest_to_singular
+from symofros.simulation.analysis.postures import limit_notes, nearest_to_singular
 from symofros.simulation.analysis.singular_mass import ADVICE, singular_mass
 from symofros.simulation.results.constraint_faults import jump, lost_energy, violation
 from symofros.simulation.results.energy_balance import EXPLODED
@@ -207,6 +207,7 @@ def _notes(stepper: Stepper, states: Sequence[Array], bendings: Sequence[BeamBen
                 f"the constraints came close to a singular posture at t = {when:.6g} s, to {share:.1%} of"
                 " their strength: compare with another step"
             )
+    notes += limit_notes(stepper.model, states[0], states[1])
     notes += bending_notes(bendings)
     if run.late_steps:
         notes.append(f"{run.late_steps} of {run.paced_steps} steps began late, by {1e3 * run.late_max:.3g} ms at most")

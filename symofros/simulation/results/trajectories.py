@@ -12,6 +12,7 @@ from symofros.runtime.beams import NOTED_ERROR, BeamBending, bending_notes, larg
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
 from symofros.simulation.analysis.beam_theory import UNAMPLIFIED, amplifications
+from symofros.simulation.analysis.postures import limit_notes
 from symofros.simulation.analysis.singular_mass import ADVICE, singular_mass
 from symofros.simulation.results.batch_examination import BatchExamination
 from symofros.simulation.results.outcome import Kind, Outcome
@@ -129,7 +130,8 @@ class Trajectories:
         """How one run ended; its steps and inputs are examined now."""
         kind, reason, advice = _ENDS[int(self.status[index])]
         bendings = self.bendings(index)
-        t, notes = float(self.t_last[index]), bending_notes(bendings)
+        t, reached = float(self.t_last[index]), self._states(index)
+        notes = (*limit_notes(self.model, reached[0], reached[1]), *bending_notes(bendings))
         if self.status[index] < 0:
             reason = self._input_fault(index) or reason
         mode, remarks = self._step_size(index)

@@ -15,6 +15,7 @@ from symofros.diagrams.run.loop import Loop
 from symofros.runtime.beams import BeamBending, bending_notes, largest_bending
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.analysis.beam_theory import UNAMPLIFIED, amplifications
+from symofros.simulation.analysis.postures import limit_notes
 from symofros.simulation.results.outcome import Kind, Outcome
 from symofros.simulation.results.step_size import examine_steps, remedy, step_size_note
 from symofros.simulation.settings import Settings
@@ -86,6 +87,13 @@ class Ended:
         return tuple(bendings)
 
 
+def _beyond_limits(ended: Ended) -> list[str]:
+    """Notes where mechanisms left the limits of their joints."""
+    t, q, *_ = ended.states
+    parts = zip(ended.loop.parts, ended.layout.parts, strict=True)
+    return [note for stepper, part in parts for note in limit_notes(stepper.model, t, q[:, part.q])]
+
+
 def diagnose(ended: Ended, bendings: Sequence[BeamBending]) -> tuple[Outcome, Resolution]:
     """How a run ended, and how well its fixed steps resolve the modes of its parts.
 
@@ -94,7 +102,7 @@ def diagnose(ended: Ended, bendings: Sequence[BeamBending]) -> tuple[Outcome, Re
         bendings: Bending of its beams.
     """
     loop, status, t = ended.loop, ended.status, ended.t
-    notes = (*bending_notes(bendings), *([loop.fault] if loop.fault else []))
+    notes = (*bending_notes(bendings), *([loop.fault] if loop.fault else []), *_beyond_limits(ended))
     if ended.interrupted:
         return Outcome("interrupted", t, "Ctrl-C; the part up to here is kept", notes=notes), Resolution()
     if status == Status.CALLBACK_FAILED:
