@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import isfinite, pi, sqrt
+from math import isfinite, pi, prod, sqrt
 from typing import Any
 
 from pydantic import ValidationError
@@ -39,8 +39,8 @@ def beam_figures(entry: Any, known: Mapping[str, float]) -> Json:
 
     Returns:
         `section`: property -> number, without those that vary along the beam or have none; `frequencies`: direction ->
-        the first three of the uniform slender beam, clamped at its root and free at its tip [Hz]. Rotary inertia,
-        shear, gravity and loads are left out.
+        the first three of the uniform slender beam, clamped at its root and free at its tip [Hz], without those
+        beyond the range of numbers. Rotary inertia, shear, gravity and loads are left out.
 
     Raises:
         EditError: The entry is no beam yet.
@@ -56,11 +56,17 @@ def beam_figures(entry: Any, known: Mapping[str, float]) -> Json:
         del figures["rhoJ"]
     length = figures.pop("length", 0.0)
     frequencies = {
-        direction: [(root / length) ** power * sqrt(figures[stiffness] / figures[inertia]) / (2 * pi) for root in roots]
+        direction: _hertz(figures[stiffness] / figures[inertia], [root / length for root in roots], power)
         for direction, (stiffness, inertia, roots, power) in _MOTIONS.items()
         if length > 0.0 and figures.get(stiffness, 0.0) > 0.0 and figures.get(inertia, 0.0) > 0.0
     }
-    return {"section": figures, "frequencies": frequencies}
+    finite = {direction: values for direction, values in frequencies.items() if all(map(isfinite, values))}
+    return {"section": figures, "frequencies": finite}
+
+
+def _hertz(ratio: float, wave_numbers: list[float], power: int) -> list[float]:
+    """Natural frequencies by stiffness over inertia; products, which overflow to infinity where powers raise."""
+    return [prod([number] * power) * sqrt(ratio) / (2 * pi) for number in wave_numbers]
 
 
 def _number(value: Value | None, known: Mapping[str, float]) -> float | None:
