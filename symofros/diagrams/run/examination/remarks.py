@@ -53,9 +53,8 @@ def remarks(run: Examined, modes: Resolution) -> tuple[str, ...]:
         return ()
     try:
         note = ""
-        examined = not modes.evident or (
-            run.h > 0.0 and run.steps <= WHOLE
-        )  # No mode at a few states knows of contacts.
+        # No mode at a few states knows of contacts.
+        examined = not modes.evident or (run.h > 0.0 and run.steps <= WHOLE)
         if (worst is None and examined) or (run.h == 0.0 and _is_loose(run)):
             external = _answers(run.energies.resolved)
             note = step_note(layout, states, run.repeat, run.h, run.steps, external=external)

@@ -105,17 +105,25 @@ def step_note(layout: Layout, states: States, repeat: Repeat, h: float, steps: i
                 f" {worst.span:.3g} s of the motion of '{worst.block}' change by {100.0 * worst.share:.2g} %{seen},"
                 f" which adds up; compare with {cure}"
             )
-        last = int(np.searchsorted(states[0], states[0][0] + duration * min(1.0, _REPEATED / steps)))
-        last, seen = min(last, len(states[0]) - 1), ""
-        fine = repeat(0, float(states[0][last]), True)
-        if fine is None:
+        coarse, fine = _once_more(states, repeat, steps)
+        if coarse is None or fine is None:
             return f"{stepping} do not show the motion: with {finer} it does not come to this end; {cure}"
-        worst = _changed(layout, None, [x[: last + 1] for x in states], fine, _mean)
+        worst, seen = _changed(layout, None, coarse, fine, _mean), ""
     if worst.share <= (_UNANSWERED if external else 1.0) * TOLERANCE:
         return ""
     by = f"{100.0 * worst.share:.2g} %" if worst.share < 1.0 else "more than 100 %"
     same = ", even where external blocks answer as they did" if external else ""
     return f"{stepping} do not determine the motion of '{worst.block}': {finer} changes it by {by}{seen}{same}; {cure}"
+
+
+def _once_more(states: States, repeat: Repeat, steps: int) -> tuple[States | None, States | None]:
+    """All of a run or its first steps, as it was and by finer steps."""
+    t = states[0]
+    end = float(t[-1]) if steps <= _REPEATED else float(t[0] + (t[-1] - t[0]) * _REPEATED / steps)
+    last = int(np.searchsorted(t, end, side="right")) - 1
+    if t[last] > t[0]:
+        return [x[: last + 1] for x in states], repeat(0, float(t[last]), True)
+    return repeat(0, end, False), repeat(0, end, True)  # No record lies that early.
 
 
 def _size(changed: _Changed) -> float:

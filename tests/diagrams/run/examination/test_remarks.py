@@ -170,3 +170,19 @@ def test_a_window_goes_on_from_a_record_as_the_run_did(monkeypatch: pytest.Monke
     monkeypatch.setattr(simulate, "_resumed", resumed)
     bounce("python", 0.0).run(10.0, dt=1e-2, record=1e-2)
     assert compared and np.all(compared)
+
+
+def test_no_more_than_the_first_20_000_steps_are_made_once_more_however_few_records_there_are(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    spans, sound = [], simulate._resumed
+
+    def resumed(task: Any, states: Any, given: Any, i: int) -> Any:
+        spans.append((float(states[0][i]), task.t_end))
+        return sound(task, states, given, i)
+
+    monkeypatch.setattr(simulate, "_resumed", resumed)
+    monkeypatch.setattr("symofros.diagrams.run.examination.remarks.energy_note", lambda *_: "")
+    pushed("formula", "-2000*x[0]^3", dx=2.0).run(400.0, dt=4e-3, record=200.0)
+    begin, end = spans[-1]
+    assert begin == 0.0 and end == pytest.approx(20_000 * 4e-3)
