@@ -188,8 +188,9 @@ class Editor:
     async def start_job(self, request: Request) -> Response:
         """Start work on the document as it is now."""
         body = await body_of(request)
-        kind, needs = await self.exclusively(partial(self.session.job_request, body))
-        job = await run_sync(partial(self.jobs.start, kind, needs, self.session.document.revision))
+        # Its revision at once: others may change the document as soon as this has its turn no more.
+        asked = await self.exclusively(lambda: (*self.session.job_request(body), self.session.document.revision))
+        job = await run_sync(partial(self.jobs.start, *asked))
         return JSONResponse({"id": job.key}, 202)
 
     async def job(self, request: Request) -> Response:
@@ -240,8 +241,9 @@ class Editor:
             request.query_params,
         )
         result = job.simulated()
-        is_present = job.revision == self.session.document.revision
-        system = await self.exclusively(lambda: self.session.sound_system if is_present else None)
+        system = await self.exclusively(
+            lambda: self.session.sound_system if job.revision == self.session.document.revision else None
+        )
         factor, speed = asked.get("exaggeration", "1"), asked.get("speed", "1")
         content = await run_sync(partial(film_of, system, result, suffix, factor, speed))
         return Response(content, media_type=FILM_TYPES[suffix])

@@ -6,7 +6,7 @@ import io
 import json
 import shutil
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,7 @@ from starlette.testclient import TestClient, WebSocketTestSession
 from starlette.websockets import WebSocketDisconnect
 
 from symofros.studio.editor.document.session import Session
-from symofros.studio.editor.server.app import application
+from symofros.studio.editor.server.app import Editor, application
 from symofros.studio.editor.server.relay import MAX_SOCKETS
 from tests.studio.editor.conftest import BASE, PORT, TOKEN, finished
 from tests.studio.editor.texts import FILES
@@ -282,5 +282,28 @@ def test_a_run_is_shown_at_a_time_and_kept_as_a_file(client: TestClient, folder:
     look(client)
     refused = client.post("/api/pose", json={"run": run, "t": 0})
     assert refused.status_code == 422 and "does not fit" in refused.json()["error"]["object"]
+    outdated = client.get(f"/api/jobs/{run}/film.gif")
+    assert outdated.status_code == 422 and "has changed since" in outdated.json()["error"]["object"]
+
+
+@pytest.mark.parametrize("before", [False, True])
+def test_a_film_is_refused_where_somebody_changes_the_document_between_two_steps_of_a_request(
+    client: TestClient, session: Session, monkeypatch: pytest.MonkeyPatch, before: bool
+) -> None:
+    alone = Editor.exclusively
+
+    async def overtaken(editor: Editor, work: Callable[[], Any]) -> Any:
+        session.document.revision += before
+        result = await alone(editor, work)
+        session.document.revision += not before
+        return result
+
+    if before:  # As the film is asked for.
+        run = finished(client, "simulate", t_end=0.1, points=3)["id"]
+        monkeypatch.setattr(Editor, "exclusively", overtaken)
+    else:  # As the run begins.
+        with monkeypatch.context() as patched:
+            patched.setattr(Editor, "exclusively", overtaken)
+            run = finished(client, "simulate", t_end=0.1, points=3)["id"]
     outdated = client.get(f"/api/jobs/{run}/film.gif")
     assert outdated.status_code == 422 and "has changed since" in outdated.json()["error"]["object"]
