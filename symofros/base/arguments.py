@@ -45,11 +45,14 @@ class _Kind:
         words: What they are, as in "a number".
         allows: Whether a value is one of them.
         remedy: What to do about another one, given it.
+        fault: Name of the entry that is at fault in a container of the right kind, the entry, and what it should be;
+            None where the value as a whole is another.
     """
 
     words: str
     allows: Callable[[Any], bool]
     remedy: Callable[[Any], str]
+    fault: Callable[[Any], tuple[str, Any, _Kind] | None] = lambda _: None
 
 
 def checked(function: Callable[_Parameters, _Result]) -> Callable[_Parameters, _Result]:
@@ -102,6 +105,10 @@ def check_argument(what: str, value: object, annotation: Any) -> None:
 
 
 def _refusal(what: str, value: object, kind: _Kind) -> ArgumentError:
+    entry = kind.fault(value)
+    if entry is not None:
+        name, part, wanted = entry
+        return _refusal(f"{what}{name}", part, wanted)
     stated = f"{type(value).__name__} {value!r:.60}"
     return ArgumentError(Problem(f"{what} is not {kind.words}", stated, f"it is {kind.words}", kind.remedy(value)))
 
@@ -178,7 +185,11 @@ def _any_of(kinds: Sequence[_Kind | None]) -> _Kind | None:
         return None
     told = [kind for kind in known if kind.words != "None"]
     words = " or ".join(dict.fromkeys(kind.words for kind in told)) + ("" if len(told) == len(known) else ", or None")
-    return _Kind(words, lambda value: any(kind.allows(value) for kind in known), told[0].remedy)
+
+    def fault(value: Any) -> tuple[str, Any, _Kind] | None:
+        return next((entry for kind in told if (entry := kind.fault(value)) is not None), None)
+
+    return _Kind(words, lambda value: any(kind.allows(value) for kind in known), told[0].remedy, fault)
 
 
 def _one_of(choices: Sequence[Any]) -> _Kind:
@@ -190,13 +201,19 @@ def _one_of(choices: Sequence[Any]) -> _Kind:
 
 
 def _list_of(item: _Kind | None, container: Any) -> _Kind:
-    def allows(value: Any) -> bool:
-        if isinstance(value, str | bytes | Mapping) or not isinstance(value, container):
-            # An array of texts is a list of names, though not by its class.
-            if container is tuple or not (isinstance(value, np.ndarray) and value.ndim == 1):
-                return False
+    def is_list(value: Any) -> bool:
+        if isinstance(value, str | bytes) or (isinstance(value, Mapping) and container is not Iterable):
+            return False
+        # An array of texts is a list of names, though not by its class.
+        return isinstance(value, container) or (
+            container is not tuple and isinstance(value, np.ndarray) and value.ndim == 1
+        )
+
+    def fault(value: Any) -> tuple[str, Any, _Kind] | None:
         # What can be gone through once only is not looked at.
-        return item is None or not isinstance(value, Collection) or all(item.allows(part) for part in value)
+        if item is None or not is_list(value) or not isinstance(value, Collection):
+            return None
+        return next(((f"[{i}]", part, item) for i, part in enumerate(value) if not item.allows(part)), None)
 
     def remedy(value: Any) -> str:
         if isinstance(value, str):
@@ -204,7 +221,8 @@ def _list_of(item: _Kind | None, container: Any) -> _Kind:
         return "put them in a tuple" if container is tuple else "put them in a list"
 
     what = f", each {item.words}" if item is not None else ""
-    return _Kind(("a tuple" if container is tuple else "a list") + what, allows, remedy)
+    words = ("a tuple" if container is tuple else "a list") + what
+    return _Kind(words, lambda value: is_list(value) and fault(value) is None, remedy, fault)
 
 
 def _tuple_of(items: Sequence[_Kind | None]) -> _Kind:
@@ -220,16 +238,20 @@ def _tuple_of(items: Sequence[_Kind | None]) -> _Kind:
 
 
 def _mapping_of(key: _Kind | None, value: _Kind | None) -> _Kind:
+    def fault(given: Any) -> tuple[str, Any, _Kind] | None:
+        for name, part in given.items() if isinstance(given, Mapping) else ():
+            if key is not None and not key.allows(name):
+                return ": a name", name, key
+            if value is not None and not value.allows(part):
+                return f": {name!r:.60}", part, value
+        return None
+
     def allows(given: Any) -> bool:
-        if not isinstance(given, Mapping):
-            return False
-        return all(
-            (key is None or key.allows(name)) and (value is None or value.allows(part)) for name, part in given.items()
-        )
+        return isinstance(given, Mapping) and fault(given) is None
 
     parts = [f"{kind.words} for {what}" for what, kind in (("the name", key), ("the value", value)) if kind is not None]
     words = "a mapping" + (", with " + " and ".join(parts) if parts else "")
-    return _Kind(words, allows, lambda _: "for example {'name': value}")
+    return _Kind(words, allows, lambda _: "for example {'name': value}", fault)
 
 
 def is_number(value: object) -> bool:

@@ -64,7 +64,7 @@ def test_a_run_that_fails_ends_with_1() -> None:
     [
         (["--set", "q9=1"], "no coordinate, speed or run-time parameter 'q9'"),
         (["--set", "q1"], "NAME=VALUE"),
-        (["--set", "q1=fast"], "is not a number"),
+        (["--set", "q1=fast"], "'q1' is given no number"),
         (["--input", "q1=__class__"], "formula"),
         (["--method", "rk5"], "no method 'rk5'"),
         (["-o", "run.xlsx"], "can't save as"),

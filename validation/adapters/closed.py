@@ -17,7 +17,7 @@ from validation.adapters.description import evaluate
 from validation.contract.interface import States, Subject, TreeEngine
 from validation.contract.memory import LatestResults
 from validation.contract.quantities import CONSTRAINED
-from validation.mechanics.assembly import Assembly, assemble
+from validation.mechanics.assembly import Assembly, anchor_name, assemble
 from validation.mechanics.geometry import Array
 from validation.mechanics.parts import coordinate_symbols, speed_symbols
 
@@ -200,15 +200,6 @@ class ConstrainedEngine:
 
         rate = sum(w * (residual(k * h) - residual(-k * h)) for k, w in _SLOPE) / h
         return np.zeros((len(states), 1)), at(0.0)[0], -np.asarray(rate)[:, None]
-
-
-def anchor_name(assembly: Assembly, anchor: tuple[str, str | None]) -> str:
-    """The public name of the frame that an anchor names; "" for the world's own."""
-    body, frame = anchor
-    if frame is None:
-        return body if body in assembly.frames and body != "world" else ""
-    qualified = f"{body}.{frame}"
-    return qualified if qualified in assembly.frames else frame
 
 
 def joined_frames(assembly: Assembly, system: sf.System) -> tuple[str, ...]:

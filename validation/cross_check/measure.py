@@ -61,6 +61,9 @@ def measure(
     stored = _baseline(baseline, settings)
     try:
         cases = named(models, floating_base) if models else standard_set()
+        files = [case.path for case in cases if case.path is not None]
+        if len(files) == len(cases) and not any(path.exists() for path in files):
+            sf.load(files[0])  # Says that it is missing, and what is there; beside others it is one that fails.
     except (LookupError, FileNotFoundError) as error:
         raise typer.BadParameter(str(error.args[0]), param_hint="MODEL") from None
     except sf.DescriptionError as error:

@@ -141,7 +141,6 @@ def named(names: list[str], floating_base: bool) -> list[Case]:
 
     Raises:
         LookupError: A name is neither.
-        DescriptionError: There is no such file.
         FileNotFoundError: A robot's package is not installed.
     """
     cases = list(dict.fromkeys(_named(name, floating_base) for name in names))
@@ -156,8 +155,6 @@ def named(names: list[str], floating_base: bool) -> list[Case]:
 
 def _named(name: str, floating_base: bool) -> Case:
     path = Path(name)
-    if path.suffix and not path.exists():
-        sf.load(path)  # Says which file is missing, and the nearest that is there.
     if path.suffix or path.exists():
         return Case(path.stem, path, floating_base and path.suffix.lower() == ".urdf")
     if name in ROBOTS:

@@ -331,3 +331,12 @@ class _AssemblyBuilder:
                 mover, X_BE = self.stations[body.name, frame.name]
             X = X_BE @ self.placement(frame.position, frame.rotation)
             self.frames.append((frame.name, f"{body.name}.{frame.name}", FrameSite(frame.name, mover, X)))
+
+
+def anchor_name(assembly: Assembly, anchor: tuple[str, str | None]) -> str:
+    """The public name of the frame that an anchor names; "" for the world's own."""
+    body, frame = anchor
+    if frame is None:
+        return body if body in assembly.frames and body != "world" else ""
+    qualified = f"{body}.{frame}"
+    return qualified if qualified in assembly.frames else frame

@@ -11,8 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 import symofros as sf
-from validation.adapters.closed import anchor_name
-from validation.mechanics.assembly import Assembly, assemble
+from validation.mechanics.assembly import Assembly, anchor_name, assemble
 from validation.mechanics.geometry import Array
 from validation.procedures.scene import Cell, Scene, derivative, off
 

@@ -84,8 +84,9 @@ class Entries:
         return math.nan
 
     def numbers(self, node: Node, what: str) -> dict[str, float]:
-        """A mapping from names to numbers."""
-        return {key: self.number(item, f"{what}: '{key:.60}'") for key, item in self.mapping(node, what).items()}
+        """A mapping from names to numbers, those that are none left out."""
+        values = {key: self.number(item, f"{what}: '{key:.60}'") for key, item in self.mapping(node, what).items()}
+        return {key: value for key, value in values.items() if not math.isnan(value)}
 
     def texts(self, node: Node, what: str) -> dict[str, str]:
         """A mapping from names to texts."""

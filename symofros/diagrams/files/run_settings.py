@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import fields
 from typing import Any
 
@@ -25,6 +26,8 @@ def read_settings(entries: Entries, diagram: Diagram, node: Node) -> RunSettings
             values[key] = entries.one_of(item, "simulation: method", tuple(METHODS))
         else:
             number = entries.number(item, f"simulation: {key}")
+            if math.isnan(number):
+                continue
             if key != "t0" and number <= 0.0:
                 entries.fault(item, f"simulation: {key}", number, "above zero", "leave it out for the default")
             values[key] = int(number) if key == "threads" and number > 0.0 else number

@@ -100,7 +100,7 @@ def test_columns_of_any_number_of_states(width: str) -> None:
         pre = kernel.prepare(np.array([parameters("friction_arm")]))
         for n in (1, 2, 3, 7, 8, 9, 16, 21):
             inputs = given(kernel, n)
-            columns = kernel._by_lanes(n, pre, [*map(np.asfortranarray, inputs)], BatchOptions(columns=True))
+            columns = kernel._by_lanes(n, pre, [*map(np.asfortranarray, inputs)], BatchOptions(columns=True), ())
             for found, expected in zip(columns, kernel._by_rows(n, [pre, *inputs], 1), strict=True):
                 assert np.array_equal(found, expected) and (found.strides[0] == 8 or n == 1)
 

@@ -94,7 +94,6 @@ def test_single_precision_stands_for_the_nearest_rotation() -> None:
         (sf.Target(rotation=np.eye(4)), r"shape \(4, 4\)"),
         (sf.Target(rotation=np.full((3, 3), np.nan)), "nan among its numbers"),
         (sf.Target(), "says nothing of where the frame is wanted"),
-        ([0.5, 0, 0], "says nothing of where the frame is wanted"),
     ],
 )
 def test_a_target_that_is_none_is_refused_in_words(target: Any, says: str) -> None:
@@ -102,6 +101,11 @@ def test_a_target_that_is_none_is_refused_in_words(target: Any, says: str) -> No
         sf.inverse_kinematics(wrist(), {"tip": target})
     assert "frame 'tip'" in raised.value.problem.what
     assert all((raised.value.problem.found, raised.value.problem.rule, raised.value.problem.remedy))
+
+
+def test_numbers_in_place_of_a_target_are_named_by_their_frame() -> None:
+    with pytest.raises(sf.ArgumentError, match=r"targets: 'tip' is not a Target(.|\n)*sf.Target\(position="):
+        sf.inverse_kinematics(wrist(), {"tip": [0.5, 0, 0]})  # type: ignore[dict-item]
 
 
 def test_a_frame_that_does_not_exist() -> None:

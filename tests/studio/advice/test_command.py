@@ -46,7 +46,7 @@ def test_for_people() -> None:
     [
         (["--scene", "missing.yaml"], "no such file"),
         (["--scene", MODEL], "unknown entry 'symofros'"),
-        (["--scene", SCENE, "--tolerance", "tight"], "is not a number"),
+        (["--scene", SCENE, "--tolerance", "tight"], "is given no number"),
         (["--scene", SCENE, "--tolerance", "top=1"], "did you mean 'tip'"),
         (["--scene", SCENE, "--tolerance", "-1"], "no tolerance"),
     ],

@@ -13,12 +13,11 @@ from exudyn import itemInterface as items
 from exudyn.advancedUtilities import CreateSymbolicUserFunction
 
 import symofros as sf
-from validation.adapters.closed import anchor_name
 from validation.adapters.exudyn.ancf import node_sensor, straight_beam
 from validation.adapters.exudyn.motion import Link, linkage
 from validation.adapters.exudyn.planar import Cable, populate
 from validation.adapters.exudyn.steps import Timed
-from validation.mechanics.assembly import BASE, assemble
+from validation.mechanics.assembly import BASE, anchor_name, assemble
 from validation.mechanics.geometry import Array
 
 # What its stubs state wrongly, or not at all.

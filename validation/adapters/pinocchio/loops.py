@@ -14,10 +14,10 @@ import numpy as np
 import pinocchio as pin
 
 import symofros as sf
-from validation.adapters.closed import AXES, anchor_name
+from validation.adapters.closed import AXES
 from validation.adapters.pinocchio import tree as trees
 from validation.contract.interface import States, Subject, Unsupported
-from validation.mechanics.assembly import BASE, Assembly, assemble
+from validation.mechanics.assembly import BASE, Assembly, anchor_name, assemble
 from validation.mechanics.geometry import Array
 
 NAME = "pinocchio-loops"
