@@ -73,9 +73,10 @@ class BeamBending:
                 f"rod '{self.beam}' bends by {self.slope:.2g} rad{twisted}{instant}: its {self.sections} sections place"
                 f" it to about {percent:.1g} % of its length"
             )
+        rounded = f"{percent:.3g}" if percent >= 1e4 else f"{percent:.{0 if percent >= 10 else 1}f}"
         return (
             f"beam '{self.beam}' bends by {self.slope:.2g} rad at x = {self.station:.3g} m{twisted}{instant}:"
-            f" second-order theory errs by about {percent:.{0 if percent >= 10 else 1}f} % of the deflection"
+            f" second-order theory errs by about {rounded} % of the deflection"
         )
 
     def amplified(self, amplification: float) -> BeamBending:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from symofros.runtime.beams import BeamBending
 from tests.simulation.beam_models import cantilever, critical_load
 
 METHODS = ("rk4", "semi_implicit_euler", "dopri5", "rodas4", "generalized_alpha")
@@ -138,3 +139,8 @@ def test_the_tension_of_a_rotor_lessens_the_error_of_its_blade() -> None:
     errors = [sf.modes(m, q, [speed, 0, 0, 0]).bendings[0].error for speed in (0.0, 1.0, 4.0, 16.0, 64.0)]
     assert errors[0] == pytest.approx(m.beams()[0].bending(q[1:]).error, rel=1e-9)
     assert np.all(np.diff(errors) < 0.0) and errors[-1] == pytest.approx(0.75 * errors[0], rel=0.02)
+
+
+@pytest.mark.parametrize(("error", "percent"), [(0.012, "1.2"), (0.5, "50"), (12.345, "1234"), (3.2e75, "3.2e+77")])
+def test_estimated_errors_are_told_in_few_digits(error: float, percent: str) -> None:
+    assert f"errs by about {percent} % of" in str(BeamBending("strip", 1.0, 2.0, 0.0, 0.1, error))
