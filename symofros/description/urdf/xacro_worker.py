@@ -143,7 +143,10 @@ def expanded(file: str, folder: str, arguments: dict[str, str]) -> str:
     bound()
     guard(folder)
     document = xacro.process_file(file, mappings=dict(arguments))
-    return str(document.toprettyxml(indent=" "))
+    text = str(document.toprettyxml(indent=" "))
+    if len(text) > MAX_BYTES:
+        raise Refusal(f"it expands to {len(text)} characters, more than {MAX_BYTES}")
+    return text
 
 
 def main() -> None:
