@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import pytest
 
 import symofros as sf
-from symofros.description.urdf import xacro_files, xacro_worker
+from symofros.description.urdf import xacro_expressions, xacro_files
 
 pytest.importorskip("xacro")
 
@@ -72,7 +73,16 @@ def test_files_of_the_package_are_found(tmp_path: Path) -> None:
     ("text", "said"),
     [
         ("${().__class__.__bases__[0]}", "begin with '_'"),
-        ("${().__class__.__bases__[0].__subclasses__()}", "may not be called"),
+        ("${().__class__.__bases__[0].__subclasses__()}", "begin with '_'"),
+        ("${dict}", "a type is no value"),
+        ("${python.vars}", "is no value"),
+        ("${xacro.load_yaml}", "a function is no value"),
+        ("${sorted(['a'], key=str)}", "a type is no value"),
+        ("${'a'.format}", "has no '.format'"),
+        ("${'a'.replace('a', 'b' * 10 ** 7) * 2}", "more than 16777216"),
+        ("${2 ** 10 ** 9}", "bits"),
+        ("${factorial(10 ** 9)}", "may not be called"),
+        ("${" + "(" * 150 + "-" * 150 + "1" + ")" * 150 + "}", "deep"),
         ("${python.type(1)}", "'python.type' may not be called"),
         ("${'%s'.format(1)}", "may not be called"),
         ("${[x for x in range(9)]}", "ListComp is not allowed"),
@@ -110,8 +120,10 @@ def test_entities_are_refused(tmp_path: Path) -> None:
 
 
 def test_memory_and_time_are_bounded(tmp_path: Path) -> None:
-    assert "Memory" in faults(write(tmp_path, '<link name="${len([0]*10**10)}"/>'))
-    assert "it expands to" in faults(write(tmp_path, "<link name=\"${'a'*2*10**7}\"/>"))
+    assert "more than 16777216" in faults(write(tmp_path, '<link name="${len([0]*10**10)}"/>'))
+    lists = "+".join(["[[0]*10**7]"] * 30)  # 80 MB each
+    assert "Memory" in faults(write(tmp_path, f'<link name="${{len({lists})}}"/>'))
+    assert "it expands to" in faults(write(tmp_path, "<link name=\"${'a'*10**7}${'a'*10**7}\"/>"))
 
 
 def test_problems_of_the_urdf_name_lines_of_the_expanded_text(tmp_path: Path) -> None:
@@ -124,6 +136,46 @@ def test_without_xacro_the_remedy_is_said(tmp_path: Path, monkeypatch: pytest.Mo
     assert "pip install 'symofros[xacro]'" in faults(write(tmp_path, ""))
 
 
-@pytest.mark.parametrize("expression", ["pi/2", "a.b['c'][0] if x > 1 and not y else -2**3", "max(1, radians(90))"])
-def test_arithmetic_is_allowed(expression: str) -> None:
-    xacro_worker.vet(expression)
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("abs", "python.type"), ("len", "python.vars"), ("str", "python.map"), ("load_yaml", "xacro.load_yaml")],
+)
+def test_no_name_of_a_file_becomes_a_function(tmp_path: Path, name: str, value: str) -> None:
+    """A property with the name of a function neither holds a function nor replaces it."""
+    text = f'<xacro:property name="{name}" value="${{{value}}}"/><link name="${{{name}}}"/>'
+    assert "is no value of an expression" in faults(write(tmp_path, text))
+    joint = '<joint name="j" type="continuous"><parent link="base"/><child link="l7"/></joint>'
+    inertial = INERTIAL.format(mass="len([1])")
+    text = f'<xacro:property name="{name}" value="7"/><link name="l${{max(0, {name})}}">{inertial}</link>{joint}'
+    path = write(tmp_path, text)
+    assert sf.load(path).body("l7").name == "l7"
+
+
+@pytest.mark.parametrize(
+    ("expression", "value"),
+    [
+        ("pi/2", math.pi / 2),
+        ("a['c'][0] if x > 1 and not y else -2**3", 5),
+        ("a['c'][0] if 0 < x < 1 or y else -2**3", -8),
+        ("max(1, radians(90))", math.pi / 2),
+        ("math.hypot(3, 4) + python.len(a)", 6.0),
+        ("'left_arm'.split('_')[0].upper() + '%02d' % x", "LEFT03"),
+        ("a.get('b', 'none')", "none"),
+        ("tokenize('1, 2;3')[1:]", ["2", "3"]),
+        ("x is None or 3 in [x] and range(2) == [0, 1]", True),
+        ("sorted((3, 1), reverse=True) + list(zip([1], [2]))", [3, 1, (1, 2)]),
+    ],
+)
+def test_expressions_are_arithmetic(expression: str, value: object) -> None:
+    symbols = {**xacro_expressions.CONSTANTS, "a": {"c": [5]}, "x": 3, "y": False}
+
+    class Namespace(dict[str, object]):
+        pass
+
+    assert xacro_expressions.Evaluator(symbols, {}, Namespace)(expression) == value
+
+
+@pytest.mark.parametrize("expression", ["'%(a)99999s' % {'a': 1}", "'%*d' % (9999, 1)", "round(1, -10**9)", "1 << 9"])
+def test_no_operation_makes_much_of_little(expression: str) -> None:
+    with pytest.raises(xacro_expressions.Refusal):
+        xacro_expressions.Evaluator({}, {}, frozenset)(expression)

@@ -1,19 +1,20 @@
-"""A process that expands one xacro file: a script of its own, which knows nothing of the rest of this package.
+"""A process that expands one xacro file: a script of its own, which knows of the rest of this package one module.
 
-xacro evaluates Python expressions and opens what a file names. Here an expression is arithmetic, comparisons, indexing
-and calls of the functions of ALLOWED; files are opened inside of one folder only; XML has no document types; memory,
-time and environment are bounded. It reads {"file", "folder", "arguments"} as JSON, and writes {"text"} or {"fault"}.
+xacro gives expressions to Python's `eval` and opens what a file names. Here xacro_expressions evaluates them; files are
+opened inside of one folder only; XML has no document types; memory, time and environment are bounded. It reads {"file",
+"folder", "arguments"} as JSON, and writes {"text"} or {"fault"}.
 """
 
 from __future__ import annotations
 
-import ast
+import importlib.util
 import json
-import math
 import os
 import sys
 import xml.dom.expatbuilder  # noqa: F401 - loaded before files are guarded
 import xml.dom.minidom
+from pathlib import Path
+from types import ModuleType
 from typing import Any
 from xml.parsers import expat
 
@@ -21,44 +22,17 @@ MAX_BYTES = 16 << 20
 MEMORY = 2 << 30  # [bytes]
 SECONDS = 20  # of processor time
 
-_FUNCTIONS = (
-    "abs all any arg bool dict enumerate float int len list max min round sorted range str sum tuple zip "
-    "load_yaml dotify tokenize warning error message fatal"
-)
-ALLOWED = frozenset(_FUNCTIONS.split()) | {name for name in dir(math) if not name.startswith("_")}
-_SPACES = frozenset({"math", "python", "xacro"})
-_NODES = (
-    *(ast.Expression, ast.Constant, ast.Name, ast.Load, ast.BinOp, ast.UnaryOp, ast.BoolOp, ast.Compare, ast.IfExp),
-    *(ast.operator, ast.unaryop, ast.boolop, ast.cmpop, ast.Call, ast.keyword, ast.Attribute, ast.Subscript, ast.Slice),
-    *(ast.List, ast.Tuple, ast.Dict),
-)
+
+def _beside(name: str) -> ModuleType:
+    """A module of this folder, which is not on the path of a script that runs isolated."""
+    spec = importlib.util.spec_from_file_location(name, Path(__file__).with_name(f"{name}.py"))
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
 
-class Refusal(Exception):
-    """What a file may not do."""
-
-
-def vet(expression: str) -> None:
-    """Refuse an expression that does more than compute.
-
-    Raises:
-        Refusal: It does, and what.
-        SyntaxError: It is none.
-    """
-    for node in ast.walk(ast.parse(expression.strip(), mode="eval")):
-        if not isinstance(node, _NODES):
-            raise Refusal(f"'{expression:.80}': {type(node).__name__} is not allowed in an expression")
-        name = node.id if isinstance(node, ast.Name) else node.attr if isinstance(node, ast.Attribute) else ""
-        if name.startswith("_"):
-            raise Refusal(f"'{expression:.80}': names that begin with '_' are not allowed")
-        if isinstance(node, ast.Call) and not _may_call(node.func):
-            raise Refusal(f"'{expression:.80}': '{ast.unparse(node.func):.40}' may not be called")
-
-
-def _may_call(function: ast.expr) -> bool:
-    if isinstance(function, ast.Attribute) and isinstance(function.value, ast.Name):
-        return function.value.id in _SPACES and function.attr in ALLOWED
-    return isinstance(function, ast.Name) and function.id in ALLOWED
+expressions = _beside("xacro_expressions")
 
 
 def parsed(inp: Any, filename: str | None = None) -> Any:
@@ -73,10 +47,10 @@ def parsed(inp: Any, filename: str | None = None) -> Any:
     if not isinstance(inp, str | bytes):
         return inp
     if len(inp) > MAX_BYTES:
-        raise Refusal(f"'{filename}' has more than {MAX_BYTES} bytes")
+        raise expressions.Refusal(f"'{filename}' has more than {MAX_BYTES} bytes")
 
     def doctype(name: str, *_: object) -> None:
-        raise Refusal(f"document types are refused: <!DOCTYPE {name:.60}>")
+        raise expressions.Refusal(f"document types are refused: <!DOCTYPE {name:.60}>")
 
     parser = expat.ParserCreate()
     parser.StartDoctypeDeclHandler = doctype
@@ -93,9 +67,9 @@ def guard(folder: str) -> None:
             real = os.path.realpath(os.fsdecode(args[0]) if isinstance(args[0], bytes) else path)
             inside = real == folder or real.startswith(folder + os.sep)
             if not inside or set(str(mode or "r")) & set("wax+"):
-                raise Refusal(f"'{path:.100}' leaves the folder of the file")
+                raise expressions.Refusal(f"'{path:.100}' leaves the folder of the file")
         elif event.startswith(("os.", "subprocess.", "socket.", "shutil.", "ctypes.", "import")):
-            raise Refusal(f"'{event}' is not allowed")
+            raise expressions.Refusal(f"'{event}' is not allowed")
 
     sys.addaudithook(hook)
 
@@ -122,30 +96,37 @@ def expanded(file: str, folder: str, arguments: dict[str, str]) -> str:
     import yaml  # noqa: F401 - loaded before files are guarded
     from xacro import substitution_args
 
-    evaluate, substitute = xacro.safe_eval, substitution_args._eval
+    functions = {
+        "load_yaml": xacro.load_yaml,
+        "dotify": xacro.YamlDictWrapper,
+        "abs_filename": xacro.abs_filename_spec,
+        "arg": lambda name: xacro.substitution_args_context["arg"][name],
+    }
 
-    def safe_eval(expression: str, *scopes: Any) -> Any:
-        vet(expression)
-        return evaluate(expression, *scopes)
+    def safe_eval(expression: str, symbols: Any, _: Any = None) -> Any:
+        return expressions.Evaluator(symbols, functions, xacro.NameSpace)(expression)
 
-    def safe_substitution(expression: str, context: Any) -> Any:
-        vet(expression)
-        return substitute(expression, context)
+    def substitution(expression: str, context: dict[str, Any]) -> str:
+        known = {k: substitution_args.convert_value(v, "auto") for k, v in context.get("arg", {}).items()}
+        known = {**expressions.CONSTANTS, **known}
+        own = {"arg": known.__getitem__, "find": find, "dirname": lambda: os.path.dirname(context["filename"])}
+        return str(expressions.Evaluator(known, own, xacro.NameSpace)(expression))
 
     def find(name: str) -> str:
         if name != os.path.basename(folder):
-            raise Refusal(f"$(find {name:.60}): packages other than that of the file, '{folder}', are not looked for")
+            what = f"packages other than that of the file, '{folder}', are not looked for"
+            raise expressions.Refusal(f"$(find {name:.60}): {what}")
         return folder
 
     xacro.safe_eval, xacro.parse = safe_eval, parsed
-    substitution_args._eval, substitution_args._eval_find = safe_substitution, find
+    substitution_args._eval, substitution_args._eval_find = substitution, find
     os.environ.clear()
     bound()
     guard(folder)
     document = xacro.process_file(file, mappings=dict(arguments))
     text = str(document.toprettyxml(indent=" "))
     if len(text) > MAX_BYTES:
-        raise Refusal(f"it expands to {len(text)} characters, more than {MAX_BYTES}")
+        raise expressions.Refusal(f"it expands to {len(text)} characters, more than {MAX_BYTES}")
     return text
 
 
