@@ -14,6 +14,7 @@ import symofros as sf
 from symofros.base.options import Options
 from symofros.compiler import Compilation
 from tests.mechanics.beams.cases import CASES
+from validation.truth_data.catalogue import models as truth_models
 
 FEW_FUNCTIONS = ("dynamics", "potential_energy")
 ALL_FUNCTIONS = (*FEW_FUNCTIONS, "forward_dynamics", "kinetic_energy", "frame_pose")
@@ -54,7 +55,8 @@ def digest(system: sf.System, functions: tuple[str, ...]) -> str:
 def digests(choice: str) -> dict[str, str]:
     """Digests by name of the system."""
     functions = ALL_FUNCTIONS if choice == "all" else FEW_FUNCTIONS
-    return {name: digest(system, functions) for name, system in systems(choice).items()}
+    texts = {name: digest(system, functions) for name, system in systems(choice).items()}
+    return texts | {f"truth: {m.name}": hashlib.sha256(repr(m.tree).encode()).hexdigest() for m in truth_models()}
 
 
 if __name__ == "__main__":

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from math import fsum
 
+import mpmath
 import numpy as np
 
 from validation.engines.interface import Joint, Link, Rows, Tree, Vector, rows, vector
 
 
 def turned(draw: np.random.Generator) -> Rows:
-    """A random rotation."""
-    R = np.linalg.qr(draw.normal(size=(3, 3)))[0]
-    return rows(R * np.sign(np.linalg.det(R)))
+    """A random rotation: of LAPACK's QR decomposition, in digits that no processor and no library changes."""
+    with mpmath.workdps(40):
+        Q, _ = mpmath.qr(mpmath.matrix(draw.normal(size=(3, 3)).tolist()))
+        return rows(np.array((Q * mpmath.sign(mpmath.det(Q))).tolist(), dtype=float))
 
 
 def shifted(draw: np.random.Generator, size: float = 0.5) -> Vector:
@@ -23,10 +26,10 @@ def shifted(draw: np.random.Generator, size: float = 0.5) -> Vector:
 def inertia(draw: np.random.Generator, size: float = 0.1) -> Rows:
     """Moments of inertia about the mass centre that a body can have, along axes that are not principal ones."""
     spread = draw.uniform(0.2, 1.0, 3)
-    principal = np.diag(size * (spread.sum() - spread))
+    principal = size * (sum(spread) - spread)
     R = np.array(turned(draw))
-    matrix = R @ principal @ R.T
-    return rows((matrix + matrix.T) / 2.0)
+    # Each sum is rounded once: those of BLAS depend on the processor.
+    return rows(np.array([[fsum(R[i] * principal * R[j]) for j in range(3)] for i in range(3)]))
 
 
 def link(draw: np.random.Generator, name: str, parent: int, *joints: Joint) -> Link:
