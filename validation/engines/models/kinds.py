@@ -28,8 +28,8 @@ def inertia(draw: np.random.Generator, size: float = 0.1) -> Rows:
     spread = draw.uniform(0.2, 1.0, 3)
     principal = size * (sum(spread) - spread)
     R = np.array(turned(draw))
-    # Each sum is rounded once: those of BLAS depend on the processor.
-    return rows(np.array([[fsum(R[i] * principal * R[j]) for j in range(3)] for i in range(3)]))
+    # Symmetric to the bit, and each sum is rounded once: those of BLAS depend on the processor.
+    return rows(np.array([[fsum(R[i] * R[j] * principal) for j in range(3)] for i in range(3)]))
 
 
 def link(draw: np.random.Generator, name: str, parent: int, *joints: Joint) -> Link:
