@@ -48,6 +48,13 @@ class Graph:
         self.packs: list[Pack] = []
         self._known: dict[object, int] = {1.0: 1}
 
+    def __deepcopy__(self, memo: dict[int, object]) -> Graph:
+        """A graph that grows by itself: its lists and tables are new, what they hold is never changed."""
+        result = memo[id(self)] = Graph.__new__(Graph)
+        for name, held in vars(self).items():
+            setattr(result, name, held.copy())
+        return result
+
     def __len__(self) -> int:
         """Number of nodes, the unused node 0 included."""
         return len(self.op)

@@ -30,7 +30,7 @@ class Op:
     Attributes:
         name: Name in graphs, text dumps and, for functions, in expressions.
         arity: Number of operands.
-        rule: NumPy arrays in, NumPy array out; IEEE semantics, no exceptions.
+        rule: NumPy arrays in, NumPy array out; IEEE semantics, no exceptions. The caller turns NumPy's warnings off.
         c: C text with holes {0}, {1}.
         derivative: (graph, operands, result, i) -> partial derivative by operand i, as edges.
         cost: Category under which the operation counter books it.
@@ -86,26 +86,6 @@ def _sinh(x: float) -> float:
     return math.copysign(math.inf, x) if abs(x) > 711.0 else math.sinh(x)
 
 
-def _sqrt(x: Any) -> Any:
-    with np.errstate(invalid="ignore"):
-        return np.sqrt(x)
-
-
-def _div(x: Any, y: Any) -> Any:
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        return np.divide(x, y)
-
-
-def _add(x: Any, y: Any) -> Any:
-    with np.errstate(invalid="ignore", over="ignore"):
-        return np.add(x, y)
-
-
-def _mul(x: Any, y: Any) -> Any:
-    with np.errstate(invalid="ignore", over="ignore", under="ignore"):
-        return np.multiply(x, y)
-
-
 def _step(x: Any) -> Any:
     return np.where(np.isnan(x), x, np.greater_equal(x, 0.0).astype(np.float64))
 
@@ -153,11 +133,11 @@ def _one_minus_square(g: Any, x: int) -> int:
 OPS: dict[str, Op] = {
     op.name: op
     for op in (
-        Op(ADD, 2, _add, "{0} + {1}", lambda g, x, y, i: 1, "add", is_function=False),
-        Op(MUL, 2, _mul, "{0} * {1}", _d_product, "mul", is_function=False),
-        Op(DIV, 2, _div, "{0} / {1}", _d_quotient, "div", is_function=False),
+        Op(ADD, 2, np.add, "{0} + {1}", lambda g, x, y, i: 1, "add", is_function=False),
+        Op(MUL, 2, np.multiply, "{0} * {1}", _d_product, "mul", is_function=False),
+        Op(DIV, 2, np.divide, "{0} / {1}", _d_quotient, "div", is_function=False),
         Op("pow", 2, _libm(math.pow), "pow({0}, {1})", _d_power),
-        Op("sqrt", 1, _sqrt, "sqrt({0})", lambda g, x, y, i: g.div(g.constant(0.5), y), "div"),
+        Op("sqrt", 1, np.sqrt, "sqrt({0})", lambda g, x, y, i: g.div(g.constant(0.5), y), "div"),
         Op("exp", 1, _libm(math.exp), "exp({0})", lambda g, x, y, i: y),
         Op("log", 1, _libm(_log), "log({0})", lambda g, x, y, i: g.div(1, x[0])),
         Op(

@@ -103,7 +103,8 @@ class FaultSimulator:
             node = abs(arg)
             x = 0.0 if node == 0 else values[node] if node in values else self._leaf(node)
             operands.append(x if arg > 0 else -x)
-        result: Array | float = OPS[op].rule(*operands)
+        with np.errstate(all="ignore"):
+            result: Array | float = OPS[op].rule(*operands)
         return result
 
     def affected(self, fault: Fault) -> tuple[list[Function], Callable[[Function], list[Array]]]:

@@ -58,8 +58,9 @@ class Evaluation:
         values = dict(self._numbers)
         for node, slot in self._slots.items():
             values[node] = inputs[slot.group][:, slot.index]
-        for node, rule, args in self._steps:
-            values[node] = rule(*[values[edge] if edge >= 0 else -values[-edge] for edge in args])
+        with np.errstate(all="ignore"):
+            for node, rule, args in self._steps:
+                values[node] = rule(*[values[edge] if edge >= 0 else -values[-edge] for edge in args])
         return [values[edge] if edge >= 0 else -values[-edge] for edge in self._edges]
 
 

@@ -13,6 +13,8 @@ from functools import cache, lru_cache
 from importlib import import_module
 from typing import Any
 
+import numpy as np
+
 from symofros.expr.ops import ADD, DIV, MUL, OPS, STOP_GRADIENT
 
 # A number in extended precision: mpmath's mpf, which has no type annotations.
@@ -65,7 +67,8 @@ def nearest(op: str, *x: float) -> float:
 @lru_cache(maxsize=4096)
 def _nearest(op: str, *x: float) -> float:
     # The C library knows domains and infinities, and errs by less than the digits that are replaced.
-    approximate = float(OPS[op].rule(*x))
+    with np.errstate(all="ignore"):
+        approximate = float(OPS[op].rule(*x))
     if op in _EXACT or approximate == 0.0 or not math.isfinite(approximate) or not all(map(math.isfinite, x)):
         return approximate
     return float(extended_rule(op)(*map(extended_context().mpf, x)))

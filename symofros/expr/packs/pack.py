@@ -35,6 +35,10 @@ class Pack:
     first_node: int = 0
     min_lanes: int = MIN_LANES
 
+    def __deepcopy__(self, memo: dict[int, object]) -> Pack:
+        """The pack itself, which nothing changes."""
+        return self
+
     def with_lane(self, lane: int, edge: Edge) -> Pack:
         """A copy in which one lane holds another edge."""
         if self.lanes[lane] == edge:

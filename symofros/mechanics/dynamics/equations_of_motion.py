@@ -11,7 +11,6 @@ from typing import Self
 from symofros.errors import DescriptionError, Problem
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.graph import Graph
-from symofros.expr.packs.pack import EMPTY
 from symofros.expr.substitute import substitute
 from symofros.expr.vector import Vec3
 from symofros.mechanics.dynamics.acceleration import LinkMotion, Wrench, base_to_tip
@@ -51,7 +50,7 @@ class EquationsOfMotion:
     def fork(self) -> Self:
         """A copy with a graph of its own, in which the kinematics are formed; what else it forms, this one lacks."""
         assert self.kinematics.g is self.g  # Formed once, for all copies.
-        kept = (self.tree, self.tree.coordinates, EMPTY)
+        kept = (self.tree, self.tree.coordinates)
         return copy.deepcopy(self, {id(item): item for item in kept})
 
     @cached_property
