@@ -6,6 +6,7 @@ import datetime
 import inspect
 import re
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass, is_dataclass
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
@@ -169,6 +170,36 @@ def test_what_is_said_of_a_wrong_argument(call: Callable[[], object], words: str
 @pytest.mark.parametrize("number", [1, 1.0, True, np.float32(1), np.int64(1), np.array(1.0), Fraction(1)])
 def test_numbers_of_every_kind_are_numbers(number: Any) -> None:
     assert sf.simulate(model(), Q, t_end=number / 500).outcome.ok
+
+
+def constructors() -> list[type]:
+    """Public dataclasses that people make objects of; of the others, the library makes all."""
+    made_here = {"Advice", "DiagramRun", "EvaluationContext", "Expression", "Outcome", "Problem", "ReadableEquations"}
+    made_here |= {"Rollout", "Trajectories", "Trajectory"}
+    classes = [getattr(module, name) for module in (sf, blocks) for name in dir(module) if name not in made_here]
+    return [cls for cls in classes if isinstance(cls, type) and is_dataclass(cls)]
+
+
+@pytest.mark.parametrize("cls", constructors(), ids=lambda cls: cls.__name__)
+def test_a_keyword_that_no_class_has_is_refused_with_the_nearest(cls: type) -> None:
+    (*_, last) = inspect.signature(cls).parameters
+    with pytest.raises(
+        sf.ArgumentError, match=rf"^{cls.__name__}(.|\n)*'{last}_'(.|\n)*did you mean '{last}'"
+    ) as refusal:
+        cls(**{f"{last}_": 1})
+    assert isinstance(refusal.value, TypeError) and all(vars(refusal.value.problem)[part] for part in ("found", "rule"))
+    with pytest.raises(sf.ArgumentError, match="too many positional arguments"):
+        cls(*[1] * 99)
+
+
+def test_type_errors_from_within_a_constructor_pass_through() -> None:
+    @dataclass(frozen=True)
+    class Strange(blocks.Block):
+        def __post_init__(self) -> None:
+            raise TypeError("from within")
+
+    with pytest.raises(TypeError, match="^from within$"):
+        Strange(name="a")
 
 
 @checked

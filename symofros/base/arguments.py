@@ -11,11 +11,12 @@ import math
 import numbers
 import os
 import types
+from abc import ABCMeta
 from collections.abc import Callable, Collection, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import cache, wraps
 from pathlib import Path
-from typing import Any, Literal, ParamSpec, TypeVar, Union, get_args, get_origin, get_type_hints
+from typing import TYPE_CHECKING, Any, Literal, ParamSpec, TypeVar, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 
@@ -93,6 +94,45 @@ def check_fields(stated: Any) -> None:
             raise _refusal(f"{type(stated).__name__}: {item.name}", value, kind)
 
 
+class CheckedCalls(ABCMeta):
+    """Metaclass of classes that people make objects of, by keywords: a call that does not fit is refused in words.
+
+    Only calls that fail are looked at.
+    """
+
+    if not TYPE_CHECKING:  # Type checkers know the signature from __init__.
+
+        def __call__(cls, *args: Any, **kwargs: Any) -> Any:
+            """Make an object.
+
+            Raises:
+                ArgumentError: Arguments are missing, unknown, or too many.
+            """
+            try:
+                return super().__call__(*args, **kwargs)
+            except TypeError:
+                refuse_misfit(cls.__name__, cls.__signature__, args, kwargs)
+                raise
+
+        @property
+        def __signature__(cls) -> inspect.Signature:
+            """That of __init__, which `inspect` would not look at beside the method above."""
+            initialise = inspect.signature(cls.__init__)
+            return initialise.replace(parameters=[*initialise.parameters.values()][1:])
+
+
+def refuse_misfit(title: str, signature: inspect.Signature, args: Sequence[Any], kwargs: Mapping[str, Any]) -> None:
+    """Refuse a call whose arguments are missing, unknown, or too many.
+
+    Raises:
+        ArgumentError: It is such a call.
+    """
+    try:
+        signature.bind(*args, **kwargs)
+    except TypeError as error:
+        raise _misfit(title, signature, str(error), kwargs) from None
+
+
 def check_argument(what: str, value: object, annotation: Any) -> None:
     """Refuse a value that an annotation does not allow.
 
@@ -118,6 +158,7 @@ def _misfit(name: str, signature: inspect.Signature, fault: str, given: Mapping[
     known = list(signature.parameters)
     unknown = [argument for argument in given if argument not in known]
     remedy = did_you_mean(unknown[0], known) if unknown else "give what it takes, by name"
+    fault = f"got an unexpected keyword argument '{unknown[0]}'" if unknown else fault
     return ArgumentError(Problem(f"{name}: the arguments do not fit", fault, f"it takes {', '.join(known)}", remedy))
 
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from symofros.base.arguments import check_fields
+from symofros.base.arguments import CheckedCalls, check_fields
 
 
 @dataclass(frozen=True)
-class Options:
+class Options(metaclass=CheckedCalls):
     """How to compile a system.
 
     Attributes:

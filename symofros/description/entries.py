@@ -9,15 +9,17 @@ from dataclasses import fields
 from functools import cache, wraps
 from typing import Any, TypeVar
 
-from symofros.errors import DescriptionError, Problem, did_you_mean
+from symofros.base.arguments import refuse_misfit
+from symofros.errors import ArgumentError, DescriptionError, Problem, did_you_mean
 
 _Class = TypeVar("_Class", bound=type)
 _ATTRIBUTE = re.compile(r"^    (\w+): (.*(?:\n {8}.*)*)", re.MULTILINE)
 _UNIT = re.compile(r"\[([^\]]+)\]")
-# What other programs state of a beam under other names.
+# What is stated elsewhere, or by other programs under other names.
 _ABSENT: Mapping[str, str] = {
     "GA": "state GA_y and GA_z, with the correction of shear, of a rod with shear_y and shear_z; else leave it out",
     "kGA": "state it as GA_y and GA_z, of a rod with shear_y and shear_z; else leave it out",
+    "mass": "an Inertia has it: inertia=sf.Inertia(mass=...)",
 }
 
 
@@ -34,8 +36,15 @@ def units_of(noun: type, entry: str) -> tuple[str, ...]:
     return tuple(unit for text in stated for unit in text.split(" or "))
 
 
+class UnknownEntryError(DescriptionError, ArgumentError):
+    """A keyword that the class does not have: a wrong description, and a wrong call."""
+
+
 def refuses_unknown_entries(cls: _Class) -> _Class:
-    """A class decorator, above @dataclass: a keyword that is no field raises DescriptionError with the nearest one."""
+    """A class decorator, above @dataclass: a keyword that is no field raises UnknownEntryError with the nearest one.
+
+    Calls that lack an entry, or have too many, raise ArgumentError.
+    """
     initialise: Any = vars(cls)["__init__"]
     known = tuple(field.name for field in fields(cls) if field.init)
 
@@ -45,7 +54,7 @@ def refuses_unknown_entries(cls: _Class) -> _Class:
         if unknown:
             name = entries.get("name", args[0] if args else None)
             what = cls.__name__ + (f" '{name}'" if isinstance(name, str) else "")
-            raise DescriptionError(
+            raise UnknownEntryError(
                 [
                     Problem(
                         f"{what}: no entry '{entry}'",
@@ -56,7 +65,11 @@ def refuses_unknown_entries(cls: _Class) -> _Class:
                     for entry in unknown
                 ]
             )
-        initialise(self, *args, **entries)
+        try:
+            initialise(self, *args, **entries)
+        except TypeError:
+            refuse_misfit(cls.__name__, inspect.signature(cls), args, entries)
+            raise
 
     type.__setattr__(cls, "__init__", checked)
     return cls

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from symofros.base.arguments import CheckedCalls
 from symofros.description.parser import ExpressionError, parse
 from symofros.errors import DescriptionError, Problem, did_you_mean
 from symofros.expr.expression import Expression
@@ -102,7 +103,7 @@ def symbols(value: Value) -> frozenset[str]:
 
 
 @dataclass(frozen=True)
-class Rotation:
+class Rotation(metaclass=CheckedCalls):
     """A constant rotation R_AB (x_A = R_AB x_B), in the form it was stated.
 
     Attributes:

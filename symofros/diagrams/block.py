@@ -13,6 +13,7 @@ from typing import Any, ClassVar, Literal, Protocol
 
 import numpy as np
 
+from symofros.base.arguments import CheckedCalls
 from symofros.description.system import System
 from symofros.diagrams.settings import Plot
 from symofros.diagrams.tensor import Tensor
@@ -27,7 +28,7 @@ Values = Mapping[str, Tensor]
 
 
 @dataclass(frozen=True)
-class Port:
+class Port(metaclass=CheckedCalls):
     """Where a signal enters or leaves.
 
     Attributes:
@@ -44,7 +45,7 @@ class Port:
 
 
 @dataclass(frozen=True)
-class Ports:
+class Ports(metaclass=CheckedCalls):
     """All ports of a block, in order."""
 
     inputs: tuple[Port, ...] = ()
@@ -182,7 +183,7 @@ class EvaluationContext:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Block:
+class Block(metaclass=CheckedCalls):
     """One block of a diagram; its fields are what its form asks for.
 
     Attributes:

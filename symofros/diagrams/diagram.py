@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from symofros.base.arguments import checked
+from symofros.base.arguments import CheckedCalls, checked
 from symofros.description.system import System
 from symofros.diagrams.block import Block, ModelFile, ModelSetup
 from symofros.diagrams.program.variants import with_functions
@@ -34,7 +34,7 @@ class Part:
 
 
 @dataclass
-class Diagram:
+class Diagram(metaclass=CheckedCalls):
     """Blocks and wires; a system of equations once `sf.compile_diagram` has read it.
 
     Attributes:

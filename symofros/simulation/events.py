@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
-from symofros.base.arguments import check_fields
+from symofros.base.arguments import CheckedCalls, check_fields
 
 _SIGNS = {"both": 0, "rising": 1, "falling": -1}
 
 
 @dataclass(frozen=True)
-class Event:
+class Event(metaclass=CheckedCalls):
     """A zero crossing.
 
     Attributes:

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from symofros.base.arguments import check_fields
+from symofros.base.arguments import CheckedCalls, check_fields
 from symofros.base.arrays import numeric
 from symofros.errors import Problem, ShapeError, UnknownNameError, did_you_mean
 from symofros.runtime.calls.kernel import Array
@@ -17,7 +17,7 @@ from symofros.runtime.model import Model
 
 
 @dataclass(frozen=True)
-class Signal:
+class Signal(metaclass=CheckedCalls):
     """Samples of an input over time; beyond its ends the first and last value hold.
 
     Attributes:

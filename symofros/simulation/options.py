@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Literal, Protocol, TypeVar
 
 from numpy.typing import ArrayLike
 
-from symofros.base.arguments import check_fields
+from symofros.base.arguments import CheckedCalls, check_fields
 from symofros.errors import Problem, UnknownNameError, did_you_mean
 from symofros.runtime.beams import BEAM_LIMIT
 
@@ -18,7 +18,7 @@ STABILISATIONS = ("projection", "baumgarte", "none")
 
 
 @dataclass(frozen=True)
-class SimulationOptions:
+class SimulationOptions(metaclass=CheckedCalls):
     """How a run is stepped, kept on its constraints, and recorded.
 
     Attributes:

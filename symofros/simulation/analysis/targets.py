@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from symofros.base.arguments import CheckedCalls
 from symofros.base.arrays import real_array
 from symofros.base.measures import ANGLE, LENGTH, Measures
 from symofros.errors import Problem, ShapeError, SymofrosError
@@ -23,7 +24,7 @@ ROTATION_TOLERANCE = 1e-6
 
 
 @dataclass(frozen=True)
-class Target:
+class Target(metaclass=CheckedCalls):
     """Where a frame is wanted.
 
     Attributes:

@@ -10,6 +10,7 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
+from symofros.base.arguments import CheckedCalls
 from symofros.errors import DescriptionError, Problem, did_you_mean
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.results.trajectory import Trajectory
@@ -19,7 +20,7 @@ KINDS: tuple[Kind, ...] = get_args(Kind)
 
 
 @dataclass(frozen=True)
-class Output:
+class Output(metaclass=CheckedCalls):
     """Something of interest, and how far it may be off.
 
     Attributes:
@@ -94,7 +95,7 @@ def missing(output: Output, names: Any) -> Problem:
 
 
 @dataclass(frozen=True)
-class Scene:
+class Scene(metaclass=CheckedCalls):
     """A task: how a system is driven, for how long, and what of its motion matters.
 
     Attributes:
