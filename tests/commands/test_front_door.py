@@ -12,7 +12,7 @@ import pytest
 from typer.testing import CliRunner, Result
 
 import symofros as sf
-from symofros.__main__ import app
+from symofros.__main__ import _COMMANDS, _command, app
 from symofros.commands.shared import shown
 from symofros.simulation.progress import pace_of
 
@@ -45,6 +45,24 @@ def test_commands_are_listed_and_completed(monkeypatch: pytest.MonkeyPatch) -> N
     for name, value in {"_SYMOFROS_COMPLETE": "complete_bash", "COMP_WORDS": "symofros si", "COMP_CWORD": "1"}.items():
         monkeypatch.setenv(name, value)
     assert CliRunner().invoke(app, [], prog_name="symofros").output.split() == ["simulate"]
+
+
+def test_the_help_of_all_commands_imports_none_of_them() -> None:
+    code = (
+        "import sys, symofros.__main__ as m; from typer.testing import CliRunner; "
+        "print(CliRunner().invoke(m.app, ['--help']).output); print(*sys.modules)"
+    )
+    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    *listed, modules = told.strip().splitlines()
+    rows = {
+        line.split()[0]: " ".join(line.split()[1:]) for line in listed if line.startswith("  ") and line.split()[1:]
+    }
+    assert len(_COMMANDS) > 10
+    for name in _COMMANDS:
+        summary = (_command(name).help or "").split("\n")[0]
+        assert summary.startswith(rows[name].removesuffix("...")) and len(rows[name]) > 20
+    assert {m for m in modules.split() if m.startswith("symofros.commands.")} == set()
+    assert not {"pydantic", "sympy", "ruamel.yaml"} & set(modules.split())
 
 
 def test_help_of_simulate_states_seconds() -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tarfile
@@ -33,8 +34,14 @@ MEGABYTES = 260
 
 @pytest.fixture(scope="module")
 def distributions(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("dist")
-    command = [sys.executable, "-m", "build", "--outdir", str(folder), str(ROOT)]
+    """Built in a copy of what git knows: two workers that build in one folder take each other's files away."""
+    folder, sources = tmp_path_factory.mktemp("dist"), tmp_path_factory.mktemp("sources")
+    listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    for name in filter(None, listed.split("\0")):
+        if (ROOT / name).is_file():
+            (sources / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(ROOT / name, sources / name)
+    command = [sys.executable, "-m", "build", "--outdir", str(folder), str(sources)]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
     assert "Deprecat" not in done.stdout + done.stderr
@@ -129,23 +136,26 @@ def test_first_steps_of_the_readme_from_the_wheel(base: Environment) -> None:
 
 
 @pytest.mark.parametrize(
-    ("command", "extra"),
+    ("command", "extra", "code"),
     [
-        ("symofros check robot.urdf", "validation"),
-        ("symofros validation --help", "validation"),
-        ("python -m validation", "validation"),
-        ("symofros view robot.urdf", "view"),
-        ("symofros edit arm.yaml", "gui"),
-        ("symofros export robot.urdf --target fmu3 -o out/fmu", "fmi"),
-        ("symofros simulate arm.yaml 0.1 --picture run.png", "plots"),
+        # It compares the ways of the package itself, which nobody confirms.
+        ("symofros check robot.urdf", "validation", 1),
+        ("symofros validation --help", "validation", 2),
+        ("python -m validation", "validation", 2),
+        ("symofros view robot.urdf", "view", 2),
+        ("symofros edit arm.yaml", "gui", 2),
+        ("symofros export robot.urdf --target fmu3 -o out/fmu", "fmi", 2),
+        ("symofros simulate arm.yaml 0.1 --picture run.png", "plots", 2),
     ],
 )
-def test_the_base_installation_says_which_extra_is_missing(base: Environment, command: str, extra: str) -> None:
+def test_the_base_installation_says_which_extra_is_missing(
+    base: Environment, command: str, extra: str, code: int
+) -> None:
     corpus = ROOT / "reference_models/arm.urdf", ROOT / "reference_models/rigid/cart_pole.yaml"
     for source, name in zip(corpus, ("robot.urdf", "arm.yaml"), strict=True):
         (base.folder / name).write_text(source.read_text())
-    told = base.run("bash", "-c", command, fails=2)
-    assert f"symofros[{extra}]" in told and "Traceback" not in told
+    told = "".join(base.run("bash", "-c", command, fails=code).split())  # Frames of messages break lines.
+    assert f"symofros[{extra}]" in told.replace("│", "") and "Traceback" not in told
 
 
 def test_the_list_of_an_installation_has_all_dependencies_with_licences(base: Environment, tmp_path: Path) -> None:

@@ -124,7 +124,7 @@ def robot_case(label: str) -> Case:
         files = metadata.distribution(ROBOT_PACKAGE).files or []
     except metadata.PackageNotFoundError:
         raise FileNotFoundError(
-            f"robot '{label}': package {ROBOT_PACKAGE} is not installed; pip install {ROBOT_PACKAGE}"
+            f"robot '{label}': package {ROBOT_PACKAGE} is not installed; pip install 'symofros[validation]'"
         ) from None
     for file in files:
         if file.as_posix().endswith(f"/robots/{robot.file}"):
