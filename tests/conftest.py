@@ -73,7 +73,27 @@ def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
     return cores + (cores + 1) // 2
 
 
+def slow_cases(text: str) -> set[str]:
+    """Node ids of the cases that slow_cases.txt lists."""
+    blocks = [block.splitlines() for block in text.split("\n\n")[1:]]
+    return {f"tests/{block[0]}[{case.strip()}]" for block in blocks for case in block[1:]}
+
+
+def _mark_slow_cases(config: pytest.Config, items: list[pytest.Item]) -> None:
+    listed = slow_cases(Path(__file__).with_name("slow_cases.txt").read_text())
+    for item in items:
+        if item.nodeid in listed:
+            item.add_marker("slow")
+    if not any("::" in argument for argument in config.args):  # Whole files: their cases are all there.
+        files = {item.nodeid.partition("::")[0] for item in items}
+        gone = {case for case in listed if case.partition("::")[0] in files}.difference(item.nodeid for item in items)
+        if gone:
+            raise pytest.UsageError(f"tests/slow_cases.txt lists cases that are not there: {', '.join(sorted(gone))}")
+
+
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    _mark_slow_cases(config, items)
     if config.getoption("--slow-part"):
         _keep_a_part_of_the_slow(config, items)
         return

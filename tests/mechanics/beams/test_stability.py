@@ -79,6 +79,7 @@ def tipping(P: float) -> float:
     return 1.0 - float(ends(np.array([x, ends(np.array([x, 0.0, 0.0]))[1], 1e-4]))[2]) / 1e-4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("functions", "error"), [(5, 5e-4), pytest.param(7, 1e-4, marks=pytest.mark.slow)])
 def test_a_strip_tips_over_where_shooting_says_at_a_finite_ratio_of_its_stiffnesses(
     functions: int, error: float

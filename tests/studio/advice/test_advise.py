@@ -64,6 +64,7 @@ def check(advice: sf.Advice, beams: dict[str, int]) -> None:
     assert advice.cost.evaluations <= 1.2 * advice.full_cost.evaluations
 
 
+@pytest.mark.slow
 def test_spin_up(spin_up: sf.Advice) -> None:
     check(spin_up, {"beam": 5})
     assert spin_up.system.body("beam").bend_y == 1 and spin_up.full.body("beam").bend_y == 3
@@ -247,6 +248,7 @@ def soft_pendulum() -> tuple[sf.System, sf.Scene]:
     return sf.System("soft", (beam,), gravity=(0, -9.81, 0)), sf.Scene(0.5, outputs, samples=50)
 
 
+@pytest.mark.slow
 def test_a_soft_pendulum_is_a_geometrically_exact_rod() -> None:
     """Second order errs by more than is allowed, as it says itself; as rods, fewer functions serve no longer."""
     system, scene = soft_pendulum()

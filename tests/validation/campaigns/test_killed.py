@@ -130,6 +130,7 @@ def test_a_killed_client_costs_what_its_workers_were_at(tmp_path: Path) -> None:
     assert result(tmp_path / "c").equals(uninterrupted())
 
 
+@pytest.mark.slow
 def test_an_interrupt_ends_in_words_and_is_resumed(tmp_path: Path) -> None:
     client = start(tmp_path / "c", FEW, workers=1)
     wait_for(client, lambda: sum(events(tmp_path / "c", "done").values()) >= 3)

@@ -50,6 +50,7 @@ def test_a_worker_of_other_code_does_nothing(store: Store) -> None:
     assert not store.journal()
 
 
+@pytest.mark.slow
 def test_batches_that_can_not_be_done_leave_the_others_alone(store: Store) -> None:
     done: list[int] = []
     tasks = [Scripted(0), Scripted(1, "raise"), Scripted(2, "die"), *(Scripted(k) for k in range(3, 12))]

@@ -51,6 +51,7 @@ def test_everything_kept_conserves_energy(periods: int) -> None:
     assert np.abs(error).max() < 1e-9
 
 
+@pytest.mark.slow
 def test_first_order_errs_by_the_square_of_the_deflection_and_does_not_drift() -> None:
     time, error = free_motion("first_order", 0.05, 20)
     early, late = (np.abs(error[part]).max() for part in (time < 10, time >= 10))

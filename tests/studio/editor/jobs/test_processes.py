@@ -152,6 +152,7 @@ def test_a_cross_check_needs_the_harness_and_says_so(client: TestClient, monkeyp
     assert "pip install 'symofros[validation]'" in error_of(caught.value)["remedy"]
 
 
+@pytest.mark.slow
 def test_cross_check_by_workers_that_take_nothing_from_their_folder(
     client: TestClient, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
