@@ -52,6 +52,15 @@ def test_the_conda_recipe_renders() -> None:
     assert recipe.render(rattler.VariantConfig({}), rattler.RenderConfig())
 
 
+@pytest.mark.parametrize("page", ["README.md", "docs/installation.md", "docs/tutorial/index.md"])
+def test_pages_that_newcomers_read_take_nothing_from_an_index_that_has_it_not(page: str) -> None:
+    if "(not released yet)" not in (ROOT / "CHANGELOG.md").read_text().partition("\n### ")[0]:
+        pytest.skip("it has been released")
+    text = (ROOT / page).read_text()
+    assert "checkout" in text
+    assert not re.findall(r"^pip install symofros\b", text, re.MULTILINE)
+
+
 def test_all_extras_are_named_where_one_looks_for_them() -> None:
     readme, page = (ROOT / "README.md").read_text(), (ROOT / "docs/installation.md").read_text()
     for extra in PROJECT["project"]["optional-dependencies"]:
