@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+import subprocess
+import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import symofros as sf
-from symofros.description.urdf import xacro_expressions, xacro_files
+from symofros.description.urdf import xacro_expressions, xacro_files, xacro_worker
 
 pytest.importorskip("xacro")
 
@@ -19,6 +22,7 @@ MACRO = (
     + '</link><joint name="q_${name}" type="continuous"><parent link="${parent}"/><child link="${name}"/>'
     '<origin xyz="${sqrt(4)} 0 0" rpy="0 ${pi/2} 0"/><axis xyz="0 1 0"/></joint></xacro:macro>'
 )
+ARM = '<xacro:bar name="a" parent="base"/>'
 
 
 def write(folder: Path, inside: str, name: str = "arm.urdf.xacro") -> Path:
@@ -67,6 +71,9 @@ def test_files_of_the_package_are_found(tmp_path: Path) -> None:
     path = write(package / "urdf", f'{include}{MACRO}<xacro:bar name="a" parent="base"/>')
     assert sf.load(path).body("a").name == "a"
     assert "packages other than that" in faults(write(package / "urdf", include.replace("robot_", "other_")))
+    # A clone's folder may have another name than the package that its package.xml states.
+    (package / "package.xml").write_text("<package><name>other_description</name></package>")
+    assert sf.load(write(package / "urdf", include.replace("robot_", "other_") + MACRO + ARM)).body("a").name == "a"
 
 
 @pytest.mark.parametrize(
@@ -93,6 +100,9 @@ def test_files_of_the_package_are_found(tmp_path: Path) -> None:
         ("$(env HOME)", "environment variable"),
         ("${1 +}", "invalid syntax"),
         ("${nothing}", "nothing"),
+        ("${python.dict(python)}", "the namespace 'python' is no argument"),
+        (r"${'\ud800'}", "half of a surrogate pair"),
+        (r"${xacro.fatal('\ud800\x1b[31m')}", r"fatal: \ud800\u001b[31m"),
     ],
 )
 def test_expressions_compute_and_do_nothing_else(tmp_path: Path, text: str, said: str) -> None:
@@ -179,3 +189,55 @@ def test_expressions_are_arithmetic(expression: str, value: object) -> None:
 def test_no_operation_makes_much_of_little(expression: str) -> None:
     with pytest.raises(xacro_expressions.Refusal):
         xacro_expressions.Evaluator({}, {}, frozenset)(expression)
+
+
+def test_optional_files_may_be_missing(tmp_path: Path) -> None:
+    include, text = '<xacro:include filename="absent.xacro"', '<xacro:property name="scale" value="1"/>' + MACRO + ARM
+    assert sf.load(write(tmp_path, f'{include} optional="true"/>{text}')).body("a").name == "a"
+    assert "No such file" in faults(write(tmp_path, f"{include}/>{text}"))
+
+
+def test_constants_stand_before_arguments_in_eval(tmp_path: Path) -> None:
+    """As xacro does: an argument called `e` is not the `e` of $(eval ...)."""
+    text = '<xacro:arg name="e" default="7"/><xacro:arg name="m" default="2"/><xacro:property name="scale" value="1"/>'
+    bar = '<xacro:bar name="a" parent="base" mass="$(eval m*e)"/>'
+    inertia = sf.load(write(tmp_path, text + MACRO + bar)).body("a").inertia
+    assert inertia is not None and inertia.mass == 2 * math.e
+
+
+def test_warnings_take_no_memory_of_the_reader(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each call of the macro warns of an attribute with a name of 10^5 letters."""
+    kept: list[int] = []
+    run = xacro_files.subprocess.run
+
+    def counted(*args: Any, **options: Any) -> Any:
+        done = run(*args, **options)
+        kept.append(len(done.stdout or b"") + len(done.stderr or b""))
+        return done
+
+    monkeypatch.setattr(xacro_files.subprocess, "run", counted)
+    warned = f'<xacro:macro name="w"><xacro:property name="q" value="1" {"a" * 10**5}="1"/></xacro:macro>'
+    text = warned + "<xacro:w/>" * 50 + '<xacro:property name="scale" value="1"/>' + MACRO + ARM
+    assert sf.load(write(tmp_path, text)).body("a").name == "a"
+    assert kept[0] < 10**4
+
+
+def worker(code: str) -> str:
+    """What a script says that has the worker as `worker`, under bounds of its own."""
+    load = f"import runpy; worker = runpy.run_path({xacro_worker.__file__!r})\n"
+    return subprocess.run([sys.executable, "-I", "-c", load + code], capture_output=True, text=True).stdout
+
+
+def test_bounds_that_are_set_are_kept() -> None:
+    """A process that has less memory than the worker's bound can't raise it, and is to work all the same."""
+    pytest.importorskip("resource")
+    code = "import resource\nresource.setrlimit(resource.RLIMIT_AS, (2**30, 2**30))\nworker['bound']()\n"
+    assert worker(code + "print(resource.getrlimit(resource.RLIMIT_AS))") == f"({2**30}, {2**30})\n"
+
+
+@pytest.mark.parametrize("attempt", ["open(0)", "os.open(here + '/a', os.O_WRONLY)", "open(here + '/a', 'r+')"])
+def test_guard_refuses_descriptors_and_writing(tmp_path: Path, attempt: str) -> None:
+    (tmp_path / "a").write_text("a")
+    code = f"import os; here = {str(tmp_path.resolve())!r}; os.chdir(here); worker['guard'](here); open('a').close()\n"
+    attempted = f"try: {attempt}\nexcept Exception as refusal: print(refusal)"
+    assert "leaves the folder" in worker(code + attempted)

@@ -295,8 +295,15 @@ class Evaluator:
         function, owner = self._function(node.func)
         if any(keyword.arg is None for keyword in node.keywords):
             raise Refusal("'**' is not allowed in an expression")
-        arguments = [*owner, *(self._value(argument) for argument in node.args)]
-        return function(*arguments, **{str(k.arg): self._value(k.value) for k in node.keywords})
+        arguments = [*owner, *(self._argument(argument) for argument in node.args)]
+        return function(*arguments, **{str(k.arg): self._argument(k.value) for k in node.keywords})
+
+    def _argument(self, node: ast.expr) -> Any:
+        """A value that a function may have: no namespace, of which `dict` would make one of functions."""
+        value = self._value(node)
+        if isinstance(value, self._namespace):
+            raise Refusal(f"the namespace '{ast.unparse(node):.40}' is no argument")
+        return value
 
     def _function(self, node: ast.expr) -> tuple[Callable[..., Any], tuple[Any, ...]]:
         """A function of the tables by its name, with the value of which it is a method."""

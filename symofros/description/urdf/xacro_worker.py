@@ -19,6 +19,7 @@ from typing import Any
 from xml.parsers import expat
 
 MAX_BYTES = 16 << 20
+MAX_FAULT = 2000  # Characters of what went wrong, of which the parent shows fewer.
 MEMORY = 2 << 30  # [bytes]
 SECONDS = 20  # of processor time
 
@@ -58,15 +59,27 @@ def parsed(inp: Any, filename: str | None = None) -> Any:
     return xml.dom.minidom.parseString(inp)
 
 
+def package_names(folder: str) -> set[str]:
+    """Names of the package that a folder holds: what its package.xml states, and the folder's own."""
+    names = {os.path.basename(folder)}
+    manifest = os.path.join(folder, "package.xml")
+    if os.path.isfile(manifest):
+        for element in parsed(None, manifest).getElementsByTagName("name"):
+            names.add("".join(child.data for child in element.childNodes if child.nodeType == child.TEXT_NODE).strip())
+    return names
+
+
 def guard(folder: str) -> None:
     """From here on open files inside of a folder alone, and start nothing."""
+    writing = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
 
     def hook(event: str, args: tuple[Any, ...]) -> None:
         if event in ("open", "os.listdir", "os.scandir"):
-            path, mode = str(args[0]), args[1] if event == "open" else "r"
+            path, mode, flags = str(args[0]), *(args[1:3] if event == "open" else ("r", 0))
             real = os.path.realpath(os.fsdecode(args[0]) if isinstance(args[0], bytes) else path)
-            inside = real == folder or real.startswith(folder + os.sep)
-            if not inside or set(str(mode or "r")) & set("wax+"):
+            # A number is a file that is open already, such as standard input.
+            inside = not isinstance(args[0], int) and (real == folder or real.startswith(folder + os.sep))
+            if not inside or set(str(mode or "r")) & set("wax+") or flags & writing:
                 raise expressions.Refusal(f"'{path:.100}' leaves the folder of the file")
         elif event.startswith(("os.", "subprocess.", "socket.", "shutil.", "ctypes.", "import")):
             raise expressions.Refusal(f"'{event}' is not allowed")
@@ -81,7 +94,12 @@ def bound() -> None:
     except ImportError:
         return
     for what, most in ((resource.RLIMIT_AS, MEMORY), (resource.RLIMIT_CPU, SECONDS), (resource.RLIMIT_FSIZE, 0)):
-        resource.setrlimit(what, (most, most))
+        hard = resource.getrlimit(what)[1]
+        least = most if hard == resource.RLIM_INFINITY else min(most, hard)  # A bound that is set is never raised.
+        try:
+            resource.setrlimit(what, (least, least))
+        except (OSError, ValueError):  # Not every system bounds the address space.
+            continue
 
 
 def expanded(file: str, folder: str, arguments: dict[str, str]) -> str:
@@ -89,7 +107,7 @@ def expanded(file: str, folder: str, arguments: dict[str, str]) -> str:
 
     Args:
         file: Path of the file.
-        folder: Folder that it may open files in, which `$(find NAME)` gives for the folder's own name.
+        folder: Folder that it may open files in, which `$(find NAME)` gives for the name of its package, or its own.
         arguments: Values of <xacro:arg>.
     """
     import xacro
@@ -108,17 +126,26 @@ def expanded(file: str, folder: str, arguments: dict[str, str]) -> str:
 
     def substitution(expression: str, context: dict[str, Any]) -> str:
         known = {k: substitution_args.convert_value(v, "auto") for k, v in context.get("arg", {}).items()}
-        known = {**expressions.CONSTANTS, **known}
+        known = {**known, **expressions.CONSTANTS}
         own = {"arg": known.__getitem__, "find": find, "dirname": lambda: os.path.dirname(context["filename"])}
         return str(expressions.Evaluator(known, own, xacro.NameSpace)(expression))
 
     def find(name: str) -> str:
-        if name != os.path.basename(folder):
+        if name not in packages:
             what = f"packages other than that of the file, '{folder}', are not looked for"
             raise expressions.Refusal(f"$(find {name:.60}): {what}")
         return folder
 
-    xacro.safe_eval, xacro.parse = safe_eval, parsed
+    def opened(inp: Any, filename: str | None = None) -> Any:
+        """As `parsed`; a missing file is xacro's error, which an optional include looks for."""
+        try:
+            return parsed(inp, filename)
+        except OSError as error:
+            xacro.filestack.pop()
+            raise xacro.XacroException(f"{error.strerror}: {filename}", exc=error) from None
+
+    packages = package_names(folder)
+    xacro.safe_eval, xacro.parse = safe_eval, opened
     substitution_args._eval, substitution_args._eval_find = substitution, find
     os.environ.clear()
     bound()
@@ -127,12 +154,20 @@ def expanded(file: str, folder: str, arguments: dict[str, str]) -> str:
     text = str(document.toprettyxml(indent=" "))
     if len(text) > MAX_BYTES:
         raise expressions.Refusal(f"it expands to {len(text)} characters, more than {MAX_BYTES}")
+    if any("\ud800" <= character <= "\udfff" for character in text):
+        raise expressions.Refusal("it expands to a text with half of a surrogate pair, which no file holds")
     return text
+
+
+def printable(text: str) -> str:
+    """The beginning of a text, its control characters and surrogates escaped, for terminals and logs."""
+    return "".join(c if c.isprintable() or c == "\n" else f"\\u{ord(c):04x}" for c in text[:MAX_FAULT])
 
 
 def main() -> None:
     """Expand what is asked for."""
     task = json.load(sys.stdin)
+    out, sys.stdout = sys.stdout, sys.stderr  # What xacro prints is no answer.
     try:
         answer = {"text": expanded(task["file"], task["folder"], task["arguments"])}
     except ImportError:
@@ -143,8 +178,8 @@ def main() -> None:
         while cause is not None and len(causes) < 5:
             causes.append(str(cause).strip() or type(cause).__name__)
             cause = getattr(cause, "exc", None) or cause.__cause__
-        answer = {"fault": "; ".join(dict.fromkeys(causes))}
-    sys.stdout.write(json.dumps(answer))
+        answer = {"fault": printable("; ".join(dict.fromkeys(causes)))}
+    out.write(json.dumps(answer))
 
 
 if __name__ == "__main__":
