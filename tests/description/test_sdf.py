@@ -161,6 +161,20 @@ ONE = link("a", "", 1) + joint("q", "world", "a")
             link("a", "", 1) + joint("q", "world", "a", AXIS.format("<dynamics><friction>1</friction></dynamics>")),
             "dry friction",
         ),
+        (ONE.replace("<mass>1</mass>", "<mas>1</mas>"), "<mas> of <inertial> ignored: 1 link (a)"),
+        (link("a", "", 1) + joint("q", "world", "a", AXIS.format("<dynamic/>")), "<dynamic> of <axis> ignored"),
+        (
+            link("a", "", 1)
+            + joint("q", "world", "a", AXIS.format("<dynamics><dampin>1</dampin></dynamics>"))
+            + '<link name="b"><velocity_decay/></link>',
+            "<dampin> of <dynamics> ignored: 1 joint (q)",
+        ),
+        (ONE + '<link name="b"><velocity_decay/></link>', "<velocity_decay> of <link> ignored"),
+        (link("a", "", 1) + joint("q", "world", "a", AXIS.format(""), "ball"), "axes of ball joints"),
+        (
+            ONE + link("b", '<pose rotation_format="quat_xyzw">0 0 0 0 0 1 1</pose>', 1),
+            "quaternions that are no unit quaternions normalized: 1 pose (link 'b')",
+        ),
     ],
 )
 def test_what_is_ignored_is_said(tmp_path: Path, text: str, said: str) -> None:
@@ -200,6 +214,13 @@ def test_what_is_ignored_is_said(tmp_path: Path, text: str, said: str) -> None:
         (document(ONE).replace('name="arm"', 'name="arm" placement_frame="a"'), ["placed by one of its frames"]),
         (f'<!DOCTYPE sdf [<!ENTITY e SYSTEM "/etc/passwd">]>{document(ONE)}', ["document types are refused"]),
         (four_bar("universal", ""), ["closes a loop", "one of revolute"]),
+        (
+            four_bar("revolute", AXIS.format('<mimic joint="q1"><multiplier>2</multiplier></mimic>')),
+            ["joint 'last': it can't mimic joint 'q1'", "one that closes a loop"],
+        ),
+        (document(ONE + "<static>true</static>"), ["joint 'q' moves a link of a static model"]),
+        (document(ONE.replace("<inertial><pose>", '<inertial><pose relative_to="q">')), ["stated in another frame"]),
+        (document(link("a", '<pose frame="q">0 0 0 0 0 0</pose>', 1)), ["since SDFormat 1.7", "frame='q'"]),
     ],
 )
 def test_faults_name_the_thing_and_the_rule(tmp_path: Path, text: str, parts: list[str]) -> None:
@@ -215,3 +236,24 @@ def test_meshes_lie_in_the_folder_of_the_file(tmp_path: Path) -> None:
         text = document(link("a", mesh.format(file), 1) + joint("q", "world", "a"))
         folder = tmp_path if drawn else tmp_path / "inner"
         assert len(load(folder, text).visuals.get("a", ())) == drawn, file
+
+
+def test_models_are_static_by_their_whole_name(tmp_path: Path) -> None:
+    """Model 'box2' floats beside the static model 'box'."""
+    models = (
+        f'<model name="box"><static>1</static>{link("l", "", 1)}</model><model name="box2">{link("l", "", 1)}</model>'
+    )
+    system = load(tmp_path, f'<sdf version="1.9"><world name="w">{models}</world></sdf>')
+    kinds = [body.joint.kind for body in system.bodies if body.joint is not None]
+    assert kinds == ["fixed", "free"]
+
+
+@pytest.mark.parametrize("version", ["1.5", "1.6"])
+def test_poses_of_old_versions_name_their_frame(tmp_path: Path, version: str) -> None:
+    """What `frame` was before 1.7 is relative_to; measured in Drake 1.51.1, whose matrices agree."""
+    placed = link("a", "<pose>0.5 0.2 0 0 0.3 0</pose>", 1) + joint("q", "world", "a") + joint("r", "a", "b")
+    old = load(tmp_path, document(placed + link("b", '<pose frame="a">0.5 0 1 0.1 0.3 0</pose>', 1), version))
+    new = load(tmp_path, document(placed + link("b", '<pose relative_to="a">0.5 0 1 0.1 0.3 0</pose>', 1), "1.7"))
+    assert old.bodies == new.bodies
+    no_frame = load(tmp_path, document(placed + link("b", '<pose frame="">0.5 0 1 0.1 0.3 0</pose>', 1), version))
+    assert no_frame.bodies != new.bodies

@@ -208,14 +208,14 @@ def test_constants_stand_before_arguments_in_eval(tmp_path: Path) -> None:
 def test_warnings_take_no_memory_of_the_reader(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Each call of the macro warns of an attribute with a name of 10^5 letters."""
     kept: list[int] = []
-    run = xacro_files.subprocess.run
+    run = subprocess.run
 
     def counted(*args: Any, **options: Any) -> Any:
         done = run(*args, **options)
         kept.append(len(done.stdout or b"") + len(done.stderr or b""))
         return done
 
-    monkeypatch.setattr(xacro_files.subprocess, "run", counted)
+    monkeypatch.setattr(subprocess, "run", counted)
     warned = f'<xacro:macro name="w"><xacro:property name="q" value="1" {"a" * 10**5}="1"/></xacro:macro>'
     text = warned + "<xacro:w/>" * 50 + '<xacro:property name="scale" value="1"/>' + MACRO + ARM
     assert sf.load(write(tmp_path, text)).body("a").name == "a"

@@ -71,7 +71,7 @@ class Frames:
             )
             return
         stated = element.first("pose")
-        relative_to = stated.attributes.get("relative_to", "") if stated is not None else ""
+        relative_to = self.values.pose_frame(stated, owner)
         full = self.full(scope, relative_to) if relative_to else default
         self.nodes[name] = FrameNode(element, scope, self.values.pose(stated, owner), full, attached_to)
 

@@ -83,6 +83,7 @@ class JointReader:
     def __init__(self, values: SdfValues, frames: Frames, exact: Exact) -> None:
         self.values, self.frames, self.exact = values, frames, exact
         self.joints: dict[str, SdfJoint] = {}
+        self._closing: set[str] = set()  # Names of the joints that close loops.
 
     def add(self, name: str, element: Element, scope: str) -> None:
         """Take up a joint, and its frame."""
@@ -99,6 +100,7 @@ class JointReader:
                     f"add <{tag}>",
                 )
             ends.append(self.frames.full(scope, stated) if stated else "")
+        self.values.remark_unread(element, "joint", name)
         kind = _KINDS.get(element.attributes.get("type", ""))
         if kind is None:
             stated = element.attributes.get("type", "")
@@ -125,6 +127,8 @@ class JointReader:
         position, rotation = self.exact.placement((C @ Pose(offset, np.eye(3))).p, C.R)
         kind, carrier = joint.kind, parent or WORLD
         if "axis" not in KINDS[kind].entries:
+            if kind == "ball" and joint.element.first("axis"):
+                self.values.remarks.add("axes of ball joints (damping, limits) ignored", "joint", joint.name)
             return Joint(joint.name, kind, carrier, None, position, rotation), offset
         axes = [axis for tag in ("axis", "axis2") if (axis := joint.element.first(tag)) is not None]
         if len(axes) < (2 if kind == "universal" else 1):
@@ -161,6 +165,7 @@ class JointReader:
     def closing(self, joint: SdfJoint) -> tuple[Closure, dict[str, Frame]] | None:
         """The closure of a joint whose child another joint carries, with the frames that it needs on the two links."""
         bodies = {label: self.frames.body(getattr(joint, label)) for label in ("parent", "child")}
+        self._closing.add(joint.name)
         blocked = _BLOCKED.get(joint.kind)
         if blocked is None:
             self.values.fault(
@@ -204,8 +209,8 @@ class JointReader:
                     self.values.fault(
                         mimic,
                         f"joint '{joint.name}': it can't mimic joint '{stated}'",
-                        "no joint, or one without that axis",
-                        "a joint mimics the axis of another one of its model",
+                        "no joint, one without that axis, or one that closes a loop",
+                        "a joint mimics the axis of another one of its model; joints of loops' ends have no coordinate",
                         did_you_mean(stated, self.joints),
                     )
                     continue
@@ -220,9 +225,10 @@ class JointReader:
     def _mimics(joint: SdfJoint) -> bool:
         return any(axis.first("mimic") for tag in ("axis", "axis2") for axis in joint.element.all(tag))
 
-    @staticmethod
-    def _coordinate(joint: SdfJoint, axis: int) -> str:
+    def _coordinate(self, joint: SdfJoint, axis: int) -> str:
         """Name of the coordinate about or along an axis; "" where there is none."""
+        if joint.name in self._closing:
+            return ""
         suffixes = KINDS[joint.kind].coordinate_suffixes
         if KINDS[joint.kind].quasi_velocities or axis >= len(suffixes):
             return ""

@@ -82,6 +82,7 @@ def _world(root: Element, values: SdfValues) -> Element | None:
             "convert an older file by `gz sdf --print FILE`",
         )
         return None
+    values.version = int(version.removeprefix("1."))
     worlds = list(root.all("world"))
     if len(worlds) > 1 or (worlds and root.first("model")):
         values.fault(
@@ -217,6 +218,7 @@ class _Importer:
             problem = Problem("too many links", f"more than {MAX_LINKS}", f"at most {MAX_LINKS}", "split the model")
             raise DescriptionError(problem)
         self.links[name] = element
+        self.values.remark_unread(element, "link", name)
         self.origin["body", name] = self.values.where(element)
         for tag in ("collision", "sensor", "light", "battery", "audio_source", "projector", "particle_emitter"):
             if element.first(tag):
@@ -238,6 +240,14 @@ class _Importer:
                 rule = "a joint joins two different links, and its child is not the world"
                 self.values.fault(
                     joint.element, f"joint '{joint.name}' joins no two links", ends, rule, "mend its ends"
+                )
+            elif self.is_static(child) and (joint.kind != "fixed" or not self.is_static(parent)):
+                self.values.fault(
+                    joint.element,
+                    f"joint '{joint.name}' moves a link of a static model",
+                    f"type '{joint.element.attributes.get('type')}', child '{joint.child}'",
+                    "static models stand still in the world",
+                    "drop <static>, or the joint",
                 )
             elif child in above or self.carries(child, parent, above):
                 closing.append(joint)
@@ -286,9 +296,13 @@ class _Importer:
                 joint = Joint(held, "fixed", carrier, None, self.exact.vector(-offset))
             yield self.body(name, joint)
 
+    def is_static(self, link: str) -> bool:
+        """Whether a link is of a static model, or the world."""
+        return link == WORLD or any(not scope or link.startswith(scope + SEPARATOR) for scope in self.static)
+
     def root_joint(self, name: str, taken: set[str]) -> Joint:
         """The joint of a link that the file states none for: it floats, unless its model is static."""
-        if any(name.startswith(scope) for scope in self.static):
+        if self.is_static(name):
             self.values.remarks.add("links of static models are fixed to the world", "link", name)
             placement = self.exact.placement(*self.frames.relative(name, WORLD))
             return Joint(_fresh(f"{name}_fixed", taken), "fixed", WORLD, None, *placement)

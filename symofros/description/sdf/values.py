@@ -16,7 +16,24 @@ from symofros.description.xml_nodes import Element
 
 # SDFormat's number for "no bound".
 UNBOUNDED = 1e16
+# Quaternions of six printed digits are unit quaternions to less than this.
+UNIT_NORM_TOL = 1e-5
 _TRUTH = {"true": True, "1": True, "false": False, "0": False}
+# Element -> children that are read, or that a remark of their own tells of.
+_READ_IN: dict[str, frozenset[str]] = {
+    "link": frozenset(
+        {"pose", "inertial", "visual", "gravity", "kinematic", "enable_wind", "self_collide", "must_be_base_link"}
+        | {"collision", "sensor", "light", "battery", "audio_source", "projector", "particle_emitter"}
+    ),
+    "inertial": frozenset({"pose", "mass", "inertia", "fluid_added_mass"}),
+    "inertia": frozenset({"ixx", "iyy", "izz", "ixy", "ixz", "iyz"}),
+    "joint": frozenset({"pose", "parent", "child", "axis", "axis2", "screw_thread_pitch", "thread_pitch"}),
+    "axis": frozenset({"xyz", "limit", "dynamics", "mimic", "use_parent_model_frame"}),
+    "axis2": frozenset({"xyz", "limit", "dynamics", "mimic", "use_parent_model_frame"}),
+    "limit": frozenset({"lower", "upper", "velocity", "effort"}),
+    "dynamics": frozenset({"damping", "friction", "spring_reference", "spring_stiffness"}),
+    "mimic": frozenset({"multiplier", "offset", "reference"}),
+}
 _MOMENTS = (("ixx", 1.0), ("iyy", 1.0), ("izz", 1.0), ("ixy", 0.0), ("ixz", 0.0), ("iyz", 0.0))
 
 
@@ -44,7 +61,13 @@ IDENTITY_POSE = Pose(np.zeros(3), np.eye(3))
 
 
 class SdfValues(Values):
-    """Reads the content of elements, which states what attributes do in URDF."""
+    """Reads the content of elements, which states what attributes do in URDF.
+
+    Attributes:
+        version: Minor version of the file: 7 of SDFormat 1.7.
+    """
+
+    version = 7
 
     def text(self, element: Element, tag: str, default: str = "") -> str:
         """Content of a child; the default where there is none."""
@@ -81,6 +104,29 @@ class SdfValues(Values):
         number = self.one(element, name, owner, UNBOUNDED)
         return None if abs(number) >= UNBOUNDED else number
 
+    def remark_unread(self, element: Element, kind: str, name: str) -> None:
+        """Tell of the children of a link or joint, and of theirs, that nothing reads."""
+        for child in element.children:
+            if child.tag not in _READ_IN[element.tag]:
+                self.remarks.add(f"<{child.tag:.60}> of <{element.tag}> ignored", kind, name)
+            elif child.tag in _READ_IN:
+                self.remark_unread(child, kind, name)
+
+    def pose_frame(self, pose: Element | None, owner: str) -> str:
+        """Name of the frame that a pose is stated in; "" for its default. Before 1.7 the attribute was `frame`."""
+        if pose is None:
+            return ""
+        name, older = (pose.attributes.get(label, "") for label in ("relative_to", "frame"))
+        if older and self.version >= 7:
+            self.fault(
+                pose,
+                f"{owner}: <pose> is bad",
+                f"frame='{older:.60}'",
+                "since SDFormat 1.7 a pose names its frame by relative_to",
+                "write relative_to, which has the meaning that frame had",
+            )
+        return name or older
+
     def pose(self, element: Element | None, owner: str) -> Pose:
         """The numbers of a <pose>, by whichever frame it is stated; the identity where there is none."""
         if element is None or not element.text:
@@ -98,7 +144,10 @@ class SdfValues(Values):
             )
             return IDENTITY_POSE
         if form == "quat_xyzw":
-            return Pose(np.array(numbers[:3]), quaternion_matrix(normalized(np.array(numbers[3:]))))
+            quaternion = np.array(numbers[3:])
+            if abs(np.linalg.norm(quaternion) - 1.0) > UNIT_NORM_TOL:
+                self.remarks.add("quaternions that are no unit quaternions normalized", "pose", owner)
+            return Pose(np.array(numbers[:3]), quaternion_matrix(normalized(quaternion)))
         degrees = self.truth(element.attributes.get("degrees", "false"), element, owner)
         roll, pitch, yaw = (math.radians(angle) if degrees else angle for angle in numbers[3:])
         x, y, z = np.eye(3)
@@ -123,6 +172,14 @@ class SdfValues(Values):
         matrix = element.first("inertia") or Element("inertia", {}, element.line)
         moments = tuple(self.one(matrix, tag, owner, default) for tag, default in _MOMENTS)
         pose = self.pose(element.first("pose"), owner)
+        if frame := self.pose_frame(element.first("pose"), owner):
+            self.fault(
+                element,
+                f"{owner}: the <pose> of its <inertial> is stated in another frame",
+                f"'{frame:.60}'",
+                "an inertial frame is stated in the frame of its link",
+                "state it so, and drop the attribute",
+            )
         x, y, z = map(float, pose.p)
         R = pose.R
         turned = Rotation() if np.array_equal(R, np.eye(3)) else Rotation.matrix(R.tolist())

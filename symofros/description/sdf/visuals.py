@@ -25,7 +25,7 @@ def _visual(visual: Element) -> Element:
     if pose is not None and pose.text:
         words = pose.text.split()
         # Other than x y z roll pitch yaw in radians is no URDF, which the reader of visuals then says.
-        plain = not {"relative_to", "rotation_format", "degrees"} & pose.attributes.keys()
+        plain = not any(pose.attributes.get(label) for label in ("relative_to", "frame", "rotation_format", "degrees"))
         placed = {"xyz": " ".join(words[:3]), "rpy": " ".join(words[3:]) if plain else "?"}
         children.append(Element("origin", placed, line))
     shape = geometry.children[0] if geometry is not None and geometry.children else None
