@@ -16,6 +16,8 @@ from symofros.runtime.calls.kernel import Array, BatchKernel, Kernel, Numbers, S
 from symofros.runtime.calls.layout import columns
 
 Layout = Literal["rows", "columns"]
+# Of NumPy's search for an element that two arrays share: of rows or columns of one array it takes a few steps.
+_OVERLAP_WORK = 100_000
 # More than any memory holds; sizes of arrays are computed from it without overflow.
 _MOST_STATES = 1 << 40
 
@@ -62,7 +64,7 @@ def bind(kernel: Kernel, par: Array, given: Mapping[str, Array], defaults: Mappi
 
     Raises:
         UnknownNameError: The function has no such input or output.
-        ShapeError: An array is not a writeable, contiguous float64 array of its shape.
+        ShapeError: An array is not a writeable, contiguous float64 array of its shape, or an output shares memory.
     """
     signature = kernel.signature
     shapes = _shapes(signature, given)
@@ -73,6 +75,7 @@ def bind(kernel: Kernel, par: Array, given: Mapping[str, Array], defaults: Mappi
             raise _misfit(
                 signature, name, _seen(array), f"a writeable C-contiguous float64 array of shape {shapes[name]}"
             )
+    _refuse_overlaps(signature, given)
     arrays = {name: given.get(name, np.zeros(shape)) for name, shape in shapes.items()}
     _fill(arrays, given, defaults)
     pre = kernel.prepare(par[None])
@@ -93,7 +96,7 @@ def receivers(
 
     Raises:
         UnknownNameError: The function has no such output.
-        ShapeError: An array is not a writeable, contiguous one of its output's shape and type.
+        ShapeError: An array is not a writeable, contiguous one of its output's shape and type, or shares memory.
     """
     check_argument(f"{signature.name}: out", out, Mapping[str, Any])
     shapes = {name: batch + shape for name, shape in signature.outputs}
@@ -105,7 +108,21 @@ def receivers(
         if not kind or array.shape != shapes[name]:
             rule = f"a writeable C-contiguous {np.dtype(dtype)} array of shape {shapes[name]}"
             raise _misfit(signature, name, _seen(array), rule, "pass np.empty(shape), or leave it out")
+    _refuse_overlaps(signature, out)
     return [out.get(name) for name in shapes]
+
+
+def _refuse_overlaps(signature: Signature, given: Mapping[str, Numbers]) -> None:
+    """Refuse an output whose memory another array of the caller's shares: the function would overwrite what it reads."""
+    for name, _ in signature.outputs:
+        for other in given.keys() - {name} if name in given else ():
+            try:
+                shared = np.shares_memory(given[name], given[other], max_work=_OVERLAP_WORK)
+            except np.exceptions.TooHardError:
+                shared = True
+            if shared:
+                rule = "an output shares no memory with another array: each is written while others are read"
+                raise _misfit(signature, name, f"memory of '{other}'", rule, "pass an array, or a copy, of its own")
 
 
 def into(out: Mapping[str, Numbers], signature: Signature, results: Sequence[Array]) -> list[Array]:
@@ -139,7 +156,7 @@ def bind_batch(
 
     Raises:
         UnknownNameError: The function has no such input or output.
-        ShapeError: n or the layout is not one, or an array does not fit.
+        ShapeError: n or the layout is not one, an array does not fit, or an output shares memory.
     """
     signature = kernel.signature
     n = _count(signature, n)
@@ -161,6 +178,7 @@ def bind_batch(
                 f"a writeable float64 array of shape {(n, *shapes[name])}{also}, by rows or by columns",
                 "bind np.zeros(shape), or leave it out, and write into it",
             )
+    _refuse_overlaps(signature, given)
     arrays = {name: given[name] if name in given else _room(n, shape, layout) for name, shape in shapes.items()}
     _fill(arrays, given, defaults)
     pre = kernel.prepare(np.atleast_2d(par))

@@ -143,3 +143,28 @@ def test_arrays_that_can_not_receive_an_output_are_refused_in_words(out: dict[st
     m = model("double_pendulum")
     with pytest.raises((sf.ShapeError, sf.UnknownNameError), match=words):
         m.evaluate("mass_matrix", q=m.neutral(), out=out)
+
+
+def test_outputs_that_share_memory_are_refused(rng: np.random.Generator) -> None:
+    """With one another, and where C reads what a call has written: with inputs."""
+    m = model("double_pendulum", "c")
+    q = rng.normal(size=2)
+    shared = np.zeros(6)
+    overlapping = {"M": shared[:4].reshape(2, 2), "h": shared[3:5]}
+    with pytest.raises(sf.ShapeError, match="memory of '(M|h)'"):
+        m.evaluate("dynamics", q=q, v=q, out=overlapping)
+    for arrays in (overlapping, {"v": shared[:2], "h": shared[1:3]}):
+        with pytest.raises(sf.ShapeError, match="shares no memory with another array"):
+            m.bind("dynamics", **arrays)
+    rows = np.zeros((9, 2))
+    with pytest.raises(sf.ShapeError, match="shares no memory with another array"):
+        m.bind("bias", n=8, v=rows[:8], h=rows[1:])
+
+
+def test_outputs_beside_inputs_in_one_array_are_none_that_share_memory(rng: np.random.Generator) -> None:
+    m = model("double_pendulum", "c")
+    table = np.zeros((8, 6))
+    table[:, :4] = rng.normal(size=(8, 4))
+    bound = m.bind("bias", n=8, q=table[:, :2], v=table[:, 2:4], h=table[:, 4:])
+    bound()
+    assert np.array_equal(table[:, 4:], m.bias(table[:, :2], table[:, 2:4]))
