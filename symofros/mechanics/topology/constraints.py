@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from functools import partial
 
 from symofros.description.constraints import BETWEEN_FRAMES, Coupling, Nonholonomic
 from symofros.description.forces import Anchor
 from symofros.description.joint import WORLD
 from symofros.description.system import Body, System
-from symofros.description.values import Value
+from symofros.description.values import Value, symbols
 from symofros.errors import Problem, did_you_mean
+from symofros.expr.derivative import partials
+from symofros.expr.edges import ZERO
+from symofros.expr.expression import Expression, lower
+from symofros.expr.graph import Graph
 from symofros.mechanics.topology.conditions import Condition
-from symofros.mechanics.topology.coordinates import speed_symbols
+from symofros.mechanics.topology.coordinates import coordinate_names, speed_symbols
 from symofros.mechanics.topology.frames import frame_remedy, frames_of
 from symofros.mechanics.topology.numbers import Numbers
 
@@ -55,12 +59,10 @@ def constraint_problems(
     system: System, bodies: Mapping[str, Body], base: Body, broken: frozenset[str]
 ) -> Iterator[Problem]:
     """Constraints on frames, bodies and speeds that are not there, or that can't be bound."""
-    speeds = {
-        name
-        for body in system.bodies
-        if body.joint is not None and not body.joint.prescribed
-        for name in speed_symbols(body.joint)
-    }
+    joints = [body.joint for body in system.bodies if body.joint is not None]
+    speeds = {name for joint in joints if not joint.prescribed for name in speed_symbols(joint)}
+    free = {name for joint in joints if not joint.prescribed for name in coordinate_names(joint)}
+    known = {name for joint in joints for name in coordinate_names(joint)} | {item.name for item in system.parameters}
     for item in system.constraints:
         what, where = f"constraint '{item.name}'", system.origin.get(("constraint", item.name), "")
         if isinstance(item, Nonholonomic):
@@ -73,9 +75,15 @@ def constraint_problems(
                         did_you_mean(speed, speeds),
                         where,
                     )
+            if not any(_slopes(value, None) for _, value in item.coefficients):
+                text = ", ".join(f"{speed}: {value}" for speed, value in item.coefficients)
+                yield Problem(f"{what}: binds no speed", text, "a coefficient is not zero", "mend the formulas", where)
             continue
-        if isinstance(item, Coupling):
-            continue  # Names in formulas are checked with all others.
+        if isinstance(item, Coupling):  # Names in formulas are checked with all others.
+            if symbols(item.residual) <= known and not _slopes(item.residual, free):
+                rule = "a coupling changes with a coordinate that is free to move"
+                yield Problem(f"{what}: binds no coordinate", f"'{item.residual}'", rule, "mend its formula", where)
+            continue
         anchors = [item.first, item.second] if isinstance(item, BETWEEN_FRAMES) else [item.anchor]
         for anchor in anchors:
             yield from anchor_problems(what, anchor, bodies, base, broken, where)
@@ -88,6 +96,21 @@ def constraint_problems(
                 "name a frame of another body",
                 where,
             )
+
+
+def _slopes(value: Value, names: Collection[str] | None) -> bool:
+    """Whether a formula changes with one of some symbols, or, for None, is not zero, whatever values they have."""
+    if not isinstance(value, Expression):
+        return names is None and value != 0.0
+    g, stated = Graph(), sorted(symbols(value))
+    inputs = {name: g.input("x", i) for i, name in enumerate(stated)}
+    try:
+        edge = lower(value, g, inputs)
+    except ArithmeticError:
+        return True  # A constant part outside its domain, which is said with all others.
+    if names is None:
+        return edge != ZERO
+    return any(partials(g, [edge], [inputs[name] for name in stated if name in names])[0])
 
 
 def constraint_conditions(system: System) -> Iterator[Condition]:

@@ -113,7 +113,7 @@ def receivers(
 
 
 def _refuse_overlaps(signature: Signature, given: Mapping[str, Numbers]) -> None:
-    """Refuse an output whose memory another array of the caller's shares: the function would overwrite what it reads."""
+    """Refuse an output that shares memory with another array of the caller: what is read would be overwritten."""
     for name, _ in signature.outputs:
         for other in given.keys() - {name} if name in given else ():
             try:

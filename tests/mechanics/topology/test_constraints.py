@@ -28,6 +28,9 @@ BODIES = (
         (sf.KnifeEdge("k", ("a", "middle")), ["'middle'"]),
         (sf.Nonholonomic("k", {"dr": 1.0}), ["'dr' is not a speed"]),
         (sf.Nonholonomic("k", {"dq": "dp"}), ["'dp' may not be used here"]),
+        (sf.Nonholonomic("k", {"dq": 0.0, "dp": "p - p"}), ["binds no speed"]),
+        (sf.Coupling("k", "0*q"), ["binds no coordinate", "changes with a coordinate"]),
+        (sf.Coupling("k", "q*p - p*q + 2"), ["binds no coordinate"]),
     ],
 )
 def test_a_constraint_that_can_not_hold_is_refused(constraint: sf.Constraint, said: list[str]) -> None:
@@ -50,8 +53,22 @@ def test_names_are_unique() -> None:
         (lambda: sf.KnifeEdge("k", ("a", None), "u"), "unknown direction"),  # type: ignore[arg-type]
         (lambda: sf.Rolling("k", ("a", None), 1.0, "cube"), "a disc or a sphere"),  # type: ignore[arg-type]
         (lambda: sf.Nonholonomic("k", {}), "binds no speed"),
+        (lambda: sf.Coupling("k", "pi - 3"), "binds no coordinate"),
     ],
 )
 def test_a_constraint_is_refused_when_it_is_stated(make: Any, said: str) -> None:
     with pytest.raises(sf.DescriptionError, match=said):
         make()
+
+
+def test_a_ratio_of_zero_locks_what_follows() -> None:
+    """A joint that mimics another by a multiplier of zero stays at the offset, as MuJoCo's does."""
+    system = sf.System("s", BODIES, constraints=(sf.Coupling("k", "q - 0*p - 0.5"),), gravity=(0, -9.81, 0))
+    run = sf.simulate(sf.compile(system), {"q": 0.5, "p": 0.1}, {"p": 1.0}, t_end=0.1)
+    assert run.q[-1] == pytest.approx([0.2, 0.5], abs=1e-12)
+
+
+def test_a_coupling_of_prescribed_coordinates_alone_binds_nothing() -> None:
+    led = sf.RigidBody("a", sf.Joint("p", "revolute", prescribed=True), SOLID)
+    with pytest.raises(sf.DescriptionError, match="binds no coordinate"):
+        sf.compile(sf.System("s", (led, BODIES[1]), constraints=(sf.Coupling("k", "p - 1"),)))
