@@ -22,7 +22,9 @@ from symofros.runtime.constrained import (
     step_factor,
 )
 from symofros.runtime.model import ArrayLike, Model
+from symofros.simulation.analysis.input_rotations import given_inputs
 from symofros.simulation.analysis.targets import finite_array
+from symofros.simulation.settings import refuse_lengths
 
 Indices = npt.NDArray[np.intp]
 
@@ -76,10 +78,13 @@ def assemble(
     Raises:
         AssemblyError: No such configuration was found; names the constraint that is worst.
         UnknownNameError: `held` names something that is not a speed.
+        SymofrosError: A quaternion of the guess or of the inputs is no rotation.
     """
     free = free_speeds(model, held)
     model = model.with_precision("double")
     q = model.neutral() if q is None else numeric("q", model.by_name("q", q))
+    refuse_lengths(model, q)
+    u = given_inputs(model, u)
     speeds = np.zeros(model.nv) if v is None else model.by_name("v", v)
     wished = finite_array("assemble: v", speeds, (model.nv,), "give one number a speed")
 

@@ -18,22 +18,22 @@ def given_inputs(model: Model, u: ArrayLike | None) -> Array:
         SymofrosError: A quaternion among them is no rotation.
     """
     stated = numeric("u", model.record.u_default if u is None else model.by_name("u", u))
-    refuse_no_rotation(model, np.atleast_2d(stated))
+    refuse_no_rotation(model, stated)
     return stated
 
 
 def refuse_no_rotation(model: Model, u: Array) -> None:
-    """Refuse quaternions among the inputs (n, nu) that are of another length than one.
+    """Refuse quaternions among the inputs (..., nu) that are of another length than one.
 
     Raises:
         SymofrosError: One is.
     """
     for first in model.record.quaternion_inputs:
-        lengths = np.linalg.norm(u[:, first : first + 4], axis=1)
+        lengths = np.linalg.norm(u[..., first : first + 4], axis=-1).ravel()
         wrong = np.flatnonzero(~(np.abs(lengths - 1.0) <= UNIT_TOLERANCE))
         if len(wrong):
             names = ", ".join(model.names.u[first : first + 4])
-            place = f" in step {wrong[0]}" if len(u) > 1 else ""
+            place = f" in step {wrong[0]}" if len(lengths) > 1 else ""
             raise SymofrosError(
                 Problem(
                     f"model '{model.record.name}': inputs {names} are no rotation",

@@ -90,3 +90,13 @@ def test_a_guess_where_constraints_are_not_smooth() -> None:
     """A disc that lies flat touches the ground all around: no direction leads to its contact."""
     with pytest.raises(sf.AssemblyError, match=r"has no finite derivative there\n(.*\n)*.*another guess"):
         sf.assemble(sf.compile(MODELS["rolling_disc"], FUNCTIONS))
+
+
+def test_a_guess_with_a_quaternion_that_is_no_rotation_is_refused() -> None:
+    model = sf.compile(MODELS["rolling_disc"])
+    guess = model.neutral()
+    ball = next(s for s in model.record.segments if s.kind != "linear")
+    first = ball.q + ball.translations
+    guess[first : first + 4] *= 1.5
+    with pytest.raises(sf.ShapeError, match="holds a quaternion that is no rotation"):
+        sf.assemble(model, guess)

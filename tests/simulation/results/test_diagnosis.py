@@ -120,6 +120,8 @@ def test_analyses_take_rotations_alone_for_inputs(length: float) -> None:
         lambda: sf.equilibrium(model, [1.5], u=u),
         lambda: sf.modes(model, [0.5 * np.pi], u=u),
         lambda: sf.state_space(model, [0.5 * np.pi], u=u),
+        lambda: sf.actuator_efforts(model, [0.1], [0.0], [0.0], ["q"], u=u),
+        lambda: sf.assemble(model, [0.1], u=u),
     )
     for analysis in analyses:
         if length == 1.0:
