@@ -117,7 +117,8 @@ def _refuse_overlaps(signature: Signature, given: Mapping[str, Numbers]) -> None
     for name, _ in signature.outputs:
         for other in given.keys() - {name} if name in given else ():
             try:
-                shared = np.shares_memory(given[name], given[other], max_work=_OVERLAP_WORK)
+                # NumPy's stub knows two of the numbers that max_work may be.
+                shared = np.shares_memory(given[name], given[other], max_work=_OVERLAP_WORK)  # type: ignore[arg-type]
             except np.exceptions.TooHardError:
                 shared = True
             if shared:
