@@ -265,11 +265,11 @@ def record_of(resolved: Resolved, part: Part | None) -> ModelRecord:
         periodic=(False,) * nq,
         constraint_names=names,
         speed_conditions=tuple(name for name in names if name in layout.speed_conditions),
-        joint_limits=() if part is None else _limits(resolved, part),
+        joint_limits=() if part is None else limits_of(resolved, part),
     )
 
 
-def _limits(resolved: Resolved, part: Part) -> tuple[tuple[int, float, float], ...]:
+def limits_of(resolved: Resolved, part: Part) -> tuple[tuple[int, float, float], ...]:
     """Limits of joints of a part's mechanisms, by index in the part's q."""
     models, layout = resolved.wired.models, resolved.layout
     return tuple(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -174,17 +175,20 @@ def _between(model: Model, most: int, t: Array, q: Array, u: Array) -> tuple[Arr
     return np.append(times, t[-1]), np.vstack([inner, q[-1:]]), np.vstack([np.repeat(u[:-1], parts, axis=0), u[-1:]])
 
 
-def limit_notes(model: Model, t: Array, q: Array) -> tuple[str, ...]:
+def limit_notes(
+    names: Sequence[str], limits: Sequence[tuple[int, float, float]], t: Array, q: Array
+) -> tuple[str, ...]:
     """A note where a run left the limits of its joints, which no force keeps.
 
     Args:
-        model: Model.
+        names: Names of the coordinates.
+        limits: Limits, as `ModelRecord.joint_limits` has them.
         t: Recorded times (n).
         q: States (n, nq).
     """
-    if not model.record.joint_limits:
+    if not limits or not len(t):
         return ()
-    index, lower, upper = (np.array(column) for column in zip(*model.record.joint_limits, strict=True))
+    index, lower, upper = (np.array(column) for column in zip(*limits, strict=True))
     reached = q[:, index]
     below, above = lower - AT_LIMIT * (1.0 + np.abs(lower)), upper + AT_LIMIT * (1.0 + np.abs(upper))
     excess = np.fmax(below - reached, reached - above)
@@ -196,6 +200,6 @@ def limit_notes(model: Model, t: Array, q: Array) -> tuple[str, ...]:
     others = f", as do {len(left) - 1} more coordinates" if len(left) > 2 else ", as does one more" * (len(left) == 2)
     when, most = t[beyond[:, first].argmax()], np.nanmax(excess[:, first])
     return (
-        f"'{model.record.q_names[index[first]]}' leaves its limits, {lower[first]:.6g} to {upper[first]:.6g}, at"
+        f"'{names[index[first]]}' leaves its limits, {lower[first]:.6g} to {upper[first]:.6g}, at"
         f" t = {when:.6g} s, by up to {most:.3g}{others}: limits are data here, no stops",
     )

@@ -207,7 +207,8 @@ def _notes(stepper: Stepper, states: Sequence[Array], bendings: Sequence[BeamBen
                 f"the constraints came close to a singular posture at t = {when:.6g} s, to {share:.1%} of"
                 " their strength: compare with another step"
             )
-    notes += limit_notes(stepper.model, states[0], states[1])
+    record = stepper.model.record
+    notes += limit_notes(record.q_names, record.joint_limits, states[0], states[1])
     notes += bending_notes(bendings)
     if run.late_steps:
         notes.append(f"{run.late_steps} of {run.paced_steps} steps began late, by {1e3 * run.late_max:.3g} ms at most")

@@ -131,7 +131,8 @@ class Trajectories:
         kind, reason, advice = _ENDS[int(self.status[index])]
         bendings = self.bendings(index)
         t, reached = float(self.t_last[index]), self._states(index)
-        notes = (*limit_notes(self.model, reached[0], reached[1]), *bending_notes(bendings))
+        record = self.model.record
+        notes = (*limit_notes(record.q_names, record.joint_limits, *reached[:2]), *bending_notes(bendings))
         if self.status[index] < 0:
             reason = self._input_fault(index) or reason
         mode, remarks = self._step_size(index)

@@ -56,7 +56,8 @@ def test_a_run_beyond_the_limits_of_a_joint_says_when_and_how_far(t_end: float, 
     diagram.add_model("falling", system)
     diagram.add(blocks.ForwardDynamics(name="mass", model="falling"))
     drawn = sf.Simulation(diagram).run(t_end, dt=1e-3, record=1e-3).outcome
-    for outcome in (alone, batch, drawn):
+    interpreted = sf.Simulation(diagram).interpret(t_end, dt=1e-3, record=1e-3).outcome
+    for outcome in (alone, batch, drawn, interpreted):
         said = [note for note in outcome.notes if "leaves its limits" in note]
         assert len(said) == left
         assert not left or "-0.1 to 0.15, at t = 0.143 s, by up to 0.096" in said[0]

@@ -90,8 +90,9 @@ class Ended:
 def _beyond_limits(ended: Ended) -> list[str]:
     """Notes where mechanisms left the limits of their joints."""
     t, q, *_ = ended.states
-    parts = zip(ended.loop.parts, ended.layout.parts, strict=True)
-    return [note for stepper, part in parts for note in limit_notes(stepper.model, t, q[:, part.q])]
+    records = [stepper.model.record for stepper in ended.loop.parts]
+    parts = zip(records, ended.layout.parts, strict=True)
+    return [note for of, part in parts for note in limit_notes(of.q_names, of.joint_limits, t, q[:, part.q])]
 
 
 def diagnose(ended: Ended, bendings: Sequence[BeamBending]) -> tuple[Outcome, Resolution]:
