@@ -29,6 +29,7 @@ CONNECT, WELD, JOINT = range(3)
 _SITE = 6
 _NO_EQUALITIES = 1 << 0 | 1 << 1
 _DEGREE = 4
+_TORQUE_SCALE = 10  # Index in eq_data of a weld.
 
 
 class EqualityReader:
@@ -68,7 +69,8 @@ class EqualityReader:
     def _closure(self, i: int) -> Closure:
         m, data = self.model, np.array(self.model.eq_data[i])
         ends = int(m.eq_obj1id[i]), int(m.eq_obj2id[i])
-        rotations = AXES if m.eq_type[i] == WELD else ()
+        # d[10] scales a weld's rotations beside its translations; at zero MuJoCo leaves them free.
+        rotations = AXES if m.eq_type[i] == WELD and data[_TORQUE_SCALE] else ()
         if m.eq_objtype[i] == _SITE:
             first, second = (self._body(int(m.site_bodyid[site]), self.sites[site]) for site in ends)
             return Closure(self.names[i], first, second, AXES, rotations)
