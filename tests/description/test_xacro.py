@@ -241,3 +241,36 @@ def test_guard_refuses_descriptors_and_writing(tmp_path: Path, attempt: str) -> 
     code = f"import os; here = {str(tmp_path.resolve())!r}; os.chdir(here); worker['guard'](here); open('a').close()\n"
     attempted = f"try: {attempt}\nexcept Exception as refusal: print(refusal)"
     assert "leaves the folder" in worker(code + attempted)
+
+
+LIBRARY = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:property name="L" value="0.5"/>
+<xacro:macro name="rod" params="name length:=${L} mass:=1 *origin **extra prefix:=^|left_ tag:=^">
+<link name="${prefix}${name}_${tag}" mass="${mass*length}"><xacro:insert_block name="origin"/>
+<xacro:insert_block name="extra"/></link></xacro:macro></robot>"""
+USES = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:arg name="n" default="3"/>
+<xacro:include filename="library.xacro" ns="lib"/><xacro:include filename="lib*.xacro"/>
+<xacro:property name="tag" value="T"/><xacro:property name="lazy" value="${later*2}"/>
+<xacro:property name="later" value="21"/><xacro:property name="eager" value="${later+1}" lazy_eval="false"/>
+<xacro:property name="y" value="${xacro.load_yaml('values.yaml')}"/>
+<xacro:property name="block"><a/><b/></xacro:property>
+<xacro:lib.rod name="x" length="${lib.L}"><origin xyz="0 0 ${lib.L}"/><more><q/>${lazy}</more></xacro:lib.rod>
+<xacro:rod name="y" prefix="right_"><origin/><more/></xacro:rod>
+<xacro:call macro="rod" name="z"><origin/><more><k/></more></xacro:call>
+<xacro:macro name="count" params="i"><xacro:if value="${i > 0}"><c i="${i}"/><xacro:count i="${i-1}"/></xacro:if>
+<xacro:property name="up" value="${7*6}" scope="parent"/></xacro:macro><xacro:count i="$(arg n)"/>
+<xacro:unless value="${y.arm.length == 0.7}"><never/></xacro:unless><xacro:insert_block name="block"/>
+<v a="${y.arm.joints[0].limit} ${y['angle']} ${up} ${eager} $(eval n + 1) $${x} ${'%0.3f' % pi} ${-7 % 3} ${None}"/>
+</robot>"""
+
+
+def test_trusted_files_expand_as_by_xacro_itself(tmp_path: Path) -> None:
+    """Macros, blocks, defaults, forwarding, scopes, lazy properties, namespaces, conditions, YAML with units."""
+    (tmp_path / "library.xacro").write_text(LIBRARY)
+    (tmp_path / "values.yaml").write_text("arm: {length: 0.7, joints: [{limit: !degrees 90}]}\nangle: !degrees pi*10")
+    (tmp_path / "robot.xacro").write_text(USES)
+    file = str((tmp_path / "robot.xacro").resolve())
+    code = "import sys, xacro; print(xacro.process_file(sys.argv[1], mappings={'n': '4'}).toprettyxml(indent=' '))"
+    theirs = subprocess.run([sys.executable, "-c", code, file], capture_output=True, text=True, check=True).stdout
+    ours = xacro_files.expanded(file, {"n": "4"}).decode()
+    assert 'name="right_y_T"' in ours and "<never" not in ours
+    assert ours.split() == theirs.split()
