@@ -167,18 +167,26 @@ export class Model {
 }
 
 export class Instance {
+  #address;
+
   constructor(model) {
     this.model = model;
-    this.at = model.wasm.js_instance();
-    if (!this.at) throw new Error("no memory for an instance");
+    this.#address = model.wasm.js_instance();
+    if (!this.#address) throw new Error("no memory for an instance");
     const size = (name) => model.sizes?.[name] ?? 0;
     this.sizes = [size("nq"), size("nv"), size("nu"), size("npar"), size("nv"), size("nc")];
   }
 
-  /** Give the memory back; the instance is not to be used any more. */
+  /** Give the memory back: whatever is asked of the instance then throws. Arrays taken from it are not to be used. */
   free() {
-    if (this.at) this.model.wasm.js_free(this.at);
-    this.at = 0;
+    if (this.#address) this.model.wasm.js_free(this.#address);
+    this.#address = 0;
+  }
+
+  /** Address of the instance in memory; throws after `free()`. */
+  get at() {
+    if (!this.#address) throw new Error("the instance was freed");
+    return this.#address;
   }
 
   get t() { return this.model.wasm.js_time(this.at); }

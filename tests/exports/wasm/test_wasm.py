@@ -27,10 +27,11 @@ for (let k = 0; k < t / 1e-3; ++k) robot.advance((k + 1) * 1e-3, 1e-3);
 results.end = told({ q: robot.q, v: robot.v });
 results.pose = told(robot.evaluate("frame_pose", model.names.frames.at(-1)));
 results.refusals = [];
-const freed = model.prepareBatch("dynamics", 3);
-freed.free();
+const freed = model.prepareBatch("dynamics", 3), gone = model.instance();
+for (const once of [freed, gone, gone]) once.free();
 for (const action of [() => model.find("mass"), () => model.evaluate("dynamics", { q: [1, 2, 3, 4, 5] }),
-  () => model.batch("dynamics", 1.5, {}), () => model.batch("dynamics", 2 ** 31, {}), () => freed.run()])
+  () => model.batch("dynamics", 1.5, {}), () => model.batch("dynamics", 2 ** 31, {}), () => freed.run(),
+  () => gone.q, () => { gone.t = 1; }, () => gone.advance(1), () => gone.evaluate("dynamics"), () => gone.reset()])
   try { action(); } catch (error) { results.refusals.push(error.message); }
 const use = () => {
   for (let m = 1; m < 60; ++m) model.batch("dynamics", 100 * m, {});
@@ -95,11 +96,12 @@ def test_a_run_moves_as_strict_native_code_does(answers: dict[str, Any], tmp_pat
 
 @pytest.mark.tools
 def test_wrong_names_and_sizes_are_refused_in_words(answers: dict[str, Any]) -> None:
-    unknown, size, number, memory, freed = answers["refusals"]
+    unknown, size, number, memory, freed, *gone = answers["refusals"]
     assert "no function 'mass'" in unknown and "forward_dynamics" in unknown
     assert "'q' has 5 numbers; it takes 2" in size
     assert "1.5 states; it takes a whole number" in number
     assert "no memory for" in memory and "the batch was freed" in freed
+    assert gone == ["the instance was freed"] * 5  # Of address zero, memory of others would be read and written.
 
 
 @pytest.mark.tools
