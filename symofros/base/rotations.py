@@ -21,6 +21,15 @@ def skew(w: Array) -> Array:
     return K - np.swapaxes(K, -1, -2)
 
 
+def cross(a: Array, b: Array) -> Array:
+    """The products a x b (..., 3): the bits of `numpy.cross`, in less than half its time for a few vectors."""
+    product = np.empty(np.broadcast_shapes(a.shape, b.shape))
+    product[..., 0] = a[..., 1] * b[..., 2] - a[..., 2] * b[..., 1]
+    product[..., 1] = a[..., 2] * b[..., 0] - a[..., 0] * b[..., 2]
+    product[..., 2] = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+    return product
+
+
 def matrix_product(R: Array, x: Array) -> Array:
     """The product of a matrix (3, 3) with a vector (3,) or a matrix (3, 3), with the same rounding on every machine."""
     columns = R[:, :, np.newaxis] if x.ndim == 2 else R
@@ -41,14 +50,14 @@ def quaternion_matrix(quaternion: Array) -> Array:
 
 def rotate(quaternion: Array, x: Array) -> Array:
     """The vectors R x (..., 3) of unit quaternions (..., 4)."""
-    t = 2.0 * np.cross(quaternion[..., :3], x)
-    return np.asarray(x + quaternion[..., 3:] * t + np.cross(quaternion[..., :3], t))
+    t = 2.0 * cross(quaternion[..., :3], x)
+    return np.asarray(x + quaternion[..., 3:] * t + cross(quaternion[..., :3], t))
 
 
 def quaternion_product(a: Array, b: Array) -> Array:
     """The quaternions (..., 4) of the rotations R_a R_b."""
     av, aw, bv, bw = a[..., :3], a[..., 3:], b[..., :3], b[..., 3:]
-    vector = aw * bv + bw * av + np.cross(av, bv)
+    vector = aw * bv + bw * av + cross(av, bv)
     scalar = aw * bw - np.sum(av * bv, axis=-1, keepdims=True)
     return np.concatenate([vector, scalar], axis=-1)
 
@@ -86,14 +95,14 @@ def screw_displacement(w: Array, v: Array) -> Array:
     A = 2.0 * _half_sinc(angle) ** 2  # 1 - cos a = 2 sin^2(a/2): no digits cancel.
     closed = _where_large(angle, lambda a: (a - np.sin(a)) / a**3)
     B = np.where(angle < _SERIES, _polynomial(angle, 1 / 6, -1 / 120, 1 / 5040, -1 / 362880), closed)
-    wv = np.cross(w, v)
-    return np.asarray(v + A * wv + B * np.cross(w, wv))
+    wv = cross(w, v)
+    return np.asarray(v + A * wv + B * cross(w, wv))
 
 
 def screw_twist(w: Array, p: Array) -> Array:
     """The v (..., 3) with screw_displacement(w, v) = p: v = p - w x p / 2 + C w x (w x p)."""
-    wp = np.cross(w, p)
-    return np.asarray(p - 0.5 * wp + _tangent_factor(w) * np.cross(w, wp))
+    wp = cross(w, p)
+    return np.asarray(p - 0.5 * wp + _tangent_factor(w) * cross(w, wp))
 
 
 def rotation_vector_rate(theta: Array, w: Array) -> Array:

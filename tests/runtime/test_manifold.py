@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from symofros.base.rotations import Array, axis_rotation, normalized, quaternion_matrix
+from symofros.base.rotations import Array, axis_rotation, cross, normalized, quaternion_matrix
 from symofros.expr.derivative import directional
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
@@ -36,6 +36,13 @@ ANGLES = st.one_of(
     st.floats(-14.0, -2.0).map(lambda exponent: np.pi - 10.0**exponent),
 )
 SEEDS = st.integers(0, 2**32 - 1)
+
+
+@pytest.mark.parametrize(("a", "b"), [((3,), (3,)), ((4, 3), (4, 3)), ((3,), (7, 3)), ((5, 1, 3), (2, 3))])
+def test_products_of_vectors_have_the_bits_of_numpys(a: tuple[int, ...], b: tuple[int, ...]) -> None:
+    rng = np.random.default_rng(4)
+    x, y = rng.standard_normal(a), rng.standard_normal(b)
+    np.testing.assert_array_equal(cross(x, y), np.cross(x, y), strict=True)
 
 
 def configuration(rng: np.random.Generator) -> Array:
