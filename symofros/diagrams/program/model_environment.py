@@ -104,13 +104,15 @@ class Models:
         """The run-time parameters of a model (npar).
 
         Raises:
-            ParameterError: The model's description refuses them.
+            DescriptionError: The model's description refuses those that the diagram states.
         """
         record = self.record(name)
         values = np.array(record.par_default, dtype=np.float64)
         for key, value in self.setup(name).parameters.items():
             values[self._index(name, "run-time parameter", key, record.par_names)] = float(value)
-        self.check_parameters(name, values)
+        problems = self._parameter_problems(name, values)
+        if problems:
+            raise DescriptionError(problems)
         return values
 
     def check_parameters(self, name: str, values: Array) -> None:
@@ -119,10 +121,14 @@ class Models:
         Raises:
             ParameterError: With the conditions that do not hold.
         """
-        problems = RunTimeCheck(self.tree(name).system, self.record(name).par_names).problems(values[None])
+        problems = self._parameter_problems(name, values)
         if problems:
-            what = f"diagram '{self._diagram}': model '{name}'"
-            raise ParameterError([replace(problem, what=f"{what}: {problem.what}") for problem in problems])
+            raise ParameterError(problems)
+
+    def _parameter_problems(self, name: str, values: Array) -> list[Problem]:
+        problems = RunTimeCheck(self.tree(name).system, self.record(name).par_names).problems(values[None])
+        what = f"diagram '{self._diagram}': model '{name}'"
+        return [replace(problem, what=f"{what}: {problem.what}") for problem in problems]
 
     def start(self, name: str) -> tuple[Array, Array]:
         """The first q (nq) and v (nv) of a model."""

@@ -38,9 +38,10 @@ def test_a_run_refuses_what_the_description_refuses(name: str, value: float, say
 def test_a_model_is_added_with_sound_parameters_only() -> None:
     diagram = sf.Diagram("bench")
     diagram.add_model("plant", pendulum(), parameters={"m": -1.0})
-    diagram.add(blocks.ForwardDynamics(name="arm", model="plant"))
-    with pytest.raises(sf.ParameterError, match="mass -1"):
+    diagram.add(blocks.ForwardDynamics(name="arm", model="plants"))
+    with pytest.raises(sf.DescriptionError, match="mass -1") as caught:  # Beside all other problems.
         sf.Simulation(diagram).run(0.01)
+    assert "'plants'" in str(caught.value)
 
 
 def test_known_parameters_are_listed_once() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import time
 from itertools import islice
 from pathlib import Path
@@ -34,6 +35,13 @@ def test_the_corpus_is_sound(name: str) -> None:
 def test_the_diagrams_of_the_corpus_are_sound(tmp_path: Path, data: bytes) -> None:
     fuzz._diagram(tmp_path, data)
     assert sf.load_diagram(tmp_path / "again.yaml").blocks
+
+
+def test_parameters_that_a_model_refuses_are_a_fault_of_the_diagram(tmp_path: Path) -> None:
+    data = next(data for data in corpus("diagram") if b"parameters: {" in data and b"m: " in data)
+    hostile = re.sub(rb"parameters: {[^}]*}", b"parameters: {m: -1}", data, count=1)
+    with pytest.raises(sf.DescriptionError, match="mass"):
+        fuzz._diagram(tmp_path, hostile)
 
 
 @pytest.mark.parametrize("kind", KINDS)
