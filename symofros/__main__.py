@@ -5,8 +5,8 @@ from __future__ import annotations
 import ast
 from functools import cache
 from importlib import import_module
-from importlib.abc import InspectLoader
 from importlib.util import find_spec
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
@@ -44,12 +44,14 @@ def _command(name: str) -> Any:
     return typer.main.get_group(single).commands[name]
 
 
-def _listed(name: str) -> TyperCommand:
+def _listed(name: str) -> Any:
     """A command for lists alone: its docstring is read from the source, which takes a tenth of importing it."""
     module, function = _COMMANDS[name]
     spec = find_spec(module)
-    assert spec is not None and isinstance(spec.loader, InspectLoader)
-    body = ast.parse(spec.loader.get_source(module) or "").body
+    try:
+        body = ast.parse(Path(str(spec and spec.origin)).read_text(encoding="utf-8")).body
+    except OSError:  # Sources are not always files.
+        return _command(name)
     (stated,) = (node for node in body if isinstance(node, ast.FunctionDef) and node.name == function)
     return TyperCommand(name, help=ast.get_docstring(stated), rich_markup_mode=None)
 

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -83,7 +84,8 @@ def test_folding_equals_the_op_table(numbers: list[float], name: str) -> None:
     args = [x + 0.0 for x in numbers[: op.arity]]  # The graph knows one zero, C's atan2 two.
     if name == "div" and args[1] == 0.0:
         return
-    expected = float(op.rule(*args))
+    with np.errstate(all="ignore"):
+        expected = float(op.rule(*args))
     if math.isnan(expected):
         return
     edges = [g.constant(x) for x in args]
