@@ -25,7 +25,6 @@ from symofros.generator.codegen.interpreted import InterpretedUnit
 from symofros.generator.codegen.model import model_source
 from symofros.generator.codegen.names import identifier
 from symofros.generator.passes import run_passes
-from symofros.generator.record import joint_limits
 from symofros.native import native_text
 from symofros.runtime.beams import ElasticBeam
 from symofros.runtime.build.build import build_library
@@ -265,18 +264,6 @@ def record_of(resolved: Resolved, part: Part | None) -> ModelRecord:
         periodic=(False,) * nq,
         constraint_names=names,
         speed_conditions=tuple(name for name in names if name in layout.speed_conditions),
-        joint_limits=() if part is None else limits_of(resolved, part),
-    )
-
-
-def limits_of(resolved: Resolved, part: Part) -> tuple[tuple[int, float, float], ...]:
-    """Limits of joints of a part's mechanisms, by index in the part's q."""
-    models, layout = resolved.wired.models, resolved.layout
-    return tuple(
-        (layout.q[name].start - part.q.start + i, lower, upper)
-        for name in part.blocks
-        if name in layout.q
-        for i, lower, upper in joint_limits(models.tree(resolved.pieces[name].block.mechanism()))
     )
 
 

@@ -11,11 +11,11 @@ from symofros.base.user_functions import raised_where
 from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.program.layout import Layout
 from symofros.diagrams.run.examination.faults import fault_at
+from symofros.diagrams.run.examination.joint_limits import joint_limit_notes
 from symofros.diagrams.run.loop import Loop
 from symofros.runtime.beams import BeamBending, bending_notes, largest_bending
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.analysis.beam_theory import UNAMPLIFIED, amplifications
-from symofros.simulation.analysis.postures import limit_notes
 from symofros.simulation.results.outcome import Kind, Outcome
 from symofros.simulation.results.step_size import examine_steps, remedy, step_size_note
 from symofros.simulation.settings import Settings
@@ -87,14 +87,6 @@ class Ended:
         return tuple(bendings)
 
 
-def _beyond_limits(ended: Ended) -> list[str]:
-    """Notes where mechanisms left the limits of their joints."""
-    t, q, *_ = ended.states
-    records = [stepper.model.record for stepper in ended.loop.parts]
-    parts = zip(records, ended.layout.parts, strict=True)
-    return [note for of, part in parts for note in limit_notes(of.q_names, of.joint_limits, t, q[:, part.q])]
-
-
 def diagnose(ended: Ended, bendings: Sequence[BeamBending]) -> tuple[Outcome, Resolution]:
     """How a run ended, and how well its fixed steps resolve the modes of its parts.
 
@@ -103,7 +95,8 @@ def diagnose(ended: Ended, bendings: Sequence[BeamBending]) -> tuple[Outcome, Re
         bendings: Bending of its beams.
     """
     loop, status, t = ended.loop, ended.status, ended.t
-    notes = (*bending_notes(bendings), *([loop.fault] if loop.fault else []), *_beyond_limits(ended))
+    left = joint_limit_notes(ended.resolved, *ended.states[:2])
+    notes = (*bending_notes(bendings), *([loop.fault] if loop.fault else []), *left)
     if ended.interrupted:
         return Outcome("interrupted", t, "Ctrl-C; the part up to here is kept", notes=notes), Resolution()
     if status == Status.CALLBACK_FAILED:

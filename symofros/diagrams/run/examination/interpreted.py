@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 
 from symofros.base.options import Options
-from symofros.diagrams.program.compiled import limits_of
 from symofros.diagrams.run.block_functions import Blocks
 from symofros.diagrams.run.examination.energy_balance import Energies
 from symofros.diagrams.run.examination.remarks import Examined, remarks
@@ -17,7 +16,6 @@ from symofros.diagrams.run.python_blocks import Called, CalledBefore
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.manifold import chart_rate, retract
 from symofros.runtime.model import Model
-from symofros.simulation.analysis.postures import limit_notes
 from symofros.simulation.results.step_size import step_size_note
 from symofros.simulation.stepping.methods import Method
 from symofros.simulation.stepping.resolution import Resolution, Spectrum, resolution
@@ -40,16 +38,6 @@ def notes_on_steps(run: InterpretedRun, blocks: Blocks, course: Course, called: 
     steps = seen.resolution(method)
     notes = [step_size_note(steps.worst, method, course.step)] if steps.worst else []
     return [*notes, *remarks(seen.examined, steps)]
-
-
-def beyond_limits(run: InterpretedRun) -> list[str]:
-    """Notes where mechanisms left the limits of their joints."""
-    layout = run.resolved.layout
-    return [
-        note
-        for part in layout.parts
-        for note in limit_notes(layout.q_names[part.q], limits_of(run.resolved, part), run.t, run.q[:, part.q])
-    ]
 
 
 class _Revisited:
