@@ -19,7 +19,7 @@ from symofros.runtime.constrained import Eliminated, eliminate, free_motions, na
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.beam_theory import Motion, bendings_under_efforts, refuse_beyond
 from symofros.simulation.analysis.consistency import consistent_jacobian, place_in_batch
-from symofros.simulation.analysis.input_rotations import refuse_no_rotation
+from symofros.simulation.analysis.input_rotations import given_inputs
 
 # Share of the terms of a sum below which it is their rounding.
 ROUNDING = 1e-12
@@ -112,8 +112,7 @@ def actuator_efforts(
     accelerations = _vector("a", model.by_name("a", a), model.nv)
     weights = np.ones(len(names)) if sizes is None else _vector("sizes", sizes, len(names))
     stated = [model.names.u.index(name) for name in names if name in model.names.u]
-    others = np.array(_vector("u", model.record.u_default if u is None else model.by_name("u", u), model.nu))
-    refuse_no_rotation(model, others)
+    others = np.array(_vector("u", given_inputs(model, u), model.nu))
     others[..., stated] = 0.0
     M, h, Q = model.dynamics(q, v, others, par=par, t=t)
     B = _columns(model, names, (q, v, others), Q, par, t)

@@ -29,7 +29,7 @@ def refuse_no_rotation(model: Model, u: Array) -> None:
         SymofrosError: One is.
     """
     for first in model.record.quaternion_inputs:
-        lengths = np.linalg.norm(u[..., first : first + 4], axis=-1).ravel()
+        lengths = np.linalg.norm(np.atleast_1d(u)[..., first : first + 4], axis=-1).ravel()
         wrong = np.flatnonzero(~(np.abs(lengths - 1.0) <= UNIT_TOLERANCE))
         if len(wrong):
             names = ", ".join(model.names.u[first : first + 4])

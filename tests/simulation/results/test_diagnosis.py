@@ -131,6 +131,11 @@ def test_analyses_take_rotations_alone_for_inputs(length: float) -> None:
                 analysis()
 
 
+def test_one_number_for_all_inputs_is_refused_in_words() -> None:
+    with pytest.raises(sf.SymofrosError, match="inputs p.qx|shape"):
+        sf.equilibrium(sf.compile(TURNED), [1.5], u=2.0)
+
+
 METHODS = ["rk4", "dopri5", "semi_implicit_euler", "rodas4", "generalized_alpha"]
 CASES = [(method, kind) for method in METHODS for kind in ("number", "formula", "samples")]
 
