@@ -67,10 +67,7 @@ def checked(function: Callable[_Parameters, _Result]) -> Callable[_Parameters, _
 
     @wraps(function)
     def call(*args: _Parameters.args, **kwargs: _Parameters.kwargs) -> _Result:
-        try:
-            given = signature.bind(*args, **kwargs).arguments
-        except TypeError as error:
-            raise _misfit(title, signature, str(error), kwargs) from None
+        given = bound(title, signature, args, kwargs)
         kinds = _kinds(function)
         for name, value in given.items():
             kind = None if name in rest else kinds.get(name)
@@ -111,7 +108,7 @@ class CheckedCalls(ABCMeta):
             try:
                 return super().__call__(*args, **kwargs)
             except TypeError:
-                refuse_misfit(cls.__name__, cls.__signature__, args, kwargs)
+                bound(cls.__name__, cls.__signature__, args, kwargs)
                 raise
 
         @property
@@ -121,14 +118,16 @@ class CheckedCalls(ABCMeta):
             return initialise.replace(parameters=[*initialise.parameters.values()][1:])
 
 
-def refuse_misfit(title: str, signature: inspect.Signature, args: Sequence[Any], kwargs: Mapping[str, Any]) -> None:
-    """Refuse a call whose arguments are missing, unknown, or too many.
+def bound(
+    title: str, signature: inspect.Signature, args: Sequence[Any], kwargs: Mapping[str, Any]
+) -> Mapping[str, Any]:
+    """The arguments of a call by name.
 
     Raises:
-        ArgumentError: It is such a call.
+        ArgumentError: Arguments are missing, unknown, or too many.
     """
     try:
-        signature.bind(*args, **kwargs)
+        return signature.bind(*args, **kwargs).arguments
     except TypeError as error:
         raise _misfit(title, signature, str(error), kwargs) from None
 

@@ -9,7 +9,7 @@ from dataclasses import fields
 from functools import cache, wraps
 from typing import Any, TypeVar
 
-from symofros.base.arguments import refuse_misfit
+from symofros.base.arguments import bound
 from symofros.errors import ArgumentError, DescriptionError, Problem, did_you_mean
 
 _Class = TypeVar("_Class", bound=type)
@@ -68,7 +68,7 @@ def refuses_unknown_entries(cls: _Class) -> _Class:
         try:
             initialise(self, *args, **entries)
         except TypeError:
-            refuse_misfit(cls.__name__, inspect.signature(cls), args, entries)
+            bound(cls.__name__, inspect.signature(cls), args, entries)
             raise
 
     type.__setattr__(cls, "__init__", checked)
