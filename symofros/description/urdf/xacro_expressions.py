@@ -65,8 +65,8 @@ def _bounded(value: Any) -> Any:
     """
     if not isinstance(value, _PLAIN):
         raise Refusal(f"a {type(value).__name__} is no value of an expression")
-    if isinstance(value, str | list | tuple | dict) and len(value) > MAX_LENGTH:
-        raise Refusal(f"a value of {len(value)} elements, more than {MAX_LENGTH}")
+    if isinstance(value, str | list | tuple | dict):
+        _count(len(value))
     if isinstance(value, int) and value.bit_length() > MAX_BITS:
         raise Refusal(f"an integer of {value.bit_length()} bits, more than {MAX_BITS}")
     return value
@@ -132,6 +132,7 @@ _MATH = {name: value for name, value in vars(math).items() if not name.startswit
 # What an expression of $(eval ...) knows unasked; one of ${...} has them from xacro.
 CONSTANTS = {"true": True, "false": False, **{k: v for k, v in _MATH.items() if isinstance(v, float)}}
 _LARGE = frozenset({"comb", "factorial", "perm"})  # of little use here, and of unbounded size
+_MATH_FUNCTIONS = {name: value for name, value in _MATH.items() if callable(value) and name not in _LARGE}
 _PYTHON: Mapping[str, Callable[..., Any]] = {
     "abs": abs,
     "all": all,
@@ -196,7 +197,7 @@ class Evaluator:
         self._symbols = symbols
         self._functions = {
             "python": _PYTHON,
-            "math": {k: v for k, v in _MATH.items() if callable(v) and k not in _LARGE},
+            "math": _MATH_FUNCTIONS,
             "xacro": {**_XACRO, **functions},
         }
         self._namespace = namespace
