@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ast
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
@@ -59,7 +61,7 @@ def _listed(name: str) -> Any:
 class Commands(TyperGroup):
     """Commands of the table. Typer's own copy of Click has no public types."""
 
-    listing = False
+    _listing = False
 
     def list_commands(self, ctx: Any) -> list[str]:
         """Names of all commands."""
@@ -69,20 +71,26 @@ class Commands(TyperGroup):
         """A command by its name."""
         if cmd_name not in _COMMANDS:
             return None
-        return _listed(cmd_name) if self.listing else _command(cmd_name)
+        return _listed(cmd_name) if self._listing else _command(cmd_name)
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
         """The list of all commands in the help."""
-        self.listing = True
-        super().format_commands(ctx, formatter)
-        self.listing = False
+        with self._names_alone():
+            super().format_commands(ctx, formatter)
 
     def shell_complete(self, ctx: Any, incomplete: str) -> Any:
         """Names of commands that begin so."""
-        self.listing = True
-        items = super().shell_complete(ctx, incomplete)
-        self.listing = False
-        return items
+        with self._names_alone():
+            return super().shell_complete(ctx, incomplete)
+
+    @contextmanager
+    def _names_alone(self) -> Iterator[None]:
+        """Commands are asked for to be listed, which imports none."""
+        self._listing = True
+        try:
+            yield
+        finally:
+            self._listing = False
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """The command that arguments begin with; another name is refused with the nearest."""

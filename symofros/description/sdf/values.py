@@ -105,7 +105,7 @@ class SdfValues(Values):
         return None if abs(number) >= UNBOUNDED else number
 
     def remark_unread(self, element: Element, kind: str, name: str) -> None:
-        """Tell of the children of a link or joint, and of theirs, that nothing reads."""
+        """Tell of the elements inside a link or joint that nothing reads."""
         for child in element.children:
             if child.tag not in _READ_IN[element.tag]:
                 self.remarks.add(f"<{child.tag:.60}> of <{element.tag}> ignored", kind, name)
