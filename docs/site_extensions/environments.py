@@ -116,7 +116,7 @@ def _derivatives(row: ModelFunction) -> str:
 
 
 def _is_derivative(name: str, of: str) -> bool:
-    words = ("derivatives", "derivative", "by_par", "second_derivatives", "hvp", "vjp", "jvp")
+    words = ("derivatives", "derivative", "by_par", "second_derivatives", "hvp", "hessian", "vjp", "jvp")
     return name.removeprefix(f"{of}_") in words
 
 

@@ -182,6 +182,14 @@ _ROWS: tuple[ModelFunction, ...] = (
         by_solver=True,
     ),
     _row(
+        "inverse_dynamics_hessian",
+        "q v a t tau_bar",
+        "H (3 nv + npar, 3 nv + npar)",
+        "derivatives",
+        "second derivatives of tau_bar . inverse_dynamics by (q, v, a, par)",
+        by_solver=True,
+    ),
+    _row(
         "inverse_dynamics_by_par",
         "q v a t",
         "dtau_dpar (nv, npar) = inverse_dynamics_by_par",
@@ -194,6 +202,14 @@ _ROWS: tuple[ModelFunction, ...] = (
         "by_par (nv + nc, npar) = residual_by_par",
         "derivatives",
         "derivative of the accelerations (and multipliers) by the run-time parameters",
+        by_solver=True,
+    ),
+    _row(
+        "forward_dynamics_hessian",
+        "q v u t a_bar lam_bar",
+        "H (2 nv + nu + npar, 2 nv + nu + npar)",
+        "derivatives",
+        "second derivatives of a_bar . v' + lam_bar . lam by (q, v, u, par)",
         by_solver=True,
     ),
     _row(
@@ -291,6 +307,14 @@ _ROWS: tuple[ModelFunction, ...] = (
     ),
     _row("frame_jacobian", "q", "J (6, nv) = jacobian", "frames", "J with frame_velocity = J v", exported=True),
     _row("frame_jacobian_rate", "q v", "dJ (6, nv) = jacobian_rate", "frames", "rate of the Jacobian", exported=True),
+    _row("frame_position_by_par", "q", "by_par (3, npar) = position_by_par", "frames", "derivative of p_WF by par"),
+    _row(
+        "frame_position_hessian",
+        "q p_WF_bar",
+        "H (nv + npar, nv + npar) = position_hessian",
+        "frames",
+        "second derivatives of p_WF_bar . p_WF by (q, par)",
+    ),
     _row(
         "frame_derivatives",
         "q v a u",
@@ -333,9 +357,10 @@ FUNCTIONS: dict[str, ModelFunction] = {row.name: row for row in _ROWS}
 MODEL_FUNCTIONS = tuple(row.name for row in _ROWS if not row.of_frame)
 FRAME_FUNCTIONS = tuple(row.name for row in _ROWS if row.of_frame)
 # What commands generate where no functions are named: reverse mode and second order are long, and asked for by name.
-_SECOND_ORDER = ("inverse_dynamics_second_derivatives", "inverse_dynamics_hvp")
-DEFAULT_FUNCTIONS = tuple(name for name in MODEL_FUNCTIONS if not (FUNCTIONS[name].transposes or name in _SECOND_ORDER))
-DEFAULT_FRAME_FUNCTIONS = tuple(name for name in FRAME_FUNCTIONS if not FUNCTIONS[name].transposes)
+_SECOND_ORDER = re.compile(r".*_(second_derivatives|hvp|hessian)")
+_DEFAULT = [row.name for row in _ROWS if not (row.transposes or _SECOND_ORDER.fullmatch(row.name))]
+DEFAULT_FUNCTIONS = tuple(name for name in _DEFAULT if not FUNCTIONS[name].of_frame)
+DEFAULT_FRAME_FUNCTIONS = tuple(name for name in _DEFAULT if FUNCTIONS[name].of_frame)
 
 
 def generated_with(name: str, constrained: bool) -> tuple[str, ...]:

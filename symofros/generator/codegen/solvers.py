@@ -25,6 +25,7 @@ ROUTINES: dict[str, tuple[str, ...]] = {
     "project": ("dense", "row_sizes", "null_space_factors", "kkt", "constrained", "project"),
     "differentiate": ("dense", "row_sizes", "null_space_factors", "kkt", "differentiate"),
     "transpose": ("dense", "row_sizes", "null_space_factors", "kkt", "transpose"),
+    "hessian": ("dense", "row_sizes", "null_space_factors", "kkt", "hessian"),
 }
 
 
@@ -178,6 +179,18 @@ def _transpose(c_name: str, function: Function, needs: int, sparse: SparseSystem
     return lines, work_size("SYM_TRANSPOSE_WORK", n, m) + needs
 
 
+def _hessian(c_name: str, function: Function, needs: int, sparse: SparseSystem | None) -> tuple[list[str], int]:
+    """The state and cotangents of a and lam -> second derivatives of their sum."""
+    m, n = function.outputs[2].shape
+    k = function.returns[0][1][0]
+    lines = [
+        f"    sym_hessian({n}, {m}, {k}, &measures, {c_name}_terms, {c_name}_slopes, {c_name}_curvature,",
+        "                in, out, work);",
+    ]
+    solving = work_size("SYM_KKT_SOLVE_WORK", n, m, k)
+    return lines, work_size("SYM_HESSIAN_WORK", n, m, k) + solving + needs
+
+
 def work_size(macro: str, *sizes: int) -> int:
     """Doubles of scratch of a routine: the value of its macro in native/model, such as "SYM_KKT_WORK", for sizes."""
     macros = _work_macros()
@@ -201,4 +214,5 @@ _CALLS: dict[str, Callable[[str, Function, int, SparseSystem | None], tuple[list
     "project": _project,
     "differentiate": _differentiate,
     "transpose": _transpose,
+    "hessian": _hessian,
 }

@@ -7,6 +7,7 @@ from functools import cached_property
 from symofros.expr.edges import Edge
 from symofros.expr.vector import Mat3, Vec3
 from symofros.mechanics.dynamics.derivatives.differentiation import Matrix
+from symofros.mechanics.dynamics.derivatives.hessians import hessian, stacked
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.kinematics.frames import Pose
 from symofros.mechanics.topology.tree import NamedFrame
@@ -67,6 +68,18 @@ class FrameEquations:
     def pose_by_q(self) -> Matrix:
         """Change of the origin and small rotation, by q (6 x nv)."""
         return _small_motion(self._pose.R_WF, self._equations.by_q(self._placement), self._equations.nv)
+
+    @cached_property
+    def position_by_par(self) -> Matrix:
+        """Derivative of the origin by the run-time parameters (3 x npar)."""
+        return self._equations.by_par(list(self.p))
+
+    @cached_property
+    def position_hessian(self) -> Matrix:
+        """Second derivatives of p_WF_bar . p_WF by (q, par) (nv + npar x nv + npar)."""
+        e, by = self._equations, ("q", "par")
+        weights = [e.g.input("p_WF_bar", k) for k in range(3)]
+        return stacked(hessian(e.kinematics, list(self.p), weights, by), by, by)
 
     @cached_property
     def pose_by_u(self) -> Matrix:

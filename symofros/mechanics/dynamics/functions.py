@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from itertools import chain
 from typing import Any, NamedTuple
 
 from symofros.base.functions import FUNCTIONS, INPUTS, ModelFunction, OutputArray, size_of
@@ -17,6 +18,7 @@ from symofros.mechanics.dynamics.constraints.measures import measures_of
 from symofros.mechanics.dynamics.constraints.rows import retracted
 from symofros.mechanics.dynamics.constraints.wrenches import acts_on_bodies
 from symofros.mechanics.dynamics.derivatives.adjoints import weighted_derivatives
+from symofros.mechanics.dynamics.derivatives.hessians import hessian, stacked
 from symofros.mechanics.dynamics.derivatives.second_derivatives import hessian_vector_product, second_derivatives
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.dynamics.frame_equations import FrameEquations
@@ -201,6 +203,34 @@ def _forward_slopes_by_routine(e: Equations, row: ModelFunction, known: Mapping[
     return Function(row.name, "", row.inputs, _constrained_terms(e, e.gamma), solver)
 
 
+def _forward_hessian(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[str, int]) -> Function:
+    """Second derivatives of forward dynamics: terms, first and second derivatives of the residual, for a routine."""
+    if not e.constraints:
+        e.refuse_massless()
+    by, unknown = ("q", "v", "u", "par"), ("a", "lam")
+    weights = [e.g.input(group, k) for group, n in (("a_bar", e.nv), ("lam_bar", known["nc"])) for k in range(n)]
+    blocks = hessian(e.kinematics, e.residual, weights, (*by, *unknown))
+    slopes = [[*chain.from_iterable(rows)] for rows in zip(*(getattr(e, f"residual_by_{x}") for x in by), strict=True)]
+    shape = len(slopes), len(slopes[0])
+    inputs = FUNCTIONS["residual_derivatives"].inputs
+    outputs = (
+        _matrix("by_x", (shape[1], shape[1]), stacked(blocks, by, by)),
+        _matrix("mixed", shape, stacked(blocks, unknown, by)),
+    )
+    parts = (
+        Function("slopes", "", inputs, (_matrix("slopes", shape, slopes),)),
+        Function("curvature", "", (*inputs, "a_bar", "lam_bar"), outputs),
+    )
+    solver = Solver("hessian", _returns(row, known), parts, measures_of(e.tree))
+    return Function(row.name, "", row.inputs, _constrained_terms(e, e.gamma), solver)
+
+
+def _inverse_hessian(e: Equations) -> list[list[list[Edge]]]:
+    """The only output: second derivatives of tau_bar . tau."""
+    by, weights = ("q", "v", "a", "par"), [e.g.input("tau_bar", k) for k in range(e.nv)]
+    return [stacked(hessian(e.kinematics, e.inverse_dynamics, weights, by), by, by)]
+
+
 def _project(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[str, int]) -> Function:
     """The nearest state on the constraints: the terms of Newton's steps, and how a step moves q."""
     binds = [ZERO if phi == ZERO else ONE for phi in e.phi]
@@ -278,6 +308,8 @@ _BUILDERS: dict[str, _Builder] = {
     "mass_matrix_values": _mass_matrix_values,
     "mass_matrix_pattern": _mass_matrix_pattern,
     "inverse_dynamics_second_derivatives": _formed(second_derivatives),
+    "inverse_dynamics_hessian": _formed(_inverse_hessian),
+    "forward_dynamics_hessian": _forward_hessian,
     "inverse_dynamics_hvp": _formed(hessian_vector_product),
     "project": _project,
     "rest_stiffness": _rest_stiffness,

@@ -8,6 +8,7 @@ from symofros.expr.derivative import along, directional
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.mechanics.dynamics.applied.forces import rates_per_speed
 from symofros.mechanics.dynamics.derivatives.adjoints import weighted_derivatives
+from symofros.mechanics.dynamics.derivatives.hessians import commuting
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.dynamics.mass_matrix import Matrix
 from symofros.mechanics.kinematics.links import TreeKinematics
@@ -54,12 +55,7 @@ def by_two_coordinates(kinematics: TreeKinematics, slopes: Matrix) -> Tensor:
         kinematics: Kinematics of the tree.
         slopes: Derivatives by q (nv x nv).
     """
-    first = list(range(kinematics.nv))
-    for link in kinematics.tree.links:
-        start, size = link.v
-        if link.joint.traits.quasi_velocities and not link.joint.prescribed:
-            first[start : start + size] = [start] * size
-    return _symmetric(kinematics, slopes, rates_per_speed(kinematics), first)
+    return _symmetric(kinematics, slopes, rates_per_speed(kinematics), commuting(kinematics, kinematics.nv))
 
 
 def by_coordinates_and_speeds(kinematics: TreeKinematics, slopes: Matrix) -> Tensor:
