@@ -126,6 +126,7 @@ def bow(pixels: np.ndarray) -> float:
     return float(np.linalg.svd(places - places.mean(axis=0), compute_uv=False)[1] / np.sqrt(len(places)))
 
 
+@pytest.mark.slow  # In every run: a beam that bends.
 def test_a_loop_stays_closed_as_it_moves(open_page: Open) -> None:
     with sf.Viewer(MODELS["four_bar"], port=0) as viewer:
         viewer.show([1.2, -1.2, 1.2])
@@ -143,6 +144,7 @@ def test_a_loop_stays_closed_as_it_moves(open_page: Open) -> None:
         assert np.argwhere(colored(image, mark)).std(axis=0).max() < 15
 
 
+@pytest.mark.slow  # In every run: the editor's pages tell each other.
 def test_two_browsers_see_the_same(open_page: Open) -> None:
     with sf.Viewer(MODELS["four_bar"], port=0) as viewer:
         one = open_page(viewer.url)
@@ -219,6 +221,7 @@ def test_a_run_of_a_diagram_is_seen_as_it_goes(open_page: Open) -> None:
     block.close()
 
 
+@pytest.mark.slow  # In every run: the scene's paths, without a page.
 def test_paths_are_seen_beside_it(open_page: Open) -> None:
     square = [[0.5, 0.3], [1.1, 0.3], [1.1, -0.3], [0.5, -0.3], [0.5, 0.3]]
     with sf.Viewer(MODELS["planar_robot"], port=0, paths=[("square", square, (200, 0, 200))]) as viewer:
@@ -229,6 +232,7 @@ def test_paths_are_seen_beside_it(open_page: Open) -> None:
         until(page, lambda: colored(image_of(page), (200, 0, 200)).sum() < 10)
 
 
+@pytest.mark.slow  # In every run: the editor's scene follows its file.
 def test_another_system_takes_the_place_of_the_one_before(open_page: Open) -> None:
     with sf.Viewer(MODELS["planar_robot"], port=0) as viewer:
         page = open_page(viewer.url)

@@ -26,8 +26,8 @@ def test_steps_are_of_fourth_order_on_rotations_too(model: sf.Model) -> None:
             q, v, _ = step(model, q, v, u, 0.2 / steps)
         return q, v
 
-    exact = end(640)
-    errors = [np.abs(model.difference(end(n)[0], exact[0])).max() for n in (20, 40, 80)]
+    exact = end(240)
+    errors = [np.abs(model.difference(end(n)[0], exact[0])).max() for n in (15, 30, 60)]
     for coarse, fine in zip(errors, errors[1:], strict=False):
         assert 3.7 < np.log2(coarse / fine) < 4.6
 

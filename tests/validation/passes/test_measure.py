@@ -46,6 +46,7 @@ def test_a_pass_that_is_left_out_shows(one: Ablation) -> None:
     assert text(name, plain) == whole
 
 
+@pytest.mark.slow  # In every run: each pass that is left out shows.
 def test_a_model_is_measured_without_each(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(MEASURED, "small", lambda: MODELS["rx90"])
     rows = list(ablated("small", repeats=3))

@@ -23,7 +23,6 @@ from validation.stability.study import Cell, ParameterStudy, Subject, Verdict, s
 
 # Those whose models other tests compile, and that take less than half a second.
 FEW = (
-    "redundant",
     "light_link",
     "stick_slip",
     "spin",

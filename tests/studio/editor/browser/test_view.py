@@ -136,6 +136,7 @@ def test_a_flexible_robot_is_drawn_bends_and_follows_its_file(
     assert differing(settled(page), straight) < differing(longer, straight) / 4
 
 
+@pytest.mark.slow  # In every run: a robot that bends and follows its file.
 def test_a_loop_stays_closed(serve: Callable[..., Server], page: Page) -> None:
     server = serve("four_bar.yaml", source=MODELS / "closed" / "four_bar.yaml")
     steps.open_editor(page, server.url)

@@ -176,6 +176,7 @@ def test_batches_compute_what_single_states_do() -> None:
     assert 1e-9 < error(floats.results(), one.results()) < 1e-5
 
 
+@pytest.mark.slow  # In every run: closures as numbers.
 def test_closed_loops_are_timed_at_closed_postures() -> None:
     given = task("four_bar", 100)
     model = sf.compile(given.system, sf.Options(backend="interpreter"))
