@@ -196,6 +196,11 @@ def vector_name(key: int) -> str:
     return f"p{-key}"
 
 
+def lane_text(key: int, lane: int) -> str:
+    """Where a lane of a vector is read."""
+    return f"sym_lane({vector_name(key)}, {lane})"
+
+
 def vector_lines(vector: Vector, text: Callable[[Edge], str]) -> list[str]:
     """The lines that define a vector.
 
@@ -209,21 +214,24 @@ def vector_lines(vector: Vector, text: Callable[[Edge], str]) -> list[str]:
     elif vector.source is not None:
         start = vector_name(vector.source.key)
     else:
-        return [f"    const sym_pack {name} = {{{', '.join(text(vector.put.get(i, 0)) for i in range(WIDTH))}}};"]
+        lanes = ", ".join(text(vector.put.get(lane, ZERO)) for lane in range(WIDTH))
+        return [f"    const sym_pack {name} = SYM_PACK({lanes});"]
     if not vector.put:
         return [f"    const sym_pack {name} = {start};"]
-    puts = [f"    {name}[{lane}] = {text(edge)};" for lane, edge in sorted(vector.put.items())]
+    puts = [f"    {name} = sym_with({name}, {lane}, {text(edge)});" for lane, edge in sorted(vector.put.items())]
     return [f"    sym_pack {name} = {start};", *puts]
 
 
 def _sum(terms: Sequence[tuple[Edge, Vector]], text: Callable[[Edge], str]) -> str:
-    """Such as "c * p3 - s * p4"."""
+    """Such as "sym_minus(sym_scaled(c, p3), s, p4)"."""
     result = ""
     for factor, vector in terms:
-        number = "" if abs(factor) == ONE else f"{text(factor)} * "
-        is_negative = number.startswith("-") or factor == -ONE
-        sign = (" - " if is_negative else " + ") if result else "-" * is_negative
-        result += f"{sign}{number.removeprefix('-')}{vector_name(vector.key)}"
+        name, number = vector_name(vector.key), text(factor)
+        if not result:
+            result = name if factor == ONE else f"sym_scaled({number}, {name})"
+        else:
+            operation = "sym_minus" if number.startswith("-") else "sym_plus"
+            result = f"{operation}({result}, {number.removeprefix('-')}, {name})"
     return result
 
 
@@ -276,5 +284,6 @@ def _end_run(vector: Vector, run: Sequence[_LaneStore], lines: list[str], remain
         return
     first = run[0]
     target = f"{first.store.array} + {first.store.index}"
-    source = f"{'-' if first.is_negative else ''}{vector_name(vector.key)}"
+    name = vector_name(vector.key)
+    source = f"sym_scaled(-1.0, {name})" if first.is_negative else name
     lines.append(f"    sym_pack_part({target}, {source}, {first.lane}, {len(run)});")

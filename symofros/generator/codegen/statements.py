@@ -17,7 +17,7 @@ from symofros.expr.graph import Graph, Slot
 from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.ops import ADD, DIV, MUL, OPS, STOP_GRADIENT
 from symofros.generator.codegen.names import local_name
-from symofros.generator.codegen.packs import PackPlan, Store, Vector, vector_name
+from symofros.generator.codegen.packs import PackPlan, Store, Vector, lane_text
 
 # Operations per statement at most: long lines help neither people nor compilers.
 _MAX_INLINE = 8
@@ -214,7 +214,7 @@ class StatementWriter:
         """Where a node's value is read: its variable, or its lane of a vector."""
         if node in self._vector_of_node:
             vector = self._vector_of_node[node]
-            return f"{vector_name(vector.key)}[{vector.nodes[node][0]}]"
+            return lane_text(vector.key, vector.nodes[node][0])
         if node not in self._names:
             label = self.graph.label.get(node)
             self._names[node] = local_name(label, node) if label else f"t{node}"

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import platform
 import re
+import shutil
+import subprocess
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,6 +22,7 @@ from symofros.expr.packs.combine import linear_combination
 from symofros.expr.packs.pack import WIDTH, Pack
 from symofros.generator.codegen.model import model_source
 from symofros.generator.codegen.packs import PackPlan
+from symofros.native import native_text
 from symofros.runtime.calls.kernel import LaneOptions
 from tests.models import sampled
 
@@ -80,7 +84,23 @@ def test_a_long_chain_is_carried_in_vectors() -> None:
     assert "sym_pack" not in single
     assert packed.count(";\n") < 0.65 * single.count(";\n")
     # Neighbouring entries of a row are stored together.
-    assert re.search(r"sym_pack_part\(M \+ \d+, -?p\d+, \d, [3-8]\)", packed)
+    assert re.search(r"sym_pack_part\(M \+ \d+, p\d+, \d, [3-8]\)", packed)
+
+
+def test_no_vector_is_wider_than_the_processor_has(tmp_path: Path) -> None:
+    """gcc keeps wider ones in memory, and spreads a factor over them by a store for each lane."""
+    compiler = shutil.which("gcc")
+    if compiler is None or platform.machine() != "x86_64":
+        pytest.skip("needs gcc on x86-64")
+    text = """void f(double a, const double *x, const double *y, double *to) {
+        sym_pack_store(to, sym_plus(sym_scaled(a, sym_pack_load(x)), a, sym_pack_load(y)));\n}\n"""
+    (tmp_path / "f.c").write_text(f"#include <string.h>\n{native_text('model/pack.c.in')}\n{text}")
+    for flags, vectors in ((("-mavx512f",), 1), (("-mavx2", "-mfma"), 2), ((), 4)):
+        command = [compiler, "-std=gnu99", "-O2", *flags, "-S", "f.c", "-o", "f.s"]
+        subprocess.run(command, cwd=tmp_path, check=True)
+        assembly = (tmp_path / "f.s").read_text()
+        assert not re.search(r"\(%[er]sp\)", assembly), "the stack is used"
+        assert len(re.findall(r"^\s+v?mulpd", assembly, re.MULTILINE)) in (vectors, 2 * vectors)
 
 
 def test_small_models_stay_scalar() -> None:
