@@ -83,8 +83,8 @@ def environments() -> tuple[Environment, ...]:
         Environment(
             "CasADi",
             "`sf.interop.casadi`",
-            differentiated,
-            "exact Jacobians with their sparsity; no Hessians",
+            differentiated | {"frame_pose"},
+            "exact Jacobians and Hessians with their sparsity; of frames the position",
             ("tests/interop/test_casadi.py",),
         ),
     )

@@ -1,26 +1,32 @@
-"""CasADi: forward and inverse dynamics as external functions in C, with exact sparse Jacobians.
+"""CasADi: forward and inverse dynamics and positions of frames as external functions in C, with exact derivatives.
 
-    dynamics = sf.interop.casadi.Dynamics(system)
+    dynamics = sf.interop.casadi.Dynamics(system, frames=["tool"])
     a = dynamics.forward_dynamics(q, v, u)      # SX is not possible: MX, DM or numbers
+    p = dynamics.frame_position("tool", q)
 
 The library has CasADi's interface of external functions, which acados takes as well: `dynamics.library`, and the names
-`dynamics.names`. Derivatives of second order are not available: Ipopt takes "limited-memory".
+`dynamics.names`. Jacobians, gradients and Hessians of both are exact and have their structural zeros: Ipopt takes its
+exact Hessian.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from symofros.base.arguments import check_argument
+from symofros.base.functions import FUNCTIONS
+from symofros.base.model_function import cotangents
 from symofros.base.options import Options
 from symofros.compiler import Compilation
 from symofros.description.system import System
-from symofros.errors import CompileError
+from symofros.errors import CompileError, Problem, UnknownNameError, did_you_mean
 from symofros.expr.program import Function
 from symofros.generator.codegen.names import identifier
-from symofros.interop.rules import RULES, check_model, framework
+from symofros.interop.casadi_externals import External, Input, Output, gathered
+from symofros.interop.rules import RULES, check_record, framework
 from symofros.native import native_text
 from symofros.runtime.build.build import build_library
 from symofros.runtime.build.toolchain import NO_COMPILER, find_toolchain
@@ -28,36 +34,85 @@ from symofros.runtime.build.toolchain import NO_COMPILER, find_toolchain
 casadi = framework("casadi", "casadi")
 
 
+@dataclass(frozen=True)
+class _Differentiable:
+    """A function with what gives its derivatives.
+
+    Attributes:
+        value: Function of the model and the array that it gives.
+        size: Number of entries of the value.
+        inputs: Input groups, in the order of the Hessian's.
+        slopes: Function and array of the derivative by each input; of the rows the first `size` count.
+        hessian: Function of the second derivatives.
+        frame: Frame, or "".
+    """
+
+    value: tuple[str, str]
+    size: int
+    inputs: tuple[str, ...]
+    slopes: Mapping[str, tuple[str, str]]
+    hessian: str
+    frame: str = ""
+
+    @property
+    def vjp(self) -> str:
+        """Function of the vector-Jacobian products."""
+        return f"{self.value[0]}_vjp"
+
+    @property
+    def cotangent(self) -> str:
+        """Input group of the value's cotangent."""
+        names = {output.name: group for group, output in cotangents(FUNCTIONS[self.value[0]]).items()}
+        return names[self.value[1]]
+
+    def functions(self, second_order: bool) -> list[str]:
+        """Functions of the model that are called."""
+        first = [self.value[0], *(name for name, _ in self.slopes.values())]
+        return [*first, self.vjp, self.hessian] if second_order else first
+
+
 class Dynamics:
     """A system's dynamics for CasADi.
 
     Args:
         system: System as the user stated it, whose speeds are the rates of its coordinates.
+        frames: Frames whose positions are functions, too.
+        second_order: Whether there are Hessians; they take several times as long to generate. Without them Ipopt needs
+            the option "hessian_approximation": "limited-memory".
 
     Attributes:
         library: Path of the shared library.
-        names: Name of each function in the library, by ours; the Jacobian's begins with jac_.
+        names: Name of each function in the library, by ours ("frame_position NAME" of a frame). Names of its Jacobian,
+            of its gradient and of that one's Jacobian begin with jac_, adj1_ and jac_adj1_.
         functions: Functions of CasADi, by ours; parameters are their last input.
 
     Raises:
         InteropError: The model has quaternions, prescribed motions or forces that depend on time.
+        UnknownNameError: There is no such frame.
         CompileError: There is no C compiler, or it refused.
     """
 
-    def __init__(self, system: System) -> None:
-        needed = {name for rule in RULES.values() for name, _ in rule.derivatives.values()} | set(RULES)
-        compilation = Compilation(system, Options(tuple(sorted(needed))))
-        check_model(compilation.model())
+    def __init__(self, system: System, frames: Sequence[str] = (), second_order: bool = True) -> None:
+        if isinstance(frames, str):  # A sequence of letters, too.
+            check_argument("frames", frames, tuple[str, ...])
+        known = Compilation(system)
+        check_record(known.record)
+        wanted = _differentiable(len(known.record.v_names))
+        needed = {name for each in wanted.values() for name in each.functions(second_order)}
+        placed = _position("")
+        of_frames = set(placed.functions(second_order)) if len(frames) else set()
+        compilation = Compilation(system, Options(tuple(sorted(needed | of_frames)), tuple(frames)))
+        _ = compilation.requests  # Refuses frames that do not exist.
+        wanted |= {f"frame_position {name}": _position(compilation.tree.frame(name).name) for name in frames}
         toolchain = find_toolchain(None)
         if toolchain is None:
             raise CompileError(NO_COMPILER)
         c_name = identifier(system.name)
-        self.names = {name: f"{c_name}_{name}" for name in RULES}
-        self._par = compilation.record.par_default
-        source = _source(compilation, c_name)
-        self.library: Path = build_library(
-            source, native_text("model/symofros_model.h"), toolchain, symbol=f"{c_name}_model"
-        )
+        self.names = {name: f"{c_name}_{identifier(name.replace(' ', '_'))}" for name in wanted}
+        self._par = known.record.par_default
+        source = _source(compilation, c_name, {self.names[name]: each for name, each in wanted.items()}, second_order)
+        header = native_text("model/symofros_model.h")
+        self.library: Path = build_library(source, header, toolchain, symbol=f"{c_name}_model")
         self.functions = {name: casadi.external(own, str(self.library)) for name, own in self.names.items()}
 
     def forward_dynamics(self, q: Any, v: Any, u: Any, par: Any = None) -> Any:
@@ -68,122 +123,90 @@ class Dynamics:
         """Efforts M a + h - Q(q, v, 0) (nv) of q, v, a (nv) and par (npar)."""
         return self.functions["inverse_dynamics"](q, v, a, self._parameters(par))
 
+    def frame_position(self, frame: str, q: Any, par: Any = None) -> Any:
+        """Position (3) of a frame's origin in the world [m], of q (nq) and par (npar).
+
+        Raises:
+            UnknownNameError: The frame was not asked for.
+        """
+        function = self.functions.get(f"frame_position {frame}")
+        if function is None:
+            asked = [name.removeprefix("frame_position ") for name in self.functions if name not in RULES]
+            raise UnknownNameError(
+                Problem(
+                    f"no function of the position of frame '{frame}'",
+                    ", ".join(asked) or "no frames",
+                    "frames are those that `frames` of Dynamics names",
+                    did_you_mean(frame, asked),
+                )
+            )
+        return function(q, self._parameters(par))
+
     def _parameters(self, par: Any) -> Any:
         return casadi.DM(self._par) if par is None else par
 
 
-def _source(compilation: Compilation, c_name: str) -> str:
+def _differentiable(nv: int) -> dict[str, _Differentiable]:
+    """The functions that every model has, by name."""
+    return {
+        name: _Differentiable(
+            (name, FUNCTIONS[name].outputs[0].name), nv, rule.inputs, rule.derivatives, f"{name}_hessian"
+        )
+        for name, rule in RULES.items()
+    }
+
+
+def _position(frame: str) -> _Differentiable:
+    """The position of a frame."""
+    slopes = {"q": ("frame_jacobian", "J"), "par": ("frame_position_by_par", "by_par")}
+    return _Differentiable(("frame_pose", "p"), 3, ("q", "par"), slopes, "frame_position_hessian", frame)
+
+
+def _source(compilation: Compilation, c_name: str, wanted: Mapping[str, _Differentiable], second_order: bool) -> str:
     """C text of the model and of the external functions."""
     record = compilation.record
     nv = len(record.v_names)
     sizes = {"q": len(record.q_names), "v": nv, "u": len(record.u_names), "a": nv, "par": len(record.par_names)}
-    functions = {function.name: function for function in compilation.program.functions}
+    functions = {(function.name, function.frame): function for function in compilation.program.functions}
     texts = [compilation.source(c_name), native_text("interop/symofros_casadi.c")]
-    for name, rule in RULES.items():
-        own, inputs = f"{c_name}_{name}", [(key, sizes[key]) for key in rule.inputs]
-        output = functions[name].returns[0][0]
-        value = [(output, _gathered(functions[name], output, nv, 1))]
-        texts.append(_external(own, c_name, rule.inputs, inputs, value))
-        slopes = [
-            (f"jac_{output}_{key}", _gathered(functions[function], array, nv, sizes[key]))
-            for key, (function, array) in rule.derivatives.items()
-        ]
-        texts.append(_external(f"jac_{own}", c_name, rule.inputs, [*inputs, (f"out_{output}", nv)], slopes))
+    for own, each in wanted.items():
+        texts += [external.text(c_name) for external in _externals(own, each, sizes, functions, second_order)]
     return "\n".join(texts)
 
 
-@dataclass(frozen=True)
-class _Gathered:
-    """An output of CasADi's: which entries of an array of the model's are its nonzeros, column by column.
-
-    Attributes:
-        function: Name of the model's function.
-        array: Index of the array among what it returns.
-        entries: (row, column) of each nonzero.
-        shape: Rows and columns that CasADi sees.
-    """
-
-    function: str
-    array: int
-    entries: tuple[tuple[int, int], ...]
-    shape: tuple[int, int]
-
-    @property
-    def gather(self) -> list[int]:
-        """Index of each nonzero in the array, row by row."""
-        return [row * self.shape[1] + column for row, column in self.entries]
-
-    @property
-    def sparsity(self) -> list[int]:
-        """Rows, columns, first nonzero of each column, row of each nonzero."""
-        starts = [sum(column < k for _, column in self.entries) for k in range(self.shape[1] + 1)]
-        return [*self.shape, *starts, *(row for row, _ in self.entries)]
-
-
-def _gathered(function: Function, array: str, rows: int, columns: int) -> _Gathered:
-    """The first rows of an array; what a solver finishes is dense."""
-    index = [name for name, _ in function.returns].index(array)
-    edges = function.outputs[index].edges if function.solver is None else None
-    entries = [
-        (row, column)
-        for column in range(columns)
-        for row in range(rows)
-        if edges is None or edges[row * columns + column] != 0
-    ]
-    return _Gathered(function.name, index, tuple(entries), (rows, columns))
-
-
-def _external(
+def _externals(
     own: str,
-    c_name: str,
-    given: Sequence[str],
-    inputs: Sequence[tuple[str, int]],
-    outputs: Sequence[tuple[str, _Gathered]],
-) -> str:
-    """The functions of the interface for one external function; inputs beyond `given` are not read."""
-    n_in, n_out = len(inputs), len(outputs)
-    lines = [f"static const long long {own}_in_{i}[] = {{{size}, 1, 1}};" for i, (_, size) in enumerate(inputs)]
-    for i, (_, array) in enumerate(outputs):
-        lines.append(f"static const long long {own}_out_{i}[] = {{{_numbers(array.sparsity)}}};")
-        lines.append(f"static const long long {own}_gather_{i}[] = {{{_numbers(array.gather)}}};")
-    plans = (
-        f'{{"{array.function}", {array.array}, {len(array.entries)}, {own}_gather_{i}}}'
-        for i, (_, array) in enumerate(outputs)
-    )
-    names = ", ".join(f'"{name}"' for name in given)
-    labels = [(f'"{name}"', f"{own}_in_{i}") for i, (name, _) in enumerate(inputs)]
-    results = [(f'"{name}"', f"{own}_out_{i}") for i, (name, _) in enumerate(outputs)]
-    lines += [
-        f"static const char *const {own}_given[] = {{{names}}};",
-        f"static const sym_casadi_output {own}_outputs[] = {{{', '.join(plans)}}};",
-        f"SYM_EXPORT long long {own}_n_in(void) {{ return {n_in}; }}",
-        f"SYM_EXPORT long long {own}_n_out(void) {{ return {n_out}; }}",
-        *_table(f"const char *{own}_name_in", [label for label, _ in labels]),
-        *_table(f"const char *{own}_name_out", [label for label, _ in results]),
-        *_table(f"const long long *{own}_sparsity_in", [pattern for _, pattern in labels]),
-        *_table(f"const long long *{own}_sparsity_out", [pattern for _, pattern in results]),
-        f"SYM_EXPORT int {own}_work(long long *arg, long long *res, long long *iw, long long *w) {{",
-        f"    if (arg != NULL) *arg = {n_in};",
-        f"    if (res != NULL) *res = {n_out};",
-        "    if (iw != NULL) *iw = 0;",
-        f"    if (w != NULL) *w = (long long)sym_casadi_work({c_name}_model());",
-        "    return 0;",
-        "}",
-        f"SYM_EXPORT int {own}(const double **arg, double **res, long long *iw, double *w, int mem) {{",
-        f"    const sym_model *model = {c_name}_model();",
-        "    (void)iw, (void)mem;",
-        f"    return sym_casadi_call(model, {own}_given, {len(given)}, {own}_outputs, {n_out}, arg, res, w);",
-        "}",
-        "",
-    ]
-    return "\n".join(lines)
+    f: _Differentiable,
+    sizes: Mapping[str, int],
+    functions: Mapping[tuple[str, str], Function],
+    second_order: bool,
+) -> Iterator[External]:
+    """A function and its derivatives, as CasADi names and orders their inputs and outputs."""
 
+    def block(label: str, name: str, array: str, *shape: int, **options: Any) -> Output:
+        frame = f.frame if FUNCTIONS[name].of_frame else ""
+        return gathered(label, functions[name, frame], array, (shape[0], shape[1]), **options)
 
-def _table(declared: str, entries: Sequence[str]) -> list[str]:
-    """A C function of an index."""
-    cases = " ".join(f"case {i}: return {entry};" for i, entry in enumerate(entries))
-    return [f"SYM_EXPORT {declared}(long long i) {{", f"    switch (i) {{ {cases} default: return NULL; }}", "}"]
-
-
-def _numbers(values: Sequence[int]) -> str:
-    return ", ".join(map(str, values)) or "0"
+    value = f.value[1]
+    inputs = tuple(Input(x, sizes[x], x) for x in f.inputs)
+    unread = Input(f"out_{value}", f.size)
+    yield External(own, inputs, (block(value, *f.value, f.size, 1),))
+    slopes = [block(f"jac_{value}_{x}", *f.slopes[x], f.size, sizes[x]) for x in f.inputs]
+    yield External(f"jac_{own}", (*inputs, unread), tuple(slopes))
+    if not second_order:
+        return
+    inputs = (*inputs, unread, Input(f"adj_{value}", f.size, f.cotangent))
+    # CasADi takes gradients of the shape of their inputs, which are dense.
+    gradient = [block(f"adj_{x}", f.vjp, f"by_{x}", sizes[x], 1, dense=True) for x in f.inputs]
+    yield External(f"adj1_{own}", inputs, tuple(gradient))
+    starts = {x: sum(sizes[before] for before in f.inputs[:i]) for i, x in enumerate(f.inputs)}
+    curvature = []
+    for x in f.inputs:
+        for y in f.inputs:
+            at = starts[x], starts[y]
+            curvature.append(block(f"jac_adj_{x}_{y}", f.hessian, "H", sizes[x], sizes[y], first=at))
+        curvature.append(Output(f"jac_adj_{x}_out_{value}", (sizes[x], f.size)))
+        label = f"jac_adj_{x}_adj_{value}"
+        curvature.append(block(label, *f.slopes[x], sizes[x], f.size, transposed=True))
+    unread_gradient = (Input(f"out_adj_{x}", sizes[x]) for x in f.inputs)
+    yield External(f"jac_adj1_{own}", (*inputs, *unread_gradient), tuple(curvature))

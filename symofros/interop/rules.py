@@ -10,6 +10,7 @@ import numpy as np
 
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.model import Model
+from symofros.runtime.record import ModelRecord
 
 
 class Rule(NamedTuple):
@@ -77,7 +78,11 @@ def check_model(model: Model) -> None:
     Raises:
         InteropError: Speeds are no rates of the coordinates, a motion is prescribed, or forces depend on time.
     """
-    record = model.record
+    check_record(model.record)
+
+
+def check_record(record: ModelRecord) -> None:
+    """The same of a model's names and sizes, before it is compiled."""
     what = f"model '{record.name}' is not offered to other frameworks"
     if any(segment.kind != "linear" for segment in record.segments):
         joints = ", ".join(name for name in record.q_names if name.endswith(".w")) or "quaternions"

@@ -26,6 +26,8 @@ PRINTED = {
     "learned_residual": r"with it: [1-9]\d times nearer",
     "lqr": r"tilted by 0\.5 rad: .* 1\.2e-04 rad",
     "monte_carlo": r"2000 of 2000 came to their end",
+    "mpc": r"then \d\.\d on average(?s:.)*cart at 0\.0\d\d m, pole tilted by 0\.0\d\d rad",
+    "trajectory_optimisation": r"simulated: tool at most [0-9]\.\d mm from its path",
     "urdf_to_c": r"selftest 0",
 }
 

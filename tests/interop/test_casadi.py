@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import re
+import shutil
+import subprocess
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -62,6 +66,142 @@ def test_structural_zeros_are_left_out(dynamics: Any) -> None:
     assert jacobian.sparsity_out(2).nnz() == 4
 
 
+def lagrangian_hessians(f: Any, options: dict[str, Any], given: list[np.ndarray], weights: np.ndarray) -> np.ndarray:
+    """Second derivatives of weights . f by all inputs, by CasADi from what the function offers."""
+    f = casadi.external(f[0], f[1], options)
+    x = casadi.MX.sym("x", sum(map(len, given)))
+    parts = casadi.vertsplit(x, [0, *np.cumsum([len(each) for each in given]).tolist()])
+    H, _ = casadi.hessian(casadi.dot(casadi.DM(weights), f(*parts)), x)
+    return np.array(casadi.Function("H", [x], [H])(np.concatenate(given)))
+
+
+@pytest.mark.parametrize("name", ["forward_dynamics", "inverse_dynamics", "frame_position tip"])
+def test_hessians_are_the_models_and_casadis_differences_of_its_gradients(model: sf.Model, name: str) -> None:
+    dynamics = sf.interop.casadi.Dynamics(MODELS["cart_pole"], frames=["tip"])
+    given = state(model, model.nv if name == "inverse_dynamics" else model.nu)
+    given = [given[0], given[3]] if name.startswith("frame") else given
+    rng = np.random.default_rng(4)
+    weights = rng.standard_normal(3 if name.startswith("frame") else model.nv)
+    where = dynamics.names[name], str(dynamics.library)
+    exact = lagrangian_hessians(where, {}, given, weights)
+    frame, base = ("tip", "frame_position") if name.startswith("frame") else ("", name)
+    cotangent = {"forward_dynamics": "a_bar", "inverse_dynamics": "tau_bar", "frame_position": "p_WF_bar"}[base]
+    groups = {"forward_dynamics": "q v u par", "inverse_dynamics": "q v a par", "frame_position": "q par"}[base].split()
+    weighed = {cotangent: weights} | ({"lam_bar": np.zeros(0)} if base == "forward_dynamics" else {})
+    (right,) = model.evaluate(f"{base}_hessian", frame, **dict(zip(groups, given, strict=True)), **weighed)
+    np.testing.assert_allclose(exact, right, rtol=1e-12, atol=1e-12)
+    # The gradient, differentiated by CasADi: central differences at two steps, whose errors of second order cancel.
+    coarse, fine = (differences_of_gradient(where, given, weights, step) for step in (4e-4, 2e-4))
+    np.testing.assert_allclose(exact, (4 * fine - coarse) / 3, rtol=0, atol=1e-8 * np.abs(exact).max())
+
+
+def differences_of_gradient(where: tuple[str, str], given: list[np.ndarray], weights: np.ndarray, h: float) -> Any:
+    off = {"enable_fd": True, "enable_jacobian": False, "enable_forward": False, "enable_reverse": False}
+    options = off | {"fd_method": "central", "fd_options": {"h": h}}
+    gradient = casadi.external(f"adj1_{where[0]}", where[1], options)
+    x = [casadi.MX.sym(f"x{i}", len(each)) for i, each in enumerate(given)]
+    slopes = casadi.jacobian(casadi.vertcat(*gradient(*x, np.zeros(len(weights)), weights)), casadi.vertcat(*x))
+    return np.array(casadi.Function("G", x, [slopes])(*given))
+
+
+def test_structural_zeros_of_hessians_are_left_out(dynamics: Any) -> None:
+    """Efforts enter forward dynamics linearly and with no speed; nothing depends on where the cart is."""
+    x = [casadi.MX.sym(name, n) for name, n in (("q", 2), ("v", 2), ("u", 1))]
+    weighed = casadi.sum1(dynamics.forward_dynamics(*x))
+    H = casadi.hessian(weighed, casadi.vertcat(*x))[0]
+    nonzero = np.array(casadi.DM(casadi.Function("H", x, [H]).sparsity_out(0), 1)) != 0
+    assert nonzero.astype(int).tolist() == [
+        [0, 0, 0, 0, 0],
+        [0, 1, 0, 1, 1],
+        [0, 0, 0, 0, 0],
+        [0, 1, 0, 1, 0],
+        [0, 1, 0, 0, 0],
+    ]
+
+
+def test_loops_have_hessians_too() -> None:
+    system = MODELS["four_bar"]
+    model, dynamics = sf.compile(system), sf.interop.casadi.Dynamics(system)
+    given = state(model, model.nu)
+    weights = np.ones(model.nv)
+    exact = lagrangian_hessians((dynamics.names["forward_dynamics"], str(dynamics.library)), {}, given, weights)
+    at = dict(zip(("q", "v", "u", "par"), given, strict=True))
+    (right,) = model.evaluate("forward_dynamics_hessian", **at, a_bar=weights, lam_bar=np.zeros(model.nc))
+    np.testing.assert_allclose(exact, right, rtol=1e-9, atol=1e-11 * np.abs(right).max())
+
+
+def test_frames_that_were_not_asked_for_are_refused(dynamics: Any) -> None:
+    with pytest.raises(sf.UnknownNameError, match="frames are those that"):
+        dynamics.frame_position("tip", [0.0, 0.0])
+
+
+def test_wrong_frames_are_refused() -> None:
+    with pytest.raises(sf.ArgumentError, match="one alone"):
+        sf.interop.casadi.Dynamics(MODELS["cart_pole"], frames="tip")
+    with pytest.raises(sf.UnknownNameError, match="tipp"):
+        sf.interop.casadi.Dynamics(MODELS["cart_pole"], frames=["tipp"])
+
+
+PROGRAM = """
+#include <stdio.h>
+#include <stdlib.h>
+typedef long long casadi_int;
+#define DECLARE(f) casadi_int f##_n_in(void), f##_n_out(void); const casadi_int *f##_sparsity_in(casadi_int), \\
+    *f##_sparsity_out(casadi_int); int f##_work(casadi_int *, casadi_int *, casadi_int *, casadi_int *); \\
+    int f(const double **, double **, casadi_int *, double *, int);
+DECLARE(F)
+#define EACH(f, what) f##_##what
+/* Dense outputs, column by column, as acados unpacks CasADi's. */
+int main(void) {
+    const double q[] = {0.1, 0.4}, v[] = {-0.3, 0.7}, u[] = {1.5}, par[] = {PAR}, w[] = {0.8, -0.6};
+    const double *given[] = {q, v, u, par, NULL, w, NULL, NULL, NULL, NULL};
+    casadi_int arg, res, iw, size, o, c, k;
+    F_work(&arg, &res, &iw, &size);
+    const double **in = malloc((size_t)arg * sizeof *in);
+    double **out = malloc((size_t)res * sizeof *out), *work = malloc((size_t)size * sizeof *work);
+    for (k = 0; k < F_n_in(); ++k) in[k] = given[k];
+    for (o = 0; o < F_n_out(); ++o) {
+        const casadi_int *s = F_sparsity_out(o);
+        out[o] = calloc((size_t)s[2 + s[1]] + 1, sizeof(double));
+    }
+    if (F(in, out, NULL, work, 0)) return 1;
+    for (o = 0; o < F_n_out(); ++o) {
+        const casadi_int *s = F_sparsity_out(o), *colind = s + 2, *row = colind + s[1] + 1;
+        for (c = 0; c < s[1]; ++c)
+            for (k = colind[c]; k < colind[c + 1]; ++k)
+                printf("%lld %lld %lld %.17g\\n", o, row[k], c, out[o][k]);
+    }
+    return 0;
+}
+"""
+
+
+@pytest.mark.parametrize("prefix", ["", "jac_", "adj1_", "jac_adj1_"])
+def test_a_c_program_calls_the_library_as_acados_does(
+    dynamics: Any, model: sf.Model, prefix: str, tmp_path: Path
+) -> None:
+    """Beside CasADi's own reading of the same functions."""
+    compiler = shutil.which("cc") or pytest.skip("needs a program called cc")
+    name = f"{prefix}{dynamics.names['forward_dynamics']}"
+    text = PROGRAM.replace("PAR", ", ".join(map(repr, model.parameter_values.tolist())))
+    (tmp_path / "main.c").write_text(re.sub(r"\bF(?=_|\(|\))", name, text))
+    link = [str(dynamics.library), f"-Wl,-rpath,{dynamics.library.parent}"]
+    run = [compiler, "-std=c99", "-Wall", "-Werror", "main.c", *link, "-o", "main"]
+    subprocess.run(run, cwd=tmp_path, check=True)
+    lines = subprocess.run(["./main"], cwd=tmp_path, check=True, capture_output=True, text=True).stdout.splitlines()
+    given = [[0.1, 0.4], [-0.3, 0.7], [1.5], model.parameter_values, [0.0, 0.0], [0.8, -0.6]]
+    function = casadi.external(name, str(dynamics.library))
+    given += [np.zeros(function.size1_in(i)) for i in range(6, function.n_in())]
+    outputs = function.call(given[: function.n_in()])
+    mine = [np.zeros(output.shape) for output in outputs]
+    for line in lines:
+        o, row, column, value = line.split()
+        mine[int(o)][int(row), int(column)] = float(value)
+    assert lines
+    for ours, theirs in zip(mine, outputs, strict=True):
+        np.testing.assert_array_equal(ours, np.array(theirs))
+
+
 def test_ipopt_swings_the_pole_by_the_external_function(dynamics: Any, model: sf.Model) -> None:
     steps, h = 20, 0.05
     opti = casadi.Opti()
@@ -75,9 +215,10 @@ def test_ipopt_swings_the_pole_by_the_external_function(dynamics: Any, model: sf
     opti.subject_to(v[:, 0] == [0.0, 0.0])
     opti.subject_to(q[:, steps] == [0.0, 0.0])
     opti.subject_to(v[:, steps] == [0.0, 0.0])
-    quiet = {"print_level": 0, "hessian_approximation": "limited-memory", "max_iter": 300, "tol": 1e-7}
+    quiet = {"print_level": 0, "max_iter": 300, "tol": 1e-7}
     opti.solver("ipopt", {"print_time": False}, quiet)
     solution = opti.solve()
+    assert solution.stats()["iter_count"] < 15  # As Newton's method does; without exact Hessians it takes 36.
     at, speed = np.array([0.0, 0.2]), np.zeros(2)
     for force in np.atleast_1d(solution.value(u)):
         speed = speed + h * model.forward_dynamics(at, speed, np.array([force]))
