@@ -43,6 +43,25 @@ console.log(JSON.stringify(results));
 """
 
 
+# How many pixels of the plot have the colours of "speed of q1" and of "q1".
+PLOTTED = """() => {
+  const sheet = document.getElementById("plot"), { width, height } = sheet;
+  const data = sheet.getContext("2d").getImageData(0, 0, width, height).data;
+  const colour = (name) => {
+    const label = [...document.querySelectorAll("#signals label")].find((x) => x.textContent.startsWith(name));
+    return label.dataset.colour.match(/[0-9a-f]{2}/g).map((x) => parseInt(x, 16));
+  };
+  const count = (name) => {
+    const wanted = colour(name);
+    let n = 0;
+    for (let k = 0; k < data.length; k += 4)
+      n += wanted.every((x, i) => Math.abs(x - data[k + i]) < 12) && data[k + 3] > 200;
+    return n;
+  };
+  return { speed: count("speed of q1"), angle: count("q1") };
+}"""
+
+
 def doubles(words: list[str]) -> np.ndarray:
     return np.array([int(word, 16) for word in words], dtype=np.uint64).view(np.float64)
 
@@ -150,8 +169,17 @@ def test_the_page_simulates_without_a_server(package: Path, chromium: Any) -> No
         "new Set(new Uint32Array(document.querySelector('canvas').getContext('2d')"
         ".getImageData(0, 0, 800, 600).data.buffer)).size"
     )
+    page.get_by_role("checkbox", name="speed of q1").check()
+    page.get_by_role("checkbox", name="q1", exact=True).uncheck()
+    page.wait_for_timeout(400)
+    page.get_by_role("button", name="Pause").click()
+    drawn = page.evaluate(PLOTTED)
+    value = float(page.locator("#signals label", has_text="speed of q1").locator("output").inner_text())
+    nameless = page.evaluate("[...document.querySelectorAll('input')].filter((x) => !x.ariaLabel).length")
     page.close()
-    assert not faults and colours > 2
+    assert not faults and colours > 2 and nameless == 0
+    # The colour of the third signal chosen is there, that of the first no longer is; numbers stand beside the names.
+    assert drawn["speed"] > 20 and drawn["angle"] == 0 and np.isfinite(value)
 
 
 def test_without_zig_it_is_said_in_words(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
