@@ -1,0 +1,132 @@
+"""A parallel robot of two rods in Exudyn, of geometrically exact elements (github.com/jgerstm/EXUDYN).
+
+Both rods lie along x at first. The tip of the first bears a rigid platform, on which the tip of the second is hinged by
+a ball; both rods are straight then, and nothing is strained. Elements have two nodes, and everything that errs in them
+falls with the square of their length, as the generalised-alpha method does with the square of its step: `extrapolated`
+removes both at once by halving them together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import exudyn
+import numpy as np
+from exudyn import itemInterface as items
+
+from validation.adapters.exudyn.ancf import node_sensor
+from validation.mechanics.geometry import Array
+
+_METHOD = exudyn.DynamicSolverType.GeneralizedAlpha
+_NO_TURN = (1.0, 0.0, 0.0, 0.0)
+
+
+class Robot(NamedTuple):
+    """Two equal rods of unit length and their platform.
+
+    Attributes:
+        stiffness: EA, GA_y, GA_z, GJ, EI_y, EI_z.
+        inertia: rhoA, rhoJ, rhoI_y, rhoI_z.
+        foot: The second rod's root (3), where the first's is the origin.
+        mass: Of the platform, at the first tip.
+        moment: Its moment of inertia about every axis.
+        push: Largest force on the first tip, in the world (3).
+        duration: The force grows from nothing and falls to it again: push sin^2(pi t/duration) up to the duration.
+    """
+
+    stiffness: tuple[float, float, float, float, float, float] = (200.0, 120.0, 100.0, 0.8, 1.0, 1.5)
+    inertia: tuple[float, float, float, float] = (1.0, 0.02, 0.008, 0.012)
+    foot: tuple[float, float, float] = (0.0, 0.3, 0.1)
+    mass: float = 0.5
+    moment: float = 0.02
+    push: tuple[float, float, float] = (-1.0, 4.0, 3.0)
+    duration: float = 1.0
+
+    def share(self, t: float) -> float:
+        """Share of the push at an instant."""
+        return float(np.sin(np.pi * min(t, self.duration) / self.duration) ** 2)
+
+
+def motion(robot: Robot, elements: int, step: float, end: float) -> tuple[Array, Array]:
+    """The platform, pushed from rest.
+
+    Args:
+        robot: The robot.
+        elements: ObjectBeamGeometricallyExact in each rod.
+        step: Step of the generalised-alpha method [s].
+        end: End time [s].
+
+    Returns:
+        Times (n,) [s] and displacement of the first tip (n, 3) [m].
+
+    Raises:
+        RuntimeError: Exudyn's solver gave up.
+    """
+    container = exudyn.SystemContainer()
+    system: Any = container.AddSystem()
+    first, second = (_rod(system, robot, root, elements) for root in ((0.0, 0.0, 0.0), robot.foot))
+    moments = [robot.moment] * 3 + [0.0] * 3
+    platform = system.AddObject(items.ObjectRigidBody(mass=robot.mass, inertia=moments, nodeNumber=first))
+    seat = system.AddMarker(items.MarkerBodyPosition(bodyNumber=platform, localPosition=list(robot.foot)))
+    ball = system.AddMarker(items.MarkerNodePosition(nodeNumber=second))
+    system.AddObject(items.SphericalJoint(markerNumbers=[seat, ball]))
+    push = np.array(robot.push)
+
+    def force(_: Any, t: float, __: Any) -> list[float]:
+        return list(robot.share(t) * push)
+
+    _push(system, first, force)
+    return _run(system, first, step, end)
+
+
+def extrapolated(robot: Robot, elements: int, step: float, end: float) -> tuple[Array, Array]:
+    """The same without errors of second order, from `elements` and `step`, and from twice and half of them."""
+    t, coarse = motion(robot, elements, step, end)
+    _, fine = motion(robot, 2 * elements, step / 2, end)
+    return t, (4.0 * fine[::2] - coarse) / 3.0
+
+
+def _rod(system: Any, robot: Robot, root: tuple[float, float, float], elements: int) -> Any:
+    """Add a rod along x, held at its root; its last node."""
+    rhoA, rhoJ, rhoI_y, rhoI_z = robot.inertia
+    section: Any = exudyn.BeamSection()
+    section.massPerLength = rhoA
+    section.inertia = np.diag([rhoJ, rhoI_y, rhoI_z])
+    section.stiffnessMatrix = np.diag(robot.stiffness)
+    h, (x, y, z) = 1.0 / elements, root
+    nodes = [
+        system.AddNode(items.NodeRigidBodyEP(referenceCoordinates=[x + h * k, y, z, *_NO_TURN]))
+        for k in range(elements + 1)
+    ]
+    for ends in zip(nodes, nodes[1:], strict=False):
+        system.AddObject(items.ObjectBeamGeometricallyExact(nodeNumbers=list(ends), length=h, sectionData=section))
+    ground = system.AddObject(items.ObjectGround(referencePosition=[x, y, z]))
+    held = [
+        system.AddMarker(items.MarkerBodyRigid(bodyNumber=ground)),
+        system.AddMarker(items.MarkerNodeRigid(nodeNumber=nodes[0])),
+    ]
+    system.AddObject(items.GenericJoint(markerNumbers=held))
+    return nodes[-1]
+
+
+def _push(system: Any, node: Any, force: Callable[[Any, float, Any], list[float]]) -> None:
+    marker = system.AddMarker(items.MarkerNodePosition(nodeNumber=node))
+    system.AddLoad(items.LoadForceVector(markerNumber=marker, loadVectorUserFunction=force))
+
+
+def _run(system: Any, node: Any, step: float, end: float) -> tuple[Array, Array]:
+    sensor = node_sensor(system, node, "Displacement")
+    system.Assemble()
+    settings: Any = exudyn.SimulationSettings()
+    settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = round(end / step), end
+    settings.timeIntegration.generalizedAlpha.spectralRadius = 0.9
+    settings.timeIntegration.newton.useModifiedNewton = True
+    settings.timeIntegration.newton.absoluteTolerance = 1e-9
+    settings.timeIntegration.verboseMode = 0
+    settings.solution.file.write, settings.solution.file.name = False, ""
+    settings.solution.sensors.writePeriod = step
+    if not system.SolveDynamic(settings, solverType=_METHOD):
+        raise RuntimeError(f"Exudyn did not finish the motion with steps of {step} s")
+    recorded = np.array(system.GetSensorStoredData(sensor))
+    return recorded[:, 0], recorded[:, 1:4]
