@@ -72,8 +72,10 @@ def export_command(
         str | None, typer.Option(help="Frames whose positions an FMU gives, or signals of a diagram; comma-separated.")
     ] = None,
     given: Annotated[list[str], typer.Option("--set", help="NAME=NUMBER: a first coordinate or speed (dNAME).")] = [],  # noqa: B006
-    method: Annotated[str, typer.Option(help="How it steps by itself.")] = "rk4",
-    dt: Annotated[float, typer.Option(help="Step [s].")] = 1e-3,
+    method: Annotated[
+        str | None, typer.Option(help="How it steps by itself; rk4, or what a diagram states, by default.")
+    ] = None,
+    dt: Annotated[float | None, typer.Option(help="Step [s]; 1e-3, or what a diagram states, by default.")] = None,
     as_json: AsJson = False,
 ) -> None:
     """Write a model for C, Matlab, Octave, Simulink, FMI, WebAssembly, or as URDF or MJCF; a diagram as a C program."""

@@ -35,7 +35,6 @@ from symofros.generator.passes import run_passes
 from symofros.native import amalgamated, header_files, native_text
 from symofros.runtime.beams import ElasticBeam
 from symofros.runtime.record import ModelRecord
-from symofros.simulation.stepping.methods import METHODS
 
 _DIRECTIONS = {"rising": 1, "falling": -1, "both": 0}
 # Instants and steps of the self-test: its signals are those of the same run from Python.
@@ -59,7 +58,7 @@ class PartMaterial:
 
 
 def write_diagram(
-    resolved: Resolved, folder: Path, outputs: Sequence[str], method: str, dt: float, generator: str
+    resolved: Resolved, folder: Path, outputs: Sequence[str], stepping: Stepping, generator: str
 ) -> Exported:
     """Write the C package of a diagram.
 
@@ -67,8 +66,7 @@ def write_diagram(
         resolved: The diagram.
         folder: Target folder: a new one, or one that an export wrote.
         outputs: Signals that the program tells.
-        method: Explicit stepping method of the parts.
-        dt: Step [s].
+        stepping: How the parts step: by an explicit method.
         generator: Name and version.
 
     Raises:
@@ -85,10 +83,10 @@ def write_diagram(
                 "leave the block out",
             )
         )
-    if METHODS[method].kind not in ("explicit", "semi_implicit"):
+    if stepping.method.kind not in ("explicit", "semi_implicit"):
         raise ExportError(
             Problem(
-                f"diagram '{wired.name}': method '{method}'",
+                f"diagram '{wired.name}': method '{stepping.method.name}'",
                 "an implicit method",
                 "diagrams step by explicit methods",
                 "use rk4 or dopri5",
@@ -96,7 +94,7 @@ def write_diagram(
         )
     name = identifier(wired.name)
     sources = [wired.output(text) for text in outputs]
-    write, stepping = fuser(resolved), Stepping(METHODS[method], dt, 1e-6, 1e-9)
+    write = fuser(resolved)
     models = wired.models
     stated = [(model, place) for (block, model), place in layout.parameters.items() if not block]
     files: dict[str, str] = {f"{name}.h": _header(name, wired.name, generator)}
@@ -120,7 +118,7 @@ def write_diagram(
         instants, record_of(resolved, None), generator, c_name=f"{name}_instants"
     )
     files[f"{name}_program.c"] = _program(resolved, name, sources, reads_accelerations(instants), generator)
-    until, values = _reference(resolved, outputs, method, dt)
+    until, values = _reference(resolved, outputs, stepping)
     words = {
         "name": name,
         "generator": generator,
@@ -128,7 +126,7 @@ def write_diagram(
         "until": repr(until),
         "reference": doubles(values),
         "tolerance": _TOLERANCE,
-        "step": repr(dt),
+        "step": repr(stepping.dt),
         "sources": " ".join(file for file in files if file.endswith(".c")),
     }
     files["main.c"] = Template(native_text("exports/diagram_main.c.in")).substitute(words)
@@ -139,11 +137,12 @@ def write_diagram(
     return write_folder(folder, "c", name, files, generator, notes)
 
 
-def _reference(resolved: Resolved, outputs: Sequence[str], method: str, dt: float) -> tuple[float, list[float]]:
+def _reference(resolved: Resolved, outputs: Sequence[str], stepping: Stepping) -> tuple[float, list[float]]:
     """A time, and the signals then of a run from Python."""
-    base = float(resolved.schedule.base) if resolved.schedule.instants else dt
-    until = _CHECKED * max(base, dt)
-    run = run_compiled(compile_diagram(resolved), until, method=method, dt=dt, record=until)
+    base = float(resolved.schedule.base) if resolved.schedule.instants else stepping.dt
+    until = _CHECKED * max(base, stepping.dt)
+    stated = {name: getattr(stepping, name) for name in ("dt", "rtol", "atol", "beam_limit")}
+    run = run_compiled(compile_diagram(resolved), until, method=stepping.method.name, record=until, **stated)
     return float(run.t[-1]), [float(x) for name in outputs for x in np.ravel(run[name][-1])]
 
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 
@@ -53,9 +52,11 @@ _COMPILED: dict[str, Callable[[Material, Path], Exported]] = {
     "fmu3": write_fmu3,
     "wasm": write_wasm,
 }
-# Targets that give exact derivatives of their outputs, by inputs too.
 # Functions of reactions, in packages of C alone.
 REACTIONS = ("joint_wrenches", "prescribed_efforts", "section_forces")
+# How programs and FMUs step where nobody says.
+_STEPPING: dict[str, Any] = {"method": "rk4", "dt": 1e-3, "rtol": 1e-6, "atol": 1e-8, "beam_limit": BEAM_LIMIT}
+# Targets that give exact derivatives of their outputs, by inputs too.
 _DIFFERENTIATED = ("fmu2", "fmu3")
 _DESCRIBED: dict[str, Callable[[System, str | None, Path, str], Exported]] = {"urdf": write_urdf, "mjcf": write_mjcf}
 
@@ -70,11 +71,11 @@ def export(
     frames: Sequence[str] | None = None,
     outputs: Sequence[str] | None = None,
     start: Mapping[str, float] | None = None,
-    method: str = "rk4",
-    dt: float = 1e-3,
-    rtol: float = 1e-6,
-    atol: float = 1e-8,
-    beam_limit: float = BEAM_LIMIT,
+    method: str | None = None,
+    dt: float | None = None,
+    rtol: float | None = None,
+    atol: float | None = None,
+    beam_limit: float | None = None,
 ) -> Exported:
     """Write a model for another environment; all targets wrap the same C, whose interface is symofros_model.h.
 
@@ -91,12 +92,13 @@ def export(
             signals that its program tells; by default what moves.
         start: Names of coordinates, and d + names of speeds -> first values; the neutral state at rest by default.
             A model with constraints starts at the nearest state that meets them.
-        method: Stepping method of Co-Simulation, as in `simulate`; not those of SUNDIALS.
-        dt: Step of that method [s]; of an adaptive one the first.
-        rtol: Relative error of an adaptive method's step.
-        atol: Absolute bound of the local error of adaptive methods.
-        beam_limit: Estimated error of the beams' theory beyond which stepping fails, as in `simulate`; from 0.01 on
-            FMUs log a warning.
+        method: Stepping method of Co-Simulation, as in `simulate`; not those of SUNDIALS. Of a diagram, this and what
+            follows are by default what it states for its runs; otherwise rk4.
+        dt: Step of that method [s]; of an adaptive one the first. 1e-3 by default.
+        rtol: Relative error of an adaptive method's step. 1e-6 by default.
+        atol: Absolute bound of the local error of adaptive methods. 1e-8 by default.
+        beam_limit: Estimated error of the beams' theory beyond which stepping fails, by default as in `simulate`; from
+            0.01 on FMUs log a warning.
 
     Returns:
         What was written, and notes on what the format lacks.
@@ -109,8 +111,10 @@ def export(
         AssemblyError: No state near the start meets the constraints.
         CompileError: An FMU's binary or a WebAssembly module does not compile.
     """
+    given = {"method": method, "dt": dt, "rtol": rtol, "atol": atol, "beam_limit": beam_limit}
     if isinstance(model, Diagram):
-        return _export_diagram(model, target, Path(folder), outputs, method, dt)
+        stepping = _stepping(given, model.simulation.keywords())
+        return _export_diagram(model, target, Path(folder), outputs, stepping)
     system = model if isinstance(model, System) else load(model)
     place = Path(folder)
     check_folder(place)  # Before the work, not only after it.
@@ -119,13 +123,12 @@ def export(
         return _DESCRIBED[target](system, name, place, GENERATOR)
     if target == "cuda":
         return write_cuda_package(system, name, frames, place)
-    stepping = replace(_stepping(method, dt, rtol, atol), beam_limit=beam_limit)
-    material = _material(system, name, frames, outputs, start or {}, stepping, target)
+    material = _material(system, name, frames, outputs, start or {}, _stepping(given), target)
     return _COMPILED[target](material, place)
 
 
 def _export_diagram(
-    diagram: Diagram, target: str, folder: Path, outputs: Sequence[str] | None, method: str, dt: float
+    diagram: Diagram, target: str, folder: Path, outputs: Sequence[str] | None, stepping: Stepping
 ) -> Exported:
     """A diagram as a C program."""
     if target != "c":
@@ -146,19 +149,23 @@ def _export_diagram(
         for port in resolved.wired.ports[name].outputs
         if port.name in ("q", "v")
     ]
-    return write_diagram(resolved, folder, outputs_stated, method, dt, GENERATOR)
+    return write_diagram(resolved, folder, outputs_stated, stepping, GENERATOR)
 
 
-def _stepping(method: str, dt: float, rtol: float, atol: float) -> Stepping:
+def _stepping(given: Mapping[str, Any], stated: Mapping[str, Any] | None = None) -> Stepping:
+    """How an export steps: as is given, else as the model states, else by default."""
+    chosen = {**_STEPPING, **(stated or {}), **{name: item for name, item in given.items() if item is not None}}
+    method = chosen["method"]
     known = [item.name for item in METHODS.values() if not item.family.multistep]
     if method not in known:
         raise UnknownNameError(
             Problem(f"export: no method '{method}'", f"'{method}'", ", ".join(known), method_meant(method, known))
         )
-    for label, value in (("dt", dt), ("rtol", rtol), ("atol", atol)):
+    for label in ("dt", "rtol", "atol"):
+        value = chosen[label]
         if not (np.isfinite(value) and value > 0):
             raise ExportError(Problem(f"export: {label} is not positive", str(value), f"{label} > 0", "leave it out"))
-    return Stepping(METHODS[method], float(dt), float(rtol), float(atol))
+    return Stepping(METHODS[method], **{name: float(chosen[name]) for name in ("dt", "rtol", "atol", "beam_limit")})
 
 
 def _material(

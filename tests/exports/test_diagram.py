@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ import pytest
 
 import symofros as sf
 from symofros import blocks
+from symofros.diagrams.settings import RunSettings
 from tests.diagrams.parts import After, Ball, Counter, Hold, Lag, Number, Spoken, Wave, arm
 from tests.diagrams.run.test_runs import First, Given
 from tests.exports.cases import build
@@ -118,6 +120,22 @@ def test_the_program_tells_what_python_tells(case: str, tmp_path: Path) -> None:
         assert np.abs(told[:, 1:] - want).max() < 1e-8 * max(1.0, np.abs(want).max())
     else:
         assert told[-1, 2] == run["ball.bounces"][-1] == 2
+
+
+def test_a_program_steps_as_its_diagram_states_or_as_is_said(tmp_path: Path) -> None:
+    stated = pendulum()
+    stated.simulation = RunSettings(method="euler", dt=0.004, rtol=1e-3, atol=1e-4, beam_limit=0.03)
+    written = {
+        name: (sf.export(stated, "c", tmp_path / name, **said).folder / "arm_part0_plant.c").read_text()
+        for name, said in (("file", {}), ("said", {"method": "rk4", "dt": 0.002, "rtol": 1e-5}))
+    }
+    assert re.search(r'"euler", .*\n.*, 0\.004, 0\.001, 0\.0001,\n', written["file"])
+    assert re.search(r'"rk4", .*\n.*, 0\.002, 1e-05, 0\.0001,\n', written["said"])
+    assert all("0.03}" in text or "0.03," in text for text in written.values())
+    with pytest.raises(sf.UnknownNameError, match="no method 'rk5'"):
+        sf.export(pendulum(), "c", tmp_path / "other", method="rk5")
+    with pytest.raises(sf.ExportError, match="dt is not positive"):
+        sf.export(pendulum(), "c", tmp_path / "other", dt=-1.0)
 
 
 def test_the_check_of_a_program_can_fail(tmp_path: Path) -> None:

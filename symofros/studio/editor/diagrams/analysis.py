@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from symofros.description.reading import in_order
+from symofros.description.system import System
 from symofros.diagrams.block import Ports
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.files.reader import read_diagram
@@ -47,8 +48,15 @@ def analyse_diagram(file: Path, source: YamlText) -> Analysis:
         problems += [*more, *(error.problem for error in loops)]
     shown = [placed(problem, source, str(file), plain) for problem in in_order(problems)]
     data = as_json(plain)
+    mechanisms = {} if problems or read is None or drafted is None else _mechanisms(whole(read, drafted))
     drawing = Drawing(data, read, drafted, [error.path for error in loops], shown)
-    return Analysis(True, data, problems=shown, diagram=drawing.as_json())
+    shown_diagram = {**drawing.as_json(), "moving": list(mechanisms)}
+    return Analysis(True, data, problems=shown, diagram=shown_diagram, mechanisms=mechanisms)
+
+
+def _mechanisms(wired: Wired) -> dict[str, System]:
+    """Block -> system that it moves."""
+    return {name: wired.models.system(block.mechanism()) for name, block in wired.blocks.items() if block.mechanism()}
 
 
 def _as_a_whole(diagram: Diagram, drafted: Draft) -> tuple[list[Problem], list[AlgebraicLoopError]]:

@@ -24,6 +24,7 @@ class Analysis:
         inputs: Inputs that could be read.
         system: System that was read; None where nothing could be.
         diagram: Blocks and signals of a diagram; None of a mechanism.
+        mechanisms: Name of a block -> system that it moves, of a diagram without problems.
     """
 
     readable: bool
@@ -34,6 +35,7 @@ class Analysis:
     inputs: list[Json] = field(default_factory=list)
     system: System | None = None
     diagram: Json | None = None
+    mechanisms: dict[str, System] = field(default_factory=dict)
 
 
 def as_json(value: Any) -> Any:

@@ -23,7 +23,7 @@ from symofros.studio.editor.editing.yaml_spans import yaml_text_of
 Json = dict[str, Any]
 
 MECHANISM_JOBS = ("compile", "crosscheck", "simulate", "export")
-DIAGRAM_JOBS = ("run",)
+DIAGRAM_JOBS = ("run", "export")
 MAX_DEPTH = 10
 
 
@@ -46,11 +46,27 @@ class Session:
         """The document that is open."""
         return self.storage.document
 
-    @property
-    def sound_system(self) -> System | None:
-        """What the document says; None while it has problems."""
+    def shown_system(self, block: str = "") -> System | None:
+        """What the 3-D view shows; None while the document has problems.
+
+        Args:
+            block: Block of a diagram that moves a mechanism; "" for the first one.
+
+        Raises:
+            EditError: The diagram has no such block, or moves nothing.
+        """
         analysis = self.document.analysis
-        return None if analysis.problems else analysis.system
+        if analysis.problems:
+            return None
+        if analysis.diagram is None:
+            return analysis.system
+        known = analysis.mechanisms
+        chosen = block or next(iter(known), "")
+        if chosen not in known:
+            listed = ", ".join(known) or "none"
+            what, rule = "no mechanism to show", f"blocks that move one: {listed}"
+            raise refusal(what, f"'{block[:50]}'", rule, "choose one of them" if known else "add forward dynamics")
+        return known[chosen]
 
     def as_json(self) -> Json:
         """The document as every answer carries it."""
@@ -209,7 +225,8 @@ class Session:
         """
         kind, options = text_of(body, "kind"), body.get("options") or {}
         document = self.document
-        jobs = MECHANISM_JOBS if document.analysis.diagram is None else DIAGRAM_JOBS
+        is_diagram = document.analysis.diagram is not None
+        jobs = DIAGRAM_JOBS if is_diagram else MECHANISM_JOBS
         if kind not in jobs or not isinstance(options, dict):
             raise refusal(
                 "no such job of this document",
@@ -220,7 +237,7 @@ class Session:
         request: Json = {"file": str(document.file), "text": document.text, "options": options}
         if kind == "export":
             folder = self.workspace.inside(text_of(options, "folder"), ())
-            request |= {"folder": str(folder), "root": str(self.workspace.root)}
+            request |= {"folder": str(folder), "root": str(self.workspace.root), "is_diagram": is_diagram}
         return kind, request
 
     def to_import(self, body: Json, folder: Path) -> Path:

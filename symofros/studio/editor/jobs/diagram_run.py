@@ -5,23 +5,20 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Iterable, Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from symofros.diagrams.diagram import Diagram
-from symofros.diagrams.files.reader import read_diagram
 from symofros.diagrams.result import DiagramRun
 from symofros.diagrams.run.plots import plots_of
 from symofros.diagrams.settings import Plot
 from symofros.diagrams.signals import entries, split
 from symofros.diagrams.simulation import Simulation
-from symofros.diagrams.wiring import Wired
-from symofros.errors import DescriptionError, Problem, SymofrosError
+from symofros.diagrams.wiring import Source, Wired
+from symofros.errors import Problem, SymofrosError
 from symofros.runtime.calls.kernel import Array
-from symofros.studio.editor.jobs.request import Json, Tell
+from symofros.studio.editor.jobs.request import Json, Tell, diagram_of
 
 # Points of a curve that are sent at most at the end, and with one message meanwhile.
 MAX_POINTS, MAX_TOLD = 3000, 200
@@ -32,7 +29,7 @@ SETTINGS = ("dt", "record", "rtol", "atol", "realtime")
 def run_diagram(request: Json, tell: Tell) -> Json:
     """Run a diagram, compiled or block by block; curves of its plots."""
     tell(0, 100, "reading")
-    diagram, options = _diagram(request), request.get("options", {})
+    diagram, options = diagram_of(request), request.get("options", {})
     simulation = Simulation(diagram)
     wired = simulation.resolved.wired
     plots = (plots_of(wired) or [Plot(name, (name,)) for name in _outputs(wired)])[:MAX_PLOTS]
@@ -53,10 +50,11 @@ def run_diagram(request: Json, tell: Tell) -> Json:
         cost = {"steps": interpretation.steps, "loop_s": time.perf_counter() - began}
     else:
         compiled = simulation.compiled
-        compiled.signals(observer.sources)
+        sources = list(dict.fromkeys([*observer.sources, *_drawn(wired)]))
+        compiled.signals(sources)
         began = time.perf_counter()
         run: DiagramRun = simulation.run(t_end, **settings, observer=observer)
-        run.compute(observer.sources)
+        run.compute(sources)
         outcome = run.outcome
         cost = {"steps": run.cost.steps, "loop_s": run.cost.worked}
         t, signals = run.t, run  # type: ignore[assignment]
@@ -72,6 +70,7 @@ def run_diagram(request: Json, tell: Tell) -> Json:
             {**plot, "curves": [{**one, "values": _floats(_entry(signals, one["name"])[kept])} for one in curves]}
             for plot, curves in observer.shown
         ],
+        "motions": {block: _motion(wired, block, signals, t, kept) for block in _moving(wired)},
         "outcome": end,
         "wall_s": time.perf_counter() - began,
         **cost,
@@ -138,18 +137,6 @@ class LiveObserver:
             raise KeyboardInterrupt
 
 
-def _diagram(request: Json) -> Diagram:
-    """The diagram of a request's text.
-
-    Raises:
-        DescriptionError: It can't be read.
-    """
-    diagram, problems = read_diagram(Path(request["file"]), request["text"])
-    if problems or diagram is None:
-        raise DescriptionError(problems)
-    return diagram
-
-
 def _outputs(wired: Wired) -> list[str]:
     return [f"{block}.{port.name}" for block, ports in wired.ports.items() for port in ports.outputs]
 
@@ -164,6 +151,39 @@ def _curves(wired: Wired, plot: Plot) -> list[Json]:
         unit = wired.unit(source)
         curves += [{"name": each, "unit": unit, "signal": text} for each in (names[:2] if plot.xy else names)]
     return curves
+
+
+def _moving(wired: Wired) -> list[str]:
+    """Blocks that move a mechanism."""
+    return [name for name, block in wired.blocks.items() if block.mechanism()]
+
+
+def _drawn(wired: Wired) -> list[Source]:
+    """Signals that pictures of the mechanisms are made of: coordinates, and inputs where motions are prescribed."""
+    sources: list[Source] = []
+    for block in _moving(wired):
+        sources.append((block, "q"))
+        if wired.models.record(wired.blocks[block].mechanism()).driven and (block, "u") in wired.sources:
+            sources.append(wired.sources[block, "u"])
+    return sources
+
+
+def _motion(wired: Wired, block: str, signals: Any, t: Array, kept: npt.NDArray[np.int64]) -> Json:
+    """The motion of a block's mechanism, of the form of a simulation: times, coordinates and inputs, parameters."""
+    model = wired.blocks[block].mechanism()
+    record = wired.models.record(model)
+    fed = wired.sources.get((block, "u")) if record.driven else None
+    u = np.tile(np.array(record.u_default), (len(t), 1)) if fed is None else np.asarray(signals[".".join(fed)])
+    groups = (("q", record.q_names, np.asarray(signals[f"{block}.q"])), ("u", record.u_names, u))
+    return {
+        "t": _floats(t[kept]),
+        "series": [
+            {"name": name, "kind": kind, "values": _floats(values[kept, i])}
+            for kind, names, values in groups
+            for i, name in enumerate(names)
+        ],
+        "par": wired.models.parameters(model).tolist(),
+    }
 
 
 def _entry(values: Any, name: str) -> Array:

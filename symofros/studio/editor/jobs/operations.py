@@ -23,7 +23,7 @@ from symofros.description.yaml.files import write_yaml
 from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
 from symofros.generator.passes.count import count_program
 from symofros.mechanics.topology.tree import SpanningTree
-from symofros.studio.editor.jobs.request import Json, Tell, system_of
+from symofros.studio.editor.jobs.request import Json, Tell, diagram_of, system_of
 from symofros.studio.editor.units import coordinate_units
 
 POINTS, MAX_POINTS = 1000, 5000
@@ -204,12 +204,12 @@ def _motion(run: sf.Trajectory, tree: SpanningTree) -> Json:
 
 
 def export(request: Json, tell: Tell) -> Json:
-    """Write the model for another environment."""
+    """Write the model for another environment; a diagram as a C program that steps as its file says."""
     tell(0, 2, "reading")
-    system = system_of(request)
-    options = request["options"]
-    tell(1, 2, f"writing {options['target']}")
-    done = sf.export(system, options["target"], request["folder"], name=options.get("name") or None)
+    options, target, folder = request["options"], request["options"]["target"], request["folder"]
+    stated = diagram_of(request) if request["is_diagram"] else system_of(request)
+    tell(1, 2, f"writing {target}")
+    done = sf.export(stated, target, folder, name=options.get("name") or None)
     root = Path(request["root"])
     files = [os.path.relpath(file.resolve(), root) for file in done.files]
     return {"files": files, "notes": list(done.notes), "target": done.target}

@@ -43,20 +43,26 @@ class Job:
         }
         return {**summary, "result": self.result} if whole else summary
 
-    def simulated(self) -> Json:
-        """The result of a simulation.
+    def motion(self, block: str = "") -> Json:
+        """The motion that a simulation or a diagram's run has led to: "t", "series", "par".
+
+        Args:
+            block: Block of a diagram that moves a mechanism; "" for the first one.
 
         Raises:
-            EditError: It is another job, or has no result.
+            EditError: It is another job, has no result, or moves no such mechanism.
         """
-        if self.kind != "simulate" or not isinstance(self.result, dict):
-            raise refusal(
-                f"job {self.key} has no motion",
-                f"{self.kind}, {self.state}",
-                "a motion is the result of a simulation",
-                "simulate first",
-            )
-        return self.result
+        result = self.result if isinstance(self.result, dict) else {}
+        if self.kind == "simulate" and result:
+            return result
+        motions: Json = result.get("motions", {}) if self.kind == "run" else {}
+        chosen = block or next(iter(motions), "")
+        if chosen not in motions:
+            found = f"block '{block[:50]}' of {', '.join(motions)}" if motions else f"{self.kind}, {self.state}"
+            rule = "a motion is that of a simulation, or of a block of a run that moves a mechanism"
+            raise refusal(f"job {self.key} has no such motion", found, rule, "simulate or run it first")
+        motion: Json = motions[chosen]
+        return motion
 
 
 class Jobs:

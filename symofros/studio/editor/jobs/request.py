@@ -1,4 +1,4 @@
-"""A request to a worker process: its data, its progress, and the system that its text describes."""
+"""A request to a worker process: its data, its progress, and the system or diagram that its text describes."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ from typing import Any
 from symofros.description.reading import in_order
 from symofros.description.system import System
 from symofros.description.yaml.files import read_yaml
+from symofros.diagrams.diagram import Diagram
+from symofros.diagrams.files.reader import read_diagram
 from symofros.errors import DescriptionError
 from symofros.mechanics.topology.graph import find_problems
 
@@ -46,3 +48,15 @@ def system_of(request: Json) -> System:
     if reading.system is None or reading.problems or problems:
         raise DescriptionError(in_order([*reading.problems, *problems]))
     return reading.system
+
+
+def diagram_of(request: Json) -> Diagram:
+    """The diagram of a request's text.
+
+    Raises:
+        DescriptionError: It can't be read.
+    """
+    diagram, problems = read_diagram(Path(request["file"]), request["text"])
+    if problems or diagram is None:
+        raise DescriptionError(problems)
+    return diagram

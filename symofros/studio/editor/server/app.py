@@ -211,18 +211,22 @@ class Editor:
         await run_sync(self.jobs.warm)
         return StreamingResponse(self.events.join(), media_type="text/event-stream")
 
-    async def look(self, _: Request) -> Response:
-        """The 3-D view of the document as it is now, made or brought up to date: its address and what moves it."""
-        system = await self.exclusively(lambda: self.session.sound_system)
+    async def look(self, request: Request) -> Response:
+        """The 3-D view of the document as it is now, made or brought up to date: its address and what moves it.
+
+        Of a diagram, the mechanism that "block" moves.
+        """
+        block = request.query_params.get("block", "")
+        system = await self.exclusively(partial(self.session.shown_system, block))
         # Compiling takes its time, while others go on with the document.
         shown = await run_sync(partial(self.view.follow, system))
         return JSONResponse({"address": self.relay.address, **shown})
 
     async def pose(self, request: Request) -> Response:
-        """Move the 3-D view; with "run" and "t", to the state of a simulation at a time."""
+        """Move the 3-D view; with "run" and "t", to the state of a run at a time, of a diagram's "block"."""
         body = await body_of(request)
         if "run" in body:
-            run = self.jobs.get(str(body["run"])).simulated()
+            run = self.jobs.get(str(body["run"])).motion(str(body.get("block") or ""))
             return JSONResponse(await run_sync(partial(self.view.seek, run, body.get("t"))))
         return JSONResponse(await run_sync(partial(self.view.pose, body)))
 
@@ -234,15 +238,16 @@ class Editor:
         return Response(content, media_type=MEDIA_TYPES[suffix])
 
     async def film(self, request: Request) -> Response:
-        """A simulated motion as a film."""
+        """A motion as a film."""
         job, suffix, asked = (
             self.jobs.get(request.path_params["key"]),
             request.path_params["suffix"],
             request.query_params,
         )
-        result = job.simulated()
+        block = asked.get("block", "")
+        result = job.motion(block)
         system = await self.exclusively(
-            lambda: self.session.sound_system if job.revision == self.session.document.revision else None
+            lambda: self.session.shown_system(block) if job.revision == self.session.document.revision else None
         )
         factor, speed = asked.get("exaggeration", "1"), asked.get("speed", "1")
         content = await run_sync(partial(film_of, system, result, suffix, factor, speed))

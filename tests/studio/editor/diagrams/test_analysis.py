@@ -110,4 +110,4 @@ def test_algebraic_loops_are_marked_while_other_things_are_wrong() -> None:
 
 @pytest.mark.parametrize("text", ["symofros_diagram: 1\n", "symofros_diagram: 2\nblocks: 3\nmodels: [a]\n"])
 def test_a_diagram_without_anything_to_draw_is_a_diagram(text: str) -> None:
-    assert drawn(text).diagram == {"nodes": [], "wires": [], "models": {}}
+    assert drawn(text).diagram == {"nodes": [], "wires": [], "models": {}, "moving": []}

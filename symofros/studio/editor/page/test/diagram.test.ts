@@ -51,6 +51,7 @@ const CLOSED: Diagram = {
   ],
   wires: [wire("path.p", "law.p"), wire("seen.y", "law.q"), wire("law.u", "plant.u"), wire("plant.q", "seen.u")],
   models: {},
+  moving: [],
 };
 
 function boxes(diagram: Diagram, places: Record<string, Point>): Box[] {

@@ -77,6 +77,8 @@ export interface Ran {
   method: string;
   t: number[];
   plots: RunPlot<RunCurve & { values: (number | null)[] }>[];
+  /** By the block that moves the mechanism. */
+  motions: Record<string, { t: number[] }>;
   outcome: { ok: boolean; t: number; reason: string; advice: string; notes: string[] };
   steps: number;
   wall_s: number;

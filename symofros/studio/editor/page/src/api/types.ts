@@ -105,6 +105,8 @@ export interface Diagram {
   nodes: SignalNode[];
   wires: Wire[];
   models: Record<string, ModelNames>;
+  /** Blocks that move a mechanism; empty while there are problems. */
+  moving: string[];
 }
 
 export interface Parameter {
@@ -272,8 +274,9 @@ export interface Pose {
   /** Whether frames are drawn, and their names; bodies are seen through then. */
   frames?: boolean;
   labels?: boolean;
-  /** A simulation, whose state at a time is shown. */
+  /** A run, whose state at a time is shown; of a diagram's run, of the mechanism that a block moves. */
   run?: string;
+  block?: string;
   t?: number;
 }
 

@@ -16,7 +16,7 @@ import type { Extent } from "./useSight";
 
 const NODE_TYPES = { signal: SignalBlock };
 const EDGE_TYPES = { wire: SignalWire };
-const NOTHING: Diagram = { nodes: [], wires: [], models: {} };
+const NOTHING: Diagram = { nodes: [], wires: [], models: {}, moving: [] };
 
 const portOf = (handle: string): string => handle.slice(handle.indexOf(" ") + 1);
 

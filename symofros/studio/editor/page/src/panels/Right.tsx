@@ -15,18 +15,13 @@ const TextPane = lazy(() => import("../text/TextPane"));
 export function Right({ current }: { current: RightPane }) {
   const [widths, setWidths] = useState({ parameters: 400, text: 400, view: 540, models: 272 });
   const isDiagram = useDocument().diagram !== null;
-  const pane = isDiagram && current !== "text" ? "models" : current;
+  const pane = isDiagram && current === "parameters" ? "models" : current;
   const width = widths[pane];
-  const tabs: Tab<RightPane>[] = isDiagram
-    ? [
-        { key: "parameters", title: "Models" },
-        { key: "text", title: "YAML" },
-      ]
-    : [
-        { key: "parameters", title: "Parameters" },
-        { key: "text", title: "YAML" },
-        { key: "view", title: "3-D" },
-      ];
+  const tabs: Tab<RightPane>[] = [
+    { key: "parameters", title: isDiagram ? "Models" : "Parameters" },
+    { key: "text", title: "YAML" },
+    { key: "view", title: "3-D" },
+  ];
   return (
     <aside className="side-dock" style={{ width }} aria-label="Side pane">
       <Splitter
@@ -35,13 +30,8 @@ export function Right({ current }: { current: RightPane }) {
         size={width}
         onChange={(size) => setWidths({ ...widths, [pane]: size })}
       />
-      <Tabs
-        tabs={tabs}
-        current={isDiagram && current === "view" ? "parameters" : current}
-        onChange={(key) => update({ right: key })}
-        label="Side pane"
-      >
-        {current !== "text" && isDiagram ? <Models /> : null}
+      <Tabs tabs={tabs} current={current} onChange={(key) => update({ right: key })} label="Side pane">
+        {current === "parameters" && isDiagram ? <Models /> : null}
         {current === "parameters" && !isDiagram ? (
           <>
             <Parameters />
@@ -53,7 +43,7 @@ export function Right({ current }: { current: RightPane }) {
             <TextPane />
           </Suspense>
         ) : null}
-        {current === "view" && !isDiagram ? <ViewPane /> : null}
+        {current === "view" ? <ViewPane /> : null}
       </Tabs>
       <IconButton glyph="close" label="Close the side pane" onClick={() => update({ right: null })} />
     </aside>

@@ -2,6 +2,7 @@ import type { Ran, RunCurve, RunPlot } from "../api/jobs";
 import { brief } from "../model/plot";
 import { type KeptRun, overlaid } from "../model/runs";
 import { type Live, useStore } from "../store/store";
+import { PlayBar } from "./PlayBar";
 import { Plot, type PlotCurve } from "./Plot";
 import { Runs } from "./Runs";
 
@@ -71,6 +72,7 @@ export function Run({ result }: { result: Ran }) {
   const runs = useStore((state) => state.runs);
   const job = useStore((state) => state.jobs.run?.id);
   const others = overlaid(runs, "run", job);
+  const [motion] = Object.values(result.motions);
   return (
     <div className="results">
       <p className="quiet">
@@ -87,6 +89,7 @@ export function Run({ result }: { result: Ran }) {
           {note}
         </p>
       ))}
+      {motion === undefined ? null : <PlayBar t={motion.t} />}
       <Runs kind="run" />
       <div className="plots of-run">
         {result.plots.map((plot, i) => (

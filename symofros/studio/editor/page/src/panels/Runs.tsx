@@ -1,9 +1,13 @@
 import { useState } from "react";
 
-import type { JobKind } from "../api/jobs";
+import type { JobKind, Ran } from "../api/jobs";
 import type { KeptRun } from "../model/runs";
 import { draw, forget, rename, saveFilm, saveTable } from "../store/runs";
 import { useDocument, useStore } from "../store/store";
+
+/** Whether a mechanism moves in it. */
+const moves = ({ kind, result }: KeptRun): boolean =>
+  kind === "simulate" || Object.keys((result as Ran).motions).length > 0;
 
 /** Draws the motion as a film; that takes seconds. */
 function Film({ run }: { run: KeptRun }) {
@@ -64,7 +68,7 @@ export function Runs({ kind }: { kind: JobKind }) {
           <button type="button" className="small" onClick={() => void saveTable(run, "parquet")}>
             Parquet
           </button>
-          {kind === "simulate" && run.revision === revision ? <Film run={run} /> : null}
+          {moves(run) && run.revision === revision ? <Film run={run} /> : null}
           {run.id === newest ? null : (
             <button type="button" className="small" aria-label={`Forget ${run.name}`} onClick={() => forget(run.id)}>
               Forget

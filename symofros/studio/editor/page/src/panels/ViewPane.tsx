@@ -1,9 +1,9 @@
 import { useEffect, useState } from "react";
 
 import type { Coordinate, Fault, View } from "../api/types";
-import { useDocument, useStore } from "../store/store";
+import { update, useDocument, useStore } from "../store/store";
 import { useTheme } from "../store/theme";
-import { look, lookAway, move } from "../store/view";
+import { look, lookAway, move, shownBlock } from "../store/view";
 import { ParameterSlider } from "./ParameterSlider";
 
 const STEPS = 500;
@@ -143,11 +143,29 @@ function Why({ fault }: { fault: Fault }) {
   );
 }
 
+/** Which mechanism of a diagram is shown, where several move. */
+function Mechanism() {
+  const moving = useDocument().diagram?.moving ?? [];
+  useStore((state) => state.block);
+  if (moving.length < 2) return null;
+  return (
+    <label className="view-line">
+      Mechanism{" "}
+      <select value={shownBlock()} onChange={(event) => update({ block: event.target.value })}>
+        {moving.map((each) => (
+          <option key={each}>{each}</option>
+        ))}
+      </select>
+    </label>
+  );
+}
+
 /** The mechanism in three dimensions. The page in the frame is viser's, kept apart from this one. */
 export function ViewPane() {
   const { revision, path } = useDocument();
   const view = useStore((state) => state.view);
-  useEffect(() => void look(), [revision, path]);
+  const block = useStore((state) => state.block);
+  useEffect(() => void look(), [revision, path, block]);
   useEffect(() => lookAway, []);
   const theme = useTheme();
   const isShown = view !== null && "address" in view;
@@ -158,6 +176,7 @@ export function ViewPane() {
   if (!("address" in view)) return <Why fault={view} />;
   return (
     <div className="view-pane">
+      <Mechanism />
       {view.fault === null ? null : (
         <p className="view-stale" role="status">
           The last model without problems is shown: {view.fault.object}.

@@ -77,6 +77,12 @@ const OF_DIAGRAM: readonly Command[] = [
     help: "Compiled or block by block, to when, at what pace, with stops",
     start: () => show({ kind: "run" }),
   },
+  {
+    kind: "export",
+    title: "Export…",
+    help: "A C program that runs the diagram",
+    start: () => show({ kind: "export" }),
+  },
 ];
 
 const OF_MECHANISM: readonly Command[] = [
@@ -187,15 +193,13 @@ export function Toolbar() {
         >
           YAML
         </button>
-        {document.diagram === null ? (
-          <button
-            type="button"
-            aria-pressed={right === "view"}
-            onClick={() => update({ right: right === "view" ? "parameters" : "view" })}
-          >
-            3-D
-          </button>
-        ) : null}
+        <button
+          type="button"
+          aria-pressed={right === "view"}
+          onClick={() => update({ right: right === "view" ? "parameters" : "view" })}
+        >
+          3-D
+        </button>
         <IconButton glyph="theme" label="Dark or light" onClick={toggleTheme} />
       </div>
     </header>

@@ -9,7 +9,7 @@ import { ordered } from "./requests";
 import { now, update } from "./store";
 
 const data = (): JsonMap => now().document?.data ?? {};
-const diagram = (): Diagram => now().document?.diagram ?? { nodes: [], wires: [], models: {} };
+const diagram = (): Diagram => now().document?.diagram ?? { nodes: [], wires: [], models: {}, moving: [] };
 const nodeOf = (id: string): SignalNode | undefined => diagram().nodes.find((node) => node.id === id);
 
 /** Names that a new block, part or model must not have. */

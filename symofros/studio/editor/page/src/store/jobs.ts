@@ -46,7 +46,8 @@ async function fetchJob(id: string): Promise<Job | undefined> {
 }
 
 function take(job: Job): void {
-  const isNew = job.kind === "simulate" && job.state === "done" && now().jobs.simulate?.state !== "done";
+  const moves = job.kind === "simulate" || job.kind === "run";
+  const isNew = moves && job.state === "done" && now().jobs[job.kind]?.state !== "done";
   update((state) => ({ jobs: { ...state.jobs, [job.kind]: job }, runs: withRun(state.runs, job) }));
   const { time } = now();
   if (isNew && time !== null) setTime(time);

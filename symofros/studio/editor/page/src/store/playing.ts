@@ -1,22 +1,25 @@
 /** The time that plots and the 3-D view stand at, and its course while a motion plays. */
 
-import type { Simulated } from "../api/jobs";
+import type { Ran, Simulated } from "../api/jobs";
 import { now, update } from "./store";
-import { seek } from "./view";
+import { seek, shownBlock } from "./view";
 
 // What the clock can be slowed down and sped up to.
 export const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 5] as const;
 
-/** The newest simulation, if it has a result. */
-function simulation(): { id: string; result: Simulated } | null {
-  const job = now().jobs.simulate;
-  return job?.state === "done" ? { id: job.id, result: job.result as Simulated } : null;
+/** The times of the newest motion: of the simulation, or of the diagram's run, if it has a result. */
+function newest(): { id: string; t: number[] } | null {
+  const { document, jobs } = now();
+  const job = document?.diagram ? jobs.run : jobs.simulate;
+  if (job?.state !== "done") return null;
+  const t = job.kind === "run" ? (job.result as Ran).motions[shownBlock()]?.t : (job.result as Simulated).t;
+  return t === undefined ? null : { id: job.id, t };
 }
 
 /** Puts the cursor of all plots, the slider and the 3-D view to a time [s]. */
 export function setTime(time: number): void {
   update({ time });
-  const run = simulation();
+  const run = newest();
   if (run !== null && now().right === "view") seek(run.id, time);
 }
 
@@ -26,8 +29,8 @@ export function pause(): void {
 
 /** Plays the motion from where it stands, from its beginning if it is at its end; the 3-D view opens. */
 export function play(): void {
-  const run = simulation();
-  const [start, end] = [run?.result.t[0] ?? 0, run?.result.t.at(-1) ?? 0];
+  const run = newest();
+  const [start, end] = [run?.t[0] ?? 0, run?.t.at(-1) ?? 0];
   if (run === null || end <= start) return;
   const { time } = now();
   const from = time === null || time >= end || time < start ? start : time;
@@ -35,7 +38,7 @@ export function play(): void {
   let last = performance.now();
   const next = (clock: number): void => {
     if (!now().playing) return;
-    if (simulation()?.id !== run.id) {
+    if (newest()?.id !== run.id) {
       pause();
       return;
     }

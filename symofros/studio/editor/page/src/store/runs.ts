@@ -5,7 +5,7 @@ import type { KeptRun } from "../model/runs";
 import { offer } from "../files/choose";
 import { explain } from "./requests";
 import { now, update } from "./store";
-import { shownView } from "./view";
+import { shownBlock, shownView } from "./view";
 
 function change(id: string, by: Partial<KeptRun>): void {
   update((state) => ({ runs: state.runs.map((run) => (run.id === id ? { ...run, ...by } : run)) }));
@@ -27,5 +27,6 @@ export const saveTable = (run: KeptRun, suffix: "csv" | "parquet"): Promise<void
 /** Hands the motion to the browser as a film: at the speed that it plays, as exaggerated as the 3-D view shows it. */
 export function saveFilm(run: KeptRun, suffix: "gif" | "mp4"): Promise<void> {
   const exaggeration = shownView()?.exaggeration ?? 1;
-  return save(run, `film.${suffix}?exaggeration=${exaggeration}&speed=${now().speed}`, suffix);
+  const block = encodeURIComponent(shownBlock());
+  return save(run, `film.${suffix}?exaggeration=${exaggeration}&speed=${now().speed}&block=${block}`, suffix);
 }

@@ -68,6 +68,8 @@ export interface State {
   speed: number;
   link: Link;
   notices: Notice[];
+  /** The block of a diagram, the mechanism of which the 3-D view shows; "" for the first. */
+  block: string;
   /** What the 3-D view shows, while its pane is open; a fault: why it shows nothing. */
   view: View | Fault | null;
   /** Why it did not go where it was moved to. */
@@ -94,6 +96,7 @@ export const useStore = create<State>(() => ({
   speed: 1,
   link: "ok",
   notices: [],
+  block: "",
   view: null,
   stuck: "",
   right: "parameters",

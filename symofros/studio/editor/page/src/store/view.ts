@@ -11,6 +11,13 @@ export function shownView(): View | null {
   return view !== null && "address" in view ? view : null;
 }
 
+/** The block of the open diagram, the mechanism of which is shown; "" of a mechanism's document. */
+export function shownBlock(): string {
+  const { block, document } = now();
+  const moving = document?.diagram?.moving ?? [];
+  return moving.includes(block) ? block : (moving[0] ?? "");
+}
+
 let asked = 0;
 
 /** Brings the view up to the document as it is. */
@@ -18,7 +25,7 @@ export async function look(): Promise<void> {
   asked += 1;
   const turn = asked;
   try {
-    const view = await get<View>("api/view");
+    const view = await get<View>(`api/view?block=${encodeURIComponent(shownBlock())}`);
     if (turn === asked) update({ view, stuck: "" });
   } catch (reason) {
     if (turn !== asked) return;
@@ -35,11 +42,11 @@ export function lookAway(): void {
 let next: Pose | null = null;
 let moving = false;
 
-/** Shows a simulation's state at a time. */
+/** Shows a run's state at a time. */
 export function seek(run: string, t: number): void {
   // What waits to be moved is of another state.
   next = null;
-  void move({ run, t });
+  void move({ run, t, block: shownBlock() });
 }
 
 /** Moves the view; while one request is on its way, the newest of each value waits. */

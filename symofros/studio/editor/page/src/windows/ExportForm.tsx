@@ -19,8 +19,10 @@ const TITLES: Record<string, string> = {
 
 /** What to write, and into which folder of the workspace. */
 export function ExportForm() {
-  const { name } = useDocument();
-  const kinds = useStore((state) => state.catalogue?.targets) ?? [];
+  const { name, diagram } = useDocument();
+  const targets = useStore((state) => state.catalogue?.targets) ?? [];
+  // A diagram becomes a program.
+  const kinds = diagram === null ? targets : ["c"];
   const [kind, setKind] = useState(kinds[0] ?? "");
   const [folder, setFolder] = useState(`${stem(name)}_export`);
   const start = (): void => {
