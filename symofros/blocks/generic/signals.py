@@ -176,7 +176,7 @@ class Pick(Block):
     """Some entries of a vector, by number or by the names of a model.
 
     Attributes:
-        entries: Numbers from 0 on, or names; "actuated" stands for a model's actuated joints, in the order of its
+        entries: One or several: numbers from 0 on, or names; "actuated" stands for a model's actuated joints, in the order of its
             inputs.
         model: Model whose names they are; "" where entries are numbers.
         of: Vector of the model that the input is: q, v (also a, tau) or u.
@@ -190,7 +190,7 @@ class Pick(Block):
 
     def __post_init__(self) -> None:
         """Entries are numbers, or names of a model."""
-        entries = [self.entries] if isinstance(self.entries, str) else self.entries
+        entries = self._wanted
         named = not isinstance(entries, (list, tuple)) or any(isinstance(item, str) for item in entries)
         if not isinstance(entries, (list, tuple)) or not entries or (named and not self.model):
             raise refuse(
@@ -203,10 +203,14 @@ class Pick(Block):
         if self.of not in ("q", "v", "u"):
             raise refuse(self.name, "unknown vector", repr(self.of), "of is q, v or u", "name one of them")
 
+    @property
+    def _wanted(self) -> Any:
+        return [self.entries] if isinstance(self.entries, (str, int)) else self.entries
+
     def _indices(self, environment: Environment) -> tuple[list[int], int | None]:
         """Which entries, of how many."""
         if not self.model:
-            return [whole(self.name, "an entry", item, 0, 10**6) for item in self.entries], None
+            return [whole(self.name, "an entry", item, 0, 10**6) for item in self._wanted], None
         record = environment.model(self.model)
         names = {"q": record.q_names, "v": record.v_names, "u": record.u_names}[self.of]
         if self.entries == "actuated":
@@ -220,7 +224,7 @@ class Pick(Block):
                     "name the entries",
                 )
         else:
-            wanted = [self.entries] if isinstance(self.entries, str) else self.entries
+            wanted = self._wanted
         indices = []
         for item in wanted:
             named = isinstance(item, str)

@@ -55,6 +55,7 @@ def test_sum_and_product_go_entry_by_entry(rng: np.random.Generator) -> None:
 def test_pick_join_and_reshape(rng: np.random.Generator) -> None:
     u = rng.normal(size=(4, 6))
     np.testing.assert_array_equal(run(Pick(name="p", entries=[4, 0]), {"u": u})["y"], u[:, [4, 0]])
+    np.testing.assert_array_equal(run(Pick(name="p", entries=4), {"u": u})["y"], u[:, [4]])
     np.testing.assert_array_equal(run(Reshape(name="r", shape=(2, 3)), {"u": u})["y"], u.reshape(4, 2, 3))
     joined = run(Join(name="j", count=3), {"u1": u[:, :2], "u2": u[:, 2], "u3": u[:, 3:]})["y"]
     np.testing.assert_array_equal(joined, u)

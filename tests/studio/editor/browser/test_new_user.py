@@ -1,0 +1,172 @@
+"""A new user, with mouse and keyboard alone: an arm of two links, one a beam; a PD law around it; run, play, export."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Locator, Page, expect
+
+import symofros as sf
+from tests.exports.cases import build
+from tests.studio.editor.browser import steps
+from tests.studio.editor.browser.conftest import Server
+from tests.studio.editor.browser.scene import changed, open_view
+
+pytestmark = pytest.mark.browser
+
+JOB = 60_000
+
+
+@contextmanager
+def action(name: str) -> Iterator[None]:
+    """Prints how long an action takes; shown by `-s`, kept in docs/editor.md."""
+    began = time.perf_counter()
+    yield
+    print(f"{name}: {time.perf_counter() - began:.1f} s")
+
+
+def put(page: Page, title: str, into: str) -> None:
+    """Choose an entry of a diagram's palette, and name it."""
+    page.get_by_label("Find a block").fill(title)
+    page.get_by_role("button", name=title, exact=True).click()
+    expect(steps.block(page, into)).to_be_visible()
+
+
+def port(page: Page, name: str) -> Locator:
+    return page.locator(f'.react-flow__handle[aria-label^="{name}"]')
+
+
+def actuate(page: Page) -> None:
+    steps.tab(page, "Forces")
+    steps.window(page).get_by_label("Actuated").check()
+
+
+def draw_the_arm(page: Page) -> None:
+    page.get_by_role("button", name="Rigid body", exact=True).drag_to(
+        page.locator(".react-flow__pane"), target_position={"x": 260, "y": 180}
+    )
+    steps.open_window(page, "bodies/body")
+    steps.fill(page, "Name", "upper")
+    actuate(page)
+    steps.accept(page)
+    steps.block(page, "bodies/upper").click()
+    page.get_by_role("button", name="Flexible beam", exact=True).click()
+    steps.open_window(page, "bodies/beam")
+    steps.fill(page, "Name", "fore")
+    steps.tab(page, "Joint")
+    steps.window(page).get_by_label("Kind", exact=True).select_option("revolute")
+    for axis, value in zip("xyz", "001", strict=True):
+        steps.fill(page, f"Axis {axis}", value)
+    actuate(page)
+    steps.accept(page)
+    steps.problems(page, 0)
+    steps.saved(page)
+
+
+def begin_a_diagram(page: Page) -> None:
+    page.get_by_role("button", name="File", exact=True).click()
+    page.get_by_role("menuitem", name="New…").click()
+    steps.fill(page, "File", "held.yaml")
+    steps.window(page).get_by_label("Kind").select_option("diagram")
+    steps.window(page).get_by_role("button", name="Create").click()
+    expect(page.get_by_role("banner")).to_contain_text("held.yaml")
+
+
+def draw_the_law(page: Page) -> None:
+    """A law reads the motors' entries of the arm's state: elastic coordinates are among the others."""
+    put(page, "Model", "models/model")
+    put(page, "forward dynamics", "blocks/forward_dynamics")
+    for name, of in (("angles", "q"), ("rates", "v")):
+        put(page, "pick", "blocks/pick")
+        steps.open_window(page, "blocks/pick")
+        steps.fill(page, "Name", name)
+        steps.fill(page, "Entries", "actuated")
+        steps.window(page).get_by_label("Model", exact=True).select_option("model")
+        steps.fill(page, "Of", of)
+        feed(page, "u", f"forward_dynamics.{of}")
+        steps.accept(page)
+    put(page, "constant", "blocks/constant")
+    steps.open_window(page, "blocks/constant")
+    steps.fill(page, "Value", "[0.6, -0.4]")
+    steps.accept(page)
+    put(page, "joint pd", "blocks/joint_pd")
+    steps.open_window(page, "blocks/joint_pd")
+    steps.fill(page, "Kp", "[60, 20]")
+    steps.fill(page, "Kd", "[16, 4]")
+    feed(page, "q_desired", "constant.y")
+    feed(page, "q", "angles.y")
+    feed(page, "v", "rates.y")
+    steps.accept(page)
+    # The last one with the mouse: from port to port.
+    with page.expect_response(lambda answer: answer.url.endswith("/api/layout")):
+        page.get_by_role("button", name="Arrange the blocks").click()
+    output = port(page, "output effort of joint_pd")
+    at_rest(output)
+    output.drag_to(port(page, "input u of forward_dynamics"))
+    expect(steps.wire(page, "blocks/forward_dynamics/inputs/u")).to_have_count(1)
+    steps.problems(page, 0)
+    steps.saved(page)
+
+
+def at_rest(element: Locator) -> None:
+    """Wait until an element stays where it is."""
+    before = None
+    while before != (before := element.bounding_box()):
+        element.page.wait_for_timeout(250)
+
+
+def feed(page: Page, name: str, source: str) -> None:
+    """Choose what feeds an input, in the window of its block."""
+    steps.window(page).get_by_label(f"Source of {name}", exact=True).select_option(source)
+
+
+def test_from_nothing_to_a_controlled_arm_that_plays_and_is_exported(
+    serve: Callable[..., Server], page: Page, picture: Callable[[str], None], tmp_path: Path
+) -> None:
+    server = serve("arm.yaml")
+    with action("open the page"):
+        steps.open_editor(page, server.url)
+    with action("draw the arm: a rigid link, a beam, two motors"):
+        draw_the_arm(page)
+    picture("new-user-arm")
+    with action("begin a diagram"):
+        begin_a_diagram(page)
+    with action("draw the law: a model, six blocks, six wires"):
+        draw_the_law(page)
+    picture("new-user-law")
+
+    with action("run it for 3 s"):
+        steps.run(page, "Run…")
+        steps.fill(page, "End", "3")
+        steps.window(page).get_by_role("button", name="Run").click()
+        expect(steps.results(page).get_by_text("s of computing")).to_be_visible(timeout=JOB)
+    with action("see it in three dimensions"):
+        still = open_view(page)
+        pose = page.get_by_role("group", name="Pose")
+        expect(pose.get_by_label("q1 [rad]")).to_have_value("0")
+    with action("play it at five times its speed"):
+        page.get_by_label("Speed").select_option("5")
+        steps.results(page).get_by_role("button", name="Play").click()
+        expect(steps.results(page).get_by_role("button", name="Play")).to_be_visible(timeout=JOB)
+        # Where the law holds it, to a step of the slider.
+        expect(pose.get_by_label("q1 [rad]")).to_have_value(re.compile(r"^0\.(59|60|61)"))
+    changed(page, still)
+    page.frame_locator("iframe.view").locator(".mantine-Notification-closeButton").first.click()  # No graphics card.
+    picture("new-user-played")
+
+    with action("export C"):
+        steps.run(page, "Export…")
+        steps.fill(page, "Folder", "program")
+        steps.window(page).get_by_role("button", name="Export").click()
+        expect(steps.results(page).get_by_text("program/main.c")).to_be_visible(timeout=JOB)
+    # What was exported is a program that tells the same end.
+    run = sf.Simulation(sf.load_diagram(tmp_path / "held.yaml")).run(3.0)
+    told = subprocess.run([build(tmp_path / "program", "program"), "3", "3"], capture_output=True, text=True)
+    end = [float(x) for x in told.stdout.splitlines()[-1].split(",")]
+    assert end[1:] == pytest.approx([*run.q[-1], *run.v[-1]], abs=1e-7)
