@@ -176,8 +176,8 @@ class Pick(Block):
     """Some entries of a vector, by number or by the names of a model.
 
     Attributes:
-        entries: One or several: numbers from 0 on, or names; "actuated" stands for a model's actuated joints, in the order of its
-            inputs.
+        entries: One or several: numbers from 0 on, or names; "actuated" stands for a model's actuated joints, in the
+            order of its inputs.
         model: Model whose names they are; "" where entries are numbers.
         of: Vector of the model that the input is: q, v (also a, tau) or u.
         unit: Unit of the entries.
