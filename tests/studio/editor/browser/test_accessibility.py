@@ -102,6 +102,46 @@ def test_a_diagram_and_its_windows(serve: Callable[..., Server], page: Page, fau
     assert faults() == []
 
 
+@pytest.mark.parametrize(("width", "height"), [(640, 380), (375, 667)], ids=["zoomed to 200 %", "phone"])
+def test_small_pages(
+    serve: Callable[..., Server],
+    page: Page,
+    faults: Callable[[], list[str]],
+    picture: Callable[[str], None],
+    width: int,
+    height: int,
+) -> None:
+    """Nothing is cut off: no page is wider than the window, and what is pressed lies in it, or is scrolled into it."""
+    page.set_viewport_size({"width": width, "height": height})
+    server = serve("robot.yaml", source=MODELS / "flexible" / "planar_robot.yaml")
+    steps.open_editor(page, server.url)
+
+    def look() -> None:
+        assert faults() == []
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        for button in page.get_by_role("banner").get_by_role("button").all():
+            button.scroll_into_view_if_needed()
+            box = button.bounding_box()
+            assert box is not None and 0 <= box["x"] and box["x"] + box["width"] <= width, button.inner_text()
+
+    look()
+    picture(f"small-{width}")
+    steps.open_window(page, "bodies/link1")
+    assert faults() == []
+    for label in ("Modes along y", "Modes of shear along z", "Length"):
+        steps.window(page).get_by_label(label, exact=True).click(trial=True)  # Nothing lies over it.
+    foot = steps.window(page).get_by_role("button", name="OK").bounding_box()
+    assert foot is not None and foot["y"] + foot["height"] <= height and foot["x"] + foot["width"] <= width
+    picture(f"small-window-{width}")
+    page.keyboard.press("Escape")
+    steps.run(page, "Simulate")
+    steps.fill(page, "Duration", "0.3")
+    steps.window(page).get_by_role("button", name="Simulate").click()
+    expect(steps.results(page).get_by_role("img").first).to_be_visible(timeout=60_000)
+    look()
+    picture(f"small-results-{width}")
+
+
 def test_a_window_holds_the_focus_and_gives_it_back(serve: Callable[..., Server], page: Page) -> None:
     server = serve("robot.yaml", source=MODELS / "rigid" / "double_pendulum.yaml")
     steps.open_editor(page, server.url)
