@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from symofros import interop as interop
 from symofros.base.options import Options as Options
 from symofros.description import sections as sections
+from symofros.description import solids as solids
 from symofros.description.beam import Beam as Beam
 from symofros.description.beam import BeamLoad as BeamLoad
 from symofros.description.beam import Samples as Samples

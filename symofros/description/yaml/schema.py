@@ -40,6 +40,7 @@ from symofros.description.yaml.fields import (
 from symofros.description.yaml.schema_beam import BeamEntry
 from symofros.description.yaml.schema_constraints import ClosureEntry, NonholonomicEntry
 from symofros.description.yaml.schema_forces import ConnectionEntry, ElementEntry, LoadEntry, RotorEntry
+from symofros.description.yaml.schema_solid import SolidEntry
 from symofros.errors import Problem
 
 VERSION = 1
@@ -105,6 +106,8 @@ class BodyEntry(Entry):
     joint: JointEntry | None = None
     inertia: InertiaEntry | None = None
     """A rigid body without one is massless."""
+    solid: SolidEntry | None = None
+    """What its inertia follows from, where that is not stated."""
     beam: BeamEntry | None = None
     """What makes it a beam; then it has a joint, no inertia of its own, and frames at stations of its axis."""
     frames: Annotated[dict[Name, FrameEntry | None], Field(max_length=1000)] | None = None
@@ -116,11 +119,14 @@ class BodyEntry(Entry):
     @model_validator(mode="after")
     def _one_nature(self) -> Self:
         if self.beam is not None:
-            also = [key for key in ("inertia", "loads") if getattr(self, key)]
+            also = [key for key in ("inertia", "solid", "loads") if getattr(self, key)]
             if also or self.joint is None:
                 joint_entries = f"also {' and '.join(also)}" if also else "no joint"
                 rule = "a beam has a joint, its mass in rhoA and its loads under beam"
                 raise fault(Problem("a beam that is not only a beam", joint_entries, rule, "kind: fixed clamps a beam"))
+        if self.inertia is not None and self.solid is not None:
+            rule = "the inertia of a body is stated, or follows from a solid"
+            raise fault(Problem("a body with two inertias", "inertia and solid", rule, "remove one of them"))
         return self
 
     def build(self, name: str) -> Body:
@@ -130,7 +136,8 @@ class BodyEntry(Entry):
         if self.beam is not None:
             beam: Beam = self.beam.build(name=name, joint=joint, frames=frames or None, waive=waive)
             return beam
-        inertia = self.inertia.build() if self.inertia else None
+        matter = self.solid if self.inertia is None else self.inertia
+        inertia = None if matter is None else matter.build()
         return RigidBody(name, joint, inertia, frames, waive, tuple(load.build() for load in self.loads))
 
 

@@ -65,6 +65,8 @@ class _Diagram:
             modes = [beam.get(key, 0) for key in STRAINS if key in beam or key in DIRECTIONS]
             kind, subtitle = "beam", f"{beam.get('family', 'spline')}, {'+'.join(map(str, modes))} modes"
             frames = frames or ["tip"]
+        elif isinstance(body.get("solid"), dict):
+            kind, subtitle = "rigid_body", str(body["solid"].get("shape", "?"))
         elif isinstance(body.get("inertia"), dict):
             kind, subtitle = "rigid_body", f"mass {body['inertia'].get('mass', '?')}"
         else:

@@ -47,12 +47,16 @@ def actuate(page: Page) -> None:
     steps.window(page).get_by_label("Actuated").check()
 
 
-def draw_the_arm(page: Page) -> None:
+def draw_the_arm(page: Page, picture: Callable[[str], None]) -> None:
     page.get_by_role("button", name="Rigid body", exact=True).drag_to(
         page.locator(".react-flow__pane"), target_position={"x": 260, "y": 180}
     )
     steps.open_window(page, "bodies/body")
     steps.fill(page, "Name", "upper")
+    steps.tab(page, "Inertia")
+    steps.window(page).get_by_label("Inertia by").select_option("solid")
+    steps.fill(page, "Density", "1200")
+    picture("solid")
     actuate(page)
     steps.accept(page)
     steps.block(page, "bodies/upper").click()
@@ -133,7 +137,7 @@ def test_from_nothing_to_a_controlled_arm_that_plays_and_is_exported(
     with action("open the page"):
         steps.open_editor(page, server.url)
     with action("draw the arm: a rigid link, a beam, two motors"):
-        draw_the_arm(page)
+        draw_the_arm(page, picture)
     picture("new-user-arm")
     with action("begin a diagram"):
         begin_a_diagram(page)

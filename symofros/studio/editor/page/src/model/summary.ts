@@ -41,6 +41,8 @@ function note(node: GraphNode, data: JsonMap): string {
       return modes(mapAt(entry, ["beam"]));
     case "rigid_body": {
       const mass = at(entry, ["inertia", "mass"]);
+      const shape = textAt(entry, ["solid", "shape"]);
+      if (shape !== undefined) return shape;
       return mass === undefined ? "" : `${String(mass)}${typeof mass === "number" ? " kg" : ""}`;
     }
     case "massless_body":

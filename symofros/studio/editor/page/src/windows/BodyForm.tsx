@@ -9,6 +9,7 @@ import { forceEntries, motionEntries } from "../model/joints";
 import { isMap, mapAt, replaced } from "../model/paths";
 import { type Tab, Tabs } from "../shell/Tabs";
 import { BeamForm } from "./BeamForm";
+import { MatterForm } from "./MatterForm";
 
 interface Props {
   value: Json | undefined;
@@ -92,7 +93,7 @@ function FramesPage({ value, onChange, path }: Props) {
 /** The page that shows an entry of a body; none for the body as a whole. */
 function pageOf([key, inner]: Path): Page | null {
   if (key === "joint") return forceEntries.includes(String(inner)) ? "forces" : "joint";
-  if (key === "inertia" || key === "beam" || key === "waive") return "matter";
+  if (key === "inertia" || key === "solid" || key === "beam" || key === "waive") return "matter";
   return key === "frames" ? "frames" : key === "loads" ? "forces" : null;
 }
 
@@ -123,9 +124,7 @@ export function BodyForm({ value, onChange, path, entry }: Props & { entry: Path
           path={[...path, "beam"]}
         />
       ) : null}
-      {page === "matter" && !isBeam ? (
-        <RecordField shape={body} value={value} onChange={onChange} path={path} only={["inertia", "waive"]} />
-      ) : null}
+      {page === "matter" && !isBeam ? <MatterForm value={value} onChange={onChange} path={path} shape={body} /> : null}
       {page === "frames" ? <FramesPage {...props} /> : null}
       {page === "forces" ? <ForcesPage {...props} /> : null}
     </Tabs>
