@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import inspect
 from abc import ABC, abstractmethod
+from collections.abc import Callable, Collection
 from typing import Annotated, Any, Self
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, PlainValidator, WithJsonSchema, model_validator
@@ -38,6 +40,26 @@ def fault(problem: Problem) -> PydanticCustomError:
     """A problem in the form that pydantic collects."""
     parts = {"what": problem.what, "found": problem.found, "rule": problem.rule, "remedy": problem.remedy}
     return PydanticCustomError("problem", "{what}", parts)
+
+
+def check_sizes(noun: str, make: Callable[..., Any], stated: Collection[str], common: Collection[str]) -> None:
+    """Refuse sizes that a shape does not have, and a shape without those that it needs.
+
+    Args:
+        noun: What has the shape.
+        make: Function that is named as the shape and takes its sizes.
+        stated: Names of the sizes that are stated.
+        common: Arguments that are no sizes.
+    """
+    parameters = inspect.signature(make).parameters
+    sizes = [name for name in parameters if name not in common]
+    missing = [name for name in sizes if parameters[name].default is inspect.Parameter.empty and name not in stated]
+    superfluous = sorted(set(stated).difference(sizes))
+    if missing or superfluous:
+        rule = f"{make.__name__} has {', '.join(sizes)}"
+        remedy = f"add {', '.join(sorted(missing))}" if missing else f"remove {', '.join(superfluous)}"
+        what = f"{noun}: not the sizes of shape {make.__name__}"
+        raise fault(Problem(what, ", ".join(sorted(stated)), rule, remedy))
 
 
 def _value(stated: Any) -> Value:

@@ -2,28 +2,19 @@
 
 from __future__ import annotations
 
-import inspect
-from collections.abc import Callable
 from typing import Annotated, Any, Literal, Self, get_args
 
 from pydantic import Field, model_validator
 
 from symofros.description import sections
 from symofros.description.beam import Theory
-from symofros.description.yaml.fields import Formula, Number, PartEntry, fault
-from symofros.errors import DescriptionError, Problem
+from symofros.description.yaml.fields import Formula, Number, PartEntry, check_sizes, fault
+from symofros.errors import DescriptionError
 
 ShapeName = Literal["rectangle", "circle", "tube", "ellipse", "box", "i_section", "l_section", "polygon"]
 Outline = Annotated[
     list[Annotated[list[Number], Field(min_length=2, max_length=2)]], Field(min_length=3, max_length=1000)
 ]
-
-
-def _maker(shape: str) -> tuple[Callable[..., sections.Section], list[str], list[str]]:
-    """The function of a shape, its sizes, and those that it needs."""
-    make = getattr(sections, shape)
-    parameters = [p for p in inspect.signature(make).parameters.values() if p.name != "material"]
-    return make, [p.name for p in parameters], [p.name for p in parameters if p.default is p.empty]
 
 
 class SectionEntry(PartEntry):
@@ -55,16 +46,7 @@ class SectionEntry(PartEntry):
 
     @model_validator(mode="after")
     def _possible(self) -> Self:
-        _, sizes, needed = _maker(self.shape)
-        stated = set(self._sizes())
-        missing, superfluous = set(needed) - stated, stated - set(sizes)
-        if missing or superfluous:
-            listed = ", ".join(sorted(missing or superfluous))
-            rule = f"{self.shape} has {', '.join(sizes)}"
-            remedy = f"add {listed}" if missing else f"remove {listed}"
-            raise fault(
-                Problem(f"section: not the sizes of shape {self.shape}", ", ".join(sorted(stated)), rule, remedy)
-            )
+        check_sizes("section", getattr(sections, self.shape), self._sizes(), ("material",))
         try:
             self.build()
         except DescriptionError as error:
@@ -77,7 +59,7 @@ class SectionEntry(PartEntry):
 
     def build(self, theory: Theory = "second_order") -> dict[str, Any]:
         """The properties that a beam of a theory takes of it."""
-        make, _, _ = _maker(self.shape)
+        make = getattr(sections, self.shape)
         return make(sections.Material(self.E, self.G, self.rho), **self._sizes()).beam_properties(theory)
 
 

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import inspect
 from typing import Any, Literal, Self, get_args
 
 from pydantic import model_validator
 
 from symofros.description import solids
 from symofros.description.system import Inertia
-from symofros.description.yaml.fields import Formula, PartEntry, Three, fault
-from symofros.errors import DescriptionError, Problem
+from symofros.description.yaml.fields import Formula, PartEntry, Three, check_sizes, fault
+from symofros.errors import DescriptionError
 
 SolidName = Literal["box", "cylinder", "sphere", "ellipsoid"]
 
@@ -40,16 +39,7 @@ class SolidEntry(PartEntry):
 
     @model_validator(mode="after")
     def _possible(self) -> Self:
-        parameters = inspect.signature(getattr(solids, self.shape)).parameters
-        sizes = [name for name in parameters if name not in _COMMON]
-        needed = [name for name in sizes if parameters[name].default is inspect.Parameter.empty]
-        stated = set(self._sizes())
-        missing, superfluous = set(needed) - stated, stated - set(sizes)
-        if missing or superfluous:
-            listed = ", ".join(sorted(missing or superfluous))
-            rule = f"{self.shape} has {', '.join(sizes)}"
-            remedy = f"add {listed}" if missing else f"remove {listed}"
-            raise fault(Problem(f"solid: not the sizes of shape {self.shape}", ", ".join(sorted(stated)), rule, remedy))
+        check_sizes("solid", getattr(solids, self.shape), self._sizes(), _COMMON)
         try:
             self.build()
         except DescriptionError as error:
