@@ -42,6 +42,11 @@ def fault(problem: Problem) -> PydanticCustomError:
     return PydanticCustomError("problem", "{what}", parts)
 
 
+def sizes_of(make: Callable[..., Any], common: Collection[str]) -> list[str]:
+    """Names of a shape's sizes: arguments of the function that makes it, without those that are none."""
+    return [name for name in inspect.signature(make).parameters if name not in common]
+
+
 def check_sizes(noun: str, make: Callable[..., Any], stated: Collection[str], common: Collection[str]) -> None:
     """Refuse sizes that a shape does not have, and a shape without those that it needs.
 
@@ -51,8 +56,7 @@ def check_sizes(noun: str, make: Callable[..., Any], stated: Collection[str], co
         stated: Names of the sizes that are stated.
         common: Arguments that are no sizes.
     """
-    parameters = inspect.signature(make).parameters
-    sizes = [name for name in parameters if name not in common]
+    parameters, sizes = inspect.signature(make).parameters, sizes_of(make, common)
     missing = [name for name in sizes if parameters[name].default is inspect.Parameter.empty and name not in stated]
     superfluous = sorted(set(stated).difference(sizes))
     if missing or superfluous:

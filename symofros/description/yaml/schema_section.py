@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from symofros.description import sections
 from symofros.description.beam import Theory
-from symofros.description.yaml.fields import Formula, Number, PartEntry, check_sizes, fault
+from symofros.description.yaml.fields import Formula, Number, PartEntry, check_sizes, fault, sizes_of
 from symofros.errors import DescriptionError
 
 ShapeName = Literal["rectangle", "circle", "tube", "ellipse", "box", "i_section", "l_section", "polygon"]
@@ -64,4 +64,5 @@ class SectionEntry(PartEntry):
 
 
 _MATERIAL = ("shape", "E", "G", "rho")
-assert set(get_args(ShapeName)) <= set(vars(sections))
+# Shape -> names of its sizes.
+SECTION_SIZES = {shape: sizes_of(getattr(sections, shape), ("material",)) for shape in get_args(ShapeName)}

@@ -8,7 +8,7 @@ from pydantic import model_validator
 
 from symofros.description import solids
 from symofros.description.system import Inertia
-from symofros.description.yaml.fields import Formula, PartEntry, Three, check_sizes, fault
+from symofros.description.yaml.fields import Formula, PartEntry, Three, check_sizes, fault, sizes_of
 from symofros.errors import DescriptionError
 
 SolidName = Literal["box", "cylinder", "sphere", "ellipsoid"]
@@ -57,4 +57,5 @@ class SolidEntry(PartEntry):
 
 
 _COMMON = ("shape", "density", "center")
-assert set(get_args(SolidName)) <= set(vars(solids))
+# Shape -> names of its sizes.
+SOLID_SIZES = {shape: sizes_of(getattr(solids, shape), _COMMON) for shape in get_args(SolidName)}

@@ -6,6 +6,8 @@ from typing import Any
 
 import symofros
 from symofros.description.yaml.schema import json_schema
+from symofros.description.yaml.schema_section import SECTION_SIZES
+from symofros.description.yaml.schema_solid import SOLID_SIZES
 from symofros.exports.exporting import TARGETS
 from symofros.simulation.stepping.methods import METHODS
 from symofros.studio.editor.diagrams.palette import diagram_catalogue
@@ -140,5 +142,6 @@ def catalogue() -> Json:
         "methods": methods,
         "units": list(UNITS),
         "targets": list(TARGETS),
+        "sizes": {"section": SECTION_SIZES, "solid": SOLID_SIZES},
         "diagram": diagram_catalogue(),
     }

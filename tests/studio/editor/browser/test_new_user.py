@@ -56,6 +56,11 @@ def draw_the_arm(page: Page, picture: Callable[[str], None]) -> None:
     steps.tab(page, "Inertia")
     steps.window(page).get_by_label("Inertia by").select_option("solid")
     steps.fill(page, "Density", "1200")
+    steps.window(page).get_by_label("Shape", exact=True).select_option("cylinder")
+    expect(steps.window(page).get_by_label("X", exact=True)).to_have_count(0)  # A size of the box.
+    steps.fill(page, "Radius", "0.02")
+    steps.fill(page, "Length", "1")
+    steps.window(page).get_by_label("Axis", exact=True).select_option("x")
     picture("solid")
     actuate(page)
     steps.accept(page)

@@ -143,6 +143,8 @@ def test_the_catalogue_names_methods_units_targets(client: TestClient) -> None:
     found = client.get("/api/schema").json()
     assert [method["name"] for method in found["methods"]] == list(METHODS)
     assert found["version"] == sf.__version__
+    assert found["sizes"]["solid"]["sphere"] == ["radius", "hole"]
+    assert found["sizes"]["section"]["tube"] == ["radius", "thickness"]
     assert {"kg", "N m"} <= set(found["units"]) and {"c", "fmu3"} <= set(found["targets"])
 
 

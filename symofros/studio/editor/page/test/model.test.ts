@@ -13,6 +13,7 @@ import { merged } from "../src/model/merge";
 import { fresh } from "../src/model/names";
 import { difference, isMap } from "../src/model/paths";
 import { line, span, ticks } from "../src/model/plot";
+import { asked, fitted } from "../src/model/sizes";
 
 const arm: JsonMap = {
   parameters: { m: { value: 1 }, L: 2, unused: 3 },
@@ -305,5 +306,22 @@ describe("plots", () => {
 
   test("constant values have a span", () => {
     expect(span([2, 2])).toEqual([0, 4]);
+  });
+});
+
+describe("sizes of shapes", () => {
+  const sizes = { box: ["x", "y", "z"], cylinder: ["radius", "length"], ellipsoid: ["x", "y", "z"] };
+  const properties = ["shape", "density", "x", "y", "z", "radius", "length"];
+
+  test("those of the shape alone are asked for", () => {
+    expect(asked(properties, { shape: "cylinder" }, sizes)).toEqual(["shape", "density", "radius", "length"]);
+    expect(asked(properties, { shape: "cone" }, sizes)).toEqual(properties);
+    expect(asked(properties, {}, sizes)).toEqual(properties);
+  });
+
+  test("another shape keeps what it has, too", () => {
+    const box = { density: 2700, x: 1, y: 2, z: 3 };
+    expect(fitted({ shape: "ellipsoid", ...box }, sizes)).toEqual({ shape: "ellipsoid", ...box });
+    expect(fitted({ shape: "cylinder", ...box }, sizes)).toEqual({ shape: "cylinder", density: 2700 });
   });
 });

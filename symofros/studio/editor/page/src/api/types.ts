@@ -186,12 +186,17 @@ export interface Method {
   help: string;
 }
 
+/** By shape. */
+export type Sizes = Record<string, string[]>;
+
 export interface Catalogue {
   schema: JsonMap;
   palette: PaletteItem[];
   methods: Method[];
   units: string[];
   targets: string[];
+  /** Sizes of each shape of a section and of a solid. */
+  sizes: Record<"section" | "solid", Sizes>;
   diagram: DiagramCatalogue;
   version?: string;
 }

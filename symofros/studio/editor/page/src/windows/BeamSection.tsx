@@ -5,8 +5,10 @@ import type { BeamFigures, Json, JsonMap, Path } from "../api/types";
 import { useForm } from "../forms/context";
 import { RecordField } from "../forms/Record";
 import { definition } from "../forms/schema";
-import { isMap } from "../model/paths";
+import { isMap, mapAt } from "../model/paths";
 import { brief } from "../model/plot";
+import { asked, fitted } from "../model/sizes";
+import { useStore } from "../store/store";
 
 const PAUSE = 200;
 /** A strip of aluminium, to begin with. */
@@ -79,9 +81,11 @@ interface Props {
 /** The section: by its properties per length, or by material and shape; with the frequencies that follow. */
 export function BeamSection({ beam, onChange, path, properties, others }: Props) {
   const { root } = useForm();
+  const catalogue = useStore((state) => state.catalogue);
   const { shape } = definition(root, "BeamEntry");
   const ofSection = definition(root, "SectionEntry").shape;
   if (shape.kind !== "record" || ofSection.kind !== "record") return null;
+  const sizes = catalogue?.sizes.section ?? {};
   const byShape = isMap(beam["section"]);
   const choose = (shaped: boolean): void => {
     const kept = Object.entries(beam).filter(([key]) => key !== "section" && !properties.includes(key));
@@ -109,8 +113,9 @@ export function BeamSection({ beam, onChange, path, properties, others }: Props)
         <RecordField
           shape={ofSection}
           value={beam["section"]}
-          onChange={(section) => onChange({ ...beam, section: section ?? {} })}
+          onChange={(section) => onChange({ ...beam, section: fitted(section, sizes) })}
           path={[...path, "section"]}
+          only={asked(Object.keys(ofSection.properties), mapAt(beam, ["section"]), sizes)}
         />
       ) : (
         <RecordField shape={shape} value={beam} onChange={onChange} path={path} only={properties} />

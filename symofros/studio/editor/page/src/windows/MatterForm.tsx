@@ -1,11 +1,15 @@
-import type { Json, JsonMap, Path } from "../api/types";
+import type { Json, JsonMap, Path, Sizes } from "../api/types";
+import { useForm } from "../forms/context";
 import { RecordField } from "../forms/Record";
-import type { Shape } from "../forms/schema";
-import { isMap } from "../model/paths";
+import { definition, type Shape } from "../forms/schema";
+import { isMap, mapAt } from "../model/paths";
+import { asked, fitted } from "../model/sizes";
 import { Row } from "../shell/Row";
+import { useStore } from "../store/store";
 
 const KINDS = { inertia: "mass and moments", solid: "a solid and its density", none: "nothing: massless" } as const;
 type Kind = keyof typeof KINDS;
+const NO_SIZES: Sizes = {};
 
 /** What each begins with; the solid is a link of aluminium. */
 const BEGUN: Record<Exclude<Kind, "none">, JsonMap> = {
@@ -22,6 +26,9 @@ interface Props {
 
 /** The inertia of a rigid body: stated, or that of a homogeneous solid. */
 export function MatterForm({ value, onChange, path, shape }: Props) {
+  const { root } = useForm();
+  const sizes = useStore((state) => state.catalogue?.sizes.solid) ?? NO_SIZES;
+  const solid = definition(root, "SolidEntry").shape;
   const body: JsonMap = isMap(value) ? value : {};
   const kind: Kind = "solid" in body ? "solid" : "inertia" in body ? "inertia" : "none";
   const choose = (next: Kind): void => {
@@ -41,12 +48,21 @@ export function MatterForm({ value, onChange, path, shape }: Props) {
           </select>
         )}
       </Row>
+      {kind === "solid" && solid.kind === "record" ? (
+        <RecordField
+          shape={solid}
+          value={body["solid"]}
+          onChange={(next) => onChange({ ...body, solid: fitted(next, sizes) })}
+          path={[...path, "solid"]}
+          only={asked(Object.keys(solid.properties), mapAt(body, ["solid"]), sizes)}
+        />
+      ) : null}
       <RecordField
         shape={shape}
         value={value}
         onChange={onChange}
         path={path}
-        only={kind === "none" ? ["waive"] : [kind, "waive"]}
+        only={kind === "inertia" ? ["inertia", "waive"] : ["waive"]}
       />
     </>
   );
