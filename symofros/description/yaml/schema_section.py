@@ -59,8 +59,9 @@ class SectionEntry(PartEntry):
 
     def build(self, theory: Theory = "second_order") -> dict[str, Any]:
         """The properties that a beam of a theory takes of it."""
-        make = getattr(sections, self.shape)
-        return make(sections.Material(self.E, self.G, self.rho), **self._sizes()).beam_properties(theory)
+        material = sections.Material(self.E, self.G, self.rho)
+        section: sections.Section = getattr(sections, self.shape)(material, **self._sizes())
+        return section.beam_properties(theory)
 
 
 _MATERIAL = ("shape", "E", "G", "rho")
