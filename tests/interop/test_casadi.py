@@ -218,7 +218,7 @@ def test_ipopt_swings_the_pole_by_the_external_function(dynamics: Any, model: sf
     quiet = {"print_level": 0, "max_iter": 300, "tol": 1e-7}
     opti.solver("ipopt", {"print_time": False}, quiet)
     solution = opti.solve()
-    assert solution.stats()["iter_count"] < 15  # As Newton's method does; without exact Hessians it takes 36.
+    assert solution.stats()["iter_count"] <= 5  # 4 with exact Hessians, 6 with "limited-memory".
     at, speed = np.array([0.0, 0.2]), np.zeros(2)
     for force in np.atleast_1d(solution.value(u)):
         speed = speed + h * model.forward_dynamics(at, speed, np.array([force]))
