@@ -132,7 +132,7 @@ def test_formulas_follow_parameters() -> None:
 
 
 @pytest.mark.parametrize(
-    ("make", "found"),
+    ("make", "message"),
     [
         (lambda: solids.box(-1.0, 1, 1, 1), "density is not positive"),
         (lambda: solids.box(1.0, 0.0, 1, 1), "x is not positive"),
@@ -141,8 +141,8 @@ def test_formulas_follow_parameters() -> None:
         (lambda: solids.sphere(1.0, 0.1, hole=-0.1), "no such hole"),
     ],
 )
-def test_impossible_solids_are_refused_in_words(make: Callable[[], Inertia], found: str) -> None:
-    with pytest.raises(sf.DescriptionError, match=found):
+def test_impossible_solids_are_refused_in_words(make: Callable[[], Inertia], message: str) -> None:
+    with pytest.raises(sf.DescriptionError, match=message):
         make()
 
 
@@ -167,7 +167,7 @@ def test_a_file_states_a_solid_in_place_of_an_inertia(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "found"),
+    ("change", "message"),
     [
         (("length: 0.5, ", ""), "add length"),
         (("hole: 0.02", "x: 0.02"), "remove x"),
@@ -176,11 +176,11 @@ def test_a_file_states_a_solid_in_place_of_an_inertia(tmp_path: Path) -> None:
     ],
 )
 def test_files_that_state_no_such_solid_are_refused_in_words(
-    tmp_path: Path, change: tuple[str, str], found: str
+    tmp_path: Path, change: tuple[str, str], message: str
 ) -> None:
     path = tmp_path / "link.yaml"
     path.write_text(FILE.replace(*change))
-    with pytest.raises(sf.DescriptionError, match=found):
+    with pytest.raises(sf.DescriptionError, match=message):
         sf.compile(sf.load(path))
 
 

@@ -58,9 +58,9 @@ class Job:
         motions: Json = result.get("motions", {}) if self.kind == "run" else {}
         chosen = block or next(iter(motions), "")
         if chosen not in motions:
-            found = f"block '{block[:50]}' of {', '.join(motions)}" if motions else f"{self.kind}, {self.state}"
+            actual = f"block '{block[:50]}' of {', '.join(motions)}" if motions else f"{self.kind}, {self.state}"
             rule = "a motion is that of a simulation, or of a block of a run that moves a mechanism"
-            raise refusal(f"job {self.key} has no such motion", found, rule, "simulate or run it first")
+            raise refusal(f"job {self.key} has no such motion", actual, rule, "simulate or run it first")
         motion: Json = motions[chosen]
         return motion
 

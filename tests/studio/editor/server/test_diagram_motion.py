@@ -48,8 +48,8 @@ def client(folder: Path) -> Any:
     (folder / "driven.yaml").write_text(DRIVEN)
     (folder / "two.yaml").write_text(TEXT)
     session = Session(Workspace(folder), folder / "two.yaml")
-    with TestClient(application(session, TOKEN, PORT), base_url=BASE, headers=GRANTED) as found:
-        yield found
+    with TestClient(application(session, TOKEN, PORT), base_url=BASE, headers=GRANTED) as opened:
+        yield opened
 
 
 def look(client: TestClient, block: str = "") -> Json:
