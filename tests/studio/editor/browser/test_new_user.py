@@ -146,7 +146,7 @@ def test_from_nothing_to_a_controlled_arm_that_plays_and_is_exported(
     picture("new-user-arm")
     with action("begin a diagram"):
         begin_a_diagram(page)
-    with action("draw the law: a model, six blocks, six wires"):
+    with action("draw the law: a model, five blocks, six wires"):
         draw_the_law(page)
     picture("new-user-law")
 
