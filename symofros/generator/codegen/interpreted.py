@@ -95,28 +95,31 @@ class InterpretedKernel:
 
     def _transpose(self, solver: Solver, named: Mapping[str, Array], outputs: list[Array]) -> list[Array]:
         """At the motion that the terms determine, by the adjoint of its equations."""
-        M, r, G, c = outputs
-        measures = Measures(*solver.tables)
-        a, lam, _ = constrained(M, r, G, c, measures)
-        weights = (np.broadcast_to(named[group], of.shape) for group, of in (("a_bar", a), ("lam_bar", lam)))
-        mu, nu, _ = constrained(M, -next(weights), G, next(weights), measures)
-        at = {**named, "a": a, "lam": lam, "a_bar": mu, "lam_bar": -nu}
-        return self._interpret(solver.parts[0], at, len(a))
+        at, _ = self._with_adjoint(solver, named, outputs)
+        return self._interpret(solver.parts[0], at, len(at["a"]))
 
     def _hessian(self, solver: Solver, named: Mapping[str, Array], outputs: list[Array]) -> list[Array]:
         """At the motion that the terms determine: second derivatives of the residual, and its motion's first ones."""
+        M, _, G, c = outputs
+        at, rank = self._with_adjoint(solver, named, outputs)
+        (slopes,) = self._interpret(solver.parts[0], at, len(M))
+        by_x, mixed = self._interpret(solver.parts[1], at, len(M))
+        measures = Measures(*solver.tables)
+        moved = [differentiate(*state[:2], [state[2]], measures)[0] for state in zip(M, G, slopes, strict=True)]
+        half = np.einsum("nzi,nzk->nik", mixed, np.array(moved))
+        regular = rank == c.shape[1]
+        return [np.where(regular[:, None, None], by_x + half + half.transpose(0, 2, 1), np.nan)]
+
+    def _with_adjoint(
+        self, solver: Solver, named: Mapping[str, Array], outputs: list[Array]
+    ) -> tuple[dict[str, Array], Array]:
+        """Inputs with the motion that the terms determine and the adjoint of its cotangents; the rank of G (n)."""
         M, r, G, c = outputs
         measures = Measures(*solver.tables)
         a, lam, rank = constrained(M, r, G, c, measures)
         weights = (np.broadcast_to(named[group], of.shape) for group, of in (("a_bar", a), ("lam_bar", lam)))
         mu, nu, _ = constrained(M, -next(weights), G, next(weights), measures)
-        at = {**named, "a": a, "lam": lam, "a_bar": mu, "lam_bar": -nu}
-        (slopes,) = self._interpret(solver.parts[0], at, len(a))
-        by_x, mixed = self._interpret(solver.parts[1], at, len(a))
-        moved = [differentiate(*state[:2], [state[2]], measures)[0] for state in zip(M, G, slopes, strict=True)]
-        half = np.einsum("nzi,nzk->nik", mixed, np.array(moved))
-        regular = rank == c.shape[1]
-        return [np.where(regular[:, None, None], by_x + half + half.transpose(0, 2, 1), np.nan)]
+        return {**named, "a": a, "lam": lam, "a_bar": mu, "lam_bar": -nu}, rank
 
     def _project(self, solver: Solver, named: Mapping[str, Array], outputs: list[Array]) -> list[Array]:
         """State by state."""

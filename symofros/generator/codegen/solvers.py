@@ -24,8 +24,9 @@ ROUTINES: dict[str, tuple[str, ...]] = {
     "sparse_system": ("dense", "row_sizes", "null_space_factors", "kkt", "constrained", "sparse_system"),
     "project": ("dense", "row_sizes", "null_space_factors", "kkt", "constrained", "project"),
     "differentiate": ("dense", "row_sizes", "null_space_factors", "kkt", "differentiate"),
-    "transpose": ("dense", "row_sizes", "null_space_factors", "kkt", "transpose"),
-    "hessian": ("dense", "row_sizes", "null_space_factors", "kkt", "hessian"),
+    "adjoint": ("dense", "row_sizes", "null_space_factors", "kkt", "adjoint"),
+    "transpose": ("dense", "row_sizes", "null_space_factors", "kkt", "adjoint", "transpose"),
+    "hessian": ("dense", "row_sizes", "null_space_factors", "kkt", "adjoint", "hessian"),
 }
 
 
