@@ -122,11 +122,10 @@ def _terms(solid: str, **stated: Any) -> list[Term]:
 
 def _hole(solid: str, hole: Any, radius: Any) -> Term:
     inner, outer = as_value(hole, f"{solid}: hole"), as_value(radius, f"{solid}: radius")
-    known = isinstance(inner, float)
-    if known and not (inner >= 0.0 and (not isinstance(outer, float) or inner < outer)):  # type: ignore[operator]
+    if isinstance(inner, float) and not (inner >= 0.0 and (not isinstance(outer, float) or inner < outer)):
         rule = "the radius of a hole is from zero to below that of the solid"
-        found = f"hole {inner}, radius {outer}"
-        raise DescriptionError(Problem(f"{solid}: no such hole", found, rule, "make it smaller"))
+        stated = f"hole {inner}, radius {outer}"
+        raise DescriptionError(Problem(f"{solid}: no such hole", stated, rule, "make it smaller"))
     return Term(inner)
 
 

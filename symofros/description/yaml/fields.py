@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import inspect
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Collection
-from typing import Annotated, Any, Self
+from types import ModuleType
+from typing import Annotated, Any, ClassVar, Self, get_args
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, PlainValidator, WithJsonSchema, model_validator
 from pydantic_core import PydanticCustomError
@@ -42,28 +42,55 @@ def fault(problem: Problem) -> PydanticCustomError:
     return PydanticCustomError("problem", "{what}", parts)
 
 
-def sizes_of(make: Callable[..., Any], common: Collection[str]) -> list[str]:
-    """Names of a shape's sizes: arguments of the function that makes it, without those that are none."""
-    return [name for name in inspect.signature(make).parameters if name not in common]
+class ShapedEntry(PartEntry):
+    """An entry by a shape and the sizes that this shape has: the arguments of a function of the shape's name.
 
-
-def check_sizes(noun: str, make: Callable[..., Any], stated: Collection[str], common: Collection[str]) -> None:
-    """Refuse sizes that a shape does not have, and a shape without those that it needs.
-
-    Args:
-        noun: What has the shape.
-        make: Function that is named as the shape and takes its sizes.
-        stated: Names of the sizes that are stated.
-        common: Arguments that are no sizes.
+    Attributes:
+        noun: What has the shape, for messages.
+        makers: Module of the functions.
+        common: Entries of every shape.
+        given: Arguments of the functions that are no sizes.
     """
-    parameters, sizes = inspect.signature(make).parameters, sizes_of(make, common)
-    missing = [name for name in sizes if parameters[name].default is inspect.Parameter.empty and name not in stated]
-    superfluous = sorted(set(stated).difference(sizes))
-    if missing or superfluous:
-        rule = f"{make.__name__} has {', '.join(sizes)}"
-        remedy = f"add {', '.join(sorted(missing))}" if missing else f"remove {', '.join(superfluous)}"
-        what = f"{noun}: not the sizes of shape {make.__name__}"
-        raise fault(Problem(what, ", ".join(sorted(stated)), rule, remedy))
+
+    noun: ClassVar[str]
+    makers: ClassVar[ModuleType]
+    common: ClassVar[tuple[str, ...]]
+    given: ClassVar[tuple[str, ...]]
+    shape: str
+
+    @classmethod
+    def sizes_by_shape(cls) -> dict[str, list[str]]:
+        """Shape -> names of its sizes."""
+        return {shape: list(cls._parameters(shape)) for shape in get_args(cls.model_fields["shape"].annotation)}
+
+    @classmethod
+    def _parameters(cls, shape: str) -> dict[str, inspect.Parameter]:
+        parameters = inspect.signature(getattr(cls.makers, shape)).parameters
+        return {name: each for name, each in parameters.items() if name not in cls.given}
+
+    @property
+    def sizes(self) -> dict[str, Any]:
+        """The sizes that are stated."""
+        entries = {name: getattr(self, name) for name in type(self).model_fields if name not in self.common}
+        return {name: value for name, value in entries.items() if value is not None}
+
+    @model_validator(mode="after")
+    def _possible(self) -> Self:
+        """Refuse sizes that the shape does not have, a shape without those that it needs, and what can't be made."""
+        parameters, stated = self._parameters(self.shape), set(self.sizes)
+        missing = {name for name, each in parameters.items() if each.default is each.empty} - stated
+        superfluous = stated - set(parameters)
+        if missing or superfluous:
+            listed = ", ".join(sorted(missing or superfluous))
+            rule = f"{self.shape} has {', '.join(parameters)}"
+            remedy = f"add {listed}" if missing else f"remove {listed}"
+            what = f"{self.noun}: not the sizes of shape {self.shape}"
+            raise fault(Problem(what, ", ".join(sorted(stated)), rule, remedy))
+        try:
+            self.build()
+        except DescriptionError as error:
+            raise fault(error.problem) from None
+        return self
 
 
 def _value(stated: Any) -> Value:

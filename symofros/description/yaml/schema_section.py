@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, Self, get_args
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from symofros.description import sections
 from symofros.description.beam import Theory
-from symofros.description.yaml.fields import Formula, Number, PartEntry, check_sizes, fault, sizes_of
-from symofros.errors import DescriptionError
+from symofros.description.yaml.fields import Formula, Number, ShapedEntry
 
 ShapeName = Literal["rectangle", "circle", "tube", "ellipse", "box", "i_section", "l_section", "polygon"]
 Outline = Annotated[
@@ -17,8 +16,11 @@ Outline = Annotated[
 ]
 
 
-class SectionEntry(PartEntry):
+class SectionEntry(ShapedEntry):
     """A section by material and shape, in place of stiffness and mass per length."""
+
+    noun, makers = "section", sections
+    common, given = ("shape", "E", "G", "rho"), ("material",)
 
     shape: ShapeName
     E: Formula
@@ -44,26 +46,8 @@ class SectionEntry(PartEntry):
     holes: Annotated[list[Outline], Field(max_length=20)] | None = None
     """Outlines of holes of a polygon [m]."""
 
-    @model_validator(mode="after")
-    def _possible(self) -> Self:
-        check_sizes("section", getattr(sections, self.shape), self._sizes(), ("material",))
-        try:
-            self.build()
-        except DescriptionError as error:
-            raise fault(error.problem) from None
-        return self
-
-    def _sizes(self) -> dict[str, Any]:
-        entries = {label: getattr(self, label) for label in type(self).model_fields if label not in _MATERIAL}
-        return {label: value for label, value in entries.items() if value is not None}
-
     def build(self, theory: Theory = "second_order") -> dict[str, Any]:
         """The properties that a beam of a theory takes of it."""
         material = sections.Material(self.E, self.G, self.rho)
-        section: sections.Section = getattr(sections, self.shape)(material, **self._sizes())
+        section: sections.Section = getattr(sections, self.shape)(material, **self.sizes)
         return section.beam_properties(theory)
-
-
-_MATERIAL = ("shape", "E", "G", "rho")
-# Shape -> names of its sizes.
-SECTION_SIZES = {shape: sizes_of(getattr(sections, shape), ("material",)) for shape in get_args(ShapeName)}

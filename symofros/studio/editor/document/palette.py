@@ -6,8 +6,8 @@ from typing import Any
 
 import symofros
 from symofros.description.yaml.schema import json_schema
-from symofros.description.yaml.schema_section import SECTION_SIZES
-from symofros.description.yaml.schema_solid import SOLID_SIZES
+from symofros.description.yaml.schema_section import SectionEntry
+from symofros.description.yaml.schema_solid import SolidEntry
 from symofros.exports.exporting import TARGETS
 from symofros.simulation.stepping.methods import METHODS
 from symofros.studio.editor.diagrams.palette import diagram_catalogue
@@ -142,6 +142,6 @@ def catalogue() -> Json:
         "methods": methods,
         "units": list(UNITS),
         "targets": list(TARGETS),
-        "sizes": {"section": SECTION_SIZES, "solid": SOLID_SIZES},
+        "sizes": {"section": SectionEntry.sizes_by_shape(), "solid": SolidEntry.sizes_by_shape()},
         "diagram": diagram_catalogue(),
     }
