@@ -68,6 +68,15 @@ class Wired:
         """What feeds some inputs of a block; those on their defaults are left out."""
         return [self.sources[block, port] for port in inputs if (block, port) in self.sources]
 
+    def mechanisms(self) -> dict[str, str]:
+        """Block that moves a mechanism -> the mechanism's model."""
+        return {name: model for name, block in self.blocks.items() if (model := block.mechanism())}
+
+    def driving(self, block: str) -> Source | None:
+        """The output that prescribes motions of the mechanism that a block moves; None where none are, or none does."""
+        driven = self.models.record(self.blocks[block].mechanism()).driven
+        return self.sources.get((block, "u")) if driven else None
+
     def shape(self, source: Source) -> Shape:
         """Of an output."""
         return next(port.shape or () for port in self.ports[source[0]].outputs if port.name == source[1])

@@ -144,8 +144,7 @@ def _export_diagram(
     resolved = resolve(diagram)
     outputs_stated = outputs or [
         f"{name}.{port.name}"
-        for name, block in resolved.wired.blocks.items()
-        if block.mechanism()
+        for name in resolved.wired.mechanisms()
         for port in resolved.wired.ports[name].outputs
         if port.name in ("q", "v")
     ]

@@ -56,7 +56,7 @@ def analyse_diagram(file: Path, source: YamlText) -> Analysis:
 
 def _mechanisms(wired: Wired) -> dict[str, System]:
     """Block -> system that it moves."""
-    return {name: wired.models.system(block.mechanism()) for name, block in wired.blocks.items() if block.mechanism()}
+    return {name: wired.models.system(model) for name, model in wired.mechanisms().items()}
 
 
 def _as_a_whole(diagram: Diagram, drafted: Draft) -> tuple[list[Problem], list[AlgebraicLoopError]]:

@@ -70,7 +70,7 @@ def run_diagram(request: Json, tell: Tell) -> Json:
             {**plot, "curves": [{**one, "values": _floats(_entry(signals, one["name"])[kept])} for one in curves]}
             for plot, curves in observer.shown
         ],
-        "motions": {block: _motion(wired, block, signals, t, kept) for block in _moving(wired)},
+        "motions": {block: _motion(wired, block, signals, t, kept) for block in wired.mechanisms()},
         "outcome": end,
         "wall_s": time.perf_counter() - began,
         **cost,
@@ -153,26 +153,18 @@ def _curves(wired: Wired, plot: Plot) -> list[Json]:
     return curves
 
 
-def _moving(wired: Wired) -> list[str]:
-    """Blocks that move a mechanism."""
-    return [name for name, block in wired.blocks.items() if block.mechanism()]
-
-
 def _drawn(wired: Wired) -> list[Source]:
     """Signals that pictures of the mechanisms are made of: coordinates, and inputs where motions are prescribed."""
-    sources: list[Source] = []
-    for block in _moving(wired):
-        sources.append((block, "q"))
-        if wired.models.record(wired.blocks[block].mechanism()).driven and (block, "u") in wired.sources:
-            sources.append(wired.sources[block, "u"])
-    return sources
+    blocks = wired.mechanisms()
+    driving = [source for source in map(wired.driving, blocks) if source is not None]
+    return [*((block, "q") for block in blocks), *driving]
 
 
 def _motion(wired: Wired, block: str, signals: Any, t: Array, kept: npt.NDArray[np.int64]) -> Json:
     """The motion of a block's mechanism, of the form of a simulation: times, coordinates and inputs, parameters."""
     model = wired.blocks[block].mechanism()
     record = wired.models.record(model)
-    fed = wired.sources.get((block, "u")) if record.driven else None
+    fed = wired.driving(block)
     u = np.tile(np.array(record.u_default), (len(t), 1)) if fed is None else np.asarray(signals[".".join(fed)])
     groups = (("q", record.q_names, np.asarray(signals[f"{block}.q"])), ("u", record.u_names, u))
     return {

@@ -47,10 +47,9 @@ def shown_of(run: DiagramRun, block: str = "") -> tuple[System, States]:
     wired, layout = resolved.wired, resolved.layout
     block = chosen_block(wired.name, wired.blocks, block)
     model = wired.blocks[block].mechanism()
-    u = None
     # Signals are computed by a function of their own: only where they move something is that worth its while.
-    if wired.models.record(model).driven and (block, "u") in wired.sources:
-        u = run[".".join(wired.sources[block, "u"])]
+    source = wired.driving(block)
+    u = None if source is None else run[".".join(source)]
     return wired.models.system(model), States(
         run.t, run.motion(block)[0], u, run.par[layout.parameters["", model].slice]
     )
