@@ -57,3 +57,19 @@ def over(client: TestClient, key: str, seconds: float = 120.0) -> dict[str, Any]
             return job
         time.sleep(0.05)
     raise AssertionError(f"job {key} is still running")
+
+
+def look(client: TestClient, block: str = "") -> dict[str, Any]:
+    """The 3-D view of the document; of a diagram, of the mechanism that a block moves."""
+    return _answered(client.get("/api/view", params={"block": block}))
+
+
+def pose(client: TestClient, **body: Any) -> dict[str, Any]:
+    """Where the 3-D view stands after a request to move."""
+    return _answered(client.post("/api/pose", json=body))
+
+
+def _answered(answer: Any) -> dict[str, Any]:
+    assert answer.status_code == 200, answer.text
+    content: dict[str, Any] = answer.json()
+    return content

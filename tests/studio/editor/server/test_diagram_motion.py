@@ -14,7 +14,7 @@ import symofros as sf
 from symofros.studio.editor.document.session import Session
 from symofros.studio.editor.document.workspace import Workspace
 from symofros.studio.editor.server.app import application
-from tests.studio.editor.conftest import BASE, GRANTED, PORT, TOKEN, finished
+from tests.studio.editor.conftest import BASE, GRANTED, PORT, TOKEN, finished, look, pose
 
 Json = dict[str, Any]
 # One plant falls, another one's joint is driven by a signal.
@@ -50,20 +50,6 @@ def client(folder: Path) -> Any:
     session = Session(Workspace(folder), folder / "two.yaml")
     with TestClient(application(session, TOKEN, PORT), base_url=BASE, headers=GRANTED) as opened:
         yield opened
-
-
-def look(client: TestClient, block: str = "") -> Json:
-    answer = client.get("/api/view", params={"block": block})
-    assert answer.status_code == 200, answer.text
-    shown: Json = answer.json()
-    return shown
-
-
-def pose(client: TestClient, **body: Any) -> Json:
-    answer = client.post("/api/pose", json=body)
-    assert answer.status_code == 200, answer.text
-    shown: Json = answer.json()
-    return shown
 
 
 @pytest.mark.parametrize("mode", ["compiled", "interpreted"])

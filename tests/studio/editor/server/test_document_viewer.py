@@ -19,27 +19,13 @@ from starlette.websockets import WebSocketDisconnect
 from symofros.studio.editor.document.session import Session
 from symofros.studio.editor.server.app import Editor, application
 from symofros.studio.editor.server.relay import MAX_SOCKETS
-from tests.studio.editor.conftest import BASE, PORT, TOKEN, finished
+from tests.studio.editor.conftest import BASE, PORT, TOKEN, finished, look, pose
 from tests.studio.editor.texts import FILES
 
 Json = dict[str, Any]
 PROTOCOL = "viser-v1.1.1"
 JSON = {"Content-Type": "application/json"}
 OWN = f"127.0.0.1:{PORT}"
-
-
-def look(client: TestClient) -> Json:
-    answer = client.get("/api/view")
-    assert answer.status_code == 200, answer.text
-    found: Json = answer.json()
-    return found
-
-
-def pose(client: TestClient, **body: Any) -> Json:
-    answer = client.post("/api/pose", json=body)
-    assert answer.status_code == 200, answer.text
-    found: Json = answer.json()
-    return found
 
 
 def socket_at(client: TestClient, path: str, origin: str | None = BASE, **headers: str) -> WebSocketTestSession:
