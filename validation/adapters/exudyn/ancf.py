@@ -112,6 +112,38 @@ def node_sensor(system: Any, node: int, quantity: str) -> int:
     return int(system.AddSensor(sensor))
 
 
+def motion_of_node(
+    system: Any, node: int, quantity: str, tolerance: float, end: float, step: float
+) -> tuple[Array, Array]:
+    """Times (n,) and a vector (n, 3) of a node of a system that moves from its start, by the generalised-alpha method.
+
+    Args:
+        system: System of Exudyn's, yet to be assembled.
+        node: Number of the node.
+        quantity: Name in Exudyn's OutputVariableType, of a vector.
+        tolerance: Absolute tolerance of Newton's method.
+        end: End time [s].
+        step: Step [s].
+
+    Raises:
+        RuntimeError: Exudyn did not finish.
+    """
+    sensor = node_sensor(system, node, quantity)
+    system.Assemble()
+    settings: Any = exudyn.SimulationSettings()
+    settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = round(end / step), end
+    settings.timeIntegration.generalizedAlpha.spectralRadius = 0.9
+    settings.timeIntegration.newton.useModifiedNewton = True
+    settings.timeIntegration.newton.absoluteTolerance = tolerance
+    settings.timeIntegration.verboseMode = 0
+    settings.solution.file.write, settings.solution.file.name = False, ""
+    settings.solution.sensors.writePeriod = step
+    if not system.SolveDynamic(settings, solverType=_METHOD):
+        raise RuntimeError(f"Exudyn did not finish the motion with steps of {step} s")
+    recorded = np.array(system.GetSensorStoredData(sensor))
+    return recorded[:, 0], recorded[:, 1:4]
+
+
 def static_tip(length: float, EI: float, EA: float, force: tuple[float, float], elements: int = 16) -> Array:
     """Position of the tip (2,) of a cantilever along x at rest under a dead load on its tip.
 
@@ -216,10 +248,10 @@ def spin_up(elements: int = 16, step: float = 2.5e-3, end: float = 20.0, stretch
         )
     )
     try:
-        t, tip = _tip_motion(system, nodes[-1], EA, end, step)
+        t, tip = motion_of_node(system, nodes[-1], "Position", _ROUNDING * EA, end, step)
     except RuntimeError as error:
         raise RuntimeError(f"no spin-up with {elements} elements and steps of {step} s: {error}") from None
-    x, y = tip.T
+    x, y, _ = tip.T
     angle = np.array([hub.angle(at) for at in t])
     along, across = np.cos(angle) * x + np.sin(angle) * y, np.cos(angle) * y - np.sin(angle) * x
     return t, np.stack([along - hub.length, across], axis=-1)
@@ -251,8 +283,8 @@ def swing(force: float, weight: float, end: float, elements: int = 12, step: flo
     for element in range(elements):
         mass = system.AddMarker(items.MarkerBodyMass(bodyNumber=element))
         system.AddLoad(items.LoadMassProportional(markerNumber=mass, loadVector=[0.0, weight, 0.0]))
-    t, tip = _tip_motion(system, nodes[-1], EA, end, step)
-    return t, tip - (1.0, 0.0)
+    t, tip = motion_of_node(system, nodes[-1], "Position", _ROUNDING * EA, end, step)
+    return t, tip[:, :2] - (1.0, 0.0)
 
 
 def princeton(load: float, angle: float, elements: int = 32, strip: Strip | None = None) -> tuple[Array, Array]:
@@ -325,24 +357,6 @@ def _solve_static(system: Any, EA: float) -> None:
     settings.solution.file.write, settings.solution.file.name = False, ""
     if not system.SolveStatic(settings):
         raise RuntimeError("Exudyn found no state of rest")
-
-
-def _tip_motion(system: Any, node: Any, EA: float, end: float, step: float) -> tuple[Array, Array]:
-    """Times (n,) and positions (n, 2) of a node, from the start of a system to `end` [s]."""
-    sensor = node_sensor(system, node, "Position")
-    system.Assemble()
-    settings: Any = exudyn.SimulationSettings()
-    settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = round(end / step), end
-    settings.timeIntegration.generalizedAlpha.spectralRadius = 0.9
-    settings.timeIntegration.newton.useModifiedNewton = True
-    settings.timeIntegration.newton.absoluteTolerance = _ROUNDING * EA
-    settings.timeIntegration.verboseMode = 0
-    settings.solution.file.write, settings.solution.file.name = False, ""
-    settings.solution.sensors.writePeriod = step
-    if not system.SolveDynamic(settings, solverType=_METHOD):
-        raise RuntimeError("Exudyn did not finish the motion")
-    recorded = np.array(system.GetSensorStoredData(sensor))
-    return recorded[:, 0], recorded[:, 1:3]
 
 
 def _position(system: Any, node: Any) -> Array:

@@ -15,10 +15,9 @@ import exudyn
 import numpy as np
 from exudyn import itemInterface as items
 
-from validation.adapters.exudyn.ancf import node_sensor
+from validation.adapters.exudyn.ancf import motion_of_node
 from validation.mechanics.geometry import Array
 
-_METHOD = exudyn.DynamicSolverType.GeneralizedAlpha
 _NO_TURN = (1.0, 0.0, 0.0, 0.0)
 
 
@@ -77,7 +76,7 @@ def motion(robot: Robot, elements: int, step: float, end: float) -> tuple[Array,
         return list(robot.share(t) * push)
 
     _push(system, first, force)
-    return _run(system, first, step, end)
+    return motion_of_node(system, first, "Displacement", 1e-9, end, step)
 
 
 def extrapolated(robot: Robot, elements: int, step: float, end: float) -> tuple[Array, Array]:
@@ -113,20 +112,3 @@ def _rod(system: Any, robot: Robot, root: tuple[float, float, float], elements: 
 def _push(system: Any, node: Any, force: Callable[[Any, float, Any], list[float]]) -> None:
     marker = system.AddMarker(items.MarkerNodePosition(nodeNumber=node))
     system.AddLoad(items.LoadForceVector(markerNumber=marker, loadVectorUserFunction=force))
-
-
-def _run(system: Any, node: Any, step: float, end: float) -> tuple[Array, Array]:
-    sensor = node_sensor(system, node, "Displacement")
-    system.Assemble()
-    settings: Any = exudyn.SimulationSettings()
-    settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = round(end / step), end
-    settings.timeIntegration.generalizedAlpha.spectralRadius = 0.9
-    settings.timeIntegration.newton.useModifiedNewton = True
-    settings.timeIntegration.newton.absoluteTolerance = 1e-9
-    settings.timeIntegration.verboseMode = 0
-    settings.solution.file.write, settings.solution.file.name = False, ""
-    settings.solution.sensors.writePeriod = step
-    if not system.SolveDynamic(settings, solverType=_METHOD):
-        raise RuntimeError(f"Exudyn did not finish the motion with steps of {step} s")
-    recorded = np.array(system.GetSensorStoredData(sensor))
-    return recorded[:, 0], recorded[:, 1:4]
