@@ -1,4 +1,4 @@
-"""Gymnasium: the cart-pole, and the flexible robot whose tool is to reach a point; both pass Gymnasium's own checker.
+"""Gymnasium: the cart-pole, and the flexible robot that reaches for a point; both pass Gymnasium's own checker.
 
 Many environments are stepped together in C by `sf.simulate_batch`. Needs the extra `gymnasium`.
 """

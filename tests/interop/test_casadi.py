@@ -90,7 +90,7 @@ def test_hessians_are_the_models_and_casadis_differences_of_its_gradients(model:
     weighed = {cotangent: weights} | ({"lam_bar": np.zeros(0)} if base == "forward_dynamics" else {})
     (right,) = model.evaluate(f"{base}_hessian", frame, **dict(zip(groups, given, strict=True)), **weighed)
     np.testing.assert_allclose(exact, right, rtol=1e-12, atol=1e-12)
-    # The gradient, differentiated by CasADi: central differences at two steps, whose errors of second order cancel.
+    # The gradient, differentiated by CasADi: central differences at two steps; their errors of second order cancel.
     coarse, fine = (differences_of_gradient(where, given, weights, step) for step in (4e-4, 2e-4))
     np.testing.assert_allclose(exact, (4 * fine - coarse) / 3, rtol=0, atol=1e-8 * np.abs(exact).max())
 

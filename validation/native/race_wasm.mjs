@@ -4,7 +4,7 @@
 //     npm install @mujoco/mujoco
 //     node race_wasm.mjs panda_wasm/panda.mjs panda_mjcf/panda.xml
 //
-// Loops are in JavaScript on both sides, one state a call; ours is timed in batches of 64 states, too, whose loop is in C.
+// Loops are in JavaScript on both sides, one state a call; ours is timed in batches of 64 states, too, with the loop in C.
 // MuJoCo's are the calls that its M and qfrc_bias need, without collisions: kinematics, comPos, makeM, comVel, rne.
 // Both get the same states (speeds and angles within 1); how far M and h differ is printed, and too much is an error.
 import { createRequire } from "node:module";
