@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from types import ModuleType
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -19,8 +20,10 @@ Outline = Annotated[
 class SectionEntry(ShapedEntry):
     """A section by material and shape, in place of stiffness and mass per length."""
 
-    noun, makers = "section", sections
-    common, given = ("shape", "E", "G", "rho"), ("material",)
+    noun = "section"
+    makers: ClassVar[ModuleType] = sections
+    common = ("shape", "E", "G", "rho")
+    given = ("material",)
 
     shape: ShapeName
     E: Formula

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from types import ModuleType
+from typing import ClassVar, Literal
 
 from symofros.description import solids
 from symofros.description.system import Inertia
@@ -14,8 +15,10 @@ SolidName = Literal["box", "cylinder", "sphere", "ellipsoid"]
 class SolidEntry(ShapedEntry):
     """A homogeneous solid that mass, mass centre and moments of inertia follow from, in place of these."""
 
-    noun, makers = "solid", solids
-    common = given = ("shape", "density", "center")
+    noun = "solid"
+    makers: ClassVar[ModuleType] = solids
+    common = ("shape", "density", "center")
+    given = common
 
     shape: SolidName
     density: Formula
