@@ -59,6 +59,9 @@ def pytest_sessionstart() -> None:
 def pytest_collection_finish() -> None:
     gc.freeze()
     gc.enable()
+    # Models and modules that live on make each search for garbage dear; graphs of expressions, made by the hundred
+    # thousand, hold none. Searching less often saves a tenth of a run's time.
+    gc.set_threshold(50_000)
 
 
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:

@@ -15,6 +15,7 @@ PAGE = Path(__file__).parent.parent / "docs" / "view.md"
 ARM = Path(reference_models.__file__).parent / "rigid" / "double_pendulum.yaml"
 
 
+@pytest.mark.slow
 def test_the_examples_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     opened: list[str] = []
     monkeypatch.setattr("webbrowser.open", opened.append)

@@ -179,6 +179,7 @@ def test_tables_show_no_sign_before_zero() -> None:
     assert [pace_of(*span) for span in ((1.0, 7e-4), (1.0, 0.5))] == ["1429 times real time", "2 times real time"]
 
 
+@pytest.mark.slow
 def test_the_harness_starts_from_any_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -207,6 +208,7 @@ def test_without_its_packages_the_harness_says_what_to_install(
     assert status == 2 and "Traceback" not in said and "pip install 'symofros[validation]'" in said
 
 
+@pytest.mark.slow
 def test_the_first_command_of_the_readme_brings_all_that_the_harness_starts_with(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:

@@ -25,6 +25,7 @@ def motion(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return sf.simulate(sf.compile(sf.load(PENDULUM)), [1.0, 0.0], None, 0.1, dt=0.01).save(folder / "run.npz")
 
 
+@pytest.mark.slow
 def test_it_records(motion: Path, tmp_path: Path) -> None:
     found = run(PENDULUM, "--trajectory", motion, "--record", tmp_path / "run.gif")
     assert found.exit_code == 0 and f"wrote {tmp_path / 'run.gif'}" in found.output

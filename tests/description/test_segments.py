@@ -97,6 +97,7 @@ def test_a_fault_of_a_segment_is_at_the_line_of_the_beam(tmp_path: Path) -> None
         sf.compile(sf.load(tmp_path / "arm.yaml"))
 
 
+@pytest.mark.slow
 def test_deflections_converge_to_the_elastica_with_the_cube_of_the_segments() -> None:
     # P L^2/EI = 1: deflection 0.30172077 L (Bisshopp and Drucker 1945, by elliptic integrals to all digits given).
     errors = []

@@ -139,6 +139,7 @@ REFUSED = {
 }
 
 
+@pytest.mark.slow
 def test_every_robot_of_the_package_loads_or_says_why() -> None:
     files = sorted(robots_folder().rglob("*.urdf"))
     assert len(files) >= 60

@@ -129,6 +129,7 @@ def test_entities_are_refused(tmp_path: Path) -> None:
     assert "document types are refused" in faults(path)
 
 
+@pytest.mark.slow
 def test_memory_and_time_are_bounded(tmp_path: Path) -> None:
     assert "more than 16777216" in faults(write(tmp_path, '<link name="${len([0]*10**10)}"/>'))
     lists = "+".join(["[[0]*10**7]"] * 30)  # 80 MB each

@@ -6,11 +6,13 @@ import threading
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
+import pytest
 
 import symofros as sf
 from reference_models.rigid.chain import chain
 
 
+@pytest.mark.slow
 def test_many_models_in_threads() -> None:
     models = [sf.compile(chain(n)) for n in range(1, 6)]
     states = [model.random_state(np.random.default_rng(i)) for i, model in enumerate(models)]

@@ -52,6 +52,7 @@ def different(first: dict[str, str], second: dict[str, str]) -> list[str]:
     return [name for name in first if first[name] != second[name]]
 
 
+@pytest.mark.slow
 def test_an_old_processor_generates_the_same_text() -> None:
     old = {"OPENBLAS_CORETYPE": "Prescott", **NO_VECTORS, **NO_FMA}
     with ThreadPoolExecutor(1) as thread:

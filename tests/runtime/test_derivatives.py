@@ -150,7 +150,7 @@ def test_a_mass_as_a_parameter() -> None:
     assert m.forward_dynamics_by_par([0.0], [0.0], [3.0])[0, 0] == pytest.approx(-3.0 / 4.0, rel=1e-15)
 
 
-@pytest.mark.parametrize("name", sampled(("puma560", "random_tree1", "mss"), ("random_tree1",)))
+@pytest.mark.parametrize("name", sampled(("puma560", "random_tree4", "random_tree1", "mss"), ("random_tree4",)))
 def test_the_routine_gives_what_generated_elimination_gives(
     name: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

@@ -65,6 +65,7 @@ def test_a_file_that_can_not_be_read_failed_and_disagrees_with_nothing(run: Any,
     assert result.exit_code == 2 and "FAILED" in result.output and "DISAGREES" not in result.output, result.output
 
 
+@pytest.mark.slow
 def test_floating_base(run: Any, arm: Path) -> None:
     content = json.loads(run(arm, "--json", "--floating-base").stdout)
     assert content["ok"] and any(row["engine"] == "pinocchio-urdf" for row in content["comparisons"])
@@ -170,6 +171,7 @@ def test_progress_is_told_in_lines_where_there_is_no_terminal() -> None:
     assert sum("agree, " in line for line in lines) == 2 and "[2/2]" in lines[-1]
 
 
+@pytest.mark.slow
 def test_a_terminal_of_any_width_gets_one_line_a_model(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("validation.reporting.terminal.PLAIN_WIDTH", 80)
     shown = unasked("pendulum", "cart_pole", "heavy_top", "--engine", "pinocchio").stdout

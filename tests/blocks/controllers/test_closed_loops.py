@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 import symofros as sf
 from reference_models import MODELS
@@ -50,6 +51,7 @@ def test_a_frame_under_feedback_decays_as_an_oscillator_and_free_motion_dies_out
     assert np.linalg.norm(found["arm.v"][-1]) < 0.02 * np.linalg.norm(found["arm.v"], axis=1).max()
 
 
+@pytest.mark.slow
 def test_feedback_goes_through_a_stretched_posture_calmly() -> None:
     model, frame, _, found = fed_back(1.04)
     least = min(np.linalg.svd(model.frame_jacobian(frame, q)[:3], compute_uv=False)[-1] for q in found["arm.q"])

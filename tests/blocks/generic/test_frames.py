@@ -75,6 +75,7 @@ def test_orientations_keep_their_digits_at_every_angle(by_matrix: bool) -> None:
         np.testing.assert_allclose(back(target, outputs["y"]), FORMS["matrix"], atol=atol, err_msg=block.name)
 
 
+@pytest.mark.slow
 def test_all_sequences_of_euler_angles(rng: np.random.Generator) -> None:
     angles = rng.uniform(-3, 3, size=(20, 3))
     R = {sequence: Rotation.from_euler(sequence.upper(), angles) for sequence in EULER}

@@ -86,6 +86,7 @@ def test_frames_turn_as_they_should(law: str) -> None:
         assert (slerp * R[at[0] : at[1]].inv()).magnitude() == pytest.approx(0.0, abs=1e-7)
 
 
+@pytest.mark.slow
 def test_orientation_compiled_and_interpreted_agree() -> None:
     points = np.hstack([POINTS, POINTS[:, :1]])
     for law in ("trapezoidal", "spline"):

@@ -111,6 +111,7 @@ def test_a_redundant_arm_moves_least() -> None:
     np.testing.assert_allclose(a, np.linalg.pinv(J) @ (found["path.a"][25] - drift), atol=1e-10)
 
 
+@pytest.mark.slow
 def test_the_actuated_joints_of_a_control_model_follow_and_the_others_stay() -> None:
     system = MODELS["planar_robot"]
     start = {"q1": -0.1, "e1": 0.02, "q2": 0.1}
@@ -144,6 +145,7 @@ def test_the_actuated_joints_of_a_control_model_follow_and_the_others_stay() -> 
     np.testing.assert_allclose(model.frame_pose("tool", found["ik.q"])[0][:, :2], found["path.p"], atol=1e-9)
 
 
+@pytest.mark.slow
 def test_a_direction_in_the_plane_is_followed_by_an_angle() -> None:
     system = MODELS["planar_robot"]
     diagram = sf.Diagram("angle")
@@ -195,6 +197,7 @@ def test_loops_stay_closed(period: float | None) -> None:
     np.testing.assert_allclose(np.einsum("nij,nj->ni", G, a), model.constraint_bias(q, v), atol=1e4 * close)
 
 
+@pytest.mark.slow
 def test_out_of_reach_and_through_a_singular_posture_joints_stay_calm() -> None:
     system = MODELS["planar_robot"]
     diagram = sf.Diagram("far")

@@ -108,6 +108,7 @@ def heard_from(sender: str, receiver: Block, t_end: float) -> DiagramRun:
     return run
 
 
+@pytest.mark.slow
 def test_a_lossy_line_is_survived_and_its_losses_counted() -> None:
     port = free_port()
     relay = Relay(port, 0.01)

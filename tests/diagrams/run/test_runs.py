@@ -87,6 +87,7 @@ def test_mechanisms_of_every_kind_move_alike(name: str) -> None:
     assert np.abs(run["plant.a"][-1] - want.a[-1]).max() < 1e-9 * max(1.0, np.abs(want.a[-1]).max())
 
 
+@pytest.mark.slow
 def test_multipliers_are_those_of_the_model() -> None:
     system = sf.load(MODELS / "closed" / "slider_crank.yaml")
     model = sf.compile(system)
@@ -159,6 +160,7 @@ class First(Block):
         return {"y": context.inputs["x"][0]}
 
 
+@pytest.mark.slow
 def test_tables_are_read_between_their_samples() -> None:
     diagram = sf.Diagram("table")
     diagram.add(Given(name="given"))
@@ -318,6 +320,7 @@ def test_two_inputs_of_a_block_are_told_apart() -> None:
     assert run["sum"][-1] == 3.0 and run["alone"][-1] == 2.0
 
 
+@pytest.mark.slow
 def test_a_constraint_that_engages_is_a_plastic_impact() -> None:
     """Open, the loop is the tree; as it closes, the energy lost is that of the speeds lost: a projection by M."""
     system = sf.load(MODELS / "closed" / "four_bar.yaml")

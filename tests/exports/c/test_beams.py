@@ -75,6 +75,7 @@ def test_packages_refuse_parameters_that_descriptions_do(package: Path, name: st
         at_rest(0.0, 1.0)[0].with_parameters(**{name: value})
 
 
+@pytest.mark.slow
 def test_exported_diagrams_state_the_error_of_rest(tmp_path: Path) -> None:
     model, rest = at_rest(0.9, 2.0)
     diagram = column_diagram(model, rest.q)

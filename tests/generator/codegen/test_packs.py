@@ -119,6 +119,7 @@ def test_one_state_has_its_packs_beside_code_for_several() -> None:
     assert "sym_pack " not in beside.partition(f"{head}_v_0(")[2].partition(f"{head}_batch")[0]
 
 
+@pytest.mark.slow
 def test_vectors_cross_chunks(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """A function in many chunks passes whole vectors from one to the next."""
     monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path))  # What is kept there was made by a generator as it is.

@@ -111,6 +111,7 @@ def _lower(M: Output) -> list[int]:
     return [M.edges[i * n + j] for i in range(n) for j in range(i + 1)]
 
 
+@pytest.mark.slow
 def test_the_code_stays_within_its_scratch(tmp_path: Path) -> None:
     """In postures where sparse factors do, and in one where full matrices take over, under sanitizers."""
     need("gcc")

@@ -61,6 +61,7 @@ def halves() -> sf.System:
     return sf.System("halves", bodies, gravity=GRAVITY)
 
 
+@pytest.mark.slow
 def test_bodies_at_stations_move_as_on_two_rods_in_series(rng: np.random.Generator) -> None:
     """Constant strains turn each half by half of the angle."""
     m = interpreted(stated(sections=9), *MOTION)

@@ -98,6 +98,7 @@ def test_only_what_the_constraints_allow(name: str, freedoms: int) -> None:
     assert found.basis @ found.A == pytest.approx(A @ found.basis, abs=1e-8)
 
 
+@pytest.mark.slow
 def test_a_batch_of_outputs() -> None:
     m = model("rx90")
     q, v, u = state("rx90")

@@ -70,6 +70,7 @@ def test_spin_up(spin_up: sf.Advice) -> None:
     assert spin_up.system.body("beam").bend_y == 1 and spin_up.full.body("beam").bend_y == 3
 
 
+@pytest.mark.slow
 def test_the_spin_up_keeps_foreshortening(spin_up: sf.Advice) -> None:
     """Estimator and simulation both say so, and the model that softens without stiffening runs away."""
     choice = spin_up.choice("foreshortening", "beam")
@@ -136,6 +137,7 @@ def crane(**changed: object) -> tuple[sf.System, sf.Scene]:
     return system, sf.Scene(0.5, (sf.Output("eye", "position", "eye", absolute=2e-3),), {"swing": law})
 
 
+@pytest.mark.slow
 def test_a_beam_that_may_be_rigid_is_said_to() -> None:
     system, scene = crane()
     advice = sf.advise(system, scene)
@@ -169,6 +171,7 @@ def test_second_order_and_rotary_inertia_go_where_they_do_not_matter() -> None:
     assert advice.system.body("boom").retain != "all" and not advice.system.body("boom").rotary_inertia
 
 
+@pytest.mark.slow
 def test_what_a_law_reads_is_not_removed() -> None:
     """The wrist's own coordinate drives an effort: locking it would take away what the law needs."""
     system, scene = crane()
@@ -179,6 +182,7 @@ def test_what_a_law_reads_is_not_removed() -> None:
     assert advice.to_json()["choices"][0]["kind"]
 
 
+@pytest.mark.slow
 def test_fixed_steps_only() -> None:
     system, scene = crane()
     advice = sf.advise(system, replace(scene, fixed_step=True))

@@ -64,6 +64,7 @@ def edit(client: httpx.Client, value: float) -> dict[str, Any]:
     return found
 
 
+@pytest.mark.slow
 def test_work_survives_a_server_that_is_killed(file: Path) -> None:
     with served(str(file)) as (process, client):
         edit(client, 2.5)
@@ -78,6 +79,7 @@ def test_work_survives_a_server_that_is_killed(file: Path) -> None:
     assert not autosave_of(file).exists()
 
 
+@pytest.mark.slow
 def test_a_worker_ends_with_a_server_that_is_killed(file: Path) -> None:
     with served(str(file)) as (process, client):
         client.post("/api/jobs", json={"kind": "simulate", "options": {"t_end": 1e7}})
@@ -104,6 +106,7 @@ def alive(pid: int) -> bool:
         return False
 
 
+@pytest.mark.slow
 def test_pages_are_told_of_each_other_s_edits_of_jobs_and_of_the_disk(file: Path) -> None:
     with served(str(file)) as (_, client):
         token = client.headers["Authorization"].removeprefix("Bearer ")
@@ -136,6 +139,7 @@ def test_an_interrupt_ends_it_in_order(file: Path) -> None:
             assert process.wait(20) in (0, 130, -signal.SIGINT)
 
 
+@pytest.mark.slow
 def test_every_run_has_a_token_of_its_own(file: Path) -> None:
     with served(str(file)) as (_, first), served(str(file)) as (_, second):
         tokens = {client.headers["Authorization"] for client in (first, second)}
@@ -152,6 +156,7 @@ def test_a_port_that_is_taken_and_a_file_that_is_none_are_told(file: Path, tmp_p
     assert odd.exit_code == 2 and "is not UTF-8" in odd.output
 
 
+@pytest.mark.slow
 def test_a_robot_of_another_format_becomes_a_new_document(tmp_path: Path) -> None:
     inertial = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
     joint = '<joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint>'

@@ -41,6 +41,7 @@ def test_the_pictures_of_a_gif_last_whole_hundredths(tmp_path: Path) -> None:
         assert gif.info["duration"] == 30 and gif.n_frames == 5  # 0.1 s by 0.03 s, and the first.
 
 
+@pytest.mark.slow
 def test_a_film_is_as_long_as_the_motion(tmp_path: Path) -> None:
     ffmpeg = pytest.importorskip("imageio_ffmpeg", reason="needs the extra 'video', which 'dev' brings")
     file = sf.record(SYSTEM, swing(1.0), tmp_path / "m.mp4", rate=20, size=(160, 120))

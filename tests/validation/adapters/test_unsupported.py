@@ -113,6 +113,7 @@ def test_a_prescribed_motion_is_refused_in_words() -> None:
     assert not result.ok and "prescribed motion" in result.comparisons[0].note
 
 
+@pytest.mark.slow
 def test_an_engine_without_frames_is_not_asked_about_constraints() -> None:
     """Constraints are stated by an engine's own frames; one that has none says so, and the others go on."""
 

@@ -167,6 +167,7 @@ def test_a_dead_worker_leaves_its_batches_to_the_others(tmp_path: Path) -> None:
     assert rows(folder).equals(here())
 
 
+@pytest.mark.slow
 def test_a_cluster_without_workers_is_told(tmp_path: Path) -> None:
     with cluster(tmp_path / "cluster", workers=0) as made, pytest.raises(ClusterError, match="no worker for 0.5 s"):
         session.begin(make(PLAN, "test"), tmp_path / "c", runner.Pool(scheduler=made.address, patience=0.5))

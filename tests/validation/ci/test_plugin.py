@@ -59,6 +59,7 @@ def cases(junit: Path) -> dict[str, ElementTree.Element]:
 SMOKE = ("--symofros-model", "arm.urdf", "--symofros-tier", "smoke")
 
 
+@pytest.mark.slow
 def test_a_robot_of_another_project_is_checked_beside_its_own_tests(project: Path) -> None:
     done = pytest_in(project, *SMOKE, "--symofros-engine", "pinocchio", "--junitxml", "junit.xml")
     assert done.returncode == 0, done.stdout + done.stderr
@@ -76,11 +77,13 @@ def test_a_wrong_entry_of_an_engine_is_named(project: Path) -> None:
     assert "state 3 of" in done.stdout and "Traceback" not in done.stdout
 
 
+@pytest.mark.slow
 def test_a_model_that_no_engine_confirms_fails(project: Path) -> None:
     done = pytest_in(project, *SMOKE, "--symofros-engine", "interpreted", "-k", "arm")
     assert done.returncode == 1 and "no independent engine confirms this model" in done.stdout
 
 
+@pytest.mark.slow
 def test_a_stored_run_is_a_test_of_its_own(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(project)
     command = ["check", "arm.urdf", "--states", "20", "--engine", "mujoco", "--report", "stored"]

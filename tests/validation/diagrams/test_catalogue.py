@@ -29,6 +29,7 @@ def test_the_studies_answer(name: str, tmp_path: Path) -> None:
     assert page.count('role="img"') >= 3 and "Figure 1.1" in page
 
 
+@pytest.mark.slow
 def test_a_miss_is_said(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     from validation.diagrams import threads
 

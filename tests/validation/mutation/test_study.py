@@ -91,6 +91,7 @@ def test_faults_of_the_simulation_alone_leave_the_identity_of_the_copy_as_it_is(
     assert digest() != sound
 
 
+@pytest.mark.slow
 def test_a_crash_and_a_hang_are_answers(overlay: Overlay) -> None:
     assert overlay.ask("judge", "ask", 20.0, crash=True)["fate"] == "crashed"
     assert overlay.ask("judge", "ask", 0.5, hang=True)["fate"] == "timed out"

@@ -6,11 +6,13 @@ import json
 import re
 from pathlib import Path
 
+import pytest
 from typer.testing import CliRunner
 
 from validation.__main__ import app
 
 
+@pytest.mark.slow
 def test_report_end_to_end(tmp_path: Path) -> None:
     first = CliRunner().invoke(app, ["pareto", "--quick", "--problem", "andrews", "--json", "--report", str(tmp_path)])
     data = json.loads(first.stdout)

@@ -89,6 +89,7 @@ def test_a_missed_bound_fails_the_command(monkeypatch: pytest.MonkeyPatch, tmp_p
     assert "**missed** 1" in (tmp_path / "stability" / "stability.md").read_text()
 
 
+@pytest.mark.slow
 def test_a_study_that_can_not_be_done_keeps_no_other_from_it(monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(x: float, y: float) -> Cell:
         raise ArithmeticError("no")

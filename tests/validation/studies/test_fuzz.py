@@ -17,6 +17,7 @@ from validation.studies import fuzz
 from validation.studies.fuzz_inputs import CORPUS, KINDS, corpus, mutated
 
 
+@pytest.mark.slow
 def test_no_input_crashes_or_hangs_the_readers() -> None:
     result = fuzz.fuzz(400, seed=7)
     assert not result.faults, result.faults[0]

@@ -26,6 +26,7 @@ def test_the_robot_follows_its_path(python: bool) -> None:
         assert run.kept["log"]["q"].shape == (1501, 6)
 
 
+@pytest.mark.slow
 def test_report(tmp_path: Path) -> None:
     found = CliRunner().invoke(app, ["realtime", "--seconds", "0.1", "--report", str(tmp_path)])
     assert found.exit_code == 0, found.output

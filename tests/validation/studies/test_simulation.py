@@ -19,12 +19,14 @@ def test_arm_is_the_same_motion_on_both_sides() -> None:
     assert 0 < row.generated.error < 1e-4 and row.engine_run.error == pytest.approx(row.generated.error, rel=0.05)
 
 
+@pytest.mark.slow
 def test_spinning_beam_at_equal_accuracy() -> None:
     row = simulation.spinning_beam(1, meshes=((8, 0.0125),))
     assert row.engine_run is not None
     assert row.generated.error < 2.5e-3 and row.engine_run.error <= row.generated.error
 
 
+@pytest.mark.slow
 def test_planar_robot() -> None:
     row = simulation.planar_robot(1, span=0.2)
     assert row.engine_run is None and row.generated.error < 1e-2 and row.real_time > 0

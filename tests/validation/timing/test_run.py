@@ -53,6 +53,7 @@ def test_jobs_are_the_functions_that_a_model_is_timed_at() -> None:
     assert [job.functions for job in left] == [("step",)], "resumed"
 
 
+@pytest.mark.slow
 def test_a_model_is_timed_beside_engines_and_symbolic_peers() -> None:
     """Whole, in this process; Pinocchio's minutes of compilation are left to the run."""
     said: list[tuple[str, object]] = []

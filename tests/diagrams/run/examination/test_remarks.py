@@ -124,6 +124,7 @@ def test_motion_that_grows_without_bound_has_diverged_before_its_energy_overflow
         assert np.isfinite(np.square(run.v)).all()
 
 
+@pytest.mark.slow
 def test_interpreted_runs_are_judged_alike() -> None:
     simulation = bounce("python", 0.0)
     assert simulation.interpret(2.0, dt=1e-2, record=0.1, compiled=False).outcome.notes

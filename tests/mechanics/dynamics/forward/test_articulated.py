@@ -151,6 +151,7 @@ def counted(links: int, way: Way) -> Operations:
     return count_program(program(links, way))[NAME, ""]
 
 
+@pytest.mark.slow
 def test_operations_grow_in_proportion_to_the_links() -> None:
     """Recursion: operations grow as n; those of the factors tend to n^3, and take n^2 to form M."""
     grown = {way: np.log2(counted(52, way).total / counted(26, way).total) for way in WAYS}

@@ -32,6 +32,7 @@ def test_a_value_on_one_line_is_read_back(value: Any) -> None:
         )
 
 
+@pytest.mark.slow
 @settings(max_examples=75, deadline=None)
 @given(st.dictionaries(keys, values, min_size=1, max_size=5))
 def test_a_mapping_on_lines_is_read_back(value: dict[str, Any]) -> None:

@@ -70,6 +70,7 @@ def test_a_run_waits_at_its_breakpoint_and_follows_the_order(
     assert curves["wave.rate"]["unit"] == "rad/s"
 
 
+@pytest.mark.slow
 def test_a_run_in_pace_with_the_clock_pauses_and_stops_when_it_is_told(jobs: Jobs, told: Told, tmp_path: Path) -> None:
     job = started(jobs, tmp_path, TEXT.replace("t_end: 1", "t_end: 60"), realtime=1.0)
 

@@ -30,6 +30,7 @@ bodies:
 """
 
 
+@pytest.mark.slow
 def test_compile(client: TestClient) -> None:
     job = finished(client, "compile")
     assert job["state"] == "done" and job["error"] is None and job["revision"] == 1

@@ -74,6 +74,7 @@ def test_each_mechanism_of_a_run_is_shown_at_a_time(client: TestClient, folder: 
     assert turn == pytest.approx([2.0 * t for t in motion["t"]], abs=1e-6)
 
 
+@pytest.mark.slow
 def test_blocks_that_move_nothing_are_refused_in_words(client: TestClient) -> None:
     answer = client.get("/api/view", params={"block": "ramp"})
     assert answer.status_code == 422 and "arm, hoist" in answer.json()["error"]["rule"]

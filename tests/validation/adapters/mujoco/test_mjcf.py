@@ -117,6 +117,7 @@ def test_it_is_for_mjcf_only() -> None:
     assert not [row for row in check(pendulum, replace(FEW, engines=None)).comparisons if row.engine == "mujoco-mjcf"]
 
 
+@pytest.mark.slow
 def test_the_command_lines(tmp_path: Path) -> None:
     path = write(tmp_path, MODELS["reference_and_spring_reference"])
     assert named([str(path)], floating_base=True) == [Case("model", path)]

@@ -129,6 +129,7 @@ def test_world_axes_give_the_same_inertia() -> None:
     np.testing.assert_allclose(*(np.array(M(q)) for M in both), rtol=1e-12, atol=1e-13)
 
 
+@pytest.mark.slow
 def test_operations_of_newton_euler_grow_linearly_and_of_composite_bodies_with_the_square() -> None:
     def total(n: int, name: str) -> int:
         return sum(operations(CasadiTree(chain(n, symbolic=False)).function(name, 0)).values())

@@ -69,12 +69,14 @@ def test_the_coarsest_mesh_that_errs_no_more_is_chosen() -> None:
     assert pair.error[1] <= pair.error[0] < coarser
 
 
+@pytest.mark.slow
 def test_sides_that_are_not_one_robot_are_not_timed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(equal_accuracy, "SAME_ROBOT", 1e-3)
     with pytest.raises(NotTheSameError, match="3 functions: frequencies err by 2.8e-02"):
         list(pairs([3]))
 
 
+@pytest.mark.slow
 def test_the_study_runs_and_reports() -> None:
     rows = measure(3, (3,), 5)
     assert [row.quantity for row in rows] == list(JOBS)
