@@ -7,7 +7,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
 
+
+@pytest.mark.slow
 def test_info_lists_tree_and_operations(tmp_path: Path) -> None:
     model = tmp_path / "arm.yaml"
     model.write_text(

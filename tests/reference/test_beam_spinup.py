@@ -39,6 +39,7 @@ def tip(times: list[float], modes: int, **changed: Any) -> np.ndarray:
     return m.frame_pose("tip", run.y[:modes].T, u=still)[0][:, :2] - (LENGTH, 0.0)
 
 
+@pytest.mark.slow
 def test_three_functions_follow_the_exact_rod() -> None:
     """Within 2.5 mm, of which 2.1 mm are the second-order model's own and no number of functions removes them."""
     rod = REFERENCE["exact_inextensible_rod"]

@@ -97,6 +97,7 @@ def equal_cranks() -> sf.Model:
     return sf.compile(sf.System("equal", bodies, constraints=(loop,), gravity=(0, 0, 0)))
 
 
+@pytest.mark.slow
 @settings(max_examples=12, deadline=None)
 @given(speed=st.floats(0.5, 8.0), start=st.floats(0.1, 1.5), way=st.sampled_from([0, 3, 4]))
 def test_a_slider_crank_through_its_change_point_keeps_its_energy_or_says_why_not(

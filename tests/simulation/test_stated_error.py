@@ -65,6 +65,7 @@ def viewed() -> Mechanism:
     return Mechanism(cantilever_system())
 
 
+@pytest.mark.slow
 def test_diagrams_of_closed_loops_state_the_error_of_runs() -> None:
     """The axial load of a rod that drives a slider is a constraint's, and that of its inertia."""
     rod = sf.Beam("rod", sf.Joint("swing", "revolute", position=(0, 0.1, 0)), 0.3, 0.5, EI_z=2.0, bend_y=2)

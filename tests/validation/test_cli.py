@@ -147,6 +147,7 @@ def test_a_check_of_some_models_writes_no_report_unasked(tmp_path: Path, monkeyp
     assert not (tmp_path / "reports").exists()
 
 
+@pytest.mark.slow
 def test_a_run_cut_short_leaves_the_whole_report(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     asked = "pendulum", "cart_pole", "--engine", "pinocchio", "--report", str(tmp_path)
     assert unasked(*asked).exit_code == 0

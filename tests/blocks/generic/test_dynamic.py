@@ -50,6 +50,7 @@ def test_transfer_functions_follow_scipy() -> None:
         np.testing.assert_allclose(outputs["y"], y, atol=1e-6, err_msg=f"{num} {den}")
 
 
+@pytest.mark.slow
 def test_sampled_transfer_functions_follow_scipys_filter() -> None:
     u = np.sin(3 * STEP * np.arange(300))
     stable = [(num, [8.0 * den[0], *den[1:]]) for num, den in FRACTIONS]
@@ -97,6 +98,7 @@ def test_a_sampled_integrator_resets_at_samples(reset: str, expected: list[int])
     assert limited == pytest.approx([0, 1, 1.5, 1.5, 0.5])
 
 
+@pytest.mark.slow
 def test_derivatives_are_those_of_the_filtered_signal() -> None:
     t = STEP * np.arange(400)
     u = np.sin(t)

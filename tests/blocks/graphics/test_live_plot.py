@@ -45,6 +45,7 @@ def told(shown: LivePlot) -> tuple[dict[str, Any], list[Any]]:
     return head, rows
 
 
+@pytest.mark.slow
 def test_the_page_tells_what_was_sent(shown: LivePlot) -> None:
     head, rows = told(shown)
     assert head["labels"] == ["a[0]", "a[1]", "b[0]", "b[1]"] and head["title"] == "A <b>run</b>" and head["done"]
@@ -84,6 +85,7 @@ def test_rows_are_bounded_and_thinned() -> None:
     assert feed.since(seen) == (seen, []) and len(feed.since(seen - 3)[1]) == 3
 
 
+@pytest.mark.slow
 def test_the_page_ends_with_the_program_that_began_it() -> None:
     d = sf.Diagram("live")
     d.add(Ramp(name="ramp"))

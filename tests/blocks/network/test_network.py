@@ -140,6 +140,7 @@ def test_a_lossy_line_is_survived_and_its_losses_counted() -> None:
     assert run["rx.lost"][-1] == dropped
 
 
+@pytest.mark.slow
 def test_zenoh_between_two_processes() -> None:
     address = f"127.0.0.1:{free_port(socket.SOCK_STREAM)}"
     receiver = ZenohSubscriber(

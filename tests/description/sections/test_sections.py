@@ -110,6 +110,7 @@ def test_principal_axes_of_an_l_section() -> None:
     assert number(turned.EI_z) > number(turned.EI_y)
 
 
+@pytest.mark.slow
 @elements
 def test_symmetric_outlines_serve_beams_at_any_size() -> None:
     size = 1e-6

@@ -51,6 +51,7 @@ def test_a_continuous_controller_is_that_of_simulate() -> None:
     assert np.abs(run["plant.q"] - want.q).max() < 1e-13
 
 
+@pytest.mark.slow
 def test_a_sampled_controller_is_that_of_a_loop_around_simulate() -> None:
     model = sf.compile(PENDULUM)
     q, v, t = np.array([0.3, 0.0]), np.zeros(2), 0.0
@@ -121,6 +122,7 @@ def test_a_lag_follows_its_closed_form_and_the_order_of_the_method_shows() -> No
     assert abs(fine["lag"][-1] - want) < 1e-12
 
 
+@pytest.mark.slow
 def test_samples_of_several_rates() -> None:
     """A counter at 0.1 s and holds at 0.2 s, 0.3 s and 0.2 s with an offset of 0.1 s."""
     diagram = sf.Diagram("rates")
@@ -248,6 +250,7 @@ def test_parts_that_meet_at_samples_move_apart_and_on_any_number_of_threads() ->
     assert len(sf.Simulation(joined).resolved.layout.parts) == 1
 
 
+@pytest.mark.slow
 def test_a_perturbation_is_a_load_of_the_model() -> None:
     """A force at a frame, against the model's own Jacobian."""
     model = sf.compile(PENDULUM)

@@ -56,6 +56,7 @@ def judged(program: Path, rows: list[tuple[int, np.ndarray, np.ndarray, float]])
     return [line.split(" ", 2) for line in done.stdout.splitlines()]
 
 
+@pytest.mark.slow
 def test_packages_state_the_error_of_rest_at_their_parameters(package: Path) -> None:
     rests = [at_rest(share, L) for share in SHARES for L in (1e-3, 1.0, 30.0)]
     rows = [(1, model.parameter_values, rest.q, 0.2 * model.parameters["L"] ** 2) for model, rest in rests]

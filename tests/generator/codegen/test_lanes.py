@@ -165,6 +165,7 @@ def test_nothing_is_written_beyond_the_last_state() -> None:
         assert np.all(guarded[2 * n :] == 7.0) and not np.any(guarded[: 2 * n] == 7.0)
 
 
+@pytest.mark.slow
 def test_large_batches_take_vectors_by_themselves(monkeypatch: pytest.MonkeyPatch) -> None:
     model, loop = (sf.compile(MODELS["chain7"], sf.Options(batch=batch, flags=EXACT)) for batch in ("vector", "loop"))  # type: ignore[arg-type]
     rng = np.random.default_rng(0)

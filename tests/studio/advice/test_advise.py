@@ -196,6 +196,7 @@ def test_a_model_without_speeds_is_not_integrated() -> None:
     assert advice.choice("rigid").verdict == "taken" and advice.cost.total == 0 and advice.stepping.dt is not None
 
 
+@pytest.mark.slow
 def test_a_coarse_description_is_refined_first() -> None:
     beam = replace(MODELS["spinning_beam"].body("beam"), bend_y=1)
     advice = sf.advise(MODELS["spinning_beam"].with_bodies(beam), sf.load_scene(SCENES / "spinning_beam.yaml"))

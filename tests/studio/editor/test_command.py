@@ -130,6 +130,7 @@ def event(lines: Iterator[str], kind: str) -> str:
     raise AssertionError("the stream ended")
 
 
+@pytest.mark.slow
 def test_an_interrupt_ends_it_in_order(file: Path) -> None:
     with served(str(file)) as (process, client):
         token = client.headers["Authorization"].removeprefix("Bearer ")

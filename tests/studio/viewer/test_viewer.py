@@ -223,6 +223,7 @@ class TestAnotherSystem:
         viewer.show([1.2, -1.2, 1.2])
         assert viewer.state.q[0] == 1.2
 
+    @pytest.mark.slow
     def test_coordinates_and_layers_stay_where_they_are_the_same(self, viewer: sf.Viewer) -> None:
         viewer.show(np.full(viewer.mechanism.model.nq, 0.01))
         viewer.set_layer("frames", True)

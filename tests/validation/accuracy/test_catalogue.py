@@ -20,7 +20,7 @@ from validation.reporting.command import Done, write
 from validation.reporting.findings import Finding, Study, exponent, near
 
 # Studies of a second or less; the others take most of the time.
-FEW = ("spinning", "modes_needed", "elastica", "buckling")
+FEW = ("modes_needed", "elastica")
 
 
 @pytest.fixture(scope="module", params=sampled(("few", "all"), ["few"]))

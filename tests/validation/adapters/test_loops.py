@@ -137,6 +137,7 @@ def test_what_exudyn_is_not_asked(subject: Subject, reason: str) -> None:
     assert isinstance(found, Unsupported) and reason in found.reason
 
 
+@pytest.mark.slow
 def test_no_posture_to_compare_at() -> None:
     """The frames are a metre apart at the nearest."""
     far = sf.Closure("k", ("world", None), ("b", "e"))

@@ -31,6 +31,7 @@ print(*sorted({{module.partition(".")[0] for module in sys.modules}}))
     assert PACKAGES & set(run.stdout.split()) == {ROUTES[name].package}, run.stderr
 
 
+@pytest.mark.slow
 def test_neither_the_command_line_nor_the_differences_import_an_engine() -> None:
     """Nor SciPy, whose integrators and transforms take as long to load as all else that a check of a file needs."""
     code = """

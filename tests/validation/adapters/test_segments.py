@@ -75,6 +75,7 @@ def test_frequencies_of_a_spinning_beam_converge(turn: str, plane: str, eta: int
     np.testing.assert_allclose((4 * found[1] - found[0]) / 3, exact, rtol=1e-4)
 
 
+@pytest.mark.slow
 def test_a_strip_bent_both_ways_twists_as_exudyns_does() -> None:
     """The Princeton strip at 45 degrees: three models that share nothing, to 1e-4 of the deflection."""
     strip, load = Strip(), 8.896

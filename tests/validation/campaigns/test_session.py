@@ -162,6 +162,7 @@ def called(*words: str) -> tuple[int, str]:
     return result.exit_code, result.output
 
 
+@pytest.mark.slow
 def test_a_campaign_from_the_command_line_and_what_is_said_of_it_later(tmp_path: Path) -> None:
     """Done, shown, resumed (nothing is left to do), and not mistaken for another."""
     folder, report = str(tmp_path / "c"), tmp_path / "reports"

@@ -103,6 +103,7 @@ def test_a_stored_run_is_a_test_of_its_own(project: Path, monkeypatch: pytest.Mo
 TOY = blocks("docs/engines.md", "python")[0].text
 
 
+@pytest.mark.slow
 def test_an_engine_of_another_package_is_held_to_the_truth(project: Path) -> None:
     """The toy of docs/engines.md, whose mass matrix is wrong, by its entry point."""
     (project / "toy_engine.py").write_text(TOY)

@@ -74,6 +74,7 @@ def test_verdict_on_drift(coarse: float, fine: float, status: str) -> None:
     assert judge_drift("m", with_drift(coarse, fine)).status == status
 
 
+@pytest.mark.slow
 def test_stiff_dampers_are_watched_for_a_shorter_time() -> None:
     """A damper that stops its link within 10 us makes the explicit method run away with steps of 1 ms."""
     joint = sf.Joint("q", "revolute", axis=(0, 1, 0), elements=[sf.Damper(1.0)])

@@ -15,6 +15,7 @@ from validation.mutation.sampling import drawn, modules
 ROOT = Path(__file__).parents[3]
 
 
+@pytest.mark.slow
 def test_faults_are_drawn_alike_by_one_seed(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of some files, Python and C: those of all are listed for a second and a half, thrice."""
     monkeypatch.setattr(sampling, "SCOPE", ("symofros/description/*.py", "symofros/native/stepping/*"))

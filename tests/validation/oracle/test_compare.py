@@ -109,6 +109,7 @@ def test_command(tmp_path: Path) -> None:
     assert [(row["derivation"], row["ok"]) for row in content["comparisons"]] == [("lagrange", True), ("kane", True)]
 
 
+@pytest.mark.slow
 def test_command_fails_on_disagreement(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setitem(compare.DERIVATIONS, "lagrange", lambda system: lagrange.derive(pushed(system)))
     result = CliRunner().invoke(app, ["oracle", "--model", "loads", "-o", str(tmp_path)])

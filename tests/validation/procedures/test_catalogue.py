@@ -41,6 +41,7 @@ def test_a_file_that_is_called_like_a_reference_model_is_none() -> None:
     assert not list(judge_procedures("heavy_top", other, assemble(other)))
 
 
+@pytest.mark.slow
 def test_a_wrong_coefficient_of_a_method_shows(monkeypatch: pytest.MonkeyPatch) -> None:
     """On the side of the formulas, which stands for one in C."""
     rk4 = steps.EXPLICIT["rk4"]

@@ -22,12 +22,7 @@ from validation.stability.report import TOPIC, compose
 from validation.stability.study import Cell, ParameterStudy, Subject, Verdict, survey
 
 # Those whose models other tests compile, and that take less than half a second.
-FEW = (
-    "light_link",
-    "stick_slip",
-    "spin",
-    "deflection",
-)
+FEW = ("stick_slip", "spin")
 
 
 @pytest.fixture(scope="module", params=sampled(("few", "all"), ["few"]))
@@ -102,6 +97,7 @@ def test_a_study_that_can_not_be_done_keeps_no_other_from_it(monkeypatch: pytest
     )
 
 
+@pytest.mark.slow
 def test_ctrl_c_keeps_what_is_done(monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupted(x: float, y: float) -> Cell:
         raise KeyboardInterrupt

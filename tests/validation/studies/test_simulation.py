@@ -32,6 +32,7 @@ def test_planar_robot() -> None:
     assert row.engine_run is None and row.generated.error < 1e-2 and row.real_time > 0
 
 
+@pytest.mark.slow
 def test_report(tmp_path: Path) -> None:
     found = CliRunner().invoke(
         app, ["simulation", "--motion", "planar_robot", "--repeats", "1", "--report", str(tmp_path)]

@@ -102,6 +102,7 @@ def test_a_faulty_document_is_told_not_compiled(client: TestClient) -> None:
     assert "names a parent that does not exist" in error["object"] and error["remedy"] == "did you mean 'crank'?"
 
 
+@pytest.mark.slow
 def test_export_stays_in_the_workspace(client: TestClient, folder: Path) -> None:
     beside = set(folder.parent.iterdir())
     for target, sub, main in (("c", "out/c", "bar.c"), ("urdf", "out2", "bar.urdf")):

@@ -153,6 +153,7 @@ def test_another_beam_is_found(change: dict[str, Any], quantity: str) -> None:
     assert quantity in disagreeing(check(Subject("s", system), SETTINGS, factories))
 
 
+@pytest.mark.slow
 def test_slopes_that_do_not_belong_to_the_places_lower_the_rate(monkeypatch: pytest.MonkeyPatch) -> None:
     right = ElasticBeam.tangent
 

@@ -80,6 +80,7 @@ IGNORED = """
     <actuator><general joint="q1" armature="7" damping="7"/></actuator>"""
 
 
+@pytest.mark.slow
 def test_what_the_importer_ignores_is_no_disagreement(tmp_path: Path) -> None:
     result = check(subject(tmp_path, IGNORED), FEW)
     assert result.ok, [row for row in result.comparisons if not row.ok]
@@ -110,6 +111,7 @@ def test_a_file_that_it_can_t_read_any_more(tmp_path: Path) -> None:
     assert isinstance(built, Unsupported) and built.reason == "3 joints, ours has 1"
 
 
+@pytest.mark.slow
 def test_it_is_for_mjcf_only() -> None:
     rod = sf.RigidBody("rod", sf.Joint("q", "revolute"), sf.Inertia(1.0, (1, 0, 0), (1, 1, 1)))
     pendulum = subject_of(sf.System("pendulum", [rod]))

@@ -71,6 +71,7 @@ def test_exudyn_and_the_closed_form_of_the_pendulum() -> None:
     assert recorded.seconds > 0 and recorded.t.tolist() == pytest.approx(list(range(6)))
 
 
+@pytest.mark.slow
 def test_errors_are_of_the_motion() -> None:
     names = tuple(andrews.known()["end"])
     end = np.array(list(andrews.known()["end"].values()))

@@ -62,6 +62,7 @@ def test_elements_converge_with_their_fourth_power() -> None:
     assert np.log2(errors[0] / errors[1]) == pytest.approx(4.0, abs=0.2)
 
 
+@pytest.mark.slow
 def test_the_coarsest_mesh_that_errs_no_more_is_chosen() -> None:
     (pair,) = pairs([3])
     reference = exudyn_frequencies(exudyn_robot(equal_accuracy.FINE))
