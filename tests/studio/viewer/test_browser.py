@@ -91,6 +91,7 @@ def colored(image: np.ndarray, color: tuple[int, int, int]) -> np.ndarray:
     return (seen @ direction > 0.95 * size * np.linalg.norm(direction)) & (size > 25)
 
 
+@pytest.mark.slow
 def test_a_rigid_arm_is_shown_with_all_its_links(open_page: Open) -> None:
     with sf.Viewer(MODELS["chain7"], port=0) as viewer:
         image = settled(open_page(viewer.url))
@@ -156,6 +157,7 @@ def test_two_browsers_see_the_same(open_page: Open) -> None:
         assert changed(settled(one), settled(other)).sum() < 100
 
 
+@pytest.mark.slow
 def test_a_model_of_22_joints_moves_as_it_is_pushed(chromium: Any) -> None:
     page, arrived = chromium.new_page(viewport={"width": WIDTH, "height": HEIGHT}), []
     page.on("websocket", lambda line: line.on("framereceived", lambda _: arrived.append(1)))

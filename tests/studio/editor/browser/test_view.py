@@ -103,6 +103,7 @@ def test_a_loop_stays_closed(serve: Callable[..., Server], page: Page) -> None:
     changed(page, before)
 
 
+@pytest.mark.slow
 def test_it_follows_edits_and_keeps_the_last_that_was_sound(serve: Callable[..., Server], page: Page) -> None:
     server = serve("arm.yaml")
     steps.open_editor(page, server.url)
