@@ -65,15 +65,11 @@ def pytest_collection_finish() -> None:
 
 
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
-    """Workers of `-n auto`: three on two cores for folders, since tests wait for compilers and programs now and then.
-
-    None for files and single tests, or where output is to be seen.
-    """
+    """Workers of `-n auto`: one a core for folders; none for files and single tests, or where output is to be seen."""
     folders = any(Path(argument).is_dir() for argument in config.args)
     if not folders or config.getoption("capture") == "no" or config.getoption("benchmark_enable"):
         return 0
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    return cores + (cores + 1) // 2
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def slow_cases(text: str) -> set[str]:

@@ -73,6 +73,7 @@ def test_derivatives_and_solvers_build_as_strict_c99(
     compile_strictly(tmp_path, Compilation(MODELS["slider_crank"], options).source(), compiler)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("nm") is None, reason="needs binutils")
 def test_exports_one_symbol_and_keeps_no_state(tmp_path: Path) -> None:
     done = compile_strictly(tmp_path, source_of(MODELS["friction_arm"]), COMPILERS[0])

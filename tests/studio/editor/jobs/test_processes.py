@@ -68,6 +68,7 @@ def test_simulate(client: TestClient) -> None:
     assert found["outcome"]["ok"] and found["method"] == "dop853" and found["steps"] > 3
 
 
+@pytest.mark.slow
 def test_simulate_with_inputs_on_prismatic_and_revolute_joints(client: TestClient, folder: Path) -> None:
     client.post("/api/text", json={"revision": 1, "text": SLIDER})
     job = finished(client, "simulate", t_end=1, v0={"dx": 1.0}, inputs={"f": "4*t"}, points=10)

@@ -88,6 +88,7 @@ def test_blocks_that_move_nothing_are_refused_in_words(client: TestClient) -> No
     assert answer.status_code == 422 and "no such motion" in answer.json()["error"]["object"]
 
 
+@pytest.mark.slow
 def test_a_diagram_becomes_a_program_that_steps_as_its_file_says(client: TestClient, folder: Path) -> None:
     job = finished(client, "export", target="c", folder="program")
     assert job["state"] == "done", job["error"]
