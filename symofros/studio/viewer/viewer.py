@@ -5,7 +5,7 @@ from __future__ import annotations
 import secrets
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from types import TracebackType
 from typing import Any, NamedTuple, Self
@@ -45,6 +45,8 @@ class Viewer(ViewerPage):
         controls: Whether the page has sliders and buttons; not, for a page that is embedded in another.
         paths: Curves drawn beside it, each (name, points) or (name, points, color): points (n, 3) in the world, or
             (n, 2) in its plane z = 0 [m]; red, green and blue, 0 to 255.
+        on_pick: Called, in a thread of the server, with the element that somebody clicks in the picture: "bodies/arm",
+            "bodies/arm/joint", "bodies/arm/frames/tip", "closures/loop". Nothing can be clicked without it.
 
     Attributes:
         painted: Number of pictures shown.
@@ -66,6 +68,7 @@ class Viewer(ViewerPage):
         rate: float = RATE,
         controls: bool = True,
         paths: Sequence[Sequence[Any]] = (),
+        on_pick: Callable[[str], None] | None = None,
     ) -> None:
         self._period = 1.0 / positive("rate", rate)
         exaggeration = finite("exaggeration", exaggeration)
@@ -77,7 +80,7 @@ class Viewer(ViewerPage):
         self._closing = False
         self.dropped = 0
         try:
-            super().__init__(server, mechanism, exaggeration, controls)
+            super().__init__(server, mechanism, exaggeration, controls, on_pick)
         except BaseException:
             stop_server(server)
             raise

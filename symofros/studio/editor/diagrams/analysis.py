@@ -19,6 +19,7 @@ from symofros.diagrams.wiring import Draft, Wired, draft, whole
 from symofros.errors import DescriptionError, Problem
 from symofros.studio.editor.diagrams.drawing import Drawing
 from symofros.studio.editor.diagrams.faults import placed
+from symofros.studio.editor.document.element_lines import element_lines
 from symofros.studio.editor.document.meaning import Analysis, as_json
 from symofros.studio.editor.editing.yaml_spans import YamlText
 
@@ -51,7 +52,8 @@ def analyse_diagram(file: Path, source: YamlText) -> Analysis:
     mechanisms = {} if problems or read is None or drafted is None else _mechanisms(whole(read, drafted))
     drawing = Drawing(data, read, drafted, [error.path for error in loops], shown)
     shown_diagram = {**drawing.as_json(), "moving": list(mechanisms)}
-    return Analysis(True, data, problems=shown, diagram=shown_diagram, mechanisms=mechanisms)
+    lines = element_lines(source, [*shown_diagram["nodes"], *shown_diagram["wires"]])
+    return Analysis(True, data, problems=shown, diagram=shown_diagram, mechanisms=mechanisms, lines=lines)
 
 
 def _mechanisms(wired: Wired) -> dict[str, System]:

@@ -16,6 +16,7 @@ from symofros.mechanics.topology.graph import find_problems
 from symofros.mechanics.topology.units import unit_problems
 from symofros.studio.editor.diagrams.analysis import analyse_diagram
 from symofros.studio.editor.document.diagram import diagram
+from symofros.studio.editor.document.element_lines import element_lines
 from symofros.studio.editor.document.meaning import Analysis, Json, as_json
 from symofros.studio.editor.document.problems import placed, schema_problems
 from symofros.studio.editor.editing.yaml_spans import YamlText, yaml_text_of
@@ -53,7 +54,8 @@ def analyse(file: Path, text: str) -> Analysis:
         {"name": item.name, "unit": item.unit, "unit_fault": _unit_fault(item.unit)}
         for item in (system.inputs if system else ())
     ]
-    return Analysis(True, data, graph, shown_problems, parameters, inputs, system)
+    lines = element_lines(source, [*graph["nodes"], *graph["edges"]])
+    return Analysis(True, data, graph, shown_problems, parameters, inputs, system, lines=lines)
 
 
 def _parameters(data: Any, system: System | None) -> list[Json]:

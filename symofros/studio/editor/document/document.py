@@ -137,6 +137,7 @@ class EditedDocument:
             "problems": now.problems,
             "parameters": readable.parameters,
             "inputs": readable.inputs,
+            "lines": now.lines,
         }
 
 

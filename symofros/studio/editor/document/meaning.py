@@ -25,6 +25,7 @@ class Analysis:
         system: System that was read; None where nothing could be.
         diagram: Blocks and signals of a diagram; None of a mechanism.
         mechanisms: Name of a block -> system that it moves, of a diagram without problems.
+        lines: Name of an element -> its first and last line in the text; empty of a text that is not readable.
     """
 
     readable: bool
@@ -36,6 +37,7 @@ class Analysis:
     system: System | None = None
     diagram: Json | None = None
     mechanisms: dict[str, System] = field(default_factory=dict)
+    lines: dict[str, tuple[int, int]] = field(default_factory=dict)
 
 
 def as_json(value: Any) -> Any:

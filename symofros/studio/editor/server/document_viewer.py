@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 import math
+from collections.abc import Callable
 from threading import Lock
 from typing import Any
 from urllib.request import urlopen
@@ -41,8 +42,9 @@ class DocumentViewer:
     The viewer lives in this process: a picture costs milliseconds. Its poses are compiled when the mechanism changes.
     """
 
-    def __init__(self) -> None:
-        self._turn = Lock()
+    def __init__(self, on_pick: Callable[[str], None] | None = None) -> None:
+        """Begin with nothing shown; `on_pick` is called with the element that somebody clicks in the picture."""
+        self._turn, self._on_pick = Lock(), on_pick
         self._viewer: Viewer | None = None
         self._page: bytes | None = None
         self._motion: tuple[Json, PlayedMotion] | None = None
@@ -81,12 +83,15 @@ class DocumentViewer:
 
     def _show(self, system: System) -> None:
         if self._viewer is None:
-            self._viewer = Viewer(system, port=0, controls=False)
+            self._viewer = Viewer(system, port=0, controls=False, on_pick=self._on_pick)
         elif self._viewer.mechanism.system != system:
             self._viewer.set_system(system)
 
     def pose(self, body: Json) -> Json:
-        """Move it or change its looks: `q`, `par` {name: value}, `exaggeration`, `dark`, `frames`, `labels`, `reset`.
+        """Move it or change its looks.
+
+        Args:
+            body: `q`, `par` {name: value}, `exaggeration`, `dark`, `frames`, `labels`, `marked` elements, `reset`.
 
         Returns:
             Where everything stands then, and why loops could not be closed.
@@ -98,6 +103,9 @@ class DocumentViewer:
         factor = body.get("exaggeration")
         if factor is not None and not (_finite(factor) and abs(factor) <= MOST_EXAGGERATION):
             raise _malformed("exaggeration", factor, f"a number up to {MOST_EXAGGERATION:g}")
+        marked = body.get("marked")
+        if marked is not None and not (isinstance(marked, list) and all(isinstance(each, str) for each in marked)):
+            raise _malformed("marked", marked, "a list of elements' names")
         with self._turn:
             viewer = self._viewer
             if viewer is None:
@@ -109,6 +117,8 @@ class DocumentViewer:
                     viewer.set_layer(layer, body[layer])
             if isinstance(body.get("dark"), bool):
                 viewer.set_dark(body["dark"])
+            if marked is not None:
+                viewer.mark(marked)
             if factor is not None:
                 viewer.exaggeration = float(factor)
             try:

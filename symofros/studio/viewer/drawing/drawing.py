@@ -32,6 +32,8 @@ class DrawnPart:
         link: Index of the link, -1 for the world.
         mesh: Mesh in the link's frame.
         color: Red, green, blue, 0 to 255.
+        element: Entry of the description that it is drawn of, as the path of the file names it: "world", "bodies/arm",
+            "bodies/arm/joint", "bodies/arm/frames/tip", "closures/loop"; "" of what belongs to none.
     """
 
     name: str
@@ -39,6 +41,7 @@ class DrawnPart:
     link: int
     mesh: Mesh
     color: Color
+    element: str = ""
 
 
 @dataclass(frozen=True)
@@ -53,6 +56,7 @@ class DrawnBeam:
         length: Length [m].
         outline: Outline of its section, y and z (K, 2) [m].
         color: Red, green, blue.
+        element: Entry of the description, as for a DrawnPart.
     """
 
     name: str
@@ -62,6 +66,7 @@ class DrawnBeam:
     length: float
     outline: Array
     color: Color
+    element: str = ""
 
 
 @dataclass(frozen=True)
@@ -75,6 +80,7 @@ class DrawnConnector:
         second: Second end point.
         outline: Outline of its section (K, 2) [m].
         color: Red, green, blue.
+        element: Entry of the description, as for a DrawnPart.
     """
 
     name: str
@@ -83,15 +89,17 @@ class DrawnConnector:
     second: LinkPoint
     outline: Array
     color: Color
+    element: str = ""
 
 
 class Triad(NamedTuple):
-    """A named frame: its public name, its link, p_LF (3) and R_LF (3, 3)."""
+    """A named frame: its public name, its link, p_LF (3), R_LF (3, 3), and the entry of the description."""
 
     name: str
     link: int
     position: Array
     rotation: Array
+    element: str = ""
 
 
 @dataclass(frozen=True)

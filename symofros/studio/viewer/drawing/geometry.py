@@ -19,7 +19,7 @@ import numpy as np
 
 from symofros.description.beam import STATION, Beam
 from symofros.description.constraints import Closure, KnifeEdge, Rod, Rolling
-from symofros.description.forces import Anchor
+from symofros.description.forces import Anchor, Connection
 from symofros.description.system import RigidBody
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.tree import BASE, Link, NamedFrame, Placement, SpanningTree, frame_of
@@ -111,7 +111,10 @@ class _DrawingBuilder:
     def drawing(self) -> Drawing:
         boxes = list(self._boxes())
         longest = max(longest_edges(self.tree.system, self.numbers), default=0.0)
-        triads = tuple(Triad(f.name, f.link, *placed(f.placement, self.numbers)) for f in self.tree.frames)
+        triads = tuple(
+            Triad(frame.name, frame.link, *placed(frame.placement, self.numbers), self._frame_element(frame))
+            for frame in self.tree.frames
+        )
         parts = (*self._skeleton(), *self._joints(), *boxes, *self._contacts(), *self._visuals())
         return Drawing(
             self.tree.system.name,
@@ -163,10 +166,28 @@ class _DrawingBuilder:
             if points:
                 radius = self._scaled(_ROD_RADIUS, link)
                 mesh = merged([cylinder(np.zeros(3), p, radius) for p in points])
-                yield DrawnPart(f"bodies/{self._name(link)}", "bodies", link, mesh, self._color(link))
+                element = self._element(self._body(link))
+                yield DrawnPart(f"bodies/{self._name(link)}", "bodies", link, mesh, self._color(link), element)
 
     def _name(self, link: int) -> str:
         return "world" if link == BASE else self.tree.links[link].name
+
+    # What of the description it is drawn of.
+
+    def _body(self, link: int) -> str:
+        """The body that a link is of: of a section of a beam, the beam."""
+        if link == BASE:
+            return self.tree.frames[0].qualified
+        while self.tree.links[link].is_section:
+            link = self.tree.links[link].parent
+        return self.tree.links[link].name
+
+    def _element(self, body: str) -> str:
+        return "world" if body in ("world", self.tree.frames[0].qualified) else f"bodies/{body}"
+
+    def _frame_element(self, frame: NamedFrame) -> str:
+        body, _, own = frame.qualified.partition(".")
+        return f"bodies/{body}/frames/{own}" if own else self._element(body)
 
     def _boxes(self) -> Iterator[DrawnPart]:
         for body in self.tree.system.bodies:
@@ -179,13 +200,15 @@ class _DrawingBuilder:
             else:
                 mesh = sphere(2 * _JOINT_RADIUS * self.size)  # A point mass.
             mesh = mesh.transformed(inertia.center, inertia.axes).transformed(*placed(frame.placement, self.numbers))
-            yield DrawnPart(f"inertias/{body.name}", "inertias", frame.link, mesh, self._color(frame.link))
+            element, color = self._element(body.name), self._color(frame.link)
+            yield DrawnPart(f"inertias/{body.name}", "inertias", frame.link, mesh, color, element)
 
     def _joints(self) -> Iterator[DrawnPart]:
         for i, link in enumerate(self.tree.links):
             mesh = None if link.is_section else self._joint(link, i)
             if mesh is not None:
-                yield DrawnPart(f"joints/{link.joint.name}", "joints", i, mesh, _JOINT)
+                element = f"{self._element(link.name)}/joint"
+                yield DrawnPart(f"joints/{link.joint.name}", "joints", i, mesh, _JOINT, element)
 
     def _joint(self, link: Link, i: int) -> Mesh | None:
         """The sign of a joint, in its distal frame; none of a clamped or a free body."""
@@ -213,9 +236,8 @@ class _DrawingBuilder:
                 frame = frame_of(self.tree, body.name)
                 mesh = mesh.transformed(np.array(visual.position), self.numbers.rotation(visual.rotation))
                 mesh = mesh.transformed(*placed(frame.placement, self.numbers))
-                yield DrawnPart(
-                    f"visuals/{body.name}.{k}", "visuals", frame.link, mesh, visual.color or self._color(frame.link)
-                )
+                color, element = visual.color or self._color(frame.link), self._element(body.name)
+                yield DrawnPart(f"visuals/{body.name}.{k}", "visuals", frame.link, mesh, color, element)
 
     # Beams.
 
@@ -232,6 +254,7 @@ class _DrawingBuilder:
                     self.numbers.value(link.beam.length),
                     self._outline(link.beam),
                     self._color(i),
+                    self._element(link.name),
                 )
 
     def _line(self, beam: Beam) -> CentreLine | RodLine:
@@ -264,26 +287,28 @@ class _DrawingBuilder:
                     LinkPoint(i, np.zeros(3)),
                     ellipse(radius, radius),
                     _SLIDE,
+                    f"{self._element(link.name)}/joint",
                 )
 
     def _constraint_connectors(self) -> Iterator[DrawnConnector]:
         system, radius = self.tree.system, _ROD_RADIUS * self.size
         for item in system.constraints:
             if isinstance(item, Closure):
-                yield self._connector(item.name, item.first, item.second, radius / 2, _CLOSURE)
+                yield self._connector("closures", item, radius / 2, _CLOSURE)
             elif isinstance(item, Rod):
-                yield self._connector(item.name, item.first, item.second, radius, _ROD)
+                yield self._connector("closures", item, radius, _ROD)
         for spring in system.connections:
-            yield self._connector(spring.name, spring.first, spring.second, radius / 2, _SPRING)
+            yield self._connector("connections", spring, radius / 2, _SPRING)
 
-    def _connector(self, name: str, first: Anchor, second: Anchor, radius: float, color: Color) -> DrawnConnector:
+    def _connector(self, section: str, item: Closure | Rod | Connection, radius: float, color: Color) -> DrawnConnector:
         return DrawnConnector(
-            f"constraints/{name}",
+            f"constraints/{item.name}",
             "constraints",
-            self._place(first),
-            self._place(second),
+            self._place(item.first),
+            self._place(item.second),
             ellipse(radius, radius),
             color,
+            f"{section}/{item.name}",
         )
 
     def _anchor(self, anchor: Anchor) -> NamedFrame:
@@ -309,4 +334,6 @@ class _DrawingBuilder:
                 continue
             frame = self._anchor(anchor)
             mesh = mesh.transformed(*placed(frame.placement, self.numbers))
-            yield DrawnPart(f"constraints/{item.name}.mark", "constraints", frame.link, mesh, _CLOSURE)
+            section = "closures" if isinstance(item, Closure) else "nonholonomic"
+            name, element = f"constraints/{item.name}.mark", f"{section}/{item.name}"
+            yield DrawnPart(name, "constraints", frame.link, mesh, _CLOSURE, element)

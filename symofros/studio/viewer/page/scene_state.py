@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -23,14 +23,18 @@ class SceneState:
         server: Server of viser.
         mechanism: Mechanism that is shown.
         exaggeration: Factor of its elastic coordinates.
+        on_pick: Called with the element that somebody clicks in the picture.
     """
 
-    def __init__(self, server: Any, mechanism: Mechanism, exaggeration: float) -> None:
+    def __init__(
+        self, server: Any, mechanism: Mechanism, exaggeration: float, on_pick: Callable[[str], None] | None = None
+    ) -> None:
         self.server, self.mechanism, self.exaggeration = server, mechanism, exaggeration
+        self._on_pick = on_pick
         self.first = self.state = mechanism.closed(mechanism.state())[0]
         drawing = mechanism.drawing(self.state.par)
         self._drawn_par = self.state.par
-        self.scene = ViserScene(server, drawing, self._posture(), shown_at_first(drawing))
+        self.scene = ViserScene(server, drawing, self._posture(), shown_at_first(drawing), on_pick=on_pick)
 
     def change(self, mechanism: Mechanism) -> None:
         """Show another mechanism; where it has the same coordinates, they stay, and so do the layers shown."""
@@ -99,9 +103,10 @@ class SceneState:
         return self.mechanism.posture(self.state.q, self.state.u, self.state.par, self.exaggeration)
 
     def _draw(self, drawing: Drawing) -> None:
-        """Draw anew; what is shown or hidden stays so."""
+        """Draw anew; what is shown, hidden or marked stays so."""
         self._drawn_par = self.state.par
-        self.scene = ViserScene(self.server, drawing, self._posture(), self.scene.layers)
+        marked = self.scene.marked
+        self.scene = ViserScene(self.server, drawing, self._posture(), self.scene.layers, marked, self._on_pick)
 
 
 def _index(what: str, names: Sequence[str], name: str) -> int:

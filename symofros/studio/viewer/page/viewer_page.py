@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import Any
 
 from symofros.runtime.beams import bending_notes
@@ -28,12 +28,20 @@ class ViewerPage:
         mechanism: Mechanism that is shown.
         exaggeration: Factor of the elastic coordinates.
         controls: Whether there are sliders and buttons.
+        on_pick: Called with the element that somebody clicks in the picture.
 
     Attributes:
         painted: Number of pictures shown.
     """
 
-    def __init__(self, server: Any, mechanism: Mechanism, exaggeration: float, controls: bool) -> None:
+    def __init__(
+        self,
+        server: Any,
+        mechanism: Mechanism,
+        exaggeration: float,
+        controls: bool,
+        on_pick: Callable[[str], None] | None = None,
+    ) -> None:
         self._server, self._controls = server, controls
         self._painting = threading.RLock()  # Guards the picture, the player and the controls.
         self._player: Player | None = None
@@ -41,7 +49,7 @@ class ViewerPage:
         self._dark = False
         self._light: Any = None  # Beside viser's own, in the dark.
         self.painted = 0
-        self._scene_state = SceneState(server, mechanism, exaggeration)
+        self._scene_state = SceneState(server, mechanism, exaggeration, on_pick)
         self._panel = self._new_panel()
 
     @property
@@ -106,6 +114,16 @@ class ViewerPage:
         with self._painting:
             self._scene_state.scene.show(layer, visible)
             self._panel.show(self._scene_state.scene.layers, self._scene_state.exaggeration)
+
+    def mark(self, elements: Collection[str]) -> None:
+        """Mark some elements of the description, in place of those that were: in a colour of their own, with frames.
+
+        Args:
+            elements: "world", "bodies/arm", "bodies/arm/joint", "bodies/arm/frames/tip", "closures/loop",
+                "connections/spring", "nonholonomic/wheel"; what is not drawn is passed over.
+        """
+        with self._painting:
+            self._scene_state.scene.mark(elements)
 
     def set_exaggeration(self, factor: float) -> None:
         """Multiply elastic coordinates in the picture."""

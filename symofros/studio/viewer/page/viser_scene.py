@@ -2,25 +2,35 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Collection
 from importlib import import_module
 from itertools import count
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from symofros.errors import Problem, UnknownNameError, did_you_mean
 from symofros.mechanics.topology.tree import BASE
-from symofros.studio.viewer.drawing.drawing import Color, Drawing
+from symofros.studio.viewer.drawing.drawing import Color, Drawing, DrawnBeam, DrawnConnector, DrawnPart
 from symofros.studio.viewer.drawing.ground import GRAVITY_COLOR, cell_of, gravity_arrow
 from symofros.studio.viewer.drawing.layers import LAYERS
-from symofros.studio.viewer.drawing.meshes import Array, Mesh, tube, tube_stations
+from symofros.studio.viewer.drawing.meshes import tube, tube_stations
 from symofros.studio.viewer.drawing.poses import Posture, Sweep, beam_sweep, connector_sweep
 from symofros.studio.viewer.render.camera import Camera
 
 _ROOT, _TUBES = "/mechanism", "/tubes"
+MARKED: Color = (255, 0, 150)  # Unlike every colour that bodies have.
 SEE_THROUGH = 0.3  # Opacity of boxes of inertia, and of what frames are shown in.
 _OPAQUE = ("bodies", "joints", "visuals")
 _TRIAD = 0.05  # Length of a frame's axes, of the mechanism's size.
+
+
+class _Marked(NamedTuple):
+    """A node of an element: the colour that it has unmarked, None of one that is shown as a mark; its layer."""
+
+    node: Any
+    color: Color | None
+    layer: str
 
 
 class ViserScene:
@@ -31,10 +41,22 @@ class ViserScene:
         drawing: Drawing to show.
         posture: Posture of the mechanism.
         layers: Layers that are shown.
+        marked: Elements of the description that are marked.
+        on_pick: Called with the element that somebody clicks.
     """
 
-    def __init__(self, server: Any, drawing: Drawing, posture: Posture, layers: frozenset[str]) -> None:
-        self.server, self.drawing = server, drawing
+    def __init__(
+        self,
+        server: Any,
+        drawing: Drawing,
+        posture: Posture,
+        layers: frozenset[str],
+        marked: Collection[str] = (),
+        on_pick: Callable[[str], None] | None = None,
+    ) -> None:
+        self.server, self.drawing, self._on_pick = server, drawing, on_pick
+        self.marked: frozenset[str] = frozenset()
+        self._of_elements: dict[str, list[_Marked]] = {}
         self._rotation = import_module("viser.transforms").SO3
         self._shown = layers
         self._tubes = 0
@@ -48,12 +70,10 @@ class ViserScene:
                 i: server.scene.add_frame(self._link(i), show_axes=False) for i in range(BASE, posture.p.shape[0] - 1)
             }
             for part in drawing.parts:
-                self._add_mesh(part.kind, f"{self._link(part.link)}/{_node(part.name)}", part.mesh, part.color)
-            self._beams = [
-                self._add_tube("bodies", beam.outline, beam_sweep(beam, posture), beam.color) for beam in drawing.beams
-            ]
+                self._add_mesh(part, f"{self._link(part.link)}/{_node(part.name)}")
+            self._beams = [self._add_tube("bodies", beam, beam_sweep(beam, posture)) for beam in drawing.beams]
             self._connectors = [
-                self._add_tube(connector.kind, connector.outline, connector_sweep(connector, posture), connector.color)
+                self._add_tube(connector.kind, connector, connector_sweep(connector, posture))
                 for connector in drawing.connectors
             ]
             self._hide_spare_tubes()
@@ -61,6 +81,7 @@ class ViserScene:
             self._see_through()
             self._add_ground()
             self._aim()
+            self.mark(marked)
             self.move(posture)
 
     def move(self, posture: Posture) -> None:
@@ -104,6 +125,38 @@ class ViserScene:
         for node in self._nodes[layer]:
             node.visible = visible
         self._see_through()
+        self.mark(self.marked)
+
+    def mark(self, elements: Collection[str]) -> None:
+        """Draw some elements in the colour of what is chosen, with their frames, and all others as they are."""
+        with self.server.atomic():
+            for element in self.marked:
+                for node, color, layer in self._of_elements.get(self._shown_by(element), ()):
+                    if color is None:
+                        node.visible = layer in self._shown
+                    else:
+                        node.color = color
+            self.marked = frozenset(elements)
+            for element in self.marked:
+                for node, color, _ in self._of_elements.get(self._shown_by(element), ()):
+                    if color is None:
+                        node.visible = True
+                    else:
+                        node.color = MARKED
+
+    def _shown_by(self, element: str) -> str:
+        """The element that is drawn for one: of a joint that is not drawn, and of a frame of a beam's tip, the body."""
+        section, _, name = element.partition("/")
+        if element in self._of_elements or section != "bodies":
+            return element
+        return f"bodies/{name.partition('/')[0]}"
+
+    def _belongs(self, element: str, node: Any, layer: str, color: Color | None = None) -> None:
+        """Note what a node is drawn of; `color` is its own, None of what is shown to mark it."""
+        if element:
+            self._of_elements.setdefault(element, []).append(_Marked(node, color, layer))
+            if self._on_pick is not None and hasattr(node, "on_click"):
+                node.on_click(_picking(self._on_pick, element))
 
     def _see_through(self) -> None:
         """Let frames, which mostly lie within bodies, be seen through them."""
@@ -121,34 +174,36 @@ class ViserScene:
         self._nodes[layer].append(node)
         return node
 
-    def _add_mesh(self, layer: str, name: str, mesh: Mesh, color: Color) -> Any:
+    def _add_mesh(self, part: DrawnPart, name: str) -> None:
         node = self.server.scene.add_mesh_simple(
             name,
-            mesh.vertices,
-            mesh.faces,
-            color=color,
-            opacity=SEE_THROUGH if layer == "inertias" else None,
-            cast_shadow=layer != "inertias",
+            part.mesh.vertices,
+            part.mesh.faces,
+            color=part.color,
+            opacity=SEE_THROUGH if part.kind == "inertias" else None,
+            cast_shadow=part.kind != "inertias",
         )
-        return self._kept(layer, node)
+        self._kept(part.kind, node)
+        self._belongs(part.element, node, part.kind, part.color)
 
-    def _add_tube(self, layer: str, outline: Array, sweep: Sweep, color: Color) -> Any:
+    def _add_tube(self, layer: str, drawn: DrawnBeam | DrawnConnector, sweep: Sweep) -> Any:
         """A tube with a bone a station: browsers move bones at once with nodes, but vertices some pictures later.
 
         It takes the place of a tube of the drawing before, if there was one: viser 1.1's page breaks down where a mesh
         with bones is removed (its clean-up looks for a node that is gone), but not where it is replaced.
         """
-        mesh, stations = tube(outline, *sweep), tube_stations(len(sweep.points), len(outline))
+        mesh, stations = tube(drawn.outline, *sweep), tube_stations(len(sweep.points), len(drawn.outline))
         node = self.server.scene.add_mesh_skinned(
             f"{_TUBES}/{self._tubes}",
             mesh.vertices,
             mesh.faces,
-            color=color,
+            color=drawn.color,
             bone_wxyzs=self._rotation.from_matrix(sweep.axes).wxyz,
             bone_positions=sweep.points,
             skin_weights=np.eye(len(sweep.points))[stations],
         )
         self._tubes += 1
+        self._belongs(drawn.element, node, layer, drawn.color)
         return self._kept(layer, node)
 
     def _hide_spare_tubes(self) -> None:
@@ -163,7 +218,7 @@ class ViserScene:
         size = _TRIAD * self.drawing.size
         for triad in self.drawing.triads:
             name = f"{self._link(triad.link)}/frames/{_node(triad.name)}"
-            self._kept(
+            axes = self._kept(
                 "frames",
                 self.server.scene.add_frame(
                     name,
@@ -173,10 +228,12 @@ class ViserScene:
                     wxyz=self._rotation.from_matrix(triad.rotation).wxyz,
                 ),
             )
+            self._belongs(triad.element, axes, "frames")
             label = self.server.scene.add_label(
                 f"{self._link(triad.link)}/labels/{_node(triad.name)}", triad.name, position=triad.position
             )
             self._kept("labels", label)
+            self._belongs(triad.element, label, "labels")
 
     def _add_ground(self) -> None:
         drawing, scene = self.drawing, self.server.scene
@@ -211,6 +268,11 @@ class ViserScene:
         camera, initial = Camera.of(self.drawing), self.server.initial_camera
         initial.position, initial.look_at, initial.up = camera.position, camera.target, camera.up
         initial.fov, initial.near, initial.far = camera.fov, 1e-3 * self.drawing.size, 1e3 * self.drawing.size
+
+
+def _picking(on_pick: Callable[[str], None], element: str) -> Callable[[Any], None]:
+    """What a click on a node of an element does."""
+    return lambda _: on_pick(element)
 
 
 def _node(name: str) -> str:

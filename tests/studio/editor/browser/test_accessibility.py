@@ -63,6 +63,9 @@ def test_the_page_and_its_windows(
     page.keyboard.type("link")
     assert faults() == []
     page.keyboard.press("Escape")
+    page.get_by_role("tab", name="Tree").click()
+    page.get_by_role("treeitem", name="link1 beam").click()
+    assert faults() == []
     page.get_by_role("tab", name="YAML").click()
     page.get_by_label("Text of the file").wait_for()
     assert faults() == []

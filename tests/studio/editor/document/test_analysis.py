@@ -55,6 +55,37 @@ def test_a_text_that_is_not_yaml_has_one_problem_with_its_line() -> None:
     assert [(p["line"], p["path"]) for p in found.problems] == [(8, [])]
 
 
+@pytest.mark.parametrize("newline", ["\n", "\r\n", "\r"], ids=["unix", "dos", "old"])
+def test_every_element_has_the_lines_that_define_it(newline: str) -> None:
+    text = """symofros: 1
+system: {name: arm}
+# Of two bodies.
+bodies:
+  upper:
+    joint: {kind: revolute}
+    inertia: {mass: 1}
+    frames:
+      tip:
+        position: [1, 0, 0]
+      # The last.
+      end: {position: [2, 0, 0]}
+
+  lower: {joint: {kind: fixed, parent: upper}}
+closures: {loop: {first: {body: upper}, second: {body: world}}}
+"""
+    found = analyse(FILES["four_bar"], text.replace("\n", newline))
+    assert found.lines == {
+        "world": (2, 2),
+        "bodies/upper": (5, 12),
+        "bodies/upper/joint": (6, 6),
+        "bodies/upper/frames/tip": (9, 10),
+        "bodies/upper/frames/end": (12, 12),
+        "bodies/lower": (14, 14),
+        "bodies/lower/joint": (14, 14),
+        "closures/loop": (15, 15),
+    }
+
+
 def test_problems_of_included_files_name_them(tmp_path: Path) -> None:
     (tmp_path / "hand.yaml").write_text("symofros: 1\nbodies: {b: {joint: {kind: what}}}\n")
     problem = analyse(tmp_path / "a.yaml", "symofros: 1\ninclude: [hand.yaml]\n").problems[0]

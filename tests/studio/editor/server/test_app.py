@@ -43,6 +43,7 @@ KEYS = {
     "recovered",
     "disk_changed",
     "unkept",
+    "lines",
 }
 
 

@@ -118,6 +118,8 @@ def test_a_missing_package_is_named(client: TestClient, monkeypatch: pytest.Monk
         {"q": 3},
         {"q": {"nobody": 1.0}},
         {"par": {"nobody": 1.0}},
+        {"marked": "bodies/crank"},
+        {"marked": [1]},
         {"q": {"a": "1"}},
         {"q": {"a": 10**400}},
         {"q": {"a": True}},

@@ -62,6 +62,21 @@ def test_every_reference_model_is_drawn(name: str) -> None:
         assert np.all(np.isfinite(sweep.points)) and np.all(np.isfinite(sweep.axes))
 
 
+@pytest.mark.parametrize("name", SMALL)
+def test_every_piece_is_of_an_entry_of_the_description(name: str) -> None:
+    system, found = MODELS[name], drawing(name)
+    bodies = {body.name for body in system.bodies}
+    entries = {"world"} | {f"bodies/{body}" for body in bodies} | {f"bodies/{body}/joint" for body in bodies}
+    entries |= {f"bodies/{body.name}/frames/{frame.name}" for body in system.bodies for frame in body.frames}
+    entries |= {f"closures/{item.name}" for item in system.constraints if isinstance(item, (sf.Closure, sf.Rod))}
+    entries |= {f"nonholonomic/{item.name}" for item in system.constraints}
+    entries |= {f"connections/{item.name}" for item in system.connections}
+    pieces = (*found.parts, *found.beams, *found.connectors, *found.triads)
+    assert {piece.name: piece.element for piece in pieces if piece.element not in entries} == {}
+    # Every body can be chosen: it is drawn, or has its frame.
+    assert {f"bodies/{body}" for body in bodies} - {piece.element for piece in pieces} <= {"bodies/world"}
+
+
 def test_every_body_with_mass_has_its_box_and_every_joint_its_sign() -> None:
     found = {part.name: part for part in drawing("puma560").parts}
     assert {f"inertias/link{i}" for i in range(1, 7)} <= found.keys()

@@ -4,6 +4,7 @@ import "./style/shell.css";
 import "./style/canvas.css";
 import "./style/diagram.css";
 import "./style/runs.css";
+import "./style/tree.css";
 import "./style/windows.css";
 import "./style/panels.css";
 import "./style/narrow.css";

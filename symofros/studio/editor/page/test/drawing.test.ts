@@ -57,6 +57,7 @@ const document: Document = {
   problems: [],
   parameters: [],
   inputs: [],
+  lines: {},
   recovered: false,
   disk_changed: false,
   unkept: null,

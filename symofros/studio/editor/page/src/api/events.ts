@@ -8,6 +8,8 @@ export interface Listener {
   disk(): void;
   job(job: Job): void;
   samples(samples: Samples): void;
+  /** Somebody clicked an element in the 3-D view. */
+  picked(element: string): void;
   lost(): void;
 }
 
@@ -21,6 +23,9 @@ export function listen(listener: Listener): void {
   source.addEventListener("document", (event) => {
     const { revision, name } = JSON.parse(event.data as string) as { revision: number; name: string };
     listener.document(revision, name);
+  });
+  source.addEventListener("picked", (event) => {
+    listener.picked((JSON.parse(event.data as string) as { element: string }).element);
   });
   source.addEventListener("disk", () => listener.disk());
   source.addEventListener("samples", (event) => listener.samples(JSON.parse(event.data as string) as Samples));

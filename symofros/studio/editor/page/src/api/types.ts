@@ -141,6 +141,8 @@ export interface Document {
   parameters: Parameter[];
   /** Inputs that could be read. */
   inputs: { name: string; unit: string; unit_fault: string }[];
+  /** Element -> the first and the last line that define it; empty while the text can't be read. */
+  lines: Record<string, readonly [number, number]>;
   recovered: boolean;
   /** Somebody else wrote the file since it was read or saved. */
   disk_changed: boolean;
@@ -279,6 +281,8 @@ export interface Pose {
   /** Whether frames are drawn, and their names; bodies are seen through then. */
   frames?: boolean;
   labels?: boolean;
+  /** Elements that are drawn in the colour of what is chosen. */
+  marked?: readonly string[];
   /** A run, whose state at a time is shown; of a diagram's run, of the mechanism that a block moves. */
   run?: string;
   block?: string;

@@ -1,11 +1,12 @@
 import { Handle, type Node, type NodeProps, Position } from "@xyflow/react";
-import { memo, type ReactNode } from "react";
+import { memo, type MouseEvent, type ReactNode } from "react";
 
 import type { GraphNode, Port } from "../api/types";
+import { frameId } from "../model/elements";
 import { frames, hasJoint, jointHeight, portHeight, size } from "../model/geometry";
 import type { Summary } from "../model/summary";
 import { Glyph } from "../shell/Glyph";
-import { toggleFolds } from "../store/folding";
+import { reveal, toggleFolds } from "../store/folding";
 
 export type BlockNode = Node<
   {
@@ -15,6 +16,8 @@ export type BlockNode = Node<
     carried: number;
     /** Whether it stands for them. */
     folded: boolean;
+    /** Frames that are chosen. */
+    marked: readonly string[];
   },
   "block"
 >;
@@ -82,10 +85,20 @@ function JointWords({ joint }: { joint: NonNullable<Summary["joint"]> }) {
   );
 }
 
-function FramePort({ node, frame }: { node: GraphNode; frame: Port }) {
+function FramePort({ node, frame, marked }: { node: GraphNode; frame: Port; marked: boolean }) {
   const name = frame.kind === "origin" ? "origin" : frame.name;
+  // The body frame is the body's own.
+  const choose = (event: MouseEvent): void => {
+    if (frame.kind !== "frame") return;
+    event.stopPropagation();
+    reveal(frameId(node.path, frame.name));
+  };
   return (
-    <div className="block-frame" style={{ top: portHeight(node, frame.name) }}>
+    <div
+      className={`block-frame${marked ? " marked" : ""}`}
+      style={{ top: portHeight(node, frame.name) }}
+      onClick={choose}
+    >
       <span className={frame.kind === "origin" ? "quiet" : ""}>{name}</span>
       <Handle
         id={frameHandle(frame)}
@@ -117,7 +130,7 @@ function Body(data: Props) {
         />
       ) : null}
       {frames(node).map((frame) => (
-        <FramePort key={frameHandle(frame)} node={node} frame={frame} />
+        <FramePort key={frameHandle(frame)} node={node} frame={frame} marked={data.marked.includes(frame.name)} />
       ))}
     </Outline>
   );

@@ -20,6 +20,7 @@ import {
 import { type ReactNode, useCallback, useEffect, useMemo, useState } from "react";
 
 import type { Point } from "../api/types";
+import { isFrame } from "../model/elements";
 import { place } from "../store/edits";
 import { now, update, useDocument, useStore } from "../store/store";
 import { useTheme } from "../store/theme";
@@ -30,7 +31,9 @@ export const DRAGGED = "application/x-symofros";
 
 /** Keeps what is chosen in the store, which alone says it: the diagram shows what stands there. */
 function choose(changes: readonly (NodeChange | EdgeChange)[]): void {
-  const chosen = new Set(now().selected);
+  // What is chosen here takes the place of frames, of which the board knows nothing.
+  const isNew = changes.some((change) => change.type === "select" && change.selected);
+  const chosen = new Set(now().selected.filter((id) => !isNew || !isFrame(id)));
   for (const change of changes) {
     if (change.type !== "select") continue;
     if (change.selected) chosen.add(change.id);
@@ -116,6 +119,7 @@ export function Board<N extends Node>({
       edgeTypes={edgeTypes}
       onNodesChange={onNodesChange}
       onEdgesChange={choose}
+      onPaneClick={() => update({ selected: [] })}
       onConnect={connect}
       onNodeDoubleClick={(_, node) => open(node.id)}
       onEdgeDoubleClick={(_, edge) => open(edge.id)}

@@ -2,6 +2,7 @@ import { type Connection, ConnectionMode, Panel } from "@xyflow/react";
 import { useCallback, useMemo } from "react";
 
 import type { Point } from "../api/types";
+import { blockOf } from "../model/elements";
 import { loads, standIns } from "../model/folding";
 import { size } from "../model/geometry";
 import { add, mount } from "../store/bodies";
@@ -37,10 +38,10 @@ function drop(word: string, where: Point): void {
   else if (part !== undefined) void insertPart(part.name, where);
 }
 
-/** Where the block is that an id means: itself, or one end of a link. */
+/** Where the block is that an id means: itself, or one end of a link, what has the frame. */
 function extent(id: string): Extent | undefined {
   const { document, places } = now();
-  const end = document?.graph.edges.find((edge) => edge.id === id)?.target ?? id;
+  const end = document === null ? id : blockOf(document.graph, id);
   const node = document?.graph.nodes.find((each) => each.id === end);
   const place = node === undefined ? undefined : places[node.id];
   return node === undefined || place === undefined ? undefined : { place, size: size(node) };

@@ -1,6 +1,7 @@
 /** The document's graph as React Flow's nodes and edges. */
 
 import type { Document, Graph, GraphEdge, GraphNode, Point } from "../api/types";
+import { namedFrames } from "../model/elements";
 import { lanes, size } from "../model/geometry";
 import { same } from "../model/paths";
 import { summary } from "../model/summary";
@@ -29,7 +30,13 @@ export function blocks(
   const shown = document.graph.nodes.filter(({ id }) => !folding.standIns.has(id));
   return shown.map((node) => {
     const carried = folding.loads.get(node.id) ?? 0;
-    const data = { node, summary: summary(node, document.data), carried, folded: folding.folded.includes(node.id) };
+    const data = {
+      node,
+      summary: summary(node, document.data),
+      carried,
+      folded: folding.folded.includes(node.id),
+      marked: namedFrames(node).flatMap(({ id, name }) => (selected.includes(id) ? [name] : [])),
+    };
     const [x, y] = places[node.id] ?? [0, 0];
     const isSelected = selected.includes(node.id);
     const previous = old.get(node.id);

@@ -1,6 +1,7 @@
 /** What Enter and a double click do to a block or a link. */
 
 import type { Path } from "../api/types";
+import { blockOf } from "../model/elements";
 import { mapAt, textAt } from "../model/paths";
 import { enter } from "../store/files";
 import { now, show } from "../store/store";
@@ -13,7 +14,8 @@ function pathOf(id: string): Path | undefined {
     ...(document?.diagram?.nodes ?? []),
     ...(document?.diagram?.wires ?? []),
   ];
-  return all.find((each) => each.id === id)?.path;
+  const block = document === null ? id : blockOf(document.graph, id);
+  return all.find((each) => each.id === id)?.path ?? all.find((each) => each.id === block)?.path;
 }
 
 /** Opens the property window of a block or a link. */

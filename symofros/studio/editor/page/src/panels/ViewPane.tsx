@@ -162,7 +162,7 @@ function Mechanism() {
 
 /** The mechanism in three dimensions. The page in the frame is viser's, kept apart from this one. */
 export function ViewPane() {
-  const { revision, path } = useDocument();
+  const { revision, path, diagram } = useDocument();
   const view = useStore((state) => state.view);
   const block = useStore((state) => state.block);
   useEffect(() => void look(), [revision, path, block]);
@@ -172,6 +172,10 @@ export function ViewPane() {
   useEffect(() => {
     if (isShown) void move({ dark: theme === "dark" });
   }, [isShown, theme]);
+  const selected = useStore((state) => state.selected);
+  useEffect(() => {
+    if (isShown) void move({ marked: diagram === null ? selected : [] });
+  }, [isShown, selected, diagram === null]);
   if (view === null) return <p className="pane quiet">Deriving the picture…</p>;
   if (!("address" in view)) return <Why fault={view} />;
   return (

@@ -79,7 +79,7 @@ export function Palette() {
         <button
           type="button"
           className="entry quiet"
-          disabled={!selected.some((id) => id.startsWith("bodies/") && !id.endsWith("/joint"))}
+          disabled={!selected.some((id) => /^bodies\/[^/]+$/.test(id))}
           title="Keep the selected bodies with their parameters, to be used in other models"
           onClick={() => show({ kind: "save part", bodies: selectedBodies() })}
         >

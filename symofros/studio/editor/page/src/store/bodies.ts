@@ -12,7 +12,7 @@ const data = (): JsonMap => now().document?.data ?? {};
 
 export function selectedBodies(): string[] {
   return now()
-    .selected.filter((id) => id.startsWith("bodies/") && !id.endsWith("/joint"))
+    .selected.filter((id) => /^bodies\/[^/]+$/.test(id))
     .map((id) => id.slice("bodies/".length));
 }
 

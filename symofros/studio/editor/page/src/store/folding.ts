@@ -1,5 +1,6 @@
 /** Folding subtrees, and moving a block into sight. */
 
+import { blockOf } from "../model/elements";
 import { loads, unfoldedFor } from "../model/folding";
 import { now, update } from "./store";
 
@@ -14,9 +15,9 @@ export function toggleFolds(ids: readonly string[]): void {
   update({ folded: [...kept, ...added] });
 }
 
-/** Chooses a block and moves it into sight, out of what is folded. */
+/** Chooses a block, a link or a frame, and moves it into sight, out of what is folded. */
 export function reveal(id: string): void {
   const graph = now().document?.graph;
-  const folded = graph === undefined ? [] : unfoldedFor(graph, now().folded, id);
+  const folded = graph === undefined ? [] : unfoldedFor(graph, now().folded, blockOf(graph, id));
   update({ selected: [id], sight: { id }, folded });
 }

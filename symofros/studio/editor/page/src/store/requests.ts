@@ -3,6 +3,7 @@
 import { Refused, Unreachable } from "../api/client";
 import type { Document } from "../api/types";
 import { completedDiagram } from "../model/diagram_layout";
+import { elementIds } from "../model/elements";
 import { completed } from "../model/layout";
 import { notify, now, update } from "./store";
 
@@ -14,7 +15,7 @@ export function accept(document: Document): void {
   // Another file, or a new start: what was chosen in the old one means nothing here.
   const fresh = old === null || old.path !== document.path;
   const { graph, diagram } = document;
-  const ids = new Set([...graph.nodes, ...(diagram?.nodes ?? []), ...(diagram?.wires ?? [])].map(({ id }) => id));
+  const ids = elementIds(document);
   update((state) => ({
     document,
     // Blocks that nobody has put stay where they were first shown.
@@ -24,7 +25,11 @@ export function accept(document: Document): void {
         : completedDiagram(diagram, fresh ? document.layout : state.places, document.layout),
     folded: fresh ? [] : state.folded,
     filter: fresh ? "" : state.filter,
-    selected: fresh ? [] : state.selected.filter((id) => ids.has(id)),
+    selected: fresh
+      ? []
+      : state.selected.every((id) => ids.has(id))
+        ? state.selected
+        : state.selected.filter((id) => ids.has(id)),
     jobs: fresh ? {} : state.jobs,
     live: fresh ? null : state.live,
     runs: fresh ? [] : state.runs,

@@ -8,6 +8,7 @@ import { refresh } from "./files";
 import { hear, hearSamples } from "./jobs";
 import { busy, explain } from "./requests";
 import { now, update } from "./store";
+import { pick } from "./view";
 
 const PAUSE = 1000;
 
@@ -24,6 +25,7 @@ async function attend(): Promise<void> {
         disk: () => void refresh(),
         job: hear,
         samples: hearSamples,
+        picked: pick,
         lost,
       });
     });

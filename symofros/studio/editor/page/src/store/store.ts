@@ -8,7 +8,7 @@ import { isMap } from "../model/paths";
 import type { KeptRun } from "../model/runs";
 
 export type Link = "ok" | "lost" | "expired";
-export type RightPane = "parameters" | "text" | "view";
+export type RightPane = "parameters" | "tree" | "text" | "view";
 export type BottomPane = "problems" | JobKind;
 
 export interface Anchor {

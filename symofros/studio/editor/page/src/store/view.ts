@@ -2,6 +2,8 @@
 
 import { get, post, Refused } from "../api/client";
 import type { Pose, Posed, View } from "../api/types";
+import { elementIds } from "../model/elements";
+import { reveal } from "./folding";
 import { explain } from "./requests";
 import { now, update } from "./store";
 
@@ -37,6 +39,12 @@ export async function look(): Promise<void> {
 export function lookAway(): void {
   asked += 1;
   update({ view: null, stuck: "" });
+}
+
+/** Chooses what somebody clicked in the picture. */
+export function pick(element: string): void {
+  const { document } = now();
+  if (shownView() !== null && document?.diagram === null && elementIds(document).has(element)) reveal(element);
 }
 
 let next: Pose | null = null;

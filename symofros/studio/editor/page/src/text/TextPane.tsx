@@ -8,10 +8,13 @@ import { drawSelection, EditorView, highlightActiveLine, keymap, lineNumbers } f
 import { useEffect, useRef } from "react";
 
 import type { Problem } from "../api/types";
+import { elementAt, linesOf } from "../model/elements";
 import { replacement } from "../model/merge";
 import { setText } from "../store/edits";
-import { useDocument } from "../store/store";
+import { reveal } from "../store/folding";
+import { now, useDocument, useStore } from "../store/store";
 import { appearance } from "./appearance";
+import { markedLines, markLines } from "./marked_lines";
 
 const PAUSE = 400;
 
@@ -37,6 +40,11 @@ export default function TextPane() {
   const timer = useRef(0);
   // What the typed text was made from.
   const base = useRef(document.text);
+  const selected = useStore((state) => state.selected);
+  // What the caret has chosen last.
+  const byCaret = useRef("");
+  // What the text has been scrolled to.
+  const seen = useRef<readonly string[]>([]);
 
   useEffect(() => {
     // What the person types goes to the server after a pause; what comes from there is marked by `remote`.
@@ -47,6 +55,17 @@ export default function TextPane() {
         timer.current = 0;
         void setText(change.view.state.doc.toString(), base.current);
       }, PAUSE);
+    });
+    // The caret chooses what its line defines, as far as the server has seen the text.
+    const placed = EditorView.updateListener.of((change) => {
+      const { document: known, selected } = now();
+      if (!change.transactions.some((each) => each.isUserEvent("select")) || timer.current !== 0 || known === null)
+        return;
+      const { head } = change.state.selection.main;
+      const id = elementAt(known.lines, change.state.doc.lineAt(head).number);
+      if (id === undefined || (selected.length === 1 && selected[0] === id)) return;
+      byCaret.current = id;
+      reveal(id);
     });
     const extensions = [
       lineNumbers(),
@@ -63,6 +82,8 @@ export default function TextPane() {
       keymap.of([...defaultKeymap, ...searchKeymap, ...historyKeymap, indentWithTab]),
       EditorView.contentAttributes.of({ "aria-label": "Text of the file", tabindex: "0" }),
       typed,
+      placed,
+      markedLines,
     ];
     // In a shadow tree the editor's styles are constructed sheets, which a strict content security policy allows.
     const root = (host.current as HTMLDivElement).attachShadow({ mode: "open" });
@@ -92,6 +113,20 @@ export default function TextPane() {
     }
     editor.dispatch(setDiagnostics(editor.state, diagnostics(document.problems, editor.state.doc)));
   }, [document]);
+
+  useEffect(() => {
+    const editor = view.current;
+    if (editor === null) return;
+    const lines = selected.flatMap((id) => [linesOf(document.lines, id) ?? []].filter((each) => each.length === 2));
+    editor.dispatch({ effects: markLines.of(lines) });
+    const first = lines[0]?.[0];
+    // Where the caret has chosen it, the lines are in sight.
+    const isSeen = seen.current === selected || byCaret.current === selected[0];
+    if (first !== undefined && first <= editor.state.doc.lines && !isSeen)
+      editor.dispatch({ effects: EditorView.scrollIntoView(editor.state.doc.line(first).from, { y: "center" }) });
+    byCaret.current = "";
+    seen.current = selected;
+  }, [selected, document]);
 
   return <div ref={host} className="text-pane" />;
 }

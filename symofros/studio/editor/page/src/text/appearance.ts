@@ -15,6 +15,7 @@ const frame = EditorView.theme({
   ".cm-scroller": { fontFamily: "var(--mono)", lineHeight: "1.5" },
   ".cm-gutters": { color: "var(--quiet)", backgroundColor: "var(--surface)", borderRight: "1px solid var(--line)" },
   ".cm-activeLine": { backgroundColor: "var(--hover)" },
+  ".cm-chosen, .cm-chosen.cm-activeLine": { backgroundColor: "var(--chosen)", boxShadow: "inset 3px 0 var(--accent)" },
   ".cm-cursor": { borderLeftColor: "var(--text)" },
   ".cm-selectionBackground, &.cm-focused > .cm-scroller > .cm-selectionLayer .cm-selectionBackground": {
     backgroundColor: "var(--selection)",
