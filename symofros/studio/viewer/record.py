@@ -29,6 +29,7 @@ from symofros.studio.viewer.playing.diagram_motion import shown_of
 from symofros.studio.viewer.playing.motion import Played, PlayedMotion, finite, motion_of, positive
 from symofros.studio.viewer.render.camera import Camera
 from symofros.studio.viewer.render.raster import Image, picture
+from symofros.studio.viewer.render.scale_bar import picture_height, scale_bar
 
 MOST_FRAMES = 20_000  # Eleven minutes at thirty a second.
 _INK = (60, 60, 60)
@@ -101,7 +102,7 @@ def record(
         paths: Curves drawn beside it, as of `Viewer`.
         rate: Pictures a second; those of a GIF last whole hundredths of a second.
         size: Width and height of films and pictures, even numbers.
-        caption: Whether time and exaggeration are written on films and pictures (Pillow, of the extra `view`).
+        caption: Whether time, exaggeration and a scale bar are on films and pictures (Pillow, of the extra `view`).
 
     Returns:
         The path; the file is there whole or not at all.
@@ -185,13 +186,20 @@ def _page(frames: _Recording) -> bytes:
 
 
 def _captioned(frames: _Recording, size: tuple[int, int]) -> Iterator[Image]:
-    """Pictures with their captions at the lower left."""
+    """Pictures with their captions at the lower left, and a scale bar at the lower right."""
     images = _extra("PIL.Image", "captions need Pillow", "symofros[view]")
     pencil = _extra("PIL.ImageDraw", "captions need Pillow", "symofros[view]")
     height = max(10, size[1] // 30)
+    camera = Camera.of(frames.drawing)
+    bar = scale_bar(picture_height(camera.position, camera.target, camera.fov))
     for image, text in zip(frames.pictures(size), frames.captions(), strict=True):
         drawn = images.fromarray(image)
-        pencil.Draw(drawn).text((height, size[1] - 2 * height), text, fill=_INK, font_size=height)
+        pen = pencil.Draw(drawn)
+        pen.text((height, size[1] - 2 * height), text, fill=_INK, font_size=height)
+        right, foot = size[0] - height, size[1] - height
+        left = right - round(bar.share * size[1])
+        pen.line([(left, foot - height // 3), (left, foot), (right, foot), (right, foot - height // 3)], fill=_INK)
+        pen.text(((left + right) / 2, foot - height // 3), bar.text, fill=_INK, font_size=height, anchor="ms")
         yield np.asarray(drawn)
 
 

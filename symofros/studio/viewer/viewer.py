@@ -15,6 +15,7 @@ from symofros.runtime.model import ArrayLike
 from symofros.simulation.results.trajectory import Trajectory
 from symofros.studio.viewer.drawing.poses import Mechanism, State
 from symofros.studio.viewer.drawing.tracks import tracks_of
+from symofros.studio.viewer.page.camera_watch import CameraWatch
 from symofros.studio.viewer.page.viewer_page import ViewerPage
 from symofros.studio.viewer.page.viser_server import LOOPBACK, PORT, start_server, stop_server
 from symofros.studio.viewer.playing.motion import Played, finite, motion_of, positive
@@ -47,6 +48,8 @@ class Viewer(ViewerPage):
             (n, 2) in its plane z = 0 [m]; red, green and blue, 0 to 255.
         on_pick: Called, in a thread of the server, with the element that somebody clicks in the picture: "bodies/arm",
             "bodies/arm/joint", "bodies/arm/frames/tip", "closures/loop". Nothing can be clicked without it.
+        on_zoom: Called, in a thread of the server, when it changes how high the picture is at the depth of what its
+            camera looks at [m]; None while more than one browser looks, or none.
 
     Attributes:
         painted: Number of pictures shown.
@@ -69,6 +72,7 @@ class Viewer(ViewerPage):
         controls: bool = True,
         paths: Sequence[Sequence[Any]] = (),
         on_pick: Callable[[str], None] | None = None,
+        on_zoom: Callable[[float | None], None] | None = None,
     ) -> None:
         self._period = 1.0 / positive("rate", rate)
         exaggeration = finite("exaggeration", exaggeration)
@@ -81,6 +85,7 @@ class Viewer(ViewerPage):
         self.dropped = 0
         try:
             super().__init__(server, mechanism, exaggeration, controls, on_pick)
+            self._camera = None if on_zoom is None else CameraWatch(server, on_zoom)
         except BaseException:
             stop_server(server)
             raise
@@ -113,6 +118,14 @@ class Viewer(ViewerPage):
     def is_closed(self) -> bool:
         """Whether it serves no more."""
         return self._closing
+
+    @property
+    def picture_height(self) -> float | None:
+        """Height of the picture at the depth of what its camera looks at [m]; None unless one browser looks.
+
+        Known where `on_zoom` was given.
+        """
+        return None if self._camera is None else self._camera.height
 
     # What is shown.
 

@@ -13,6 +13,8 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from symofros.errors import SymofrosError
+from symofros.studio.viewer.drawing.poses import Mechanism
+from symofros.studio.viewer.render.scale_bar import scale_bar
 
 SYSTEM = MODELS["planar_robot"]
 NQ = 10
@@ -110,4 +112,8 @@ def test_time_and_exaggeration_are_written_on_pictures(tmp_path: Path) -> None:
         with images.open(sf.record(SYSTEM, swing(1.0), tmp_path / f"{caption}.png", caption=caption, **how)) as image:
             pictures.append(np.asarray(image.convert("RGB")).astype(int))
     rows, columns = np.nonzero(np.abs(pictures[1] - pictures[0]).max(axis=2) > 60)
-    assert rows.size > 100 and rows.min() > 200 and columns.max() < 240  # A line at the foot.
+    assert rows.size > 100 and rows.min() > 200 and columns[columns < 240].size > 50  # A line at the foot.
+    # The camera sees 1.4 times the mechanism's size: its scale bar is as long as what it says, to a pixel.
+    bar = scale_bar(1.4 * Mechanism(SYSTEM).drawing().size)
+    drawn = columns[(columns > 240) & (rows == rows[columns > 240].max())]
+    assert np.ptp(drawn) == pytest.approx(bar.share * 240, abs=1.5)

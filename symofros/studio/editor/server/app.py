@@ -52,7 +52,7 @@ class Editor:
     def __init__(self, session: Session, view_token: str) -> None:
         self.session = session
         self.events = Events()
-        self.view = DocumentViewer(on_pick=lambda element: self.events.publish("picked", {"element": element}))
+        self.view = DocumentViewer(self.events.publish)
         self.relay = Relay(self.view, view_token)
         self.jobs = Jobs(self.events.publish)
         self.turn = anyio.Lock()

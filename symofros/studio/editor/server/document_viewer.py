@@ -42,9 +42,14 @@ class DocumentViewer:
     The viewer lives in this process: a picture costs milliseconds. Its poses are compiled when the mechanism changes.
     """
 
-    def __init__(self, on_pick: Callable[[str], None] | None = None) -> None:
-        """Begin with nothing shown; `on_pick` is called with the element that somebody clicks in the picture."""
-        self._turn, self._on_pick = Lock(), on_pick
+    def __init__(self, tell: Callable[[str, Json], None]) -> None:
+        """Begin with nothing shown.
+
+        Args:
+            tell: Called with the name of an event and its data: "picked", the element that somebody clicks in the
+                picture; "zoom", the height of the picture at the depth of what its camera looks at [m].
+        """
+        self._turn, self._tell = Lock(), tell
         self._viewer: Viewer | None = None
         self._page: bytes | None = None
         self._motion: tuple[Json, PlayedMotion] | None = None
@@ -83,7 +88,13 @@ class DocumentViewer:
 
     def _show(self, system: System) -> None:
         if self._viewer is None:
-            self._viewer = Viewer(system, port=0, controls=False, on_pick=self._on_pick)
+            self._viewer = Viewer(
+                system,
+                port=0,
+                controls=False,
+                on_pick=lambda element: self._tell("picked", {"element": element}),
+                on_zoom=lambda height: self._tell("zoom", {"height": height}),
+            )
         elif self._viewer.mechanism.system != system:
             self._viewer.set_system(system)
 
@@ -182,6 +193,7 @@ class DocumentViewer:
             "flexible": viewer.mechanism.is_flexible,
             "run_time": list(viewer.mechanism.model.names.par),
             "fault": self._fault,
+            "height": viewer.picture_height,
             **_stand(viewer),
         }
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from playwright.sync_api import Page, Response, expect
 
+import symofros as sf
+from symofros.studio.viewer.drawing.poses import Mechanism
 from tests.studio.editor.browser import steps
 from tests.studio.editor.browser.conftest import Server
 from tests.studio.editor.browser.scene import FEW, MANY, changed, differing, open_view, settled
@@ -132,3 +135,35 @@ def test_it_follows_edits_and_keeps_the_last_that_was_sound(serve: Callable[...,
     assert differing(settled(page)[LINE:], longer[LINE:]) < FEW
     page.get_by_role("button", name="Undo: ").first.click()
     expect(page.get_by_text("The last model without problems is shown")).to_have_count(0)
+
+
+def test_a_scale_bar_follows_the_zoom(serve: Callable[..., Server], page: Page, picture: Callable[[str], None]) -> None:
+    server = serve("robot.yaml", source=ROBOT)
+    steps.open_editor(page, server.url)
+    open_view(page)
+    bar = page.get_by_role("img", name=re.compile("^Scale: "))
+    frame = page.locator("iframe.view").bounding_box()
+    assert frame is not None
+
+    def pixels_of_a_metre() -> float:
+        number, unit = (bar.text_content() or "").split()
+        box = bar.bounding_box()
+        assert box is not None and box["width"] <= 0.3 * frame["height"] + 4
+        return box["width"] / (float(number) * {"m": 1.0, "cm": 0.01, "mm": 0.001}[unit])
+
+    # The camera that comes first sees 1.4 times the mechanism's size (Camera.of).
+    size = Mechanism(sf.load(ROBOT)).drawing().size
+    assert pixels_of_a_metre() == pytest.approx(frame["height"] / (1.4 * size), rel=0.05)
+    picture("scale")
+    before = pixels_of_a_metre()
+    page.mouse.move(frame["x"] + frame["width"] / 3, frame["y"] + frame["height"] / 2)
+    text = bar.text_content() or ""
+    for _ in range(8):
+        page.mouse.wheel(0, -300)
+        page.wait_for_timeout(100)
+    expect(bar).not_to_have_text(text)
+    page.wait_for_timeout(500)
+    assert pixels_of_a_metre() > 1.5 * before
+    page.set_viewport_size({"width": 375, "height": 667})
+    page.wait_for_timeout(500)
+    picture("scale-375")

@@ -10,6 +10,8 @@ export interface Listener {
   samples(samples: Samples): void;
   /** Somebody clicked an element in the 3-D view. */
   picked(element: string): void;
+  /** How high the picture of the 3-D view is at the depth of what its camera looks at [m]. */
+  zoomed(height: number | null): void;
   lost(): void;
 }
 
@@ -26,6 +28,9 @@ export function listen(listener: Listener): void {
   });
   source.addEventListener("picked", (event) => {
     listener.picked((JSON.parse(event.data as string) as { element: string }).element);
+  });
+  source.addEventListener("zoom", (event) => {
+    listener.zoomed((JSON.parse(event.data as string) as { height: number | null }).height);
   });
   source.addEventListener("disk", () => listener.disk());
   source.addEventListener("samples", (event) => listener.samples(JSON.parse(event.data as string) as Samples));

@@ -268,6 +268,8 @@ export interface View extends Stand {
   flexible: boolean;
   /** Names of the parameters that move it at once; others need the model to be built anew. */
   run_time: string[];
+  /** Height of the picture at the depth of what its camera looks at [m]; null while several pages look, or none. */
+  height: number | null;
   /** Why it is not the document as it is now, but the last one that could be shown. */
   fault: Fault | null;
 }

@@ -1,6 +1,7 @@
 import { useEffect, useState } from "react";
 
 import type { Coordinate, Fault, View } from "../api/types";
+import { scaleBar } from "../model/scale";
 import { update, useDocument, useStore } from "../store/store";
 import { useTheme } from "../store/theme";
 import { look, lookAway, move, shownBlock } from "../store/view";
@@ -160,6 +161,17 @@ function Mechanism() {
   );
 }
 
+/** A bar of a round length at the depth of what the camera looks at; it follows the zoom. */
+function Scale({ height }: { height: number | null }) {
+  const bar = height === null ? null : scaleBar(height);
+  if (bar === null) return null;
+  return (
+    <div className="scale" style={{ width: `${100 * bar.share}cqh` }} role="img" aria-label={`Scale: ${bar.text}`}>
+      {bar.text}
+    </div>
+  );
+}
+
 /** The mechanism in three dimensions. The page in the frame is viser's, kept apart from this one. */
 export function ViewPane() {
   const { revision, path, diagram } = useDocument();
@@ -186,7 +198,10 @@ export function ViewPane() {
           The last model without problems is shown: {view.fault.object}.
         </p>
       )}
-      <iframe className="view" src={view.address} title="3-D view" sandbox="allow-scripts" />
+      <div className="picture">
+        <iframe className="view" src={view.address} title="3-D view" sandbox="allow-scripts" />
+        <Scale height={view.height} />
+      </div>
       <Controls view={view} />
     </div>
   );

@@ -8,7 +8,7 @@ import { refresh } from "./files";
 import { hear, hearSamples } from "./jobs";
 import { busy, explain } from "./requests";
 import { now, update } from "./store";
-import { pick } from "./view";
+import { pick, zoom } from "./view";
 
 const PAUSE = 1000;
 
@@ -26,6 +26,7 @@ async function attend(): Promise<void> {
         job: hear,
         samples: hearSamples,
         picked: pick,
+        zoomed: zoom,
         lost,
       });
     });

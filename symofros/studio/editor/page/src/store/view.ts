@@ -47,6 +47,11 @@ export function pick(element: string): void {
   if (shownView() !== null && document?.diagram === null && elementIds(document).has(element)) reveal(element);
 }
 
+export function zoom(height: number | null): void {
+  const view = shownView();
+  if (view !== null) update({ view: { ...view, height } });
+}
+
 let next: Pose | null = null;
 let moving = false;
 
