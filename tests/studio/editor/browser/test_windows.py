@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Page, expect
 
+import symofros as sf
 from tests.studio.editor.browser import steps
 from tests.studio.editor.browser.conftest import Server
 
@@ -38,3 +39,25 @@ def test_a_window_that_is_only_looked_at_changes_nothing(serve: Callable[..., Se
             expect(steps.window(page).get_by_role("alert")).to_have_count(0)
         steps.accept(page)
     expect(page.get_by_role("button", name="Undo", exact=True)).to_be_disabled()
+
+
+def test_coordinates_are_coupled_by_formula(serve: Callable[..., Server], page: Page) -> None:
+    server = serve("pair.yaml", source=MODELS / "rigid" / "double_pendulum.yaml")
+    steps.open_editor(page, server.url)
+    page.get_by_role("button", name="Coupling…").click()
+    steps.fill(page, "Name of a new entry of couplings of coordinates", "gear")
+    page.keyboard.press("Enter")
+    steps.window(page).get_by_label("Couplings of coordinates gear", exact=True).fill("q2 - 3*q1")
+    steps.accept(page)
+    steps.problems(page, 0)
+    steps.saved(page)
+    system = sf.load(server.file)
+    assert [item.name for item in system.constraints] == ["gear"]
+    # A coordinate that there is not: its problem leads back to the window that has it.
+    page.get_by_role("button", name="Coupling…").click()
+    steps.window(page).get_by_label("Couplings of coordinates gear", exact=True).fill("q2 - 3*q9")
+    steps.accept(page)
+    steps.problems(page, 1)
+    page.get_by_role("banner").get_by_role("button", name="1 problem").click()
+    steps.results(page).get_by_role("button", name="q9").click()
+    expect(steps.window(page).get_by_label("Couplings of coordinates gear", exact=True)).to_have_value("q2 - 3*q9")

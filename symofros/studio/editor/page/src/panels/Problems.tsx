@@ -1,4 +1,5 @@
 import type { Problem } from "../api/types";
+import { SYSTEM } from "../model/sections";
 import { reveal } from "../store/folding";
 import { show, update, useDocument } from "../store/store";
 import { Glyph } from "../shell/Glyph";
@@ -9,9 +10,9 @@ function go({ node, path }: Problem): void {
   const [section, name] = path;
   if (section === "parameters" || section === "inputs") update({ right: "parameters" });
   else if (section === "simulation" || section === "wires") update({ right: "text" });
-  else if (path.length >= 2 && section !== undefined && name !== undefined && section !== "system")
+  else if (SYSTEM.includes(String(section))) show({ kind: "properties", path: ["system"] });
+  else if (path.length >= 2 && section !== undefined && name !== undefined)
     show({ kind: "properties", path: [section, name], entry: path.slice(2) });
-  else if (section === "system") show({ kind: "properties", path: ["system"] });
   else update({ right: "text" });
 }
 

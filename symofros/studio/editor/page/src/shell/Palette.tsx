@@ -1,4 +1,4 @@
-import type { DragEvent } from "react";
+import type { DragEvent, ReactNode } from "react";
 
 import type { PaletteItem } from "../api/types";
 import { DRAGGED } from "../canvas/Board";
@@ -30,7 +30,13 @@ export function Entry({ glyph, title, help, word, onAdd, draggable }: EntryProps
   );
 }
 
-function Group({ title, items }: { title: string; items: PaletteItem[] }) {
+interface GroupProps {
+  title: string;
+  items: PaletteItem[];
+  children?: ReactNode;
+}
+
+function Group({ title, items, children }: GroupProps) {
   if (items.length === 0) return null;
   return (
     <section aria-label={title}>
@@ -46,6 +52,7 @@ function Group({ title, items }: { title: string; items: PaletteItem[] }) {
           onAdd={() => void add(item)}
         />
       ))}
+      {children}
     </section>
   );
 }
@@ -61,7 +68,16 @@ export function Palette() {
   return (
     <nav className="palette" aria-label="Palette">
       <Group title="Bodies" items={of(["bodies"])} />
-      <Group title="Constraints and links" items={of(["closures", "connections", "nonholonomic"])} />
+      <Group title="Constraints and links" items={of(["closures", "connections", "nonholonomic"])}>
+        <Entry
+          glyph="motor"
+          title="Coupling…"
+          help="A formula of coordinates that stays zero, such as q2 - 3*q1: a gear, a belt. In the window of the system."
+          word=""
+          draggable={false}
+          onAdd={() => show({ kind: "properties", path: ["system"] })}
+        />
+      </Group>
       <Group title="Numbers" items={of(NUMBERS)} />
       <section aria-label="My parts">
         <h2>My parts</h2>

@@ -118,11 +118,14 @@ export function BodyForm({ value, onChange, path, entry }: Props & { entry: Path
     <Tabs<Page> tabs={tabs} current={page} onChange={turn} label="Properties of the body">
       {page === "joint" ? <JointPage {...props} /> : null}
       {page === "matter" && isBeam ? (
-        <BeamForm
-          value={mapAt(value, ["beam"])}
-          onChange={(next) => onChange(replaced(value, "beam", next))}
-          path={[...path, "beam"]}
-        />
+        <>
+          <BeamForm
+            value={mapAt(value, ["beam"])}
+            onChange={(next) => onChange(replaced(value, "beam", next))}
+            path={[...path, "beam"]}
+          />
+          <RecordField shape={body} value={value} onChange={onChange} path={path} only={["waive"]} />
+        </>
       ) : null}
       {page === "matter" && !isBeam ? <MatterForm value={value} onChange={onChange} path={path} shape={body} /> : null}
       {page === "frames" ? <FramesPage {...props} /> : null}

@@ -11,6 +11,7 @@ import { Window } from "../shell/Window";
 import { edit } from "../store/edits";
 import { enter } from "../store/files";
 import { dismiss, useDocument, useStore } from "../store/store";
+import { SYSTEM } from "../model/sections";
 import { BodyForm } from "./BodyForm";
 import { DiagramForm } from "./DiagramForm";
 import { EntryForm } from "./EntryForm";
@@ -27,9 +28,6 @@ const NOUNS: Record<string, string> = {
   simulation: "Simulation",
   wires: "Wires",
 };
-
-/** What the system window shows: all that concerns no single block. */
-const SYSTEM = ["system", "virtual_power", "potentials"] as const;
 
 async function goIn(file: string): Promise<void> {
   if (await enter(file)) dismiss();

@@ -3,7 +3,7 @@ import { useForm } from "../forms/context";
 import { FieldControl } from "../forms/Field";
 import { RecordField } from "../forms/Record";
 import { definition, field } from "../forms/schema";
-import { mapAt, replaced } from "../model/paths";
+import { at, mapAt, replaced } from "../model/paths";
 
 interface Props {
   value: Json | undefined;
@@ -13,9 +13,15 @@ interface Props {
 const SECTIONS = [
   { key: "virtual_power", title: "Virtual power", help: "Internal forces as F(q, dq) on a speed such as dq1." },
   { key: "potentials", title: "Potential energies", help: "Formulas of coordinates, parameters and t [J]." },
+  {
+    key: "couplings",
+    title: "Couplings of coordinates",
+    help: "Formulas of coordinates and parameters that stay zero, such as q2 - 3*q1: gears, belts, mimic joints.",
+  },
+  { key: "include", title: "Included files", help: "Parts to merge, in the folder of this file." },
 ] as const;
 
-/** Gravity and name; virtual powers and potentials, which concern several bodies. */
+/** Gravity and name; what concerns several bodies; files that are included. */
 export function SystemForm({ value, onChange }: Props) {
   const { root } = useForm();
   const { shape } = definition(root, "SystemEntry");
@@ -37,7 +43,7 @@ export function SystemForm({ value, onChange }: Props) {
           <FieldControl
             name={key}
             field={field(root, mapAt(properties, [key]))}
-            value={mapAt(value, [key])}
+            value={at(value, [key])}
             onChange={(next) => onChange(replaced(value, key, next))}
             path={[key]}
             label={title}
