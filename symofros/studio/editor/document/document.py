@@ -37,12 +37,13 @@ class EditedDocument:
         text: The text, without a byte order mark.
         saved: The text on disk when it was last read or written; None if it was never there.
         revision: Grows with every change of the text.
+        step: How many edits are in force: a new or repeated one adds one, one that is undone takes it away.
     """
 
     def __init__(self, file: Path, text: str, saved: str | None, *, marked: bool = False, revision: int = 1) -> None:
         """Begin with a text; `marked`: the file begins with a byte order mark."""
         self.file, self.text, self.saved, self.marked = file, text, saved, marked
-        self.revision = revision
+        self.revision, self.step = revision, 0
         self._undo: list[UndoStep] = []
         self._redo: list[UndoStep] = []
         self._analysis: Analysis | None = None
@@ -90,19 +91,21 @@ class EditedDocument:
         if text != self.text:
             self._undo.append(UndoStep(label, self.text))
             self._redo.clear()
+            self.step += 1
             self._keep_bounds()
             self._become(text)
 
     def undo(self) -> None:
         """Go one step back, if there is one."""
-        self._swap(self._undo, self._redo)
+        self._swap(self._undo, self._redo, -1)
 
     def redo(self) -> None:
         """Go one step forth, if there is one."""
-        self._swap(self._redo, self._undo)
+        self._swap(self._redo, self._undo, 1)
 
-    def _swap(self, source: list[UndoStep], target: list[UndoStep]) -> None:
+    def _swap(self, source: list[UndoStep], target: list[UndoStep], step: int) -> None:
         if source:
+            self.step += step
             step = source.pop()
             target.append(UndoStep(step.label, self.text))
             self._become(step.text)
@@ -126,6 +129,7 @@ class EditedDocument:
             "name": self.file.name,
             "revision": self.revision,
             "dirty": self.dirty,
+            "step": self.step,
             "can_undo": bool(self._undo),
             "can_redo": bool(self._redo),
             "undo_label": self._undo[-1].label if self._undo else "",

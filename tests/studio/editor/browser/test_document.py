@@ -367,3 +367,50 @@ def test_a_new_file_is_no_fault_and_fits_a_narrow_page(serve: Callable[..., Serv
     for width in (640, 390):
         page.set_viewport_size({"width": width, "height": 760})
         assert page.evaluate("document.documentElement.scrollWidth") <= width
+
+
+def test_moves_of_blocks_are_undone_in_turn_with_edits(serve: Callable[..., Server], page: Page) -> None:
+    server = serve("arm.yaml", source=PENDULUM)
+    steps.open_editor(page, server.url)
+    lower = steps.block(page, "bodies/lower")
+
+    def place() -> tuple[int, int]:
+        box = lower.bounding_box()
+        assert box is not None
+        return round(box["x"]), round(box["y"])
+
+    def drag(by: int) -> tuple[int, int]:
+        x, y = place()
+        page.mouse.move(x + 40, y + 8)
+        page.mouse.down()
+        page.mouse.move(x + 40 + by // 2, y + 8 + by // 2)
+        page.mouse.move(x + 40 + by, y + 8 + by)
+        page.mouse.up()
+        return place()
+
+    first = place()
+    set_parameter(page, "m2", "0.9")
+    second = drag(64)
+    assert second != first
+    expect(page.get_by_role("button", name="Undo: move lower")).to_be_enabled()
+    set_parameter(page, "m1", "1.5")
+    expect(page.get_by_role("button", name="Undo: change m1")).to_be_enabled()
+    third = drag(-32)
+    assert third not in (first, second)
+    names = ("move lower", "change m1", "move lower", "change m2")
+    places = (second, second, first, first)
+    for name, there in zip(names, places, strict=True):
+        page.get_by_role("button", name=f"Undo: {name}").click()
+        expect(page.get_by_role("button", name=f"Redo: {name}")).to_be_enabled()
+        page.wait_for_timeout(100)
+        assert place() == there
+    expect(page.get_by_role("button", name="Undo", exact=True)).to_be_disabled()
+    for name, there in zip(reversed(names), (first, second, second, third), strict=True):
+        page.get_by_role("button", name=f"Redo: {name}").click()
+        expect(page.get_by_role("button", name=f"Undo: {name}")).to_be_enabled()
+        page.wait_for_timeout(100)
+        assert place() == there
+    value(page, "m1")("1.5")
+    page.keyboard.press("Control+z")
+    page.wait_for_timeout(200)
+    assert place() == second

@@ -29,6 +29,7 @@ KEYS = {
     "name",
     "revision",
     "dirty",
+    "step",
     "can_undo",
     "can_redo",
     "undo_label",

@@ -24,6 +24,7 @@ const document: Document = {
   name: "a.yaml",
   revision: 1,
   dirty: false,
+  step: 0,
   can_undo: false,
   can_redo: false,
   undo_label: null,

@@ -124,6 +124,8 @@ export interface Document {
   name: string;
   revision: number;
   dirty: boolean;
+  /** How many edits are in force. */
+  step: number;
   can_undo: boolean;
   can_redo: boolean;
   undo_label: string | null;

@@ -21,7 +21,7 @@ import { type ReactNode, useCallback, useEffect, useMemo, useState } from "react
 
 import type { Point } from "../api/types";
 import { isFrame } from "../model/elements";
-import { place } from "../store/edits";
+import { moveBlocks } from "../store/edits";
 import { now, update, useDocument, useStore } from "../store/store";
 import { useTheme } from "../store/theme";
 import { type Extent, useSight, useWholeView } from "./useSight";
@@ -104,7 +104,7 @@ export function Board<N extends Node>({
       return ["id" in change ? change.id : "", [Math.round(at?.x ?? 0), Math.round(at?.y ?? 0)] as const] as const;
     });
     // The others are kept where they are shown, too.
-    void place({ ...shownPlaces(), ...Object.fromEntries(entries) });
+    void moveBlocks({ ...shownPlaces(), ...Object.fromEntries(entries) });
   }, []);
   const drawn = useMemo(() => edges(nodes), [edges, nodes]);
 

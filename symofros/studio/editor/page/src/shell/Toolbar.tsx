@@ -4,10 +4,11 @@ import type { JobKind } from "../api/jobs";
 import { pace, whole } from "../canvas/useSight";
 import { chooseImport } from "../files/choose";
 import { savePicture } from "../files/picture";
+import { toRedo, toUndo } from "../model/moves";
 import { tidyDiagram } from "../model/diagram_layout";
 import { tidy } from "../model/layout";
 import { copy, paste } from "../store/clipboard";
-import { place, redo, undo } from "../store/edits";
+import { moveBlocks, redo, undo } from "../store/edits";
 import { remove } from "../store/elements";
 import { browse, leave, save } from "../store/files";
 import { run } from "../store/jobs";
@@ -50,7 +51,12 @@ function EditMenu() {
         { title: "Find…", keys: "Ctrl K", act: () => show({ kind: "search" }) },
         ...(isDiagram
           ? [{ title: "Simulation: end, step, plots…", act: () => show({ kind: "properties", path: ["simulation"] }) }]
-          : [{ title: "System: gravity, virtual power…", act: () => show({ kind: "properties", path: ["system"] }) }]),
+          : [
+              {
+                title: "System: gravity, virtual power, couplings…",
+                act: () => show({ kind: "properties", path: ["system"] }),
+              },
+            ]),
         { title: "Keys", keys: "?", act: () => show({ kind: "keys" }) },
       ]}
     />
@@ -141,8 +147,11 @@ export function Toolbar() {
   const document = useDocument();
   const flow = useReactFlow();
   const right = useStore((state) => state.right);
+  const moves = useStore((state) => state.moves);
+  const undoable = toUndo(moves, document.step)?.label ?? (document.can_undo ? (document.undo_label ?? "") : null);
+  const redoable = toRedo(moves, document.step)?.label ?? (document.can_redo ? (document.redo_label ?? "") : null);
   const arrange = async (): Promise<void> => {
-    await place(document.diagram === null ? tidy(document.graph) : tidyDiagram(document.diagram));
+    await moveBlocks(document.diagram === null ? tidy(document.graph) : tidyDiagram(document.diagram));
     requestAnimationFrame(() => void flow.fitView({ ...whole(), duration: pace() }));
   };
   return (
@@ -152,14 +161,14 @@ export function Toolbar() {
       <div className="cluster" role="group" aria-label="Diagram">
         <IconButton
           glyph="undo"
-          label={document.can_undo ? `Undo: ${document.undo_label ?? ""} (Ctrl Z)` : "Undo"}
-          disabled={!document.can_undo}
+          label={undoable === null ? "Undo" : `Undo: ${undoable} (Ctrl Z)`}
+          disabled={undoable === null}
           onClick={() => void undo()}
         />
         <IconButton
           glyph="redo"
-          label={document.can_redo ? `Redo: ${document.redo_label ?? ""} (Ctrl Y)` : "Redo"}
-          disabled={!document.can_redo}
+          label={redoable === null ? "Redo" : `Redo: ${redoable} (Ctrl Y)`}
+          disabled={redoable === null}
           onClick={() => void redo()}
         />
         <IconButton glyph="layout" label="Arrange the blocks" onClick={() => void arrange()} />

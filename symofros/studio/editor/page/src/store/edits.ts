@@ -3,6 +3,7 @@
 import { post, type Refused } from "../api/client";
 import type { Document, Edit, Json, Path, Point } from "../api/types";
 import { merged } from "../model/merge";
+import { afterEdit, recorded, redoneOne, toRedo, toUndo, undoneOne } from "../model/moves";
 import { at } from "../model/paths";
 import { accept, explain, ordered } from "./requests";
 import { notify, now, update } from "./store";
@@ -14,6 +15,9 @@ function applies(edit: Edit, document: Document): boolean {
   const place = edit.op === "set" ? edit.path.slice(0, -1) : edit.path;
   return place.length === 0 || at(document.data, place) !== undefined;
 }
+
+/** What goes back and forth between edits, and makes none. */
+const STEPS = ["api/undo", "api/redo"];
 
 /** A change by request: with the revision it is of; made again on a newer document if it still fits there. */
 export async function change(
@@ -44,8 +48,10 @@ export async function change(
     return undefined;
   };
   const document = await ordered(ask, stale);
-  if (document !== undefined) accept(document);
-  return document !== undefined;
+  if (document === undefined) return false;
+  accept(document);
+  if (!STEPS.includes(address)) update((state) => ({ moves: afterEdit(state.moves) }));
+  return true;
 }
 
 /** All edits or none, as one step of undo. Made again on a newer document if their places are still there. */
@@ -83,20 +89,46 @@ export const setText = (text: string, base: string): Promise<boolean> =>
     () => ({ text: merged(base, text, now().document?.text ?? base) }),
     () => true,
   );
-export const undo = (): Promise<boolean> =>
-  change(
-    "api/undo",
-    () => ({}),
-    () => true,
-  );
-export const redo = (): Promise<boolean> =>
-  change(
-    "api/redo",
-    () => ({}),
-    () => true,
-  );
 
-/** Puts blocks; not part of undo. */
+const step = (): number => now().document?.step ?? 0;
+
+/** Takes back what was done last: a move of blocks, or an edit of the text. */
+export async function undo(): Promise<void> {
+  // What is on its way was done before.
+  await ordered(() => Promise.resolve());
+  const move = toUndo(now().moves, step());
+  if (move !== undefined) {
+    update((state) => ({ moves: undoneOne(state.moves) }));
+    await place(move.before);
+  } else
+    await change(
+      "api/undo",
+      () => ({}),
+      () => true,
+    );
+}
+
+export async function redo(): Promise<void> {
+  await ordered(() => Promise.resolve());
+  const move = toRedo(now().moves, step());
+  if (move !== undefined) {
+    update((state) => ({ moves: redoneOne(state.moves) }));
+    await place(move.after);
+  } else
+    await change(
+      "api/redo",
+      () => ({}),
+      () => true,
+    );
+}
+
+/** Puts blocks elsewhere; undo puts them back. */
+export async function moveBlocks(places: Record<string, Point>): Promise<void> {
+  update((state) => ({ moves: recorded(state.moves, state.places, places, step(), Date.now()) }));
+  await place(places);
+}
+
+/** Puts blocks where they shall be first seen; not part of undo. */
 export async function place(places: Record<string, Point>): Promise<void> {
   update((state) => ({ places: { ...state.places, ...places } }));
   await ordered(() => post("api/layout", { positions: places }));

@@ -5,6 +5,7 @@ import type { Document } from "../api/types";
 import { completedDiagram } from "../model/diagram_layout";
 import { elementIds } from "../model/elements";
 import { completed } from "../model/layout";
+import { NO_MOVES } from "../model/moves";
 import { notify, now, update } from "./store";
 
 let queue: Promise<unknown> = Promise.resolve();
@@ -23,6 +24,7 @@ export function accept(document: Document): void {
       diagram === null
         ? completed(graph, fresh ? document.layout : state.places, document.layout)
         : completedDiagram(diagram, fresh ? document.layout : state.places, document.layout),
+    moves: fresh ? NO_MOVES : state.moves,
     folded: fresh ? [] : state.folded,
     filter: fresh ? "" : state.filter,
     selected: fresh

@@ -4,6 +4,7 @@ import { create } from "zustand";
 
 import type { Job, JobKind, RunPlot } from "../api/jobs";
 import type { Catalogue, Document, Fault, FileEntry, Json, LibraryPart, Path, Point, View } from "../api/types";
+import { type Moves, NO_MOVES } from "../model/moves";
 import { isMap } from "../model/paths";
 import type { KeptRun } from "../model/runs";
 
@@ -50,6 +51,8 @@ export interface State {
   document: Document | null;
   places: Record<string, Point>;
   selected: string[];
+  /** Moves of blocks that can be undone and done again. */
+  moves: Moves;
   /** Bodies that stand for all that they carry. */
   folded: readonly string[];
   /** What the names of the shown parameters have in them. */
@@ -84,6 +87,7 @@ export const useStore = create<State>(() => ({
   document: null,
   places: {},
   selected: [],
+  moves: NO_MOVES,
   folded: [],
   filter: "",
   sight: null,
