@@ -8,14 +8,14 @@ from functools import cached_property
 
 from symofros.description.beam import PRE_STRAINS, STATION, Beam
 from symofros.description.values import Value, symbols
-from symofros.expr.edges import ZERO, Edge
+from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.expression import Expression
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Vec3
 from symofros.mechanics.beams.fields import Form, no_form
 from symofros.mechanics.beams.integrals import LengthIntegrator, Lower, at_station
 from symofros.mechanics.beams.piecewise import gauss
-from symofros.mechanics.beams.strains import TURNING, Rows, Strains, strains_of
+from symofros.mechanics.beams.strains import TURNING, Strains, strains_of
 from symofros.mechanics.beams.turn import Moments, Turn
 
 # Gauss nodes for the integral of a pre-strain between two sections.
@@ -184,7 +184,8 @@ class Rod:
     def _after(self, section: Section, step: Turn) -> Section:
         """The section at the end of a step (8), (9)."""
         g, none = self.g, Vec3(self.g)
-        T = section.R_BS @ step.spinning
+        end = section.R_BS @ step.rotation
+        T = step.spinning(section.R_BS, end)
         spins = list(section.spins)
         of_axis = {}
         for axis in sorted({axis for axis, _ in self.strains.axes if axis < TURNING}):
@@ -194,7 +195,7 @@ class Rod:
         for i, ((axis, _), *weights) in enumerate(zip(self.strains.axes, *step.tables, strict=True)):
             if axis in of_axis:
                 spins[i] = spins[i] + self.combined(weights, of_axis[axis])
-        return Section(section.R_BS @ step.rotation, tuple(spins))
+        return Section(end, tuple(spins))
 
     # Positions: sums of tangents, with weights that are numbers.
 
@@ -233,11 +234,14 @@ class Rod:
         return tuple(rows)
 
     def combined(self, row: Sequence[float], vectors: Sequence[Vec3]) -> Vec3:
+        """A sum of vectors with weights that are numbers."""
+        return self.weighted(tuple(map(self.g.constant, row)), vectors)
+
+    def weighted(self, row: Sequence[Edge], vectors: Sequence[Vec3]) -> Vec3:
         """A sum of vectors with weights."""
         total = Vec3(self.g)
         for weight, vector in zip(row, vectors, strict=True):
-            if weight:
-                total = total + vector.scaled(self.g.constant(weight))
+            total = total + vector.scaled(weight)
         return total
 
     def position(self, xi: float) -> Vec3:
@@ -248,15 +252,22 @@ class Rod:
         """Derivative of the position at a station by a coordinate."""
         return self.combined(self.strains.from_root(xi), self.partial_tangents[i]).scaled(self.along.L)
 
-    def angular_rates(self, speeds: Sequence[Edge]) -> list[tuple[Vec3, Vec3]]:
-        """Angular velocity of each section in B, and its rate at constant speeds (11)."""
-        g = self.g
+    def angular_rates(self, w: Vec3, alpha: Vec3, speeds: Sequence[Edge]) -> list[tuple[Vec3, Vec3]]:
+        """Angular velocity of each section in the world, and its rate at constant speeds, in B (11).
+
+        Args:
+            w: Angular velocity of the root.
+            alpha: Angular acceleration of the root.
+            speeds: Rates of the strain coordinates.
+        """
         if self.axis is not None:
-            return [(self.spin(section, speeds), Vec3(g)) for section in self.sections]
-        rates, w, alpha, section = [], Vec3(g), Vec3(g), self.root
+            spins = [self.spin(section, speeds) for section in self.sections]
+            return [(w + spin, alpha + w.cross(spin)) for spin in spins]
+        rates, section = [], self.root
         for step, following in zip(self._steps, self.sections, strict=True):
             change = self._moments(step.tables, speeds)
-            relative, relative_rate = (section.R_BS.times(x) for x in step.rates(change))
+            spinning = step.spinning(section.R_BS, following.R_BS)  # The nodes that partial velocities are made of.
+            relative, relative_rate = step.rates(change, section.R_BS, spinning)
             alpha = alpha + (w.cross(relative) + relative_rate)
             w, section = w + relative, following
             rates.append((w, alpha))
@@ -272,13 +283,18 @@ class Rod:
     # Mass and stiffness.
 
     @cached_property
-    def mass_points(self) -> tuple[Rows, tuple[Edge, ...]]:
-        """Points that have the second moments of the rod: rows of their positions over L, and masses times L^2 (12)."""
+    def mass_points(self) -> tuple[tuple[Edge, ...], ...]:
+        """Weights of the tangents in points that have the second moments of the rod, each of unit mass (12).
+
+        The root of the mass is in the weights, which depend on parameters alone.
+        """
         g, L = self.g, self.along.L
         if STATION not in symbols(self.beam.rhoA):
-            whole = g.mul(self.along.lower(self.beam.rhoA), g.mul(L, g.mul(L, L)))
-            return self.strains.mass_points, (whole,)
-        return self.strains.positions, tuple(g.mul(share, g.mul(L, L)) for share in self.masses())
+            rows, masses = self.strains.mass_points, (self.mass,) * len(self.sections)
+        else:
+            rows, masses = self.strains.positions, self.masses()
+        roots = (g.mul(g.sqrt(mass), L) for mass in masses)
+        return tuple(tuple(g.mul(g.constant(x), root) for x in row) for row, root in zip(rows, roots, strict=True))
 
     def masses(self, weights: Sequence[float] | None = None) -> tuple[Edge, ...]:
         """Mass at each of the stations of masses; of a part, with its weights."""
@@ -295,14 +311,36 @@ class Rod:
 
     @cached_property
     def point_positions(self) -> tuple[Vec3, ...]:
-        """Positions of the mass points over the length, in B."""
-        return tuple(self.combined(row, self.tangents) for row in self.mass_points[0])
+        """Positions of the mass points times the roots of their masses, in B."""
+        return tuple(self.weighted(row, self.tangents) for row in self.mass_points)
 
     @cached_property
     def point_partials(self) -> tuple[tuple[Vec3, ...], ...]:
         """Derivatives of these positions by each coordinate: one row a coordinate."""
-        rows = self.mass_points[0]
-        return tuple(tuple(self.combined(row, partial) for row in rows) for partial in self.partial_tangents)
+        return tuple(
+            tuple(self.weighted(row, partial) for row in self.mass_points) for partial in self.partial_tangents
+        )
+
+    @cached_property
+    def _cosines(self) -> tuple[tuple[Edge, ...], ...]:
+        """Scalar products of the tangents of a rod that turns in a plane without stretch and shear."""
+        t = self.tangents
+        return tuple(tuple(ONE if k == j else t[k].dot(t[j]) for j in range(len(t))) for k in range(len(t)))
+
+    @cached_property
+    def is_bent_in_plane(self) -> bool:
+        """Whether the tangents turn in one plane, and the rod neither stretches nor shears."""
+        return self.axis in (1, 2) and {k for k, _ in self.strains.axes} == {self.axis}
+
+    def paired(self, left: Sequence[float], right: Sequence[float]) -> Edge:
+        """Integral of the product of two positions over the mass, the tangents being multiplied by numbers (13a)."""
+        g, total = self.g, ZERO
+        for k in range(len(left)):
+            for j in range(k + 1):
+                weight = left[k] * right[k] if j == k else left[k] * right[j] + left[j] * right[k]
+                second = g.sum(g.mul(row[k], row[j]) for row in self.mass_points)
+                total = g.add(total, g.mul(g.mul(g.constant(weight), second), self._cosines[k][j]))
+        return total
 
     @cached_property
     def inertia_axes(self) -> tuple[InertiaAxis, ...]:
@@ -331,24 +369,15 @@ class Rod:
 
     def first_moment(self, vectors: Sequence[Vec3]) -> Vec3:
         """Mass times the position that vectors in place of the tangents give to the mass centre, S of section 4."""
-        if STATION not in symbols(self.beam.rhoA):
-            return self.combined(self.strains.first_moments, vectors).scaled(self.mass_length)
-        total = Vec3(self.g)
-        for weight, vector in zip(self.first_moment_weights, vectors, strict=True):
-            total = total + vector.scaled(weight)
-        return total
-
-    @cached_property
-    def mass_length(self) -> Edge:
-        """Mass times length of a rod whose section does not change."""
-        return self.g.mul(self.mass, self.along.L)
+        return self.weighted(self.first_moment_weights, vectors)
 
     @cached_property
     def first_moment_weights(self) -> tuple[Edge, ...]:
         """Weights of the vectors in `first_moment`."""
         g = self.g
         if STATION not in symbols(self.beam.rhoA):
-            return tuple(g.mul(g.constant(weight), self.mass_length) for weight in self.strains.first_moments)
+            whole = g.mul(self.mass, self.along.L)
+            return tuple(g.mul(g.constant(weight), whole) for weight in self.strains.first_moments)
         columns = zip(*self.strains.positions, strict=True)
         return tuple(
             g.mul(

@@ -16,22 +16,10 @@ from symofros.mechanics.beams.rod import InertiaAxis, Rod
 from symofros.mechanics.beams.strains import TURNING
 
 
-def _weighted(rod: Rod, terms: Sequence[Edge]) -> Edge:
-    """A sum over the mass points, each weighted by its mass."""
-    g, masses = rod.g, rod.mass_points[1]
-    if len(masses) == 1:
-        return g.mul(masses[0], g.sum(terms))
-    return g.sum(g.mul(mass, term) for mass, term in zip(masses, terms, strict=True))
-
-
-def _weighted_vector(rod: Rod, terms: Sequence[Vec3]) -> Vec3:
-    return Vec3(rod.g, *(_weighted(rod, component) for component in zip(*terms, strict=True)))
-
-
 def rod_moments(rod: Rod) -> tuple[Vec3, Sym3]:
     """First moment and inertia tensor about the root, in B (13), (14)."""
     g, points = rod.g, rod.point_positions
-    E = [_weighted(rod, [g.mul(tuple(y)[a], tuple(y)[b]) for y in points]) for a, b in PAIRS]
+    E = [g.sum(g.mul(tuple(y)[a], tuple(y)[b]) for y in points) for a, b in PAIRS]
     J = Sym3(g, g.add(E[1], E[2]), g.add(E[0], E[2]), g.add(E[0], E[1]), -E[3], -E[4], -E[5])
     for axis in rod.inertia_axes:
         c = axis.direction
@@ -42,7 +30,10 @@ def rod_moments(rod: Rod) -> tuple[Vec3, Sym3]:
 def rod_modal_mass(rod: Rod, i: int, j: int) -> Edge:
     """M_ij of two strain coordinates (13), (14)."""
     g = rod.g
-    total = _weighted(rod, [a.dot(b) for a, b in zip(rod.point_partials[i], rod.point_partials[j], strict=True)])
+    if rod.is_bent_in_plane:
+        total = rod.paired(_turns(rod, i), _turns(rod, j))
+    else:
+        total = g.sum(a.dot(b) for a, b in zip(rod.point_partials[i], rod.point_partials[j], strict=True))
     for axis in rod.inertia_axes:
         spins = rod.sections[axis.section].spins
         momentum = g.mul(axis.inertia, axis.direction.dot(spins[i]))  # One for all j.
@@ -50,12 +41,21 @@ def rod_modal_mass(rod: Rod, i: int, j: int) -> Edge:
     return total
 
 
+def _turns(rod: Rod, i: int) -> list[float]:
+    """Angle by which a unit of a coordinate turns each section."""
+    return [row[i] for row in rod.strains.turns(rod.strains.stations[0])]
+
+
 def rod_momentum(rod: Rod, i: int) -> tuple[Vec3, Vec3]:
     """Linear momentum and angular momentum about the root, in B, per unit rate of a coordinate (13), (14)."""
     g = rod.g
-    angular = _weighted_vector(
-        rod, [y.cross(d) for y, d in zip(rod.point_positions, rod.point_partials[i], strict=True)]
-    )
+    if rod.is_bent_in_plane:
+        assert rod.axis is not None
+        angular = Vec3.unit(g, rod.axis).scaled(rod.paired([1.0] * len(rod.sections), _turns(rod, i)))
+    else:
+        angular = Vec3(g)
+        for y, d in zip(rod.point_positions, rod.point_partials[i], strict=True):
+            angular = angular + y.cross(d)
     for axis in rod.inertia_axes:
         spin = axis.direction.dot(rod.sections[axis.section].spins[i])
         angular = angular + axis.direction.scaled(g.mul(axis.inertia, spin))
@@ -80,14 +80,9 @@ def rod_forces(
     """
     motion = _section_motion(rod, w, alpha, speeds, rates)
     curves = motion.curves
-    rows, masses = rod.mass_points
-    points = [rod.combined(row, curves) for row in rows]
-    if len(masses) > 1:
-        points = [point.scaled(mass) for point, mass in zip(points, masses, strict=True)]
+    points = [rod.weighted(row, curves) for row in rod.mass_points]
     # Force per unit change of each tangent, f_k of (16).
-    arms = [rod.combined(column, points) for column in zip(*rows, strict=True)]
-    if len(masses) == 1:
-        arms = [arm.scaled(masses[0]) for arm in arms]
+    arms = [rod.weighted(column, points) for column in zip(*rod.mass_points, strict=True)]
     arms = [arm + a.scaled(weight) for arm, weight in zip(arms, rod.first_moment_weights, strict=True)]
     torques = [t.cross(arm) for t, arm in zip(rod.tangents, arms, strict=True)]
     for axis in rod.inertia_axes:
@@ -108,12 +103,10 @@ class _SectionMotion(NamedTuple):
 
 def _section_motion(rod: Rod, w: Vec3, alpha: Vec3, speeds: Sequence[Edge], rates: Sequence[Edge]) -> _SectionMotion:
     motion = _SectionMotion([], [], [])
-    turning, slips, slip_rates = rod.angular_rates(speeds), rod.shifted(speeds), rod.shifted(rates)
-    for section, t, (own, own_rate), slip, slip_rate in zip(
+    turning, slips, slip_rates = rod.angular_rates(w, alpha, speeds), rod.shifted(speeds), rod.shifted(rates)
+    for section, t, (total, total_rate), slip, slip_rate in zip(
         rod.sections, rod.tangents, turning, slips, slip_rates, strict=True
     ):
-        # The section turns in the world with w + own, seen from B; the rate of that in the world, too.
-        total, total_rate = w + own, alpha + own_rate + w.cross(own)
         for spin, rate in zip(section.spins, rates, strict=True):
             total_rate = total_rate + spin.scaled(rate)
         motion.spins.append(total)
@@ -125,8 +118,9 @@ def _section_motion(rod: Rod, w: Vec3, alpha: Vec3, speeds: Sequence[Edge], rate
 def _torque(axis: InertiaAxis, motion: _SectionMotion) -> Vec3:
     """Moment that the motion of a section takes about one of its axes."""
     g, k, c = axis.direction.g, axis.section, axis.direction
-    H = c.scaled(g.mul(axis.inertia, c.dot(motion.spins[k])))
-    return c.scaled(g.mul(axis.inertia, c.dot(motion.accelerations[k]))) + motion.spins[k].cross(H)
+    # Without stretch c is the tangent of its section, and O x c is known.
+    turned = motion.spins[k].cross(c).scaled(g.mul(axis.inertia, c.dot(motion.spins[k])))
+    return c.scaled(g.mul(axis.inertia, c.dot(motion.accelerations[k]))) + turned
 
 
 def wrenches_beyond(
@@ -184,9 +178,9 @@ def rod_energy_twice(rod: Rod, w: Vec3, v: Vec3, speeds: Sequence[Edge]) -> Edge
     g = rod.g
     spins = [w + rod.spin(section, speeds) for section in rod.sections]
     moved = [spin.cross(t) + slip for spin, t, slip in zip(spins, rod.tangents, rod.shifted(speeds), strict=True)]
-    points = [rod.combined(row, moved) for row in rod.mass_points[0]]
+    points = [rod.weighted(row, moved) for row in rod.mass_points]
     linear = rod.first_moment(moved).dot(v)
-    total = g.add(g.add(linear, linear), _weighted(rod, [p.dot(p) for p in points]))
+    total = g.add(g.add(linear, linear), g.sum(p.dot(p) for p in points))
     for axis in rod.inertia_axes:
         spin = axis.direction.dot(spins[axis.section])
         total = g.add(total, g.mul(axis.inertia, g.mul(spin, spin)))

@@ -98,47 +98,56 @@ class Turn:
 
     @cached_property
     def rotation(self) -> Mat3:
-        """Rotation from the second section to the first, 1 + c ([a] + [a]^2) (8)."""
-        g, a = self.vector.g, self.gibbs
+        """Rotation from the second section to the first, (c - 1) 1 + c ([a] + a a^T) (8)."""
+        g, c = self.vector.g, self.factor
+        scaled, rest = self.gibbs.scaled(c), g.sub(c, ONE)
         columns = []
-        for unit in (Vec3.unit(g, k) for k in range(3)):
-            over = a.cross(unit)
-            columns.append(unit + (over + a.cross(over)).scaled(self.factor))
+        for unit, component in zip((Vec3.unit(g, k) for k in range(3)), self.gibbs, strict=True):
+            columns.append(unit.scaled(rest) + scaled.cross(unit) + scaled.scaled(component))
         return Mat3.from_columns(g, columns)
 
     @cached_property
-    def spinning(self) -> Mat3:
-        """Matrix D of (9), from rates of the rotation vector to the angular velocity in the axes of the first section.
+    def _slope(self) -> Edge:
+        """Twice the derivative of `half` by the square of the angle."""
+        return self.vector.g.mul(self.vector.g.constant(2.0), self.half[1])
 
-        It is c ([a] h + h + 2 h' x x^T), with a = h x.
+    def along(self, R: Mat3) -> Vec3:
+        """Rotation vector in the axes in which the first section has the rotation R; the second sees the same one."""
+        return R.times(self.vector)
+
+    def spinning(self, start: Mat3, end: Mat3) -> Mat3:
+        """Matrix T = R D of (9), by (9a), from rates of the rotation vector to the angular velocity in the axes of B.
+
+        Args:
+            start: Rotation R of the first section.
+            end: Rotation of the second section.
         """
-        g, a = self.vector.g, self.gibbs
-        along = g.mul(g.mul(g.constant(2.0), self.half[1]), self.factor)
-        across = g.mul(self.half[0], self.factor)
-        columns = []
-        for k, unit in enumerate(Vec3.unit(g, k) for k in range(3)):
-            column = (unit + a.cross(unit)).scaled(across)
-            columns.append(column + self.vector.scaled(g.mul(along, tuple(self.vector)[k])))
+        g, h = self.vector.g, self.half[0]
+        share = g.mul(self.factor, g.sub(self._slope, g.mul(h, g.mul(h, h))))
+        lengthwise = self.along(start).scaled(share)
+        columns = [
+            (end.column(k) + start.column(k)).scaled(h) + lengthwise.scaled(x) for k, x in enumerate(self.vector)
+        ]
         return Mat3.from_columns(g, columns)
 
-    def rates(self, change: Moments) -> tuple[Vec3, Vec3]:
-        """Angular velocity of the second section relative to the first, and its rate (11).
+    def rates(self, change: Moments, start: Mat3, spinning: Mat3) -> tuple[Vec3, Vec3]:
+        """Angular velocity of the second section relative to the first, and its rate, in B (11).
 
         Args:
             change: Rates of the moments of the strains, which are constant.
+            start: Rotation of the first section.
+            spinning: Matrix T of (9a).
         """
-        g, x, a = self.vector.g, self.vector, self.gibbs
-        two, (h, slope, bend) = g.constant(2.0), self.half
+        g, x, c, (h, _, bend) = self.vector.g, self.vector, self.factor, self.half
+        slope = self._slope
         x1, x2 = self.vector_change(change), self._vector_bend(change)
-        square1 = g.mul(two, x.dot(x1))
-        square2 = g.mul(two, g.add(x1.dot(x1), x.dot(x2)))
-        h1 = g.mul(slope, square1)
-        h2 = g.add(g.mul(bend, g.mul(square1, square1)), g.mul(slope, square2))
-        a1 = x1.scaled(h) + x.scaled(h1)
-        a2 = x2.scaled(h) + x1.scaled(g.add(h1, h1)) + x.scaled(h2)
-        relative = (a1 + a.cross(a1)).scaled(self.factor)
-        rate = (a2 + a.cross(a2) - relative.scaled(a.dot(a1))).scaled(self.factor)
-        return relative, rate
+        turning, relative = x.dot(x1), spinning.times(x1)
+        ratio = g.div(slope, h)
+        of_spin = g.sub(g.add(ratio, ratio), g.mul(g.mul(c, h), g.add(h, g.mul(slope, x.dot(x)))))
+        of_square = g.sub(g.mul(g.constant(4.0), bend), g.mul(g.constant(2.0), g.mul(slope, ratio)))
+        lengthwise = g.add(g.mul(slope, x1.dot(x1)), g.mul(of_square, g.mul(turning, turning)))
+        rate = spinning.times(x2) + relative.scaled(g.mul(of_spin, turning))
+        return relative, rate + self.along(start).scaled(g.mul(c, lengthwise))
 
 
 def _inner(b: Moments) -> Edge:
