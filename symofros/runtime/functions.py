@@ -290,9 +290,14 @@ class Functions:
 
     def _prepare_single(self, name: str, frame: str) -> SingleCall:
         kernel = self._kernels.get((name, frame)) or self._make(name, frame)
-        single = single_call(kernel, self._par, np.array(self.record.u_default))
-        self._single_calls.prepared[(name, frame) if frame else name] = single
+        calls = self._single_calls  # As they are before: a better call may be there before this one is made.
+        single = single_call(kernel, self._par, np.array(self.record.u_default), self._forget_single_calls)
+        calls.prepared[(name, frame) if frame else name] = single
         return single
+
+    def _forget_single_calls(self) -> None:
+        """The next call of each function prepares it anew."""
+        self._single_calls = SingleCalls()
 
     def _call_batch(
         self,

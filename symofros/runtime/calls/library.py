@@ -146,6 +146,11 @@ class CompiledKernel:
         return self._unit.ffi.addressof(self._function)
 
     @property
+    def address(self) -> int:
+        """Where its code for one state begins, for callers that keep this object."""
+        return int(self._unit.ffi.cast("uintptr_t", self._function.eval))
+
+    @property
     def model(self) -> Any:
         """Pointer to the library's sym_model, for calls from C."""
         return self._unit.model

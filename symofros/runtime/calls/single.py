@@ -1,4 +1,4 @@
-"""Plain calls for one state: arrays of the expected kind go through fixed memory, without a look at batches."""
+"""Plain calls for one state: arrays of the expected kind go straight to the function, without a look at batches."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from symofros.runtime.calls.extension import call_type
 from symofros.runtime.calls.kernel import Array, Kernel
+from symofros.runtime.calls.library import CompiledKernel
 
 # Looked up once: each look-up costs a fiftieth of a call.
 _ARRAY, _DOUBLE = np.ndarray, np.dtype(np.float64)
@@ -19,16 +21,31 @@ _ARRAY, _DOUBLE = np.ndarray, np.dtype(np.float64)
 SingleCall = Callable[[Mapping[str, Any]], list[Array] | None]
 
 
-def single_call(kernel: Kernel, par: Array, u: Array) -> SingleCall:
+def single_call(kernel: Kernel, par: Array, u: Array, better: Callable[[], None]) -> SingleCall:
     """A function for one state, in memory of its own: for one thread.
-
-    A closure: its variables are reached, and itself is called, in half the time of an object's.
 
     Args:
         kernel: The function.
         par: Run-time parameters (npar).
         u: Default inputs (nu).
+        better: A method that is called, by any thread, when another call of this function would be a faster one.
     """
+    by_extension = call_type(better) if isinstance(kernel, CompiledKernel) else None
+    if by_extension is None:
+        return _through_numpy(kernel, par, u)
+    assert isinstance(kernel, CompiledKernel)
+    inputs = tuple(
+        (group, -1 if group == "t" else size, u if group == "u" else None) for group, size in kernel.signature.inputs
+    )
+    outputs = tuple(shape for _, shape in kernel.signature.outputs)
+    call: SingleCall = by_extension(
+        kernel.address, max(1, kernel.work), inputs, outputs, np.ascontiguousarray(kernel.prepare(par[None])), kernel
+    )
+    return call
+
+
+def _through_numpy(kernel: Kernel, par: Array, u: Array) -> SingleCall:
+    """A closure: its variables are reached, and itself is called, in half the time of an object's."""
     signature = kernel.signature
     pre = kernel.prepare(par[None])
     read = [np.zeros(size) for _, size in signature.inputs]

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from symofros.runtime.calls import extension
 from tests.models import model
 
 FUNCTIONS = {
@@ -24,9 +25,15 @@ FUNCTIONS = {
 }
 
 
-@pytest.fixture(params=["c", "interpreter"])
-def m(request: pytest.FixtureRequest) -> sf.Model:
-    return model("parametrised0", request.param)
+@pytest.fixture(params=["extension", "c", "interpreter"])
+def m(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> sf.Model:
+    """A model with calls by the extension, of compiled functions through NumPy, and of interpreted ones."""
+    if request.param == "extension" and extension.load() is None:
+        pytest.skip("needs the headers of Python")
+    call_type = extension.load() if request.param == "extension" else None
+    monkeypatch.setattr("symofros.runtime.calls.single.call_type", lambda _: call_type)
+    # One that has prepared no call yet, and shares the compiled functions.
+    return model("parametrised0", "interpreter" if request.param == "interpreter" else "c").with_parameters()
 
 
 def state(m: sf.Model, rng: np.random.Generator) -> dict[str, np.ndarray]:
