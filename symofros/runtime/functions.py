@@ -7,24 +7,20 @@ from dataclasses import dataclass, replace
 from typing import Any, Self
 
 import numpy as np
-import numpy.typing as npt
 
-from symofros.base.arrays import real_array
 from symofros.base.functions import FRAME_FUNCTIONS, FUNCTIONS, INPUTS, MODEL_FUNCTIONS, generated_with
-from symofros.errors import ParameterError, Problem, ShapeError, SymofrosError, UnknownNameError, did_you_mean
+from symofros.errors import ParameterError, Problem, ShapeError, SymofrosError
+from symofros.runtime.arguments import Arguments
+from symofros.runtime.arguments import ArrayLike as ArrayLike
 from symofros.runtime.beams import ElasticBeam
 from symofros.runtime.calls.bound import into, receivers
 from symofros.runtime.calls.kernel import Array, BatchOptions, Kernel, Numbers, Precision, Unit
 from symofros.runtime.calls.layout import by_columns, flat, states
 from symofros.runtime.calls.single import SingleCall, SingleCalls, single_call
 from symofros.runtime.cuda.device_code import DeviceCode
-from symofros.runtime.names import Names as Names
-from symofros.runtime.names import stacked
 from symofros.runtime.record import ModelRecord
 
 Key = tuple[str, str]
-# Numbers of a model: in the order of its names, or by name; what is not named keeps its default.
-ArrayLike = npt.ArrayLike | Mapping[str, npt.ArrayLike]
 ParameterCheck = Callable[[Array], Sequence[Problem]]
 # Largest array of parameters that is remembered as checked.
 _KEPT_BYTES = 1 << 16
@@ -43,7 +39,7 @@ class Rate:
     order: int
 
 
-class Functions:
+class Functions(Arguments):
     """The functions of one mechanism by name, with its sizes, names and parameter values.
 
     Args:
@@ -74,7 +70,7 @@ class Functions:
         origin: Callable[[], Functions] | None = None,
         device_code: Callable[[Key, Precision], DeviceCode] | None = None,
     ) -> None:
-        self.record = record
+        super().__init__(record, np.array(record.par_default if par is None else par, dtype=np.float64))
         self._threads = threads
         self._precision = precision
         self._build = build
@@ -83,41 +79,13 @@ class Functions:
         self._origin = origin
         self._device_code = device_code
         self._beams_at = beams
-        self._par = np.array(record.par_default if par is None else par, dtype=np.float64)
-        self._par.flags.writeable = False
         self._kernels: dict[Key, Kernel] = {key: kernel for unit in units for key, kernel in unit.kernels.items()}
         self._prepared: dict[Key, Array] = {}
         self._single_calls = SingleCalls()
-        self.names = Names.of(record)
 
     def __repr__(self) -> str:
         """Name and sizes."""
         return f"Model({self.record.name!r}, nq={self.nq}, nv={self.nv}, nu={self.nu}, npar={self.npar}, nc={self.nc})"
-
-    @property
-    def nq(self) -> int:
-        """Number of coordinates."""
-        return len(self.record.q_names)
-
-    @property
-    def nv(self) -> int:
-        """Number of speeds."""
-        return len(self.record.v_names)
-
-    @property
-    def nu(self) -> int:
-        """Number of inputs."""
-        return len(self.record.u_names)
-
-    @property
-    def npar(self) -> int:
-        """Number of run-time parameters."""
-        return len(self.record.par_names)
-
-    @property
-    def nc(self) -> int:
-        """Number of constraints."""
-        return self.record.nc
 
     def checked_parameters(self, par: ArrayLike) -> Array:
         """Sets of run-time parameters (..., npar), which the conditions of the description hold for.
@@ -247,23 +215,6 @@ class Functions:
 
     # How a call is made.
 
-    def _frame(self, frame: str) -> str:
-        if isinstance(frame, str):
-            if frame in self.record.frame_names:
-                return frame
-            if frame in self.record.frame_aliases:
-                return self.record.frame_aliases[frame]
-        raise self._unknown("frame", frame, self.record.frame_names, "frames are listed in model.names.frames")
-
-    def _frame_or_none(self, frame: str) -> str:
-        """A frame by its name; "" stands for the whole model."""
-        return "" if isinstance(frame, str) and not frame else self._frame(frame)
-
-    def _unknown(self, kind: str, name: str, known: tuple[str, ...], rule: str) -> UnknownNameError:
-        listed = f"{len(known)} {kind}s" + (": " + ", ".join(known[:12]) if known else "")
-        what = f"model '{self.record.name}': no {kind} '{str(name)[:80]}'"
-        return UnknownNameError(Problem(what, listed, rule, did_you_mean(name, known) or "use another model"))
-
     def _one(self, name: str, given: Mapping[str, ArrayLike | None], par: ArrayLike | None) -> Numbers:
         if par is None:  # The shortest way: each call on it costs a twentieth of a small function's.
             single = self._single_calls.prepared.get(name)
@@ -350,23 +301,6 @@ class Functions:
             self._prepared[key] = kernel.prepare(self._par.reshape(1, -1))
         return self._prepared[key]
 
-    def _batch_shape(
-        self, name: str, shapes: list[tuple[int, ...]], given: Mapping[str, ArrayLike | None]
-    ) -> tuple[int, ...]:
-        try:
-            return np.broadcast_shapes(*shapes)
-        except ValueError:
-            stated = {group: self.by_name(group, x) for group, x in given.items() if x is not None}
-            shown = ", ".join(f"{group} {np.shape(x)}" for group, x in stated.items())
-            raise ShapeError(
-                Problem(
-                    f"{name}: batch dimensions do not broadcast",
-                    shown,
-                    "all but the last dimension of each array broadcast together",
-                    "give each array the same leading dimensions, or none",
-                )
-            ) from None
-
     def _make(self, name: str, frame: str) -> Kernel:
         if self._build is None:
             what = f"{name} of frame '{frame}'" if frame else name
@@ -381,47 +315,3 @@ class Functions:
         together = ((name, frame),) if frame else tuple((other, "") for other in generated_with(name, self.nc > 0))
         self._kernels.update(self._build(together).kernels)
         return self._kernels[name, frame]
-
-    def _array(self, group: str, values: ArrayLike | None, size: int, dtype: npt.DTypeLike = np.float64) -> Numbers:
-        array = real_array(self.by_name(group, values) if isinstance(values, Mapping) else values, dtype)
-        if array is None:
-            raise ShapeError(
-                Problem(
-                    f"model '{self.record.name}': {group} is not an array of numbers",
-                    f"{type(values).__name__} {values!r:.60}",
-                    f"{group} is an array of real numbers of shape (..., {size})",
-                    self._hint(group) or "convert texts, dates and complex numbers before",
-                )
-            )
-        if group == "t":
-            return array[..., np.newaxis]
-        if array.ndim == 0 or array.shape[-1] != size:
-            raise ShapeError(
-                Problem(
-                    f"model '{self.record.name}': {group} has the wrong shape",
-                    str(array.shape),
-                    f"{group} has shape (..., {size})",
-                    self._hint(group) or f"give {size} numbers, or rows of {size} for a batch",
-                )
-            )
-        return array
-
-    def by_name(self, group: str, values: ArrayLike) -> npt.ArrayLike:
-        """An argument as an array: values that are given by name stacked (..., size), others as they are.
-
-        Args:
-            group: Name of the argument: q, v, a, u, par, lam.
-            values: An array, or name -> number or array (...); what is not named keeps its default.
-
-        Raises:
-            UnknownNameError: There is no such name.
-            ShapeError: A value is not a number.
-        """
-        return stacked(self.record, self._par, group, values) if isinstance(values, Mapping) else values
-
-    def _hint(self, group: str) -> str:
-        names: dict[str, Any] = {"q": self.names.q, "v": self.names.v, "a": self.names.v, "u": self.names.u}
-        names |= {"dq": self.names.v, "par": self.names.par}
-        shown = names.get(group, ())
-        listed = ", ".join(shown[:8]) + (", …" if len(shown) > 8 else "")
-        return f"its last dimension runs over {listed}" if shown else ""

@@ -12,20 +12,21 @@ import numpy.typing as npt
 from symofros.base.arguments import check_argument
 from symofros.base.arrays import numeric
 from symofros.base.functions import MODEL_FUNCTIONS, generated_with
-from symofros.runtime import linear, manifold
-from symofros.runtime.adjoint_functions import AdjointFunctions
+from symofros.runtime import manifold
 from symofros.runtime.calls.bound import Bound, Layout, bind, bind_batch
 from symofros.runtime.calls.kernel import Array
-from symofros.runtime.constraint_functions import ConstraintFunctions
-from symofros.runtime.copy_functions import CopyFunctions
-from symofros.runtime.frame_functions import FrameFunctions
 from symofros.runtime.functions import ArrayLike as ArrayLike
 from symofros.runtime.functions import Key as Key
-from symofros.runtime.linear import FrameDerivatives as FrameDerivatives
-from symofros.runtime.linear import Output as Output
-from symofros.runtime.linear import StateMatrices as StateMatrices
-from symofros.runtime.momentum_functions import MomentumFunctions
-from symofros.runtime.reaction_functions import ReactionFunctions
+from symofros.runtime.methods import linear
+from symofros.runtime.methods.adjoint import AdjointFunctions
+from symofros.runtime.methods.constraints import ConstraintFunctions
+from symofros.runtime.methods.copies import CopyFunctions
+from symofros.runtime.methods.frames import FrameFunctions
+from symofros.runtime.methods.linear import FrameDerivatives as FrameDerivatives
+from symofros.runtime.methods.linear import Output as Output
+from symofros.runtime.methods.linear import StateMatrices as StateMatrices
+from symofros.runtime.methods.momentum import MomentumFunctions
+from symofros.runtime.methods.reactions import ReactionFunctions
 
 
 class Model(AdjointFunctions, ConstraintFunctions, CopyFunctions, FrameFunctions, MomentumFunctions, ReactionFunctions):

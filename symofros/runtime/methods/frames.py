@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.functions import ArrayLike, Functions
-from symofros.runtime.linear import FrameDerivatives
+from symofros.runtime.methods.linear import FrameDerivatives
 
 
 class FrameFunctions(Functions):

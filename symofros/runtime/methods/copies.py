@@ -9,7 +9,7 @@ from symofros.base.html import html_table
 from symofros.errors import ArgumentError, Problem, SymofrosError
 from symofros.runtime.calls.kernel import Array, Precision
 from symofros.runtime.cuda.cuda_model import CudaModel
-from symofros.runtime.parameter_functions import ParameterFunctions
+from symofros.runtime.methods.parameters import ParameterFunctions
 
 
 class CopyFunctions(ParameterFunctions):

@@ -1,0 +1,1 @@
+"""Methods of `Model` by subject."""
