@@ -42,12 +42,8 @@ def circle(material: Material, radius: Any) -> Section:
     E, G, rho, r = _terms(material, radius)
     area = Term(_PI) * r * r
     moment = area * r * r / Term(4.0)
-    # 6 (1 + nu)^2 / (7 + 14 nu + 8 nu^2) with E = 2 G (1 + nu).
-    ratio = E / G
-    shear = Term(1.5) * ratio * ratio / (Term(1.0) - ratio + Term(2.0) * ratio * ratio)
-    return _homogeneous(
-        E, rho, area, moment, moment, Term(2.0) * G * moment, (G * area * shear,) * 2, radii=_radii(r, r)
-    )
+    shear = G * area / _round_compliance(E / G, Term(0.0))
+    return _homogeneous(E, rho, area, moment, moment, Term(2.0) * G * moment, (shear,) * 2, radii=_radii(r, r))
 
 
 def tube(material: Material, radius: Any, thickness: Any) -> Section:
@@ -63,7 +59,8 @@ def tube(material: Material, radius: Any, thickness: Any) -> Section:
     squares = outer * outer + inner * inner
     area = Term(_PI) * wall * (outer + inner)
     moment = area * squares / Term(4.0)
-    return _homogeneous(E, rho, area, moment, moment, Term(2.0) * G * moment, radii=_radii(outer, outer))
+    shear = G * area / _round_compliance(E / G, (outer * inner / squares) * (outer * inner / squares))
+    return _homogeneous(E, rho, area, moment, moment, Term(2.0) * G * moment, (shear,) * 2, radii=_radii(outer, outer))
 
 
 def ellipse(material: Material, y: Any, z: Any) -> Section:
@@ -78,7 +75,8 @@ def ellipse(material: Material, y: Any, z: Any) -> Section:
     area = Term(_PI) * a * b
     torsion = area * a * a * b * b / (a * a + b * b)
     I_y, I_z = area * b * b / Term(4.0), area * a * a / Term(4.0)
-    return _homogeneous(E, rho, area, I_y, I_z, G * torsion, radii=_radii(a, b))
+    shear = tuple(G * area / _ellipse_compliance(E / G, *axes) for axes in ((a, b), (b, a)))
+    return _homogeneous(E, rho, area, I_y, I_z, G * torsion, shear, radii=_radii(a, b))
 
 
 def _terms(material: Material, *sizes: Any) -> list[Term]:
@@ -131,10 +129,33 @@ def _rectangle_torsion(y: Term, z: Term) -> Term:
 
 def _rectangle_compliance(ratio: Term, h: Term, b: Term) -> Term:
     """A/A_s for a force along the side h of a rectangle of width b (eq. 28), where ratio = E/G = 2 (1 + nu)."""
-    lateral = Term(1.0) - Term(2.0) / ratio
+    lateral = _lateral(ratio)
     rest = Term(_ODD_FIFTHS)
     for n in (1, 3, 5, 7, 9):
         rest = rest + (Term(1.0) / (Term(n * _PI / 2.0) * b / h).tanh() - Term(1.0)) / Term(float(n**5))
     slenderness = b / h
     warping = slenderness * slenderness / Term(144.0) + Term(1.0 / 120.0) - Term(4.0 / _PI**5) * slenderness * rest
     return Term(1.2) + Term(144.0) * lateral * lateral * warping
+
+
+def _lateral(ratio: Term) -> Term:
+    """nu/(1 + nu), where ratio = E/G = 2 (1 + nu)."""
+    return Term(1.0) - Term(2.0) / ratio
+
+
+def _ellipse_compliance(ratio: Term, a: Term, b: Term) -> Term:
+    """A/A_s for a force along the semi-axis a of an ellipse (eq. 28b), where ratio = E/G."""
+    k = b * b / (a * a)
+    across = (Term(3.0) * _lateral(ratio) - Term(1.0)) / (Term(6.0) + Term(2.0) * k)
+    along = (k * across - Term(1.0)) / Term(3.0)
+    mixed = Term(1.0) + Term(2.0) * along
+    squares = Term(10.0) * along * along + Term(2.0) * k * k * across * across
+    return squares + k * (mixed * mixed - Term(10.0) * along * across) * Term(2.0 / 3.0)
+
+
+def _round_compliance(ratio: Term, hollow: Term) -> Term:
+    """A/A_s of a tube of radii a, b, where hollow = (a b/(a^2 + b^2))^2, zero of a circle; ratio = E/G (eq. 28d)."""
+    p = (_lateral(ratio) - Term(3.0)) / Term(8.0)
+    s = (Term(3.0) * _lateral(ratio) - Term(1.0)) / Term(8.0)
+    full = p * p - p * s + (p * p + s * s) * (Term(1.0) - hollow) / Term(3.0)
+    return Term(8.0) * (full + hollow * (Term(4.0) * p * p - Term(2.0) * p * s))
