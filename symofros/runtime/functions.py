@@ -232,19 +232,20 @@ class Functions(Arguments):
         out: Mapping[str, Numbers] | None = None,
     ) -> list[Numbers]:
         if par is None and self._precision == "double":
-            single = self._single_calls.prepared.get((name, frame) if frame else name)
-            single = single or self._prepare_single(name, frame)
-            outputs = single(given)
+            outputs = self._single(name, frame)(given)
             if outputs is not None:
                 return outputs if out is None else into(out, self._kernels[name, frame].signature, outputs)
         return self._call_batch(name, frame, given, par, out)
 
-    def _prepare_single(self, name: str, frame: str) -> SingleCall:
-        kernel = self._kernels.get((name, frame)) or self._make(name, frame)
+    def _single(self, name: str, frame: str) -> SingleCall:
+        """The call of a function for one state, prepared at the first time."""
+        key = (name, frame) if frame else name
         calls = self._single_calls  # As they are before: a better call may be there before this one is made.
-        single = single_call(kernel, self._par, np.array(self.record.u_default), self._forget_single_calls)
-        calls.prepared[(name, frame) if frame else name] = single
-        return single
+        if key not in calls.prepared:
+            kernel = self._kernels.get((name, frame)) or self._make(name, frame)
+            default = np.array(self.record.u_default)
+            calls.prepared[key] = single_call(kernel, self._par, default, self._forget_single_calls)
+        return calls.prepared[key]
 
     def _forget_single_calls(self) -> None:
         """The next call of each function prepares it anew."""
@@ -265,6 +266,13 @@ class Functions(Arguments):
             self._array(group, self.record.u_default if group == "u" and u is None else given[group], size, dtype)
             for group, size in kernel.signature.inputs
         ]
+        if par is None and self._precision == "double" and all(array.ndim == 1 for array in arrays):
+            # One state after all: as lists, by name, or of other numbers.
+            named = {group: x for (group, _), x in zip(kernel.signature.inputs, arrays, strict=True)}
+            single = self._single(name, frame)
+            outputs = single(named | {"t": float(named["t"][0])} if "t" in named else named)
+            if outputs is not None:
+                return outputs if out is None else into(out, kernel.signature, outputs)
         shapes = [array.shape[:-1] for array in arrays]
         par_array = None
         if par is not None:

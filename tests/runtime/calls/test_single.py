@@ -120,3 +120,18 @@ def test_a_wrong_size_is_refused_after_a_right_one(m: sf.Model, size: int) -> No
     if size != m.nq:
         with pytest.raises(sf.ShapeError, match="q has the wrong shape"):
             m.mass_matrix(np.zeros(size))
+
+
+def test_numbers_of_any_kind_take_the_short_way_with_time_and_places(
+    m: sf.Model, monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator
+) -> None:
+    """Lists, names and other numbers are converted, and computed as one state: no batch is made of them."""
+    given = state(m, rng)
+    expected = m.dynamics(given["q"], given["v"], given["u"], t=0.25)
+    monkeypatch.setattr("symofros.runtime.calls.library.CompiledKernel.run", None)
+    named = dict(zip(m.names.q, given["q"], strict=True))
+    M = np.zeros((m.nv, m.nv))
+    for q, t in ((given["q"].tolist(), 0.25), (named, np.float64(0.25)), (given["q"].astype(object), np.array(0.25))):
+        results = m.evaluate("dynamics", q=q, v=given["v"].tolist(), u=given["u"], t=t, out={"M": M})
+        assert results[0] is M
+        assert all(np.array_equal(x, y) for x, y in zip(results, expected, strict=True))
