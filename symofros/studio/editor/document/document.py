@@ -103,9 +103,9 @@ class EditedDocument:
         """Go one step forth, if there is one."""
         self._swap(self._redo, self._undo, 1)
 
-    def _swap(self, source: list[UndoStep], target: list[UndoStep], step: int) -> None:
+    def _swap(self, source: list[UndoStep], target: list[UndoStep], by: int) -> None:
         if source:
-            self.step += step
+            self.step += by
             step = source.pop()
             target.append(UndoStep(step.label, self.text))
             self._become(step.text)

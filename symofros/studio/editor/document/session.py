@@ -11,6 +11,7 @@ from symofros.description.system import System
 from symofros.studio.editor.document.beam_figures import beam_figures
 from symofros.studio.editor.document.document import EditedDocument, refuse_text
 from symofros.studio.editor.document.expressions import check_field
+from symofros.studio.editor.document.inertia_figures import inertia_figures
 from symofros.studio.editor.document.parts import insertion
 from symofros.studio.editor.document.parts_library import Library
 from symofros.studio.editor.document.storage import EMPTY, Storage
@@ -212,9 +213,15 @@ class Session:
 
     def beam_figures(self, body: Json) -> Json:
         """Section and frequencies of a beam under edit, at the document's parameters."""
+        return beam_figures(body.get("beam"), self._known())
+
+    def inertia_figures(self, body: Json) -> Json:
+        """Mass, mass centre and moments of a body under edit, at the document's parameters."""
+        return inertia_figures(body, self._known())
+
+    def _known(self) -> dict[str, float]:
         parameters = self.document.analysis.parameters
-        known = {item["name"]: item["number"] for item in parameters if item["number"] is not None}
-        return beam_figures(body.get("beam"), known)
+        return {item["name"]: item["number"] for item in parameters if item["number"] is not None}
 
     def job_request(self, body: Json) -> tuple[str, Json]:
         """The kind of a job, and what its worker needs.

@@ -83,6 +83,7 @@ class Editor:
             Route("/api/expression", self.expression, methods=["POST"]),
             Route("/api/shapes", self.shapes, methods=["POST"]),
             Route("/api/beam", self.beam, methods=["POST"]),
+            Route("/api/inertia", self.inertia, methods=["POST"]),
             Route("/api/files", self.files),
             Route("/api/parts", self.parts),
             Route("/api/parts", self.keep_part, methods=["POST"]),
@@ -149,6 +150,10 @@ class Editor:
     async def beam(self, request: Request) -> Response:
         """Section and natural frequencies of a beam."""
         return JSONResponse(await self.exclusively(partial(self.session.beam_figures, await body_of(request))))
+
+    async def inertia(self, request: Request) -> Response:
+        """Mass, mass centre and moments of inertia of a rigid body."""
+        return JSONResponse(await self.exclusively(partial(self.session.inertia_figures, await body_of(request))))
 
     async def files(self, _: Request) -> Response:
         """What can be opened."""

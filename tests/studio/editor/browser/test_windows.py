@@ -61,3 +61,20 @@ def test_coordinates_are_coupled_by_formula(serve: Callable[..., Server], page: 
     page.get_by_role("banner").get_by_role("button", name="1 problem").click()
     steps.results(page).get_by_role("button", name="q9").click()
     expect(steps.window(page).get_by_label("Couplings of coordinates gear", exact=True)).to_have_value("q2 - 3*q9")
+
+
+def test_mass_and_moments_follow_what_is_typed(
+    serve: Callable[..., Server], page: Page, picture: Callable[[str], None]
+) -> None:
+    server = serve("arm.yaml", source=MODELS / "rigid" / "double_pendulum.yaml")
+    steps.open_editor(page, server.url)
+    steps.open_window(page, "bodies/upper")
+    steps.tab(page, "Inertia")
+    steps.window(page).get_by_label("Inertia by").select_option("solid")
+    figures = steps.window(page).get_by_role("status", name="What the body has")
+    expect(figures).to_contain_text("mass 1.08 kg")  # 2700 kg/m^3 x 1 m x 2 cm x 2 cm.
+    steps.fill(page, "Y", "0.04")
+    expect(figures).to_contain_text("mass 2.16 kg · mass centre [0.5, 0, 0] m")
+    picture("inertia")
+    steps.fill(page, "Y", "")
+    expect(figures).to_contain_text("once every field has a number")

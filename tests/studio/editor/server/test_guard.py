@@ -39,6 +39,7 @@ ADDRESSES = (
     ("POST", "expression"),
     ("POST", "shapes"),
     ("POST", "beam"),
+    ("POST", "inertia"),
     ("POST", "import"),
     ("POST", "parts"),
     ("POST", "parts/insert"),

@@ -245,6 +245,14 @@ export interface BeamFigures {
   frequencies: Record<string, number[]>;
 }
 
+/** Of a rigid body [kg, m, kg m^2]; moments and products about the mass centre, along the axes of the body frame. */
+export interface InertiaFigures {
+  mass: number;
+  center_of_mass: number[];
+  moments: number[];
+  products: number[];
+}
+
 /** What moves the 3-D view: one degree of freedom. */
 export interface Coordinate {
   name: string;

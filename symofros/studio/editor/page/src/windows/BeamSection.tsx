@@ -54,7 +54,7 @@ function Figures({ beam }: { beam: JsonMap }) {
   const properties = isMap(beam["section"]) ? Object.entries(figures.section).filter(([, value]) => value !== 0) : [];
   const frequencies = Object.entries(figures.frequencies);
   return (
-    <div className="beam-figures" role="status" aria-label="What the section brings">
+    <div className="live-figures" role="status" aria-label="What the section brings">
       {properties.length === 0 ? null : (
         <p>{properties.map(([name, value]) => `${name} ${brief(value)} ${UNITS[name] ?? ""}`).join(" · ")}</p>
       )}

@@ -6,6 +6,7 @@ import { isMap, mapAt } from "../model/paths";
 import { asked, fitted } from "../model/sizes";
 import { Row } from "../shell/Row";
 import { useStore } from "../store/store";
+import { InertiaFigures } from "./InertiaFigures";
 
 const KINDS = { inertia: "mass and moments", solid: "a solid and its density", none: "nothing: massless" } as const;
 type Kind = keyof typeof KINDS;
@@ -57,13 +58,16 @@ export function MatterForm({ value, onChange, path, shape }: Props) {
           only={asked(Object.keys(solid.properties), mapAt(body, ["solid"]), sizes)}
         />
       ) : null}
+      {kind === "solid" ? <InertiaFigures stated={{ solid: mapAt(body, ["solid"]) }} /> : null}
       <RecordField
         shape={shape}
         value={value}
         onChange={onChange}
         path={path}
-        only={kind === "inertia" ? ["inertia", "waive"] : ["waive"]}
+        only={kind === "inertia" ? ["inertia"] : []}
       />
+      {kind === "inertia" ? <InertiaFigures stated={{ inertia: mapAt(body, ["inertia"]) }} /> : null}
+      <RecordField shape={shape} value={value} onChange={onChange} path={path} only={["waive"]} />
     </>
   );
 }
