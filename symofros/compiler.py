@@ -35,7 +35,9 @@ from symofros.generator.record import GENERATOR as GENERATOR
 from symofros.generator.record import model_record
 from symofros.generator.units import UnitCompiler
 from symofros.mechanics.dynamics.functions import Request
+from symofros.mechanics.topology.beams import omitted_rotary_inertia
 from symofros.mechanics.topology.graph import check
+from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.run_time import RunTimeCheck
 from symofros.mechanics.topology.tree import SpanningTree, build_tree
 from symofros.runtime.build.toolchain import NO_COMPILER, Toolchain, find_toolchain
@@ -219,8 +221,16 @@ class Compilation:
 
 
 def _warn_inconsistent(system: System) -> None:
-    """Warn of beams that soften when they spin, because they lack what would stiffen them."""
+    """Warn of beams that soften when they spin, as they lack what would stiffen them, and of inertia that is unused."""
+    numbers = Numbers(system)
     for body in system.bodies:
+        for label, mode, share in omitted_rotary_inertia(body, numbers) if isinstance(body, Beam) else ():
+            warnings.warn(
+                f"beam '{body.name}': {label} is stated and does not count, as rotary_inertia is false: it would lower"
+                f" the frequency of bending mode {mode} by {share:.1%}. Set rotary_inertia: true, or state no {label}.",
+                InconsistentModelWarning,
+                stacklevel=4,
+            )
         if isinstance(body, Beam) and not body.foreshortening and body.retain == "first_order" and body.modes:
             warnings.warn(
                 f"beam '{body.name}': first order without foreshortening keeps the softening of a spinning beam and"

@@ -23,6 +23,8 @@ MOST_CONDITION = 1e12
 # Relative error of the quadrature of section properties that change along the beam.
 QUADRATURE_TOLERANCE = 1e-9
 _POINTS = (16, 24)
+# What rotary inertia may lower a frequency by without a word, where it is stated and left out.
+MOST_ROTARY_INERTIA = 0.01
 # Stations x/L at which section properties are looked at.
 _STATIONS = np.linspace(0.0, 1.0, 33)
 
@@ -60,6 +62,32 @@ def beam_number_problems(beam: Beam, numbers: Numbers, where: str) -> Iterator[P
     """Section properties too abrupt for the quadrature, and ill-conditioned shape functions."""
     yield from _Section(beam, where).quadrature_problems(numbers)
     yield from _conditioning(beam, where)
+
+
+def omitted_rotary_inertia(beam: Beam, numbers: Numbers) -> Iterator[tuple[str, int, float]]:
+    """Rotary inertia that is stated, left out, and not small (docs/theory/beams.md, eq. 13a).
+
+    Yields:
+        Entry of the inertia, bending mode, and the share by which its frequency would fall. The mode is the highest but
+        one that the functions have, as that of the last function errs by more itself.
+    """
+    if beam.rotary_inertia:
+        return
+    middle, length = np.array([0.5]), numbers.value(beam.length)
+    for label, count in (("rhoI_z", beam.bend_y), ("rhoI_y", beam.bend_z)):
+        if not count or getattr(beam, label) == 0.0:
+            continue
+        mode = max(1, count * beam.segments - 1)
+        inertia, mass = (section_values(beam, name, middle, numbers.parameters).item() for name in (label, "rhoA"))
+        share = 1.0 - 1.0 / np.sqrt(1.0 + _squared_slope(mode) / length**2 * inertia / mass)
+        if share > MOST_ROTARY_INERTIA:
+            yield label, mode, float(share)
+
+
+def _squared_slope(mode: int) -> float:
+    """Mean square of the slope of a cantilever's mode, by xi, over that of the deflection."""
+    number = (mode - 0.5) * np.pi
+    return 4.648 if mode == 1 else number * (number + 2.0)
 
 
 class _Section:

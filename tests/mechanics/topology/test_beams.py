@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import warnings
+from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 
 import symofros as sf
@@ -85,6 +88,26 @@ def test_stations_of_samples_rise_from_0_to_1() -> None:
 def test_softening_without_stiffening_is_warned_of() -> None:
     with pytest.warns(sf.InconsistentModelWarning, match="'b'.*diverges"):
         sf.compile(sf.System("s", [beam(foreshortening=False)]), sf.Options(functions=("mass_matrix",)))
+
+
+@pytest.mark.parametrize(("functions", "mode", "inertia"), [(2, 1, 0.02), (3, 2, 0.01)])
+def test_rotary_inertia_that_is_stated_and_left_out_is_warned_of(functions: int, mode: int, inertia: float) -> None:
+    """By as much as it lowers the frequency of the model that has it."""
+    stated = beam(bend_y=functions, rhoI_z=inertia, family="clamped_free")
+    options = sf.Options(backend="interpreter")
+    with pytest.warns(sf.InconsistentModelWarning, match=f"rhoI_z .*bending mode {mode} by") as caught:
+        without = sf.compile(sf.System("s", [stated]), options)
+    said = float(str(caught[0].message).split(" by ")[1].split("%")[0]) / 100.0
+    counted = sf.compile(sf.System("s", [replace(stated, rotary_inertia=True)]), options)
+    M = [model.mass_matrix(model.neutral())[mode - 1, mode - 1] for model in (counted, without)]
+    assert 1.0 - np.sqrt(M[1] / M[0]) == pytest.approx(said, rel=0.03)
+
+
+@pytest.mark.parametrize("changed", [{"rhoI_z": 1e-4}, {"rhoI_y": 1.0}, {"rhoI_z": 1.0, "rotary_inertia": True}])
+def test_rotary_inertia_that_counts_or_hardly_matters_is_not_mentioned(changed: dict[str, Any]) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", sf.InconsistentModelWarning)
+        sf.compile(sf.System("s", [beam(**changed)]), sf.Options(backend="interpreter"))
 
 
 def test_a_clamped_beam_alone_is_a_mechanism() -> None:
