@@ -8,7 +8,7 @@ from functools import cached_property
 
 from symofros.description.beam import PRE_STRAINS, STATION, Beam
 from symofros.description.values import Value, symbols
-from symofros.expr.edges import ONE, ZERO, Edge
+from symofros.expr.edges import ZERO, Edge
 from symofros.expr.expression import Expression
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Vec3
@@ -322,25 +322,9 @@ class Rod:
         )
 
     @cached_property
-    def _cosines(self) -> tuple[tuple[Edge, ...], ...]:
-        """Scalar products of the tangents of a rod that turns in a plane without stretch and shear."""
-        t = self.tangents
-        return tuple(tuple(ONE if k == j else t[k].dot(t[j]) for j in range(len(t))) for k in range(len(t)))
-
-    @cached_property
     def is_bent_in_plane(self) -> bool:
         """Whether the tangents turn in one plane, and the rod neither stretches nor shears."""
         return self.axis in (1, 2) and {k for k, _ in self.strains.axes} == {self.axis}
-
-    def paired(self, left: Sequence[float], right: Sequence[float]) -> Edge:
-        """Integral of the product of two positions over the mass, the tangents being multiplied by numbers (13a)."""
-        g, total = self.g, ZERO
-        for k in range(len(left)):
-            for j in range(k + 1):
-                weight = left[k] * right[k] if j == k else left[k] * right[j] + left[j] * right[k]
-                second = g.sum(g.mul(row[k], row[j]) for row in self.mass_points)
-                total = g.add(total, g.mul(g.mul(g.constant(weight), second), self._cosines[k][j]))
-        return total
 
     @cached_property
     def inertia_axes(self) -> tuple[InertiaAxis, ...]:

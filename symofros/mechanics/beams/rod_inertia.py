@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from symofros.expr.edges import Edge
+from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.vector import Sym3, Vec3
 from symofros.mechanics.beams.elastic import PAIRS
 from symofros.mechanics.beams.rod import InertiaAxis, Rod
@@ -31,13 +31,25 @@ def rod_modal_mass(rod: Rod, i: int, j: int) -> Edge:
     """M_ij of two strain coordinates (13), (14)."""
     g = rod.g
     if rod.is_bent_in_plane:
-        total = rod.paired(_turns(rod, i), _turns(rod, j))
+        total = _paired(rod, _turns(rod, i), _turns(rod, j))
     else:
         total = g.sum(a.dot(b) for a, b in zip(rod.point_partials[i], rod.point_partials[j], strict=True))
     for axis in rod.inertia_axes:
         spins = rod.sections[axis.section].spins
         momentum = g.mul(axis.inertia, axis.direction.dot(spins[i]))  # One for all j.
         total = g.add(total, g.mul(momentum, axis.direction.dot(spins[j])))
+    return total
+
+
+def _paired(rod: Rod, left: Sequence[float], right: Sequence[float]) -> Edge:
+    """Integral of the product of two positions over the mass, the tangents being multiplied by numbers (13a)."""
+    g, t, total = rod.g, rod.tangents, ZERO
+    for k in range(len(t)):
+        for j in range(k + 1):
+            weight = left[k] * right[k] if j == k else left[k] * right[j] + left[j] * right[k]
+            second = g.sum(g.mul(row[k], row[j]) for row in rod.mass_points)
+            product = ONE if j == k else t[k].dot(t[j])
+            total = g.add(total, g.mul(g.mul(g.constant(weight), second), product))
     return total
 
 
@@ -51,7 +63,7 @@ def rod_momentum(rod: Rod, i: int) -> tuple[Vec3, Vec3]:
     g = rod.g
     if rod.is_bent_in_plane:
         assert rod.axis is not None
-        angular = Vec3.unit(g, rod.axis).scaled(rod.paired([1.0] * len(rod.sections), _turns(rod, i)))
+        angular = Vec3.unit(g, rod.axis).scaled(_paired(rod, [1.0] * len(rod.sections), _turns(rod, i)))
     else:
         angular = Vec3(g)
         for y, d in zip(rod.point_positions, rod.point_partials[i], strict=True):
