@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from symofros.description.sections.section import Material, Section
+from symofros.description.sections.shear import Kind, ShearShape
 from symofros.description.values import Term, as_value
 
 _Points = tuple[tuple[Term, Term], ...]
@@ -29,7 +30,9 @@ def rectangle(material: Material, y: Any, z: Any) -> Section:
     shear = tuple(G * area / _rectangle_compliance(E / G, *sizes) for sizes in ((a, b), (b, a)))
     halves = (Term(-0.5), Term(0.5))
     corners = tuple((sy * a, sz * b) for sy in halves for sz in halves)
-    return _homogeneous(E, rho, area, I_y, I_z, G * _rectangle_torsion(a, b), shear, corners=corners)
+    return _homogeneous(
+        E, G, rho, area, I_y, I_z, G * _rectangle_torsion(a, b), shear, ("rectangle", a, b), corners=corners
+    )
 
 
 def circle(material: Material, radius: Any) -> Section:
@@ -43,7 +46,9 @@ def circle(material: Material, radius: Any) -> Section:
     area = Term(_PI) * r * r
     moment = area * r * r / Term(4.0)
     shear = G * area / _round_compliance(E / G, Term(0.0))
-    return _homogeneous(E, rho, area, moment, moment, Term(2.0) * G * moment, (shear,) * 2, radii=_radii(r, r))
+    return _homogeneous(
+        E, G, rho, area, moment, moment, Term(2.0) * G * moment, (shear,) * 2, ("ellipse", r, r), radii=_radii(r, r)
+    )
 
 
 def tube(material: Material, radius: Any, thickness: Any) -> Section:
@@ -60,7 +65,8 @@ def tube(material: Material, radius: Any, thickness: Any) -> Section:
     area = Term(_PI) * wall * (outer + inner)
     moment = area * squares / Term(4.0)
     shear = G * area / _round_compliance(E / G, (outer * inner / squares) * (outer * inner / squares))
-    return _homogeneous(E, rho, area, moment, moment, Term(2.0) * G * moment, (shear,) * 2, radii=_radii(outer, outer))
+    radii, GJ = _radii(outer, outer), Term(2.0) * G * moment
+    return _homogeneous(E, G, rho, area, moment, moment, GJ, (shear,) * 2, ("tube", outer, inner), radii=radii)
 
 
 def ellipse(material: Material, y: Any, z: Any) -> Section:
@@ -76,7 +82,7 @@ def ellipse(material: Material, y: Any, z: Any) -> Section:
     torsion = area * a * a * b * b / (a * a + b * b)
     I_y, I_z = area * b * b / Term(4.0), area * a * a / Term(4.0)
     shear = tuple(G * area / _ellipse_compliance(E / G, *axes) for axes in ((a, b), (b, a)))
-    return _homogeneous(E, rho, area, I_y, I_z, G * torsion, shear, radii=_radii(a, b))
+    return _homogeneous(E, G, rho, area, I_y, I_z, G * torsion, shear, ("ellipse", a, b), radii=_radii(a, b))
 
 
 def _terms(material: Material, *sizes: Any) -> list[Term]:
@@ -86,16 +92,19 @@ def _terms(material: Material, *sizes: Any) -> list[Term]:
 
 def _homogeneous(
     E: Term,
+    G: Term,
     rho: Term,
     area: Term,
     I_y: Term,
     I_z: Term,
     GJ: Term,
-    shear: tuple[Term, ...] = (),
+    shear: tuple[Term, ...],
+    shape: tuple[Kind, Term, Term],
     corners: _Points = (),
     radii: _Points = (),
 ) -> Section:
-    GA_y, GA_z = (term.value for term in shear) if shear else (None, None)
+    GA_y, GA_z = (term.value for term in shear)
+    kind, *sizes = shape
     return Section(
         EA=(E * area).value,
         GJ=GJ.value,
@@ -109,6 +118,7 @@ def _homogeneous(
         E=E.value,
         corners=tuple((y.value, z.value) for y, z in corners),
         radii=tuple((y.value, z.value) for y, z in radii),
+        shape=ShearShape(kind, (sizes[0].value, sizes[1].value), (E / G).value),
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from symofros.description.beam import ROD_STIFFNESSES, SECTION, Theory
 from symofros.description.entries import refuses_unknown_entries
+from symofros.description.sections.shear import ShearShape, is_inside, unit_stresses
 from symofros.description.values import Term, Value, as_value, symbols
 from symofros.errors import DescriptionError, Problem
 from symofros.expr.expression import evaluate
@@ -66,6 +67,7 @@ class Section:
         E: Young's modulus, for stresses [N/m^2]; None where it is not known, or not the same all over the section.
         corners: Points (y, z) whose convex hull has the section's extreme fibres [m].
         radii: Two conjugate radii (y, z) of an elliptic outline, in place of corners [m].
+        shape: The shape about the tension centre, where its shear stress is known; None where it is not.
     """
 
     EA: Value
@@ -85,12 +87,13 @@ class Section:
     E: Value | None = None
     corners: tuple[tuple[Value, Value], ...] = ()
     radii: tuple[tuple[Value, Value], ...] = ()
+    shape: ShearShape | None = None
 
     def __post_init__(self) -> None:
         """Convert the numbers."""
         for item in fields(self):
             stated: Any = getattr(self, item.name)
-            if stated is not None:
+            if stated is not None and item.name != "shape":
                 object.__setattr__(self, item.name, _as_values(stated, f"section: {item.name}"))
 
     @property
@@ -166,6 +169,8 @@ class Section:
             new["GA_y"] = new["GA_z"] = None
         elif quarter % 2:
             new["GA_y"], new["GA_z"] = self.GA_z, self.GA_y
+        if self.shape is not None:
+            new["shape"] = replace(self.shape, angle=self.shape.angle + angle)
         return Section(**new)
 
     def stiffness_matrix(self, values: Mapping[str, float] | None = None) -> npt.NDArray[np.float64]:
@@ -249,6 +254,57 @@ class Section:
             )
         reach = np.linalg.norm(gradient @ radii.T, axis=-1)
         return constant - reach, constant + reach
+
+    def shear_stress(
+        self, forces: npt.ArrayLike, points: npt.ArrayLike, values: Mapping[str, float] | None = None
+    ) -> npt.NDArray[np.float64]:
+        """Shear stresses tau_xy, tau_xz at points of the section (..., points, 2) [N/m^2] (eqs. 28a, 28c, 32a to 32e).
+
+        They are Saint-Venant's, of rectangles, ellipses and tubes: those far from clamps, jumps and loads, where the
+        section is free to warp.
+
+        Args:
+            forces: Section forces N, Vy, Vz, T, My, Mz about the axis (..., 6) [N, N m].
+            points: Points (y, z) (points, 2) [m].
+            values: Number of each parameter and of the station.
+
+        Raises:
+            DescriptionError: The stress of this shape is not known, or a point is not on the section.
+        """
+        if self.shape is None:
+            raise DescriptionError(
+                Problem(
+                    "section: its shear stress is not known",
+                    "no rectangle, ellipse, circle or tube",
+                    "shear stress has a closed form for these",
+                    "use finite elements of the outline, as sectionproperties has them",
+                )
+            )
+        values = values or {}
+        a, b = (number_of(size, "shape", values) for size in self.shape.sizes)
+        c, s = float(np.cos(self.shape.angle)), float(np.sin(self.shape.angle))
+        R = np.array([[c, -s], [s, c]])  # From the section's axes to those of the shape.
+        stated = np.asarray(points, dtype=np.float64).reshape(-1, 2)
+        y, z = R @ (stated - self._point("tension_center", values)).T
+        outside = ~is_inside(self.shape.kind, (a, b), y, z)
+        if outside.any():
+            first = stated[int(np.argmax(outside))]
+            raise DescriptionError(
+                Problem(
+                    "section: shear stress outside of it",
+                    f"the point ({first[0]:g}, {first[1]:g}) m",
+                    f"points lie on the {self.shape.kind} of {a:g} and {b:g} m",
+                    "state points on the section",
+                )
+            )
+        _, Vy, Vz, T, _, _ = np.moveaxis(np.asarray(forces, dtype=np.float64), -1, 0)
+        y_s, z_s = self._point("shear_center", values)
+        along_y, along_z = R @ np.stack([Vy, Vz]).reshape(2, -1)
+        ratio = number_of(self.shape.ratio, "E/G", values)
+        units = np.stack(unit_stresses(self.shape.kind, (a, b), ratio, y, z))
+        loads = np.stack([along_y, along_z, np.reshape(T - (y_s * Vz - z_s * Vy), -1)])
+        stresses = np.einsum("kl,kip,ij->lpj", loads, units, R)
+        return np.asarray(stresses.reshape(*np.shape(T), len(stated), 2))
 
     def _normal_stress(
         self, forces: npt.ArrayLike, values: Mapping[str, float]
