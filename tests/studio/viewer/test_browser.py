@@ -178,6 +178,7 @@ def test_a_model_of_22_joints_moves_as_it_is_pushed(chromium: Any) -> None:
     assert min(shown, received) > LEAST_RATE
 
 
+@pytest.mark.slow
 def test_the_controls_move_the_picture(open_page: Open) -> None:
     with sf.Viewer(MODELS["planar_robot"], port=0) as viewer:
         page = open_page(viewer.url)
@@ -191,6 +192,7 @@ def test_the_controls_move_the_picture(open_page: Open) -> None:
         until(page, lambda: abs(viewer.state.q[0] - 1.0) < 0.02)
 
 
+@pytest.mark.slow
 def test_a_motion_plays_and_pauses(open_page: Open) -> None:
     run = sf.simulate(sf.compile(MODELS["double_pendulum"]), [1.5, 0.0], None, 2.0, dt=0.01)
     with sf.view(MODELS["double_pendulum"], run, port=0, browser=False) as viewer:
@@ -202,6 +204,7 @@ def test_a_motion_plays_and_pauses(open_page: Open) -> None:
         page.get_by_role("button", name="Play").wait_for(timeout=PATIENCE_MS)
 
 
+@pytest.mark.slow
 def test_a_run_of_a_diagram_is_seen_as_it_goes(open_page: Open) -> None:
     diagram = sf.Diagram("arm")
     diagram.add_model("arm", MODELS["double_pendulum"], {"q1": 1.5})

@@ -17,6 +17,7 @@ ROBOT = Path(__file__).parents[4] / "reference_models" / "flexible" / "planar_ro
 JOB = 120_000
 
 
+@pytest.mark.slow
 def test_beams_become_rigid_and_the_engines_agree(
     serve: Callable[..., Server], page: Page, picture: Callable[[str], None]
 ) -> None:
