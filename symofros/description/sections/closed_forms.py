@@ -6,14 +6,12 @@ import math
 from typing import Any
 
 from symofros.description.sections.section import Material, Section
-from symofros.description.sections.shear import Kind, ShearShape
+from symofros.description.sections.shear import ODD_FIFTHS, Kind, ShearShape
 from symofros.description.values import Term, as_value
 
 _Points = tuple[tuple[Term, Term], ...]
 
 _PI = math.pi
-# The sum of 1/n^5 over odd n: 31/32 zeta(5).
-_ODD_FIFTHS = 31.0 / 32.0 * 1.0369277551433699
 
 
 def rectangle(material: Material, y: Any, z: Any) -> Section:
@@ -133,14 +131,14 @@ def _rectangle_torsion(y: Term, z: Term) -> Term:
     rest = Term(0.0)
     for n in (1, 3, 5, 7):
         rest = rest + (Term(1.0) - (Term(n * _PI / 2.0) * a / b).tanh()) / Term(float(n**5))
-    series = Term(192.0 / _PI**5) * (Term(_ODD_FIFTHS) - rest)
+    series = Term(192.0 / _PI**5) * (Term(ODD_FIFTHS) - rest)
     return a * b * b * b / Term(3.0) * (Term(1.0) - series * b / a)
 
 
 def _rectangle_compliance(ratio: Term, h: Term, b: Term) -> Term:
     """A/A_s for a force along the side h of a rectangle of width b (eq. 28), where ratio = E/G = 2 (1 + nu)."""
     lateral = _lateral(ratio)
-    rest = Term(_ODD_FIFTHS)
+    rest = Term(ODD_FIFTHS)
     for n in (1, 3, 5, 7, 9):
         rest = rest + (Term(1.0) / (Term(n * _PI / 2.0) * b / h).tanh() - Term(1.0)) / Term(float(n**5))
     slenderness = b / h
