@@ -249,6 +249,7 @@ def test_another_system_takes_the_place_of_the_one_before(open_page: Open) -> No
     assert all(colored(image, color).sum() > 50 for color in colors)
 
 
+@pytest.mark.slow
 def test_it_may_be_embedded(chromium: Any, tmp_path: Path) -> None:
     """As an editor does: a page of another origin with the viewer in an iframe, and controls of its own."""
     page = chromium.new_page(viewport={"width": WIDTH, "height": HEIGHT})

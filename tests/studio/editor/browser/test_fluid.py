@@ -54,6 +54,7 @@ def dragged(page: Page, x: float, y: float) -> tuple[list[float], list[str]]:
     return found
 
 
+@pytest.mark.slow
 def test_thirty_bodies_stay_fluid_fold_and_are_found(serve: Callable[..., Server], page: Page, tmp_path: Path) -> None:
     sf.save(chain(BODIES), tmp_path / "chain.yaml")
     server = serve("chain.yaml")

@@ -135,6 +135,7 @@ def feed(page: Page, name: str, source: str) -> None:
     steps.window(page).get_by_label(f"Source of {name}", exact=True).select_option(source)
 
 
+@pytest.mark.slow
 def test_from_nothing_to_a_controlled_arm_that_plays_and_is_exported(
     serve: Callable[..., Server], page: Page, picture: Callable[[str], None], tmp_path: Path
 ) -> None:

@@ -137,6 +137,7 @@ def test_it_follows_edits_and_keeps_the_last_that_was_sound(serve: Callable[...,
     expect(page.get_by_text("The last model without problems is shown")).to_have_count(0)
 
 
+@pytest.mark.slow
 def test_a_scale_bar_follows_the_zoom(serve: Callable[..., Server], page: Page, picture: Callable[[str], None]) -> None:
     server = serve("robot.yaml", source=ROBOT)
     steps.open_editor(page, server.url)
