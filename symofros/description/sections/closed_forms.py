@@ -6,7 +6,14 @@ import math
 from typing import Any
 
 from symofros.description.sections.section import Material, Section
-from symofros.description.sections.shear import ODD_FIFTHS, Kind, ShearShape
+from symofros.description.sections.shear import (
+    ODD_FIFTHS,
+    Kind,
+    ShearShape,
+    flexure_coefficients,
+    lateral_ratio,
+    rectangle_torsion,
+)
 from symofros.description.values import Term, as_value
 
 _Points = tuple[tuple[Term, Term], ...]
@@ -29,7 +36,7 @@ def rectangle(material: Material, y: Any, z: Any) -> Section:
     halves = (Term(-0.5), Term(0.5))
     corners = tuple((sy * a, sz * b) for sy in halves for sz in halves)
     return _homogeneous(
-        E, G, rho, area, I_y, I_z, G * _rectangle_torsion(a, b), shear, ("rectangle", a, b), corners=corners
+        E, G, rho, area, I_y, I_z, G * rectangle_torsion(a, b), shear, ("rectangle", a, b), corners=corners
     )
 
 
@@ -124,20 +131,9 @@ def _radii(y: Term, z: Term) -> _Points:
     return (y, Term(0.0)), (Term(0.0), z)
 
 
-def _rectangle_torsion(y: Term, z: Term) -> Term:
-    """J of Saint-Venant's torsion (eq. 27): the sum of 1/n^5 is known, and what is left of the series vanishes fast."""
-    a = y.maximum(z)
-    b = y * z / a
-    rest = Term(0.0)
-    for n in (1, 3, 5, 7):
-        rest = rest + (Term(1.0) - (Term(n * _PI / 2.0) * a / b).tanh()) / Term(float(n**5))
-    series = Term(192.0 / _PI**5) * (Term(ODD_FIFTHS) - rest)
-    return a * b * b * b / Term(3.0) * (Term(1.0) - series * b / a)
-
-
 def _rectangle_compliance(ratio: Term, h: Term, b: Term) -> Term:
     """A/A_s for a force along the side h of a rectangle of width b (eq. 28), where ratio = E/G = 2 (1 + nu)."""
-    lateral = _lateral(ratio)
+    lateral = lateral_ratio(ratio)
     rest = Term(ODD_FIFTHS)
     for n in (1, 3, 5, 7, 9):
         rest = rest + (Term(1.0) / (Term(n * _PI / 2.0) * b / h).tanh() - Term(1.0)) / Term(float(n**5))
@@ -146,16 +142,10 @@ def _rectangle_compliance(ratio: Term, h: Term, b: Term) -> Term:
     return Term(1.2) + Term(144.0) * lateral * lateral * warping
 
 
-def _lateral(ratio: Term) -> Term:
-    """nu/(1 + nu), where ratio = E/G = 2 (1 + nu)."""
-    return Term(1.0) - Term(2.0) / ratio
-
-
 def _ellipse_compliance(ratio: Term, a: Term, b: Term) -> Term:
     """A/A_s for a force along the semi-axis a of an ellipse (eq. 28b), where ratio = E/G."""
     k = b * b / (a * a)
-    across = (Term(3.0) * _lateral(ratio) - Term(1.0)) / (Term(6.0) + Term(2.0) * k)
-    along = (k * across - Term(1.0)) / Term(3.0)
+    along, across = flexure_coefficients(lateral_ratio(ratio), k)
     mixed = Term(1.0) + Term(2.0) * along
     squares = Term(10.0) * along * along + Term(2.0) * k * k * across * across
     return squares + k * (mixed * mixed - Term(10.0) * along * across) * Term(2.0 / 3.0)
@@ -163,7 +153,6 @@ def _ellipse_compliance(ratio: Term, a: Term, b: Term) -> Term:
 
 def _round_compliance(ratio: Term, hollow: Term) -> Term:
     """A/A_s of a tube of radii a, b, where hollow = (a b/(a^2 + b^2))^2, zero of a circle; ratio = E/G (eq. 28d)."""
-    p = (_lateral(ratio) - Term(3.0)) / Term(8.0)
-    s = (Term(3.0) * _lateral(ratio) - Term(1.0)) / Term(8.0)
+    p, s = flexure_coefficients(lateral_ratio(ratio), Term(1.0))
     full = p * p - p * s + (p * p + s * s) * (Term(1.0) - hollow) / Term(3.0)
     return Term(8.0) * (full + hollow * (Term(4.0) * p * p - Term(2.0) * p * s))

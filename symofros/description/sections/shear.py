@@ -11,7 +11,8 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from symofros.description.values import Value
+from symofros.description.values import Term, Value
+from symofros.expr.expression import evaluate
 
 Array = npt.NDArray[np.float64]
 Kind = Literal["rectangle", "ellipse", "tube"]
@@ -24,7 +25,7 @@ _DIGITS = 38.0
 
 @dataclass(frozen=True)
 class ShearShape:
-    """A shape whose shear stress is known, about its centroid.
+    """A shape of known shear stress, about its centroid.
 
     Attributes:
         kind: What it is.
@@ -37,6 +38,33 @@ class ShearShape:
     sizes: tuple[Value, Value]
     ratio: Value
     angle: float = 0.0
+
+
+def lateral_ratio(ratio: Term) -> Term:
+    """nu/(1 + nu), where ratio = E/G = 2 (1 + nu)."""
+    return Term(1.0) - Term(2.0) / ratio
+
+
+def flexure_coefficients(lateral: Term, k: Term) -> tuple[Term, Term]:
+    """P and s of the shear stress of an ellipse under a force (eq. 28a), k = 1 for a circle and a tube."""
+    s = (Term(3.0) * lateral - Term(1.0)) / (Term(6.0) + Term(2.0) * k)
+    return (k * s - Term(1.0)) / Term(3.0), s
+
+
+def rectangle_torsion(y: Term, z: Term) -> Term:
+    """J of Saint-Venant's torsion (eq. 27): the sum of 1/n^5 is known, and what is left of the series vanishes fast."""
+    a = y.maximum(z)
+    b = y * z / a
+    rest = Term(0.0)
+    for n in (1, 3, 5, 7):
+        rest = rest + (Term(1.0) - (Term(n * np.pi / 2.0) * a / b).tanh()) / Term(float(n**5))
+    series = Term(192.0 / np.pi**5) * (Term(ODD_FIFTHS) - rest)
+    return a * b * b * b / Term(3.0) * (Term(1.0) - series * b / a)
+
+
+def _number(term: Term) -> float:
+    """Of a term that was made of numbers."""
+    return float(evaluate(term.value, {}))
 
 
 def is_inside(kind: Kind, sizes: tuple[float, float], y: Array, z: Array, slack: float = 1e-9) -> npt.NDArray[np.bool_]:
@@ -61,7 +89,7 @@ def unit_stresses(kind: Kind, sizes: tuple[float, float], ratio: float, y: Array
         z: Places of points inside (points) [m].
     """
     a, b = sizes
-    lateral = 1.0 - 2.0 / ratio
+    lateral = _number(lateral_ratio(Term(ratio)))
     force, torque = {
         "rectangle": (_force_on_rectangle, _torque_on_rectangle),
         "ellipse": (_force_on_ellipse, _torque_on_ellipse),
@@ -76,8 +104,7 @@ def unit_stresses(kind: Kind, sizes: tuple[float, float], ratio: float, y: Array
 def _force_on_ellipse(a: float, b: float, lateral: float, y: Array, z: Array) -> Array:
     """Eq. 28a."""
     k = (b / a) ** 2
-    s = -(1.0 - 3.0 * lateral) / (6.0 + 2.0 * k)
-    p = (k * s - 1.0) / 3.0
+    p, s = map(_number, flexure_coefficients(Term(lateral), Term(k)))
     moment = 0.25 * np.pi * a**3 * b
     return np.stack([p * (y * y - a * a) + s * z * z, (-1.0 - 2.0 * p) * y * z]) / moment
 
@@ -89,8 +116,7 @@ def _torque_on_ellipse(a: float, b: float, y: Array, z: Array) -> Array:
 
 def _force_on_tube(a: float, b: float, lateral: float, y: Array, z: Array) -> Array:
     """Eq. 28c."""
-    s = -(1.0 - 3.0 * lateral) / 8.0
-    p = (s - 1.0) / 3.0
+    p, s = map(_number, flexure_coefficients(Term(lateral), Term(1.0)))
     square = np.maximum(y * y + z * z, np.finfo(float).tiny)
     cosine, sine = y / np.sqrt(square), z / np.sqrt(square)
     from_hole = (a * b) ** 2 / square
@@ -101,7 +127,7 @@ def _force_on_tube(a: float, b: float, lateral: float, y: Array, z: Array) -> Ar
 
 
 def _torque_on_tube(a: float, b: float, y: Array, z: Array) -> Array:
-    """Eq. 32a with both semi-axes alike."""
+    """Eq. 32a with two equal semi-axes."""
     return np.stack([-z, y]) * (2.0 / (np.pi * (a**4 - b**4)))
 
 
@@ -136,15 +162,13 @@ def _torque_on_rectangle(h: float, b: float, y: Array, z: Array) -> Array:
     inside = 1j * np.exp(-depth + 1j * angle)
     slow = -0.5j * (_dilogarithm(inside) - _dilogarithm(-inside))
     cosines, sines = slow.real, slow.imag
-    stiffness = 0.0  # J, by the same series.
     for n in range(1, 2 + 2 * int(_DIGITS / (0.5 * rate * b)), 2):
         both = np.exp(-n * rate * b)
         near, far = np.exp(-n * (depth + 2.0 * rate * np.abs(z))), np.exp(-n * (depth + rate * b))
         factor = (1.0 if n % 4 == 1 else -1.0) / (n * n * (1.0 + both))
         cosines = cosines - factor * (near + far) * np.cos(n * angle)
         sines = sines + factor * (near - far) * np.sin(n * angle)
-        stiffness += (1.0 - np.tanh(0.5 * n * rate * b)) / n**5
-    J = b * h**3 / 3.0 * (1.0 - 192.0 / np.pi**5 * h / b * (ODD_FIFTHS - stiffness))
+    J = _number(rectangle_torsion(Term(h), Term(b)))
     scale = 4.0 * h / np.pi**2
     return np.stack([-scale * np.sign(z) * cosines, y - scale * sines]) * (2.0 / J)
 
