@@ -222,16 +222,19 @@ class Compilation:
 
 def _warn_inconsistent(system: System) -> None:
     """Warn of beams that soften when they spin, as they lack what would stiffen them, and of inertia that is unused."""
+    beams = [body for body in system.bodies if isinstance(body, Beam)]
+    if not beams:
+        return
     numbers = Numbers(system)
-    for body in system.bodies:
-        for label, mode, share in omitted_rotary_inertia(body, numbers) if isinstance(body, Beam) else ():
+    for body in beams:
+        for label, mode, share in omitted_rotary_inertia(body, numbers):
             warnings.warn(
                 f"beam '{body.name}': {label} is stated and does not count, as rotary_inertia is false: it would lower"
                 f" the frequency of bending mode {mode} by {share:.1%}. Set rotary_inertia: true, or state no {label}.",
                 InconsistentModelWarning,
                 stacklevel=4,
             )
-        if isinstance(body, Beam) and not body.foreshortening and body.retain == "first_order" and body.modes:
+        if not body.foreshortening and body.retain == "first_order" and body.modes:
             warnings.warn(
                 f"beam '{body.name}': first order without foreshortening keeps the softening of a spinning beam and"
                 " drops its stiffening: it diverges at its first natural frequency. For studies only; otherwise turn"

@@ -127,7 +127,7 @@ def _force_on_tube(a: float, b: float, lateral: float, y: Array, z: Array) -> Ar
 
 
 def _torque_on_tube(a: float, b: float, y: Array, z: Array) -> Array:
-    """Eq. 32a with two equal semi-axes."""
+    """Eq. 32a, by J."""
     return np.stack([-z, y]) * (2.0 / (np.pi * (a**4 - b**4)))
 
 

@@ -31,9 +31,8 @@ def single_call(kernel: Kernel, par: Array, u: Array, better: Callable[[], None]
         better: A method that is called, by any thread, when another call of this function would be a faster one.
     """
     by_extension = call_type(better) if isinstance(kernel, CompiledKernel) else None
-    if by_extension is None:
+    if by_extension is None or not isinstance(kernel, CompiledKernel):
         return _through_numpy(kernel, par, u)
-    assert isinstance(kernel, CompiledKernel)
     inputs = tuple(
         (group, -1 if group == "t" else size, u if group == "u" else None) for group, size in kernel.signature.inputs
     )

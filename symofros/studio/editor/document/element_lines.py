@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator
 from typing import Any
@@ -19,7 +18,7 @@ def element_lines(source: YamlText, drawn: Iterable[dict[str, Any]]) -> dict[str
         drawn: Blocks and links as the page has them, each with its `id` and `path`. Frames of bodies are named by their
             path.
     """
-    starts = [0, *(end.end() for end in re.finditer(r"\r\n?|\n", source.text))]
+    starts = source.line_starts
     lines: dict[str, tuple[int, int]] = {}
     paths = [(item["id"], tuple(item["path"])) for item in drawn]
     for name, path in (*paths, *_frames(source)):

@@ -56,5 +56,5 @@ def inertia_figures(stated: Json, known: Mapping[str, float]) -> Json:
 
 
 def _incomplete(found: str) -> Exception:
-    rule = "figures are of a body whose mass and sizes have numbers"
+    rule = "figures are of a body with numbers for its mass and sizes"
     return refusal("the inertia is not complete", found, rule, "fill in what is marked")

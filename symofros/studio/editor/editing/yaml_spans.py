@@ -115,6 +115,11 @@ class YamlText:
                 break
         return at
 
+    @cached_property
+    def line_starts(self) -> list[int]:
+        """Where each line begins."""
+        return [0, *(line_break.end() for line_break in _BREAK.finditer(self.text))]
+
     def line_start(self, at: int) -> int:
         """Where the line of a position begins."""
         return max(self.text.rfind("\n", 0, at), self.text.rfind("\r", 0, at)) + 1
