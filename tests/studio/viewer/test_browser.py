@@ -61,9 +61,18 @@ def until(page: Any, condition: Callable[[], bool]) -> None:
 
 
 def image_of(page: Any) -> np.ndarray:
-    """The canvas (height, width, 3), without what floats over it."""
+    """The canvas (height, width, 3), without what floats over it.
+
+    The page's picture is cut to it: a picture of the element waits until the page's animations let it through, which a
+    busy machine may not do within any time.
+    """
     page.add_style_tag(content=".mantine-Notifications-root, .mantine-Notification-root {display: none !important}")
-    shot = page.locator("canvas").first.screenshot()
+    return whole(page, page.locator("canvas").first.bounding_box())
+
+
+def whole(page: Any, clip: Any = None) -> np.ndarray:
+    """The page, or its part within a box (height, width, 3)."""
+    shot = page.screenshot(clip=clip, timeout=PATIENCE_MS)
     return np.asarray(import_module("PIL.Image").open(io.BytesIO(shot)).convert("RGB")).astype(int)
 
 
@@ -263,11 +272,6 @@ def test_it_may_be_embedded(chromium: Any, tmp_path: Path) -> None:
         viewer.push(0.0, [1.2, -1.2, 1.2])
         until(page, lambda: changed(before, whole(page)).sum() > 300)
     page.close()
-
-
-def whole(page: Any) -> np.ndarray:
-    """All of the page (height, width, 3)."""
-    return np.asarray(import_module("PIL.Image").open(io.BytesIO(page.screenshot())).convert("RGB")).astype(int)
 
 
 def test_a_replay_is_a_page_of_its_own(open_page: Open, tmp_path: Path) -> None:

@@ -44,8 +44,11 @@ function Orders({ job }: { job: Job }) {
   );
 }
 
+/** What this very run has told; another page's run tells too. */
+const useLive = (job: Job) => useStore(({ live }) => (live?.id === job.id ? live : null));
+
 function RunningDiagram({ job }: { job: Job }) {
-  const live = useStore((state) => state.live);
+  const live = useLive(job);
   return (
     <>
       <Running job={job} />
@@ -56,12 +59,13 @@ function RunningDiagram({ job }: { job: Job }) {
 
 function Running({ job }: { job: Job }) {
   const { done, total, text } = job.progress;
-  const live = useStore((state) => state.live);
+  const live = useLive(job);
+  const hasBegun = job.progress.paused === true || (live !== null && live.t.length > 0);
   return (
     <div className="running" role="status">
       <progress max={total || 1} value={total > 0 ? done : undefined} aria-label={TITLES[job.kind]} />
       <span>{text || "starting"}</span>
-      {job.kind === "run" && live !== null && live.t.length > 0 ? <Orders job={job} /> : null}
+      {job.kind === "run" && hasBegun ? <Orders job={job} /> : null}
       <button type="button" className="small" onClick={() => void cancel(job.kind)}>
         Cancel
       </button>

@@ -16,9 +16,8 @@ export function hear(job: Job): void {
   else void fetchJob(job.id);
 }
 
-/** What a run tells while it goes on. */
+/** What a run tells while it goes on; its first words may come before the answer that names the run. */
 export function hearSamples({ id, plots, t, values }: Samples): void {
-  if (now().jobs.run?.id !== id) return;
   if (plots !== null) {
     const names = [...new Set(plots.flatMap(({ curves }) => curves.map(({ name }) => name)))];
     update({ live: { id, plots, t: [], values: Object.fromEntries(names.map((name) => [name, []])) } });
@@ -75,7 +74,7 @@ export async function run(kind: JobKind, options: object = {}): Promise<void> {
     result: null,
     error: null,
   });
-  update({ bottom: kind, live: null });
+  update(({ live }) => ({ bottom: kind, live: live?.id === started.id ? live : null }));
   await follow(kind, started.id);
 }
 
