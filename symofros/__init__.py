@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING, Any
 
 from symofros import interop as interop
 from symofros.base.options import Options as Options
-from symofros.description import sections as sections
 from symofros.description import solids as solids
-from symofros.description.beam import Beam as Beam
-from symofros.description.beam import BeamLoad as BeamLoad
-from symofros.description.beam import Samples as Samples
+from symofros.description.beams import sections as sections
+from symofros.description.beams.beam import Beam as Beam
+from symofros.description.beams.beam import BeamLoad as BeamLoad
+from symofros.description.beams.beam import Samples as Samples
 from symofros.description.constraints import Closure as Closure
 from symofros.description.constraints import Constraint as Constraint
 from symofros.description.constraints import Coupling as Coupling
@@ -36,8 +36,8 @@ from symofros.description.forces import Spring as Spring
 from symofros.description.forces import Stop as Stop
 from symofros.description.forces import VirtualPower as VirtualPower
 from symofros.description.frames import Frame as Frame
-from symofros.description.joint import Joint as Joint
-from symofros.description.joint import Limits as Limits
+from symofros.description.joints.joint import Joint as Joint
+from symofros.description.joints.joint import Limits as Limits
 from symofros.description.system import Body as Body
 from symofros.description.system import Inertia as Inertia
 from symofros.description.system import Input as Input
@@ -80,12 +80,12 @@ if TYPE_CHECKING:
     from symofros.loading import save as save
     from symofros.runtime.model import Model as Model
     from symofros.simulation.analysis.actuator_efforts import actuator_efforts as actuator_efforts
-    from symofros.simulation.analysis.assembly import assemble as assemble
     from symofros.simulation.analysis.base_parameters import base_parameters as base_parameters
     from symofros.simulation.analysis.equilibrium import equilibrium as equilibrium
-    from symofros.simulation.analysis.inverse_kinematics import Target as Target
-    from symofros.simulation.analysis.inverse_kinematics import inverse_kinematics as inverse_kinematics
-    from symofros.simulation.analysis.inverse_kinematics import joint_motion as joint_motion
+    from symofros.simulation.analysis.kinematics.assembly import assemble as assemble
+    from symofros.simulation.analysis.kinematics.inverse_kinematics import Target as Target
+    from symofros.simulation.analysis.kinematics.inverse_kinematics import inverse_kinematics as inverse_kinematics
+    from symofros.simulation.analysis.kinematics.inverse_kinematics import joint_motion as joint_motion
     from symofros.simulation.analysis.modes import modes as modes
     from symofros.simulation.analysis.rollout import Rollout as Rollout
     from symofros.simulation.analysis.rollout import rollout as rollout
@@ -136,11 +136,11 @@ _LAZY = {
     "load_scene": ("symofros.studio.advice.scene_file", "load_scene"),
     "Model": ("symofros.runtime.model", "Model"),
     "actuator_efforts": ("symofros.simulation.analysis.actuator_efforts", "actuator_efforts"),
-    "assemble": ("symofros.simulation.analysis.assembly", "assemble"),
+    "assemble": ("symofros.simulation.analysis.kinematics.assembly", "assemble"),
     "base_parameters": ("symofros.simulation.analysis.base_parameters", "base_parameters"),
-    "inverse_kinematics": ("symofros.simulation.analysis.inverse_kinematics", "inverse_kinematics"),
-    "joint_motion": ("symofros.simulation.analysis.inverse_kinematics", "joint_motion"),
-    "Target": ("symofros.simulation.analysis.inverse_kinematics", "Target"),
+    "inverse_kinematics": ("symofros.simulation.analysis.kinematics.inverse_kinematics", "inverse_kinematics"),
+    "joint_motion": ("symofros.simulation.analysis.kinematics.inverse_kinematics", "joint_motion"),
+    "Target": ("symofros.simulation.analysis.kinematics.inverse_kinematics", "Target"),
     "equilibrium": ("symofros.simulation.analysis.equilibrium", "equilibrium"),
     "modes": ("symofros.simulation.analysis.modes", "modes"),
     "rollout": ("symofros.simulation.analysis.rollout", "rollout"),

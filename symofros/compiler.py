@@ -24,7 +24,7 @@ from pathlib import Path
 
 from symofros.base.arguments import check_argument
 from symofros.base.options import Options
-from symofros.description.beam import Beam
+from symofros.description.beams.beam import Beam
 from symofros.description.system import System
 from symofros.errors import CompileError, CompilerMissingWarning, DescriptionError, InconsistentModelWarning, Problem
 from symofros.expr.program import Program

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from rich.table import Table
 
-from symofros.description.beam import Beam
+from symofros.description.beams.beam import Beam
 from symofros.mechanics.beams.piecewise import stations
 from symofros.mechanics.topology.beams import section_values
 from symofros.mechanics.topology.numbers import Numbers

@@ -11,13 +11,13 @@ from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any, Literal
 
-from symofros.description.beam import Beam
+from symofros.description.beams.beam import Beam
+from symofros.description.beams.segments import SegmentAnchors, segment_names, segments_of
 from symofros.description.constraints import Constraint, section_order
 from symofros.description.entries import refuses_unknown_entries
 from symofros.description.forces import Connection, Load, Potential, VirtualPower
 from symofros.description.frames import Frame
-from symofros.description.joint import Joint
-from symofros.description.segments import SegmentAnchors, segment_names, segments_of
+from symofros.description.joints.joint import Joint
 from symofros.description.values import IDENTITY, ORIGIN, Rotation, Value, Vector, as_value, as_vector
 from symofros.description.visual import Visual
 from symofros.errors import DescriptionError, Problem, did_you_mean

@@ -13,7 +13,7 @@ from symofros.base.arguments import checked
 from symofros.base.functions import FRAME_FUNCTIONS, exported
 from symofros.base.options import Options
 from symofros.compiler import GENERATOR, Compilation, compile_system, plan
-from symofros.description.beam import Beam
+from symofros.description.beams.beam import Beam
 from symofros.description.system import System
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.program.compiled import resolve
@@ -38,7 +38,7 @@ from symofros.loading import load
 from symofros.runtime.beams import BEAM_LIMIT
 from symofros.runtime.calls.kernel import Array, LaneOptions
 from symofros.runtime.model import Model
-from symofros.simulation.analysis.assembly import assemble
+from symofros.simulation.analysis.kinematics.assembly import assemble
 from symofros.simulation.stepping.methods import METHODS, method_meant
 
 Target = Literal["c", "cuda", "mex", "sfunction", "fmu2", "fmu3", "wasm", "urdf", "mjcf"]

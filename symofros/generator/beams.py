@@ -7,7 +7,7 @@ from functools import cache, lru_cache, partial
 
 import numpy as np
 
-from symofros.description.beam import Beam
+from symofros.description.beams.beam import Beam
 from symofros.description.values import Value
 from symofros.expr.edges import Edge
 from symofros.expr.expression import evaluate

@@ -6,7 +6,7 @@ import hashlib
 import math
 
 from symofros.base.options import Options
-from symofros.description.beam import Beam
+from symofros.description.beams.beam import Beam
 from symofros.description.constraints import AXES, Closure
 from symofros.description.system import System
 from symofros.description.values import symbols

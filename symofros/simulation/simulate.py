@@ -16,7 +16,7 @@ from symofros.simulation.events import named_events
 from symofros.simulation.inputs import Inputs, plan_inputs
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.progress import bar
-from symofros.simulation.results.diagnosis import diagnose
+from symofros.simulation.results.examination.diagnosis import diagnose
 from symofros.simulation.results.trajectory import Found, Statistics, Trajectory
 from symofros.simulation.settings import Settings, check_fit, check_start, refuse_lengths, vector
 from symofros.simulation.stepping.loops import run_own, run_sundials

@@ -19,7 +19,7 @@ from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.batch_inputs import Shape, sort_inputs
 from symofros.simulation.inputs import Inputs
 from symofros.simulation.options import SimulationOptions
-from symofros.simulation.results.batch_examination import BatchExamination
+from symofros.simulation.results.examination.batch_examination import BatchExamination
 from symofros.simulation.results.trajectories import Trajectories
 from symofros.simulation.settings import CLOSED, Settings, refuse_lengths
 from symofros.simulation.stepping.batch_stepper import BatchResults, BatchStepper, InitialStates, run_batch_steppers

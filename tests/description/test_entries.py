@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 import symofros as sf
-from symofros.description.beam import BeamLoad, Samples
+from symofros.description.beams.beam import BeamLoad, Samples
 
 CLASSES: tuple[Any, ...] = (
     sf.Beam,

@@ -14,9 +14,9 @@ from validation.mutation.python_faults import python_faults
 SCOPE = (
     "symofros/description/values.py",
     "symofros/description/parser.py",
-    "symofros/description/joint.py",
-    "symofros/description/joint_kinds.py",
-    "symofros/description/beam.py",
+    "symofros/description/joints/joint.py",
+    "symofros/description/joints/joint_kinds.py",
+    "symofros/description/beams/beam.py",
     "symofros/description/forces.py",
     "symofros/description/constraints.py",
     "symofros/description/urdf/reader.py",

@@ -52,7 +52,7 @@ _GENERAL = {
     "symofros/generator": ("tests/generator/codegen/test_c_equals_interpreter.py",),
     "symofros/simulation": ("tests/simulation/test_simulate.py", "tests/simulation/stepping/test_orders.py"),
     "symofros/native": ("tests/simulation/test_simulate.py", "tests/runtime/test_project.py"),
-    "symofros/description": ("tests/description/test_entries.py", "tests/description/test_joint_kinds.py"),
+    "symofros/description": ("tests/description/test_entries.py", "tests/description/joints/test_joint_kinds.py"),
 }
 
 

@@ -20,8 +20,8 @@ import numpy as np
 
 from symofros.base.rotations import Array, matrix_product
 from symofros.description.forces import Damper, JointElement, Spring
-from symofros.description.joint import WORLD, Joint, Limits
-from symofros.description.joint_kinds import JointKindName
+from symofros.description.joints.joint import WORLD, Joint, Limits
+from symofros.description.joints.joint_kinds import JointKindName
 from symofros.description.mjcf.geometry import Exact, about
 from symofros.description.mjcf.names import Names
 from symofros.description.remarks import Remarks

@@ -10,7 +10,7 @@ import numpy as np
 
 from symofros.description.forces import Load
 from symofros.description.frames import Frame
-from symofros.description.joint import WORLD, Joint
+from symofros.description.joints.joint import WORLD, Joint
 from symofros.description.mjcf.actuators import ActuatorReader
 from symofros.description.mjcf.equalities import EqualityReader
 from symofros.description.mjcf.geometry import Exact, rotation_of

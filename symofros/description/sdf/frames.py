@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from symofros.description.joint import WORLD
+from symofros.description.joints.joint import WORLD
 from symofros.description.sdf.values import IDENTITY_POSE, Pose, SdfValues
 from symofros.description.xml_nodes import Element
 from symofros.errors import did_you_mean

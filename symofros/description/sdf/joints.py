@@ -17,8 +17,8 @@ from symofros.base.rotations import Array
 from symofros.description.constraints import AXES, AxisName, Closure, Coupling, mimicry
 from symofros.description.forces import Damper, JointElement, Spring
 from symofros.description.frames import Frame
-from symofros.description.joint import WORLD, Joint, Limits
-from symofros.description.joint_kinds import KINDS, JointKindName
+from symofros.description.joints.joint import WORLD, Joint, Limits
+from symofros.description.joints.joint_kinds import KINDS, JointKindName
 from symofros.description.mjcf.geometry import Exact
 from symofros.description.sdf.frames import Frames
 from symofros.description.sdf.values import Pose, SdfValues

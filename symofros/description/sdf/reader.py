@@ -14,7 +14,7 @@ from pathlib import Path
 from symofros.description.constraints import Closure
 from symofros.description.forces import Load
 from symofros.description.frames import Frame
-from symofros.description.joint import WORLD, Joint
+from symofros.description.joints.joint import WORLD, Joint
 from symofros.description.mjcf.geometry import Exact
 from symofros.description.reading import Reading, check_snap_tol, in_order, read_bytes
 from symofros.description.remarks import Remarks

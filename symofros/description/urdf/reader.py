@@ -12,8 +12,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from symofros.description.constraints import Coupling, mimicry
-from symofros.description.joint import WORLD, Joint
-from symofros.description.joint_kinds import KINDS
+from symofros.description.joints.joint import WORLD, Joint
+from symofros.description.joints.joint_kinds import KINDS
 from symofros.description.reading import Reading, check_snap_tol, in_order, read_bytes
 from symofros.description.system import Inertia, RigidBody, System
 from symofros.description.urdf.values import Values, finite_numbers

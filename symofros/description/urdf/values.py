@@ -6,7 +6,7 @@ import math
 import re
 from dataclasses import dataclass, field
 
-from symofros.description.joint import Limits
+from symofros.description.joints.joint import Limits
 from symofros.description.remarks import Remarks
 from symofros.description.system import Inertia
 from symofros.description.values import IDENTITY, Rotation

@@ -14,10 +14,10 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from symofros.description.beam import Beam
+from symofros.description.beams.beam import Beam
 from symofros.description.frames import Frame
-from symofros.description.joint import Joint, Limits
-from symofros.description.joint_kinds import JointKindName
+from symofros.description.joints.joint import Joint, Limits
+from symofros.description.joints.joint_kinds import JointKindName
 from symofros.description.system import Body, Inertia, Input, Parameter, RigidBody
 from symofros.description.values import Value
 from symofros.description.yaml.derived import NounEntry

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from symofros.description.beam import MOST_SECTIONS, SECTION, STATIONS, Beam, BeamLoad, Direction, Samples
+from symofros.description.beams.beam import MOST_SECTIONS, SECTION, STATIONS, Beam, BeamLoad, Direction, Samples
 from symofros.description.yaml.derived import NounEntry
 from symofros.description.yaml.fields import Formula, Number, fault
 from symofros.description.yaml.schema_section import SectionEntry

@@ -12,7 +12,7 @@ from pydantic import ValidationError
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
-from symofros.description.beam import Beam
+from symofros.description.beams.beam import Beam
 from symofros.description.constraints import (
     AXES,
     BETWEEN_FRAMES,

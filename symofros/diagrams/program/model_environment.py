@@ -32,7 +32,7 @@ from symofros.mechanics.topology.tree import SpanningTree
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord
-from symofros.simulation.analysis.assembly import assemble
+from symofros.simulation.analysis.kinematics.assembly import assemble
 from symofros.simulation.analysis.state_space import StateSpace, state_space
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from symofros.description.beam import STRAINS, Beam
+from symofros.description.beams.beam import STRAINS, Beam
 from symofros.description.forces import Friction
 from symofros.description.system import Body, System
 

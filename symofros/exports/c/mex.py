@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from symofros.description.beam import Beam
+from symofros.description.beams.beam import Beam
 from symofros.exports.c.c_package import model_files
 from symofros.exports.c.c_text import comment
 from symofros.exports.c.unity import unity

@@ -9,7 +9,7 @@ from string import Template
 from symofros.base.functions import FRAME_FUNCTIONS
 from symofros.base.options import Options
 from symofros.compiler import GENERATOR, Compilation
-from symofros.description.beam import Beam
+from symofros.description.beams.beam import Beam
 from symofros.description.system import System
 from symofros.exports.c.c_text import comment, doubles
 from symofros.exports.folder import Exported, write_folder

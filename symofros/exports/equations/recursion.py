@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from symofros.description.beam import Beam
+from symofros.description.beams.beam import Beam
 from symofros.description.system import Inertia
 from symofros.description.values import ORIGIN, Rotation, Value
 from symofros.exports.equations import formulas

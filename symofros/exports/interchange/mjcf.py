@@ -9,7 +9,7 @@ import numpy as np
 
 from symofros.description.constraints import Closure
 from symofros.description.forces import Anchor, Damper, Spring
-from symofros.description.joint import Joint
+from symofros.description.joints.joint import Joint
 from symofros.description.system import System
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.interchange.rigid import Array, RigidLink, numbers_text, rigid_links

@@ -10,9 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.rotations import skew
-from symofros.description.beam import PRE_STRAINS, STATION, Beam
+from symofros.description.beams.beam import PRE_STRAINS, STATION, Beam
 from symofros.description.forces import Damper
-from symofros.description.joint import WORLD, Joint
+from symofros.description.joints.joint import WORLD, Joint
 from symofros.description.system import Body, Inertia, RigidBody, System
 from symofros.errors import ExportError, Problem
 from symofros.mechanics.topology.coordinates import coordinate_names

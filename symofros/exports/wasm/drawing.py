@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from symofros.compiler import plan
-from symofros.description.beam import Beam
+from symofros.description.beams.beam import Beam
 from symofros.description.values import Value
 from symofros.exports.material import Material
 from symofros.expr.expression import Expression

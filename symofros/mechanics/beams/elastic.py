@@ -9,7 +9,7 @@ from functools import cached_property, partial
 from itertools import combinations_with_replacement
 from typing import NamedTuple
 
-from symofros.description.beam import Beam, Retain
+from symofros.description.beams.beam import Beam, Retain
 from symofros.description.values import Value
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph

@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from symofros.description.beam import STATION, Beam
+from symofros.description.beams.beam import STATION, Beam
 from symofros.description.values import Value, symbols
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.expression import Expression

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from symofros.description.beam import PRE_STRAINS, STATION, Beam
+from symofros.description.beams.beam import PRE_STRAINS, STATION, Beam
 from symofros.description.values import Value, symbols
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.expression import Expression

@@ -14,7 +14,7 @@ from fractions import Fraction
 from functools import cached_property, lru_cache
 from itertools import pairwise
 
-from symofros.description.beam import STRAINS, Beam, Direction, Family, Samples, UserShape
+from symofros.description.beams.beam import STRAINS, Beam, Direction, Family, Samples, UserShape
 from symofros.mechanics.beams.fields import Field, Monomial
 from symofros.mechanics.beams.piecewise import Number, Piecewise, fitted, gauss, polynomial, stations
 from symofros.mechanics.beams.shape_functions import MAX_MODES, FamilyError, b_splines, formula_of_station

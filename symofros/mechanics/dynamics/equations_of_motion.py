@@ -23,8 +23,8 @@ from symofros.mechanics.dynamics.forward.articulated import articulated_accelera
 from symofros.mechanics.dynamics.forward.factors import Factors, SingularMassMatrixError
 from symofros.mechanics.dynamics.jourdain import inertia_forces
 from symofros.mechanics.dynamics.mass_matrix import MassMatrix, Matrix, mass_matrix
-from symofros.mechanics.dynamics.reactions import in_body_frames, prescribed_efforts, transmitted_wrenches
-from symofros.mechanics.dynamics.section_forces import section_forces
+from symofros.mechanics.dynamics.wrenches.reactions import in_body_frames, prescribed_efforts, transmitted_wrenches
+from symofros.mechanics.dynamics.wrenches.section_forces import section_forces
 from symofros.mechanics.kinematics.frames import FrameKinematics
 from symofros.mechanics.kinematics.links import TreeKinematics, tree_kinematics
 from symofros.mechanics.topology.tree import SpanningTree

@@ -10,7 +10,12 @@ from symofros.expr.vector import Vec3
 from symofros.mechanics.dynamics.bodies.beams import added_momentum, modal_mass
 from symofros.mechanics.dynamics.bodies.inertia import LinkInertia, deformed, inertia_in_parent
 from symofros.mechanics.dynamics.bodies.rotors import MovingRotor
-from symofros.mechanics.dynamics.wrench_packs import NO_WRENCHES, virtual_powers, with_wrench, wrenches_in_parent
+from symofros.mechanics.dynamics.wrenches.wrench_packs import (
+    NO_WRENCHES,
+    virtual_powers,
+    with_wrench,
+    wrenches_in_parent,
+)
 from symofros.mechanics.kinematics.joint import PartialVelocity
 from symofros.mechanics.kinematics.links import MovingLink, TreeKinematics, speeds_by_path
 from symofros.mechanics.topology.tree import BASE

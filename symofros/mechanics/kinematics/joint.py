@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from symofros.description.joint import Joint
-from symofros.description.joint_kinds import JointKindName
+from symofros.description.joints.joint import Joint
+from symofros.description.joints.joint_kinds import JointKindName
 from symofros.expr.derivative import directional
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.graph import Graph

@@ -8,7 +8,7 @@ from functools import lru_cache, partial
 import numpy as np
 
 from symofros.base.rotations import Array
-from symofros.description.beam import PRE_STRAINS, SECTION, STATION, STRAINS, Beam
+from symofros.description.beams.beam import PRE_STRAINS, SECTION, STATION, STRAINS, Beam
 from symofros.description.values import ORIGIN, Term, Value, substituted, symbols
 from symofros.errors import Problem
 from symofros.mechanics.beams.deformation import deformation_of

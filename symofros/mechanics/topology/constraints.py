@@ -7,7 +7,7 @@ from functools import partial
 
 from symofros.description.constraints import BETWEEN_FRAMES, Coupling, Nonholonomic
 from symofros.description.forces import Anchor
-from symofros.description.joint import WORLD
+from symofros.description.joints.joint import WORLD
 from symofros.description.system import Body, System
 from symofros.description.values import Value, symbols
 from symofros.errors import Problem, did_you_mean

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from symofros.description.joint import Joint
+from symofros.description.joints.joint import Joint
 from symofros.description.system import System
 from symofros.expr.graph import Slot
 

@@ -6,13 +6,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from typing import Literal, NamedTuple
 
-from symofros.description.beam import PRE_STRAINS, SECTION, STATION, STRAINS, Beam, BeamLoad, Samples
+from symofros.description.beams.beam import PRE_STRAINS, SECTION, STATION, STRAINS, Beam, BeamLoad, Samples
 from symofros.description.constraints import Constraint, Coupling, Nonholonomic
 from symofros.description.entries import units_of
 from symofros.description.forces import Connection, Load, Rotor
 from symofros.description.frames import Frame
-from symofros.description.joint import Joint
-from symofros.description.joint_kinds import CONSTANT_ENTRIES
+from symofros.description.joints.joint import Joint
+from symofros.description.joints.joint_kinds import CONSTANT_ENTRIES
 from symofros.description.system import Inertia, RigidBody, System
 from symofros.description.values import Value, symbols
 from symofros.errors import Problem, did_you_mean

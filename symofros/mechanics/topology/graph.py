@@ -9,9 +9,9 @@ from weakref import WeakValueDictionary
 
 import numpy as np
 
-from symofros.description.beam import STATION, Beam, BeamLoad
+from symofros.description.beams.beam import STATION, Beam, BeamLoad
 from symofros.description.forces import Load
-from symofros.description.joint import WORLD, Joint
+from symofros.description.joints.joint import WORLD, Joint
 from symofros.description.system import Body, RigidBody, System
 from symofros.errors import DescriptionError, Problem, did_you_mean, first_of
 from symofros.expr.expression import CONSTANTS

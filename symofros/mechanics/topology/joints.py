@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator
 
 import numpy as np
 
-from symofros.description.joint import WORLD, Joint
+from symofros.description.joints.joint import WORLD, Joint
 from symofros.errors import Problem, did_you_mean
 from symofros.mechanics.topology.coordinates import joint_sizes
 from symofros.mechanics.topology.formulas import element_problems

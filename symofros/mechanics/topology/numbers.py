@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from symofros.base.rotations import Array, axis_rotation, quaternion_matrix
-from symofros.description.joint import Joint
+from symofros.description.joints.joint import Joint
 from symofros.description.system import System
 from symofros.description.values import Rotation, Value
 from symofros.errors import Problem

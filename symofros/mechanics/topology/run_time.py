@@ -9,8 +9,8 @@ from functools import cached_property, partial, reduce
 import numpy as np
 
 from symofros.base.rotations import Array
-from symofros.description.beam import PRE_STRAINS, SECTION, STATION, Beam
-from symofros.description.joint import Joint
+from symofros.description.beams.beam import PRE_STRAINS, SECTION, STATION, Beam
+from symofros.description.joints.joint import Joint
 from symofros.description.system import Body, System
 from symofros.description.values import Rotation, Value, symbols
 from symofros.errors import Problem

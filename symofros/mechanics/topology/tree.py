@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from symofros.description.beam import Beam
-from symofros.description.joint import WORLD, Joint
+from symofros.description.beams.beam import Beam
+from symofros.description.joints.joint import WORLD, Joint
 from symofros.description.system import Body, Inertia, RigidBody, System
 from symofros.description.values import IDENTITY, Rotation, Term, Vector
 from symofros.mechanics.topology.coordinates import CoordinateMap, joint_sizes, map_coordinates, speed_names

@@ -12,7 +12,7 @@ from fractions import Fraction
 from math import isclose
 
 from symofros.base.units import NAMES, parse
-from symofros.description.beam import STATION
+from symofros.description.beams.beam import STATION
 from symofros.description.system import System
 from symofros.errors import DescriptionError, Problem
 from symofros.expr.expression import Expression

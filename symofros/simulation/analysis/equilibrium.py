@@ -15,7 +15,6 @@ from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes, large
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.actuator_efforts import actuator_efforts
-from symofros.simulation.analysis.assembly import free_speeds
 from symofros.simulation.analysis.beam_theory import (
     bendings_at_rest,
     bendings_in_motion,
@@ -23,6 +22,7 @@ from symofros.simulation.analysis.beam_theory import (
     refuse_beyond,
 )
 from symofros.simulation.analysis.input_rotations import given_inputs
+from symofros.simulation.analysis.kinematics.assembly import free_speeds
 
 # Largest step of a coordinate at once; of a beam's displacements over its length.
 LARGEST_STEP = 0.5

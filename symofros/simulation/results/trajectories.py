@@ -12,9 +12,9 @@ from symofros.runtime.beams import NOTED_ERROR, BeamBending, bending_notes, larg
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
 from symofros.simulation.analysis.beam_theory import UNAMPLIFIED, amplifications
-from symofros.simulation.analysis.postures import limit_notes
+from symofros.simulation.analysis.kinematics.postures import limit_notes
 from symofros.simulation.analysis.singular_mass import ADVICE, singular_mass
-from symofros.simulation.results.batch_examination import BatchExamination
+from symofros.simulation.results.examination.batch_examination import BatchExamination
 from symofros.simulation.results.outcome import Kind, Outcome
 from symofros.simulation.results.trajectory import Statistics, Trajectory
 from symofros.simulation.stepping.resolution import Mode

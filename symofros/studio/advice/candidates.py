@@ -9,9 +9,9 @@ from typing import Any, Literal
 
 import numpy as np
 
-from symofros.description.beam import DIRECTIONS, STATIONS, Beam, Direction
+from symofros.description.beams.beam import DIRECTIONS, STATIONS, Beam, Direction
 from symofros.description.forces import Spring
-from symofros.description.joint import Joint
+from symofros.description.joints.joint import Joint
 from symofros.description.system import System
 from symofros.description.values import as_value
 from symofros.studio.advice import estimators

@@ -11,7 +11,7 @@ import numpy as np
 
 from symofros.base.options import Options
 from symofros.compiler import compile_system
-from symofros.description.beam import STATION, Beam, Direction
+from symofros.description.beams.beam import STATION, Beam, Direction
 from symofros.description.system import Body, System
 from symofros.description.values import Value
 from symofros.expr.expression import evaluate

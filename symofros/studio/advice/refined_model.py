@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from symofros.description.beam import DIRECTIONS, Beam
+from symofros.description.beams.beam import DIRECTIONS, Beam
 from symofros.description.system import System
 
 

@@ -26,7 +26,7 @@ from symofros.generator.passes.count import count_program
 from symofros.runtime.beams import BeamBending, largest_bending
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
-from symofros.simulation.analysis.assembly import assemble
+from symofros.simulation.analysis.kinematics.assembly import assemble
 from symofros.simulation.results.trajectory import Trajectory
 from symofros.simulation.simulate import simulate
 from symofros.simulation.stepping.methods import METHODS

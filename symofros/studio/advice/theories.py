@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
-from symofros.description.beam import PRE_STRAINS, Beam
+from symofros.description.beams.beam import PRE_STRAINS, Beam
 from symofros.description.system import System
 from symofros.runtime.beams import BeamBending, slope_error
 from symofros.studio.advice.candidates import Reduction, changed_beam

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 import symofros as sf
 from symofros.description.forces import Damper, Friction, Spring, Stop
-from symofros.description.joint_kinds import JOINT_KINDS
+from symofros.description.joints.joint_kinds import JOINT_KINDS
 from validation.__main__ import app
 from validation.oracle import compare, kane, lagrange
 from validation.oracle.models import EXACT, MODELS

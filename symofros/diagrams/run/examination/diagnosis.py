@@ -16,8 +16,8 @@ from symofros.diagrams.run.loop import Loop
 from symofros.runtime.beams import BeamBending, bending_notes, largest_bending
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.analysis.beam_theory import UNAMPLIFIED, amplifications
+from symofros.simulation.results.examination.step_size import examine_steps, remedy, step_size_note
 from symofros.simulation.results.outcome import Kind, Outcome
-from symofros.simulation.results.step_size import examine_steps, remedy, step_size_note
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.resolution import Resolution
 from symofros.simulation.stepping.status import Status

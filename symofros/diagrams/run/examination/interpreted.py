@@ -16,7 +16,7 @@ from symofros.diagrams.run.python_blocks import Called, CalledBefore
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.manifold import chart_rate, retract
 from symofros.runtime.model import Model
-from symofros.simulation.results.step_size import step_size_note
+from symofros.simulation.results.examination.step_size import step_size_note
 from symofros.simulation.stepping.methods import Method
 from symofros.simulation.stepping.resolution import Resolution, Spectrum, resolution
 

@@ -6,7 +6,7 @@ from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.program.layout import Part
 from symofros.generator.record import joint_limits
 from symofros.runtime.calls.kernel import Array
-from symofros.simulation.analysis.postures import limit_notes
+from symofros.simulation.analysis.kinematics.postures import limit_notes
 
 
 def joint_limit_notes(resolved: Resolved, t: Array, q: Array) -> list[str]:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import NamedTuple
 
-from symofros.description.beam import BeamLoad
+from symofros.description.beams.beam import BeamLoad
 from symofros.description.values import Value
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.vector import Vec3

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from symofros.description.beam import Beam
+from symofros.description.beams.beam import Beam
 from symofros.description.forces import Connection, Load
 from symofros.description.system import RigidBody
 from symofros.expr.edges import ZERO, Edge

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from symofros.base.measures import ANGLE, FORMULA, LENGTH, OTHER, ROTATION, TRANSLATION, Measures
 from symofros.description.constraints import BY_FORMULA, Closure, Constraint
-from symofros.description.joint import Joint
+from symofros.description.joints.joint import Joint
 from symofros.mechanics.topology.coordinates import speed_names
 from symofros.mechanics.topology.tree import SpanningTree
 

@@ -23,7 +23,12 @@ from symofros.mechanics.dynamics.derivatives.flows import Flow, composite_flows,
 from symofros.mechanics.dynamics.derivatives.variations import JointVariations, Variation
 from symofros.mechanics.dynamics.jourdain import link_wrenches, power, subtree_wrenches
 from symofros.mechanics.dynamics.mass_matrix import CarriedMomenta, MassMatrix, Matrix
-from symofros.mechanics.dynamics.wrench_packs import NO_WRENCHES, virtual_powers, with_wrench, wrenches_in_parent
+from symofros.mechanics.dynamics.wrenches.wrench_packs import (
+    NO_WRENCHES,
+    virtual_powers,
+    with_wrench,
+    wrenches_in_parent,
+)
 from symofros.mechanics.kinematics.links import TreeKinematics
 from symofros.mechanics.topology.tree import BASE
 

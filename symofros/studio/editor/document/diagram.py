@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from symofros.description.beam import DIRECTIONS, STRAINS
-from symofros.description.joint import WORLD
+from symofros.description.beams.beam import DIRECTIONS, STRAINS
+from symofros.description.joints.joint import WORLD
 from symofros.description.yaml.schema import default_joint_name
 
 GROUND = "world"  # The id of the block of the ground, whatever the body without a joint is called.

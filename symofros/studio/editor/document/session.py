@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from symofros.description.system import System
-from symofros.studio.editor.document.beam_figures import beam_figures
 from symofros.studio.editor.document.document import EditedDocument, refuse_text
 from symofros.studio.editor.document.expressions import check_field
-from symofros.studio.editor.document.inertia_figures import inertia_figures
-from symofros.studio.editor.document.parts import insertion
-from symofros.studio.editor.document.parts_library import Library
+from symofros.studio.editor.document.figures.beam_figures import beam_figures
+from symofros.studio.editor.document.figures.inertia_figures import inertia_figures
+from symofros.studio.editor.document.parts.parts import insertion
+from symofros.studio.editor.document.parts.parts_library import Library
 from symofros.studio.editor.document.storage import EMPTY, Storage
 from symofros.studio.editor.document.workspace import READABLE, FileError, Workspace, read_text, write
 from symofros.studio.editor.editing.data_edits import four_parts, refusal

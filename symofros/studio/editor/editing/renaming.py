@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from symofros.description.beam import STATION
-from symofros.description.joint import WORLD, Joint
-from symofros.description.joint_kinds import KINDS
+from symofros.description.beams.beam import STATION
+from symofros.description.joints.joint import WORLD, Joint
+from symofros.description.joints.joint_kinds import KINDS
 from symofros.description.yaml.files import DIAGRAM
 from symofros.description.yaml.schema import default_joint_name
 from symofros.errors import DescriptionError

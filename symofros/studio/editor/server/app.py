@@ -24,9 +24,9 @@ from starlette.types import ASGIApp
 from symofros.description.yaml.yaml_nodes import YamlFault
 from symofros.errors import Problem
 from symofros.studio.editor.document.document import StaleError
-from symofros.studio.editor.document.palette import catalogue
+from symofros.studio.editor.document.figures.shape_curves import curves
+from symofros.studio.editor.document.parts.palette import catalogue
 from symofros.studio.editor.document.session import Json, Session
-from symofros.studio.editor.document.shape_curves import curves
 from symofros.studio.editor.document.storage import ConflictError
 from symofros.studio.editor.document.workspace import FileError
 from symofros.studio.editor.editing.data_edits import EditError, refusal

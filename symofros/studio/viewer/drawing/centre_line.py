@@ -8,7 +8,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from symofros.description.beam import Beam
+from symofros.description.beams.beam import Beam
 from symofros.mechanics.beams.deformation import Deformation, deformation_of
 from symofros.mechanics.beams.fields import Field, Monomial
 from symofros.mechanics.beams.rod_shape import RodShape

@@ -17,7 +17,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from symofros.description.beam import STATION, Beam
+from symofros.description.beams.beam import STATION, Beam
 from symofros.description.constraints import Closure, KnifeEdge, Rod, Rolling
 from symofros.description.forces import Anchor, Connection
 from symofros.description.system import RigidBody

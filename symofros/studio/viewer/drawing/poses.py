@@ -18,8 +18,8 @@ from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.tree import SpanningTree, frame_of
 from symofros.runtime.beams import BeamBending
 from symofros.runtime.model import ArrayLike, Model
-from symofros.simulation.analysis.assembly import assemble
 from symofros.simulation.analysis.beam_theory import bendings_in_motion
+from symofros.simulation.analysis.kinematics.assembly import assemble
 from symofros.studio.viewer.drawing.drawing import Drawing, DrawnBeam, DrawnConnector, LinkPoint
 from symofros.studio.viewer.drawing.geometry import draw, landmarks
 from symofros.studio.viewer.drawing.inertia_box import longest_edges

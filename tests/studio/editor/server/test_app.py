@@ -14,7 +14,7 @@ import symofros as sf
 from symofros.simulation.stepping.methods import METHODS
 from symofros.studio.editor.document import session as session_module
 from symofros.studio.editor.document.analysis import analyse
-from symofros.studio.editor.document.palette import PALETTE
+from symofros.studio.editor.document.parts.palette import PALETTE
 from symofros.studio.editor.document.session import Session
 from symofros.studio.editor.editing.data_edits import Edit
 from symofros.studio.editor.editing.yaml_edits import apply

@@ -7,7 +7,7 @@ import pytest
 from numpy.polynomial import chebyshev
 
 import symofros as sf
-from symofros.description.beam import FAMILIES
+from symofros.description.beams.beam import FAMILIES
 from symofros.mechanics.beams.deformation import small_coordinates
 from symofros.studio.viewer.drawing.centre_line import STATIONS, CentreLine
 

@@ -1,0 +1,1 @@
+"""Beams: the class, their segments, their sections."""

@@ -1,0 +1,1 @@
+"""Wrenches that joints transmit, forces inside beams, wrenches in packs."""

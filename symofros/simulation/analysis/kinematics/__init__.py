@@ -1,0 +1,1 @@
+"""Postures: assembled, consistent with the constraints, with frames where they are wanted."""

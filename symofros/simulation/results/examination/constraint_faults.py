@@ -1,0 +1,61 @@
+"""What went wrong with the constraints of a run: rows not continuous, energy taken, conditions not kept."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from symofros.errors import SymofrosError
+from symofros.runtime.calls.kernel import Array
+from symofros.simulation.analysis.kinematics.postures import Jump, Violation, jump_ahead, worst_violation
+from symofros.simulation.stepping.status import Status
+from symofros.simulation.stepping.stepper import Stepper
+
+# Ends at which the constraints themselves may have failed; an adaptive method that creeps towards such a posture is
+# interrupted by max_steps.
+_SINGULAR_ENDS = (
+    Status.ENERGY_LOST,
+    Status.DIVERGED,
+    Status.SINGULAR,
+    Status.STEP_TOO_SMALL,
+    Status.NO_CONVERGENCE,
+    Status.PROJECTION_FAILED,
+    Status.RUNNING,
+)
+# Share of its terms by which a condition is violated that is not kept.
+_VIOLATED = 0.1
+
+
+def jump(stepper: Stepper, status: int) -> Jump | None:
+    """A condition whose row of G is not continuous about the last state of a run that has failed."""
+    t, q, v = stepper.state
+    failed = status in _SINGULAR_ENDS and t < float(stepper.run.t_end)
+    if not failed or not stepper.model.nc or not (np.all(np.isfinite(q)) and np.all(np.isfinite(v))):
+        return None
+    return jump_ahead(stepper.model, t, q, v, stepper.inputs_now, stepper.par)
+
+
+def lost_energy(stepper: Stepper) -> str:
+    """How much energy projections have taken."""
+    run = stepper.run
+    share = float(run.lost_energy) / max(float(run.kinetic_energy), 1e-300)
+    return f"keeping the constraints has taken {share:.3g} of the largest kinetic energy"
+
+
+def violation(stepper: Stepper, states: Sequence[Array], projected: bool) -> Violation | None:
+    """A condition on speeds that a run without projection has not kept.
+
+    Args:
+        stepper: Stepper at its last state.
+        states: All that it recorded: t (n), q, v, u.
+        projected: Whether the run projects, and so keeps them.
+    """
+    if not stepper.model.nc or projected:
+        return None
+    t, q, v, u = states
+    try:
+        worst = worst_violation(stepper.model, t, (q, v, u), stepper.par)
+    except SymofrosError:  # Options.functions left out what says it.
+        return None
+    return worst if worst is not None and worst.share > _VIOLATED else None

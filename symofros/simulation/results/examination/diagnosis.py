@@ -1,0 +1,215 @@
+"""A run's last status -> its Outcome, with what was met on the way."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from symofros.runtime.beams import BeamBending, bending_notes, largest_bending
+from symofros.runtime.calls.kernel import Array
+from symofros.simulation.analysis.beam_theory import UNAMPLIFIED, amplifications
+from symofros.simulation.analysis.kinematics.postures import limit_notes, nearest_to_singular
+from symofros.simulation.analysis.singular_mass import ADVICE, singular_mass
+from symofros.simulation.results.examination.constraint_faults import jump, lost_energy, violation
+from symofros.simulation.results.examination.energy_balance import EXPLODED
+from symofros.simulation.results.examination.input_faults import input_failure, input_fault
+from symofros.simulation.results.examination.step_size import examine_run, remedy
+from symofros.simulation.results.outcome import Kind, Outcome
+from symofros.simulation.settings import Settings
+from symofros.simulation.stepping.loops import Recorded
+from symofros.simulation.stepping.status import Status
+from symofros.simulation.stepping.stepper import Stepper
+
+# A step this short, relative to the run, is creeping.
+_CREEP = 1e-8
+
+
+def diagnose(
+    stepper: Stepper, recorded: Recorded, states: Sequence[Array], settings: Settings, start: tuple[Array, Array]
+) -> tuple[Outcome, tuple[BeamBending, ...]]:
+    """How a run ended, and the bending of its beams.
+
+    Args:
+        stepper: Stepper at its last state.
+        recorded: Record of the run.
+        states: All that it recorded: t (n), q, v, u. Ends of steps serve instead where these are more.
+        settings: Settings of the run.
+        start: Initial q, v.
+    """
+    if settings.every != 1 and not stepper.method.family.multistep:
+        kept = stepper.diagnostic_states()
+        states = kept if len(kept[0]) > 1 else states
+    bendings = _amplified(stepper, states)
+    return _outcome(stepper, recorded, states, settings, start, bendings), bendings
+
+
+def _amplified(stepper: Stepper, states: Sequence[Array]) -> tuple[BeamBending, ...]:
+    """Bending of each beam where its theory errs most, amplified by the axial loads of the motion."""
+    bendings = stepper.bendings
+    if max((bending.error for bending in bendings), default=0.0) < UNAMPLIFIED:
+        return bendings
+    return stepper.amplified_bendings(amplifications(stepper.model, states, stepper.par))
+
+
+def _outcome(
+    stepper: Stepper,
+    recorded: Recorded,
+    states: Sequence[Array],
+    settings: Settings,
+    start: tuple[Array, Array],
+    bendings: tuple[BeamBending, ...],
+) -> Outcome:
+    status, interrupted = recorded.status, recorded.interrupted
+    t, q, v = stepper.state
+    most_bent, limit = largest_bending(bendings), settings.beam_limit
+    run, notes = (
+        stepper.run,
+        _notes(stepper, states, () if status == Status.BEYOND_THEORY else bendings),
+    )  # Else the reason says it.
+    fault = input_fault(stepper) if status < 0 else ""
+    failed = status in (Status.DIVERGED, Status.BEYOND_THEORY) and not fault
+    steps = _steps_meant(settings) if failed else int(run.steps)
+    mode, remarks = examine_run(stepper, settings, start, states, steps, ended_well=status >= 0, failed=failed)
+    notes = (*notes, *remarks)
+
+    def outcome(kind: Kind, reason: str, advice: str = "") -> Outcome:
+        return Outcome(kind, t, reason, advice, notes)
+
+    failure = stepper.failure
+    if interrupted or isinstance(failure, KeyboardInterrupt):
+        return outcome("interrupted", "Ctrl-C; the part up to here is kept")
+    if status == Status.TERMINAL_EVENT:
+        return outcome("event", f"event '{stepper.events[run.terminal_event].name}'")
+    if status == Status.CALLBACK_FAILED:
+        return replace(outcome("input failed", *input_failure(failure)), failure=failure)
+    if fault:
+        return outcome(
+            "input failed",
+            fault,
+            "inputs that are finite, quaternions among them of unit length, at all times and states of the run",
+        )
+    turning = jump(stepper, status)
+    if turning is not None:
+        lost = f"; {lost_energy(stepper)}" if status == Status.ENERGY_LOST else ""
+        return outcome(
+            "singular",
+            f"'{turning.name}' has no definite direction here: its row of G changes at once, by {turning.turn:.3g}"
+            f" of its size{lost}",
+            "end the run by a terminal event before it; a disc that lies flat, for example, has no lowest point",
+        )
+    if failed and mode is not None and mode.amplified:
+        reason = f"the step is past the limit of stability of '{settings.method.name}'; {_largest(stepper, q, v)}"
+        return outcome("diverged", reason, remedy(mode, settings.method))
+    massless = _massless(stepper, start, q, v) if status == Status.DIVERGED else ""
+    if massless:
+        return outcome("singular", massless, ADVICE)
+    if status == Status.DIVERGED:
+        return outcome("diverged", f"a state has grown without bound; {_largest(stepper, q, v)}", _steady(settings))
+    if status == Status.SINGULAR:
+        return outcome(
+            "singular",
+            "the mass matrix is singular beyond what the constraints bind",
+            "give every speed an inertia or a constraint",
+        )
+    if status == Status.STEP_TOO_SMALL:
+        return outcome(
+            "step too small",
+            f"rtol = {settings.rtol:g}, atol = {settings.atol:g} ask for steps below"
+            f" rounding; {_largest(stepper, q, v)}",
+            "look for a force that jumps or a singular posture here; loosen rtol",
+        )
+    if status == Status.NO_CONVERGENCE:
+        return outcome("not converged", "the equations of an implicit step were not solved", "a smaller dt")
+    if status == Status.PROJECTION_FAILED:
+        t_open, q_open, _ = stepper.evaluation_point
+        phi = stepper.model.constraint(q_open, u=stepper.inputs_now, par=stepper.par, t=t_open)
+        worst = int(np.argmax(np.where(np.isnan(phi), math.inf, np.abs(phi))))
+        name = stepper.model.names.constraints[worst]
+        return outcome(
+            "constraints lost",
+            f"'{name}' is off by {abs(phi[worst]):.3g} and projection does not mend it",
+            "a smaller step; the loop may be stretched to its end",
+        )
+    if status == Status.ENERGY_LOST:
+        return outcome(
+            "constraints lost",
+            lost_energy(stepper),
+            "a smaller step; look for a posture near here in which the loops are singular",
+        )
+    if most_bent is not None and (status == Status.BEYOND_THEORY or (status >= 0 and most_bent.error > limit)):
+        reason = f"{most_bent}; the limit is {100.0 * limit:g} %"
+        return outcome("beyond theory", reason, f"{most_bent.remedy}; or move the limit, beam_limit=...")
+    if status == Status.RUNNING and t < float(run.t_end):
+        done, h = f"max_steps: {int(run.steps)} steps are done", float(run.next_step)
+        if settings.adaptive and h < _CREEP * (settings.t_end - settings.t0):
+            look = "look for a singular posture or a force that has no bound here; for stiff models, an implicit method"
+            return outcome("interrupted", f"{done}, and the next would be {h:.2g} s long", look)
+        return outcome("interrupted", done)
+    broken = violation(stepper, states, settings.project)
+    if broken is not None:
+        return Outcome(
+            "constraints lost",
+            broken.t,
+            f"from here on '{broken.name}' is not kept: G v - b is {broken.share:.3g} of coefficient times speed",
+            "stabilisation='projection'; a smaller step; look for a posture in which the constraints are singular",
+            notes,
+        )
+    return outcome("finished", f"{int(run.steps)} steps of {settings.method.name}")
+
+
+def _steps_meant(settings: Settings) -> int:
+    """Number of fixed steps to the end asked for."""
+    return max(1, round((settings.t_end - settings.t0) / settings.dt)) if settings.dt > 0.0 else 1
+
+
+def _massless(stepper: Stepper, start: tuple[Array, Array], q: Array, v: Array) -> str:
+    """The motion that moves no mass at the start or at the last state, in words; "" where all do.
+
+    A last state whose speeds have exploded says nothing of the mechanism.
+    """
+    sane = EXPLODED * (1.0 + float(np.abs(start[1]).max(initial=0.0)))
+    states = [start[0], *([q] if float(np.abs(v).max(initial=0.0)) < sane else [])]
+    said = (singular_mass(stepper.model, state, stepper.par, stepper.inputs_now) for state in states)
+    return next((words for words in said if words), "")
+
+
+def _largest(stepper: Stepper, q: np.ndarray, v: np.ndarray) -> str:
+    sizes = np.abs(v)
+    if not len(sizes):
+        return "there are no speeds"
+    worst = int(np.argmax(np.where(np.isfinite(sizes), sizes, math.inf)))
+    return f"the fastest speed is '{stepper.model.names.v[worst]}', {v[worst]:.3g}"
+
+
+def _steady(settings: Settings) -> str:
+    if settings.adaptive:
+        return "look for a force or posture that has no bound here"
+    return "a smaller dt, an adaptive or an implicit method; for stiff beams and contacts, an implicit one"
+
+
+def _notes(stepper: Stepper, states: Sequence[Array], bendings: Sequence[BeamBending]) -> tuple[str, ...]:
+    run = stepper.run
+    notes = []
+    if stepper.model.nc and 0 <= run.rank_min < run.rank_max:
+        notes.append(
+            f"a singular posture was passed at t = {run.t_rank_min:.6g} s: the constraints' rank fell from"
+            f" {run.rank_max} to {run.rank_min}"
+        )
+    elif stepper.model.nc:
+        t, q, _, u = states
+        close = nearest_to_singular(stepper.model, t, q, u, stepper.par, int(run.rank_max))
+        if close:
+            when, share = close
+            notes.append(
+                f"the constraints came close to a singular posture at t = {when:.6g} s, to {share:.1%} of"
+                " their strength: compare with another step"
+            )
+    record = stepper.model.record
+    notes += limit_notes(record.q_names, record.joint_limits, states[0], states[1])
+    notes += bending_notes(bendings)
+    if run.late_steps:
+        notes.append(f"{run.late_steps} of {run.paced_steps} steps began late, by {1e3 * run.late_max:.3g} ms at most")
+    return tuple(notes)

@@ -1,0 +1,139 @@
+"""The energy of a run: what changed although no force did work (docs/theory/simulation.md, section 8)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from symofros.runtime.calls.kernel import Array
+from symofros.runtime.manifold import retract
+from symofros.simulation.results.examination.energy_norm import energies_of
+from symofros.simulation.results.examination.repetition import repeatable, repeated
+from symofros.simulation.settings import Settings
+from symofros.simulation.stepping.stepper import Stepper
+
+# A power is a difference over this share of a step, or of the time in which the largest speed arises where that is
+# shorter; but not shorter than this share of that.
+_MOMENT, _SHORTEST = 1e-3, 1e-60
+# Growth of speeds that no mechanism explains.
+EXPLODED = 1e6
+# States, about, whose power is looked at first.
+_FEW = 32
+# Change of energy, over the largest kinetic energy, that is worth a note; work that explains a change, over it.
+_NOTED_CHANGE, _NOTED_WORK = 0.05, 0.1
+# States at most this many steps apart show the work between them.
+_DENSE = 1.5
+# Intervals between states farther apart that are repeated step by step: those where the energy changes most.
+_REPEATED = 8
+
+
+def energy_note(stepper: Stepper, settings: Settings, states: Sequence[Array], steps: int) -> str:
+    """Energy that changed although no force did work (18), in words; nothing where it is small or not shown.
+
+    Args:
+        stepper: Stepper of the run.
+        settings: Settings of the run.
+        states: States of the run: t (n), q, v, u.
+        steps: Number of steps.
+    """
+    few = [x[:: max(1, len(x) // _FEW)] for x in states]
+    with np.errstate(all="ignore"):  # What overflows is left out.
+        # Among all states: a change may last for some steps only. A batch of them takes hardly longer than a few.
+        energies = energies_of(stepper, states)
+        if energies is None or len(states[0]) < 2:
+            return ""
+        kinetic, energy = energies
+        cure = f"{'a smaller dt' if not settings.adaptive else 'tighter tolerances'}, or another method"
+        if not np.isfinite(energy).all():
+            return f"energy overflows, although the states do not: speeds have exploded; {cure}"
+        gain = float(energy.max() - energy[0])
+        if gain > 0.5 * kinetic.max() and not few[3].any():
+            # Angles may have no digits left, and power none.
+            growth = math.sqrt(float(kinetic.max()) / max(_first_energy(stepper, few), 1e-300))
+            if growth > EXPLODED:
+                return f"speeds grow {growth:.3g}-fold and energy by {gain:.3g} J although no input acts: {cure}"
+        change, largest = float(np.abs(energy - energy[0]).max()), float(kinetic.max())
+        if not change > _NOTED_CHANGE * largest > 0.0:
+            return ""
+        # Most forces that do work are seen at once; a short contact is seen among all states, or between them.
+        span = float(states[0][-1] - states[0][0])
+        for shown in (few, states, *_between(stepper, settings, states, energy, steps)):
+            if shown is None:
+                return ""
+            power = _power(stepper, span / steps, shown)
+            if not float(np.abs(power).max()) * span <= _NOTED_WORK * change:
+                return ""
+    return (
+        f"energy changes by {change:.3g} J although no force does work, where the motion has {largest:.3g} J at most:"
+        f" {cure}"
+    )
+
+
+def _between(
+    stepper: Stepper, settings: Settings, states: Sequence[Array], energy: Array, steps: int
+) -> Iterator[list[Array] | None]:
+    """The ends of all steps in the intervals where the energy changes most; None where they can't be repeated."""
+    if steps <= _DENSE * (len(states[0]) - 1):
+        return
+    if not repeatable(stepper, settings, states):
+        yield None
+        return
+    t, q, v, _ = states
+    changes = np.abs(np.diff(energy))
+    for i in np.argsort(-changes)[:_REPEATED]:
+        if changes[i] > 0.0:
+            yield repeated(stepper, settings, (float(t[i]), q[i], v[i]), float(t[i + 1]), settings.dt)[1]
+
+
+def energy_that_appeared(stepper: Stepper, settings: Settings, states: Sequence[Array]) -> str:
+    """The change of energy that no force supplied, where the states show it: "... J appeared ...; ", or nothing."""
+    energies, t = energies_of(stepper, states), states[0]
+    if energies is None or len(t) < 2:
+        return ""
+    (kinetic, energy), power = energies, _power(stepper, settings.dt, states)
+    spans = np.diff(t)
+    work, change = float(np.sum(0.5 * (power[1:] + power[:-1]) * spans)), float(energy[-1] - energy[0])
+    known = spans.max() <= _DENSE * settings.dt or float(np.abs(power).max() * spans.sum()) <= 1e-2 * abs(change)
+    appeared, largest = change - work, float(kinetic.max())
+    if not (known and math.isfinite(appeared) and largest > 0.0):
+        return ""
+    return f"{appeared:.3g} J appeared that no force supplied, where the motion has {largest:.3g} J at most; "
+
+
+def _first_energy(stepper: Stepper, states: Sequence[Array]) -> float:
+    """Kinetic energy of the first record, or that which its accelerations give within a record, if that is more."""
+    model, par, (t, q, v, u) = stepper.model, stepper.par, (x[:1] for x in states)
+    gained = (states[0][1] - states[0][0]) * model.forward_dynamics(q, v, u, par=par, t=t)
+    return max(float(model.kinetic_energy(q, speeds, u=u, par=par)[0]) for speeds in (v, gained))
+
+
+def _power(stepper: Stepper, step: float, states: Sequence[Array]) -> Array:
+    """Power of all but conservative forces (n): the rate of the energy along the motion, by central differences.
+
+    Without what the forces of constraints have taken or supplied where G v = b is violated: that is an error, no work.
+    """
+    model, par, (t, q, v, u) = stepper.model, stepper.par, states
+    a, lam = model.forward_dynamics(q, v, u, par=par, t=t, multipliers=True)
+    # A fast motion changes its speeds within less than a step that does not follow it.
+    pace = _norms(v).max() / np.maximum(_norms(a), 1e-300)
+    moment = _MOMENT * step * np.clip(pace / step, _SHORTEST, 1.0)
+    ends = []
+    for s in (moment, -moment):
+        q_s, v_s = retract(model.record.segments, q, s[:, np.newaxis] * v), v + s[:, np.newaxis] * a
+        kinetic = model.kinetic_energy(q_s, v_s, u=u, par=par)
+        ends.append(kinetic + model.potential_energy(q_s, u=u, par=par, t=t + s))
+    rate: Array = (ends[0] - ends[1]) / (2.0 * moment)
+    if model.nc:
+        rate = rate - np.einsum("ij,ij->i", lam, model.constraint_rate(q, v, u=u, par=par, t=t))
+    return rate
+
+
+def _norms(rows: Array) -> Array:
+    """Norm of each row, without overflow."""
+    size = max(float(rows.max(initial=0.0)), -float(rows.min(initial=0.0)))
+    if size == 0.0:
+        return np.zeros(len(rows))
+    norms: Array = size * np.sqrt(np.einsum("ij,ij->i", rows / size, rows / size))
+    return norms

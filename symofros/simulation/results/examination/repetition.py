@@ -1,0 +1,246 @@
+"""Runs and parts of them, repeated: with half the step, a record at each, tighter bounds.
+
+docs/theory/simulation.md, section 8.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from symofros.runtime.calls.kernel import Array
+from symofros.simulation.results.examination.energy_norm import energies_of, energy_norms, metrics
+from symofros.simulation.settings import Settings
+from symofros.simulation.stepping.loops import run_own
+from symofros.simulation.stepping.resolution import TOLERANCE
+from symofros.simulation.stepping.status import Status
+from symofros.simulation.stepping.stepper import Stepper
+from symofros.simulation.stepping.windows import WHOLE, windows
+
+# States, about, at which a function of the user's is asked again for the inputs; share by which they may differ.
+_CALLED, _SAME = 8, 1e-9
+# Differences of displacements count by this share: they are relative to how they change in the run, while coordinates
+# themselves may be larger; those of energies by another: they are squares.
+_POSITIONS, _ENERGIES = 3.0, 2.0
+# Records, about, among which the fastest is looked for; fewest that show where speeds change.
+_SPEEDS, _RECORDS = 64, 3
+# Share of coordinates and energies that is rounding, and what an equilibrium is found to: at rest nothing else moves.
+_AT_REST = 1e-11
+# Share of the largest speed that the absolute tolerance may allow as the error of a step; displacements over it that
+# are a motion and not rest; share of the largest speed that is asked for instead; most steps that this may take.
+_ALLOWED, _MOTION, _TIGHT, _MOST = 0.1, 100.0, 1e-3, 8192
+
+
+def repeatable(stepper: Stepper, settings: Settings, states: Sequence[Array]) -> bool:
+    """Whether a run can be made once more: a function of the user's that gives the inputs has to give the same again.
+
+    It is called at some of the recorded states, the last one first, so that what it keeps of the run shows. In real
+    time it is not called: what it serves may be hardware.
+
+    Args:
+        stepper: Stepper of the run.
+        settings: Settings of the run.
+        states: States of the run: t (n), q, v, u.
+    """
+    function = stepper.inputs.callback
+    if stepper.method.family.multistep or (function is not None and settings.realtime):
+        return False
+    if function is None:
+        return True
+    t, q, v, u = (array[:: -max(1, len(array) // _CALLED)] for array in states)
+    try:
+        again = [np.asarray(function(float(t[i]), q[i].copy(), v[i].copy()), float) for i in range(len(t))]
+    except Exception:  # Whatever it raises: the run itself has ended well.
+        return False
+    size = float(np.abs(u).max(initial=0.0))
+    return all(row.shape == u[i].shape and np.abs(row - u[i]).max() <= _SAME * size for i, row in enumerate(again))
+
+
+def repeated(
+    stepper: Stepper,
+    settings: Settings,
+    start: tuple[float, Array, Array],
+    t_end: float,
+    dt: float,
+    every: int = 1,
+    max_steps: int | None = None,
+) -> tuple[int, list[Array]]:
+    """Status and states of a part of a run, made once more.
+
+    Args:
+        stepper: Stepper of the run.
+        settings: Settings of the run.
+        start: First t, q, v.
+        t_end: End [s].
+        dt: Step [s]; of adaptive methods the first one, 0: found anew.
+        every: Number of steps between records.
+        max_steps: Number of steps after which it ends; None: no bound.
+    """
+    t, q, v = start
+    part = replace(settings, t0=t, t_end=t_end, dt=dt, every=every, grid=np.zeros(0), max_steps=max_steps, realtime=0.0)
+    again = Stepper(stepper.model, stepper.method, stepper.inputs, (), stepper.par)
+    part.apply(again)
+    recorded = run_own(again, q, v, part, lambda _: None)
+    return recorded.status, recorded.arrays()
+
+
+def halved_step_note(
+    stepper: Stepper, settings: Settings, start: tuple[Array, Array], states: Sequence[Array], steps: int
+) -> str:
+    """What half the step makes of a short run with fixed steps (17), in words; nothing where it is nearly the same.
+
+    Args:
+        stepper: Stepper of the run.
+        settings: Settings of the run.
+        start: Initial q, v.
+        states: States of the run: t (n), q, v, u; compared are all where these are its steps, else the last ones.
+        steps: Number of steps.
+    """
+    if settings.adaptive or not 1 <= steps <= WHOLE or not stepper.model.nv:
+        return ""
+    t, q, v, _ = states
+    h = settings.dt
+    if not repeatable(stepper, settings, states):
+        if settings.realtime or stepper.method.family.multistep:
+            return ""
+        return (
+            f"steps of {h:.4g} s were not held against half of that: the input function gives other inputs when it is"
+            " asked again about a state; compare with a smaller dt"
+        )
+    status, half = repeated(stepper, settings, (settings.t0, *start), float(t[-1]), 0.5 * h, every=2)
+    if status < 0:
+        return (
+            f"steps of {h:.4g} s do not show the motion: with half of that it does not come to this end; a smaller dt"
+        )
+    change = _change(stepper, start[0], (t, q, v), half)
+    if not change > TOLERANCE:
+        return ""
+    by = f"{100.0 * change:.2g} %" if change < 1.0 else "more than 100 %"
+    return f"steps of {h:.4g} s do not determine the motion: half of that changes it by {by}; a smaller dt"
+
+
+def windows_note(stepper: Stepper, settings: Settings, states: Sequence[Array], steps: int) -> str:
+    """What half the step makes of windows of a longer run with fixed steps (17), in words; nothing where little.
+
+    Args:
+        stepper: Stepper of the run.
+        settings: Settings of the run.
+        states: States of the run: t (n), q, v, u.
+        steps: Number of steps.
+    """
+    if settings.adaptive or settings.realtime or steps <= WHOLE or len(states[0]) < _RECORDS:
+        return ""
+    if not stepper.model.nv or not repeatable(stepper, settings, states):
+        return ""
+    t, q, v, u = states
+    h, rows = settings.dt, slice(None, None, -max(1, len(t) // _SPEEDS))
+    fastest, worst, seen = float(energy_norms(stepper, q[rows], u[rows], v[rows]).max()), 0.0, 0.0
+    for window in windows(t, v, h, steps):
+        i = window.first
+        count = max(1, round((window.t_end - t[i]) / h))
+        start, t_end = (float(t[i]), q[i], v[i]), float(t[i]) + count * h
+        every = len(t) == steps + 1  # a record at each step
+        coarse = [x[i : i + count + 1] for x in states] if every else repeated(stepper, settings, start, t_end, h)[1]
+        status, half = repeated(stepper, settings, start, t_end, 0.5 * h, every=2)
+        if status < 0:
+            return (
+                f"steps of {h:.4g} s do not show the motion from t = {t[i]:.6g} s: with half of that it does not go on;"
+                " a smaller dt"
+            )
+        if len(coarse[0]) == len(half[0]):
+            change = _change_in_window(stepper, fastest, coarse, half)
+            if change > worst:
+                worst, seen = change, float(t[i])
+    if not worst > TOLERANCE:
+        return ""
+    by = f"{100.0 * worst:.2g} %" if worst < 1.0 else "more than 100 %"
+    return (
+        f"steps of {h:.4g} s do not determine the motion: half of that changes it by {by} (seen at t = {seen:.4g} s);"
+        " a smaller dt"
+    )
+
+
+def _change_in_window(stepper: Stepper, fastest: float, coarse: Sequence[Array], fine: Sequence[Array]) -> float:
+    """Largest difference of speeds and displacements, relative to the run's fastest and what that makes of time."""
+    (_, q, v, _), (t, q_fine, v_fine, u) = coarse, fine
+    with np.errstate(all="ignore"):  # What has exploded overflows.
+        changes = v - v_fine, stepper.model.difference(q_fine, q)
+        faster, apart = (float(energy_norms(stepper, q_fine, u, x).max()) for x in changes)
+    largest = max(fastest, _rounding(stepper, fine))
+    return max(_share(faster, largest), _share(apart, largest * float(t[-1] - t[0])) / _POSITIONS)
+
+
+def tolerance_note(
+    stepper: Stepper, settings: Settings, start: tuple[Array, Array], states: Sequence[Array], steps: int
+) -> str:
+    """What an absolute tolerance that exceeds the speeds makes of a motion, in words; nothing where it does no harm.
+
+    Args:
+        stepper: Stepper of the run.
+        settings: Settings of the run.
+        start: Initial q, v.
+        states: States of the run: t (n), q, v, u.
+        steps: Number of steps.
+    """
+    if not settings.adaptive or not stepper.model.nv or stepper.method.family.multistep or steps < 1:
+        return ""
+    t, q, v, u = states
+    moved, largest = float(np.abs(q - start[0]).max()), float(energy_norms(stepper, q, u, v).max())
+    inertia = math.sqrt(float(np.trace(metrics(stepper, q[-1:], u[-1:])[0])))  # of a unit of each speed
+    if not (settings.atol * inertia > _ALLOWED * largest > 0.0 and moved > _MOTION * settings.atol):
+        return ""
+    tighter = replace(settings, atol=_TIGHT * largest / inertia)
+    if not repeatable(stepper, settings, states):
+        return ""
+    status, tight = repeated(stepper, tighter, (settings.t0, *start), float(t[-1]), 0.0, max_steps=_MOST)
+    if status == Status.FINISHED and not _change(stepper, start[0], (t[-1:], q[-1:], v[-1:]), tight) > TOLERANCE:
+        return ""
+    fastest = float(np.abs(v).max())
+    return (
+        f"atol = {settings.atol:.3g} bounds no error of speeds that reach {fastest:.3g} only: a tighter bound leads"
+        f" elsewhere; atol below {1e-3 * fastest:.1g}"
+    )
+
+
+def _change(stepper: Stepper, q0: Array, states: Sequence[Array], finer: Sequence[Array]) -> float:
+    """Largest difference of speeds, of displacements from q0 and of energies, relative to the largest of each (17).
+
+    Args:
+        stepper: Stepper of the run.
+        q0: Initial configuration (nq).
+        states: Times, configurations and speeds of the run; the last are compared where the finer run has other rows.
+        finer: Times, configurations, speeds and inputs of the finer run.
+    """
+    (_, q, v), (t, q_finer, v_finer, u) = states, finer
+    rows = slice(None) if len(v) == len(v_finer) else slice(-1, None)
+    with np.errstate(all="ignore"):  # What has exploded overflows.
+        displacements = stepper.model.difference(np.broadcast_to(q0, q_finer.shape), q_finer)
+        changes = stepper.model.difference(q_finer[rows], q[rows]), v[rows] - v_finer[rows]
+        moved, fastest = (float(energy_norms(stepper, q_finer, u, x).max()) for x in (displacements, v_finer))
+        apart, faster = (float(energy_norms(stepper, q_finer[rows], u[rows], x).max()) for x in changes)
+        rounding, span = _rounding(stepper, (t, q_finer, v_finer, u)), float(t[-1] - t[0])
+        change = [_share(faster, max(fastest, rounding)), _share(apart, max(moved, rounding * span)) / _POSITIONS]
+        energies = energies_of(stepper, (t, q_finer, v_finer, u))
+        others = energies_of(stepper, (t[rows], q[rows], v[rows], u[rows]))
+        if energies is not None and others is not None:
+            largest = float(np.abs(energies[1] - energies[0]).max() + energies[0].max())
+            spread = max(float(energies[0].max()), float(np.ptp(energies[1])), _AT_REST * largest)
+            change.append(_share(float(np.abs(others[1] - energies[1][rows]).max()), spread) / _ENERGIES)
+    return max(change)
+
+
+def _rounding(stepper: Stepper, states: Sequence[Array]) -> float:
+    """Speed of a motion by rounding, in the norm of the kinetic energy: a share of the coordinates a record."""
+    t, q, _, u = states
+    model = stepper.model
+    coordinates = model.difference(model.neutral(), q[-1])[np.newaxis]
+    span = float(t[-1] - t[0]) / max(1, len(t) - 1)
+    return _AT_REST * float(energy_norms(stepper, q[-1:], u[-1:], coordinates)[0]) / span if span > 0.0 else 0.0
+
+
+def _share(part: float, whole: float) -> float:
+    """Part of a whole; none of nothing."""
+    return part / whole if whole > 0.0 else 0.0

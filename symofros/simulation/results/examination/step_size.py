@@ -1,0 +1,170 @@
+"""Remarks on fixed steps: whether they resolve the motion."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from symofros.runtime.calls.kernel import Array
+from symofros.simulation.results.examination.energy_balance import EXPLODED, energy_note, energy_that_appeared
+from symofros.simulation.results.examination.energy_norm import metrics, norms_in
+from symofros.simulation.results.examination.repetition import halved_step_note, tolerance_note, windows_note
+from symofros.simulation.settings import Settings
+from symofros.simulation.stepping.methods import Method
+from symofros.simulation.stepping.resolution import (
+    Mode,
+    Resolution,
+    Spectrum,
+    directions,
+    largest_stable_step,
+    resolution,
+    states_to_examine,
+)
+from symofros.simulation.stepping.stepper import Stepper
+
+# Records, about, among which the fastest is looked for.
+_SPEEDS = 200
+
+
+def examine_run(
+    stepper: Stepper,
+    settings: Settings,
+    start: tuple[Array, Array],
+    states: Sequence[Array],
+    steps: int,
+    *,
+    ended_well: bool,
+    failed: bool,
+) -> tuple[Mode | None, tuple[str, ...]]:
+    """The mode that a run resolves worst, and notes on its steps: on that, on half the step, on energy.
+
+    Args:
+        stepper: Stepper of the run; its state stays.
+        settings: Settings of the run.
+        start: Initial q, v.
+        states: States of the run: t (n), q, v, u.
+        steps: Number of steps.
+        ended_well: Whether the run came to its end.
+        failed: Whether it diverged; its energy means nothing then.
+    """
+    resolution = examine_steps(stepper, settings, start, states, steps)
+    mode = resolution.worst
+    notes = []
+    if mode is not None:
+        with np.errstate(all="ignore"):  # What overflows is left out.
+            energy = energy_that_appeared(stepper, settings, states) if mode.amplified and not failed else ""
+        notes.append(step_size_note(mode, settings.method, settings.dt, energy))
+    if ended_well and not resolution.evident and mode is None:
+        notes.append(halved_step_note(stepper, settings, start, states, steps))
+    if ended_well and mode is None:
+        notes.append(windows_note(stepper, settings, states, steps))
+    if ended_well:
+        notes.append(tolerance_note(stepper, settings, start, states, steps))
+    if ended_well and (mode is None or not mode.amplified) and not (mode is None and any(notes)):
+        notes.append(energy_note(stepper, settings, states, steps))
+    return mode, tuple(note for note in notes if note)
+
+
+def examine_steps(
+    stepper: Stepper, settings: Settings, start: tuple[Array, Array], states: Sequence[Array], steps: int
+) -> Resolution:
+    """How well the fixed steps of a run resolve its modes; steps that adapt are not examined.
+
+    Args:
+        stepper: Stepper of the run; its state stays.
+        settings: Settings of the run.
+        start: Initial q, v.
+        states: States of the run: t (n), q, v, u.
+        steps: Number of steps.
+    """
+    if settings.adaptive or not stepper.method.family.judged or not stepper.model.nv or steps < 1:
+        return Resolution()
+    if settings.realtime and stepper.system.callback != stepper.ffi.NULL:
+        return Resolution()  # What the function serves may be hardware: it is not called beside the run.
+    t, q, v, u = states
+    good = _finite_rows(q, v)
+    wanted = states_to_examine(steps, stepper.method.tableau.stages, stepper.model.nv)
+    later = sorted({good * k // (wanted - 1) - 1 for k in range(1, wanted)}) if good else []
+    examined = [(settings.t0, *start, u[0]), *((float(t[i]), q[i], v[i], u[i]) for i in later)]
+    stride = max(1, good // _SPEEDS)
+    q_all, v_all = (np.concatenate([x[np.newaxis], y[:good:stride]]) for x, y in zip(start, (q, v), strict=True))
+    u_all = np.concatenate([u[:1], u[:good:stride]])
+    places = np.stack([where for _, where, *_ in examined])
+    rows = len(places)
+    metric = metrics(stepper, np.concatenate([places, q_all]), np.concatenate([np.repeat(u_all[:1], rows, 0), u_all]))
+    metric, norms = metric[:rows], norms_in(metric[rows:], v_all)
+    speeds = [_speed_of_motion(norms, i // stride + 2) for i in (0, *later)]
+
+    def spectrum(i: int) -> Spectrum | None:
+        return stepper.spectrum(*examined[i], settings.dt, directions(stepper.model.nv))
+
+    with stepper.preserved(), np.errstate(all="ignore"):  # States that have exploded overflow.
+        times = [when for when, *_ in examined]
+        return resolution(stepper.method, settings.dt, steps, times, spectrum, speeds, metric)
+
+
+def _speed_of_motion(norms: Array, at: int) -> float:
+    """The largest speed that is a measure of the motion about a state.
+
+    It is the largest of the run, unless the run exploded after that state: what an unstable step makes is no measure
+    of the motion that it spoils.
+
+    Args:
+        norms: Speeds in the order of time.
+        at: Number of the one after the state.
+    """
+    largest, here = float(norms.max()), float(norms[: at + 1].max())
+    return here if largest > EXPLODED * here > 0.0 else largest
+
+
+def _finite_rows(q: Array, v: Array) -> int:
+    """Number of records before the first that is not finite."""
+    if math.isfinite(float(q.sum() + v.sum())):  # As nearly always; the sum of great numbers may overflow.
+        return len(q)
+    bad = np.flatnonzero(~(np.isfinite(q).all(axis=1) & np.isfinite(v).all(axis=1)))
+    return int(bad[0]) if len(bad) else len(q)
+
+
+def step_size_note(mode: Mode, method: Method, h: float, energy: str = "") -> str:
+    """What a mode that is not resolved means for a run, in words.
+
+    Args:
+        mode: Mode that the run resolves worst.
+        method: Stepping method.
+        h: Step [s].
+        energy: Energy that appeared, in words that end in a semicolon.
+    """
+    motion = f"{_rate(mode.rate)} (seen at t = {mode.t:.4g} s)"
+    if not mode.amplified:
+        return (
+            f"steps of {h:.4g} s follow a mode of the motion to {_percent(mode.error)} only: {motion} with"
+            f" {_percent(mode.share)} of the speed; a smaller dt or an adaptive method"
+        )
+    limit = largest_stable_step(method, mode.rate)
+    allowed = f"stable up to {limit:.4g} s" if limit > 0.0 else "stable at no step"
+    return (
+        f"the step of {h:.4g} s is past the limit of stability: '{method.name}' is {allowed} for the mode that"
+        f" {motion}, and multiplies it by {abs(mode.factor):.4g} each step; {energy}{remedy(mode, method)}"
+    )
+
+
+def remedy(mode: Mode, method: Method) -> str:
+    """What makes a run stable."""
+    limit = largest_stable_step(method, mode.rate)
+    if limit > 0.0:
+        return f"dt below {limit:.3g} s, or an implicit method"
+    return "another method, such as rk4"
+
+
+def _rate(rate: complex) -> str:
+    decay = f"decays at {-rate.real:.4g} 1/s" if rate.real < 0.0 else f"grows at {rate.real:.4g} 1/s"
+    if abs(rate.imag) <= 1e-3 * abs(rate.real):
+        return decay
+    oscillation = f"oscillates at {rate.imag:.4g} rad/s"
+    return oscillation if abs(rate.real) <= 1e-3 * abs(rate.imag) else f"{oscillation} and {decay}"
+
+
+def _percent(share: float) -> str:
+    return f"{100.0 * share:.2g} %" if share < 1.0 else "more than 100 %"

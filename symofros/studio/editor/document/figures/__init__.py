@@ -1,0 +1,1 @@
+"""Figures beside the fields of a window: sections, inertia, shape functions."""

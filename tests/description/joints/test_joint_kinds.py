@@ -1,0 +1,67 @@
+"""The table of joint kinds against what the mechanics makes of each kind."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from symofros.description.joints.joint_kinds import JOINT_KINDS, KINDS, JointKind
+
+BODY = sf.Inertia(1.0, (0.1, 0.2, 0.3), (0.02, 0.03, 0.04))
+DEFINED = [kind for kind in KINDS.values() if not kind.user_defined]
+
+
+def model_of(kind: str) -> sf.Model:
+    joint = sf.Joint("j", kind, axis=(1.0, 2.0, 2.0), axis2=(0.0, 1.0, 0.0), pitch=0.3)  # type: ignore[arg-type]
+    return sf.compile(sf.System("one", (sf.RigidBody("body", joint, BODY),)), sf.Options(backend="interpreter"))
+
+
+def test_every_kind_has_one_row() -> None:
+    assert tuple(KINDS) == JOINT_KINDS
+
+
+def test_entries_are_fields_of_a_joint() -> None:
+    assert {entry for kind in KINDS.values() for entry in kind.entries} <= {item.name for item in fields(sf.Joint)}
+
+
+@pytest.mark.parametrize("kind", [kind for kind in DEFINED if kind.coordinates], ids=lambda kind: kind.name)
+class TestKind:
+    def test_has_its_coordinates_and_speeds(self, kind: JointKind) -> None:
+        model = model_of(kind.name)
+        assert (model.nq, model.nv) == (len(kind.coordinates), kind.nv)
+        assert all(name == "j" or name.startswith("j.") for name in model.names.q + model.names.v)
+
+    def test_comes_around_where_a_coordinate_is_an_angle(self, kind: JointKind) -> None:
+        model = model_of(kind.name)
+        for i, coordinate in enumerate(kind.coordinates):
+            if coordinate.measure == "component":
+                continue
+            q = model.neutral()
+            q[i] += 2 * np.pi
+            _, R = model.frame_pose("body", q)
+            returned = np.allclose(R, model.frame_pose("body", model.neutral())[1], atol=1e-12)
+            assert returned, "neither a shift nor a whole turn changes the orientation"
+
+    def test_turns_about_the_axis_of_the_table_alone(self, kind: JointKind) -> None:
+        model = model_of(kind.name)
+        q, _ = model.random_state(np.random.default_rng(1))
+        spins = model.frame_jacobian("body", q)[3:]
+        axis = {"axis": np.array([1.0, 2.0, 2.0]) / 3, "z": np.array([0.0, 0.0, 1.0])}.get(kind.turns_about or "")
+        rank = np.linalg.matrix_rank(spins, tol=1e-9)
+        if axis is None:
+            assert rank != 1
+        else:
+            assert rank == 1
+            assert np.allclose(np.cross(spins.T, axis), 0.0, atol=1e-12)
+
+    def test_is_a_series_of_turns_and_slides_where_the_table_says_so(self, kind: JointKind) -> None:
+        """Each speed of a series turns or slides about or along its own axis: one part of its partial velocity is 0."""
+        model = model_of(kind.name)
+        J = model.frame_jacobian("body", model.neutral())
+        for k, coordinate in enumerate(kind.coordinates if kind.series else ()):
+            still, moving = (J[:3, k], J[3:, k]) if coordinate.measure == "angle" else (J[3:, k], J[:3, k])
+            assert np.allclose(still, 0.0, atol=1e-12)
+            assert np.isclose(np.linalg.norm(moving), 1.0)

@@ -1,0 +1,67 @@
+"""Singular postures on the way are found between the states that are looked at, however many loops there are."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models.closed.four_bars import n_four_bar
+from symofros import blocks
+from symofros.simulation.analysis.kinematics.postures import nearest_to_singular
+
+
+@pytest.fixture(scope="module")
+def row() -> sf.Model:
+    return sf.compile(n_four_bar(24), sf.Options(functions=("constraint_jacobian",)))
+
+
+def swept(m: sf.Model, angles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    signs = np.array([1.0 if name.startswith("crank") else -1.0 for name in m.names.q])
+    return np.linspace(0.0, 1.0, len(angles)), angles[:, None] * signs
+
+
+@pytest.mark.parametrize("lowest", [0.004, 0.02])
+def test_the_weakest_of_many_states_is_found(row: sf.Model, lowest: float) -> None:
+    """A dip of a hundredth of the run, that lies between any ninety states spread over it."""
+    t = np.linspace(0.0, 1.0, 4001)
+    angles = 1.0 - (1.0 - lowest) * np.exp(-(((t - 0.4567) / 0.02) ** 2))
+    times, q = swept(row, angles)
+    close = nearest_to_singular(row, times, q, np.zeros((len(t), row.nu)), row.parameter_values, row.nc)
+    assert close is not None
+    when, share = close
+    assert when == pytest.approx(0.4567, abs=1e-3)
+    assert share == pytest.approx(np.sin(lowest), rel=0.5)
+
+
+def test_a_row_that_stays_upright_is_not_near(row: sf.Model) -> None:
+    times, q = swept(row, np.linspace(1.2, 0.7, 500))
+    assert nearest_to_singular(row, times, q, np.zeros((500, row.nu)), row.parameter_values, row.nc) is None
+
+
+def falling(*limits: float) -> sf.System:
+    """A mass that falls along z, between limits."""
+    joint = sf.Joint("s", "prismatic", axis=(0, 0, 1), limits=sf.Limits(*limits))
+    return sf.System("falling", [sf.RigidBody("b", joint, sf.Inertia(1.0))])
+
+
+@pytest.mark.parametrize(("t_end", "left"), [(0.1, False), (0.2, True)])
+def test_a_run_beyond_the_limits_of_a_joint_says_when_and_how_far(t_end: float, left: bool) -> None:
+    # It falls through 0.1 m in 0.1428 s.
+    system = falling(-0.1, 0.15)
+    m = sf.compile(system)
+    alone = sf.simulate(m, t_end=t_end).outcome
+    batch = sf.simulate_batch(m, np.zeros((2, 1)), t_end=t_end, output=1e-3).outcome(1)
+    diagram = sf.Diagram("one_mass")
+    diagram.add_model("falling", system)
+    diagram.add(blocks.ForwardDynamics(name="mass", model="falling"))
+    drawn = sf.Simulation(diagram).run(t_end, dt=1e-3, record=1e-3).outcome
+    interpreted = sf.Simulation(diagram).interpret(t_end, dt=1e-3, record=1e-3).outcome
+    for outcome in (alone, batch, drawn, interpreted):
+        said = [note for note in outcome.notes if "leaves its limits" in note]
+        assert len(said) == left
+        assert not left or "-0.1 to 0.15, at t = 0.143 s, by up to 0.096" in said[0]
+
+
+def test_limits_that_are_not_stated_are_not_left() -> None:
+    assert not sf.simulate(sf.compile(falling()), t_end=1.0).outcome.notes

@@ -1,0 +1,72 @@
+"""Parts: what belongs to some bodies, taken out and put in, alone or many times."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from symofros.studio.editor.document.analysis import analyse
+from symofros.studio.editor.document.parts.parts import extracted, insertion
+from symofros.studio.editor.document.parts.parts_library import Library
+from symofros.studio.editor.document.workspace import FileError, Workspace
+from symofros.studio.editor.editing.data_edits import EditError
+from symofros.studio.editor.editing.yaml_edits import with_references
+from symofros.studio.editor.editing.yaml_spans import YamlText
+from tests.studio.editor.texts import DATA, FILES, TEXTS
+
+
+def test_a_part_holds_what_its_bodies_use_and_what_is_between_them() -> None:
+    part = extracted(DATA["four_bar"], ["rocker", "coupler"])
+    assert list(part) == ["symofros", "parameters", "bodies", "closures"]
+    assert list(part["bodies"]) == ["coupler", "rocker"]  # In the document's order.
+    assert "parent" not in part["bodies"]["coupler"]["joint"] and "frame" not in part["bodies"]["coupler"]["joint"]
+    assert "closures" not in extracted(DATA["four_bar"], ["rocker"])
+    wrist = extracted(DATA["planar_robot"], ["motor3", "housing3"])
+    assert list(wrist["parameters"]) == ["n3", "J3"]
+    assert wrist["bodies"]["motor3"]["joint"]["parent"] == "housing3"
+
+
+@pytest.mark.parametrize(("bodies", "says"), [([], "no bodies"), (["nobody"], "no such body")])
+def test_what_is_no_part_is_refused(bodies: list[str], says: str) -> None:
+    with pytest.raises(EditError) as caught:
+        extracted(DATA["four_bar"], bodies)
+    assert says in caught.value.problem.found
+
+
+@pytest.mark.parametrize("name", ["planar_robot", "friction_arm", "joint_zoo"])
+def test_a_part_put_in_twice_is_still_a_mechanism(name: str) -> None:
+    data, text = DATA[name], TEXTS[name]
+    part = extracted(data, [body for body, entry in data["bodies"].items() if "joint" in entry])
+    before = list(data["bodies"])
+    for _ in range(2):
+        text = with_references(text, insertion(YamlText(text).root.plain(), part, before[0], None))
+    found = analyse(FILES[name], text)
+    assert found.problems == []
+    assert len(found.data["bodies"]) == 3 * len(part["bodies"]) + len(before) - len(part["bodies"])
+    assert found.data.get("parameters", {}) == data.get("parameters", {})  # Equal ones are shared.
+
+
+def test_unequal_parameters_are_told_apart() -> None:
+    part = extracted(DATA["four_bar"], ["rocker"])
+    part["parameters"] = {**part["parameters"], "L": 2.0}
+    text = with_references(TEXTS["four_bar"], insertion(DATA["four_bar"], part, "crank", "end"))
+    data = YamlText(text).root.plain()
+    assert data["parameters"]["L2"] == 2.0
+    joint = data["bodies"]["rocker2"]["joint"]
+    assert joint["position"] == ["L2", 0, 0] and joint["parent"] == "crank" and joint["name"] == "q4"
+
+
+def test_the_library_keeps_lists_and_does_not_overwrite(tmp_path: Path) -> None:
+    library = Library(Workspace(tmp_path))
+    library.keep("my leg!", DATA["four_bar"], ["rocker"])
+    (tmp_path / "parts" / "broken.yaml").write_text("a: [")
+    (tmp_path / "parts" / "other.yaml").write_text("a: 1")
+    assert library.listed() == [{"name": "my_leg_", "path": "parts/my_leg_.yaml", "bodies": ["rocker"]}]
+    assert not analyse(tmp_path / "parts" / "my_leg_.yaml", (tmp_path / "parts" / "my_leg_.yaml").read_text()).problems
+    with pytest.raises(FileError, match="there already"):
+        library.keep("my leg!", DATA["four_bar"], ["coupler"])
+    with pytest.raises(FileError, match="no such file"):
+        library.part("nothing")
+    with pytest.raises(FileError, match="not in the workspace"):
+        library.part("../../etc/x")
