@@ -14,7 +14,6 @@ from symofros.description.beams.sections.shear import (
     lateral_ratio,
     rectangle_torsion,
 )
-
 from symofros.description.values import Term, as_value
 
 _Points = tuple[tuple[Term, Term], ...]

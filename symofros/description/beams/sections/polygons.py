@@ -8,7 +8,6 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from symofros.description.beams.sections.section import Material, Section, number_of
-
 from symofros.errors import DescriptionError, Problem
 
 Point = tuple[float, float]

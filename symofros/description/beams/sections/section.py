@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from symofros.description.beams.sections.shear import ShearShape, is_inside, unit_stresses
 
 from symofros.description.beams.beam import ROD_STIFFNESSES, SECTION, Theory
+from symofros.description.beams.sections.shear import ShearShape, is_inside, unit_stresses
 from symofros.description.entries import refuses_unknown_entries
 from symofros.description.values import Term, Value, as_value, symbols
 from symofros.errors import DescriptionError, Problem
