@@ -9,7 +9,7 @@ import numpy as np
 from rich.table import Table
 
 from symofros.description.beams.beam import Beam
-from symofros.mechanics.beams.piecewise import stations
+from symofros.mechanics.beams.quadrature import stations
 from symofros.mechanics.topology.beams import section_values
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.tree import SpanningTree

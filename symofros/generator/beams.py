@@ -78,7 +78,7 @@ def _rod(beam: Beam, q: int, v: int, values: dict[str, float]) -> ElasticRod:
         elastic_stiffness=cache(partial(_stiffness, beam, values)),
         EI_z=0.0,
         EI_y=0.0,
-        sections=len(strains.stations[0]),
+        sections=len(strains.sections.stations) - 1,  # Beside the root.
         integration_error=_integration_error(beam, values),
     )
 

@@ -154,7 +154,8 @@ class Beam:
             curvatures and twist rate, and stretch and shear if asked for, are sums of shape functions
             (docs/theory/rods.md). Of a rod, `bend_y`, `bend_z`, `twist`, `stretch`, `shear_y` and `shear_z` count those
             functions, `family` is theirs, and `retain` and `foreshortening` have no meaning.
-        sections: Number of sections of a rod at which its motion is integrated, an interval between knots; 0: chosen.
+        sections: Number of sections of a rod, beside the root, at which its motion is integrated, an interval between
+            knots; 0: chosen.
         curvature_y: Curvature about y of a rod without stress [1/m].
         curvature_z: Curvature about z of a rod without stress [1/m].
         twist_rate: Twist rate of a rod without stress [rad/m].

@@ -17,7 +17,8 @@ from symofros.expr.edges import ZERO, Edge
 from symofros.expr.expression import Expression
 from symofros.expr.graph import Graph
 from symofros.mechanics.beams.fields import Field, Form, Monomial, UnitIntegral, exponent, length_power
-from symofros.mechanics.beams.piecewise import Number, Piecewise, stations
+from symofros.mechanics.beams.piecewise import Number, Piecewise
+from symofros.mechanics.beams.quadrature import stations
 
 # Gauss nodes an interval for properties that change along the beam, exact to degree 31: what pieces of splines and of
 # fitted functions ask for. Polynomials over the whole length get as many more as their own degree takes.

@@ -24,8 +24,6 @@ _FIT_DEGREE = 14
 # Share of a piece's largest coefficient below which one counts as zero: its second derivative, times 14^2 and the
 # square of the number of pieces, is still far below a double's rounding.
 _NEGLIGIBLE = 1e-24
-# Newton's method doubles the digits: from two of them, for the quadrature of two points, to a double's.
-_NEWTON_STEPS = 5
 
 
 @dataclass(frozen=True)
@@ -258,50 +256,6 @@ def _interpolation() -> tuple[list[Extended], list[list[Extended]]]:
         for k in range(n)
     ]
     return [(1 + cosine) / 2 for cosine in cosines[1]], weights
-
-
-@lru_cache(maxsize=16)
-def gauss(points: int) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Nodes, rising, and weights of Gauss-Legendre quadrature on [0, 1]."""
-    upper = [_gauss_node(points, i) for i in range((points + 1) // 2)]
-    lower = [(-x, w) for x, w in upper[: points // 2]]
-    rule = lower + upper[::-1]
-    return tuple(float((1 + x) / 2) for x, _ in rule), tuple(float(w / 2) for _, w in rule)
-
-
-def _gauss_node(n: int, i: int) -> tuple[Extended, Extended]:
-    """Root i of the Legendre polynomial P_n, from the largest, and its weight, by Newton's method."""
-    x: Extended = math.cos(math.pi * (4 * i + 3) / (4 * n + 2))  # Abramowitz & Stegun 22.16.6.
-    for _ in range(_NEWTON_STEPS):
-        value, slope = _legendre(n, x)
-        x -= value / slope
-    # From a double's digits to all that count in two steps more, wherever the first ones ended.
-    x = extended_context().mpf(x)
-    for _ in range(2):
-        value, slope = _legendre(n, x)
-        x -= value / slope
-    return x, 2 / ((1 - x * x) * slope * slope)
-
-
-def _legendre(n: int, x: Extended) -> tuple[Extended, Extended]:
-    """P_n(x) and P_n'(x)."""
-    before, value = 1, x
-    for k in range(2, n + 1):
-        before, value = value, ((2 * k - 1) * x * value - (k - 1) * before) / k
-    return value, n * (before - x * value) / (1 - x * x)
-
-
-def stations(knots: Sequence[Number], points: int) -> tuple[list[float], list[float]]:
-    """Gauss nodes and weights on every interval between knots.
-
-    Args:
-        knots: Ends of the intervals, from 0 to 1.
-        points: Number of nodes an interval.
-    """
-    nodes, weights = gauss(points)
-    xi = [float(a) + float(b - a) * node for a, b in pairwise(knots) for node in nodes]
-    w = [float(b - a) * weight for a, b in pairwise(knots) for weight in weights]
-    return xi, w
 
 
 def _aligned(a: Piecewise, b: Piecewise) -> tuple[Piecewise, Piecewise]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 from symofros.description.beams.beam import PRE_STRAINS, STATION, Beam
 from symofros.description.values import Value, symbols
@@ -14,7 +15,7 @@ from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Vec3
 from symofros.mechanics.beams.fields import Form, no_form
 from symofros.mechanics.beams.integrals import LengthIntegrator, Lower, at_station
-from symofros.mechanics.beams.piecewise import gauss
+from symofros.mechanics.beams.quadrature import gauss
 from symofros.mechanics.beams.strains import TURNING, Strains, strains_of
 from symofros.mechanics.beams.turn import Moments, Turn
 
@@ -90,21 +91,21 @@ class Rod:
 
     @cached_property
     def sections(self) -> tuple[Section, ...]:
-        """The sections at which the motion is integrated, root to tip."""
+        """The sections at which the motion is integrated, from the root on."""
         if self.axis is not None:
-            return tuple(map(self.section_at, self.strains.stations[0]))
+            return tuple(map(self.section_at, self.strains.sections.stations))
         chain = [self.root]
         for step in self._steps:
             chain.append(self._after(chain[-1], step))
-        return tuple(chain[1:])
+        return tuple(chain)
 
     def section_at(self, xi: float) -> Section:
         """The section at any station."""
         if self.axis is not None:
             return self._turned(self.axis, xi)
-        stations = self.strains.stations[0]
+        stations = self.strains.sections.stations
         before = sum(station <= xi for station in stations)
-        start, section = (stations[before - 1], self.sections[before - 1]) if before else (0.0, self.root)
+        start, section = stations[before - 1], self.sections[before - 1]
         return self._after(section, self._step(start, xi)) if xi > start else section
 
     def _turned(self, axis: int, xi: float) -> Section:
@@ -124,8 +125,7 @@ class Rod:
 
     @cached_property
     def _steps(self) -> tuple[Turn, ...]:
-        ends = (0.0, *self.strains.stations[0])
-        return tuple(self._step(a, b) for a, b in zip(ends, ends[1:], strict=False))
+        return tuple(self._step(a, b) for a, b in pairwise(self.strains.sections.stations))
 
     def _step(self, a: float, b: float) -> Turn:
         """The turn between two stations, by Magnus's series (5)-(7)."""
@@ -246,11 +246,11 @@ class Rod:
 
     def position(self, xi: float) -> Vec3:
         """Position p_BS of the section at a station (10)."""
-        return self.combined(self.strains.from_root(xi), self.tangents).scaled(self.along.L)
+        return self.combined(self.strains.sections.from_root(xi), self.tangents).scaled(self.along.L)
 
     def partial_position(self, xi: float, i: int) -> Vec3:
         """Derivative of the position at a station by a coordinate."""
-        return self.combined(self.strains.from_root(xi), self.partial_tangents[i]).scaled(self.along.L)
+        return self.combined(self.strains.sections.from_root(xi), self.partial_tangents[i]).scaled(self.along.L)
 
     def angular_rates(self, w: Vec3, alpha: Vec3, speeds: Sequence[Edge]) -> list[tuple[Vec3, Vec3]]:
         """Angular velocity of each section in the world, and its rate at constant speeds, in B (11).
@@ -263,8 +263,8 @@ class Rod:
         if self.axis is not None:
             spins = [self.spin(section, speeds) for section in self.sections]
             return [(w + spin, alpha + w.cross(spin)) for spin in spins]
-        rates, section = [], self.root
-        for step, following in zip(self._steps, self.sections, strict=True):
+        rates, section = [(w, alpha)], self.root
+        for step, following in zip(self._steps, self.sections[1:], strict=True):
             change = self._moments(step.tables, speeds)
             spinning = step.spinning(section.R_BS, following.R_BS)  # The nodes that partial velocities are made of.
             relative, relative_rate = step.rates(change, section.R_BS, spinning)
@@ -298,8 +298,8 @@ class Rod:
 
     def masses(self, weights: Sequence[float] | None = None) -> tuple[Edge, ...]:
         """Mass at each of the stations of masses; of a part, with its weights."""
-        stations, whole = self.strains.masses.stations
-        return self.shares(self.beam.rhoA, stations, weights or whole)
+        nodes = self.strains.masses
+        return self.shares(self.beam.rhoA, nodes.stations, weights or nodes.weights)
 
     def shares(self, weight: Value, stations: Sequence[float], weights: Sequence[float]) -> tuple[Edge, ...]:
         """Integral of a property of the section over the length, by stations."""
@@ -329,7 +329,7 @@ class Rod:
     @cached_property
     def inertia_axes(self) -> tuple[InertiaAxis, ...]:
         """Axes about which the sections have inertia: their own x axis, with rotary inertia all three."""
-        return self.inertia_axes_of(self.strains.stations[1])
+        return self.inertia_axes_of(self.strains.sections.weights)
 
     def inertia_axes_of(self, weights: Sequence[float]) -> tuple[InertiaAxis, ...]:
         """The same of a part of the rod, by its weights of the sections."""
@@ -340,7 +340,7 @@ class Rod:
             for axis, per_length in enumerate(stated)
             if per_length != 0.0
             for k, (section, share) in enumerate(
-                zip(self.sections, self.shares(per_length, self.strains.stations[0], weights), strict=True)
+                zip(self.sections, self.shares(per_length, self.strains.sections.stations, weights), strict=True)
             )
         )
 

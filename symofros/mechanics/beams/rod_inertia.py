@@ -55,7 +55,7 @@ def _paired(rod: Rod, left: Sequence[float], right: Sequence[float]) -> Edge:
 
 def _turns(rod: Rod, i: int) -> list[float]:
     """Angle by which a unit of a coordinate turns each section."""
-    return [row[i] for row in rod.strains.turns(rod.strains.stations[0])]
+    return [row[i] for row in rod.strains.turns(rod.strains.sections.stations)]
 
 
 def rod_momentum(rod: Rod, i: int) -> tuple[Vec3, Vec3]:
@@ -161,12 +161,12 @@ def wrenches_beyond(
         for vectors in (rod.tangents, motion.curves)
     )
     for xi in stations:
-        weights = rod.strains.masses.weights_beyond(xi)
+        weights = rod.strains.masses.beyond(xi)
         f, n = Vec3(rod.g), Vec3(rod.g)
         for p, acceleration, share in zip(positions, relative, rod.masses(weights), strict=True):
             force = (a + acceleration).scaled(share)
             f, n = f + force, n + p.cross(force)
-        for axis in rod.inertia_axes_of(rod.strains.weights_beyond(xi)):
+        for axis in rod.inertia_axes_of(rod.strains.sections.beyond(xi)):
             n = n + _torque(axis, motion)
         yield f, n
 

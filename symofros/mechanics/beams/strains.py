@@ -7,16 +7,15 @@ the same on every machine.
 from __future__ import annotations
 
 import math
-from bisect import bisect_right
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, lru_cache
-from itertools import pairwise
 
 from symofros.description.beams.beam import STRAINS, Beam, Direction, Family, Samples, UserShape
 from symofros.mechanics.beams.fields import Field, Monomial
-from symofros.mechanics.beams.piecewise import Number, Piecewise, fitted, gauss, polynomial, stations
+from symofros.mechanics.beams.piecewise import Number, Piecewise, fitted, polynomial
+from symofros.mechanics.beams.quadrature import Nodes, gauss, radau
 from symofros.mechanics.beams.shape_functions import MAX_MODES, FamilyError, b_splines, formula_of_station
 
 # Strain that a direction's coordinates are of, and the sign with which they count: twist rate and curvatures (0 to 2)
@@ -32,9 +31,10 @@ AXES: dict[Direction, tuple[int, int]] = {
 }
 # Number of strains that turn sections.
 TURNING = 3
-# The fewest sections an interval; one more than functions integrates small turns exactly. There are two more of three
-# functions on, which leave less out than a section is worth, and of the user's, which may be of any degree.
-_FEWEST_SECTIONS, _FEWEST_SECTIONS_OF_USER, _FEW_FUNCTIONS = 3, 4, 2
+# The fewest sections an interval beside the root: as many as functions integrate small turns exactly. From three
+# functions on there are one and then two more, as these leave less out than a section is worth; of the user's, which
+# may be of any degree, one more.
+_FEWEST_SECTIONS, _FEWEST_SECTIONS_OF_USER, _MOST_MORE = 2, 3, 2
 # Sections an interval where knots divide the rod: the cubic between them is smooth.
 _SECTIONS_A_SPAN = 4
 # Largest angle [rad] by which the strains of one direction turn the tip in random states; largest stretch and shear.
@@ -52,7 +52,7 @@ class Strains:
     Attributes:
         functions: Strain functions, one a coordinate, in the order of STRAINS.
         counts: Number of functions of each direction, in the order of STRAINS.
-        points: Number of sections an interval between knots.
+        points: Number of sections an interval between knots, beside the root.
     """
 
     functions: tuple[Piecewise, ...]
@@ -67,7 +67,7 @@ class Strains:
     @cached_property
     def shifts(self) -> Rows:
         """Stretch or shear of each section by a unit of each coordinate; zero of one that turns sections (N, n)."""
-        xi = self.stations[0]
+        xi = self.sections.stations
         columns = [
             f.rounded(xi) if axis >= TURNING else [0.0] * len(xi)
             for f, (axis, _) in zip(self.functions, self.axes, strict=True)
@@ -80,10 +80,10 @@ class Strains:
         return tuple(sorted({Fraction(0), Fraction(1), *(k for f in self.functions for k in f.knots)}))
 
     @cached_property
-    def stations(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Stations xi of the sections, rising, and their weights."""
-        xi, w = stations(self.knots, self.points)
-        return tuple(xi), tuple(w)
+    def sections(self) -> Nodes:
+        """Stations of the sections: Radau's with the root, which costs nothing, up to the first knot, then Gauss's."""
+        later = (gauss(self.points),) * (len(self.knots) - 2)
+        return Nodes(self.knots, (radau(self.points + 1), *later))
 
     def strain(self, axis: int) -> Field:
         """Change of the twist rate (axis 0), a curvature (1, 2), stretch or shear as a field of coordinates (1)."""
@@ -119,54 +119,36 @@ class Strains:
             rows.append((zeroth, first, second))
         return tuple(zip(*rows, strict=True)) if rows else ((), (), ())
 
-    def from_root(self, xi: float) -> tuple[float, ...]:
-        """Weights of the sections in the integral from the root to a station, by the polynomials through them (10)."""
-        p = self.points
-        nodes, weights = gauss(p)
-        row = [0.0] * (p * (len(self.knots) - 1))
-        last = min(max(bisect_right([float(k) for k in self.knots], xi) - 1, 0), len(self.knots) - 2)
-        for m, (a, b) in enumerate(pairwise(map(float, self.knots))):
-            if m > last:
-                break
-            upto = (xi - a) / (b - a) if m == last else 1.0
-            for k in range(p):
-                row[m * p + k] = (b - a) * weights[k] * _partial_weight(p, nodes[k], upto)
-        return tuple(row)
-
-    def weights_beyond(self, xi: float) -> tuple[float, ...]:
-        """Weights of the sections in the integral from a station to the tip, by the polynomials through them."""
-        return tuple(w - a for w, a in zip(self.stations[1], self.from_root(xi), strict=True))
-
     @cached_property
-    def masses(self) -> Strains:
-        """The same fields at a station more an interval, which integrate products of two positions exactly."""
-        return replace(self, points=self.points + 1)
+    def masses(self) -> Nodes:
+        """Stations that integrate products of two positions exactly."""
+        return Nodes(self.knots, (gauss(self.points + 2),) * (len(self.knots) - 1))
 
     @cached_property
     def positions(self) -> Rows:
-        """Rows of `from_root` at the stations of `masses`."""
-        return tuple(self.from_root(xi) for xi in self.masses.stations[0])
+        """Weights of the sections in the position at each of the stations of `masses`, over the length."""
+        return tuple(self.sections.from_root(xi) for xi in self.masses.stations)
 
     @cached_property
     def first_moments(self) -> tuple[float, ...]:
         """Weights of the tangents in the integral of the position, for a section that does not change (N)."""
-        w, n = self.masses.stations[1], len(self.stations[1])
+        w, n = self.masses.weights, len(self.sections.stations)
         return tuple(sum(a * row[k] for a, row in zip(w, self.positions, strict=True)) for k in range(n))
 
     @cached_property
     def mass_points(self) -> Rows:
-        """Rows C, upper triangular, of points with C^T C the second moment of the positions: of a uniform rod (12)."""
-        w, n = self.masses.stations[1], len(self.stations[1])
+        """Rows C of points with C^T C the second moment of the positions, of a uniform rod; triangular (12)."""
+        w, n = self.masses.weights, len(self.sections.stations)
+        order = (*range(1, n), 0)  # The root last: where it comes alone, nothing moves.
         second = [
-            [sum(a * row[i] * row[j] for a, row in zip(w, self.positions, strict=True)) for j in range(n)]
-            for i in range(n)
+            [sum(a * row[i] * row[j] for a, row in zip(w, self.positions, strict=True)) for j in order] for i in order
         ]
         rows = [[0.0] * n for _ in range(n)]
         for i in range(n):
             rows[i][i] = math.sqrt(second[i][i] - sum(rows[k][i] ** 2 for k in range(i)))
             for j in range(i + 1, n):
                 rows[i][j] = (second[i][j] - sum(rows[k][i] * rows[k][j] for k in range(i))) / rows[i][i]
-        return tuple(map(tuple, rows))
+        return tuple((row[-1], *row[:-1]) for row in rows)
 
     @cached_property
     def sizes(self) -> tuple[float, ...]:
@@ -183,22 +165,6 @@ class Strains:
             else:
                 sizes.append(share * _LARGEST_STRAIN / max(abs(row[i]) for row in self.shifts))
         return tuple(sizes)
-
-
-def _partial_weight(points: int, node: float, upto: float) -> float:
-    """The integral from 0 to a station of a Gauss node's polynomial of Lagrange, over the node's weight.
-
-    It is the sum of (2 n + 1) P_n(node) P_n over n < points, and the integral of P_n is a difference of neighbours.
-    """
-    at, end = _legendre(points + 1, 2.0 * node - 1.0), _legendre(points + 1, 2.0 * upto - 1.0)
-    return upto + sum(at[n] * 0.5 * (end[n + 1] - end[n - 1]) for n in range(1, points))
-
-
-def _legendre(count: int, z: float) -> list[float]:
-    values = [1.0, z]
-    for k in range(2, count + 1):
-        values.append(((2 * k - 1) * z * values[-1] - (k - 1) * values[-2]) / k)
-    return values
 
 
 def strains_of(beam: Beam) -> Strains:
@@ -221,9 +187,9 @@ def _shared_strains(
     is_divided = any(len(f.pieces) > 1 for f in functions)
     most = max(counts)
     if family == "user":
-        chosen = max(_FEWEST_SECTIONS_OF_USER, most + 2)
+        chosen = max(_FEWEST_SECTIONS_OF_USER, most + 1)
     else:
-        chosen = max(_FEWEST_SECTIONS, most + (1 if most <= _FEW_FUNCTIONS else 2))
+        chosen = max(_FEWEST_SECTIONS, most + min((most - 1) // 2, _MOST_MORE))
     chosen = _SECTIONS_A_SPAN if is_divided else chosen
     return Strains(tuple(functions), counts, sections or chosen)
 

@@ -12,7 +12,8 @@ from symofros.description.beams.beam import PRE_STRAINS, SECTION, STATION, STRAI
 from symofros.description.values import ORIGIN, Term, Value, substituted, symbols
 from symofros.errors import Problem
 from symofros.mechanics.beams.deformation import deformation_of
-from symofros.mechanics.beams.piecewise import Piecewise, stations
+from symofros.mechanics.beams.piecewise import Piecewise
+from symofros.mechanics.beams.quadrature import stations
 from symofros.mechanics.beams.shape_functions import FamilyError
 from symofros.mechanics.beams.strains import strains_of
 from symofros.mechanics.topology.conditions import Condition, Formulas, Sign

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-import mpmath
 import numpy as np
 import pytest
 import scipy.interpolate
 
 from symofros.expr.numerics.extended import extended_context
-from symofros.mechanics.beams.piecewise import XI, Piecewise, fitted, gauss, polynomial, stations
+from symofros.mechanics.beams.piecewise import XI, Piecewise, fitted, polynomial
 
 THIRDS = tuple(Fraction(k, 3) for k in range(4))
 HALVES = tuple(Fraction(k, 2) for k in range(3))
@@ -98,33 +97,6 @@ def test_a_polynomial_is_interpolated_by_itself() -> None:
     f = fitted(lambda x: 3 * x**2 - 2 * x**3, 4)
     assert f.pieces[0] == (0.0, 0.0, 3.0, -2.0)
     assert f.degree == 3
-
-
-@pytest.mark.parametrize("points", [2, 5, 16])
-def test_gauss_is_exact_to_its_degree_and_no_further(points: int) -> None:
-    nodes, weights = (np.array(x) for x in gauss(points))
-    for degree in (0, 1, 2 * points - 1):
-        assert weights @ nodes**degree == pytest.approx(1 / (degree + 1), rel=1e-14)
-    missed = abs(weights @ nodes ** (2 * points) * (2 * points + 1) - 1.0)
-    assert missed > 1e-6 or points > 5  # With more, the error of the next degree is below rounding.
-
-
-@pytest.mark.parametrize("points", [2, 3, 24, 89])
-def test_gauss_nodes_are_roots_of_legendre_polynomials(points: int) -> None:
-    nodes, weights = gauss(points)
-    assert list(nodes) == sorted(nodes)
-    for node, weight in zip(nodes, weights, strict=True):
-        with mpmath.workdps(40):
-            root = mpmath.findroot(lambda x: mpmath.legendre(points, x), 2 * mpmath.mpf(node) - 1)
-            expected = 2 * (1 - root**2) / ((points + 1) * mpmath.legendre(points + 1, root)) ** 2
-            assert node == float((1 + root) / 2)
-            assert weight == float(expected / 2)
-
-
-def test_stations_integrate_across_a_kink_between_intervals() -> None:
-    xi, w = stations((0, Fraction(1, 3), 1), 4)
-    kinked = np.abs(np.array(xi) - 1 / 3)
-    assert np.dot(w, kinked) == pytest.approx((1 / 9 + 4 / 9) / 2, rel=1e-14)
 
 
 def test_values_are_rounded_once_whatever_cancels() -> None:

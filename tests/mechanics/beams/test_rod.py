@@ -76,6 +76,19 @@ def test_two_functions_at_the_sections_chosen_take_the_fourth_order() -> None:
     assert sixth < 0.1 * fourth and fourth < 1e-4
 
 
+@pytest.mark.parametrize("functions", [1, 2, 3])
+def test_small_turns_are_integrated_exactly_by_as_many_sections_as_functions(functions: int) -> None:
+    """Beside the root, whose section is known."""
+    few, many = (
+        sf.compile(
+            sf.System("s", (rod((functions, 0, 0), HUB, sections=n),)),
+            sf.Options(("mass_matrix",), backend="interpreter"),
+        ).mass_matrix(np.zeros(functions + 1))
+        for n in (functions, 9)
+    )
+    assert few == pytest.approx(many, rel=1e-13)
+
+
 @pytest.mark.parametrize("direction", ["bend_y", "bend_z"])
 def test_a_constant_curvature_closes_to_a_circle(direction: str) -> None:
     counts = (1, 0, 0) if direction == "bend_y" else (0, 1, 0)

@@ -21,7 +21,7 @@ SX = Any  # CasADi has no types.
 
 # Gauss nodes of an interval's moments and energies: exact for strains of degree 15.
 NODES = 16
-# Sections an interval that the description leaves to the generator, between knots.
+# Sections an interval that the description leaves to the generator, where knots divide the rod.
 A_SPAN = 4
 
 
@@ -36,7 +36,7 @@ class Strain:
 
 @dataclass(frozen=True)
 class ExactRod:
-    """A rod along x, clamped to its frame; `breaks` are where its functions are not smooth, `points` an interval."""
+    """A rod along x, clamped to its frame; it has `points` sections an interval between `breaks`, beside the root."""
 
     length: float
     rhoA: Section
@@ -69,9 +69,23 @@ class ExactRod:
         return (0.0, *(b for b in sorted(self.breaks) if 0.0 < b < self.length), self.length)
 
     @cached_property
+    def spans(self) -> list[tuple[Array, Array]]:
+        """Stations of the sections of each interval, and their weights [m]: Radau's with the root, then Gauss's."""
+        rules = [_radau(self.points + 1), *[np.polynomial.legendre.leggauss(self.points)] * (len(self.ends) - 2)]
+        return [
+            (a + (b - a) * (node + 1) / 2, (b - a) * w / 2)
+            for a, b, (node, w) in zip(self.ends, self.ends[1:], rules, strict=False)
+        ]
+
+    @cached_property
     def at(self) -> Array:
         """Stations of the sections [m]."""
-        return stations(self.length, self.breaks, self.points)[0]
+        return np.concatenate([x for x, _ in self.spans])
+
+    @cached_property
+    def weights(self) -> Array:
+        """Their weights [m]."""
+        return np.concatenate([w for _, w in self.spans])
 
     @cached_property
     def axes(self) -> set[int]:
@@ -105,14 +119,21 @@ class ExactRod:
         return zeroth, first, second
 
 
+def _radau(count: int) -> tuple[Array, Array]:
+    """Nodes and weights on [-1, 1] of the quadrature with a node at -1, exact to degree 2 count - 2."""
+    node = np.polynomial.legendre.legroots([*[0.0] * (count - 1), 1.0, 1.0])
+    node[0] = -1.0
+    return node, np.linalg.solve(np.polynomial.legendre.legvander(node, count - 1).T, 2.0 * np.eye(count)[0])
+
+
 def sections_chosen(counts: Sequence[int], family: str, divided: bool) -> int:
-    """Number of sections an interval between knots where the description states none."""
+    """Number of sections an interval between knots, beside the root, where the description states none."""
     most = max(counts)
     if divided:
         return A_SPAN
     if family == "user":
-        return max(4, most + 2)
-    return max(3, most + (1 if most < 3 else 2))
+        return max(3, most + 1)
+    return max(2, most + min((most - 1) // 2, 2))
 
 
 def rotation(rod: ExactRod, x: float, q: SX) -> SX:
@@ -149,7 +170,8 @@ def rotations(rod: ExactRod, q: SX) -> list[SX]:
         return [rotation(rod, x, q) for x in rod.at.tolist()]
     turned, R, start = [], ca.SX.eye(3), 0.0
     for end in rod.at.tolist():
-        R, start = R @ _turn(rod, start, end, q), end
+        if end > start:
+            R, start = R @ _turn(rod, start, end, q), end
         turned.append(R)
     return turned
 
@@ -158,11 +180,10 @@ def _weights(rod: ExactRod, x: float) -> Array:
     """Weights of the sections' tangents in the position at a station (10) [m]."""
     node, w = np.polynomial.legendre.leggauss(rod.points)
     weights = []
-    for m, (a, b) in enumerate(zip(rod.ends, rod.ends[1:], strict=False)):
-        own = rod.at[m * rod.points : (m + 1) * rod.points]
+    for a, b, (own, _) in zip(rod.ends, rod.ends[1:], rod.spans, strict=False):
         upto = min(max(x, a), b)
         inner = a + (upto - a) * (node + 1) / 2
-        for k in range(rod.points):
+        for k in range(len(own)):
             others = np.delete(own, k)
             lagrange = np.prod((inner[:, None] - others) / (own[k] - others), axis=1)
             weights.append((upto - a) / 2 * w @ lagrange)
@@ -206,9 +227,8 @@ def turning_energy(rod: ExactRod, q: SX, rate: Callable[[SX], SX], w_B: SX) -> S
         rate: The rate of an expression of them.
         w_B: Angular velocity of its frame, along its axes.
     """
-    x, weight = stations(rod.length, rod.breaks, rod.points)
     stated = (rod.rhoJ, rod.rhoI_y, rod.rhoI_z) if rod.rotary_inertia else (rod.rhoJ,)
-    inertias = [at_stations(value, x) * weight for value in stated]
+    inertias = [at_stations(value, rod.at) * rod.weights for value in stated]
     total = ca.SX(0)
     for k, R in enumerate(rotations(rod, q)):
         spin = ca.inv_skew(R.T @ rate(R)) + R.T @ w_B

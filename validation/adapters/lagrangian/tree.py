@@ -242,8 +242,8 @@ class Lagrangian:
         def rate(expression: SX) -> SX:
             return _rate(expression, e, rates)
 
-        # One more than a rod has sections: products of two places are integrated exactly.
-        points = beam.points + 1 if isinstance(beam, ExactRod) else beam.points
+        # One more than a rod has sections with the root: products of two places are integrated exactly.
+        points = beam.points + 2 if isinstance(beam, ExactRod) else beam.points
         at, weight = beams.stations(beam.length, beam.breaks, points)
         rhoA = ca.SX(beams.at_stations(beam.rhoA, at) * weight)
         r = theory.centroids(beam, at, q)
@@ -264,7 +264,12 @@ class Lagrangian:
 
     def _load(self, beam: Flexible | ExactRod, line: beams.Line, pose: Pose, section: Callable[[float], Pose]) -> None:
         """The power of a load: of its force on the centroid, of its moment on the section, which turns exactly."""
-        x, weight = ([line.at], [1.0]) if line.at is not None else beams.stations(beam.length, beam.breaks, beam.points)
+        if line.at is not None:
+            x, weight = np.array([line.at]), np.ones(1)
+        elif isinstance(beam, ExactRod):
+            x, weight = beam.at, beam.weights
+        else:
+            x, weight = beams.stations(beam.length, beam.breaks, beam.points)
         for xi, w in zip(x, weight, strict=True):
             here = section(float(xi))
             axes = {"world": ca.SX.eye(3), "body": pose.R, "section": here.R}[line.axes]

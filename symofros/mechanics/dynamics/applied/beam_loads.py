@@ -55,7 +55,7 @@ def _on_rod(rod: Rod, load: BeamLoad, k: int, d: Vec3) -> tuple[Wrench, list[Edg
     """Component k of a load on a geometrically exact rod, along d or an axis of the sections (18)."""
     g, n = rod.g, len(rod.coordinates)
     wrench, modal = no_wrench(g), [ZERO] * n
-    for point in _points(rod, load, k, d, rod.strains.stations[1]):
+    for point in _points(rod, load, k, d, rod.strains.sections.weights):
         wrench = wrench + point.wrench(rod)
         for i in range(n):
             power = g.add(rod.partial_position(point.xi, i).dot(point.force), point.section.spins[i].dot(point.torque))
@@ -79,7 +79,7 @@ class _Point(NamedTuple):
 def _points(rod: Rod, load: BeamLoad, k: int, d: Vec3, weights: Sequence[float]) -> list[_Point]:
     """Component k of a load on a rod: at its station, or spread over it or a part of it as loads on the sections."""
     force, torque = load.force[k], load.torque[k]
-    xis, sections = rod.strains.stations[0], rod.sections
+    xis, sections = rod.strains.sections.stations, rod.sections
     if load.at is not None:
         xis, sections = (load.at,), (rod.section_at(load.at),)
         shares = [[rod.along.lower(value)] for value in (force, torque)]
@@ -108,7 +108,7 @@ def loads_beyond(kinematics: TreeKinematics, frames: FrameKinematics, beam: Movi
         directions = _directions(kinematics, frames, beam, load)
         for k, (d, force, torque) in enumerate(zip(directions, load.force, load.torque, strict=True)):
             if isinstance(forms, Rod):
-                for point in _points(forms, load, k, d, forms.strains.weights_beyond(xi)):
+                for point in _points(forms, load, k, d, forms.strains.sections.beyond(xi)):
                     wrench = wrench + point.wrench(forms)
             else:
                 part = forms if load.at is not None else forms.beyond(xi)
