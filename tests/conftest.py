@@ -31,7 +31,7 @@ sys.dont_write_bytecode = False
 # Compiling is half of a run's time, and half of that is optimisation. Tests of other things than generated code and its
 # compilation do without, but for runs with --slow or a part of it and for benchmarks, which compile as users do.
 _STATED_FLAGS = os.environ.get("SYMOFROS_CFLAGS")
-_OPTIMISED = {"exports", "generator", "native", "runtime"}
+_OPTIMISED = {"docs", "generator", "native"}
 
 # The browser's tests name Playwright's types as they are collected.
 _PLAYWRIGHT = find_spec("playwright") is not None
