@@ -15,7 +15,7 @@ from symofros.expr.graph import Graph
 from symofros.mechanics.beams.deformation import deformation_of
 from symofros.mechanics.beams.elastic import beam_forms
 from symofros.mechanics.beams.integrals import at_middle
-from symofros.mechanics.beams.rod import rod_of
+from symofros.mechanics.beams.rod_plane import rod_of
 from symofros.mechanics.beams.rod_shape import IntegrationError
 from symofros.mechanics.beams.strains import strains_of
 from symofros.mechanics.topology.tree import SpanningTree

@@ -14,9 +14,9 @@ from symofros.expr.expression import Expression
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Vec3
 from symofros.mechanics.beams.fields import Form, no_form
-from symofros.mechanics.beams.integrals import LengthIntegrator, Lower, at_station
+from symofros.mechanics.beams.integrals import LengthIntegrator, at_station
 from symofros.mechanics.beams.quadrature import gauss
-from symofros.mechanics.beams.strains import TURNING, Strains, strains_of
+from symofros.mechanics.beams.strains import TURNING, Strains
 from symofros.mechanics.beams.turn import Moments, Turn
 
 # Gauss nodes for the integral of a pre-strain between two sections.
@@ -322,11 +322,6 @@ class Rod:
         )
 
     @cached_property
-    def is_bent_in_plane(self) -> bool:
-        """Whether the tangents turn in one plane, and the rod neither stretches nor shears."""
-        return self.axis in (1, 2) and {k for k, _ in self.strains.axes} == {self.axis}
-
-    @cached_property
     def inertia_axes(self) -> tuple[InertiaAxis, ...]:
         """Axes about which the sections have inertia: their own x axis, with rotary inertia all three."""
         return self.inertia_axes_of(self.strains.sections.weights)
@@ -385,17 +380,3 @@ class Rod:
         """Rayleigh's dissipation function: damping times the strain energy of the rates (section 2)."""
         quadratic = self.strain_energy.scaled(self.along.lower(self.beam.damping))
         return Form(self.g, speeds, quadratic.terms)
-
-
-def rod_of(g: Graph, lower: Lower, beam: Beam, coordinates: tuple[Edge, ...]) -> Rod:
-    """A rod in a graph.
-
-    Args:
-        g: The graph that operations are added to.
-        lower: Lowering of values of the description to edges.
-        beam: The rod as described.
-        coordinates: Edges of the strain coordinates.
-    """
-    strains = strains_of(beam)
-    along = LengthIntegrator(g, lower, beam.length, coordinates, strains.knots)
-    return Rod(beam, along, strains)

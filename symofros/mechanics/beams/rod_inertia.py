@@ -9,15 +9,18 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from symofros.expr.edges import ONE, ZERO, Edge
+from symofros.expr.edges import Edge
 from symofros.expr.vector import Sym3, Vec3
 from symofros.mechanics.beams.elastic import PAIRS
 from symofros.mechanics.beams.rod import InertiaAxis, Rod
+from symofros.mechanics.beams.rod_plane import PlaneRod
 from symofros.mechanics.beams.strains import TURNING
 
 
 def rod_moments(rod: Rod) -> tuple[Vec3, Sym3]:
     """First moment and inertia tensor about the root, in B (13), (14)."""
+    if isinstance(rod, PlaneRod):
+        return rod.first_moment_about_root(), rod.inertia()
     g, points = rod.g, rod.point_positions
     E = [g.sum(g.mul(tuple(y)[a], tuple(y)[b]) for y in points) for a, b in PAIRS]
     J = Sym3(g, g.add(E[1], E[2]), g.add(E[0], E[2]), g.add(E[0], E[1]), -E[3], -E[4], -E[5])
@@ -29,11 +32,10 @@ def rod_moments(rod: Rod) -> tuple[Vec3, Sym3]:
 
 def rod_modal_mass(rod: Rod, i: int, j: int) -> Edge:
     """M_ij of two strain coordinates (13), (14)."""
+    if isinstance(rod, PlaneRod):
+        return rod.modal_masses[min(i, j), max(i, j)]
     g = rod.g
-    if rod.is_bent_in_plane:
-        total = _paired(rod, _turns(rod, i), _turns(rod, j))
-    else:
-        total = g.sum(a.dot(b) for a, b in zip(rod.point_partials[i], rod.point_partials[j], strict=True))
+    total = g.sum(a.dot(b) for a, b in zip(rod.point_partials[i], rod.point_partials[j], strict=True))
     for axis in rod.inertia_axes:
         spins = rod.sections[axis.section].spins
         momentum = g.mul(axis.inertia, axis.direction.dot(spins[i]))  # One for all j.
@@ -41,33 +43,13 @@ def rod_modal_mass(rod: Rod, i: int, j: int) -> Edge:
     return total
 
 
-def _paired(rod: Rod, left: Sequence[float], right: Sequence[float]) -> Edge:
-    """Integral of the product of two positions over the mass, the tangents being multiplied by numbers (13a)."""
-    g, t, total = rod.g, rod.tangents, ZERO
-    for k in range(len(t)):
-        for j in range(k + 1):
-            weight = left[k] * right[k] if j == k else left[k] * right[j] + left[j] * right[k]
-            second = g.sum(g.mul(row[k], row[j]) for row in rod.mass_points)
-            product = ONE if j == k else t[k].dot(t[j])
-            total = g.add(total, g.mul(g.mul(g.constant(weight), second), product))
-    return total
-
-
-def _turns(rod: Rod, i: int) -> list[float]:
-    """Angle by which a unit of a coordinate turns each section."""
-    return [row[i] for row in rod.strains.turns(rod.strains.sections.stations)]
-
-
 def rod_momentum(rod: Rod, i: int) -> tuple[Vec3, Vec3]:
     """Linear momentum and angular momentum about the root, in B, per unit rate of a coordinate (13), (14)."""
-    g = rod.g
-    if rod.is_bent_in_plane:
-        assert rod.axis is not None
-        angular = Vec3.unit(g, rod.axis).scaled(_paired(rod, [1.0] * len(rod.sections), _turns(rod, i)))
-    else:
-        angular = Vec3(g)
-        for y, d in zip(rod.point_positions, rod.point_partials[i], strict=True):
-            angular = angular + y.cross(d)
+    if isinstance(rod, PlaneRod):
+        return rod.momentum(i)
+    g, angular = rod.g, Vec3(rod.g)
+    for y, d in zip(rod.point_positions, rod.point_partials[i], strict=True):
+        angular = angular + y.cross(d)
     for axis in rod.inertia_axes:
         spin = axis.direction.dot(rod.sections[axis.section].spins[i])
         angular = angular + axis.direction.scaled(g.mul(axis.inertia, spin))
@@ -90,6 +72,8 @@ def rod_forces(
     Returns:
         Force and moment on the root, in B, and the force on each coordinate.
     """
+    if isinstance(rod, PlaneRod):
+        return rod.forces(w, alpha, a, speeds, rates)
     motion = _section_motion(rod, w, alpha, speeds, rates)
     curves = motion.curves
     points = [rod.weighted(row, curves) for row in rod.mass_points]

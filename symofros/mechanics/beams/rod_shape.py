@@ -15,7 +15,7 @@ from symofros.expr.expression import evaluate
 from symofros.expr.graph import Graph
 from symofros.expr.numerics.evaluate import Evaluation
 from symofros.expr.program import Program
-from symofros.mechanics.beams.rod import rod_of
+from symofros.mechanics.beams.rod_plane import rod_of
 from symofros.mechanics.beams.strains import strains_of
 
 Array = npt.NDArray[np.float64]

@@ -14,7 +14,8 @@ from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Vec3
 from symofros.mechanics.beams.elastic import BeamForms, beam_forms
 from symofros.mechanics.beams.fields import EVERY_DEGREE
-from symofros.mechanics.beams.rod import Rod, rod_of
+from symofros.mechanics.beams.rod import Rod
+from symofros.mechanics.beams.rod_plane import rod_of
 from symofros.mechanics.kinematics.flexible import across_beam, across_rod
 from symofros.mechanics.kinematics.joint import AcrossJoint, Axis, PartialVelocity, across_joint
 from symofros.mechanics.kinematics.lowering import Lowering
