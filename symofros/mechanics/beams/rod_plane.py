@@ -20,6 +20,9 @@ from symofros.mechanics.beams.integrals import LengthIntegrator, Lower
 from symofros.mechanics.beams.rod import Rod
 from symofros.mechanics.beams.strains import strains_of
 
+# Terms of a sum in packs at most: their check descends term by term.
+_LONGEST_IN_PACKS = 64
+
 
 class _Plane(NamedTuple):
     """Components of a vector along i, j and e."""
@@ -101,12 +104,17 @@ class PlaneRod(Rod):
         return [self.g.add(a, b) for a, b in zip(spheres, axial, strict=True)]
 
     @cached_property
-    def _weights(self) -> list[list[Edge]]:
-        """Second moments of the tangents, with the share of rotary inertia (16b)."""
+    def _second_moments(self) -> list[list[Edge]]:
+        """Second moments of the tangents (12)."""
         g, points, n = self.g, self.mass_points, len(self.sections)
-        W = [[g.sum(g.mul(row[k], row[m]) for row in points) for m in range(n)] for k in range(n)]
+        return [[g.sum(g.mul(row[k], row[m]) for row in points) for m in range(n)] for k in range(n)]
+
+    @cached_property
+    def _weights(self) -> list[list[Edge]]:
+        """The same with the share of rotary inertia (16b)."""
+        W = [list(row) for row in self._second_moments]
         for k, extra in enumerate(self._rotary[0]):
-            W[k][k] = g.add(W[k][k], extra)
+            W[k][k] = self.g.add(W[k][k], extra)
         return W
 
     # Quadratic forms of the tangents.
@@ -114,10 +122,10 @@ class PlaneRod(Rod):
     def _sums(self, factors: Sequence[Edge], rows: Sequence[Sequence[Edge]]) -> list[Edge]:
         """Sums of a row's weights times the factors, one a row.
 
-        In packs where weights are numbers; to put parameters into their lanes costs more than packs save.
+        In packs where sums are short and weights are numbers: to put parameters into lanes costs more than packs save.
         """
         g, sums = self.g, list[Edge]()
-        if not all(map(g.is_constant, chain(*rows))):
+        if len(factors) > _LONGEST_IN_PACKS or not all(map(g.is_constant, chain(*rows))):
             return [g.sum(g.mul(factor, x) for factor, x in zip(factors, row, strict=True)) for row in rows]
         for at in range(0, len(rows), WIDTH):
             part = rows[at : at + WIDTH]
@@ -170,19 +178,49 @@ class PlaneRod(Rod):
 
     @cached_property
     def modal_masses(self) -> dict[tuple[int, int], Edge]:
-        """M_ij of two coordinates i <= j (16d)."""
-        g, t, turns, W = self.g, self._tangents, self._turns, self._weights
-        pairs = list(combinations(range(1, len(t)), 2))
-        entries = list(combinations_with_replacement(range(len(self.coordinates)), 2))
+        """M_ij of two coordinates i <= j (16d): by pairs of sections, or where these are too many by points (12)."""
+        g, n, sections = self.g, len(self.coordinates), len(self._tangents) - 1
+        entries = list(combinations_with_replacement(range(n), 2))
+        own = [g.add(a, b) for a, b in zip(self._rotary[0], self._about_axis, strict=True)]
+        still = [
+            g.sum(g.mul(g.constant(row[i] * row[j]), x) for row, x in zip(self._turns, own, strict=True))
+            for i, j in entries
+        ]
+        by_pairs = sections * (sections - 1) // 2 * (3 + 2 * len(entries))
+        weights = sum(x != ZERO for row in self.mass_points for x in row)
+        by_points = 4 * (n * weights + len(entries) * len(self.mass_points))
+        masses = self._masses_by_pairs if by_pairs <= by_points else self._masses_by_points
+        return dict(zip(entries, masses(entries, still), strict=True))
+
+    def _masses_by_pairs(self, entries: Sequence[tuple[int, int]], still: Sequence[Edge]) -> list[Edge]:
+        g, t, turns = self.g, self._tangents, self._turns
+        pairs, W = list(combinations(range(1, len(t)), 2)), self._second_moments
         rows = []
-        for i, j in entries:
-            still = g.sum(
-                g.mul(g.constant(row[i] * row[j]), g.add(W[k][k], self._about_axis[k])) for k, row in enumerate(turns)
-            )
+        for (i, j), constant in zip(entries, still, strict=True):
+            total = g.sum(g.mul(g.constant(row[i] * row[j]), W[k][k]) for k, row in enumerate(turns))
             both = (turns[k][i] * turns[m][j] + turns[k][j] * turns[m][i] for k, m in pairs)
-            rows.append([still, *(g.mul(g.constant(x), W[k][m]) for x, (k, m) in zip(both, pairs, strict=True))])
+            products = (g.mul(g.constant(x), W[k][m]) for x, (k, m) in zip(both, pairs, strict=True))
+            rows.append([g.add(constant, total), *products])
         factors = [g.add(g.mul(t[k].i, t[m].i), g.mul(t[k].j, t[m].j)) for k, m in pairs]
-        return dict(zip(entries, self._sums([ONE, *factors], rows), strict=True))
+        return self._sums([ONE, *factors], rows)
+
+    def _masses_by_points(self, entries: Sequence[tuple[int, int]], still: Sequence[Edge]) -> list[Edge]:
+        g = self.g
+        moved = [
+            [
+                g.sum(
+                    g.mul(g.mul(g.constant(turn), x), t[at])
+                    for turn, x, t in zip(turns, row, self._tangents, strict=True)
+                )
+                for row in self.mass_points
+                for at in (0, 1)
+            ]
+            for turns in zip(*self._turns, strict=True)
+        ]
+        return [
+            g.add(constant, g.sum(g.mul(x, y) for x, y in zip(moved[i], moved[j], strict=True)))
+            for (i, j), constant in zip(entries, still, strict=True)
+        ]
 
     @cached_property
     def _about_root(self) -> list[Edge]:
