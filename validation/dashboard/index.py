@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,8 +18,9 @@ BEGIN, END = "<!-- reports/summary.md begins -->", "<!-- reports/summary.md ends
 # Verdict of an entry -> whether what was asked for is met.
 _VERDICTS = {"good": True, "missed": False, "measured": None, "absent": None}
 _TREND = "What the summaries of earlier commits said otherwise, the latest change first."
-# Reports whose decisions the index shows, in this order.
-_DECIDING = ("pareto", "check", "engines")
+# Reports whose decisions the index shows, in this order: first the sentences of some, then all of the others.
+_SAID = {"check": "The opinions on our C, engine by engine:", "engines": "What engines are wrong about:"}
+_SHOWN = ("pareto", "timing")
 
 
 class QuoteError(ValueError):
@@ -51,17 +52,17 @@ def index(entries: Mapping[str, Entry]) -> Report:
         all(entry.verdict != "missed" for entry in entries.values()),
         (summary_table(entries, linked=True),),
         tuple(_section(name, entry) for name, entry in entries.items()),
-        decisions=_decisions([reports[name].decisions for name in _DECIDING if name in reports]),
+        decisions=_decisions(reports),
         missed=tuple(f"[{name}](#{name}): {line}" for name, report in reports.items() for line in report.missed),
     )
 
 
-def _decisions(groups: Sequence[tuple[Block, ...]]) -> tuple[Block, ...]:
-    """The first group, after the sentences of the others, which its table would hide; then their tables."""
-    others = [group for group in groups[1:] if group]
-    tables = [block for group in others for block in group[1:]]
-    named = ("The opinions on our C, engine by engine:", *tables) if tables else ()
-    return (*(group[0] for group in others), *(groups[0] if groups else ()), *named)
+def _decisions(reports: Mapping[str, Report]) -> tuple[Block, ...]:
+    """Sentences that a table would hide; then sentences with their tables; then the tables of the former."""
+    said = {name: reports[name].decisions for name in _SAID if name in reports and reports[name].decisions}
+    shown = [block for name in _SHOWN if name in reports for block in reports[name].decisions]
+    tables = [block for name, group in said.items() if group[1:] for block in (_SAID[name], *group[1:])]
+    return (*(group[0] for group in said.values()), *shown, *tables)
 
 
 def headline(entries: Mapping[str, Entry]) -> str:

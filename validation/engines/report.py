@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from validation.engines import parts
@@ -21,6 +21,8 @@ engine alone, was shrunk to the plainest tree and state that still show it, and 
 fail."""
 _DECISION = """**Which engine is wrong, against the truth in many digits:** {}; {} more lose digits beyond what rounding
 explains. {} prove it. Where: [the matrix](engines.html#overview)."""
+# Functions that the report begins with, of each engine that is wrong.
+_NAMED = 4
 Row = Mapping[str, Any]
 
 
@@ -66,8 +68,22 @@ def compose(data: Data) -> Report:
             Fact(f"{held} of {len(identities)}", "identities that hold"),
         ),
         digest=(overview,),
-        decisions=(_DECISION.format(listed, counted(tally["imprecise"], "cell"), scripts),),
+        decisions=(
+            _DECISION.format(listed, counted(tally["imprecise"], "cell"), scripts),
+            Table.of("engine | wrong about | cells | of asked", _wrong_about(data, wrong)),
+        ),
     )
+
+
+def _wrong_about(data: Data, wrong: Counter[str]) -> Iterator[tuple[str, ...]]:
+    """What each engine is wrong about or crashes at, the functions of most such cells first."""
+    for name, number in wrong.most_common():
+        own = [cell for cell in data["cells"] if cell["engine"] == name]
+        functions = Counter(cell["function"] for cell in own if cell["verdict"] in ("wrong", "crashes"))
+        *few, rest = *functions.most_common(_NAMED), len(functions) - _NAMED
+        said = ", ".join(f"`{function}` ({count})" for function, count in few)
+        more = f", and {counted(rest, 'function')} more" if rest > 0 else ""
+        yield f"[{name}](engines.html#engine-{name})", said + more, str(number), str(len(own))
 
 
 def _tally(engine: Row, data: Data) -> tuple[str, ...]:

@@ -1,6 +1,7 @@
 """A report of questions: studies are asked one by one; each answers in words, figures, and numbers with bounds."""
 
 # Annotations are values here: the options of a command name its studies.
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Annotated, Any
@@ -12,6 +13,9 @@ from validation.reporting.findings import Finding, Question, Study
 from validation.reporting.numbers import counted, short
 from validation.reporting.plain import plain, restored
 from validation.reporting.record import Block, Compose, Data, Fact, Report, Section, Table, Text, verdict
+
+# Where a sentence ends and another begins.
+_SENTENCE = re.compile(r"(?<=[.?!])\s+(?=[A-Z])")
 
 
 def measuring(studies: Mapping[str, Question], doc: str) -> Callable[..., Data]:
@@ -55,7 +59,10 @@ def composing(title: str, theory: str) -> Compose:
         missed = (Fact("missed", study.title, False) for study in studies.values() if not study.ok)
         sections = tuple(_section(name, study) for name, study in studies.items())
         facts = (Fact(str(len(studies)), "questions answered"), *missed)
-        draft = Report(title, f"on {counted(len(studies), 'question')}", None, (intro,), sections, facts=facts)
+        short_of = ((f"[{study.title}](#{name})", _SENTENCE.split(study.answer)[0]) for name, study in studies.items())
+        answers = (Table.of("question | answer in short", short_of),) if studies else ()
+        on = f"on {counted(len(studies), 'question')}"
+        draft = Report(title, on, None, (intro,), sections, facts=facts, decisions=answers)
         return judged(draft, data, {name: study.findings for name, study in studies.items()}, "study", "number")
 
     return compose

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from statistics import median
 from typing import Any
 
 from validation.reporting.numbers import counted, times
 from validation.reporting.plain import restored
-from validation.reporting.record import Data, Fact, Report, Section, Topic
+from validation.reporting.record import Data, Fact, Report, Section, Table, Topic
 from validation.timing.flexible.report import flexible_section
 from validation.timing.measure import measure
-from validation.timing.record import Record
+from validation.timing.models import FUNCTIONS
+from validation.timing.record import Entry, Record
 from validation.timing.tables import TARGETS_TEXT, ratios, sections, targets_table
 from validation.timing.targets import verdicts
 
@@ -30,6 +31,13 @@ LIMITS = (
     subexpressions, both in the best of four builds (gcc and clang, -O3 with and without -ffast-math). Friction and
     springs in joints are taken out.""",
 )
+
+_DECISION = """**How fast, against which engine:** the time of the other's fastest build over that of the generated C,
+state by state, on one core{}. 2.0 is twice as fast; below 1 the other is faster. Batches and all else:
+[the races](timing.html#targets)."""
+# What people compare engines by: functions and peers of the table that decides.
+_ASKED = ("dynamics", "forward_dynamics")
+_PEERS = ("pinocchio", "mujoco", "casadi")
 
 
 def compose(data: Data) -> Report:
@@ -69,6 +77,7 @@ def compose(data: Data) -> Report:
         ),
         digest=(table,),
         unfinished=tuple(data.get("unfinished", ())),
+        decisions=_decisions(best, record.machine),
         missed=tuple(
             f"{v.target.title}, {v.target.task}, against {v.target.peer}: {v.ratio:.2f} times its speed, asked is "
             f"{v.target.least:g}"
@@ -76,6 +85,23 @@ def compose(data: Data) -> Report:
             if not v.met
         ),
     )
+
+
+def _decisions(best: Sequence[Entry], machine: Mapping[str, Any]) -> tuple[str | Table, ...]:
+    """How much faster the generated C is on each model, on which machine and when; nothing where nothing was raced."""
+    raced = [row for row in best if row.function in _ASKED and row.peer in _PEERS]
+    if not raced:
+        return ()
+    ratios = {(row.title, row.function, row.peer): f"{row.ratio:.1f}" for row in raced}
+    columns = [(function, peer) for function in _ASKED for peer in _PEERS]
+    rows = (
+        (title, *(ratios.get((title, *column), "-") for column in columns))
+        for title in dict.fromkeys(row.title for row in raced)
+    )
+    known = [str(machine[name]) for name in ("processor", "system") if machine.get(name)]
+    where = ", ".join([*known, f"last raced {max(row.date for row in raced)[:10]}"])
+    head = " | ".join(("model", *(f"{FUNCTIONS[function]}: {peer} / ours" for function, peer in columns)))
+    return _DECISION.format(f" ({where})"), Table.of(head, rows)
 
 
 def _conditions(machine: Mapping[str, Any]) -> str:

@@ -18,6 +18,7 @@ from validation.accuracy.catalogue import TOPIC
 from validation.accuracy.statics.elastica import exact
 from validation.reporting.command import Done, write
 from validation.reporting.findings import Finding, Study, exponent, near
+from validation.reporting.record import Table
 
 # Studies of a second or less; the others take most of the time.
 FEW = ("modes_needed", "elastica")
@@ -144,3 +145,11 @@ def test_elastica_at_small_loads() -> None:
     # y = a/3 (1 - 4 a^2/35 + ...), u = a^2/15 to first order.
     assert deflection == pytest.approx(0.01 / 3 * (1 - 4e-4 / 35), rel=1e-7)
     assert shortening == pytest.approx(1e-4 / 15, rel=1e-4)
+
+
+def test_the_report_begins_with_each_answers_first_sentence(quick: tuple[Path, dict[str, Any]]) -> None:
+    (table,) = TOPIC.compose(quick[1]).decisions
+    assert isinstance(table, Table)
+    rows = {str(row[0]): str(row[1]) for row in table.rows}
+    said = rows["[How far may it bend?](#elastica)"]
+    assert said.startswith("The deflection errs by 1 % at 0.09") and said.endswith(" L.")

@@ -15,6 +15,7 @@ from validation.dashboard import command as dashboard
 from validation.dashboard.catalogue import TOPICS
 from validation.dashboard.gather import gather
 from validation.dashboard.index import BEGIN, END, QuoteError, headline, quote, write_index
+from validation.reporting.html import prose
 
 ROOT = Path(__file__).parents[3]
 
@@ -62,6 +63,7 @@ def test_the_index_begins_with_what_decides_and_says_what_is_missed() -> None:
             "Which engine disagrees",
             "Which engine is wrong",
             "Which method",
+            "How fast, against which engine",
             ">Missed:<",
             'href="check.html"',
         )
@@ -131,3 +133,12 @@ def test_pages_are_rendered_anew_from_what_was_measured(tmp_path: Path) -> None:
     assert json.loads((tmp_path / "fuzz.json").read_text()) == FUZZ
     assert CliRunner().invoke(app, ["render", "mutation", "--output", str(tmp_path)]).exit_code == 1
     assert CliRunner().invoke(app, ["render", "fuss", "--output", str(tmp_path)]).exit_code == 2
+
+
+@pytest.mark.parametrize("name", TOPICS)
+def test_stored_pages_are_rendered_from_the_numbers_beside_them(name: str) -> None:
+    """A page rendered with earlier targets contradicts the index, which reads the numbers."""
+    reports = ROOT / "reports"
+    report = TOPICS[name].compose(json.loads((reports / f"{name}.json").read_text(encoding="utf-8")))
+    assert f"\n**{report.summary}**\n" in (reports / f"{name}.md").read_text(encoding="utf-8")
+    assert f">{prose(report.summary)}</p>" in (reports / f"{name}.html").read_text(encoding="utf-8")

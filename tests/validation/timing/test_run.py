@@ -150,3 +150,12 @@ def test_interrupted_it_keeps_what_was_measured(tmp_path: Path, monkeypatch: pyt
 def test_every_scene_loads_and_every_function_has_a_name() -> None:
     assert {name for timed in TIMED_MODELS.values() for name in timed.functions} == set(FUNCTIONS)
     assert TIMED_MODELS["panda"].load().name == "panda7"
+
+
+def test_the_report_begins_with_ratios_by_model_and_the_machine() -> None:
+    record = Record([entry(peer_time=800.0), entry(function="forward_dynamics", peer="mujoco", peer_time=250.0)])
+    record.machine = {"processor": "a processor"}
+    said, table = TOPIC.compose(as_data(record)).decisions
+    assert isinstance(said, str) and "a processor, last raced 2026" in said and isinstance(table, Table)
+    assert table.rows == (("Panda, 7 joints", "8.0", "-", "-", "-", "2.5", "-"),)
+    assert not TOPIC.compose(as_data(Record())).decisions
