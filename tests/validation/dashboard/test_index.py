@@ -64,6 +64,9 @@ def test_the_index_begins_with_what_decides_and_says_what_is_missed() -> None:
             "Which engine is wrong",
             "Which method",
             "How fast, against which engine",
+            "The opinions on our C, engine by engine",
+            "What engines are wrong about",
+            "inverse_dynamics:mj_rne",
             ">Missed:<",
             'href="check.html"',
         )
