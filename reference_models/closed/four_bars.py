@@ -29,6 +29,12 @@ def n_four_bar(n: int) -> sf.System:
     return sf.System(f"four_bar{n}", tuple(bodies), constraints=tuple(loops))
 
 
+def turned(n: int, angle: float) -> dict[str, float]:
+    """The posture of `n_four_bar(n)` in which all cranks are at an angle [rad]: coordinates by name."""
+    cranks = {f"crank{i}": angle for i in range(n + 1)}
+    return cranks | {f"coupler{i}": -angle for i in range(n)}
+
+
 def n_four_bar_absolute(n: int) -> sf.System:
     """The same with three coordinates a bar, those of its mass centre: every pin is a closure, 3n + 1 pins.
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 
 import reference_models
 import symofros as sf
-from reference_models.closed.four_bars import n_four_bar
+from reference_models.closed.four_bars import n_four_bar, turned
 from reference_models.rigid.chain import chain
 from validation.inputs.cases import standard_set
 
@@ -58,11 +58,13 @@ class TimedModel:
         title: Name in tables.
         make: Makes the description.
         functions: Functions that are timed.
+        closed: Of many loops at once, which hardly close from anywhere: a posture, beside which states are taken.
     """
 
     title: str
     make: Callable[[], sf.System]
     functions: tuple[str, ...] = tuple(FUNCTIONS)
+    closed: Mapping[str, float] | None = None
 
     def load(self) -> sf.System:
         """Its description, without friction and springs in joints, which engines have each in their own way."""
@@ -124,7 +126,10 @@ TIMED_MODELS: dict[str, TimedModel] = {
     "mss": TimedModel("MSS", partial(_reference, "mss")),
     "talos": TimedModel("Talos", partial(_robot, "talos")),
     "four_bar": TimedModel("four-bar, closed", partial(_reference, "four_bar"), ("forward_dynamics",)),
-    **{f"four_bars{n}": TimedModel(f"{n} four-bars", partial(n_four_bar, n), ("forward_dynamics",)) for n in ROWS},
+    **{
+        f"four_bars{n}": TimedModel(f"{n} four-bars", partial(n_four_bar, n), ("forward_dynamics",), turned(n, 1.0))
+        for n in ROWS
+    },
     **{f"chain{n}": TimedModel(f"chain of {n}", partial(chain, n, symbolic=False), _GROWTH) for n in CHAINS[:-1]},
     f"chain{CHAINS[-1]}": TimedModel(
         f"chain of {CHAINS[-1]}",

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 import symofros as sf
-from validation.comparison.loops import assembled_states
+from validation.comparison.loops import MOST, assembled_states
 from validation.contract.interface import States
 from validation.inputs.sampling import sample
 from validation.mechanics.assembly import Assembly, assemble
@@ -18,6 +18,9 @@ from validation.timing.models import TIMED_MODELS
 STATES = 1000
 # Of the integrators: short, so that a motion of STATES steps stays near its start, and both sides' ends comparable [s].
 STEP = 1e-5
+# Beside a posture of many loops: how far its coordinates are moved before it is closed again [rad, m]; how many times
+# that is done, times speeds.
+NEAR, SEARCHED = 0.3, 2000
 # That state of the sample where a motion starts: after the special ones.
 START = 10
 
@@ -93,7 +96,7 @@ def task(label: str, count: int = STATES) -> Task:
     assembly = assemble(system)
     states = sample(assembly, assembly.motors + len(system.inputs), count)
     if system.constraints:
-        closed = assembled_states(system, states)
+        closed = assembled_states(system, _beside(system, TIMED_MODELS[label].closed, states))
         again = np.arange(count) % len(closed)  # Assembly is a search: some postures in turn.
         states = replace(states, **{name: getattr(closed, name)[again] for name in ("q", "v", "a", "u")})
     tau = np.zeros((count, assembly.nv))
@@ -108,6 +111,17 @@ def task(label: str, count: int = STATES) -> Task:
     for mover in assembly.movers:
         depths.append(1 + (depths[mover.parent] if mover.parent >= 0 else 0))
     return Task(label, system, assembly, states, int(np.argmax(depths)))
+
+
+def _beside(system: sf.System, closed: Mapping[str, float] | None, states: States) -> States:
+    """The first states, fewer the larger the mechanism, with postures beside a closed one; all if none is stated."""
+    if closed is None:
+        return states
+    model = sf.compile(system, sf.Options(("constraint",), backend="interpreter"))
+    first = states[START : START + min(MOST, max(4, SEARCHED // model.nv))]
+    rest = np.array([closed[name] for name in model.names.q])
+    steps = NEAR * first.v / np.abs(first.v).max(axis=1, keepdims=True)
+    return replace(first, q=np.array([model.integrate(rest, step) for step in steps]))
 
 
 def flat(*parts: Array) -> Array:
