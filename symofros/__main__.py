@@ -12,9 +12,10 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from typer.core import TyperCommand, TyperGroup
+from typer.core import TyperCommand
 
 import symofros as sf
+from symofros.commands.grammar import Group
 from symofros.errors import did_you_mean
 
 # Name -> module and function. A module is imported when its command is asked for: others need a second of imports.
@@ -58,7 +59,7 @@ def _listed(name: str) -> Any:
     return TyperCommand(name, help=ast.get_docstring(stated), rich_markup_mode=None)
 
 
-class Commands(TyperGroup):
+class Commands(Group):
     """Commands of the table. Typer's own copy of Click has no public types."""
 
     _listing = False
@@ -104,6 +105,8 @@ class Commands(TyperGroup):
         """A command; what it does not refuse itself is refused here, and never a traceback."""
         try:
             return super().invoke(ctx)
+        except BrokenPipeError:  # Whoever reads has seen enough; Typer ends quietly.
+            raise
         except (sf.SymofrosError, OSError) as error:
             raise import_module("symofros.commands.shared").refuse(error) from None
 

@@ -78,7 +78,10 @@ def _waived(reading: Reading, waive: Collection[str]) -> Reading:
 
 
 def _read(file: Path, floating_base: bool, snap_tol: float, mimic: bool, arguments: Mapping[str, str]) -> Reading:
-    _refuse_suffix(file, _READABLE, "read")
+    if file.is_dir():
+        raise DescriptionError(_folder(file))
+    if file.suffix or file.exists():
+        _refuse_suffix(file, _READABLE, "read")
     if not file.exists():
         raise DescriptionError(_missing(file))
     if file.suffix.lower() == ".urdf":
@@ -156,9 +159,24 @@ def _meant(suffix: str, known: tuple[str, ...]) -> str:
     return f"did you mean '{near[0]}'?" if near else "give a model: native YAML, URDF or MJCF"
 
 
+def _there(folder: Path) -> list[str]:
+    """Names of the descriptions in a folder."""
+    return sorted(other.name for other in folder.iterdir() if other.suffix.lower() in _READABLE)
+
+
+def _folder(folder: Path) -> Problem:
+    try:
+        there = _there(folder)
+    except OSError:
+        there = []
+    inside = f"in it: {', '.join(there[:12])}" if there else "no description in it"
+    remedy = f"for example {folder / there[0]}" if there else _PATHS
+    return Problem(f"'{folder}' is a folder", inside, "a description is one file", remedy)
+
+
 def _missing(file: Path) -> Problem:
     try:
-        there = sorted(other.name for other in file.parent.iterdir() if other.suffix.lower() in _READABLE)
+        there = _there(file.parent)
     except OSError:
         return Problem(
             f"'{file}' does not exist",

@@ -11,11 +11,9 @@ from types import ModuleType
 from typing import Any
 
 import typer
-from typer.core import TyperGroup
 
 import symofros as sf
-
-BAD_INPUT = 2
+from symofros.commands.grammar import BAD_INPUT, Group
 
 
 def imported(name: str) -> ModuleType:
@@ -45,7 +43,7 @@ def campaign() -> Any:
     return typer.main.get_group(app).commands["campaign"]
 
 
-class Commands(TyperGroup):
+class Commands(Group):
     """`check` at hand, the other commands when they are asked for. Typer's own copy of Click has no public types."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> Any:

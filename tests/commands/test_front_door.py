@@ -61,7 +61,7 @@ def test_the_help_of_all_commands_imports_none_of_them() -> None:
     for name in _COMMANDS:
         summary = (_command(name).help or "").split("\n")[0]
         assert summary.startswith(rows[name].removesuffix("...")) and len(rows[name]) > 20
-    assert {m for m in modules.split() if m.startswith("symofros.commands.")} == set()
+    assert {m for m in modules.split() if m.startswith("symofros.commands.")} == {"symofros.commands.grammar"}
     assert not {"pydantic", "sympy", "ruamel.yaml"} & set(modules.split())
 
 
@@ -144,6 +144,21 @@ _PARTS = ("  found:  ", "  rule:   ", "  remedy: ")
         (("info", "nosuch.urdf"), "'nosuch.urdf' does not exist"),
         (("info", "README.md"), "give a model: native YAML, URDF or MJCF"),
         (("info", "robot.yam"), "did you mean '.yaml'?"),
+        (("info", "."), "is a folder"),
+        (("info", "folder.yaml"), "'folder.yaml' is a folder"),
+        (("info", "cartpole"), "'cartpole' does not exist"),
+        (("info",), "info: missing argument 'model'"),
+        (("info", "a.yaml", "b.yaml"), "unexpected extra argument"),
+        (("simulate", CART_POLE, "--t", "1"), "did you mean --dt or --rtol or --set?"),
+        (("simulate", CART_POLE, "soon"), "invalid value for 't_end'"),
+        (("simulate", CART_POLE, "--", "-1"), "t_end = -1.0"),
+        (("simulate", CART_POLE, "1", "--dt", "0"), "the step is not positive"),
+        (("simulate", CART_POLE, "0.01", "-o", "run.xyz"), ".npz, .csv or .parquet"),
+        (("export", CART_POLE), "missing option '--target' / '-t'"),
+        (("export", CART_POLE, "-t", "c", "-o", "README.md"), "'README.md' is not overwritten"),
+        (("advise", CART_POLE), "missing option '--scene'"),
+        (("cache", "--nosuch"), "no such option: --nosuch"),
+        (("--nosuch",), "no such option: --nosuch"),
         (("export", "nosuch.yaml", "-t", "c", "-o", "out"), "'nosuch.yaml' does not exist"),
         (("export", CART_POLE, "-t", "fmu", "-o", "out"), "did you mean"),
         (("compile", CART_POLE, "--functions", "mass_matrix", "-o", "file/out"), "'file/out' can't be used"),
@@ -160,6 +175,7 @@ def test_commands_refuse_wrong_input_in_four_parts(
     monkeypatch.chdir(tmp_path)
     (tmp_path / "README.md").touch()
     (tmp_path / "robot.yam").touch()
+    (tmp_path / "folder.yaml").mkdir()
     (tmp_path / "file").touch()
     result = invoke(*arguments)
     assert result.exit_code == 2, result.exception
@@ -188,7 +204,9 @@ def test_the_harness_starts_from_any_folder(
     monkeypatch.chdir(tmp_path)
     for arguments, code, expected in (
         (("check", "--help"), 0, "Compare our C"),
-        (("check", "nobody"), 2, "nobody"),
+        (("check", "nobody"), 2, "'nobody' is neither a file nor a model of the standard set; "),
+        (("check", "--engin", "mujoco"), 2, "  remedy: did you mean --engine?"),
+        (("validation", "render", "nobody"), 2, "no report 'nobody'; there are check, "),
         (("check", "nosuch.urdf"), 2, "'nosuch.urdf' does not exist\n  found:  "),
     ):
         status = invoke(*arguments).exit_code
@@ -234,3 +252,13 @@ def test_kernels_tell_registers_and_the_bound_of_the_memory(monkeypatch: pytest.
     assert 0 < single["usage"]["registers"] <= double["usage"]["registers"] <= 64
     refused = invoke("kernels", CART_POLE, "--architecture", "90")
     assert refused.exit_code == 2 and "no architecture" in refused.output
+
+
+def test_a_reader_that_has_seen_enough_is_told_nothing() -> None:
+    """`symofros info arm.yaml | head -1`."""
+    reading, writing = os.pipe()
+    os.close(reading)
+    command = [sys.executable, "-m", "symofros", "info", str(CART_POLE)]
+    told = subprocess.run(command, stdout=writing, stderr=subprocess.PIPE, text=True)
+    os.close(writing)
+    assert told.returncode == 1 and not told.stderr

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from validation.adapters import ROUTES, differences
 from validation.check import ModelResult
 from validation.comparison.elements import ROWS as ELEMENT_ROWS
@@ -15,6 +17,8 @@ from validation.reporting.figures import Figure
 from validation.reporting.numbers import counted, digits
 from validation.reporting.record import MISSED, Block, Bullets, Data, Fact, Report, Section, Table, Text, Topic, verdict
 
+# Where the parts of a problem begin that is told in one line.
+_PARTS = re.compile("; (?=found: |rule: |remedy: )")
 # Up to so many models, each engine has a line of its own on a terminal.
 _DETAILED = 2
 
@@ -185,9 +189,12 @@ def _digest(record: Record) -> list[Block]:
     each = len(record.models) <= _DETAILED
     of = "engine" if each else "model"
     said = f"Worst comparison of each {of}: error relative to the largest entry, of its tolerance"
-    blocks: list[Block] = [said, tables.nearest(record, each)] if record.models else []
+    blocks: list[Block] = [said, tables.nearest(record, each)] if record.compared else []
     blocks += [Text(f"not compared: {models}, {who}: {why}", "soft") for models, who, why in tables.unsupported(record)]
-    return blocks + [Text(f"{model}, {who}: {text}", "bad") for model, who, text in tables.failures(record)]
+    for model, who, text in tables.failures(record):
+        what, *more = _PARTS.split(text)
+        blocks += [Text(f"{model}, {who}: {what}", "bad"), *((Bullets(tuple(more)),) if more else ())]
+    return blocks
 
 
 QUESTION = "Do our C and independent engines agree?"

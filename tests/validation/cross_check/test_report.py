@@ -15,6 +15,7 @@ from validation.reporting import html, markdown
 from validation.reporting.command import code, write
 from validation.reporting.provenance import Provenance
 from validation.reporting.record import Data
+from validation.reporting.terminal import show
 
 SETTINGS = Settings(states=20)
 NASTY = "<script>alert(1)</script>|x"
@@ -165,3 +166,11 @@ def test_an_engine_that_disagrees_alone_is_the_suspect_and_where_several_do_our_
     assert "none of" in decision()
     assert "our C:** mujoco (suspect)." in decision("mujoco")
     assert "pinocchio (against our C), mujoco (against our C)" in decision("pinocchio", "mujoco")
+
+
+def test_an_unreadable_model_is_refused_in_its_parts_and_tags_are_shown(capsys: pytest.CaptureFixture[str]) -> None:
+    reason = "r.urdf:1: no links; found: 0 other elements; rule: at least one <link>; remedy: run xacro"
+    show(compose(as_data(SETTINGS, [failed("r", "load", reason)], 1.0, ())))
+    told = [line.strip(" •") for line in capsys.readouterr().out.splitlines()]
+    expected = "r, symofros: load: r.urdf:1: no links", "found: 0 other elements", "rule: at least one <link>"
+    assert [line for line in told if line][:4] == [*expected, "remedy: run xacro"]

@@ -1,0 +1,54 @@
+"""Arguments that a command can't take, refused as all else is: what, found, rule, remedy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import typer
+from typer.core import TyperGroup
+
+from symofros.errors import Problem
+
+# Typer's own copy of Click has no public types but this one's heirs.
+_UsageError: Any = typer.BadParameter.__base__
+_GIVEN = "symofros.arguments"
+BAD_INPUT = 2
+
+
+class Group(TyperGroup):
+    """A group of commands that refuses wrong arguments in four parts, its own and those of its commands."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> Any:
+        """Options before the command."""
+        ctx.meta.setdefault(_GIVEN, tuple(args))  # Shared with the contexts below.
+        with _refusing():
+            return super().parse_args(ctx, args)
+
+    def invoke(self, ctx: Any) -> Any:
+        """The command."""
+        with _refusing():
+            return super().invoke(ctx)
+
+
+@contextmanager
+def _refusing() -> Iterator[None]:
+    try:
+        yield
+    except _UsageError as error:
+        context = error.ctx
+        if context is None or type(error).__name__ == "NoArgsIsHelpError":  # The help is the answer.
+            raise
+        typer.echo(str(_problem(error, context)), err=True)
+        raise typer.Exit(BAD_INPUT) from None
+
+
+def _problem(error: Any, context: Any) -> Problem:
+    path = context.command_path
+    near = sorted(getattr(error, "possibilities", None) or ())
+    usage = " ".join(context.get_usage().removeprefix("Usage:").split())
+    message = error.message if near else error.format_message()
+    remedy = f"did you mean {' or '.join(near)}?" if near else f"'{path} --help' lists what it takes"
+    given = " ".join(context.meta.get(_GIVEN, ())) or "no arguments"
+    return Problem(f"{path}: {message[:1].lower()}{message[1:].rstrip('.')}", given, usage, remedy)
