@@ -101,15 +101,6 @@ class Commands(Group):
             raise typer.Exit(2)
         return super().resolve_command(ctx, args)
 
-    def invoke(self, ctx: Any) -> Any:
-        """A command; what it does not refuse itself is refused here, and never a traceback."""
-        try:
-            return super().invoke(ctx)
-        except BrokenPipeError:  # Whoever reads has seen enough; Typer ends quietly.
-            raise
-        except (sf.SymofrosError, OSError) as error:
-            raise import_module("symofros.commands.shared").refuse(error) from None
-
 
 # Help states units in brackets, which are no markup.
 app = typer.Typer(

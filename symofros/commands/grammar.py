@@ -1,15 +1,16 @@
-"""Arguments that a command can't take, refused as all else is: what, found, rule, remedy."""
+"""What no command takes is refused alike, what, found, rule, remedy, and never by a traceback."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib import import_module
 from typing import Any
 
 import typer
 from typer.core import TyperGroup
 
-from symofros.errors import Problem
+from symofros.errors import Problem, SymofrosError
 
 # Typer's own copy of Click has no public types but this one's heirs.
 _UsageError: Any = typer.BadParameter.__base__
@@ -18,7 +19,7 @@ BAD_INPUT = 2
 
 
 class Group(TyperGroup):
-    """A group of commands that refuses wrong arguments in four parts, its own and those of its commands."""
+    """A group of commands that refuses in four parts what it and its commands are not given as they want it."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> Any:
         """Options before the command."""
@@ -27,9 +28,14 @@ class Group(TyperGroup):
             return super().parse_args(ctx, args)
 
     def invoke(self, ctx: Any) -> Any:
-        """The command."""
-        with _refusing():
-            return super().invoke(ctx)
+        """A command; what it does not refuse itself is refused here."""
+        try:
+            with _refusing():
+                return super().invoke(ctx)
+        except BrokenPipeError:  # Whoever reads has seen enough; Typer ends quietly.
+            raise
+        except (SymofrosError, OSError) as error:
+            raise import_module("symofros.commands.shared").refuse(error) from None
 
 
 @contextmanager

@@ -29,8 +29,10 @@ def _run(arguments: list[str]) -> int:
     root = Path(sf.__file__).parents[1]
     start = f"import sys; sys.path.insert(0, {str(root)!r}); from validation.__main__ import app; "
     start += "app(prog_name='symofros validation')"
-    try:
-        # -P: the folder of the call is not searched for modules.
-        return subprocess.run([sys.executable, "-P", "-c", start, *arguments]).returncode
-    except KeyboardInterrupt:  # The harness has had it, too, and said so.
-        return 130
+    # -P: the folder of the call is not searched for modules.
+    process = subprocess.Popen([sys.executable, "-P", "-c", start, *arguments])
+    while True:
+        try:
+            return process.wait()
+        except KeyboardInterrupt:  # The harness has had it, too: it reports what was finished, then it ends.
+            continue

@@ -206,6 +206,11 @@ def test_the_harness_starts_from_any_folder(
         (("check", "--help"), 0, "Compare our C"),
         (("check", "nobody"), 2, "'nobody' is neither a file nor a model of the standard set; "),
         (("check", "--engin", "mujoco"), 2, "  remedy: did you mean --engine?"),
+        (
+            ("check", "pendulum", "--states", "1", "--engine", "vectors", "--report", "validation.py"),
+            2,
+            "can't be used",
+        ),
         (("validation", "render", "nobody"), 2, "no report 'nobody'; there are check, "),
         (("check", "nosuch.urdf"), 2, "'nosuch.urdf' does not exist\n  found:  "),
     ):
@@ -252,6 +257,24 @@ def test_kernels_tell_registers_and_the_bound_of_the_memory(monkeypatch: pytest.
     assert 0 < single["usage"]["registers"] <= double["usage"]["registers"] <= 64
     refused = invoke("kernels", CART_POLE, "--architecture", "90")
     assert refused.exit_code == 2 and "no architecture" in refused.output
+
+
+def test_an_interrupt_leaves_the_harness_time_to_report(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ctrl-C reaches both processes; the harness reports what was finished, which takes longer than a moment."""
+    said = iter([KeyboardInterrupt, KeyboardInterrupt, 130])
+
+    class Harness:
+        def __init__(self, command: list[str]) -> None:
+            assert command[-2:] == ["check", "pendulum"]
+
+        def wait(self) -> object:
+            answer = next(said)
+            if answer is KeyboardInterrupt:
+                raise KeyboardInterrupt
+            return answer
+
+    monkeypatch.setattr(subprocess, "Popen", Harness)
+    assert invoke("check", "pendulum").exit_code == 130 and not list(said)
 
 
 def test_a_reader_that_has_seen_enough_is_told_nothing() -> None:
