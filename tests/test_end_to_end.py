@@ -8,6 +8,12 @@ import sys
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
+
+import symofros as sf
+from symofros.__main__ import app
+from symofros.commands import models
+from symofros.generator.programs import ProgramBuilder
 
 
 @pytest.mark.slow
@@ -45,3 +51,23 @@ def test_compile_writes_the_source(tmp_path: Path) -> None:
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "out" / "arm.c").exists() and (tmp_path / "out" / "symofros_model.h").exists()
+
+
+def test_what_compile_makes_is_what_models_call(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever Python then calls is in the cache, and so is all that a second `compile` asks for."""
+    monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setattr(models, "DEFAULT_FUNCTIONS", ("mass_matrix", "inverse_dynamics_derivatives"))  # Of three dozen.
+    path = tmp_path / "arm.yaml"
+    path.write_text(
+        "symofros: 1\nsystem: {name: arm}\nbodies:\n"
+        "  link: {joint: {name: q1, kind: revolute}, inertia: {mass: 1, center_of_mass: [0.5, 0, 0]}}\n"
+    )
+    command = ["compile", str(path), "--json"]
+    first = CliRunner().invoke(app, command)
+    assert first.exit_code == 0 and "mass_matrix" in json.loads(first.output)["functions"], first.output
+    monkeypatch.setattr(ProgramBuilder, "program", None)  # Nothing is generated again.
+    again = CliRunner().invoke(app, command)
+    assert again.exit_code == 0, again.output
+    model = sf.compile(sf.load(path))
+    assert model.mass_matrix([0.3])[0, 0] == pytest.approx(0.25)
+    assert model.inverse_dynamics_derivatives([0.3], [0.0], [0.0])[0].shape == (1, 1)

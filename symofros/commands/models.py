@@ -103,45 +103,46 @@ def compile_command(
     functions: Annotated[
         str,
         typer.Option(
-            help="Functions to generate, comma-separated; by default all of first order, without reverse mode."
+            help="Functions of one library, comma-separated, as Options(functions=...) has them. By default all of"
+            " first order without reverse mode, each in a library of its own, as a model calls them in Python."
         ),
-    ] = ",".join(DEFAULT_FUNCTIONS),
+    ] = "",
     frames: Annotated[str, typer.Option(help="Frames of frame functions, comma-separated; all by default.")] = "",
     as_json: AsJson = False,
 ) -> None:
     """Generate and compile a model; it is then in the cache."""
     system = load(model, floating_base)
-    options = sf.Options(functions=tuple(functions.split(",")), frames=tuple(frames.split(",")) if frames else None)
+    names = tuple(functions.split(",")) if functions else DEFAULT_FUNCTIONS
+    compilation = Compilation(system, sf.Options(names, tuple(frames.split(",")) if frames else None))
     start = time.perf_counter()
     try:
-        compilation = Compilation(system, options)
-        text = compilation.source()
-        generated = time.perf_counter()
-        compilation.model()
+        if functions:
+            compilation.model()
+        else:
+            sf.compile(system).prepare(*names)
+        done = time.perf_counter()
+        text = compilation.source() if output is not None else ""
     except sf.SymofrosError as error:
         raise refuse(error) from None
-    done = time.perf_counter()
-    total = sum(count.total for key, count in count_program(compilation.program).items() if key[0] != "init")
-    result: dict[str, Any] = {
-        "name": system.name,
-        "operations": total,
-        "bytes": len(text),
-        "generate_s": generated - start,
-        "compile_s": done - generated,
-    }
+    result: dict[str, Any] = {"name": system.name, "functions": names, "seconds": done - start}
     if output is not None:
         output.mkdir(parents=True, exist_ok=True)
         name = identifier(system.name)
         write_atomically(output / f"{name}.c", text)
         write_atomically(output / "symofros_model.h", native_text("model/symofros_model.h"))
+        counts = count_program(compilation.program)
+        result["operations"] = sum(count.total for key, count in counts.items() if key[0] != "init")
+        result["bytes"] = len(text)
         result["files"] = [str(output / f"{name}.c"), str(output / "symofros_model.h")]
     if as_json:
         print(json.dumps(result, indent=1))
         return
     out.print(
-        f"{system.name}: {total} operations, {len(text) / 1024:.0f} KiB of C; "
-        f"generated in {result['generate_s']:.2f} s, compiled or found in {result['compile_s']:.2f} s",
+        f"{system.name}: {len(names)} function{'s' * (len(names) != 1)} generated and compiled, or found in the cache,"
+        f" in {result['seconds']:.2f} s",
         markup=False,
     )
+    if output is not None:
+        out.print(f"{result['operations']} operations, {len(text) / 1024:.0f} KiB of C", markup=False)
     for file in result.get("files", ()):
         out.print(f"wrote {file}", markup=False)
