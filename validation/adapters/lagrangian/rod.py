@@ -138,6 +138,8 @@ def sections_chosen(counts: Sequence[int], family: str, divided: bool) -> int:
 
 def rotation(rod: ExactRod, x: float, q: SX) -> SX:
     """R_BS at a station."""
+    if x <= 0.0:
+        return ca.SX.eye(3)
     if len(rod.axes) == 1:
         (axis,) = rod.axes
         total, *_ = rod.moments(0.0, x, q)
