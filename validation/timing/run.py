@@ -45,8 +45,9 @@ def run_job(job: Job, record: Record, doing: Doing = lambda model, function, par
     }
     command = [sys.executable, "-m", "validation.timing.worker", json.dumps(stated)]
     with tempfile.TemporaryFile("w+") as complaints:
-        worker = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=complaints, text=True)
-        assert worker.stdout is not None
+        pipe = subprocess.PIPE
+        worker = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=complaints, text=True)
+        assert worker.stdin is not None and worker.stdout is not None
         try:
             for line in worker.stdout:
                 take(line, job, record, doing)
@@ -56,6 +57,7 @@ def run_job(job: Job, record: Record, doing: Doing = lambda model, function, par
             worker.wait()
             raise
         finally:
+            worker.stdin.close()
             worker.stdout.close()
         if status != 0:
             complaints.seek(0)

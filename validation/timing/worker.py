@@ -8,7 +8,9 @@ Arguments: a job as JSON: {"model", "peers", "functions", "repeats", "states"}. 
 from __future__ import annotations
 
 import json
+import os
 import sys
+import threading
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -131,7 +133,15 @@ def _print(kind: str, value: Any) -> None:
     print(json.dumps({kind: value}), flush=True)
 
 
+def _end_with_parent() -> None:
+    """Whatever it computes, the process ends with the one that started it, which holds the other end of the pipe."""
+    while os.read(sys.stdin.fileno(), 1):  # Not by `sys.stdin`, the lock of which Python asks for at its own end.
+        pass
+    os._exit(1)
+
+
 if __name__ == "__main__":
+    threading.Thread(target=_end_with_parent, daemon=True).start()
     np.seterr(all="ignore")
     stated = json.loads(sys.argv[1])
     work(

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 from dataclasses import asdict
 from pathlib import Path
 
@@ -43,6 +45,17 @@ def test_what_a_worker_prints_becomes_a_record() -> None:
     assert told == [("panda", "dynamics", ""), ("panda", "dynamics", "building sympy")]
     assert [x.peer_time[1] for x in record.entries] == [5.0], "the old figure is replaced"
     assert record.costs == [made()] and record.skipped == [("panda", "dynamics", "sympy", "too large")]
+
+
+def test_a_worker_ends_with_the_process_that_started_it() -> None:
+    """Were it to go on, it would take a core from whatever is measured next."""
+    job = {"model": "chain52", "peers": [], "functions": ["forward_dynamics"], "repeats": 10**6, "states": 64}
+    command, pipe = [sys.executable, "-m", "validation.timing.worker", json.dumps(job)], subprocess.PIPE
+    with subprocess.Popen(command, stdin=pipe, stdout=pipe, text=True) as process:
+        assert process.stdin is not None and process.stdout is not None
+        assert "forward_dynamics" in process.stdout.readline()
+        process.stdin.close()
+        assert process.wait(30) == 1
 
 
 def test_jobs_are_the_functions_that_a_model_is_timed_at() -> None:
