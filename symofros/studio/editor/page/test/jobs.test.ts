@@ -47,3 +47,11 @@ test("samples of the run before are dropped", async () => {
   hearSamples({ id: "a", plots: null, t: [1], values: [[3]] });
   expect(now().live).toBeNull();
 });
+
+test("samples of another page's run leave those of ours", async () => {
+  answer("a", () => tell("a"));
+  void run("run");
+  await vi.waitFor(() => expect(now().jobs.run?.id).toBe("a"));
+  tell("b");
+  expect(now().live).toMatchObject({ id: "a", t: [0, 0.5] });
+});

@@ -44,7 +44,7 @@ function Orders({ job }: { job: Job }) {
   );
 }
 
-/** What this very run has told; another page's run tells too. */
+/** Samples of this run so far. */
 const useLive = (job: Job) => useStore(({ live }) => (live?.id === job.id ? live : null));
 
 function RunningDiagram({ job }: { job: Job }) {

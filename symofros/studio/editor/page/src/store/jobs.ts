@@ -18,6 +18,8 @@ export function hear(job: Job): void {
 
 /** What a run tells while it goes on; its first words may come before the answer that names the run. */
 export function hearSamples({ id, plots, t, values }: Samples): void {
+  const known = now().jobs.run;
+  if (known?.state === "running" && known.id !== id) return; // Another page's run.
   if (plots !== null) {
     const names = [...new Set(plots.flatMap(({ curves }) => curves.map(({ name }) => name)))];
     update({ live: { id, plots, t: [], values: Object.fromEntries(names.map((name) => [name, []])) } });
