@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import Literal, overload
@@ -28,9 +27,6 @@ from symofros.runtime.methods.linear import Output as Output
 from symofros.runtime.methods.linear import StateMatrices as StateMatrices
 from symofros.runtime.methods.momentum import MomentumFunctions
 from symofros.runtime.methods.reactions import ReactionFunctions
-
-# Units that are made at the same time, be there fewer processors.
-_COMPILERS = 4
 
 
 class Model(AdjointFunctions, ConstraintFunctions, CopyFunctions, FrameFunctions, MomentumFunctions, ReactionFunctions):
@@ -92,8 +88,7 @@ class Model(AdjointFunctions, ConstraintFunctions, CopyFunctions, FrameFunctions
         units = dict.fromkeys(generated_with(name, self.nc > 0) for name in missing)
         if not units:
             return
-        # C compilers run beside each other while the next text is written; dozens at once would only take memory.
-        with ThreadPoolExecutor(min(len(units), max(_COMPILERS, 1 + (os.cpu_count() or 1)))) as pool:
+        with ThreadPoolExecutor() as pool:  # A few more than processors: dozens of compilers at once only take memory.
             try:
                 for made in [pool.submit(self._make, unit[0], "") for unit in units]:
                     made.result()
