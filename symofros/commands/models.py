@@ -116,7 +116,7 @@ def compile_command(
     compilation = Compilation(system, sf.Options(names, tuple(frames.split(",")) if frames else None))
     start = time.perf_counter()
     try:
-        if functions:
+        if functions or frames:
             compilation.model()
         else:
             sf.compile(system).prepare(*names)

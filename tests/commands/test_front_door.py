@@ -157,6 +157,7 @@ _PARTS = ("  found:  ", "  rule:   ", "  remedy: ")
         (("export", CART_POLE), "missing option '--target' / '-t'"),
         (("export", CART_POLE, "-t", "c", "-o", "README.md"), "'README.md' is not overwritten"),
         (("advise", CART_POLE), "missing option '--scene'"),
+        (("compile", CART_POLE, "--frames", "nowhere"), "no frame 'nowhere'"),
         (("cache", "--nosuch"), "no such option: --nosuch"),
         (("--nosuch",), "no such option: --nosuch"),
         (("export", "nosuch.yaml", "-t", "c", "-o", "out"), "'nosuch.yaml' does not exist"),
@@ -282,6 +283,6 @@ def test_a_reader_that_has_seen_enough_is_told_nothing() -> None:
     reading, writing = os.pipe()
     os.close(reading)
     command = [sys.executable, "-m", "symofros", "info", str(CART_POLE)]
-    told = subprocess.run(command, stdout=writing, stderr=subprocess.PIPE, text=True)
+    done = subprocess.run(command, stdout=writing, stderr=subprocess.PIPE, text=True)
     os.close(writing)
-    assert told.returncode == 1 and not told.stderr
+    assert done.returncode == 1 and not done.stderr
