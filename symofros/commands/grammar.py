@@ -1,4 +1,4 @@
-"""What no command takes is refused alike, what, found, rule, remedy, and never by a traceback."""
+"""Wrong arguments of all commands are refused in four parts, what, found, rule, remedy, never by a traceback."""
 
 from __future__ import annotations
 
