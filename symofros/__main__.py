@@ -20,8 +20,8 @@ from symofros.errors import did_you_mean
 
 # Name -> module and function. A module is imported when its command is asked for: others need a second of imports.
 _COMMANDS = {
-    "info": ("symofros.commands.models", "info"),
-    "compile": ("symofros.commands.models", "compile_command"),
+    "info": ("symofros.commands.info", "info"),
+    "compile": ("symofros.commands.compile", "compile_command"),
     "simulate": ("symofros.commands.motion", "simulate"),
     "equations": ("symofros.commands.equations", "equations"),
     "equilibrium": ("symofros.commands.statics", "equilibrium"),

@@ -2,8 +2,7 @@
 
 | stage | from | to |
 |---|---|---|
-| graph.check | System | the same, or every error found |
-| build_tree | System | SpanningTree: numbered links, named frames, indices of q, v, u, par |
+| build_tree | System | SpanningTree, or every error found: numbered links, named frames, indices of q, v, u, par |
 | model_record | SpanningTree | ModelRecord: names, sizes, defaults, limits |
 | form_program | SpanningTree, requests | Program: named functions over one expression graph (Jourdain) |
 | run_passes | Program | Program: staged, verified |
@@ -36,7 +35,6 @@ from symofros.generator.record import model_record
 from symofros.generator.units import UnitCompiler
 from symofros.mechanics.dynamics.functions import Request
 from symofros.mechanics.topology.beams import omitted_rotary_inertia
-from symofros.mechanics.topology.graph import check
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.run_time import RunTimeCheck
 from symofros.mechanics.topology.tree import SpanningTree, build_tree
@@ -101,16 +99,6 @@ def program_of(system: System, functions: Iterable[str], frames: Iterable[str] =
     return Compilation(system, Options(tuple(functions), tuple(frames))).program
 
 
-def plan(system: System) -> SpanningTree:
-    """Check a system and number it.
-
-    Raises:
-        DescriptionError: With every problem found.
-    """
-    check(system)
-    return build_tree(system)
-
-
 class Compilation:
     """One system under one set of options; each stage is formed once, when it is first asked for.
 
@@ -133,7 +121,7 @@ class Compilation:
     @cached_property
     def tree(self) -> SpanningTree:
         """The system, checked and numbered."""
-        return plan(self.system)
+        return build_tree(self.system)
 
     @property
     def requests(self) -> tuple[Request, ...]:

@@ -12,7 +12,7 @@ import numpy as np
 from symofros.base.arguments import checked
 from symofros.base.functions import FRAME_FUNCTIONS, exported
 from symofros.base.options import Options
-from symofros.compiler import GENERATOR, Compilation, compile_system, plan
+from symofros.compiler import GENERATOR, Compilation, compile_system
 from symofros.description.beams.beam import Beam
 from symofros.description.system import System
 from symofros.diagrams.diagram import Diagram
@@ -35,6 +35,7 @@ from symofros.exports.wasm.wasm import write_wasm
 from symofros.generator.codegen.interpreted import InterpretedUnit
 from symofros.generator.codegen.names import identifier
 from symofros.loading import load
+from symofros.mechanics.topology.tree import build_tree
 from symofros.runtime.beams import BEAM_LIMIT
 from symofros.runtime.calls.kernel import Array, LaneOptions
 from symofros.runtime.model import Model
@@ -119,7 +120,7 @@ def export(
     place = Path(folder)
     check_folder(place)  # Before the work, not only after it.
     if target in _DESCRIBED:
-        plan(system)
+        build_tree(system)
         return _DESCRIBED[target](system, name, place, GENERATOR)
     if target == "cuda":
         return write_cuda_package(system, name, frames, place)

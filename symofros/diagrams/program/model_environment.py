@@ -9,7 +9,7 @@ import numpy as np
 
 from symofros.base.functions import FRAME_FUNCTIONS
 from symofros.base.options import Options
-from symofros.compiler import compile_system, plan
+from symofros.compiler import compile_system
 from symofros.description.forces import Friction
 from symofros.description.system import System
 from symofros.diagrams.block import ModelSetup
@@ -28,7 +28,7 @@ from symofros.mechanics.dynamics.forward.factors import Factors
 from symofros.mechanics.dynamics.functions import Methods, Request, form_program
 from symofros.mechanics.kinematics.links import tree_kinematics
 from symofros.mechanics.topology.run_time import RunTimeCheck
-from symofros.mechanics.topology.tree import SpanningTree
+from symofros.mechanics.topology.tree import SpanningTree, build_tree
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord
@@ -91,7 +91,7 @@ class Models:
     def tree(self, name: str) -> SpanningTree:
         """A model's description, checked and numbered."""
         if name not in self._trees:
-            self._trees[name] = plan(self.system(name))
+            self._trees[name] = build_tree(self.system(name))
         return self._trees[name]
 
     def record(self, name: str) -> ModelRecord:

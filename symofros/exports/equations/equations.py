@@ -11,7 +11,7 @@ from typing import Any
 
 from symofros.base.arguments import checked
 from symofros.base.options import Options
-from symofros.compiler import GENERATOR, Compilation, plan
+from symofros.compiler import GENERATOR, Compilation
 from symofros.description.system import Parameter, System
 from symofros.description.values import Value, as_vector
 from symofros.errors import ExportError, Problem
@@ -23,7 +23,7 @@ from symofros.expr.expression import Expression
 from symofros.expr.graph import Slot
 from symofros.generator.codegen.names import identifier
 from symofros.generator.passes.count import count_operations
-from symofros.mechanics.topology.tree import SpanningTree
+from symofros.mechanics.topology.tree import SpanningTree, build_tree
 
 # Operations of M, h, Q and G in the recursive form: beyond these, no grouping makes the entries readable.
 LIMIT = 300
@@ -252,7 +252,7 @@ def _gravity(system: System) -> float | None:
     """Size of gravity where it is a number along one axis, and its symbol is free."""
     numbers = [_number(value) for value in system.gravity]
     along = [abs(value) for value in numbers if value]
-    coordinates = plan(system).coordinates
+    coordinates = build_tree(system).coordinates
     taken = {*coordinates.symbols, *coordinates.constants, *coordinates.u}
     return along[0] if None not in numbers and len(along) == 1 and _G not in taken else None
 

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from symofros.compiler import plan
 from symofros.description.beams.beam import Beam
 from symofros.description.values import Value
 from symofros.exports.material import Material
 from symofros.expr.expression import Expression
-from symofros.mechanics.topology.tree import frame_of
+from symofros.mechanics.topology.tree import build_tree, frame_of
 
 
 def segments(material: Material) -> list[dict[str, str | bool]]:
@@ -17,7 +16,7 @@ def segments(material: Material) -> list[dict[str, str | bool]]:
         Lines, with the frames `from` and `to`; whether one is `curved`, a beam that leaves its root along x; and
         whether `to` is the beam's tip, whose x is the `tangent` there.
     """
-    tree = plan(material.system)
+    tree = build_tree(material.system)
     drawn: list[dict[str, str | bool]] = []
 
     def add(start: str, end: str, curved: bool = False, tangent: bool = False) -> None:

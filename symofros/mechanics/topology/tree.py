@@ -10,6 +10,7 @@ from symofros.description.joints.joint import WORLD, Joint
 from symofros.description.system import Body, Inertia, RigidBody, System
 from symofros.description.values import IDENTITY, Rotation, Term, Vector
 from symofros.mechanics.topology.coordinates import CoordinateMap, joint_sizes, map_coordinates, speed_names
+from symofros.mechanics.topology.graph import check
 
 BASE = -1
 
@@ -155,11 +156,12 @@ def frame_of(tree: SpanningTree, body: str, frame: str | None = None) -> NamedFr
 
 
 def build_tree(system: System) -> SpanningTree:
-    """Number a system that has been checked (`graph.check`).
+    """Check a system and number it.
 
-    Args:
-        system: System without problems, on which this function relies.
+    Raises:
+        DescriptionError: With every problem found.
     """
+    check(system)
     children: dict[str, list[Body]] = {}
     base_names = {WORLD} | {body.name for body in system.bodies if body.joint is None}
     for body in system.bodies:

@@ -11,7 +11,7 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from symofros.compiler import plan
+from symofros.mechanics.topology.tree import build_tree
 from tests.models import CASES, sampled, system
 
 EXACT_FLAGS = ("-O2", "-ffp-contract=off")
@@ -62,7 +62,7 @@ def everything(model: sf.Model, rng: np.random.Generator, n: int = 50) -> dict[s
 
 def built(case: str, **options: object) -> sf.Model:
     s = system(case)
-    return sf.compile(s, sf.Options(functions=COMPARED, frames=(plan(s).frames[-1].name,), **options))  # type: ignore[arg-type]
+    return sf.compile(s, sf.Options(functions=COMPARED, frames=(build_tree(s).frames[-1].name,), **options))  # type: ignore[arg-type]
 
 
 # Of each kind of joint, rotors, friction, parameters; large trees take seconds each to compile, and one with parameters

@@ -11,9 +11,10 @@ import pytest
 
 import symofros as sf
 from symofros.base.options import Options
-from symofros.compiler import GENERATOR, Compilation, plan
+from symofros.compiler import GENERATOR, Compilation
 from symofros.expr.numerics.trigonometry import FAR
 from symofros.generator.codegen.cuda import device_code
+from symofros.mechanics.topology.tree import build_tree
 from symofros.runtime.calls.kernel import Precision
 from symofros.runtime.cuda.device_code import DeviceCode
 from tests.cuda_on_host import Sequence, launch, on_host, strided
@@ -32,7 +33,7 @@ CLOSE: dict[Precision, float] = {"double": 1e-12, "single": 2e-4}
 @cache
 def compilation(name: str) -> Compilation:
     functions = FUNCTIONS + DERIVATIVES * (name == "double_pendulum")  # The same text, long for others.
-    return Compilation(system(name), Options(functions, (plan(system(name)).frames[-1].name,)))
+    return Compilation(system(name), Options(functions, (build_tree(system(name)).frames[-1].name,)))
 
 
 @pytest.fixture(scope="module", params=[(name, "double") for name in MODELS] + [("space_arm", "single")])

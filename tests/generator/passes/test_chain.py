@@ -7,7 +7,6 @@ from hypothesis import strategies as st
 
 from reference_models import MODELS
 from reference_models.rigid.chain import chain
-from symofros.compiler import plan
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
 from symofros.expr.numerics.evaluate import evaluate_edges, interpret, needed_nodes
@@ -19,6 +18,7 @@ from symofros.generator.passes.count import count_program
 from symofros.generator.passes.stage import hoist_parameters
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.dynamics.functions import Request, form_program
+from symofros.mechanics.topology.tree import build_tree
 from tests.models import system
 
 SIZE = 6
@@ -121,7 +121,7 @@ def test_values_stay_and_instructions_fall(steps: list[tuple[str, int, int, bool
 
 @pytest.mark.parametrize("name", ["tree0", "parametrised0", "parametrised1"])
 def test_models_take_fewer_instructions(name: str) -> None:
-    staged = hoist_parameters(form_program(Equations(plan(system(name))), [Request("dynamics")]))
+    staged = hoist_parameters(form_program(Equations(build_tree(system(name))), [Request("dynamics")]))
     chained = chain_sums(staged)
     check_packs(chained)
     assert fused(chained) < fused(staged)
@@ -134,7 +134,7 @@ def test_models_take_fewer_instructions(name: str) -> None:
 def test_packs_come_along() -> None:
     """A chain, whose columns of M share vectors, loses no lane, and every pack stays valid."""
     staged = hoist_parameters(
-        form_program(Equations(plan(chain(16))), [Request("dynamics"), Request("forward_dynamics")])
+        form_program(Equations(build_tree(chain(16))), [Request("dynamics"), Request("forward_dynamics")])
     )
     chained = chain_sums(staged)
     check_packs(chained)
@@ -148,7 +148,7 @@ def test_packs_come_along() -> None:
 
 def test_what_other_functions_read_does_not_split_sums() -> None:
     """A tree's energy is formed in the same order with and without the other functions."""
-    tree = plan(system("tree0"))
+    tree = build_tree(system("tree0"))
     names = ("dynamics", "kinetic_energy", "mass_matrix")
     alone, among = (
         chain_sums(hoist_parameters(form_program(Equations(tree), [Request(name) for name in chosen])))
@@ -171,7 +171,7 @@ def test_what_other_functions_read_does_not_split_sums() -> None:
 )
 def test_vectors_say_what_scalars_say(name: str, function: str) -> None:
     """Each lane that a function needs is the sum that its pack states, to the bit, of lanes that are there."""
-    staged = hoist_parameters(form_program(Equations(plan(MODELS[name])), [Request(function)]))
+    staged = hoist_parameters(form_program(Equations(build_tree(MODELS[name])), [Request(function)]))
     for program in (staged, chain_sums(staged)):
         g, edges = program.graph, program.functions[0].edges()
         needed = {*needed_nodes(g, edges, program.pre), *program.pre, *g.value, *g.slot}

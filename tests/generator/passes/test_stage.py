@@ -3,18 +3,18 @@ from __future__ import annotations
 import numpy as np
 
 import symofros as sf
-from symofros.compiler import plan
 from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.generator.passes import run_passes
 from symofros.generator.passes.count import count_operations, count_program
 from symofros.generator.passes.stage import hoist_parameters
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.dynamics.functions import Request, form_program
+from symofros.mechanics.topology.tree import build_tree
 from tests.models import system
 
 
 def test_parameter_work_moves_to_init() -> None:
-    raw = form_program(Equations(plan(system("parametrised0"))), [Request("mass_matrix")])
+    raw = form_program(Equations(build_tree(system("parametrised0"))), [Request("mass_matrix")])
     staged = hoist_parameters(raw)
     before = count_operations(raw.graph, raw.functions[0].edges())
     counts = count_program(staged)
@@ -30,7 +30,7 @@ def test_parameter_work_moves_to_init() -> None:
 
 
 def test_constants_leave_nothing_to_init() -> None:
-    staged = run_passes(form_program(Equations(plan(system("tree0"))), [Request("dynamics")]))
+    staged = run_passes(form_program(Equations(build_tree(system("tree0"))), [Request("dynamics")]))
     assert staged.init == ()
 
 

@@ -18,11 +18,11 @@ import numpy as np
 
 import symofros as sf
 from symofros.base.functions import exported
-from symofros.compiler import Compilation, compile_system, plan
+from symofros.compiler import Compilation, compile_system
 from symofros.description.yaml.files import write_yaml
 from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
 from symofros.generator.passes.count import count_program
-from symofros.mechanics.topology.tree import SpanningTree
+from symofros.mechanics.topology.tree import SpanningTree, build_tree
 from symofros.studio.editor.jobs.request import Json, Tell, diagram_of, system_of
 from symofros.studio.editor.units import coordinate_units
 
@@ -165,7 +165,7 @@ def simulate(request: Json, tell: Tell) -> Json:
         progress=progress,
         **chosen,
     )
-    return {**_motion(run, plan(system)), "par": par.tolist(), "wall_s": time.perf_counter() - began}
+    return {**_motion(run, build_tree(system)), "par": par.tolist(), "wall_s": time.perf_counter() - began}
 
 
 def _motion(run: sf.Trajectory, tree: SpanningTree) -> Json:

@@ -10,12 +10,12 @@ import numpy as np
 
 from symofros.base.arrays import real_array
 from symofros.base.options import Options
-from symofros.compiler import compile_system, plan
+from symofros.compiler import compile_system
 from symofros.description.constraints import Closure, Rolling
 from symofros.description.system import System
 from symofros.errors import AssemblyError, Problem, ShapeError
 from symofros.mechanics.topology.numbers import Numbers
-from symofros.mechanics.topology.tree import SpanningTree, frame_of
+from symofros.mechanics.topology.tree import SpanningTree, build_tree, frame_of
 from symofros.runtime.beams import BeamBending
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.beam_theory import bendings_in_motion
@@ -74,7 +74,7 @@ class Mechanism:
 
     def __init__(self, system: System, tracks: tuple[Track, ...] = ()) -> None:
         self.system, self.tracks = system, tracks
-        self.tree: SpanningTree = plan(system)
+        self.tree: SpanningTree = build_tree(system)
         frames = self.tree.frames
         # A beam's tip without a frame moves nothing that is drawn, and has no name.
         self._names = [

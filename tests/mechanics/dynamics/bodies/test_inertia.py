@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from symofros.compiler import plan
 from symofros.expr.edges import ZERO
 from symofros.expr.graph import Graph
 from symofros.expr.numerics.evaluate import interpret
@@ -16,12 +15,13 @@ from symofros.mechanics.dynamics.energy import kinetic_energy, potential_energy
 from symofros.mechanics.dynamics.jourdain import inertia_forces
 from symofros.mechanics.dynamics.mass_matrix import mass_matrix
 from symofros.mechanics.kinematics.links import tree_kinematics
+from symofros.mechanics.topology.tree import build_tree
 from tests.models import CASES, sampled, system
 
 
 def evaluated(case: str, regrouped: bool, q: np.ndarray, v: np.ndarray) -> list[np.ndarray]:
     """M, h, T, V of a case, with or without regrouping."""
-    tree = plan(system(case))
+    tree = build_tree(system(case))
     kinematics = tree_kinematics(Graph(), tree)
     g = kinematics.g
     if regrouped:
@@ -53,7 +53,7 @@ def test_a_revolute_link_keeps_the_minimal_set() -> None:
     body = sf.RigidBody("b", sf.Joint("q", "revolute"), sf.Inertia("m", ("x", "y", "z"), tuple("abcdef"), about="body"))
     stated = sf.System("s", [body], [sf.Parameter(name, 1.0) for name in "mxyzabcdef"])
     # Physical or not does not matter here.
-    tree = plan(
+    tree = build_tree(
         sf.System("s", [sf.RigidBody("b", body.joint, body.inertia, (), ["nonphysical_inertia"])], stated.parameters)
     )
     (kept,), base = link_inertias(tree_kinematics(Graph(), tree))
@@ -65,6 +65,6 @@ def test_a_revolute_link_keeps_the_minimal_set() -> None:
 
 def test_a_sliding_link_keeps_mass_and_first_moment() -> None:
     body = sf.RigidBody("b", sf.Joint("q", "prismatic"), sf.Inertia(2.0, (0.1, 0.2, 0.3), (20, 20, 20), about="body"))
-    (kept,), _ = link_inertias(tree_kinematics(Graph(), plan(sf.System("s", [body]))))
+    (kept,), _ = link_inertias(tree_kinematics(Graph(), build_tree(sf.System("s", [body]))))
     assert all(edge == ZERO for edge in kept.I_LLo_L)
     assert isinstance(kept, LinkInertia) and kept.m != ZERO and not kept.mp_LLcm.is_zero

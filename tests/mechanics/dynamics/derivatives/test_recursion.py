@@ -11,13 +11,13 @@ import pytest
 from reference_models import MODELS
 from reference_models.rigid.chain import chain
 from symofros.base.functions import INPUTS
-from symofros.compiler import plan
 from symofros.expr.edges import Edge
 from symofros.expr.numerics.evaluate import evaluate_edges, needed_nodes
 from symofros.expr.program import Program
 from symofros.mechanics.dynamics.derivatives.differentiation import by_configuration, by_inputs
 from symofros.mechanics.dynamics.derivatives.recursion import is_recursive
 from symofros.mechanics.dynamics.equations import Equations
+from symofros.mechanics.topology.tree import build_tree
 from tests.models import SAMPLE, model, system
 
 # "gyroscope" and "friction_arm" bear rotors or friction: the one is differentiated, the other recursive with elements.
@@ -42,7 +42,7 @@ def numbers(e: Equations, matrix: Matrix, state: dict[str, np.ndarray]) -> np.nd
 @pytest.mark.parametrize("name", RECURSIVE)
 def test_they_are_those_of_the_graph(name: str, rng: np.random.Generator) -> None:
     """Each kind of joint, branches, parameters, several speeds of a joint, at states that move and turn."""
-    e, m = Equations(plan(system(name))), model(name, "interpreter")
+    e, m = Equations(build_tree(system(name))), model(name, "interpreter")
     assert is_recursive(e.kinematics, e.rotors)
     q, v = m.random_state(rng)
     state = {"q": q, "v": v, "a": rng.normal(size=m.nv), "par": np.array(m.record.par_default), "t": np.zeros(1)}
@@ -66,7 +66,7 @@ def test_a_base_in_fast_flight_costs_no_digits(rng: np.random.Generator) -> None
 
 
 def test_a_spinning_rotor_on_a_link_is_left_to_the_graph() -> None:
-    e = Equations(plan(MODELS["gyroscope"]))
+    e = Equations(build_tree(MODELS["gyroscope"]))
     assert not is_recursive(e.kinematics, e.rotors)
     recursive, differentiated = both(e)
     assert recursive == differentiated
@@ -80,7 +80,7 @@ def test_a_pair_of_speeds_costs_a_bounded_number_of_operations() -> None:
     """Along a chain in space, parameters as numbers: n links by themselves, n^2/2 pairs; a third of the graph's."""
     counts = []
     for n in (6, 9, 12):
-        recursive, differentiated = both(e := Equations(plan(chain(n, symbolic=False))))
+        recursive, differentiated = both(e := Equations(build_tree(chain(n, symbolic=False))))
         counts.append(operations(e, recursive))
     assert counts[2] - 2 * counts[1] + counts[0] < 110 * 3**2
     assert counts[2] < operations(e, differentiated) / 2
@@ -94,7 +94,9 @@ def test_branches_form_no_pairs() -> None:
         parent = body.joint.parent if body.joint.parent == "world" else f"{body.joint.parent}_2"
         joint = replace(body.joint, name=f"{body.joint.name}_2", parent=parent)
         twin.append(replace(body, name=f"{body.name}_2", joint=joint))
-    one, two = (Equations(plan(replace(arm, bodies=tuple(bodies)))) for bodies in (arm.bodies, (*arm.bodies, *twin)))
+    one, two = (
+        Equations(build_tree(replace(arm, bodies=tuple(bodies)))) for bodies in (arm.bodies, (*arm.bodies, *twin))
+    )
     e_one, e_two = (operations(e, (e.inverse_dynamics_by_q, e.inverse_dynamics_by_v)) for e in (one, two))
     assert e_two == 2 * e_one
     assert all(row[5:] == [0] * 5 for row in two.inverse_dynamics_by_q[:5])

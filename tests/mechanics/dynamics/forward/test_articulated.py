@@ -16,7 +16,6 @@ import symofros as sf
 from reference_models import MODELS
 from reference_models.rigid.chain import INERTIAL, chain
 from reference_models.rigid.random_tree import MORE_KINDS, SERIES_KINDS, random_tree
-from symofros.compiler import plan
 from symofros.description.forces import Rotor
 from symofros.expr.numerics.precise import evaluate_precisely
 from symofros.expr.program import Program
@@ -25,6 +24,7 @@ from symofros.generator.passes import run_passes
 from symofros.generator.passes.count import Operations, count_program
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.dynamics.functions import Methods, Request, form_program, forward_methods
+from symofros.mechanics.topology.tree import build_tree
 from tests.mechanics.beams.cases import CASES
 from tests.models import sampled
 
@@ -49,7 +49,7 @@ def difference(system: sf.System, seed: int = 0) -> float:
     models = [interpreted(system, way) for way in WAYS]
     q, v = (np.array(x) for x in zip(*(models[0].random_state(rng) for _ in range(4)), strict=True))
     u = np.array(models[0].record.u_default) + np.zeros((4, models[0].nu))
-    efforts = plan(system).coordinates.efforts
+    efforts = build_tree(system).coordinates.efforts
     u[:, :efforts] = rng.uniform(-1.0, 1.0, (4, efforts))
     one, other = (model.forward_dynamics(q, v, u) for model in models)
     return float((np.abs(one - other).max(-1) / np.abs(other).max(-1)).max())
@@ -112,14 +112,14 @@ def geared(carrier: str | None) -> sf.System:
 
 @pytest.mark.parametrize("carrier", ["b1", "world"])
 def test_rotors_on_the_parent_or_at_rest_stay_local(carrier: str) -> None:
-    assert forward_methods(Equations(plan(geared(carrier)))) == WAYS
+    assert forward_methods(Equations(build_tree(geared(carrier)))) == WAYS
     assert difference(geared(carrier)) < TOLERANCE
 
 
 @pytest.mark.parametrize("carrier", ["b0", "b2"])
 def test_rotors_on_a_third_body_need_the_factors(carrier: str) -> None:
     """Its own link counts as one: the rotor turns with what it drives."""
-    assert forward_methods(Equations(plan(geared(carrier)))) == ("factors",)
+    assert forward_methods(Equations(build_tree(geared(carrier)))) == ("factors",)
     with pytest.raises(sf.DescriptionError, match=r"rotor.*\n.*\n.*remedy.*'factors'"):
         interpreted(geared(carrier), "articulated")
 
@@ -144,7 +144,7 @@ def test_both_methods_refuse_the_same_massless_speeds() -> None:
 @cache
 def program(links: int, way: Way) -> Program:
     """Forward dynamics of a chain whose inertias are run-time parameters."""
-    return run_passes(form_program(Equations(plan(chain(links))), [Request(NAME)], Methods(trees=way)))
+    return run_passes(form_program(Equations(build_tree(chain(links))), [Request(NAME)], Methods(trees=way)))
 
 
 def counted(links: int, way: Way) -> Operations:
@@ -217,9 +217,9 @@ def test_auto_is_what_was_measured_to_be_faster(make: Callable[[], sf.System], w
     """docs/theory/code.md, section 2, states the times."""
     system = make()
     ours = count_program(sf.program_of(system, [NAME]))[NAME, ""]
-    alone = run_passes(form_program(Equations(plan(system)), [Request(NAME)], Methods(trees=way)))
+    alone = run_passes(form_program(Equations(build_tree(system)), [Request(NAME)], Methods(trees=way)))
     assert ours == count_program(alone)[NAME, ""]
     other = run_passes(
-        form_program(Equations(plan(system)), [Request(NAME)], Methods(trees=WAYS[way == "articulated"]))
+        form_program(Equations(build_tree(system)), [Request(NAME)], Methods(trees=WAYS[way == "articulated"]))
     )
     assert ours != count_program(other)[NAME, ""]

@@ -1,0 +1,97 @@
+"""symofros info: what a model or a diagram is."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.table import Table
+from rich.tree import Tree
+
+import symofros as sf
+from symofros.base.functions import DEFAULT_FRAME_FUNCTIONS, DEFAULT_FUNCTIONS
+from symofros.commands.details import details, frames_line, tables
+from symofros.commands.shared import AsJson, FilePath, Floating, Network, load, out, refuse
+from symofros.diagrams.files.kind import is_diagram
+from symofros.mechanics.topology.tree import BASE, SpanningTree, build_tree
+
+if TYPE_CHECKING:
+    from symofros.generator.passes.count import Operations
+
+
+def info(
+    model: FilePath,
+    floating_base: Floating = False,
+    network: Network = False,
+    operations: Annotated[
+        bool, typer.Option("--operations", help="Also derive every function and count its operations.")
+    ] = False,
+    as_json: AsJson = False,
+) -> None:
+    """Show a model: tree, sizes, masses, limits, parameters; or a diagram: blocks, rates, order."""
+    if is_diagram(model):
+        from symofros.diagrams.files import command as diagrams  # Diagrams load the library of blocks.
+
+        try:
+            diagrams.tell_diagram(sf.load_diagram(model, network=network), as_json, out)
+        except sf.SymofrosError as error:
+            raise refuse(error) from None
+        return
+    system = load(model, floating_base)
+    tree = build_tree(system)
+    counts = _counts(system, tree.frames[-1].name) if operations else {}
+    names = tree.coordinates
+    sizes = {"nq": len(names.q), "nv": len(names.v), "nu": len(names.u), "npar": len(names.par)}
+    facts = details(tree)
+    if as_json:
+        stated = {"name": system.name, **sizes, **facts, "notes": list(system.notes)}
+        if operations:
+            stated["operations"] = {name: _by_kind(count) for name, count in counts.items()}
+        print(json.dumps(stated, indent=1))
+        return
+    out.print(_draw(tree))
+    out.print(", ".join(f"{key} {value}" for key, value in sizes.items()), markup=False)
+    if facts["frames"]:
+        out.print(frames_line(facts), markup=False, highlight=False, soft_wrap=True)
+    for shown in tables(facts):
+        out.print(shown)
+    if operations:
+        out.print(_operations(counts))
+    for note in system.notes:
+        out.print(f"note: {note}", markup=False, highlight=False, soft_wrap=True)
+
+
+def _counts(system: sf.System, frame: str) -> dict[str, Operations]:
+    """Operations of every function, keyed by its name, and the frame of frame functions."""
+    from symofros.compiler import Compilation  # The generator takes as long to import as all that is shown without it.
+    from symofros.generator.passes.count import count_program
+
+    compilation = Compilation(system, sf.Options(functions=DEFAULT_FUNCTIONS))
+    compilation.request(DEFAULT_FRAME_FUNCTIONS, [frame])
+    return {" of ".join(filter(None, key)): count for key, count in count_program(compilation.program).items()}
+
+
+def _operations(counts: dict[str, Operations]) -> Table:
+    table = Table("function", "mul", "add", "div", "call", "total", title="Operations per call")
+    for name, count in counts.items():
+        table.add_row(name, *map(str, (count.mul, count.add, count.div, count.call, count.total)))
+    return table
+
+
+def _by_kind(count: Operations) -> dict[str, int]:
+    """Counts by kind."""
+    return {"mul": count.mul, "add": count.add, "div": count.div, "call": count.call}
+
+
+def _draw(tree: SpanningTree) -> Tree:
+    base = next((body.name for body in tree.system.bodies if body.joint is None), "world")
+    root = Tree(f"{tree.system.name}: {base}", highlight=False)
+    branches = {BASE: root}
+    for i, link in enumerate(tree.links):
+        start, size = link.v
+        speeds = f"v[{start}]" if size == 1 else f"v[{start}:{start + size}]"
+        frames = sum(frame.link == i for frame in tree.frames)
+        text = f"{link.name}  ({link.joint.kind} {link.joint.name}, {speeds}, {frames} frame{'s' * (frames != 1)})"
+        branches[i] = branches[link.parent].add(text)
+    return root
