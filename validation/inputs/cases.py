@@ -114,22 +114,34 @@ def file_case(label: str) -> Case:
 
 
 def robot_case(label: str) -> Case:
-    """A robot of the package, found through the package's list of files, wherever it was installed.
+    """A robot of the package, wherever it was installed.
 
     Raises:
         FileNotFoundError: The package is not installed, or lacks the file.
     """
     robot = ROBOTS[label]
+    return Case(label, robot_file(robot.file), robot.floating_base)
+
+
+def robot_file(name: str) -> Path:
+    """A file of the package of robots.
+
+    Args:
+        name: Path below the package's folder of robots.
+
+    Raises:
+        FileNotFoundError: The package is not installed, or lacks the file.
+    """
     try:
         files = metadata.distribution(ROBOT_PACKAGE).files or []
     except metadata.PackageNotFoundError:
         raise FileNotFoundError(
-            f"robot '{label}': package {ROBOT_PACKAGE} is not installed; pip install 'symofros[validation]'"
+            f"{name}: package {ROBOT_PACKAGE} is not installed; pip install 'symofros[validation]'"
         ) from None
     for file in files:
-        if file.as_posix().endswith(f"/robots/{robot.file}"):
-            return Case(label, Path(str(file.locate())), robot.floating_base)
-    raise FileNotFoundError(f"robot '{label}': no {robot.file} in package {ROBOT_PACKAGE}")
+        if file.as_posix().endswith(f"/robots/{name}"):
+            return Path(str(file.locate()))
+    raise FileNotFoundError(f"no {name} in package {ROBOT_PACKAGE}")
 
 
 def named(names: list[str], floating_base: bool) -> list[Case]:

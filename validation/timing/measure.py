@@ -11,6 +11,7 @@ import typer
 
 from validation.reporting.command import Run, known
 from validation.reporting.record import Data
+from validation.timing import waits
 from validation.timing.contestants.programs import BuildError
 from validation.timing.flexible.race import LABEL, run_flexible
 from validation.timing.models import FUNCTIONS, TIMED_MODELS
@@ -37,7 +38,7 @@ def measure(
     A part that is chosen replaces that part of the report's figures; the whole starts afresh. Ctrl-C keeps what was
     measured.
     """
-    chosen = known(models, [*TIMED_MODELS, LABEL], "--model", "model")
+    chosen = known(models, [*TIMED_MODELS, LABEL, waits.LABEL], "--model", "model")
     record = read(run.folder / "timing.json") if models or peers or functions or resume else Record()
     todo = jobs(
         [name for name in chosen if name in TIMED_MODELS],
@@ -47,8 +48,10 @@ def measure(
         states,
         record if resume else None,
     )
-    flexible = LABEL in models if models else not (peers or functions) and not (resume and record.flexible)
-    measures = bool(todo) or flexible
+    whole = not (models or peers or functions)
+    flexible = LABEL in models if models else whole and not (resume and record.flexible)
+    first_second = waits.LABEL in models if models else whole and not (resume and record.waits)
+    measures = bool(todo) or flexible or first_second
     before, limits = load(), facts() if measures else {}
 
     def data(unfinished: Sequence[str] = ()) -> dict[str, Any]:
@@ -62,9 +65,12 @@ def measure(
             }
         return as_data(record) | {"unfinished": list(unfinished)}
 
-    left = [*(job.model for job in todo), *([LABEL] if flexible else [])]
-    run.expect(sum(len(job.functions) for job in todo) + int(flexible), "compiling the engines")
+    left = [*([waits.LABEL] * first_second), *(job.model for job in todo), *([LABEL] * flexible)]
+    run.expect(sum(len(job.functions) for job in todo) + flexible + first_second, "compiling the engines")
     try:
+        if first_second:
+            _time_waits(record, run)
+            left.remove(waits.LABEL)
         for failure in prepare(todo, lambda text: run.advance(text, 0)):
             run.say(failure, bad=True)
         for job in todo:
@@ -92,8 +98,19 @@ def _time(job: Job, record: Record, run: Run) -> None:
             run.say(f"not timed: {model}, {function}, {peer}: {why}", bad)
 
 
+def _time_waits(record: Record, run: Run) -> None:
+    run.advance(waits.LABEL)
+    record.forget([waits.LABEL], ["all"], [])
+    try:
+        record.waits = waits.measure_waits(lambda text: run.advance(f"{waits.LABEL}: {text}", 0))
+    except (RuntimeError, FileNotFoundError) as error:
+        record.failed.append((waits.LABEL, "all", "symofros", str(error)))
+        run.say(f"not timed: {error}", bad=True)
+
+
 def _time_flexible(record: Record, repeats: int, run: Run) -> None:
     run.advance(LABEL)
+    record.forget([LABEL], ["M + h"], ["exudyn"])
     try:
         record.flexible = [asdict(row) for row in run_flexible(repeats)]
     except BuildError as error:

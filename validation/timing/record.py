@@ -100,6 +100,28 @@ class Made(Labelled):
         return sum(self.operations.values())
 
 
+@dataclass(frozen=True)
+class Wait:
+    """What a user waits for.
+
+    Attributes:
+        what: What is waited for.
+        model: Label of the robot; "" where it is of none.
+        seconds: Median.
+        asked: Seconds at most; None where nothing is asked.
+    """
+
+    what: str
+    model: str
+    seconds: float
+    asked: float | None
+
+    @property
+    def met(self) -> bool:
+        """Whether what is asked for is reached."""
+        return self.asked is None or self.seconds <= self.asked
+
+
 # Model, function, peer, why.
 Note = tuple[str, str, str, str]
 
@@ -115,6 +137,7 @@ class Record:
         failed: Functions that could not be timed: (model, function, peer, reason).
         flexible: Rows of the flexible robot.
         machine: Facts of the last run: processor, peak rates, load, versions, flags.
+        waits: What a user waits for before the first number, and in plain calls.
     """
 
     entries: list[Entry] = field(default_factory=list)
@@ -123,6 +146,7 @@ class Record:
     failed: list[Note] = field(default_factory=list)
     flexible: list[dict[str, Any]] = field(default_factory=list)
     machine: dict[str, Any] = field(default_factory=dict)
+    waits: list[Wait] = field(default_factory=list)
 
     def forget(self, models: Iterable[str], functions: Iterable[str], peers: Iterable[str]) -> None:
         """Drop what is about to be measured again."""

@@ -13,7 +13,7 @@ from validation.timing.flexible.report import flexible_section
 from validation.timing.measure import measure
 from validation.timing.models import FUNCTIONS
 from validation.timing.record import Entry, Record
-from validation.timing.tables import TARGETS_TEXT, ratios, sections, targets_table
+from validation.timing.tables import TARGETS_TEXT, duration, ratios, sections, targets_table
 from validation.timing.targets import verdicts
 
 LIMITS = (
@@ -54,11 +54,13 @@ def compose(data: Data) -> Report:
     sizes = (counted(len({getattr(row, name) for row in best}), name) for name in ("model", "function"))
     by_peer = {row.peer: sorted(other.ratio for other in best if other.peer == row.peer) for row in best}
     medians = {peer: times(median(group)) for peer, group in by_peer.items()}
+    raced = ", ".join(f"{peer} {ratio}" for peer, ratio in medians.items())
+    raced = f"; median of their time over ours: {raced}" if raced else ""
+    late = [wait for wait in record.waits if not wait.met]
     return Report(
         "Timing: generated C against engines and symbolic peers",
-        f"{said}; {counted(len(best), 'race')} over {' and '.join(sizes)}; median of their time over ours: "
-        f"{', '.join(f'{peer} {ratio}' for peer, ratio in medians.items())}{failed}.{cut}",
-        met == len(measured) and not record.failed if measured or record.failed else None,
+        f"{said}; {counted(len(best), 'race')} over {' and '.join(sizes)}{raced}{failed}.{cut}",
+        met == len(measured) and not late and not record.failed if measured or record.waits or record.failed else None,
         (*LIMITS, _conditions(record.machine)),
         (
             Section("Targets", (TARGETS_TEXT, table, ratios(best)), "targets"),
@@ -83,6 +85,12 @@ def compose(data: Data) -> Report:
             f"{v.target.least:g}"
             for v in measured
             if not v.met
+        )
+        + tuple(
+            f"{' of '.join(filter(None, (wait.what, wait.model)))}: {duration(wait.seconds)}, asked is at most "
+            f"{duration(wait.asked)}"
+            for wait in late
+            if wait.asked is not None
         ),
     )
 

@@ -10,7 +10,7 @@ from validation.reporting.numbers import compact, formatted
 from validation.reporting.record import Section, Table, verdict
 from validation.timing.growth import Growth, growth
 from validation.timing.models import FUNCTIONS, TIMED_MODELS
-from validation.timing.record import Entry, Made, Record
+from validation.timing.record import Entry, Made, Record, Wait
 from validation.timing.targets import Verdict
 
 _GENERATORS = ("symofros", "casadi", "sympy")
@@ -40,6 +40,10 @@ _LIMITS = """model | function | by | mul | add | div | calls | time [ns] | limit
 _GROWTH_TEXT = """Over chains of generic bodies in space, and over four-bars in a row, each closed with its neighbours.
 An exponent is the slope on logarithmic axes, by least squares over sizes of seven and more: time = c n^exponent."""
 _GROWTH = "function | n | quantity | by | sizes | at the largest | exponent"
+_WAITS_TEXT = """Medians by the clock: whole processes from start to end, interpreter and imports in them; go2 on a
+floating base. With an empty cache the C compiler runs, on all cores. Plain calls take arrays and return new ones; a
+batch of 4096 states by rows is asked to take at most 1.4 times its C, whose time is the row below it."""
+_WAITS = "what | robot | time | asked at most"
 _NOTES = {
     "dynamics": """Ours is M + h + Q, in one function. Pinocchio's is crba, then nonLinearEffects; MuJoCo's shares its
     kinematics between both; CasADi's is one function, common subexpressions shared.""",
@@ -68,6 +72,7 @@ def sections(record: Record) -> list[Section]:
     return [
         *(_function(record, name) for name in FUNCTIONS),
         _growth(record),
+        _waits_section(record.waits),
         Section("What it costs to make", (_MAKING_TEXT, Table.of(_MAKING, making)), "making"),
         _limits(record, made),
         _skipped(record),
@@ -149,6 +154,23 @@ def _limits(record: Record, made: Sequence[Made]) -> Section:
         task = f"{cost.title} | {cost.task} | {cost.by}"
         rows.append(f"{task} | {counts} | {compact(cost.time)} | {far} | {batches} | {copying}")
     return Section("How far from the machine's limit", (_LIMITS_TEXT.format(*peaks), Table.of(_LIMITS, rows)), "limits")
+
+
+def _waits_section(waits: Sequence[Wait]) -> Section:
+    rows = []
+    for wait in waits:
+        asked, taken = "-" if wait.asked is None else duration(wait.asked), duration(wait.seconds)
+        taken = taken if wait.asked is None else verdict(taken, wait.met)
+        rows.append(f"{wait.what} | {wait.model or '-'} | {taken} | {asked}")
+    return Section("The first second", (_WAITS_TEXT, Table.of(_WAITS, rows)), "first-second")
+
+
+def duration(seconds: float) -> str:
+    """Such as "0.50 s", "1.2 us"."""
+    for unit, size in (("s", 1.0), ("ms", 1e-3), ("us", 1e-6)):
+        if seconds >= (0.1 * size if unit == "s" else size):
+            return f"{seconds / size:.3g} {unit}"
+    return f"{seconds / 1e-9:.3g} ns"
 
 
 def _growth(record: Record) -> Section:

@@ -11,7 +11,7 @@ import pytest
 from tests.validation.timing.records import cubic, entry, made
 from validation.timing.growth import exponent, growth
 from validation.timing.models import CHAINS
-from validation.timing.record import Record, as_data, read
+from validation.timing.record import Record, Wait, as_data, read
 from validation.timing.targets import TARGETS, Target, Verdict, verdicts
 
 
@@ -89,6 +89,7 @@ def test_a_record_survives_its_file(tmp_path: Path) -> None:
         [("panda", "bias", "casadi", "no compiler")],
         [],
         {"cores": 2},
+        [Wait("import symofros", "", 0.15, 0.1), Wait("first M", "panda", 0.3, None)],
     )
     (tmp_path / "timing.json").write_text(json.dumps(as_data(record)))
     assert read(tmp_path / "timing.json") == record
