@@ -6,6 +6,7 @@ import json
 import sys
 import time
 from collections.abc import Callable
+from pathlib import Path
 from statistics import median
 
 import numpy as np
@@ -49,13 +50,11 @@ def times(path: str, floating: bool) -> dict[str, float]:
         "kernel": (kernel, 1, STATES),
     }
     try:
-        import pinocchio
+        from validation.adapters.pinocchio.plain import mass_matrix_call  # Whoever lacks Pinocchio has the rest.
     except ImportError:
         pass
     else:
-        own = pinocchio.buildModelFromUrdf(path, *([pinocchio.JointModelFreeFlyer()] if floating else []))
-        data, neutral = own.createData(), pinocchio.neutral(own)
-        calls["pinocchio"] = (lambda: pinocchio.crba(own, data, neutral), CALLS, 1)
+        calls["pinocchio"] = (mass_matrix_call(Path(path), floating), CALLS, 1)
     taken: dict[str, list[float]] = {name: [] for name in calls}
     for _ in range(REPEATS):
         for name, (call, count, states) in calls.items():
