@@ -10,7 +10,7 @@ from pathlib import Path
 
 from symofros.base.arguments import checked
 from symofros.base.atomic import write_atomically
-from symofros.description.reading import YAML_SUFFIXES, Reading, in_order
+from symofros.description.reading import MODEL_SUFFIXES, USD_SUFFIXES, YAML_SUFFIXES, Reading, in_order
 from symofros.description.remarks import note
 from symofros.description.system import WAIVERS, System
 from symofros.description.urdf.reader import SNAP_TOL, read_urdf
@@ -21,7 +21,7 @@ from symofros.mechanics.topology.physics import has_physical_inertia
 from symofros.mechanics.topology.units import unit_problems
 
 _PATHS = "check the path; a relative one starts at the current folder"
-_READABLE = (*YAML_SUFFIXES, ".urdf", ".xacro", ".sdf", ".world", ".xml")
+_READABLE = (*MODEL_SUFFIXES, ".xacro", ".world")
 
 
 @checked
@@ -38,7 +38,7 @@ def load(
 
     Args:
         path: Native YAML (.yaml, .yml), URDF (.urdf), xacro (.xacro; needs the package xacro), SDFormat (.sdf,
-            .world) or MJCF (.xml; needs the package mujoco).
+            .world), MJCF (.xml; needs the package mujoco) or USD (.usd, .usda, .usdc, .usdz; needs usd-core).
         floating_base: URDF only: put a free joint under the root link.
         snap_tol: All but YAML: numbers this close to exact ones are made exact (`read_urdf`, `read_mjcf`).
         waive: Checks that every body is allowed to fail (WAIVERS), such as "massless_tip".
@@ -110,6 +110,10 @@ def _read(file: Path, floating_base: bool, snap_tol: float, mimic: bool, argumen
         from symofros.description.sdf.reader import read_sdf
 
         return _accept_inertias(read_sdf(file, snap_tol=snap_tol))
+    if file.suffix.lower() in USD_SUFFIXES:
+        from symofros.description.usd.reader import read_usd
+
+        return _accept_inertias(read_usd(file, snap_tol=snap_tol))
     from symofros.description.yaml.files import read_yaml
 
     return read_yaml(file)
@@ -136,7 +140,6 @@ def save(system: System, path: str | os.PathLike[str]) -> None:
 
 # Formats that people have and we do not read -> how they become one that we do.
 _CONVERSIONS = {
-    ".usd": "export it as URDF or MJCF (Isaac Sim's exporters, or mujoco's USD converter)",
     ".mjb": "give the XML that the binary was compiled from",
 }
 
@@ -156,7 +159,7 @@ def _refuse_suffix(file: Path, known: tuple[str, ...], verb: str) -> None:
 def _meant(suffix: str, known: tuple[str, ...]) -> str:
     """The suffix that one letter or two away stands for; a text of another kind is no misspelt model."""
     near = difflib.get_close_matches(suffix, known, n=1, cutoff=0.75)
-    return f"did you mean '{near[0]}'?" if near else "give a model: native YAML, URDF or MJCF"
+    return f"did you mean '{near[0]}'?" if near else "give a model: native YAML, URDF, SDF, MJCF or USD"
 
 
 def _there(folder: Path) -> list[str]:

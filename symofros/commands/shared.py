@@ -18,7 +18,7 @@ from symofros.runtime.calls.kernel import Array
 out = Console()
 err = Console(stderr=True)
 
-ModelPath = Annotated[Path, typer.Argument(help="A model: .yaml, .urdf, .sdf or .xml (MJCF)", show_default=False)]
+ModelPath = Annotated[Path, typer.Argument(help="A model: .yaml, .urdf, .sdf, .xml (MJCF) or .usd", show_default=False)]
 FilePath = Annotated[Path, typer.Argument(help="A model, or a diagram's .yaml.", show_default=False)]
 Network = Annotated[bool, typer.Option("--network", help="Let a diagram's blocks reach other machines.")]
 Floating = Annotated[bool, typer.Option("--floating-base", help="Put a free joint under a URDF's root link.")]

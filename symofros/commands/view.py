@@ -15,7 +15,7 @@ from symofros.studio.viewer.playing.motion import read_motion
 
 
 def view(
-    model: Annotated[Path, typer.Argument(help="A model: .yaml, .urdf, .sdf or .xml (MJCF)", show_default=False)],
+    model: Annotated[Path, typer.Argument(help="A model: .yaml, .urdf, .sdf, .xml (MJCF) or .usd", show_default=False)],
     trajectory: Annotated[
         Path | None, typer.Option("--trajectory", help="A motion to play: .npz, .csv or .parquet.")
     ] = None,

@@ -11,6 +11,9 @@ from symofros.errors import ArgumentError, DescriptionError, Problem
 
 # Of native descriptions; stated here, where no parser of YAML is loaded for it.
 YAML_SUFFIXES = (".yaml", ".yml")
+USD_SUFFIXES = (".usd", ".usda", ".usdc", ".usdz")
+# Of files that are a whole model by themselves.
+MODEL_SUFFIXES = (*YAML_SUFFIXES, ".urdf", ".sdf", ".xml", *USD_SUFFIXES)
 
 
 @dataclass(frozen=True)

@@ -25,4 +25,5 @@ class Remarks:
 def note(text: str, noun: str, names: list[str]) -> str:
     """One line: what happened, to how many things, and the names of the first few."""
     shown = ", ".join(names[:EXAMPLES]) + (", …" if len(names) > EXAMPLES else "")
-    return f"{text}: {len(names)} {noun}{'s' * (len(names) > 1)} ({shown})"
+    plural = f"{noun.removesuffix('y')}ies" if noun.endswith("y") else f"{noun}s"
+    return f"{text}: {len(names)} {noun if len(names) == 1 else plural} ({shown})"

@@ -120,12 +120,11 @@ def test_a_name_that_is_not_there_and_a_mass_below_zero_are_refused() -> None:
     assert result.exit_code == 2 and "m_cart" in result.output
 
 
-@pytest.mark.parametrize(("suffix", "remedy"), [(".mjb", "compiled from"), (".usd", "export")])
-def test_formats_that_are_not_read_say_how_to_convert(suffix: str, remedy: str, tmp_path: Path) -> None:
-    path = tmp_path / f"robot{suffix}"
+def test_formats_that_are_not_read_say_how_to_convert(tmp_path: Path) -> None:
+    path = tmp_path / "robot.mjb"
     path.write_text("<robot/>")
     result = invoke("info", path)
-    assert result.exit_code == 2 and remedy in result.output
+    assert result.exit_code == 2 and "compiled from" in result.output
 
 
 _PARTS = ("  found:  ", "  rule:   ", "  remedy: ")
@@ -142,7 +141,7 @@ _PARTS = ("  found:  ", "  rule:   ", "  remedy: ")
         (("simulate", CART_POLE, "0.01", "-o", "nosuch/run.npz"), "'nosuch/run.npz' can't be used"),
         (("simulate", CART_POLE, "0.01", "--input", "F=1*/q"), "'/' unexpected"),
         (("info", "nosuch.urdf"), "'nosuch.urdf' does not exist"),
-        (("info", "README.md"), "give a model: native YAML, URDF or MJCF"),
+        (("info", "README.md"), "give a model: native YAML, URDF, SDF, MJCF or USD"),
         (("info", "robot.yam"), "did you mean '.yaml'?"),
         (("info", "."), "is a folder"),
         (("info", "folder.yaml"), "'folder.yaml' is a folder"),

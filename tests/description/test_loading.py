@@ -9,7 +9,7 @@ from reference_models import MODELS
 
 
 def test_unknown_suffixes_name_the_known_ones(tmp_path: Path) -> None:
-    path = tmp_path / "arm.usd"
+    path = tmp_path / "arm.step"
     path.write_text("")
     with pytest.raises(sf.DescriptionError, match=r"unknown format[\s\S]*\.yaml, \.yml, \.urdf"):
         sf.load(path)

@@ -8,7 +8,6 @@ from symofros.description.reading import kind_of
 from symofros.errors import Problem, did_you_mean
 
 DIAGRAMS = (".yaml", ".yml")
-MODELS = (".yaml", ".yml", ".urdf", ".sdf", ".xml")
 
 
 def refused(text: str, base: Path, folder: Path, suffixes: tuple[str, ...] = ()) -> Problem | None:

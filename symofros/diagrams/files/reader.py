@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from symofros.base.arguments import checked
-from symofros.description.reading import in_order, read_bytes
+from symofros.description.reading import MODEL_SUFFIXES, in_order, read_bytes
 from symofros.description.system import System
 from symofros.description.yaml.files import DIAGRAM
 from symofros.description.yaml.yaml_nodes import Node, YamlFault
@@ -19,7 +19,7 @@ from symofros.diagrams.block import Block, ModelFile
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.files.entries import Entries
 from symofros.diagrams.files.fields import Misfit, read, required, types_of
-from symofros.diagrams.files.paths import DIAGRAMS, MODELS, refused
+from symofros.diagrams.files.paths import DIAGRAMS, refused
 from symofros.diagrams.files.registry import INPUTS, KIND, entry_of, kinds
 from symofros.diagrams.files.run_settings import read_settings
 from symofros.errors import DescriptionError, Problem, SymofrosError, did_you_mean
@@ -188,7 +188,7 @@ class _Reader(Entries):
     def system(self, node: Node, what: str, floating_base: bool) -> System | None:
         """The description in a file; the same object for the same file."""
         text = self.text(node, f"{what}: file", 1000)
-        problem = refused(text, self.base, self.shared.folder, MODELS) if text else None
+        problem = refused(text, self.base, self.shared.folder, MODEL_SUFFIXES) if text else None
         if not text or problem:
             self.take(node, [problem] if problem else [])
             return None

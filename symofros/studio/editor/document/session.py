@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from symofros.description.reading import MODEL_SUFFIXES
 from symofros.description.system import System
 from symofros.studio.editor.document.document import EditedDocument, refuse_text
 from symofros.studio.editor.document.expressions import check_field
@@ -15,7 +16,7 @@ from symofros.studio.editor.document.figures.inertia_figures import inertia_figu
 from symofros.studio.editor.document.parts.parts import insertion
 from symofros.studio.editor.document.parts.parts_library import Library
 from symofros.studio.editor.document.storage import EMPTY, Storage
-from symofros.studio.editor.document.workspace import READABLE, FileError, Workspace, read_text, write
+from symofros.studio.editor.document.workspace import FileError, Workspace, read_text, write
 from symofros.studio.editor.editing.data_edits import four_parts, refusal
 from symofros.studio.editor.editing.requests import edits_of, fields_of, text_of
 from symofros.studio.editor.editing.yaml_edits import with_references
@@ -254,7 +255,7 @@ class Session:
             FileError: Neither, or of another format.
         """
         if "path" in body:
-            return self.workspace.inside(text_of(body, "path"), READABLE)
-        file = Workspace(folder).inside(Path(text_of(body, "name")).name, READABLE)
+            return self.workspace.inside(text_of(body, "path"), MODEL_SUFFIXES)
+        file = Workspace(folder).inside(Path(text_of(body, "name")).name, MODEL_SUFFIXES)
         write(file, refuse_text(body.get("text")))
         return file

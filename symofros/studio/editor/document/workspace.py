@@ -9,14 +9,13 @@ from pathlib import Path
 from typing import Any
 
 from symofros.base.atomic import write_atomically
-from symofros.description.reading import YAML_SUFFIXES
+from symofros.description.reading import MODEL_SUFFIXES, YAML_SUFFIXES
 from symofros.description.yaml.files import MAX_BYTES
 from symofros.diagrams.files.kind import is_diagram
 from symofros.errors import Problem, SymofrosError
 
 MAX_LISTED = 1000
 MAX_SCANNED = 20_000
-READABLE = (*YAML_SUFFIXES, ".urdf", ".sdf", ".xml")
 
 
 class FileError(SymofrosError):
@@ -86,7 +85,7 @@ class Workspace:
             scanned += len(names) + len(folders)
             for name in sorted(names):
                 path = Path(folder) / name
-                if path.suffix.lower() in READABLE and not name.startswith(".") and self._is_ours(path):
+                if path.suffix.lower() in MODEL_SUFFIXES and not name.startswith(".") and self._is_ours(path):
                     kind = "diagram" if is_diagram(path) else "mechanism"
                     files.append({"path": self.shown(path), "bytes": path.stat().st_size, "kind": kind})
             if len(files) >= MAX_LISTED or scanned > MAX_SCANNED:

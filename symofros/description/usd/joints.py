@@ -1,0 +1,267 @@
+"""Joints of UsdPhysics: how a body moves on another one, or what closes a loop.
+
+A joint has a frame J0 on its first body and a frame J1 on its second; where its coordinates are zero they are one. A
+tree's joint goes from the parent A to the child C, which may be either: with the second as the parent its axis is
+turned round. P lies at A's joint frame with the axes that C has there; where C's joint frame is elsewhere than C, and
+the joint turns, a massless body at the joint carries C.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from symofros.base.rotations import Array
+from symofros.description.constraints import AXES, AxisName, Closure, Constraint, Rod
+from symofros.description.forces import Damper, JointElement
+from symofros.description.frames import Frame
+from symofros.description.joints.joint import Joint, Limits
+from symofros.description.joints.joint_kinds import JointKindName
+from symofros.description.mjcf.geometry import Exact
+from symofros.description.remarks import Remarks
+from symofros.description.usd.masses import Units
+from symofros.description.usd.placement import Pose
+
+Motion = Literal["fixed", "revolute", "prismatic", "cylindrical", "planar", "ball", "none"]
+_AXIS = {"X": 0, "Y": 1, "Z": 2}
+_FREEDOMS = ("transX", "transY", "transZ", "rotX", "rotY", "rotZ")
+# What a closure blocks, of a frame whose z axis is the joint's.
+_BLOCKED: dict[Motion, tuple[tuple[AxisName, ...], tuple[AxisName, ...]]] = {
+    "fixed": (AXES, AXES),
+    "revolute": (AXES, ("x", "y")),
+    "prismatic": (("x", "y"), AXES),
+    "cylindrical": (("x", "y"), ("x", "y")),
+    "planar": (("z",), ("x", "y")),
+    "ball": (AXES, ()),
+}
+# Entries that extensions of UsdPhysics have for the same, the first that is authored counts.
+_ARMATURE = ("physxJoint:armature", "newton:armature")
+_VELOCITY = ("physxJoint:maxJointVelocity", "newton:velocityLimit")
+_FRICTION = ("physxJoint:jointFriction", "newton:friction")
+
+
+@dataclass(frozen=True)
+class UsdJoint:
+    """A joint of the stage.
+
+    Attributes:
+        name: Its name here.
+        row: What the stage states of it.
+        motion: What it lets its second body do on the first.
+        axis: Index of its axis in the joint's frame; of a planar joint its normal.
+        bounds: Least and greatest coordinate, in the stage's units; infinite where there is none.
+        ends: Bodies, by path; "" for the world.
+        frames: J0 in the first body, J1 in the second.
+        where: Place in the file.
+    """
+
+    name: str
+    row: Mapping[str, Any]
+    motion: Motion
+    axis: int
+    bounds: tuple[float, float]
+    ends: tuple[str, str]
+    frames: tuple[Pose, Pose]
+    where: str
+
+
+def motion_of(row: Mapping[str, Any]) -> tuple[Motion, int, tuple[float, float]] | str:
+    """What a joint lets move, its axis, and its bounds; or why it can't be read.
+
+    Args:
+        row: What the stage states of it.
+    """
+    axis, kind = _AXIS[row["axis"] or "X"], row["kind"]
+    bounds = number(row["lower"], -math.inf), number(row["upper"], math.inf)
+    if kind == "fixed":
+        return "fixed", axis, (-math.inf, math.inf)
+    if kind == "spherical":
+        return "ball", axis, (-math.inf, math.inf)
+    if kind in ("revolute", "prismatic"):
+        return kind, axis, bounds
+    return _of_freedoms(row["limits"]) if kind == "d6" else f"its type is '{kind}'"
+
+
+def _of_freedoms(limits: Mapping[str, Any]) -> tuple[Motion, int, tuple[float, float]] | str:
+    """The same of a joint by its degrees of freedom, each of which a limit with low above high locks."""
+    bounds = {name: (number(low, -math.inf), number(high, math.inf)) for name, (low, high) in limits.items()}
+    if any(low == high != 0.0 for low, high in bounds.values()):
+        return "a degree of freedom is held at another place than zero"
+    free = [name for name in _FREEDOMS if name not in bounds or bounds[name][0] < bounds[name][1]]
+    slides, turns = ([_AXIS[name[-1]] for name in free if name.startswith(kind)] for kind in ("trans", "rot"))
+    unbounded = (-math.inf, math.inf)
+    if not free:
+        return "fixed", 0, unbounded
+    if len(free) == 1:
+        return "prismatic" if slides else "revolute", (slides or turns)[0], bounds.get(free[0], unbounded)
+    if len(free) == 6:
+        return "none", 0, unbounded
+    if len(turns) == 3 and not slides:
+        return "ball", 0, unbounded
+    if len(turns) == 1 and slides == turns:
+        return "cylindrical", turns[0], unbounded
+    if len(turns) == 1 and len(slides) == 2 and turns[0] not in slides:
+        return "planar", turns[0], unbounded
+    return f"its free directions are {', '.join(free)}, for which UsdPhysics names no coordinates"
+
+
+def number(value: Any, default: float) -> float:
+    """A number of the stage; infinities are stated by their names."""
+    return default if value is None else float(value)
+
+
+class JointMaker:
+    """Makes joints and constraints of the stage's.
+
+    Args:
+        units: Units of the stage.
+        exact: Makes numbers exact.
+        remarks: Remarks on what is left out.
+        driven_only: Whether joints without a drive are passive: where the stage has drives.
+    """
+
+    def __init__(self, units: Units, exact: Exact, remarks: Remarks, driven_only: bool) -> None:
+        self.units, self.exact, self.remarks, self.driven_only = units, exact, remarks, driven_only
+
+    def placed(self, joint: UsdJoint, parent: str, is_reversed: bool) -> tuple[Joint, Pose]:
+        """A joint of the tree, and the child C in its frame D: not the identity where a massless body carries C.
+
+        Args:
+            joint: The joint.
+            parent: Name of the parent.
+            is_reversed: Whether its second body is the parent.
+        """
+        own, other = joint.frames[::-1] if is_reversed else joint.frames
+        kind: JointKindName = joint.motion if joint.motion != "none" else "free"
+        e = np.eye(3)[joint.axis] * (-1.0 if is_reversed else 1.0)
+        if kind == "planar":
+            # The coordinates lie along x and y of P, the normal along z: the child may have other axes.
+            turned = Pose(np.zeros(3), _with_z(np.eye(3)[joint.axis]))
+            own, other = own @ turned, other @ turned
+            position, rotation = self.exact.placement(own.p, own.R)
+            return Joint(joint.name, kind, parent, None, position, rotation), other.inverse()
+        R = own.R @ other.R.T
+        axis = self.exact.direction(other.R @ e)
+        if kind in ("fixed", "prismatic"):  # A shift is the same wherever it is anchored.
+            position, rotation = self.exact.placement(own.p - R @ other.p, R)
+            held = Pose(np.zeros(3), np.eye(3))
+        else:
+            position, rotation = self.exact.placement(own.p, R)
+            held = Pose(-other.p, np.eye(3))
+        if kind in ("fixed", "ball"):
+            made = Joint(
+                joint.name,
+                kind,
+                parent,
+                None,
+                position,
+                rotation,
+                armature=self._armature(joint) if kind == "ball" else 0.0,
+            )
+            return made, held
+        if kind == "revolute" and joint.bounds == (-math.inf, math.inf):
+            kind = "continuous"
+        made = Joint(
+            joint.name,
+            kind,
+            parent,
+            None,
+            position,
+            rotation,
+            axis,
+            actuated=kind != "cylindrical" and self._is_actuated(joint),
+            limits=self._limits(joint, kind) if kind in ("revolute", "prismatic") else None,
+            elements=tuple(self._elements(joint, 2 if kind == "cylindrical" else 1)),
+            armature=self._armature(joint),
+        )
+        return made, held
+
+    def closing(self, joint: UsdJoint, names: tuple[str, str]) -> tuple[Constraint, list[tuple[str, Frame]]]:
+        """The closure of a joint that no tree needs, with the frames that it stands on.
+
+        Args:
+            joint: The joint.
+            names: Names of its bodies.
+        """
+        self.remarks.add("joints that close loops have no coordinate, input, damper or limit", "joint", joint.name)
+        turned = Pose(np.zeros(3), _with_z(np.eye(3)[joint.axis]))
+        frames = [
+            (name, Frame(f"{joint.name}_{label}", *self.exact.placement((pose @ turned).p, (pose @ turned).R)))
+            for name, pose, label in zip(names, joint.frames, ("first", "second"), strict=True)
+        ]
+        first, second = ((name, frame.name) for name, frame in frames)
+        return Closure(joint.name, first, second, *_BLOCKED[joint.motion]), frames
+
+    def rod(self, joint: UsdJoint, names: tuple[str, str], length: float) -> tuple[Constraint, list[tuple[str, Frame]]]:
+        """A joint that keeps a distance.
+
+        Args:
+            joint: The joint.
+            names: Names of its bodies.
+            length: The distance, in the stage's unit.
+        """
+        frames = [
+            (name, Frame(f"{joint.name}_{label}", self.exact.vector(pose.p)))
+            for name, pose, label in zip(names, joint.frames, ("first", "second"), strict=True)
+        ]
+        first, second = ((name, frame.name) for name, frame in frames)
+        return Rod(joint.name, first, second, length * self.units.meters), frames
+
+    def _is_actuated(self, joint: UsdJoint) -> bool:
+        drives = joint.row["drives"]
+        if not drives:
+            return not self.driven_only
+        self.remarks.add("gains and targets of drives ignored: efforts are inputs", "joint", joint.name)
+        return any(number(drive["maxForce"], math.inf) > 0.0 for drive in drives.values())
+
+    def _limits(self, joint: UsdJoint, kind: JointKindName) -> Limits:
+        unit = math.radians(1.0) if kind == "revolute" else self.units.meters
+        lower, upper = (bound * unit if math.isfinite(bound) else None for bound in joint.bounds)
+        forces = [number(drive["maxForce"], math.inf) for drive in joint.row["drives"].values()]
+        if "urdf:limit:effort" in joint.row["extensions"]:  # As the URDF had it: in SI units.
+            effort = float(joint.row["extensions"]["urdf:limit:effort"])
+        else:
+            effort = min(forces, default=math.inf) * self._effort(kind)
+        velocity = _first(joint, _VELOCITY)
+        return Limits(
+            lower,
+            upper,
+            velocity * unit if velocity is not None and math.isfinite(velocity) else None,
+            effort if math.isfinite(effort) else None,
+        )
+
+    def _effort(self, kind: JointKindName) -> float:
+        """Newtons, or newton metres, in the stage's unit of efforts."""
+        return self.units.kilograms * self.units.meters ** (1 if kind == "prismatic" else 2)
+
+    def _armature(self, joint: UsdJoint) -> float:
+        stated = _first(joint, _ARMATURE) or 0.0
+        return stated * (self.units.kilograms if joint.motion == "prismatic" else self.units.inertia)
+
+    def _elements(self, joint: UsdJoint, speeds: int) -> Iterator[JointElement]:
+        """Dampers; what extensions state of other passive efforts is remarked."""
+        if _first(joint, _FRICTION):
+            self.remarks.add("dry friction of joints ignored", "joint", joint.name)
+        damping = joint.row["extensions"].get("newton:damping")
+        if damping and speeds > 1:
+            self.remarks.add("damping of joints of several coordinates ignored", "joint", joint.name)
+        elif damping:
+            turns = joint.motion != "prismatic"
+            per_unit = math.degrees(1.0) * self.units.inertia if turns else self.units.kilograms
+            yield Damper(float(damping) * per_unit)
+
+
+def _first(joint: UsdJoint, names: tuple[str, ...]) -> float | None:
+    """The first of some entries of extensions that is stated."""
+    stated = (joint.row["extensions"].get(name) for name in names)
+    return next((float(value) for value in stated if value is not None), None)
+
+
+def _with_z(z: Array) -> Array:
+    """The rotation (3, 3) that permutes the axes so that the third one is `z`, itself a coordinate axis."""
+    k = int(np.argmax(np.abs(z)))
+    return np.column_stack([np.eye(3)[(k + 1) % 3], np.eye(3)[(k + 2) % 3], z])

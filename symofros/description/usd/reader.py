@@ -1,0 +1,321 @@
+"""USD in, by UsdPhysics: rigid bodies that joints connect, whose roots float unless a joint holds them.
+
+Coordinates are zero where the two frames of a joint are one, wherever the stage places the bodies. Numbers of single
+precision are read as the shortest decimals that stand for them.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from symofros.description.constraints import Constraint
+from symofros.description.frames import Frame
+from symofros.description.joints.joint import WORLD, Joint
+from symofros.description.mjcf.geometry import Exact
+from symofros.description.reading import Reading, check_snap_tol
+from symofros.description.remarks import Remarks
+from symofros.description.system import RigidBody, System
+from symofros.description.usd.joints import JointMaker, UsdJoint, motion_of, number
+from symofros.description.usd.masses import Masses, Units
+from symofros.description.usd.placement import Pose, affine, turn
+from symofros.description.usd.stage import stage_of
+from symofros.description.usd.tree import Edge, spanning_tree
+from symofros.description.usd.visuals import visual
+from symofros.description.visual import MOST_VISUALS, Visual
+from symofros.errors import DescriptionError, Problem
+
+# Gravity where none is stated [m/s^2], along the downward axis of the stage.
+_GRAVITY = 9.81
+_DOWN = {"Y": (0.0, -1.0, 0.0), "Z": (0.0, 0.0, -1.0)}
+# API schemas that are read, or that say nothing of the mechanics of a body or joint.
+_KNOWN = frozenset(
+    {"PhysicsRigidBodyAPI", "PhysicsMassAPI", "PhysicsArticulationRootAPI", "PhysicsCollisionAPI"}
+    | {"PhysicsMeshCollisionAPI", "PhysicsFilteredPairsAPI", "PhysicsDriveAPI", "PhysicsLimitAPI"}
+    | {"MaterialBindingAPI", "GeomModelAPI", "CollectionAPI", "SemanticsAPI", "SemanticsLabelsAPI", "VisibilityAPI"}
+    | {"PhysxJointAPI", "PhysxArticulationAPI", "PhysxCollisionAPI", "PhysxLimitAPI", "NewtonJointAPI"}
+    | {"NewtonMassAPI", "NewtonArticulationRootAPI", "NewtonCollisionAPI", "NewtonMeshCollisionAPI"}
+)
+# Poses of the stage that differ by more from those at zero are another posture [m, and entries of rotations].
+_POSTURE = 1e-5
+
+
+def read_usd(path: str | os.PathLike[str], *, snap_tol: float) -> Reading:
+    """Read a USD file.
+
+    Args:
+        path: Root layer: .usd, .usda, .usdc, .usdz.
+        snap_tol: Lengths this close to 0 [m], and entries of axes and rotations this close to 0 or +-1, are made
+            exact.
+
+    Returns:
+        The system, and every problem.
+
+    Raises:
+        ArgumentError: `snap_tol` is not a small number.
+    """
+    check_snap_tol(snap_tol)
+    try:
+        importer = _Importer(os.fspath(path), stage_of(path), snap_tol)
+        system = importer.system()
+    except DescriptionError as error:
+        return Reading(None, error.problems)
+    problems = (*importer.problems, *importer.masses.problems)
+    return Reading(None if problems else system, problems)
+
+
+class _Importer:
+    def __init__(self, file: str, stage: Mapping[str, Any], snap_tol: float) -> None:
+        self.file, self.stage = file, stage
+        self.units = Units(float(stage["meters"]), float(stage["kilograms"]))
+        self.exact, self.remarks = Exact(snap_tol), Remarks()
+        self.problems: list[Problem] = []
+        placements = stage["placements"]
+        self.placements = {path: affine(rows, self.units.meters) for path, rows in placements.items()}
+        self.bodies: dict[str, Mapping[str, Any]] = {body["path"]: body for body in stage["bodies"]}
+        self.names = names_of(self.bodies)
+        self.masses = Masses(self.units, self.placements, self.remarks)
+        drives = any(joint["drives"] for joint in stage["joints"])
+        self.maker = JointMaker(self.units, self.exact, self.remarks, drives)
+
+    def where(self, path: str) -> str:
+        """Place in the file."""
+        return f"{self.file}:<{path}>"
+
+    def system(self) -> System | None:
+        """The description; problems are noted on the way."""
+        if not self.bodies:
+            rule, remedy = "a mechanism has prims with PhysicsRigidBodyAPI", "apply UsdPhysics to the stage"
+            self.problems.append(Problem("there is no rigid body", "no such prim", rule, remedy, self.file))
+            return None
+        for path, name in self.names.items():
+            self._remark_body(self.bodies[path], name)
+            if not self.placements[path].is_rigid:
+                rule = "the transform of a rigid body turns, shifts, and scales along its axes"
+                found, remedy = "sheared, mirrored, or without extent", "move the scale into its shapes"
+                what = f"body '{name}' has no frame"
+                self.problems.append(Problem(what, found, rule, remedy, self.where(path)))
+        if self.problems:
+            return None
+        joints = list(self._joints())
+        fixed = [path for path, body in self.bodies.items() if body["enabled"] is False or body["kinematic"]]
+        tree, closing = spanning_tree(list(self.bodies), joints, fixed, self._roots())
+        constraints, frames = self._constraints(closing)
+        shapes = self._shapes()
+        bodies = [
+            replace(body, frames=(*body.frames, *frames.get(body.name, ()))) for body in self._tree(tree, fixed, shapes)
+        ]
+        base = [RigidBody(WORLD, frames=tuple(frames[WORLD]))] if WORLD in frames else []
+        self._remark_posture(tree)
+        gravity = self._gravity()
+        if self.exact.changed:
+            text = f"numbers within {self.exact.tolerance:g} of exact ones made exact"
+            self.remarks.add(text, "number", f"{self.exact.changed} of them")
+        origin: dict[tuple[str, ...], str] = {("body", name): self.where(path) for path, name in self.names.items()}
+        origin |= {(what, joint.name): joint.where for joint in joints for what in ("joint", "constraint")}
+        return System(
+            self.stage["name"] or Path(self.file).stem,
+            (*base, *bodies),
+            gravity=gravity,
+            constraints=tuple(constraints),
+            notes=self.remarks.notes(),
+            origin=origin,
+            visuals=self._visuals(),
+        )
+
+    def _remark_body(self, body: Mapping[str, Any], name: str) -> None:
+        for schema in body["schemas"]:
+            self._remark_schema(schema, "body", name)
+        if any(velocity and any(velocity) for velocity in body["moving"]):
+            self.remarks.add("velocities of bodies ignored: a run has its own start", "body", name)
+
+    def _remark_schema(self, schema: str, noun: str, name: str) -> None:
+        if schema.partition(":")[0] not in _KNOWN:
+            self.remarks.add(f"API schema {schema.partition(':')[0]:.60} ignored", noun, name)
+
+    def _joints(self) -> Iterator[UsdJoint]:
+        """The joints that bind something, in the order of the stage."""
+        rows = {row["path"]: row for row in self.stage["joints"]}
+        for path, name in names_of(rows).items():
+            row = rows[path]
+            for schema in row["schemas"]:
+                self._remark_schema(schema, "joint", name)
+            if row["enabled"] is False:
+                self.remarks.add("joints that are not enabled ignored", "joint", name)
+                continue
+            if any(math.isfinite(number(limit, math.inf)) for limit in row["breaks"]):
+                self.remarks.add("breaking of joints ignored", "joint", name)
+            ends = tuple(self.stage["carrier"].get(row[end], "") for end in ("body0", "body1"))
+            missing = [row[end] for end in ("body0", "body1") if row[end] and row[end] not in self.placements]
+            if missing or row["targets"] > 1 or ends[0] == ends[1]:
+                found = f"body0 <{row['body0']}>, body1 <{row['body1']}>"
+                rule = "a joint joins two different rigid bodies, or one and the world, each by one target"
+                what, remedy = f"joint '{name}' joins no two bodies", "mend its relationships"
+                self.problems.append(Problem(what, found, rule, remedy, self.where(path)))
+                continue
+            motion = motion_of(row | {"limits": {}, "kind": "fixed"} if row["kind"] == "distance" else row)
+            if isinstance(motion, str):
+                rule = (
+                    "fixed, revolute, prismatic, spherical and distance joints; PhysicsJoint that frees one direction, "
+                    "all turns, one axis to turn about and slide along, or a plane"
+                )
+                what, remedy = f"joint '{name}' can't be read", "state it by several joints, with bodies between them"
+                self.problems.append(Problem(what, motion, rule, remedy, self.where(path)))
+                continue
+            if motion[0] == "none":
+                self.remarks.add("joints that bind nothing ignored", "joint", name)
+                continue
+            if row["kind"] == "spherical" and any(
+                row["extensions"].get(key) is not None for key in ("newton:friction", "newton:damping")
+            ):
+                self.remarks.add("friction and damping of ball joints ignored", "joint", name)
+            frames = (self._frame(row, "0", ends[0]), self._frame(row, "1", ends[1]))
+            yield UsdJoint(name, row, *motion, (ends[0], ends[1]), frames, self.where(path))
+
+    def _frame(self, row: Mapping[str, Any], end: str, body: str) -> Pose:
+        """The joint's frame in a body, or in the world."""
+        target = row[f"body{end}"]
+        p, R = np.array(row[f"position{end}"] or (0.0, 0.0, 0.0), dtype=float), turn(row[f"rotation{end}"])
+        if not body and not target:
+            return Pose(p * self.units.meters, R)
+        placed = self.placements[target]
+        if target == body:
+            # The world's own matrices would cost digits.
+            return Pose(p * placed.scale, R)
+        in_world = Pose(placed.point(p), placed.pose.R @ R)
+        return self.placements[body].pose.inverse() @ in_world if body else in_world
+
+    def _roots(self) -> list[str]:
+        """Bodies from which articulations are counted."""
+        return [path for root in self.stage["roots"] for path in self.bodies if path == root]
+
+    def _tree(self, tree: Iterable[Edge], fixed: list[str], shapes: Mapping[str, list[Any]]) -> Iterator[RigidBody]:
+        """The bodies, parents first."""
+        taken = {*self.names.values(), WORLD}
+        joint_names = {edge.joint.name for edge in tree if edge.joint is not None}
+        for edge in tree:
+            name = self.names[edge.child]
+            inertia = self.masses.of(self.bodies[edge.child], name, shapes.get(edge.child, []), self.where(edge.child))
+            if edge.joint is None:
+                yield RigidBody(name, self._root_joint(edge.child, name, fixed, joint_names), inertia)
+                continue
+            parent = self.names.get(edge.parent, WORLD)
+            joint, held = self.maker.placed(edge.joint, parent, edge.is_reversed)
+            position, rotation = self.exact.placement(held.p, held.R)
+            if any(position) or not rotation.is_identity:
+                # A body that moves about a point that is not its origin.
+                carrier = _fresh(f"{name}_at_{joint.name}", taken)
+                yield RigidBody(carrier, joint)
+                joint = Joint(_fresh(f"{name}_fixed", joint_names), "fixed", carrier, None, position, rotation)
+            yield RigidBody(name, joint, inertia)
+
+    def _root_joint(self, path: str, name: str, fixed: list[str], taken: set[str]) -> Joint:
+        """The joint of a body that no other joint holds."""
+        if path in fixed:
+            self.remarks.add("bodies that are kinematic or not enabled are fixed to the world", "body", name)
+            pose = self.placements[path].pose
+            return Joint(_fresh(f"{name}_fixed", taken), "fixed", WORLD, None, *self.exact.placement(pose.p, pose.R))
+        self.remarks.add("bodies without a joint to the world float", "body", name)
+        return Joint(_fresh(f"{name}_floating", taken), "free", WORLD)
+
+    def _constraints(self, closing: Iterable[UsdJoint]) -> tuple[list[Constraint], dict[str, list[Frame]]]:
+        """Constraints of the joints that no tree needs, with their frames by body."""
+        constraints: list[Constraint] = []
+        frames: dict[str, list[Frame]] = {}
+        for joint in closing:
+            names = (self.names.get(joint.ends[0], WORLD), self.names.get(joint.ends[1], WORLD))
+            if joint.row["kind"] == "distance":
+                least, most = (number(bound, -1.0) for bound in joint.row["distances"])
+                if not least == most > 0.0:
+                    self.remarks.add("bounds of distances ignored", "joint", joint.name)
+                    continue
+                constraint, own = self.maker.rod(joint, names, most)
+            else:
+                constraint, own = self.maker.closing(joint, names)
+            constraints.append(constraint)
+            for name, frame in own:
+                frames.setdefault(name, []).append(frame)
+        return constraints, frames
+
+    def _shapes(self) -> dict[str, list[Any]]:
+        """Collision shapes of each body."""
+        shapes: dict[str, list[Any]] = {}
+        for shape in self.stage["shapes"]:
+            if shape["collides"]:
+                shapes.setdefault(shape["body"], []).append(shape)
+        return shapes
+
+    def _visuals(self) -> dict[str, tuple[Visual, ...]]:
+        """How bodies look."""
+        seen: dict[str, list[Visual]] = {}
+        for shape in self.stage["shapes"]:
+            if not shape["seen"]:
+                continue
+            name, count = self.names[shape["body"]], sum(map(len, seen.values()))
+            frame, placed = self.placements[shape["body"]].pose, self.placements[shape["path"]]
+            drawn = visual(shape, frame, placed) if count < MOST_VISUALS else None
+            if drawn is None:
+                self.remarks.add("visual shapes that can't be drawn ignored", "body", name)
+            else:
+                seen.setdefault(name, []).append(drawn)
+        return {name: tuple(shapes) for name, shapes in seen.items()}
+
+    def _gravity(self) -> tuple[float, float, float]:
+        """Acceleration of gravity [m/s^2]: the first scene's, or the earth's."""
+        scenes = self.stage["scenes"]
+        if len(scenes) > 1:
+            self.remarks.add("physics scenes after the first ignored", "scene", scenes[1]["path"])
+        scene = scenes[0] if scenes else {}
+        direction = scene.get("gravityDirection")
+        down = direction if direction and any(direction) else _DOWN.get(self.stage["up"], _DOWN["Z"])
+        stated = number(scene.get("gravityMagnitude"), -math.inf)
+        magnitude = _GRAVITY if stated < 0.0 else stated * self.units.meters
+        x, y, z = (magnitude * float(e) / math.hypot(*down) + 0.0 for e in down)
+        return x, y, z
+
+    def _remark_posture(self, tree: Iterable[Edge]) -> None:
+        """Remark bodies that the stage does not place where joints' coordinates are zero."""
+        for edge in tree:
+            if edge.joint is None:
+                continue
+            first, second = (
+                (self.placements[end].pose if end else Pose(np.zeros(3), np.eye(3))) @ frame
+                for end, frame in zip(edge.joint.ends, edge.joint.frames, strict=True)
+            )
+            if max(np.abs(first.p - second.p).max(), np.abs(first.R - second.R).max()) > _POSTURE:
+                text = "the stage shows another posture than that of zero coordinates, at which joints' frames are one"
+                self.remarks.add(text, "joint", edge.joint.name)
+
+
+def names_of(paths: Iterable[str]) -> dict[str, str]:
+    """A name of each path: its last part, and as many before it as tell it from others."""
+    paths = list(paths)
+    names: dict[str, str] = {}
+    depth = 1
+    while len(names) < len(paths):
+        wanted: dict[str, list[str]] = {}
+        for path in paths:
+            wanted.setdefault("_".join(path.strip("/").split("/")[-depth:]), []).append(path)
+        for name, alike in wanted.items():
+            if len(alike) == 1 and alike[0] not in names and name not in names.values() and name != WORLD:
+                names[alike[0]] = name
+        depth += 1
+        if depth > max(path.count("/") for path in paths) + 1:
+            for path in paths:
+                if path not in names:
+                    names[path] = _fresh("_".join(path.strip("/").split("/")), {*names.values(), WORLD})
+    return {path: names[path] for path in paths}
+
+
+def _fresh(wanted: str, taken: set[str]) -> str:
+    """The wanted name, with underscores behind it while it is taken; it is taken then."""
+    while wanted in taken:
+        wanted += "_"
+    taken.add(wanted)
+    return wanted

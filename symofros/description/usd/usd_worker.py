@@ -1,0 +1,289 @@
+"""A process that reads one USD stage: a script of its own, which imports nothing else of this package.
+
+Layers are parsed by OpenUSD's C++, which a file from elsewhere may crash or keep busy; here memory, time and
+environment are bounded. It reads {"file"} as JSON, and writes what the stage states of bodies, joints, shapes and
+gravity, in the stage's units, as {"stage"}; or {"fault"}. Matrices are USD's, which multiply rows: p' = p M.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import struct
+import sys
+from typing import Any
+
+MEMORY = 4 << 30  # [bytes]; OpenUSD maps its files, and reserves stacks for threads.
+SECONDS = 60  # of processor time
+MAX_PRIMS = 200_000
+MAX_FAULT = 2000  # Characters of what went wrong, of which the parent shows fewer.
+MAX_LAYERS = 10_000
+
+# Joint prim -> kind.
+_JOINTS = {
+    "PhysicsFixedJoint": "fixed",
+    "PhysicsRevoluteJoint": "revolute",
+    "PhysicsPrismaticJoint": "prismatic",
+    "PhysicsSphericalJoint": "spherical",
+    "PhysicsDistanceJoint": "distance",
+    "PhysicsJoint": "d6",
+}
+_FREEDOMS = ("transX", "transY", "transZ", "rotX", "rotY", "rotZ")
+# Shapes of UsdGeom, with the attributes that are their sizes.
+_SHAPES = {
+    "Cube": ("size",),
+    "Sphere": ("radius",),
+    "Cylinder": ("radius", "height", "axis"),
+    "Capsule": ("radius", "height", "axis"),
+    "Cone": ("radius", "height", "axis"),
+    "Plane": ("axis",),
+    "Mesh": (),
+    "Cylinder_1": (),
+    "Capsule_1": (),
+    "Points": (),
+}
+# Attributes of joints that extensions of UsdPhysics define, which are read where they are authored.
+_EXTENSIONS = (
+    "physxJoint:armature",
+    "physxJoint:jointFriction",
+    "physxJoint:maxJointVelocity",
+    "newton:armature",
+    "newton:damping",
+    "newton:friction",
+    "newton:velocityLimit",
+    "urdf:limit:effort",
+)
+
+
+def bound() -> None:
+    """Bound memory and time, where the system can."""
+    try:
+        import resource
+    except ImportError:
+        return
+    for what, most in ((resource.RLIMIT_AS, MEMORY), (resource.RLIMIT_CPU, SECONDS), (resource.RLIMIT_FSIZE, 0)):
+        hard = resource.getrlimit(what)[1]
+        least = most if hard == resource.RLIM_INFINITY else min(most, hard)  # A bound that is set is never raised.
+        try:
+            resource.setrlimit(what, (least, least))
+        except (OSError, ValueError):  # Not every system bounds the address space.
+            continue
+
+
+def number(value: Any) -> Any:
+    """A value of an attribute as JSON has it: numbers, lists of them, or a text; infinities and NaN by their names.
+
+    Numbers of single precision are the shortest decimals that stand for them, which is what a text file states.
+    """
+    if value is None or isinstance(value, bool | str | int):
+        return value
+    if isinstance(value, float):
+        return value if math.isfinite(value) else repr(value)
+    if hasattr(value, "GetReal"):  # A quaternion: w, x, y, z.
+        return [number(value.GetReal()), *number(value.GetImaginary())]
+    return [number(item) for item in value]
+
+
+def shortest(value: Any, single: bool) -> Any:
+    """Numbers of single precision by their shortest decimals."""
+    if isinstance(value, list):
+        return [shortest(item, single) for item in value]
+    if not single or not isinstance(value, float):
+        return value
+    for digits in range(6, 10):
+        text = float(f"{value:.{digits}g}")
+        if _single(text) == value:
+            return text
+    return value
+
+
+def _single(value: float) -> float:
+    return float(struct.unpack("f", struct.pack("f", value))[0])
+
+
+def authored(prim: Any, name: str) -> Any:
+    """The value of an attribute where the file states one; None elsewhere."""
+    attribute = prim.GetAttribute(name)
+    if not attribute or not attribute.HasAuthoredValue():
+        return None
+    type_name = str(attribute.GetTypeName())
+    single = any(word in type_name for word in ("float", "3f", "quatf", "half", "3h", "quath"))
+    return shortest(number(attribute.Get(_time())), single)
+
+
+def _time() -> Any:
+    from pxr import Usd
+
+    return Usd.TimeCode.EarliestTime()
+
+
+def stage_data(file: str) -> dict[str, Any]:
+    """What a stage states.
+
+    Args:
+        file: Path of its root layer.
+    """
+    from pxr import Usd, UsdGeom, UsdPhysics
+
+    stage = Usd.Stage.Open(file)
+    layers = [layer.realPath for layer in stage.GetUsedLayers() if not layer.anonymous]
+    if len(layers) > MAX_LAYERS:
+        return {"fault": f"it is made of more than {MAX_LAYERS} layers"}
+    cache = UsdGeom.XformCache(_time())
+    data: dict[str, Any] = {
+        "name": stage.GetDefaultPrim().GetName() if stage.GetDefaultPrim() else "",
+        "meters": UsdGeom.GetStageMetersPerUnit(stage),
+        "kilograms": UsdPhysics.GetStageKilogramsPerUnit(stage),
+        "up": str(UsdGeom.GetStageUpAxis(stage)),
+        "layers": layers,
+        "scenes": [],
+        "bodies": [],
+        "joints": [],
+        "shapes": [],
+        "roots": [],
+        "placements": {},
+    }
+    prims = Usd.PrimRange(stage.GetPseudoRoot(), Usd.TraverseInstanceProxies())
+    carrier: dict[str, str] = {}  # Rigid body that a prim belongs to, keyed by path.
+    for count, prim in enumerate(prims):
+        if count > MAX_PRIMS:
+            return {"fault": f"it has more than {MAX_PRIMS} prims"}
+        path, kind = str(prim.GetPath()), str(prim.GetTypeName())
+        own = carrier.get(str(prim.GetPath().GetParentPath()), "")
+        if prim.HasAPI(UsdPhysics.RigidBodyAPI):
+            own = path
+            data["bodies"].append(_body(prim))
+        carrier[path] = own
+        if prim.HasAPI(UsdPhysics.ArticulationRootAPI):
+            data["roots"].append(path)
+        if prim.IsA(UsdPhysics.Scene):
+            data["scenes"].append(_scene(prim))
+        elif prim.IsA(UsdPhysics.Joint):
+            data["joints"].append(_joint(prim, kind))
+        elif prim.IsA(UsdGeom.Gprim) and own:
+            data["shapes"].append(_shape(prim, kind, own))
+    data["carrier"] = {path: body for path, body in carrier.items() if body}
+    wanted = {body["path"] for body in data["bodies"]} | {shape["path"] for shape in data["shapes"]}
+    wanted |= {end for joint in data["joints"] for end in (joint["body0"], joint["body1"]) if end}
+    for path in sorted(wanted):
+        prim = stage.GetPrimAtPath(path)
+        if prim:
+            matrix = cache.GetLocalToWorldTransform(prim)
+            data["placements"][path] = [number(list(matrix.GetRow(row))) for row in range(4)]
+    return {"stage": data}
+
+
+def _schemas(prim: Any) -> list[str]:
+    """Names of the API schemas that are applied to a prim, unknown ones too."""
+    return [str(name) for name in prim.GetPrimTypeInfo().GetAppliedAPISchemas()]
+
+
+def _body(prim: Any) -> dict[str, Any]:
+    return {
+        "path": str(prim.GetPath()),
+        "enabled": authored(prim, "physics:rigidBodyEnabled"),
+        "kinematic": authored(prim, "physics:kinematicEnabled"),
+        "moving": [authored(prim, f"physics:{name}") for name in ("velocity", "angularVelocity")],
+        "schemas": _schemas(prim),
+        "inertia": authored(prim, "newton:inertia"),
+        **_mass(prim),
+    }
+
+
+def _mass(prim: Any) -> dict[str, Any]:
+    names = ("mass", "density", "centerOfMass", "diagonalInertia", "principalAxes")
+    return {name: authored(prim, f"physics:{name}") for name in names}
+
+
+def _scene(prim: Any) -> dict[str, Any]:
+    names = ("gravityDirection", "gravityMagnitude")
+    return {"path": str(prim.GetPath()), **{name: authored(prim, f"physics:{name}") for name in names}}
+
+
+def _joint(prim: Any, kind: str) -> dict[str, Any]:
+    from pxr import UsdPhysics
+
+    ends = []
+    for relationship in (UsdPhysics.Joint(prim).GetBody0Rel(), UsdPhysics.Joint(prim).GetBody1Rel()):
+        targets = relationship.GetForwardedTargets()
+        ends.append([str(target) for target in targets])
+    schemas = _schemas(prim)
+    drives = [name.partition(":")[2] for name in schemas if name.startswith("PhysicsDriveAPI:")]
+    return {
+        "path": str(prim.GetPath()),
+        "kind": _JOINTS.get(kind, kind),
+        "body0": ends[0][0] if ends[0] else "",
+        "body1": ends[1][0] if ends[1] else "",
+        "targets": max(len(ends[0]), len(ends[1])),
+        "schemas": schemas,
+        "position0": authored(prim, "physics:localPos0"),
+        "rotation0": authored(prim, "physics:localRot0"),
+        "position1": authored(prim, "physics:localPos1"),
+        "rotation1": authored(prim, "physics:localRot1"),
+        "axis": authored(prim, "physics:axis"),
+        "lower": authored(prim, "physics:lowerLimit"),
+        "upper": authored(prim, "physics:upperLimit"),
+        "enabled": authored(prim, "physics:jointEnabled"),
+        "excluded": authored(prim, "physics:excludeFromArticulation"),
+        "breaks": [authored(prim, f"physics:{name}") for name in ("breakForce", "breakTorque")],
+        "distances": [authored(prim, f"physics:{name}") for name in ("minDistance", "maxDistance")],
+        "limits": {
+            name: [authored(prim, f"limit:{name}:physics:{end}") for end in ("low", "high")]
+            for name in (*_FREEDOMS, "distance")
+            if f"PhysicsLimitAPI:{name}" in schemas
+        },
+        "drives": {name: {"maxForce": authored(prim, f"drive:{name}:physics:maxForce")} for name in drives},
+        "extensions": {name: value for name in _EXTENSIONS if (value := authored(prim, name)) is not None},
+    }
+
+
+def _shape(prim: Any, kind: str, body: str) -> dict[str, Any]:
+    from pxr import UsdGeom, UsdPhysics, UsdShade
+
+    density = None
+    material = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial("physics")[0]
+    if material:
+        density = authored(material.GetPrim(), "physics:density")
+    colors = UsdGeom.Gprim(prim).GetDisplayColorAttr().Get(_time())
+    return {
+        "path": str(prim.GetPath()),
+        "body": body,
+        "kind": kind,
+        "sizes": {name: number(prim.GetAttribute(name).Get(_time())) for name in _SHAPES.get(kind, ())},
+        "collides": prim.HasAPI(UsdPhysics.CollisionAPI) and authored(prim, "physics:collisionEnabled") is not False,
+        "seen": str(UsdGeom.Imageable(prim).ComputePurpose()) in ("default", "render"),
+        "color": number(colors[0]) if colors else None,
+        "material density": density,
+        **{name: value for name, value in _mass(prim).items() if name in ("mass", "density")},
+    }
+
+
+def printable(text: str) -> str:
+    """The beginning of a text, its control characters and surrogates escaped, for terminals and logs."""
+    return "".join(c if c.isprintable() or c == "\n" else f"\\u{ord(c):04x}" for c in text[:MAX_FAULT])
+
+
+def main() -> None:
+    """Read what is asked for."""
+    task = json.load(sys.stdin)
+    answers = os.dup(1)
+    os.dup2(2, 1)  # What OpenUSD prints is no answer.
+    os.environ.clear()
+    os.environ["PXR_WORK_THREAD_LIMIT"] = "1"
+    bound()
+    try:
+        import pxr.Usd  # noqa: F401
+    except ImportError:
+        answer: dict[str, Any] = {"absent": "usd-core"}
+    else:
+        try:
+            answer = stage_data(task["file"])
+        except BaseException as error:  # Also what is no Exception: the parent says it, whatever it is.
+            answer = {"fault": printable(str(error).strip() or type(error).__name__)}
+    with os.fdopen(answers, "w", encoding="utf-8") as out:
+        out.write(json.dumps(answer))
+
+
+if __name__ == "__main__":
+    main()

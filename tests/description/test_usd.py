@@ -1,0 +1,374 @@
+"""USD by UsdPhysics: units, frames and directions of joints, mass properties, loops; what is refused or remarked."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from symofros.description.usd import stage as usd_stage
+from symofros.description.usd.masses import _unit_shape
+from symofros.description.usd.reader import names_of
+from symofros.description.usd.usd_worker import shortest
+from tests.description.usd_models import body, freedoms, joint, placed, prim, shape, stage
+
+pytest.importorskip("pxr.Usd")
+
+Load = Callable[[str], sf.System]
+ARM = {"mass": 2.0, "centerOfMass": (0.1, 0.2, -0.3), "diagonalInertia": (0.3, 0.4, 0.5)}
+HALF = math.sqrt(0.5)
+
+
+@pytest.fixture
+def load(tmp_path: Path) -> Load:
+    def read(text: str) -> sf.System:
+        file = tmp_path / "robot.usda"
+        file.write_text(text)
+        return sf.load(file)
+
+    return read
+
+
+def dynamics(system: sf.System, q: list[float], v: list[float]) -> tuple[Any, Any]:
+    model = sf.compile(system, sf.Options(backend="interpreter"))
+    return model.mass_matrix(np.array(q)), model.bias(np.array(q), np.array(v))
+
+
+def arm(**options: Any) -> sf.System:
+    """One link on the world, by our own description."""
+    joint = sf.Joint("hinge", "revolute", axis=(0.0, 1.0, 0.0), position=(0.5, 0.0, 1.0), actuated=True)
+    inertia = sf.Inertia(2.0, (0.1, 0.2, -0.3), (0.3, 0.4, 0.5))
+    return sf.System("robot", (sf.RigidBody("arm", joint, inertia),), **options)
+
+
+def hinge(**changes: Any) -> str:
+    stated: dict[str, Any] = {"axis": "Y", "localPos0": (0.5, 0.0, 1.0)} | changes
+    return joint("Revolute", "hinge", "", "arm", **stated)
+
+
+def test_a_link_on_a_hinge_is_what_it_states(load: Load) -> None:
+    system = load(stage(body("arm", at=(0.5, 0, 1), **ARM), hinge(lowerLimit=-90.0, upperLimit=45.0)))
+    (link,) = system.bodies
+    assert link.joint is not None and link.joint.kind == "revolute" and link.joint.actuated
+    assert link.joint.limits is not None and link.joint.limits.lower == pytest.approx(-math.pi / 2, abs=1e-15)
+    for mine, stated in zip(dynamics(system, [0.4], [0.7]), dynamics(arm(), [0.4], [0.7]), strict=True):
+        np.testing.assert_allclose(mine, stated, rtol=1e-15)
+
+
+def test_units_of_the_stage_are_taken_into_account(load: Load) -> None:
+    """Centimetres and grams, y upwards: the same mechanism in SI units, gravity along -y."""
+    link = {"mass": 2000.0, "centerOfMass": (10.0, 20.0, -30.0), "diagonalInertia": (3.0e6, 4.0e6, 5.0e6)}
+    text = stage(
+        body("arm", at=(50, 0, 100), **link),
+        hinge(localPos0=(50.0, 0.0, 100.0)),
+        meters=0.01,
+        kilograms=0.001,
+        up="Y",
+    )
+    system = load(text)
+    assert system.gravity == pytest.approx((0.0, -9.81, 0.0))
+    reference = arm(gravity=(0.0, -9.81, 0.0))
+    for mine, stated in zip(dynamics(system, [0.4], [0.7]), dynamics(reference, [0.4], [0.7]), strict=True):
+        np.testing.assert_allclose(mine, stated, rtol=1e-14)
+
+
+@pytest.mark.parametrize("kind", ["Revolute", "Prismatic"])
+def test_a_joint_stated_from_child_to_parent_is_the_same_joint(load: Load, kind: str) -> None:
+    """Coordinates, limits and directions stay: only who carries whom is turned round."""
+    base = body("base", mass=5.0, diagonalInertia=(1, 2, 3), centerOfMass=(0, 0, 0))
+    link = body("arm", at=(0.5, 0, 1), **ARM)
+    own = {"axis": "X", "localPos0": (0.5, 0.0, 1.0), "localRot0": (HALF, 0.0, HALF, 0.0), "lowerLimit": -1.0}
+    other = {"axis": "X", "localPos1": (0.5, 0.0, 1.0), "localRot1": (HALF, 0.0, HALF, 0.0), "lowerLimit": -1.0}
+    fixed = joint("Fixed", "clamp", "", "base")
+    straight = load(stage(base, link, fixed, joint(kind, "j", "base", "arm", **own)))
+    turned = load(stage(base, link, fixed, joint(kind, "j", "arm", "base", **other)))
+    # Seen from the arm, the base moves by q: so the arm moves on the base by -q.
+    (M, h), (N, k) = dynamics(straight, [0.3], [0.7]), dynamics(turned, [-0.3], [-0.7])
+    np.testing.assert_allclose(N, M, rtol=1e-14)
+    np.testing.assert_allclose(k, -h, atol=1e-13)
+
+
+def test_a_body_that_turns_about_another_point_than_its_origin_has_the_pose_that_is_stated(load: Load) -> None:
+    turned = (HALF, 0.0, 0.0, HALF)  # About z by a right angle.
+    text = stage(
+        body("arm", at=(0.5, -0.25, 0), **ARM),
+        joint("Revolute", "j", "", "arm", axis="Z", localPos0=(0.5, 0, 0), localPos1=(0.25, 0, 0), localRot1=turned),
+    )
+    model = sf.compile(load(text), sf.Options(backend="interpreter"))
+    assert model.nv == 1 and [b.name for b in load(text).bodies] == ["arm_at_j", "arm"]
+    for angle in (0.0, 0.7):
+        p, R = model.frame_pose("arm", np.array([angle]))
+        # J1 stands at 90 degrees in the arm: the arm at -90 degrees where the coordinate is zero.
+        own = angle - math.pi / 2
+        np.testing.assert_allclose(R[:2, 0], [math.cos(own), math.sin(own)], atol=1e-15)
+        np.testing.assert_allclose(p + R @ [0.25, 0, 0], [0.5, 0, 0], atol=1e-15)
+
+
+def test_a_joint_named_at_a_prim_within_a_scaled_body_lies_there(load: Load) -> None:
+    site = prim("Xform", "site", *placed((5, 0, 0)))
+    base = body("base", site, at=(1, 0, 0), scale=(2, 2, 2), mass=1.0, diagonalInertia=(1, 1, 1))
+    link = body("arm", at=(13, 0, 0), **ARM)
+    text = stage(base, link, joint("Revolute", "j", "base/site", "arm", axis="Z", localPos0=(1, 0, 0)))
+    system = load(text)
+    carried = next(b for b in system.bodies if b.name == "arm")
+    assert carried.joint is not None and carried.joint.position == (12.0, 0.0, 0.0)
+    assert not any("posture" in note for note in system.notes)
+
+
+LOCKED = (1.0, -1.0)
+
+
+@pytest.mark.parametrize(
+    ("free", "kind"),
+    [
+        ({}, "fixed"),
+        ({"rotY"}, "continuous"),
+        ({"transZ"}, "prismatic"),
+        ({"rotX", "rotY", "rotZ"}, "ball"),
+        ({"rotY", "transY"}, "cylindrical"),
+        ({"transX", "transZ", "rotY"}, "planar"),
+    ],
+)
+def test_degrees_of_freedom_name_the_joint(load: Load, free: set[str], kind: str) -> None:
+    names = ("transX", "transY", "transZ", "rotX", "rotY", "rotZ")
+    limits = {name: LOCKED for name in names if name not in free}
+    system = load(stage(body("arm", **ARM), joint("", "j", "", "arm", **freedoms(limits)), body("other", **ARM)))
+    made = system.bodies[0].joint
+    assert made is not None and made.kind == kind and made.name == "j"
+    if kind == "planar":  # Its normal is y of the joint, z of ours.
+        model = sf.compile(system, sf.Options(backend="interpreter"))
+        q = model.neutral()
+        q[[list(model.names.q).index(f"j.{name}") for name in ("x", "y", "angle")]] = 0.2, 0.3, 0.5
+        p, R = model.frame_pose("arm", q)
+        assert p[1] == pytest.approx(0.0, abs=1e-15) and R[1, 1] == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    "limits",
+    [{"transX": LOCKED, "transY": LOCKED, "transZ": LOCKED, "rotX": LOCKED}, {"rotX": LOCKED}, {"transX": (0.1, 0.1)}],
+)
+def test_degrees_of_freedom_without_coordinates_of_their_own_are_refused(load: Load, limits: dict[str, Any]) -> None:
+    with pytest.raises(sf.DescriptionError, match="joint 'j' can't be read"):
+        load(stage(body("arm", **ARM), joint("", "j", "", "arm", **freedoms(limits))))
+
+
+def test_a_joint_outside_of_the_articulation_closes_the_loop(load: Load) -> None:
+    """A parallelogram: the closure holds where it stands, and leaves one freedom."""
+    light = {"mass": 1.0, "centerOfMass": (0, 0, 0), "diagonalInertia": (0.1, 0.1, 0.1)}
+    text = stage(
+        body("left", at=(0, 0, 0), **light),
+        body("right", at=(1, 0, 0), **light),
+        body("top", at=(0, 1, 0), **light),
+        joint("Revolute", "a", "", "left", axis="Z"),
+        joint("Revolute", "b", "", "right", axis="Z", localPos0=(1, 0, 0)),
+        joint("Revolute", "c", "left", "top", axis="Z", localPos0=(0, 1, 0)),
+        joint(
+            "Revolute",
+            "d",
+            "top",
+            "right",
+            axis="Z",
+            localPos0=(1, 0, 0),
+            localPos1=(0, 1, 0),
+            excludeFromArticulation=True,
+        ),
+    )
+    system = load(text)
+    assert [constraint.name for constraint in system.constraints] == ["d"]
+    model = sf.compile(system, sf.Options(backend="interpreter"))
+    names = list(model.names.q)
+    q = np.array([{"a": 0.3, "b": 0.3, "c": -0.3}[name] for name in names])
+    assert np.abs(model.constraint(q)).max() < 1e-15
+    assert np.linalg.matrix_rank(model.constraint_jacobian(q)) == 2
+
+
+def test_a_distance_that_is_kept_is_a_rod(load: Load) -> None:
+    text = stage(
+        body("arm", at=(1, 0, 0), **ARM),
+        joint("Distance", "d", "", "arm", minDistance=1.0, maxDistance=1.0),
+        joint("Distance", "e", "", "arm", minDistance=0.5, maxDistance=2.0),
+    )
+    system = load(text)
+    (rod,) = system.constraints
+    assert isinstance(rod, sf.Rod) and rod.length == 1.0
+    assert any("bounds of distances ignored" in note for note in system.notes)
+
+
+@pytest.mark.parametrize(
+    ("kind", "sizes", "solid"),
+    [
+        ("Cube", {"size": 0.5}, sf.solids.box(1000.0, 0.5, 0.5, 0.5)),
+        ("Sphere", {"radius": 0.5}, sf.solids.sphere(1000.0, 0.5)),
+        ("Cylinder", {"radius": 0.2, "height": 0.7, "axis": "X"}, sf.solids.cylinder(1000.0, 0.2, 0.7, axis="x")),
+    ],
+)
+def test_what_a_body_leaves_out_follows_from_its_collision_shapes(
+    load: Load, kind: str, sizes: dict[str, Any], solid: sf.Inertia
+) -> None:
+    (made,) = load(stage(body("arm", shape(kind, "c", **sizes)))).bodies
+    assert isinstance(made, sf.RigidBody) and made.inertia is not None
+    assert made.inertia.mass == pytest.approx(solid.mass, rel=1e-14)
+    assert made.inertia.moments == pytest.approx(solid.moments, rel=1e-14)
+
+
+def test_the_density_of_a_shape_comes_before_that_of_its_body_and_a_mass_before_both(load: Load) -> None:
+    def mass(*lines: str, **stated: Any) -> float:
+        (made,) = load(stage(body("arm", shape("Cube", "c", *lines, size=1.0), **stated))).bodies
+        assert isinstance(made, sf.RigidBody) and made.inertia is not None
+        return float(made.inertia.mass)  # type: ignore[arg-type]
+
+    assert mass() == 1000.0 and mass(density=10.0) == 10.0 and mass(mass=3.0, density=10.0) == 3.0
+    assert mass("float physics:density = 20", density=10.0) == 20.0
+    assert mass("float physics:mass = 7", "float physics:density = 20", density=10.0) == 7.0
+
+
+@pytest.mark.parametrize("axis", "XYZ")
+@pytest.mark.parametrize("kind", ["Cylinder", "Capsule", "Cone"])
+def test_integrals_over_bodies_of_revolution_are_those_over_their_slices(kind: str, axis: str) -> None:
+    r, h, n = 0.3, 0.8, 200_001
+    half = h / 2 + (r if kind == "Capsule" else 0.0)
+    z = np.linspace(-half, half, n)
+    if kind == "Cone":
+        radius = r * (0.5 - z / h)
+    elif kind == "Capsule":
+        radius = np.sqrt(np.maximum(r * r - np.maximum(np.abs(z) - h / 2, 0.0) ** 2, 0.0))
+    else:
+        radius = np.full(n, r)
+    area = math.pi * radius**2
+    volume = np.trapezoid(area, z)
+    center = np.trapezoid(area * z, z) / volume
+    across = np.trapezoid(area * radius**2 / 4.0, z)
+    along = np.trapezoid(area * (z - center) ** 2, z)
+    extent = _unit_shape(kind, {"radius": r, "height": h, "axis": axis})
+    assert extent is not None
+    k = "XYZ".index(axis)
+    assert extent.size == pytest.approx(volume, rel=1e-9) and extent.center[k] == pytest.approx(center, abs=1e-9)
+    assert np.diag(extent.E) == pytest.approx(np.where(np.arange(3) == k, along, across), rel=1e-8)
+
+
+def test_shapes_scale_shift_and_add_up(load: Load) -> None:
+    """Two halves of a box, one of them scaled from a cube, are the box."""
+    halves = (shape("Cube", f"c{k}", *placed((x, 0, 0), scale=(1, 2, 3)), size=1.0) for k, x in enumerate((-0.5, 0.5)))
+    (made,) = load(stage(body("arm", *halves))).bodies
+    whole = sf.solids.box(1000.0, 2.0, 2.0, 3.0)
+    assert isinstance(made, sf.RigidBody) and made.inertia is not None
+    assert made.inertia.mass == pytest.approx(whole.mass) and made.inertia.moments == pytest.approx(whole.moments)
+
+
+def test_principal_axes_turn_the_moments(load: Load) -> None:
+    (made,) = load(stage(body("arm", **ARM, principalAxes=(HALF, HALF, 0, 0)))).bodies
+    assert isinstance(made, sf.RigidBody) and made.inertia is not None
+    assert made.inertia.moments == pytest.approx((0.3, 0.5, 0.4, 0, 0, 0), abs=1e-15)
+
+
+def test_incomplete_mass_properties_are_refused(load: Load) -> None:
+    with pytest.raises(sf.DescriptionError, match="mass properties are not complete"):
+        load(stage(body("arm", shape("Mesh", "c"), mass=1.0)))
+    with pytest.raises(sf.DescriptionError, match="mass properties are not complete"):
+        load(stage(body("arm", mass=1.0)))
+
+
+def test_drives_limits_and_entries_of_extensions(load: Load) -> None:
+    extra = (
+        "float drive:angular:physics:maxForce = 12",
+        "float drive:angular:physics:stiffness = 3",
+        "float physxJoint:armature = 0.25",
+        "float newton:damping = 0.5",
+        "float newton:velocityLimit = 180",
+    )
+    driven = joint("Revolute", "j", "", "arm", ("PhysicsDriveAPI:angular", "FooAPI"), extra, axis="Z")
+    other = joint("Prismatic", "k", "arm", "tip", axis="Z", localPos0=(0, 0, 1))
+    system = load(stage(body("arm", **ARM), body("tip", at=(0, 0, 1), **ARM), driven, other))
+    first, second = (b.joint for b in system.bodies)
+    assert first is not None and first.actuated and first.armature == 0.25
+    assert second is not None and not second.actuated, "a stage with drives says which joints have none"
+    (damper,) = first.elements
+    assert isinstance(damper, sf.Damper) and damper.coefficient == pytest.approx(0.5 * math.degrees(1.0))
+    notes = " ".join(system.notes)
+    assert "gains and targets of drives ignored" in notes and "API schema FooAPI ignored" in notes
+
+
+def test_gravity_of_the_scene(load: Load) -> None:
+    stated = "vector3f physics:gravityDirection = (0, 3, 4)", "float physics:gravityMagnitude = 500"
+    scene = prim("PhysicsScene", "scene", *stated)
+    system = load(stage(body("arm", **ARM), scene, meters=0.01))
+    assert system.gravity == pytest.approx((0.0, 3.0, 4.0))
+
+
+def test_bodies_that_stand_still_or_float(load: Load) -> None:
+    text = stage(
+        body("table", at=(0, 0, 1), kinematicEnabled=True, **ARM),
+        body("ball", at=(0, 0, 2), velocity=(1, 0, 0), **ARM),
+        joint("Revolute", "off", "table", "ball", jointEnabled=False),
+    )
+    system = load(text)
+    kinds = {b.name: b.joint.kind for b in system.bodies if b.joint is not None}
+    assert kinds == {"table": "fixed", "ball": "free"}
+    notes = " ".join(system.notes)
+    for words in ("kinematic or not enabled", "float", "velocities of bodies ignored", "not enabled ignored: 1 joint"):
+        assert words in notes
+
+
+def test_another_posture_of_the_stage_is_said(load: Load) -> None:
+    system = load(stage(body("arm", at=(0.7, 0, 1), **ARM), hinge()))
+    assert any("another posture" in note for note in system.notes)
+
+
+def test_names_are_the_shortest_that_tell_prims_apart() -> None:
+    paths = ("/a/arm/link", "/b/arm/link", "/b/hand", "/world")
+    assert names_of(paths) == dict(zip(paths, ("a_arm_link", "b_arm_link", "hand", "world_"), strict=True))
+
+
+@pytest.mark.parametrize("stated", [0.089159, 0.1, 1.3877788e-17, 0.70710677, 3.0, -12.5])
+def test_numbers_of_single_precision_are_those_of_the_text(stated: float) -> None:
+    single = float(np.float32(stated))
+    assert shortest(single, True) == pytest.approx(stated, rel=0.0, abs=0.0)
+    assert shortest(single, False) == single
+
+
+def test_layers_of_other_folders_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "secret.usda").write_text(stage(body("arm", **ARM)))
+    inside = tmp_path / "model"
+    inside.mkdir()
+    file = inside / "robot.usda"
+    file.write_text("#usda 1.0\n(\n    subLayers = [@../secret.usda@]\n)\n")
+    with pytest.raises(sf.DescriptionError, match="files of other folders"):
+        sf.load(file)
+    (inside / "own.usda").write_text(stage(body("arm", **ARM)))
+    file.write_text("#usda 1.0\n(\n    subLayers = [@./own.usda@]\n)\n")
+    assert sf.load(file).bodies[0].name == "arm"
+
+
+@pytest.mark.parametrize(
+    "data", [b"", b"#usda 1.0\n(", b"PXR-USDC" + bytes(200), b"PK\x03\x04" + bytes(50), b"\x00" * 99]
+)
+def test_damaged_files_are_refused_in_words(tmp_path: Path, data: bytes) -> None:
+    file = tmp_path / "robot.usd"
+    file.write_bytes(data)
+    with pytest.raises(sf.DescriptionError, match="OpenUSD can't read|no rigid body"):
+        sf.load(file)
+
+
+def test_a_reader_that_dies_or_is_absent_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = tmp_path / "robot.usda"
+    file.write_text(stage(body("arm", **ARM)))
+    monkeypatch.setattr(usd_stage, "_answer", lambda _: {"absent": "usd-core"})
+    with pytest.raises(sf.DescriptionError, match=r"symofros\[usd\]"):
+        sf.load(file)
+    monkeypatch.undo()
+    monkeypatch.setattr(usd_stage, "TIMEOUT", 0.001)
+    with pytest.raises(sf.DescriptionError, match=r"longer than 0.001 s"):
+        sf.load(file)
+
+
+def test_visuals_are_solids_where_they_are(load: Load) -> None:
+    color = "color3f[] primvars:displayColor = [(1, 0, 0)]"
+    ball = prim("Sphere", "s", "double radius = 0.5", color, *placed((1, 2, 3)))
+    system = load(stage(body("arm", ball, at=(5, 5, 5), **ARM)))
+    (seen,) = system.visuals["arm"]
+    assert (seen.kind, seen.size, seen.position, seen.color) == ("sphere", (0.5,), (1.0, 2.0, 3.0), (255, 0, 0))
