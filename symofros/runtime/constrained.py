@@ -93,7 +93,7 @@ class Eliminated(NamedTuple):
 
 
 def eliminate(G: Array, measures: Measures, inertia: Array) -> Eliminated:
-    """Eliminate G by complete pivoting.
+    """Eliminate G by complete pivoting; a pivot costs what the rows take that it changes, few of many loops.
 
     Args:
         G: (nc, nv).
@@ -104,30 +104,43 @@ def eliminate(G: Array, measures: Measures, inertia: Array) -> Eliminated:
     (nc, nv), massive = G.shape, inertia > 0.0
     worth = 1.0 / np.sqrt(np.where(massive, inertia, 1e-12 * inertia[massive].min() if massive.any() else 1.0))
     own = np.abs(G * worth).max(axis=1, initial=0.0)
-    open_rows = own > 0.0
-    own_or_one = np.where(open_rows, own, 1.0)[:, None]
+    own_or_one = np.where(own > 0.0, own, 1.0)[:, None]
+    # Best entry of each open row: its merit, column, and whether it is more than a weak one.
+    is_open, merits, columns_of, strong = own > 0.0, np.zeros(nc), np.zeros(nc, dtype=np.intp), np.zeros(nc, dtype=bool)
+
+    def judge(judged: npt.NDArray[np.intp]) -> None:
+        magnitude = np.abs(left[judged])
+        significant = magnitude > RANK * size[judged]
+        weak = (magnitude > WEAK_LEAST * size[judged]) & massive
+        merit = np.where(significant, 1.0, np.where(weak, WEAK_WORTH, 0.0)) * magnitude * worth / own_or_one[judged]
+        best, line = merit.argmax(axis=1), np.arange(len(judged))
+        is_open[judged] &= significant.any(axis=1)
+        merits[judged] = np.where(is_open[judged], merit[line, best], -1.0)
+        columns_of[judged], strong[judged] = best, significant[line, best]
+
+    merits[~is_open] = -1.0
+    if is_open.any():
+        judge(np.flatnonzero(is_open))
     rows: list[int] = []
     columns: list[int] = []
     lower: list[Array] = []
     upper: list[Array] = []
-    while len(rows) < nv:
-        magnitude = np.abs(left)
-        significant = (magnitude > RANK * size) & open_rows[:, None]
-        open_rows &= significant.any(axis=1)
-        if not open_rows.any():
-            break
-        weak = (magnitude > WEAK_LEAST * size) & open_rows[:, None] & massive
-        counts = np.where(significant, 1.0, np.where(weak, WEAK_WORTH, 0.0))
-        p, d = divmod(int(np.argmax(counts * magnitude * worth / own_or_one)), nv)
-        open_rows[p] = False
-        factor = np.where(open_rows, left[:, d] / left[p, d], 0.0)
-        of_pivot = size[p] if significant[p, d] else np.maximum(np.abs(left[p]), WEAK_SIZE * size[p])
-        size = np.maximum(size, np.abs(factor)[:, None] * of_pivot)
+    while len(rows) < nv and is_open.any():
+        p = int(merits.argmax())
+        d = int(columns_of[p])
+        is_open[p], merits[p] = False, -1.0
+        changed = np.flatnonzero(is_open & (left[:, d] != 0.0))
+        factor = np.zeros(nc)
+        factor[changed] = left[changed, d] / left[p, d]
+        own_factor = factor[changed][:, None]
+        of_pivot = size[p] if strong[p] else np.maximum(np.abs(left[p]), WEAK_SIZE * size[p])
+        size[changed] = np.maximum(size[changed], np.abs(own_factor) * of_pivot)
         rows.append(p)
         columns.append(d)
-        upper.append(left[p])
-        left = left - factor[:, None] * left[p]
-        left[open_rows, d] = 0.0
+        upper.append(left[p].copy())
+        left[changed] -= own_factor * left[p]
+        left[changed, d] = 0.0
+        judge(changed)
         factor[p] = 1.0
         lower.append(factor)
     L, U = np.array(lower).reshape(len(rows), nc).T.copy(), np.array(upper).reshape(len(rows), nv)
