@@ -354,6 +354,26 @@ def test_damaged_files_are_refused_in_words(tmp_path: Path, data: bytes) -> None
         sf.load(file)
 
 
+@pytest.mark.parametrize(
+    ("stated", "words"),
+    [
+        (("float physics:mass = nan",), "mass of </robot/arm>"),
+        (('token physics:mass = "heavy"',), "'heavy'"),
+        (("float3 physics:diagonalInertia = (1, inf, 1)",), "3 numbers, finite"),
+        (("float physics:diagonalInertia = 1",), "3 numbers, finite"),
+        (("double[] newton:inertia = [1, 2]",), "6 numbers, finite"),
+    ],
+)
+def test_values_of_another_kind_are_refused(load: Load, stated: tuple[str, ...], words: str) -> None:
+    with pytest.raises(sf.DescriptionError, match=words):
+        load(stage(prim("Xform", "arm", *stated, schemas=("PhysicsRigidBodyAPI",)), hinge()))
+
+
+def test_an_axis_is_one_of_three(load: Load) -> None:
+    with pytest.raises(sf.DescriptionError, match="axis of </robot/hinge>"):
+        load(stage(body("arm", **ARM), hinge(axis="W")))
+
+
 def test_a_reader_that_dies_or_is_absent_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file = tmp_path / "robot.usda"
     file.write_text(stage(body("arm", **ARM)))

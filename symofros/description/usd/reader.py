@@ -22,6 +22,7 @@ from symofros.description.mjcf.geometry import Exact
 from symofros.description.reading import Reading, check_snap_tol
 from symofros.description.remarks import Remarks
 from symofros.description.system import RigidBody, System
+from symofros.description.usd.check import faults
 from symofros.description.usd.joints import JointMaker, UsdJoint, motion_of, number
 from symofros.description.usd.masses import Masses, Units
 from symofros.description.usd.placement import Pose, affine, turn
@@ -61,8 +62,16 @@ def read_usd(path: str | os.PathLike[str], *, snap_tol: float) -> Reading:
         ArgumentError: `snap_tol` is not a small number.
     """
     check_snap_tol(snap_tol)
+    file = os.fspath(path)
     try:
-        importer = _Importer(os.fspath(path), stage_of(path), snap_tol)
+        stage = stage_of(path)
+        bad = tuple(
+            Problem(f"{name} of <{prim}> can't be read", f"{value!r:.80}", rule, "mend the value", f"{file}:<{prim}>")
+            for prim, name, value, rule in faults(stage)
+        )
+        if bad:
+            return Reading(None, bad)
+        importer = _Importer(file, stage, snap_tol)
         system = importer.system()
     except DescriptionError as error:
         return Reading(None, error.problems)
