@@ -29,24 +29,25 @@ CONSISTENT = 1e-8
 FUNCTIONS = ("mass_matrix", "constraint", "constraint_rate", "constraint_jacobian", "constraint_bias", "frame_pose")
 
 
-def assembled_states(system: sf.System, states: States) -> States:
+def assembled_states(system: sf.System, states: States, worst: float = WORST_CONDITION) -> States:
     """Those of the states from which loops could be closed, with phi = 0 and G v = b; at most MOST.
 
     Args:
         system: System with constraints.
         states: States to start from; accelerations and inputs stay as they are, forces are computed anew.
+        worst: By how much the constraints may amplify rounding.
     """
     model = sf.compile(system, sf.Options(functions=FUNCTIONS))
     parts: list[States] = []
     for first in range(0, min(len(states), TRIED), MOST):
-        parts.append(_assembled(model, states[first : first + MOST]))
+        parts.append(_assembled(model, states[first : first + MOST], worst))
         if sum(map(len, parts)) >= MOST:
             break
     joined = [np.concatenate([getattr(part, item.name) for part in parts]) for item in fields(States)]
     return States(*joined)[:MOST]
 
 
-def _assembled(model: sf.Model, states: States) -> States:
+def _assembled(model: sf.Model, states: States, worst: float) -> States:
     """Those of some states from which loops could be closed."""
     assemblies, kept = [], []
     for i in range(len(states)):
@@ -58,7 +59,7 @@ def _assembled(model: sf.Model, states: States) -> States:
     if not kept:
         return states[:0]
     q, v = np.array([one.q for one in assemblies]), np.array([one.v for one in assemblies])
-    sound = _sound(model, q, states.u[kept])
+    sound = _sound(model, q, states.u[kept], worst)
     sound[sound] = _consistent(model, q[sound], v[sound], states.u[kept][sound])
     return replace(_chosen(states, np.array(kept)[sound]), q=q[sound], v=v[sound])
 
@@ -80,12 +81,12 @@ def _consistent(model: sf.Model, q: Array, v: Array, u: Array) -> Array:
     return np.asarray(np.abs(left).max(axis=1) < CONSISTENT * (1.0 + np.abs(gamma).max(axis=1)))
 
 
-def _sound(model: sf.Model, q: Array, u: Array) -> Array:
+def _sound(model: sf.Model, q: Array, u: Array, worst: float) -> Array:
     M, G = model.mass_matrix(q, u=u), model.constraint_jacobian(q, u=u)
     size = np.sqrt(np.diagonal(M, axis1=1, axis2=2))
     scaled = M / (size[:, :, None] * size[:, None, :])
     sound = of_clear_rank(M, G)
     for i in np.flatnonzero(sound):
         amplified = condition(M[i : i + 1], G[i : i + 1])
-        sound[i] = np.linalg.cond(scaled[i]) < WORST_CONDITION_OF_M and amplified < WORST_CONDITION
+        sound[i] = np.linalg.cond(scaled[i]) < WORST_CONDITION_OF_M and amplified < worst
     return sound

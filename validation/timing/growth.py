@@ -82,7 +82,12 @@ def _of(record: Record, family: Family, function: str) -> Iterator[Growth]:
 
     entries = {(x.model, x.function): x for x in record.entries}
     own = {n: entries[model, function] for n, model in family.models.items() if (model, function) in entries}
-    yield curve("time [ns]", "symofros", {n: x.generated_time[1] for n, x in own.items()})
+    # Where no peer has the function there is no race, and its time stands with its cost.
+    costs = {n: record.cost(model, function, "symofros") for n, model in family.models.items()}
+    alone = {n: cost.time for n, cost in costs.items() if cost is not None}
+    yield curve(
+        "time [ns]", "symofros", dict(sorted((alone | {n: x.generated_time[1] for n, x in own.items()}).items()))
+    )
     yield curve("time [ns]", "symofros, batch", {n: x.batch[1] for n, x in own.items() if x.batch is not None})
     for peer in ("pinocchio", "mujoco", "casadi"):
         races = {n: record.best(model, function, peer) for n, model in family.models.items()}

@@ -118,7 +118,10 @@ def _conditions(machine: Mapping[str, Any]) -> str:
     peaks = {"scalar_flops": "GFlop/s one by one", "vector_flops": "GFlop/s in vectors", "copied_bytes": "GB/s copied"}
     limits = ", ".join(f"{machine[name] / 1e9:.1f} {unit}" for name, unit in peaks.items() if name in machine)
     size = f"{machine.get('states', '?')} states, {machine.get('repeats', '?')} repeats"
-    return f"{size}; load before and after {load or 'unknown'}; measured limits of a core: {limits or 'unknown'}."
+    lanes = f"vectors of {machine['lanes']:.0f} doubles; " if "lanes" in machine else ""
+    return (
+        f"{size}; {lanes}load before and after {load or 'unknown'}; measured limits of a core: {limits or 'unknown'}."
+    )
 
 
 TOPIC = Topic("timing", "Speed", "How fast is the C against engines and other generators?", compose, measure)

@@ -21,6 +21,8 @@ STEP = 1e-5
 # Beside a posture of many loops: how far its coordinates are moved before it is closed again [rad, m]; how many times
 # that is done, times speeds.
 NEAR, SEARCHED = 0.3, 2000
+# By how much constraints may amplify rounding: rows of n loops do so by n^2, and solutions are compared to 1e-9.
+WORST_CONDITION = 1e6
 # That state of the sample where a motion starts: after the special ones.
 START = 10
 
@@ -96,7 +98,7 @@ def task(label: str, count: int = STATES) -> Task:
     assembly = assemble(system)
     states = sample(assembly, assembly.motors + len(system.inputs), count)
     if system.constraints:
-        closed = assembled_states(system, _beside(system, TIMED_MODELS[label].closed, states))
+        closed = assembled_states(system, _beside(system, TIMED_MODELS[label].closed, states), WORST_CONDITION)
         again = np.arange(count) % len(closed)  # Assembly is a search: some postures in turn.
         states = replace(states, **{name: getattr(closed, name)[again] for name in ("q", "v", "a", "u")})
     tau = np.zeros((count, assembly.nv))

@@ -56,6 +56,15 @@ def test_growth_is_of_each_side_and_quantity() -> None:
     assert ("mujoco", "time [ns]") not in found
 
 
+def test_growth_goes_on_where_no_peer_does() -> None:
+    """Beyond the sizes that others take, what was timed stands with the cost of the function."""
+    record = cubic()
+    largest = record.entries.pop()
+    record.costs = [made("chain52", time=largest.generated_time[1])]
+    (curve,) = (c for c in growth(record) if (c.who, c.quantity) == ("symofros", "time [ns]"))
+    assert curve.n == CHAINS and curve.exponent == pytest.approx(3.0)
+
+
 @pytest.mark.parametrize(("ratio", "words"), [(7.0, "met, 0% above"), (8.4, "met, 20% above"), (6.3, "missed by 10%")])
 def test_a_verdict_says_by_how_much(ratio: float, words: str) -> None:
     found = Verdict(Target("panda", "dynamics", "pinocchio", 7.0), entry(), ratio)
