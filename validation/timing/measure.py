@@ -71,12 +71,13 @@ def measure(
         if first_second:
             _time_waits(record, run)
             left.remove(waits.LABEL)
+            run.save(data(left))
         for failure in prepare(todo, lambda text: run.advance(text, 0)):
             run.say(failure, bad=True)
         for job in todo:
             _time(job, record, run)
             left.remove(job.model)
-            run.save(data())  # So that even a kill leaves what was measured.
+            run.save(data(left))  # So that even a kill leaves what was measured.
         if flexible:
             _time_flexible(record, repeats, run)
     except KeyboardInterrupt:
