@@ -37,6 +37,14 @@ def native_library() -> Any:
     return interface().dlopen(str(build_library(source, native_text(HEADERS[0]), toolchain, _FLAGS)))
 
 
+# Keyed by the type itself, whose name takes NumPy as long as all that is done with it.
+_POINTERS = {
+    np.dtype(np.float64): "double *",
+    np.dtype(np.int32): "int32_t *",
+    np.dtype(np.int64): "int64_t *",
+}
+
+
 class NativeMemory:
     """Arrays and objects that C holds pointers to. They live as long as this object, which a run keeps."""
 
@@ -60,8 +68,7 @@ class NativeMemory:
     def shared(self, values: npt.NDArray[Any]) -> Any:
         """The elements of a contiguous array themselves, as a C array of their type."""
         self.keep(values)
-        kind = {"float64": "double *", "int32": "int32_t *", "int64": "int64_t *"}[values.dtype.name]
-        return self.ffi.cast(kind, self.ffi.from_buffer(values))
+        return self.ffi.cast(_POINTERS[values.dtype], self.ffi.from_buffer(values))
 
     def table(self, struct: Any, prefix: str, rows: int, **widths: int) -> list[Array]:
         """Arrays (rows, width) behind the pointers `prefix + name` of a struct."""
