@@ -26,6 +26,8 @@ from validation.timing.record import Entry, Made, Record
 from validation.timing.worker import Job
 
 Doing = Callable[[str, str, str], None]
+# What a worker that died had not done.
+LEFT = "what was left"
 
 
 def run_job(job: Job, record: Record, doing: Doing = lambda model, function, part: None) -> None:
@@ -43,6 +45,7 @@ def run_job(job: Job, record: Record, doing: Doing = lambda model, function, par
         "repeats": job.repeats,
         "states": job.states,
     }
+    record.forget([job.model], [LEFT], [])
     command = [sys.executable, "-m", "validation.timing.worker", json.dumps(stated)]
     with tempfile.TemporaryFile("w+") as complaints:
         pipe = subprocess.PIPE
@@ -62,7 +65,7 @@ def run_job(job: Job, record: Record, doing: Doing = lambda model, function, par
         if status != 0:
             complaints.seek(0)
             last = (complaints.read().strip() or "no word").splitlines()[-1]
-            record.failed.append((job.model, "what was left", "symofros", f"the worker ended with {status}: {last}"))
+            record.failed.append((job.model, LEFT, "symofros", f"the worker ended with {status}: {last}"))
 
 
 def take(line: str, job: Job, record: Record, doing: Doing) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 import subprocess
 import sys
 from dataclasses import asdict
@@ -56,6 +57,13 @@ def test_a_worker_ends_with_the_process_that_started_it() -> None:
         assert "forward_dynamics" in process.stdout.readline()
         process.stdin.close()
         assert process.wait(30) == 1
+
+
+def test_a_model_that_is_timed_again_has_failed_no_longer(monkeypatch: pytest.MonkeyPatch) -> None:
+    record = Record(failed=[("panda", run.LEFT, "symofros", "it died"), ("ur5", run.LEFT, "symofros", "it died")])
+    monkeypatch.setattr(run.sys, "executable", shutil.which("true"))
+    run.run_job(JOB, record)
+    assert [model for model, *_ in record.failed] == ["ur5"]
 
 
 def test_jobs_are_the_functions_that_a_model_is_timed_at() -> None:
