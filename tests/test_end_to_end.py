@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 import symofros as sf
 from symofros.__main__ import app
-from symofros.commands import models
+from symofros.commands import compile as compiling
 from symofros.generator.programs import ProgramBuilder
 
 
@@ -57,7 +57,9 @@ def test_compile_writes_the_source(tmp_path: Path) -> None:
 def test_what_compile_makes_is_what_models_call(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever Python then calls is in the cache, and so is all that a second `compile` asks for."""
     monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path / "cache"))
-    monkeypatch.setattr(models, "DEFAULT_FUNCTIONS", ("mass_matrix", "inverse_dynamics_derivatives"))  # Of three dozen.
+    monkeypatch.setattr(
+        compiling, "DEFAULT_FUNCTIONS", ("mass_matrix", "inverse_dynamics_derivatives")
+    )  # Of three dozen.
     path = tmp_path / "arm.yaml"
     path.write_text(
         "symofros: 1\nsystem: {name: arm}\nbodies:\n"

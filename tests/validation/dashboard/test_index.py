@@ -71,7 +71,7 @@ def test_the_index_begins_with_what_decides_and_says_what_is_missed() -> None:
             'href="check.html"',
         )
     ]
-    assert places == sorted(places) and "UR5, M + h, against casadi" in page
+    assert places == sorted(places) and "Talos, M + h, against pinocchio" in page
 
 
 def test_a_readme_keeps_what_stands_around_the_summary(tmp_path: Path) -> None:
