@@ -57,9 +57,8 @@ def test_compile_writes_the_source(tmp_path: Path) -> None:
 def test_what_compile_makes_is_what_models_call(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever Python then calls is in the cache, and so is all that a second `compile` asks for."""
     monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path / "cache"))
-    monkeypatch.setattr(
-        compiling, "DEFAULT_FUNCTIONS", ("mass_matrix", "inverse_dynamics_derivatives")
-    )  # Of three dozen.
+    of_three_dozen = ("mass_matrix", "inverse_dynamics_derivatives")
+    monkeypatch.setattr(compiling, "DEFAULT_FUNCTIONS", of_three_dozen)
     path = tmp_path / "arm.yaml"
     path.write_text(
         "symofros: 1\nsystem: {name: arm}\nbodies:\n"
