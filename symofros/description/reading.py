@@ -105,3 +105,11 @@ def check_snap_tol(snap_tol: float) -> None:
     if not 0.0 <= snap_tol < 0.1:
         rule = "0 <= snap_tol < 0.1, so that it absorbs rounding only"
         raise ArgumentError(Problem("snap_tol is not a small number", str(snap_tol), rule, "leave it out"))
+
+
+def fresh_name(wanted: str, taken: set[str]) -> str:
+    """The wanted name, with underscores behind it while it is taken; it is taken then."""
+    while wanted in taken:
+        wanted += "_"
+    taken.add(wanted)
+    return wanted

@@ -20,8 +20,9 @@ from symofros.description.frames import Frame
 from symofros.description.joints.joint import WORLD, Joint, Limits
 from symofros.description.joints.joint_kinds import KINDS, JointKindName
 from symofros.description.mjcf.geometry import Exact
+from symofros.description.pose import Pose
 from symofros.description.sdf.frames import Frames
-from symofros.description.sdf.values import Pose, SdfValues
+from symofros.description.sdf.values import SdfValues
 from symofros.description.values import Vector
 from symofros.description.xml_nodes import Element
 from symofros.errors import did_you_mean

@@ -16,7 +16,7 @@ from symofros.description.forces import Load
 from symofros.description.frames import Frame
 from symofros.description.joints.joint import WORLD, Joint
 from symofros.description.mjcf.geometry import Exact
-from symofros.description.reading import Reading, check_snap_tol, in_order, read_bytes
+from symofros.description.reading import Reading, check_snap_tol, fresh_name, in_order, read_bytes
 from symofros.description.remarks import Remarks
 from symofros.description.sdf.frames import MODEL, SEPARATOR, Frames
 from symofros.description.sdf.joints import JointReader, SdfJoint
@@ -290,9 +290,9 @@ class _Importer:
             joint, offset = self.joints.placed(above[name][0], name, above[name][1])
             if any(offset):
                 # A link that moves about a point that is not its origin.
-                carrier = _fresh(f"{name}_at_{joint.name}", taken)
+                carrier = fresh_name(f"{name}_at_{joint.name}", taken)
                 yield RigidBody(carrier, joint)
-                held = _fresh(f"{name}_fixed", taken)
+                held = fresh_name(f"{name}_fixed", taken)
                 joint = Joint(held, "fixed", carrier, None, self.exact.vector(-offset))
             yield self.body(name, joint)
 
@@ -305,9 +305,9 @@ class _Importer:
         if self.is_static(name):
             self.values.remarks.add("links of static models are fixed to the world", "link", name)
             placement = self.exact.placement(*self.frames.relative(name, WORLD))
-            return Joint(_fresh(f"{name}_fixed", taken), "fixed", WORLD, None, *placement)
+            return Joint(fresh_name(f"{name}_fixed", taken), "fixed", WORLD, None, *placement)
         self.values.remarks.add("links without a joint to the world float", "link", name)
-        return Joint(_fresh(f"{name}_floating", taken), "free", WORLD)
+        return Joint(fresh_name(f"{name}_floating", taken), "free", WORLD)
 
     def body(self, name: str, joint: Joint) -> RigidBody:
         """A link with its joint."""
@@ -336,11 +336,3 @@ class _Importer:
     def shapes(self, name: str, link: Element) -> tuple[Visual, ...]:
         """What a link looks like."""
         return self.visuals.of(as_urdf(link), name)
-
-
-def _fresh(wanted: str, taken: set[str]) -> str:
-    """The wanted name, with underscores behind it while it is taken; it is taken then."""
-    while wanted in taken:
-        wanted += "_"
-    taken.add(wanted)
-    return wanted

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
-from symofros.base.rotations import Array, normalized, quaternion_matrix
+from symofros.base.rotations import normalized, quaternion_matrix
 from symofros.description.mjcf.geometry import about
+from symofros.description.pose import IDENTITY_POSE, Pose
 from symofros.description.system import Inertia
 from symofros.description.urdf.values import Values, finite_numbers
 from symofros.description.values import Rotation
@@ -35,29 +35,6 @@ _READ_IN: dict[str, frozenset[str]] = {
     "mimic": frozenset({"multiplier", "offset", "reference"}),
 }
 _MOMENTS = (("ixx", 1.0), ("iyy", 1.0), ("izz", 1.0), ("ixy", 0.0), ("ixz", 0.0), ("iyz", 0.0))
-
-
-class Pose(NamedTuple):
-    """A frame B in a frame A.
-
-    Attributes:
-        p: Position p_AB (3,) [m].
-        R: Rotation R_AB (3, 3).
-    """
-
-    p: Array
-    R: Array
-
-    def __matmul__(self, other: Pose) -> Pose:
-        """The pose in A of a frame whose pose in B is given."""
-        return Pose(self.p + self.R @ other.p, self.R @ other.R)
-
-    def inverse(self) -> Pose:
-        """A in B."""
-        return Pose(-(self.R.T @ self.p), self.R.T)
-
-
-IDENTITY_POSE = Pose(np.zeros(3), np.eye(3))
 
 
 class SdfValues(Values):

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import json
 import os
-import subprocess
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from symofros.description.reading import read_bytes
 from symofros.description.urdf import xacro_worker
+from symofros.description.workers import answer_of
 from symofros.errors import DescriptionError, Problem
 
 # Wall time of the process [s]; its processor time is bounded by itself.
@@ -64,20 +62,5 @@ def _package(file: Path) -> Path:
 
 
 def _answer(task: Mapping[str, Any]) -> dict[str, Any]:
-    worker = [sys.executable, "-I", xacro_worker.__file__]
-    try:
-        # Warnings are dropped: a file may ask for any number of them.
-        done = subprocess.run(
-            worker,
-            input=json.dumps(task).encode(),
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            timeout=TIMEOUT,
-            env={},
-        )
-    except subprocess.TimeoutExpired:
-        return {"fault": f"it takes longer than {TIMEOUT} s"}
-    if done.returncode:
-        return {"fault": f"it takes more than {xacro_worker.SECONDS} s of processor time, or too much memory"}
-    answer: dict[str, Any] = json.loads(done.stdout)
-    return answer
+    bounds = f"more than {xacro_worker.SECONDS} s of processor time, or too much memory"
+    return answer_of(xacro_worker.__file__, task, TIMEOUT, bounds)

@@ -22,9 +22,9 @@ from symofros.description.frames import Frame
 from symofros.description.joints.joint import Joint, Limits
 from symofros.description.joints.joint_kinds import JointKindName
 from symofros.description.mjcf.geometry import Exact
+from symofros.description.pose import IDENTITY_POSE, Pose
 from symofros.description.remarks import Remarks
 from symofros.description.usd.masses import Units
-from symofros.description.usd.placement import Pose
 
 Motion = Literal["fixed", "revolute", "prismatic", "cylindrical", "planar", "ball", "none"]
 _AXIS = {"X": 0, "Y": 1, "Z": 2}
@@ -148,7 +148,7 @@ class JointMaker:
         axis = self.exact.direction(other.R @ e)
         if kind in ("fixed", "prismatic"):  # A shift is the same wherever it is anchored.
             position, rotation = self.exact.placement(own.p - R @ other.p, R)
-            held = Pose(np.zeros(3), np.eye(3))
+            held = IDENTITY_POSE
         else:
             position, rotation = self.exact.placement(own.p, R)
             held = Pose(-other.p, np.eye(3))

@@ -9,30 +9,10 @@ import numpy as np
 
 from symofros.base.rotations import Array
 from symofros.description.mjcf.geometry import rotation_of
+from symofros.description.pose import Pose
 
 # Axes of a frame that deviate by more from right angles are sheared, for which a rigid body has no use.
 SHEAR = 1e-6
-
-
-@dataclass(frozen=True)
-class Pose:
-    """A frame B in a frame A.
-
-    Attributes:
-        p: p_AB (3,) [m].
-        R: R_AB (3, 3).
-    """
-
-    p: Array
-    R: Array
-
-    def __matmul__(self, other: Pose) -> Pose:
-        """Pose in A of a frame that is posed in B."""
-        return Pose(self.p + self.R @ other.p, self.R @ other.R)
-
-    def inverse(self) -> Pose:
-        """Pose of A in B."""
-        return Pose(-self.R.T @ self.p, self.R.T)
 
 
 @dataclass(frozen=True)

@@ -19,13 +19,14 @@ from symofros.description.constraints import Constraint
 from symofros.description.frames import Frame
 from symofros.description.joints.joint import WORLD, Joint
 from symofros.description.mjcf.geometry import Exact
-from symofros.description.reading import Reading, check_snap_tol
+from symofros.description.pose import IDENTITY_POSE, Pose
+from symofros.description.reading import Reading, check_snap_tol, fresh_name
 from symofros.description.remarks import Remarks
 from symofros.description.system import RigidBody, System
 from symofros.description.usd.check import faults
 from symofros.description.usd.joints import JointMaker, UsdJoint, motion_of, number
 from symofros.description.usd.masses import Masses, Units
-from symofros.description.usd.placement import Pose, affine, turn
+from symofros.description.usd.placement import affine, turn
 from symofros.description.usd.stage import stage_of
 from symofros.description.usd.tree import Edge, spanning_tree
 from symofros.description.usd.visuals import visual
@@ -219,9 +220,9 @@ class _Importer:
             position, rotation = self.exact.placement(held.p, held.R)
             if any(position) or not rotation.is_identity:
                 # A body that moves about a point that is not its origin.
-                carrier = _fresh(f"{name}_at_{joint.name}", taken)
+                carrier = fresh_name(f"{name}_at_{joint.name}", taken)
                 yield RigidBody(carrier, joint)
-                joint = Joint(_fresh(f"{name}_fixed", joint_names), "fixed", carrier, None, position, rotation)
+                joint = Joint(fresh_name(f"{name}_fixed", joint_names), "fixed", carrier, None, position, rotation)
             yield RigidBody(name, joint, inertia)
 
     def _root_joint(self, path: str, name: str, fixed: list[str], taken: set[str]) -> Joint:
@@ -229,9 +230,11 @@ class _Importer:
         if path in fixed:
             self.remarks.add("bodies that are kinematic or not enabled are fixed to the world", "body", name)
             pose = self.placements[path].pose
-            return Joint(_fresh(f"{name}_fixed", taken), "fixed", WORLD, None, *self.exact.placement(pose.p, pose.R))
+            return Joint(
+                fresh_name(f"{name}_fixed", taken), "fixed", WORLD, None, *self.exact.placement(pose.p, pose.R)
+            )
         self.remarks.add("bodies without a joint to the world float", "body", name)
-        return Joint(_fresh(f"{name}_floating", taken), "free", WORLD)
+        return Joint(fresh_name(f"{name}_floating", taken), "free", WORLD)
 
     def _constraints(self, closing: Iterable[UsdJoint]) -> tuple[list[Constraint], dict[str, list[Frame]]]:
         """Constraints of the joints that no tree needs, with their frames by body."""
@@ -294,7 +297,7 @@ class _Importer:
             if edge.joint is None:
                 continue
             first, second = (
-                (self.placements[end].pose if end else Pose(np.zeros(3), np.eye(3))) @ frame
+                (self.placements[end].pose if end else IDENTITY_POSE) @ frame
                 for end, frame in zip(edge.joint.ends, edge.joint.frames, strict=True)
             )
             if max(np.abs(first.p - second.p).max(), np.abs(first.R - second.R).max()) > _POSTURE:
@@ -318,13 +321,5 @@ def names_of(paths: Iterable[str]) -> dict[str, str]:
         if depth > max(path.count("/") for path in paths) + 1:
             for path in paths:
                 if path not in names:
-                    names[path] = _fresh("_".join(path.strip("/").split("/")), {*names.values(), WORLD})
+                    names[path] = fresh_name("_".join(path.strip("/").split("/")), {*names.values(), WORLD})
     return {path: names[path] for path in paths}
-
-
-def _fresh(wanted: str, taken: set[str]) -> str:
-    """The wanted name, with underscores behind it while it is taken; it is taken then."""
-    while wanted in taken:
-        wanted += "_"
-    taken.add(wanted)
-    return wanted

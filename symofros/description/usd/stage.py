@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import os
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
 from symofros.description.reading import read_bytes
 from symofros.description.usd import usd_worker
+from symofros.description.workers import answer_of
 from symofros.errors import DescriptionError, Problem
 
 MAX_BYTES = 512 << 20  # Of the root layer, which may hold meshes.
@@ -73,20 +71,5 @@ def _refuse_outside(file: Path, layers: list[str]) -> None:
 
 
 def _answer(file: str) -> dict[str, Any]:
-    try:
-        # Warnings are dropped: a file may ask for any number of them.
-        done = subprocess.run(
-            [sys.executable, "-I", usd_worker.__file__],
-            input=json.dumps({"file": file}).encode(),
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            timeout=TIMEOUT,
-            env={},
-        )
-    except subprocess.TimeoutExpired:
-        return {"fault": f"it takes longer than {TIMEOUT} s"}
-    if done.returncode:
-        bounds = f"more than {usd_worker.SECONDS} s of processor time or too much memory"
-        return {"fault": f"it takes {bounds}, or is damaged"}
-    answer: dict[str, Any] = json.loads(done.stdout)
-    return answer
+    bounds = f"more than {usd_worker.SECONDS} s of processor time or too much memory, or is damaged"
+    return answer_of(usd_worker.__file__, {"file": file}, TIMEOUT, bounds)

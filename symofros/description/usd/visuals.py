@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from symofros.base.rotations import Array
-from symofros.description.usd.placement import Affine, Pose
+from symofros.description.pose import Pose
+from symofros.description.usd.placement import Affine
 from symofros.description.values import IDENTITY, Rotation
 from symofros.description.visual import Visual
 
