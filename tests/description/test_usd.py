@@ -293,6 +293,16 @@ def test_drives_limits_and_entries_of_extensions(load: Load) -> None:
     assert "gains and targets of drives ignored" in notes and "API schema FooAPI ignored" in notes
 
 
+def test_limits_and_drives_of_several_coordinates_are_remarked(load: Load) -> None:
+    cone = joint("Spherical", "a", "", "one", extra=("float physics:coneAngle0Limit = 30",))
+    limits = freedoms({"transX": LOCKED, "transY": LOCKED, "transZ": LOCKED, "rotX": (-10.0, 20.0)})
+    drive = ("PhysicsDriveAPI:rotX", *limits["schemas"])
+    driven = joint("", "b", "", "two", schemas=drive, extra=limits["extra"])
+    notes = " ".join(load(stage(body("one", **ARM), body("two", **ARM), cone, driven)).notes)
+    assert "limits of joints of several coordinates ignored: 2 joints" in notes
+    assert "drives of joints of several coordinates ignored: 1 joint" in notes
+
+
 def test_gravity_of_the_scene(load: Load) -> None:
     stated = "vector3f physics:gravityDirection = (0, 3, 4)", "float physics:gravityMagnitude = 500"
     scene = prim("PhysicsScene", "scene", *stated)

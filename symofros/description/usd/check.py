@@ -33,7 +33,7 @@ _SIZES = {
 }
 # Infinities stand for none.
 _UNBOUNDED = frozenset({"lower", "upper", "gravityMagnitude", "centerOfMass", "maxForce"})
-_PAIRS = ("breaks", "distances", "moving")
+_PAIRS = ("breaks", "cones", "distances", "moving")
 
 
 def faults(stage: Mapping[str, Any]) -> Iterator[Fault]:

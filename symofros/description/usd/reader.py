@@ -185,8 +185,19 @@ class _Importer:
                 row["extensions"].get(key) is not None for key in ("newton:friction", "newton:damping")
             ):
                 self.remarks.add("friction and damping of ball joints ignored", "joint", name)
+            if motion[0] in ("ball", "cylindrical", "planar"):
+                self._remark_several(row, name)
             frames = (self._frame(row, "0", ends[0]), self._frame(row, "1", ends[1]))
             yield UsdJoint(name, row, *motion, (ends[0], ends[1]), frames, self.where(path))
+
+    def _remark_several(self, row: Mapping[str, Any], name: str) -> None:
+        """Remark what a joint of several coordinates states that is read of joints of one."""
+        cones = any(cone is not None and number(cone, -1.0) >= 0.0 for cone in row["cones"])
+        bounds = ((number(low, -math.inf), number(high, math.inf)) for low, high in row["limits"].values())
+        if cones or any(low < high and (math.isfinite(low) or math.isfinite(high)) for low, high in bounds):
+            self.remarks.add("limits of joints of several coordinates ignored", "joint", name)
+        if row["drives"]:
+            self.remarks.add("drives of joints of several coordinates ignored", "joint", name)
 
     def _frame(self, row: Mapping[str, Any], end: str, body: str) -> Pose:
         """The joint's frame in a body, or in the world."""

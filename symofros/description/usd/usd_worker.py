@@ -227,6 +227,7 @@ def _joint(prim: Any, kind: str) -> dict[str, Any]:
         "enabled": authored(prim, "physics:jointEnabled"),
         "excluded": authored(prim, "physics:excludeFromArticulation"),
         "breaks": [authored(prim, f"physics:{name}") for name in ("breakForce", "breakTorque")],
+        "cones": [authored(prim, f"physics:coneAngle{k}Limit") for k in (0, 1)],
         "distances": [authored(prim, f"physics:{name}") for name in ("minDistance", "maxDistance")],
         "limits": {
             name: [authored(prim, f"limit:{name}:physics:{end}") for end in ("low", "high")]
