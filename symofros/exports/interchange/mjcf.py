@@ -7,11 +7,12 @@ from xml.etree import ElementTree as Tree
 
 import numpy as np
 
-from symofros.description.constraints import Closure
+from symofros.description.constraints import Closure, Coupling
 from symofros.description.forces import Anchor, Damper, Spring
 from symofros.description.joints.joint import Joint
 from symofros.description.system import System
 from symofros.exports.folder import Exported, write_folder
+from symofros.exports.interchange.couplings import DEGREE, PolynomialCoupling, polynomial_coupling
 from symofros.exports.interchange.rigid import Array, RigidLink, numbers_text, rigid_links
 from symofros.generator.codegen.names import identifier
 from symofros.mechanics.topology.numbers import Numbers
@@ -45,7 +46,7 @@ def write_mjcf(system: System, name: str | None, folder: Path, generator: str) -
     for link in _parents_first(links[1:], links[0].name):
         assert link.parent is not None
         elements[link.name] = _body(elements[link.parent], link, numbers)
-    _equalities(root, system, links, notes)
+    _equalities(root, system, links, numbers, notes)
     motors = [axis.name for link in links if link.joint is not None and link.joint.actuated for axis in link.axes]
     if motors:
         into = Tree.SubElement(root, "actuator")
@@ -160,27 +161,40 @@ def _dynamics(link: RigidLink, joint: Joint, index: int, numbers: Numbers) -> di
     return attributes
 
 
-def _equalities(root: Tree.Element, system: System, links: list[RigidLink], notes: list[str]) -> None:
-    closures = [item for item in system.constraints if isinstance(item, Closure) and _stated(item)]
-    dropped = [item.name for item in system.constraints if item not in closures]
+def _equalities(root: Tree.Element, system: System, links: list[RigidLink], numbers: Numbers, notes: list[str]) -> None:
+    axes = {axis.name for link in links for axis in link.axes}
+    couplings = {
+        item.name: polynomial_coupling(item, numbers, axes) for item in system.constraints if isinstance(item, Coupling)
+    }
+    stated = [item for item in system.constraints if _stated(item) or couplings.get(item.name)]
+    dropped = [item.name for item in system.constraints if item not in stated]
     if dropped:
         notes.append("constraints dropped: " + ", ".join(dropped))
-    if not closures:
+    if not stated:
         return
     into = Tree.SubElement(root, "equality")
-    for closure in closures:
+    for closure in (item for item in stated if isinstance(item, Closure)):
         (body1, site1), (body2, site2) = (_site(anchor, links, root) for anchor in (closure.first, closure.second))
         kind = "weld" if closure.rotations else "connect"
         Tree.SubElement(into, kind, {"name": closure.name, "site1": site1, "site2": site2})
         if len(closure.translations) < 3:
             free = ", ".join(axis for axis in "xyz" if axis not in closure.translations)
             notes.append(f"closure '{closure.name}' also holds {free}, which it leaves free")
-    notes.append("closures are soft in MuJoCo: " + ", ".join(closure.name for closure in closures))
+    for coupling in filter(None, couplings.values()):
+        _joint_equality(into, coupling)
+    notes.append("constraints are soft in MuJoCo: " + ", ".join(item.name for item in stated))
 
 
-def _stated(closure: Closure) -> bool:
-    """Whether MuJoCo has an equality near enough: a point, or everything."""
-    return len(closure.rotations) in (0, 3) and len(closure.translations) >= 2
+def _joint_equality(into: Tree.Element, coupling: PolynomialCoupling) -> None:
+    """Joints of this file have their reference at zero, so that polycoef is the polynomial itself."""
+    joints = {"joint1": coupling.follower} | ({} if coupling.leader is None else {"joint2": coupling.leader})
+    coefficients = [*coupling.coefficients, *[0.0] * DEGREE][: DEGREE + 1]
+    Tree.SubElement(into, "joint", {"name": coupling.name, **joints, "polycoef": numbers_text(coefficients)})
+
+
+def _stated(item: object) -> bool:
+    """Whether it is a closure that MuJoCo has an equality near enough for: a point, or everything."""
+    return isinstance(item, Closure) and len(item.rotations) in (0, 3) and len(item.translations) >= 2
 
 
 def _site(anchor: Anchor, links: list[RigidLink], root: Tree.Element) -> tuple[str, str]:

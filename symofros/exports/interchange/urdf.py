@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from pathlib import Path
 from xml.etree import ElementTree as Tree
 
 import numpy as np
 
+from symofros.description.constraints import Coupling
 from symofros.description.forces import Damper
 from symofros.description.system import System
 from symofros.exports.folder import Exported, write_folder
+from symofros.exports.interchange.couplings import PolynomialCoupling, polynomial_coupling
 from symofros.exports.interchange.rigid import Array, Axis, RigidLink, numbers_text, rigid_links
 from symofros.generator.codegen.names import identifier
+from symofros.mechanics.topology.numbers import Numbers
 
 # URDF wants limits of slides; these bind nothing.
 _FAR = 1e9
@@ -28,21 +32,39 @@ def write_urdf(system: System, name: str | None, folder: Path, generator: str) -
     root = Tree.Element("robot", {"name": system.name})
     for link in links:
         _link(root, link)
+    mimics = _mimics(system, links)
     for link in links:
         if link.parent is not None:
-            _joints(root, link)
+            _joints(root, link, mimics)
     Tree.indent(root)
     text = f'<?xml version="1.0"?>\n{Tree.tostring(root, encoding="unicode")}\n'
     called = identifier(name or system.name)
-    notes = (*lost, *_lost(system))
+    notes = (*lost, *_lost(system, {mimic.name for mimic in mimics.values()}))
     return write_folder(folder, "urdf", called, {f"{called}.urdf": text}, generator, notes)
 
 
-def _lost(system: System) -> list[str]:
+def _mimics(system: System, links: list[RigidLink]) -> dict[str, PolynomialCoupling]:
+    """Couplings that are straight lines, by the joint that follows; one that leads or follows does not follow again."""
+    numbers, axes = Numbers(system), {axis.name for link in links for axis in link.axes}
+    mimics: dict[str, PolynomialCoupling] = {}
+    for item in system.constraints:
+        line = polynomial_coupling(item, numbers, axes) if isinstance(item, Coupling) else None
+        if line is None or line.leader is None or len(line.coefficients) > 2:
+            continue
+        leaders = {mimic.leader for mimic in mimics.values()}
+        if line.leader not in mimics and line.follower not in mimics and line.follower not in leaders:
+            mimics[line.follower] = line
+    return mimics
+
+
+def _lost(system: System, kept: set[str]) -> list[str]:
     losses = []
     joints = [body.joint for body in system.bodies if body.joint is not None]
-    if system.constraints:
-        losses.append("constraints dropped, loops are open: " + ", ".join(item.name for item in system.constraints))
+    dropped = [item.name for item in system.constraints if item.name not in kept]
+    if dropped:
+        losses.append("constraints dropped, loops are open: " + ", ".join(dropped))
+    if kept:
+        losses.append("couplings as <mimic>, which many readers ignore unless asked: " + ", ".join(sorted(kept)))
     if system.gravity != (0.0, 0.0, -9.81):
         losses.append(f"gravity is not part of URDF: ({', '.join(map(str, system.gravity))})")
     elements = [joint.name for joint in joints if any(not isinstance(e, Damper) for e in joint.elements)]
@@ -94,7 +116,7 @@ def _joint(
     return into
 
 
-def _joints(root: Tree.Element, link: RigidLink) -> None:
+def _joints(root: Tree.Element, link: RigidLink, mimics: Mapping[str, PolynomialCoupling]) -> None:
     assert link.joint is not None and link.parent is not None
     if not link.axes:
         kind = link.joint.traits.urdf
@@ -107,7 +129,7 @@ def _joints(root: Tree.Element, link: RigidLink) -> None:
         child = link.name if last else f"{link.name}[{i}]"
         if not last:
             Tree.SubElement(root, "link", {"name": child})
-        _single(root, link, axis, i, parent, child, position, rotation)
+        _single(root, link, axis, i, parent, child, position, rotation, mimics.get(axis.name))
         parent, position, rotation = child, np.zeros(3), np.eye(3)
 
 
@@ -120,6 +142,7 @@ def _single(
     child: str,
     position: Array,
     rotation: Array,
+    mimic: PolynomialCoupling | None,
 ) -> None:
     assert link.joint is not None
     limits = link.joint.limits if len(link.axes) == 1 else None
@@ -144,3 +167,8 @@ def _single(
         )
     if link.damping[index] != 0.0:
         Tree.SubElement(into, "dynamics", {"damping": numbers_text(link.damping[index])})
+    if mimic is not None:
+        assert mimic.leader is not None
+        offset, multiplier = mimic.coefficients
+        stated = {"multiplier": numbers_text(multiplier), "offset": numbers_text(offset)}
+        Tree.SubElement(into, "mimic", {"joint": mimic.leader, **stated})

@@ -164,3 +164,62 @@ def test_mujoco_closes_the_loop(tmp_path: Path) -> None:
     data.qpos[:] = [1.2, -1.2, 1.2]
     mujoco.mj_forward(engine, data)
     assert np.abs(data.efc_pos[: data.ne]).max() < 1e-12
+
+
+def _pair(*constraints: sf.Coupling) -> sf.System:
+    """Three arms on the ground, and a slide."""
+    arm = sf.Inertia(1.0, (0.2, 0.0, 0.1), (0.02, 0.05, 0.04))
+    joints = [sf.Joint(f"q{k}", "prismatic" if k == 3 else "revolute", axis=(0.0, 1.0, 0.0)) for k in range(4)]
+    bodies = tuple(sf.RigidBody(f"arm{k}", joint, arm) for k, joint in enumerate(joints))
+    return sf.System("geared", bodies, constraints=constraints, parameters=(sf.Parameter("ratio", -2.5),))
+
+
+def test_gears_and_cams_are_joint_equalities_of_mujoco(tmp_path: Path, rng: np.random.Generator) -> None:
+    gear = sf.Coupling("gear", "q1 - ratio*q0 - 0.3")
+    cam = sf.Coupling("cam", "2*(q3 - 0.1*(q2 - 0.2)^4) + q2/ratio")
+    still = sf.Coupling("still", "q1 + q1 - 0.6")
+    done = sf.export(_pair(gear, cam, still), "mjcf", tmp_path)
+    engine = mujoco.MjModel.from_xml_path(str(done.files[0]))
+    assert not any("dropped: gear" in note for note in done.notes)
+    data = mujoco.MjData(engine)
+    for _ in range(5):
+        data.qpos[:] = q = rng.uniform(-1.0, 1.0, 4)
+        mujoco.mj_forward(engine, data)
+        residuals = q[1] + 2.5 * q[0] - 0.3, q[3] - 0.1 * (q[2] - 0.2) ** 4 - q[2] / 5.0, q[1] - 0.3
+        assert data.efc_pos[: data.ne] == pytest.approx(residuals, abs=1e-14)
+    back = sf.compile(sf.load(done.files[0]))
+    assert back.constraint(q) == pytest.approx(residuals, abs=1e-14)
+
+
+def test_gears_are_mimics_of_urdf(tmp_path: Path, rng: np.random.Generator) -> None:
+    """The mass matrix of what is free is G^T M G, in Pinocchio, which eliminates mimics."""
+    done = sf.export(_pair(sf.Coupling("gear", "q1 - ratio*q0 - 0.3")), "urdf", tmp_path)
+    engine = pinocchio.buildModelFromUrdf(str(done.files[0]), mimic=True)
+    assert engine.nv == 3
+    q = rng.uniform(-1.0, 1.0, 4)
+    q[1] = -2.5 * q[0] + 0.3
+    model = sf.compile(_pair())
+    G = np.array([[1.0, 0.0, 0.0], [-2.5, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    free = np.array([np.cos(q[0]), np.sin(q[0]), np.cos(q[2]), np.sin(q[2]), q[3]])
+    M = pinocchio.crba(engine, engine.createData(), free)
+    M = np.triu(M) + np.triu(M, 1).T
+    assert np.abs(M - G.T @ model.mass_matrix(q) @ G).max() < SAME
+    assert sf.compile(sf.load(done.files[0], mimic=True)).constraint(q) == pytest.approx([0.0], abs=1e-15)
+
+
+@pytest.mark.parametrize(
+    "residual", ["q0 - sin(q1)", "q0*q1 - 1", "q0 + q1 + q2", "q0 - q1^5", "q0^2 - q1^2", "q0 - 1/q1"]
+)
+def test_couplings_beyond_polynomials_are_dropped_in_words(tmp_path: Path, residual: str) -> None:
+    system = _pair(sf.Coupling("gear", residual))
+    for target in ("mjcf", "urdf"):
+        assert "dropped" in "\n".join(sf.export(system, target, tmp_path / target).notes)
+
+
+def test_what_mimics_has_no_place_for_stays_dropped(tmp_path: Path) -> None:
+    """A curve, a joint that is held, a second line of one joint, a leader that follows."""
+    lines = ("q1 - q0", "q1 - 2*q2", "q2 - q1", "q3 - q2^2", "q3 - 0.5")
+    system = _pair(*(sf.Coupling(f"c{k}", line) for k, line in enumerate(lines)))
+    done = sf.export(system, "urdf", tmp_path)
+    assert "constraints dropped, loops are open: c1, c2, c3, c4" in done.notes
+    assert done.files[0].read_text().count("<mimic") == 1
