@@ -16,6 +16,19 @@ Path = tuple[str | int, ...]
 # The mappings whose keys are names of things.
 _THINGS = {"bodies": "body", "parameters": "parameter", "inputs": "input", "frames": "frame"}
 
+# What URDF, SDF, MJCF and textbooks call an entry -> its key here.
+_TERMS_OF_OTHERS = {
+    **dict.fromkeys(("com", "cog", "cm", "center", "centre", "centre_of_mass"), "center_of_mass"),
+    **dict.fromkeys(("inertia", "diaginertia", "fullinertia", "tensor", "i", "j", "ixx"), "moments"),
+    **dict.fromkeys(("pos", "xyz", "origin", "offset", "translation"), "position"),
+    **dict.fromkeys(("rpy", "quat", "quaternion", "orientation", "euler"), "rotation"),
+    **dict.fromkeys(("lower", "upper", "range", "limit"), "limits"),
+    **dict.fromkeys(("springs", "dampers", "spring", "damper", "damping", "friction", "stiffness"), "elements"),
+    **dict.fromkeys(("gear", "mimic"), "couplings"),
+    "type": "kind",
+    "m": "mass",
+}
+
 # Pydantic's error types -> what the value must be, and how to write it.
 _NUMBER = ("a number", "write a finite number, such as 0.5; formulas are not read here")
 _MAPPING = ("a mapping", "write it as {name: value}, or on lines of their own")
@@ -65,7 +78,7 @@ def problem_of(error: ErrorDetails, where: str) -> Problem:
             _about(path[:-1], f"unknown entry '{key}'"),
             f"'{key}'",
             f"the entries here are {', '.join(known)}",
-            near_name(key, known) or "remove it, or rename it",
+            _where_it_belongs(str(path[-1]), path[:-1], known),
             where,
         )
     if kind == "missing":
@@ -155,6 +168,17 @@ def _words(path: Path) -> Iterator[str]:
                 indices += f"[{path[i]}]"
             yield f"{_short(step)}{indices}"
         i += 1
+
+
+def _where_it_belongs(key: str, path: Path, known: list[str]) -> str:
+    """The remedy for an unknown key: the entry here that other formats call so, one level down, or spelt nearly so."""
+    term = _TERMS_OF_OTHERS.get(key.lower())
+    if term in known:
+        return f"write it as '{term}'"
+    inside = next((entry for entry in known if key in _known_keys((*path, entry))), None)
+    if inside is not None:
+        return f"write it under '{inside}'"
+    return near_name(key, known) or "remove it, or rename it"
 
 
 def _known_keys(path: Path) -> list[str]:
