@@ -151,6 +151,13 @@ def placed(name: str, array: Any, dtype: npt.DTypeLike, driver: Driver) -> Place
     return Placed(device.address, host.shape, tuple(x // wanted.itemsize for x in device.strides[: host.ndim]), device)
 
 
+def lies_on_device(array: Any) -> bool:
+    """Whether an array says that it lies in the memory of a graphics processor."""
+    if getattr(array, "__cuda_array_interface__", None) is not None:
+        return True
+    return hasattr(array, "__dlpack_device__") and int(array.__dlpack_device__()[0]) == _CUDA
+
+
 def _of_dlpack(name: str, capsule: Any, wanted: np.dtype[Any]) -> Placed:
     """The array of a capsule, which frees its memory when nobody holds it."""
     pointer = ctypes.pythonapi.PyCapsule_GetPointer

@@ -5,7 +5,6 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from math import prod
 from typing import Any
 
 import numpy as np
@@ -17,6 +16,7 @@ from symofros.runtime.cuda.arrays import DeviceArray, Placed, Strided, StridedSe
 from symofros.runtime.cuda.device_code import BLOCK, DeviceCode
 from symofros.runtime.cuda.driver import Driver, driver
 from symofros.runtime.cuda.nvrtc import KernelUsage, compile_cuda
+from symofros.runtime.cuda.receivers import receivers, strided_result
 from symofros.runtime.record import ModelRecord
 
 Key = tuple[str, str]
@@ -121,24 +121,28 @@ class CudaModel:
             Results by name.
 
         Raises:
-            ShapeError: An input is missing or does not fit.
+            ShapeError: An input is missing or does not fit, or an array of `out` is none that can be written into: it
+                lies on the host, or shares memory with another one.
+            UnknownNameError: There is no such input or output.
             SymofrosError: There is no graphics processor, or the function has no kernel.
         """
         loaded, device = self._load((name, self.record.frame_aliases.get(frame, frame))), driver()
         kernel = loaded.code.kernels[0]
         given = self._placed({size[0]: size[1] for size in kernel.signature.inputs}, inputs, device)
         n = self._states(name, given)
-        results: dict[str, Any] = {}
+        shapes = {label: (n, *shape) for label, shape in kernel.signature.outputs}
+        written = receivers(name, shapes, out or {}, given, self._dtype, device)
+        results: dict[str, Any] = dict(out or {})
+        for label, shape in shapes.items():
+            if label not in results:
+                results[label] = DeviceArray(device, shape, self._dtype)
+                written[label] = strided_result(label, placed(label, results[label], self._dtype, device), shape)
         arguments = [_batch(given[group], n) for group, _ in kernel.signature.inputs]
-        for label, shape in kernel.signature.outputs:
-            results[label] = (out or {}).get(label)
-            if results[label] is None:
-                results[label] = DeviceArray(device, (n, *shape), self._dtype)
-            arguments.append(_entries(label, placed(label, results[label], self._dtype, device), (n, *shape)))
+        arguments += [written[label] for label in shapes]
         self._launch(loaded, kernel.symbol, n, arguments, device)
         if wait:
             device.wait()
-        return results
+        return {label: results[label] for label in shapes}
 
     def rollout(
         self,
@@ -275,18 +279,6 @@ def _batch(array: Placed, n: int) -> Strided:
     if len(array.shape) == 1 or n == 1:
         return Strided(array.address, array.strides[-1], 0)
     return Strided(array.address, array.strides[1], array.strides[0])
-
-
-def _entries(label: str, array: Placed, shape: tuple[int, ...]) -> Strided:
-    """As kernels take a result: entries by rows, at equal distances."""
-    even = all(
-        array.strides[k] == array.strides[k + 1] * array.shape[k + 1] or array.shape[k] == 1
-        for k in range(1, len(array.shape) - 1)
-    )
-    if array.shape != shape or not even:
-        raise _misfit(label, array.shape, f"{shape}, its entries at equal distances")
-    entry = array.strides[-1] if len(shape) > 1 and prod(shape[1:]) > 1 else 1
-    return Strided(array.address, entry, array.strides[0])
 
 
 def _misfit(group: str, shape: tuple[int, ...], wanted: str) -> ShapeError:

@@ -117,6 +117,41 @@ def test_results_are_written_into_arrays_that_are_given(on_device: CudaModel) ->
         on_device.evaluate("dynamics", q=q, v=v, out={"M": OnDevice(np.zeros((7, 2, 4))[:, :, :2])})
 
 
+MEMORY = np.zeros((3, 16))
+READ_ONLY = OnDevice(np.zeros((3, 2, 2)))
+READ_ONLY.__cuda_array_interface__ |= {"data": (READ_ONLY.array.ctypes.data, True)}
+
+
+@pytest.mark.parametrize(
+    ("out", "words"),
+    [
+        ({"M": np.zeros((3, 2, 2))}, "M does not lie on the device"),
+        ({"mass": OnDevice(np.zeros((3, 2, 2)))}, "no output 'mass'"),
+        ({"M": READ_ONLY}, "M is read only"),
+        ({"M": OnDevice(np.broadcast_to(np.zeros((2, 2)), (3, 2, 2)))}, "M shares memory(.|\n)*with itself"),
+        ({"h": OnDevice(MEMORY[:, 1:3])}, "h shares memory(.|\n)*with q"),
+        (
+            {"h": OnDevice(MEMORY[:, 10:12]), "M": OnDevice(MEMORY[:, 8:12].reshape(3, 2, 2))},
+            "h shares memory(.|\n)*with M",
+        ),
+    ],
+)
+def test_arrays_that_cannot_receive_results_are_refused(on_device: CudaModel, out: dict[str, Any], words: str) -> None:
+    """Results would be written into a copy, over what is read, or nowhere."""
+    with pytest.raises((ShapeError, UnknownNameError), match=words):
+        on_device.evaluate("dynamics", q=OnDevice(MEMORY[:, :2]), v=OnDevice(MEMORY[:, 2:4]), out=out)
+
+
+def test_columns_of_one_array_are_read_and_written(on_device: CudaModel) -> None:
+    memory = np.zeros((5, 8))
+    memory[:, :2], memory[:, 2:4] = q, v = states(5)
+    on_device.evaluate(
+        "dynamics", q=OnDevice(memory[:, :2]), v=OnDevice(memory[:, 2:4]), out={"h": OnDevice(memory[:, 4:6])}
+    )
+    assert np.array_equal(memory[:, 4:6], model("double_pendulum").bias(q, v))
+    assert not memory[:, 6:].any()
+
+
 def test_frames_and_parameters_are_those_of_the_model(on_device: CudaModel) -> None:
     frame = model("double_pendulum").names.frames[-1]
     q, _ = states(4)

@@ -1,0 +1,144 @@
+"""Arrays of the caller's that receive the results of kernels: what they must be for each number to be written once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import prod
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from symofros.errors import Problem, ShapeError, UnknownNameError, did_you_mean
+from symofros.runtime.cuda.arrays import Placed, Strided, lies_on_device, placed
+from symofros.runtime.cuda.driver import Driver
+
+Shape = tuple[int, ...]
+# Effort that NumPy may spend on whether two arrays share memory; beyond, they are taken to.
+_OVERLAP_WORK = 100_000
+
+
+def receivers(
+    name: str,
+    shapes: Mapping[str, Shape],
+    out: Mapping[str, Any],
+    inputs: Mapping[str, Placed],
+    dtype: npt.DTypeLike,
+    driver: Driver,
+) -> dict[str, Strided]:
+    """The arrays to write into, as kernels take them, by output.
+
+    Args:
+        name: Function, for messages.
+        shapes: Shape (n, ...) of each output.
+        out: Arrays of the device by output; what is left out is allocated by the caller.
+        inputs: Arrays that are read.
+        dtype: Type of the numbers.
+        driver: Driver of the device.
+
+    Raises:
+        UnknownNameError: There is no such output.
+        ShapeError: An array is none of the device, does not fit, can't be written, or shares memory with another one or
+            with itself.
+    """
+    for label, array in out.items():
+        if label not in shapes:
+            hint = did_you_mean(label, shapes) or "leave it out"
+            raise UnknownNameError(Problem(f"CUDA: {name} has no output '{label}'", label, ", ".join(shapes), hint))
+        _check_writeable(label, array)
+    places = {label: placed(label, array, dtype, driver) for label, array in out.items()}
+    batches = {label: strided_result(label, place, shapes[label]) for label, place in places.items()}
+    for label, place in places.items():
+        if _overlaps_itself(place):
+            raise _shared(label, "with itself: entries of it have one place")
+        for other, read in [*inputs.items(), *((other, at) for other, at in places.items() if other < label)]:
+            if _overlap(place, read, dtype):
+                raise _shared(label, f"with {other}")
+    return batches
+
+
+def strided_result(label: str, array: Placed, shape: Shape) -> Strided:
+    """As kernels take a result: entries by rows, at equal distances.
+
+    Raises:
+        ShapeError: It has another shape or layout.
+    """
+    even = all(
+        array.strides[k] == array.strides[k + 1] * array.shape[k + 1] or array.shape[k] == 1
+        for k in range(1, len(array.shape) - 1)
+    )
+    if array.shape != shape or not even:
+        raise ShapeError(
+            Problem(
+                f"CUDA: {label} has the wrong shape",
+                str(array.shape),
+                f"{label} has shape {shape}, its entries at equal distances",
+                "reshape it",
+            )
+        )
+    entry = array.strides[-1] if len(shape) > 1 and prod(shape[1:]) > 1 else 1
+    return Strided(array.address, entry, array.strides[0])
+
+
+def _check_writeable(label: str, array: Any) -> None:
+    if not lies_on_device(array):
+        raise ShapeError(
+            Problem(
+                f"CUDA: {label} does not lie on the device",
+                f"an object of type {type(array).__name__}",
+                "results are written into arrays of the device",
+                "leave it out, and call .numpy() on the result",
+            )
+        )
+    interface = getattr(array, "__cuda_array_interface__", None)
+    if interface is not None and interface["data"][1]:
+        raise ShapeError(
+            Problem(f"CUDA: {label} is read only", "an array that refuses writing", "results are written", "copy it")
+        )
+
+
+def _overlaps_itself(array: Placed) -> bool:
+    """Whether two entries may have one place: strides do not nest, as those of broadcast arrays."""
+    reach = 0
+    axes = zip(array.strides, array.shape, strict=True)
+    for stride, size in sorted((abs(stride), size) for stride, size in axes if size > 1):
+        if stride <= reach:
+            return prod(array.shape) > 0
+        reach += (size - 1) * stride
+    return False
+
+
+def _overlap(a: Placed, b: Placed, dtype: npt.DTypeLike) -> bool:
+    try:
+        # NumPy's stub knows two of the numbers that max_work may be.
+        return bool(np.shares_memory(_outline(a, dtype), _outline(b, dtype), max_work=_OVERLAP_WORK))  # type: ignore[arg-type]
+    except np.exceptions.TooHardError:
+        return True
+
+
+def _outline(array: Placed, dtype: npt.DTypeLike) -> npt.NDArray[Any]:
+    """An array at addresses of the device, for questions about its layout alone: nothing may read it."""
+    kind = np.dtype(dtype)
+    strides = tuple(kind.itemsize * stride for stride in array.strides)
+
+    class _Outline:
+        __array_interface__ = {
+            "shape": array.shape,
+            "typestr": kind.str,
+            "data": (array.address, False),
+            "strides": strides,
+            "version": 3,
+        }
+
+    return np.asarray(_Outline())
+
+
+def _shared(label: str, what: str) -> ShapeError:
+    return ShapeError(
+        Problem(
+            f"CUDA: {label} shares memory",
+            what,
+            "an output shares no memory with another array: each is written while others are read",
+            "pass an array, or a copy, of its own",
+        )
+    )
