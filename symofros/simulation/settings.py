@@ -38,15 +38,17 @@ def vector(model: Model, name: str, values: ArrayLike, size: int) -> Array:
     """
     array = real_array(model.by_name(name, values))
     if array is None or array.shape != (size,) or not np.all(np.isfinite(array)):
-        fault = f"{type(values).__name__} {values!r:.60}"
+        fault, remedy = f"{type(values).__name__} {values!r:.60}", "one state a run: see model.nq, model.nv"
         if array is not None:
             fault = str(array.shape) if array.shape != (size,) else "a number that is not finite"
+        elif hasattr(values, part := name.rstrip("0")):  # A result that holds one, such as of `assemble`.
+            fault, remedy = f"an object of type {type(values).__name__}", f"pass its vector, .{part}"
         raise ShapeError(
             Problem(
                 f"model '{model.record.name}': {name} does not fit",
                 fault,
                 f"{name} is a finite array of shape ({size},)",
-                "one state a run: see model.nq, model.nv",
+                remedy,
             )
         )
     return array

@@ -29,3 +29,8 @@ def test_quaternions_in_few_digits_are_made_unit_ones(top: sf.Model) -> None:
     q[3:] = 0.5004, -0.5, 0.5, 0.5
     run = sf.simulate(top, q, t_end=0.1)
     assert abs(np.linalg.norm(run.q[-1, 3:]) - 1.0) < 1e-14
+
+
+def test_a_result_that_holds_the_state_is_met_with_its_vector(top: sf.Model) -> None:
+    with pytest.raises(sf.ShapeError, match=r"type Assembled(.|\n)*pass its vector, \.q"):
+        sf.simulate(top, sf.assemble(top), t_end=0.1)
