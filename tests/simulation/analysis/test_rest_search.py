@@ -1,0 +1,76 @@
+"""Rests from far away: where Newton's method stalls, a damped motion leads downhill."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from symofros.simulation.analysis.rest_search import _downhill
+from tests.models import model
+
+
+def geared(ratio: float) -> sf.Model:
+    """Two arms, one of which turns by a ratio of the other; gravity has the longest arms at zero."""
+    bodies = [
+        sf.RigidBody(
+            f"arm{k}",
+            sf.Joint(f"q{k}", "revolute", axis=(0.0, 1.0, 0.0)),
+            sf.Inertia(mass, (0.3, 0.0, 0.0), (0.01, 0.1 * mass, 0.1 * mass)),
+        )
+        for k, mass in enumerate((3.0, 1.0))
+    ]
+    gear = sf.Coupling("gear", f"q1 - {ratio}*q0")
+    return sf.compile(sf.System("geared", tuple(bodies), constraints=(gear,)))
+
+
+def test_a_gear_leaves_the_posture_without_stiffness() -> None:
+    """The potential -3 sin q - sin 3 q has a minimum at a quarter of pi."""
+    rest = sf.equilibrium(geared(3.0))
+    assert rest.q == pytest.approx([np.pi / 4, 3 * np.pi / 4], abs=1e-10)
+    assert rest.residual < 1e-11
+
+
+def test_a_relaxed_rest_is_stable() -> None:
+    machine = geared(3.0)
+    assert sf.modes(machine, sf.equilibrium(machine).q).frequencies[0] > 1.0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["delta", "chain22"])
+def test_most_postures_lead_to_a_rest(name: str) -> None:
+    """Newton's method alone finds fewer than half."""
+    machine, rng = model(name), np.random.default_rng(0)
+    rests = 0
+    for _ in range(8):
+        q, _ = machine.random_state(rng)
+        if machine.nc:
+            q = sf.assemble(machine, q).q
+        try:
+            rest = sf.equilibrium(machine, q)
+        except sf.EquilibriumError:
+            continue
+        _, h, Q = machine.dynamics(rest.q, np.zeros(machine.nv), rest.u)
+        reaction = machine.constraint_jacobian(rest.q).T @ rest.lam if machine.nc else 0.0
+        assert np.abs(h - Q - reaction).max() < 1e-8
+        rests += 1
+    assert rests >= 7
+
+
+def test_what_falls_for_ever_has_no_rest() -> None:
+    ball = sf.RigidBody("ball", sf.Joint("free", "free"), sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)))
+    with pytest.raises(sf.EquilibriumError, match="after 100 steps"):
+        sf.equilibrium(sf.compile(sf.System("ball", (ball,))))
+
+
+def test_negative_directions_are_turned_round(rng: np.random.Generator) -> None:
+    """In size and direction they stay, and what is skew is left as it is."""
+    V, _ = np.linalg.qr(rng.standard_normal((4, 4)))
+    skew = rng.standard_normal((4, 4))
+    skew -= skew.T
+    K = (V * [-3.0, -1.0, 0.5, 2.0]) @ V.T
+    turned, stable = _downhill(K + skew)
+    assert not stable
+    assert np.allclose(turned, (V * [3.0, 1.0, 0.5, 2.0]) @ V.T + skew, atol=1e-13)
+    assert _downhill(turned)[1]
+    assert _downhill(np.zeros((0, 0)))[1]
