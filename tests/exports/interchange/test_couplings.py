@@ -30,7 +30,7 @@ def test_any_way_to_state_a_polynomial_gives_its_coefficients(c: list[float], sl
     residual = {
         "sum": f"{slope!r}*(a - ({powers}))",
         "horner": f"a - ({horner})",
-        "negative": f"-({powers}) + a",
+        "negative": f"-(-a + ({powers}))",
         "quotient": f"(a - ({powers}))/k",
     }[form]
     coupling = polynomial(residual)
