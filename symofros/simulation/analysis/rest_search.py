@@ -17,6 +17,8 @@ from symofros.runtime.model import ArrayLike, Model
 _NEAR = 1e-6
 # Stiffness, of the largest, that is neutral: an axis of symmetry leaves rounding.
 _NEUTRAL = 1e-9
+# Mass that the relaxation adds to every motion, of their mean: bodies without mass have none.
+_LEAST_MASS = 1e-9
 # By how much the damping of the relaxation may change from step to step.
 _SLOWEST, _FASTEST = 4.0, 0.1
 
@@ -165,12 +167,12 @@ def _relax(balance: Balance, start: Search, reach: Array, iterations: int) -> Se
         lam = inverse.T @ forces[free]
         R, _ = balance.residual(q, lam)
         scale = max(scale, largest)
-        if not np.all(np.isfinite(R)):
+        K = balance.stiffness(q, lam)
+        if not (np.all(np.isfinite(R)) and np.all(np.isfinite(K))):
             return None
-        # Columns of Y: motions that are allowed, in coordinates in which their mass is one (7a).
-        Y = Z @ np.linalg.inv(np.linalg.cholesky(Z.T @ M[np.ix_(free, free)] @ Z)).T
+        Y = Z @ _unit_mass(Z.T @ M[np.ix_(free, free)] @ Z)
         pull = Y.T @ R[free]
-        K, stable = _downhill(Y.T @ balance.stiffness(q, lam)[np.ix_(free, free)] @ Y)
+        K, stable = _downhill(Y.T @ K[np.ix_(free, free)] @ Y)
         if stable and balance.size(R, scale) <= _NEAR:
             return Search(q, lam, R, scale, count)
         size = float(np.abs(pull).max(initial=0.0))
@@ -180,7 +182,7 @@ def _relax(balance: Balance, start: Search, reach: Array, iterations: int) -> Se
             damping *= min(_SLOWEST, max(_FASTEST, size / before))
         before = size or before
         step = np.zeros(model.nv)
-        step[free] = -Y @ np.linalg.solve(K + damping * np.eye(len(K)), pull)
+        step[free] = -Y @ np.linalg.lstsq(K + damping * np.eye(len(K)), pull)[0]
         step *= _bounded(step, reach)
         for _ in range(HALVINGS):  # The forces at its end push back by half of what they push at its begin at most.
             _, ahead, _ = balance.forces(model.integrate(q, step))
@@ -190,6 +192,12 @@ def _relax(balance: Balance, start: Search, reach: Array, iterations: int) -> Se
         step[free] -= inverse @ R[model.nv :]
         q = model.integrate(q, step)
     return None
+
+
+def _unit_mass(M: Array) -> Array:
+    """L^-T of (7a), which makes the mass of motions one (n, n); what has none gets _LEAST_MASS of the mean."""
+    least = _LEAST_MASS * float(np.trace(M)) / max(len(M), 1) or 1.0
+    return np.asarray(np.linalg.inv(np.linalg.cholesky(M + least * np.eye(len(M)))).T)
 
 
 def _downhill(K: Array) -> tuple[Array, bool]:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from symofros.simulation.analysis.rest_search import _downhill
+from symofros.simulation.analysis.rest_search import _downhill, _unit_mass
 from tests.models import model
 
 
@@ -29,6 +29,15 @@ def test_a_gear_leaves_the_posture_without_stiffness() -> None:
     rest = sf.equilibrium(geared(3.0))
     assert rest.q == pytest.approx([np.pi / 4, 3 * np.pi / 4], abs=1e-10)
     assert rest.residual < 1e-11
+
+
+def test_motions_without_mass_are_damped() -> None:
+    """A singular mass matrix ends no search with an error of linear algebra."""
+    M = np.diag([0.0, 2.0, 0.0])
+    L = np.linalg.inv(_unit_mass(M)).T
+    assert np.allclose(L @ L.T, M, atol=1e-8)
+    assert np.all(np.isfinite(_unit_mass(np.zeros((2, 2)))))
+    assert _unit_mass(np.zeros((0, 0))).shape == (0, 0)
 
 
 def test_a_relaxed_rest_is_stable() -> None:
