@@ -63,10 +63,13 @@ def test_a_sampled_cubic_is_that_cubic(
         cubic = cubic - cubic.deriv()(0.0) * np.polynomial.Polynomial([0.0, 1.0])
     phi = sampled(xi, cubic(xi), direction)
     scale, shortest = 1e-15 + float(np.abs(coefficients).max()), float(np.diff(xi).min())
+    # A cubic through samples close together is extrapolated over the long interval beside them: their rounding grows as
+    # Lagrange's polynomials there, as the square of the ratio of the intervals.
+    growth = 0.9 + 0.1 * (float(np.diff(xi).max()) / shortest) ** 2
     for order in (0, 1, 2):
         # Samples are rounded to doubles: differences of that order divide it by as many distances.
         error = np.abs(at(phi, order) - (cubic.deriv(order) if order else cubic)(STATIONS)).max()
-        assert error <= 1e-14 * scale / shortest**order
+        assert error <= 1e-14 * scale * growth / shortest**order
 
 
 @pytest.mark.parametrize("name", GRIDS)
