@@ -145,7 +145,7 @@ def _change(layout: Layout, block: str, run: States | None, coarse: States, fine
         layout: Layout of the diagram's vectors.
         block: Block of the mechanism.
         run: Records of the whole run, where these are of a window: its largest speed counts, and what that makes of
-            the window's time.
+            the window's time, up to its largest displacement.
         coarse: Records by the step.
         fine: Records by half of it.
         norm: What counts of the records.
@@ -161,5 +161,7 @@ def _change(layout: Layout, block: str, run: States | None, coarse: States, fine
         reach = norm(moved)
         if run is not None:
             largest = norm(run[2][:, at])
-            fastest, reach = max(fastest, largest), max(reach, largest * span)
+            wide = norm(difference(layout.segments, np.broadcast_to(run[1][0], run[1].shape), run[1])[:, at])
+            # What goes to and fro comes no farther, however long the window is.
+            fastest, reach = max(fastest, largest), max(reach, min(largest * span, wide))
         return max(faster / max(fastest, STILL), norm(apart) / max(reach, STILL * span, 1e-300) / _POSITIONS)
