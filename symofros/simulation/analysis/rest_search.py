@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import HALVINGS, LARGEST_STEP, null_space, pseudo_inverse
@@ -37,14 +38,14 @@ class Balance:
     """
 
     model: Model
-    free: Array
+    free: npt.NDArray[np.intp]
     v: Array
     u: Array
     par: ArrayLike | None
     t: float
 
     @property
-    def rows(self) -> Array:
+    def rows(self) -> npt.NDArray[np.intp]:
         """Indices of the conditions: balances of free speeds, then constraints."""
         return np.concatenate([self.free, np.arange(self.model.nv, self.model.nv + self.model.nc)])
 
