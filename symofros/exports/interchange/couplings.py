@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
 
 from symofros.description.constraints import Coupling
+from symofros.description.system import System
 from symofros.description.values import Value
+from symofros.exports.interchange.rigid import RigidLink
 from symofros.expr.expression import Expression
 from symofros.mechanics.topology.numbers import Numbers
 
@@ -34,6 +36,13 @@ class PolynomialCoupling:
     follower: str
     leader: str | None
     coefficients: tuple[float, ...]
+
+
+def polynomial_couplings(system: System, links: Sequence[RigidLink], numbers: Numbers) -> list[PolynomialCoupling]:
+    """The couplings of a system that are polynomials of one turn or slide in another, in order."""
+    axes = {axis.name for link in links for axis in link.axes}
+    couplings = (polynomial_coupling(item, numbers, axes) for item in system.constraints if isinstance(item, Coupling))
+    return [coupling for coupling in couplings if coupling is not None]
 
 
 def polynomial_coupling(coupling: Coupling, numbers: Numbers, candidates: set[str]) -> PolynomialCoupling | None:

@@ -7,12 +7,12 @@ from xml.etree import ElementTree as Tree
 
 import numpy as np
 
-from symofros.description.constraints import Closure, Coupling
+from symofros.description.constraints import Closure
 from symofros.description.forces import Anchor, Damper, Spring
 from symofros.description.joints.joint import Joint
 from symofros.description.system import System
 from symofros.exports.folder import Exported, write_folder
-from symofros.exports.interchange.couplings import DEGREE, PolynomialCoupling, polynomial_coupling
+from symofros.exports.interchange.couplings import DEGREE, PolynomialCoupling, polynomial_couplings
 from symofros.exports.interchange.rigid import Array, RigidLink, numbers_text, rigid_links
 from symofros.generator.codegen.names import identifier
 from symofros.mechanics.topology.numbers import Numbers
@@ -162,11 +162,9 @@ def _dynamics(link: RigidLink, joint: Joint, index: int, numbers: Numbers) -> di
 
 
 def _equalities(root: Tree.Element, system: System, links: list[RigidLink], numbers: Numbers, notes: list[str]) -> None:
-    axes = {axis.name for link in links for axis in link.axes}
-    couplings = {
-        item.name: polynomial_coupling(item, numbers, axes) for item in system.constraints if isinstance(item, Coupling)
-    }
-    stated = [item for item in system.constraints if _stated(item) or couplings.get(item.name)]
+    couplings = polynomial_couplings(system, links, numbers)
+    names = {coupling.name for coupling in couplings}
+    stated = [item for item in system.constraints if _stated(item) or item.name in names]
     dropped = [item.name for item in system.constraints if item not in stated]
     if dropped:
         notes.append("constraints dropped: " + ", ".join(dropped))
@@ -180,7 +178,7 @@ def _equalities(root: Tree.Element, system: System, links: list[RigidLink], numb
         if len(closure.translations) < 3:
             free = ", ".join(axis for axis in "xyz" if axis not in closure.translations)
             notes.append(f"closure '{closure.name}' also holds {free}, which it leaves free")
-    for coupling in filter(None, couplings.values()):
+    for coupling in couplings:
         _joint_equality(into, coupling)
     notes.append("constraints are soft in MuJoCo: " + ", ".join(item.name for item in stated))
 

@@ -9,11 +9,10 @@ from xml.etree import ElementTree as Tree
 
 import numpy as np
 
-from symofros.description.constraints import Coupling
 from symofros.description.forces import Damper
 from symofros.description.system import System
 from symofros.exports.folder import Exported, write_folder
-from symofros.exports.interchange.couplings import PolynomialCoupling, polynomial_coupling
+from symofros.exports.interchange.couplings import PolynomialCoupling, polynomial_couplings
 from symofros.exports.interchange.rigid import Array, Axis, RigidLink, numbers_text, rigid_links
 from symofros.generator.codegen.names import identifier
 from symofros.mechanics.topology.numbers import Numbers
@@ -45,11 +44,9 @@ def write_urdf(system: System, name: str | None, folder: Path, generator: str) -
 
 def _mimics(system: System, links: list[RigidLink]) -> dict[str, PolynomialCoupling]:
     """Couplings that are straight lines, by the joint that follows; one that leads or follows does not follow again."""
-    numbers, axes = Numbers(system), {axis.name for link in links for axis in link.axes}
     mimics: dict[str, PolynomialCoupling] = {}
-    for item in system.constraints:
-        line = polynomial_coupling(item, numbers, axes) if isinstance(item, Coupling) else None
-        if line is None or line.leader is None or len(line.coefficients) > 2:
+    for line in polynomial_couplings(system, links, Numbers(system)):
+        if line.leader is None or len(line.coefficients) > 2:
             continue
         leaders = {mimic.leader for mimic in mimics.values()}
         if line.leader not in mimics and line.follower not in mimics and line.follower not in leaders:

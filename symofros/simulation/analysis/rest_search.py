@@ -62,13 +62,15 @@ class Balance:
 
     def residual(self, q: Array, lam: Array) -> tuple[Array, float]:
         """Imbalance h - Q - G^T lam and residual phi (nv + nc), and the largest force."""
-        _, balance, scale = self.forces(q)
-        if not self.model.nc:
-            return balance, scale or 1.0
+        _, forces, scale = self.forces(q)
         reaction = self.jacobian(q).T @ lam
-        scale = max(scale, float(np.abs(reaction).max(initial=0.0)))
-        phi = self.model.constraint(q, u=self.u, par=self.par, t=self.t)
-        return np.concatenate([balance - reaction, phi]), scale or 1.0
+        return self.imbalance(q, forces, reaction), max(scale, float(np.abs(reaction).max(initial=0.0))) or 1.0
+
+    def imbalance(self, q: Array, forces: Array, reaction: Array) -> Array:
+        """Forces less reaction, and phi (nv + nc)."""
+        if not self.model.nc:
+            return forces - reaction
+        return np.concatenate([forces - reaction, self.model.constraint(q, u=self.u, par=self.par, t=self.t)])
 
     def size(self, R: Array, scale: float) -> float:
         """The largest imbalance relative to the largest force; residuals of constraints as they are."""
@@ -163,10 +165,11 @@ def _relax(balance: Balance, start: Search, reach: Array, iterations: int) -> Se
     q, scale, damping, before = start.q, start.scale, 0.0, np.inf
     for count in range(iterations):
         M, forces, largest = balance.forces(q)
-        G = balance.jacobian(q)[:, free]
+        jacobian = balance.jacobian(q)
+        G = jacobian[:, free]
         inverse, Z = pseudo_inverse(G, measures), null_space(G, measures)
         lam = inverse.T @ forces[free]
-        R, _ = balance.residual(q, lam)
+        R = balance.imbalance(q, forces, jacobian.T @ lam)
         scale = max(scale, largest)
         K = balance.stiffness(q, lam)
         if not (np.all(np.isfinite(R)) and np.all(np.isfinite(K))):
