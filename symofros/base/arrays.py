@@ -11,6 +11,9 @@ from numpy.typing import ArrayLike
 
 from symofros.errors import Problem, ShapeError
 
+# Of NumPy's search for an element that two arrays share: of rows or columns of one array it takes a few steps.
+_OVERLAP_WORK = 100_000
+
 
 def real_array(values: ArrayLike | None, dtype: npt.DTypeLike = np.float64) -> npt.NDArray[Any] | None:
     """The values as an array of real numbers; None where some are not: texts, dates, complex numbers, None.
@@ -51,3 +54,12 @@ def numeric(what: str, values: ArrayLike) -> npt.NDArray[np.float64]:
             )
         )
     return np.array(array)
+
+
+def share_memory(a: npt.NDArray[Any], b: npt.NDArray[Any]) -> bool:
+    """Whether two arrays have an element in common; where that takes long to find out, they are taken to."""
+    try:
+        # NumPy's stub knows two of the numbers that max_work may be.
+        return bool(np.shares_memory(a, b, max_work=_OVERLAP_WORK))  # type: ignore[arg-type]
+    except np.exceptions.TooHardError:
+        return True

@@ -11,13 +11,12 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from symofros.base.arguments import check_argument
+from symofros.base.arrays import share_memory
 from symofros.errors import Problem, ShapeError, UnknownNameError, did_you_mean
 from symofros.runtime.calls.kernel import Array, BatchKernel, Kernel, Numbers, Signature
 from symofros.runtime.calls.layout import columns
 
 Layout = Literal["rows", "columns"]
-# Of NumPy's search for an element that two arrays share: of rows or columns of one array it takes a few steps.
-_OVERLAP_WORK = 100_000
 # More than any memory holds; sizes of arrays are computed from it without overflow.
 _MOST_STATES = 1 << 40
 
@@ -116,12 +115,7 @@ def _refuse_overlaps(signature: Signature, given: Mapping[str, Numbers]) -> None
     """Refuse an output that shares memory with another array of the caller: what is read would be overwritten."""
     for name, _ in signature.outputs:
         for other in given.keys() - {name} if name in given else ():
-            try:
-                # NumPy's stub knows two of the numbers that max_work may be.
-                shared = np.shares_memory(given[name], given[other], max_work=_OVERLAP_WORK)  # type: ignore[arg-type]
-            except np.exceptions.TooHardError:
-                shared = True
-            if shared:
+            if share_memory(given[name], given[other]):
                 rule = "an output shares no memory with another array: each is written while others are read"
                 raise _misfit(signature, name, f"memory of '{other}'", rule, "pass an array, or a copy, of its own")
 

@@ -9,13 +9,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from symofros.base.arrays import share_memory
 from symofros.errors import Problem, ShapeError, UnknownNameError, did_you_mean
 from symofros.runtime.cuda.arrays import Placed, Strided, lies_on_device, placed
 from symofros.runtime.cuda.driver import Driver
 
 Shape = tuple[int, ...]
-# Effort that NumPy may spend on whether two arrays share memory; beyond, they are taken to.
-_OVERLAP_WORK = 100_000
 
 
 def receivers(
@@ -52,7 +51,7 @@ def receivers(
         if _overlaps_itself(place):
             raise _shared(label, "with itself: entries of it have one place")
         for other, read in [*inputs.items(), *((other, at) for other, at in places.items() if other < label)]:
-            if _overlap(place, read, dtype):
+            if share_memory(_outline(place, dtype), _outline(read, dtype)):
                 raise _shared(label, f"with {other}")
     return batches
 
@@ -106,14 +105,6 @@ def _overlaps_itself(array: Placed) -> bool:
             return prod(array.shape) > 0
         reach += (size - 1) * stride
     return False
-
-
-def _overlap(a: Placed, b: Placed, dtype: npt.DTypeLike) -> bool:
-    try:
-        # NumPy's stub knows two of the numbers that max_work may be.
-        return bool(np.shares_memory(_outline(a, dtype), _outline(b, dtype), max_work=_OVERLAP_WORK))  # type: ignore[arg-type]
-    except np.exceptions.TooHardError:
-        return True
 
 
 def _outline(array: Placed, dtype: npt.DTypeLike) -> npt.NDArray[Any]:
