@@ -112,11 +112,12 @@ def _examined(task: _Run, ended: Ended, given: dict[tuple[str, float], dict[str,
     settings = ended.settings[0] if ended.settings else None
     h = 0.0 if settings is None or settings.adaptive else min(settings.dt, ended.spacing)
 
-    def repeat(i: int, t_end: float, finer: bool) -> Sequence[Array] | None:
-        o = task.options
+    def repeat(i: int, t_end: float, refinements: int) -> Sequence[Array] | None:
+        o, tighter = task.options, 0.01**refinements
         once = replace(o, realtime=False, threads=1)
-        if finer:
-            once = replace(once, dt=0.5 * h) if h else replace(once, rtol=0.01 * o.rtol, atol=0.01 * o.atol)
+        if refinements:
+            dt = 0.5**refinements * h
+            once = replace(once, dt=dt) if h else replace(once, rtol=tighter * o.rtol, atol=tighter * o.atol)
         return _resumed(replace(task, options=once, t_end=t_end), states, given, i)
 
     def accelerations(rows: Array) -> Array:

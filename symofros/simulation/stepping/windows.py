@@ -17,8 +17,8 @@ WHOLE = 256
 # Windows of a longer one: two, and one more for so many steps, four at most; their steps together, a share of the run,
 # but no fewer than show a change of speeds.
 _STEPS_A_WINDOW, _FEW, _MANY, _SHARE, _FEWEST, _MOST = 50_000, 2, 4, 0.01, 8, 256
-# A window ends at a record, unless these are so many windows apart: then it is made twice.
-_SPARSE = 4.0
+# A window ends at a record, unless these are more than so many windows and so many steps apart: then it is made twice.
+_SPARSE, _INTERVAL = 4.0, 128
 
 
 @dataclass(frozen=True)
@@ -57,6 +57,6 @@ def windows(t: Array, v: Array, h: float, steps: int) -> list[Window]:
     chosen = []
     for i in sorted({0, *(int(part[np.argmax(changes[part])]) for part in parts)}):
         last = min(int(np.searchsorted(t, t[i] + span)), len(t) - 1)
-        sparse = t[last] - t[i] > _SPARSE * span
+        sparse = t[last] - t[i] > max(_SPARSE * span, _INTERVAL * h)
         chosen.append(Window(i, None, float(t[i]) + span) if sparse else Window(i, last, float(t[last])))
     return chosen

@@ -28,6 +28,8 @@ _SMOOTH = 0.25
 _REPEATED, _CHANGED = 4, 0.3
 # Or share of the largest kinetic energy: beside the work of a contact between records all else is small.
 _CHANGED_MOTION = 0.1
+# Steps are refined up to so many times while this share of that is still added.
+_REFINEMENTS, _SETTLED = 4, 0.1
 # What the changes of all intervals may add up to, relative to the kinetic energy that the motion has had by then, if
 # each changes as the repeated ones do: each of many contacts may give a little. Half of what errors of first order are.
 _DRIFT = 0.15
@@ -77,7 +79,9 @@ class Energies:
         return np.asarray((ends[0] - ends[1]) / np.maximum(2.0 * moment, 1e-300))
 
 
-def energy_note(energies: Energies, states: States, steps: int, accelerations: Accelerations, repeat: Repeat) -> str:
+def energy_note(
+    energies: Energies, states: States, steps: int, accelerations: Accelerations, repeat: Repeat, *, adaptive: bool
+) -> str:
     """Energy that came or went without work (4), (5), in words; nothing where it is little or a contact's work.
 
     Args:
@@ -86,6 +90,7 @@ def energy_note(energies: Energies, states: States, steps: int, accelerations: A
         steps: Number of steps.
         accelerations: Accelerations at records.
         repeat: Makes a part of the run once more.
+        adaptive: Whether steps adapt: their tolerances are tightened once.
     """
     layout = energies.resolved.layout
     few = min(len(states[0]), int(min(max(_SHARE * steps, _FEWEST), _MOST)))
@@ -101,35 +106,66 @@ def energy_note(energies: Energies, states: States, steps: int, accelerations: A
             kinetic, energy = energies.of(name, *some[:3])
             power, spans = energies.powers(name, some, a), np.diff(some[0])
             gained = np.where(engages, 0.0, np.diff(energy) - 0.5 * (power[1:] + power[:-1]) * spans)
-            bends = np.abs(np.diff(power, n=2, prepend=power[:1])) * spans
-            unexplained, uncertain = np.abs(np.cumsum(gained)), np.cumsum(_SMOOTH * bends)
-            if not np.any(unexplained - uncertain > _NOTED * kinetic.max()):
+            unseen = _SMOOTH * np.abs(np.diff(power, n=2, prepend=power[:1])) * spans
+            unexplained, uncertain = np.abs(np.cumsum(gained)), np.cumsum(unseen)
+            noted = _NOTED * kinetic.max()
+            # Where the power bends, a small sum shows nothing: it may be what errors leave.
+            if not np.any(unexplained + uncertain > noted):
                 continue
-            largest = float(kinetic.max())
-            if _is_numerical(energies, name, states, rows, gained, kinetic, repeat):
+            doubts = _Doubts(gained, unseen, kinetic, evident=bool(np.any(unexplained - uncertain > noted)))
+            if _is_numerical(energies, name, states, rows, doubts, repeat, 1 if adaptive else _REFINEMENTS):
                 return (
                     f"the energy of '{name}' changes by {unexplained.max():.3g} J beside the work done on it, where its"
-                    f" motion has {largest:.3g} J at most: finer steps change that; a smaller dt or tighter"
+                    f" motion has {kinetic.max():.3g} J at most: finer steps change that; a smaller dt or tighter"
                     " tolerances"
                 )
     return ""
 
 
+@dataclass(frozen=True)
+class _Doubts:
+    """Energy between records that no work explains.
+
+    Attributes:
+        gained: Energy that each interval gained without work, (4) (n - 1) [J].
+        unseen: Work that bends of the power may hide in each (n - 1) [J].
+        kinetic: Kinetic energy at the records (n) [J].
+        evident: Whether more is gained than bends may hide, (5).
+    """
+
+    gained: Array
+    unseen: Array
+    kinetic: Array
+    evident: bool
+
+
 def _is_numerical(
-    energies: Energies, name: str, states: States, rows: Array, gained: Array, kinetic: Array, repeat: Repeat
+    energies: Energies, name: str, states: States, rows: Array, doubts: _Doubts, repeat: Repeat, refinements: int
 ) -> bool:
-    """Whether finer steps change what the intervals with most unexplained energy gain."""
+    """Whether finer steps change what the intervals gain in which most energy is doubtful."""
+    gained, kinetic = doubts.gained, doubts.kinetic
     sizes = np.maximum.accumulate(np.maximum(kinetic[1:], 1e-300))
-    chosen = np.argsort(-np.abs(gained))[:_REPEATED]
-    changes = np.empty(len(chosen))
-    for k, i in enumerate(chosen):
-        first, last = int(rows[i]), int(rows[i + 1])
-        finer = repeat(first, float(states[0][last]), True)
-        if finer is None:
+    chosen = np.argsort(-np.abs(gained) if doubts.evident else -np.abs(gained) - doubts.unseen)[:_REPEATED]
+    share = _CHANGED_MOTION * float(kinetic.max())
+    if doubts.evident:
+        share = min(_CHANGED * float(np.abs(gained[chosen]).sum()), share)
+    changes = np.zeros(len(chosen))
+    for level in range(1, 1 + refinements):
+        before = changes.copy()
+        for k, i in enumerate(chosen):
+            first, last = int(rows[i]), int(rows[i + 1])
+            finer = repeat(first, float(states[0][last]), level)
+            if finer is None:
+                return True
+            ends = (np.stack([x[last], y[-1]]) for x, y in zip(states[:3], finer[:3], strict=True))
+            _, energy = energies.of(name, *ends)
+            changes[k] = energy[1] - energy[0]
+        if float(np.abs(changes).sum()) >= share:
             return True
-        _, energy = energies.of(name, *(np.stack([x[last], y[-1]]) for x, y in zip(states[:3], finer[:3], strict=True)))
-        changes[k] = energy[1] - energy[0]
+        if float(np.abs(changes - before).sum()) <= _SETTLED * share:
+            break
+    if not doubts.evident:
+        return False
     relative = np.abs(gained) / sizes
     drift = abs(float((changes / sizes[chosen]).sum())) * float(relative.sum() / relative[chosen].sum())
-    share = min(_CHANGED * float(np.abs(gained[chosen]).sum()), _CHANGED_MOTION * float(kinetic.max()))
-    return float(np.abs(changes).sum()) >= share or drift >= _DRIFT
+    return drift >= _DRIFT

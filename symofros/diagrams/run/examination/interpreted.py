@@ -134,14 +134,14 @@ class _Revisited:
         for key, values in run.memory.items():
             blocks.memory[key][...] = values[i]
 
-    def _repeat(self, i: int, t_end: float, finer: bool) -> Sequence[Array] | None:
+    def _repeat(self, i: int, t_end: float, refinements: int) -> Sequence[Array] | None:
         course, slack = self._course, 1e-9 * self._course.dt
         later = [instant for instant in course.instants if self._run.t[i] + slack < instant[0] <= t_end + slack]
         again = replace(
             course,
             instants=[(float(self._run.t[i]), frozenset(), True), *later],
             t_end=t_end,
-            dt=0.5 * course.step if finer else course.dt,
+            dt=0.5**refinements * course.step if refinements else course.dt,
         )
         self._place(i)
         watch = BeamWatch(self._run.resolved, self._blocks.par, np.inf)

@@ -11,7 +11,6 @@ from symofros.diagrams.run.examination.energy_balance import Accelerations, Ener
 from symofros.diagrams.run.examination.step_check import Repeat, States, step_note
 from symofros.diagrams.run.python_blocks import NotKeptError
 from symofros.simulation.stepping.resolution import Resolution
-from symofros.simulation.stepping.windows import WHOLE
 
 # Share of a mechanism's largest speed that the absolute tolerance may allow as the error of a step, and displacements
 # over it that are a motion: as of `sf.simulate`.
@@ -54,11 +53,11 @@ def remarks(run: Examined, modes: Resolution) -> tuple[str, ...]:
     try:
         note = ""
         # No mode at a few states knows of contacts.
-        examined = not modes.evident or (run.h > 0.0 and run.steps <= WHOLE)
-        if (worst is None and examined) or (run.h == 0.0 and _is_loose(run)):
+        if worst is None if run.h > 0.0 else _is_loose(run):
             external = _answers(run.energies.resolved)
             note = step_note(layout, states, run.repeat, run.h, run.steps, external=external)
-        note = note or energy_note(run.energies, states, run.steps, run.accelerations, run.repeat)
+        adaptive = run.h == 0.0
+        note = note or energy_note(run.energies, states, run.steps, run.accelerations, run.repeat, adaptive=adaptive)
         return (note,) if note else ()
     except NotKeptError:  # External blocks were called more often than is kept.
         return ()

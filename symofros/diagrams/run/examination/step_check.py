@@ -6,7 +6,7 @@ docs/theory/diagrams.md, section 7; docs/theory/simulation.md, (17).
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,8 +14,10 @@ from symofros.diagrams.program.layout import Layout
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import STILL
 from symofros.runtime.manifold import difference
+from symofros.simulation.results.examination.energy_balance import EXPLODED
+from symofros.simulation.results.examination.repetition import FRACTIONS, HALVINGS, SETTLED
 from symofros.simulation.stepping.resolution import TOLERANCE
-from symofros.simulation.stepping.windows import WHOLE, windows
+from symofros.simulation.stepping.windows import WHOLE, Window, windows
 
 # Differences of displacements count by this share: coordinates may be larger than how they change.
 _POSITIONS = 3.0
@@ -30,9 +32,9 @@ _REPEATED = 20_000
 
 # Records: t (n), q (n, nq), v (n, nv), and what else a run keeps.
 States = Sequence[Array]
-# The records of a run that goes on from a record (its number) to a time, by the same steps (False) or by finer ones
-# (True), which are half as long, or have a hundredth of the tolerances; None where it does not get there.
-Repeat = Callable[[int, float, bool], States | None]
+# The records of a run that goes on from a record (its number) to a time, by steps that are refined so many times: they
+# are half as long each time, or have a hundredth of the tolerances; None where it does not get there.
+Repeat = Callable[[int, float, int], States | None]
 
 
 # Records (n, m) of a vector -> its size.
@@ -58,12 +60,14 @@ class _Changed:
         block: Block of the mechanism.
         t: Time at which the part begins [s].
         span: Length of the part [s].
+        refinements: Number of times that the steps were refined.
     """
 
     share: float
     block: str
     t: float
     span: float
+    refinements: int = 1
 
 
 def step_note(layout: Layout, states: States, repeat: Repeat, h: float, steps: int, *, external: str = "") -> str:
@@ -80,50 +84,115 @@ def step_note(layout: Layout, states: States, repeat: Repeat, h: float, steps: i
         external: An external block that answers to the motion, if there is one: in what is repeated it answers as it
             did, so that a smaller change counts.
     """
-    stepping = f"steps of {h:.4g} s" if h else "the tolerances"
-    finer, cure = ("half of that", "a smaller dt") if h else ("a hundredth of them", "tighter tolerances")
+    stepping, cure = (f"steps of {h:.4g} s", "a smaller dt") if h else ("the tolerances", "tighter tolerances")
     # All of a run would show nothing of what an external block makes of errors from one call to the next.
     duration, short = float(states[0][-1] - states[0][0]), steps <= WHOLE and not external
-    chosen = windows(states[0], states[2], h or duration / steps, steps if short else max(steps, WHOLE + 1))
+    run = _Run(layout, states, repeat, h, (_UNANSWERED if external else 1.0) * TOLERANCE, whole=short)
     worst = _Changed(0.0, "", 0.0, duration)
-    for window in chosen:
-        rows = slice(window.first, window.last + 1) if window.last is not None else None
-        coarse = [x[rows] for x in states] if rows else repeat(window.first, window.t_end, False)
-        fine = repeat(window.first, window.t_end, True)
-        if coarse is None or fine is None:
-            begin = "" if short else f" from t = {float(states[0][window.first]):.6g} s"
-            return f"{stepping} do not show the motion: with {finer} it does not come to this end{begin}; {cure}"
-        worst = max(worst, _changed(layout, None if short else states, coarse, fine), key=_size)
+    for window in windows(states[0], states[2], h or duration / steps, steps if short else max(steps, WHOLE + 1)):
+        changed = run.changed(window)
+        if not changed.block:
+            begin = "" if short else f" from t = {changed.t:.6g} s"
+            unlike = f"with {run.finer(changed)} it does not come to this end{begin}"
+            return f"{stepping} do not show the motion: {unlike}; {cure}"
+        worst = max(worst, changed, key=_size)
     grown = worst.share * (duration / worst.span) ** _GROWTH
     seen = "" if short else f" (seen at t = {worst.t:.4g} s)"
-    if not worst.share > (_UNANSWERED if external else 1.0) * TOLERANCE and grown > TOLERANCE and not short:
+    if not worst.share > run.tolerance and grown > TOLERANCE and not short:
         if external:
             if grown <= _ADDS_UP:
                 return ""
             return (
-                f"{stepping} are not held against {finer} over all of the run, as '{external}' is not called again:"
-                f" {worst.span:.3g} s of the motion of '{worst.block}' change by {100.0 * worst.share:.2g} %{seen},"
-                f" which adds up; compare with {cure}"
+                f"{stepping} are not held against {run.finer(worst)} over all of the run, as '{external}' is not called"
+                f" again: {worst.span:.3g} s of the motion of '{worst.block}' change by {100.0 * worst.share:.2g} %"
+                f"{seen}, which adds up; compare with {cure}"
             )
-        coarse, fine = _once_more(states, repeat, steps)
-        if coarse is None or fine is None:
-            return f"{stepping} do not show the motion: with {finer} it does not come to this end; {cure}"
-        worst, seen = _changed(layout, None, coarse, fine, _mean), ""
-    if worst.share <= (_UNANSWERED if external else 1.0) * TOLERANCE:
+        worst, seen = run.once_more(steps), ""
+        if not worst.block:
+            return f"{stepping} do not show the motion: with {run.finer(worst)} it does not come to this end; {cure}"
+    if worst.share <= run.tolerance:
         return ""
     by = f"{100.0 * worst.share:.2g} %" if worst.share < 1.0 else "more than 100 %"
     same = ", even where external blocks answer as they did" if external else ""
-    return f"{stepping} do not determine the motion of '{worst.block}': {finer} changes it by {by}{seen}{same}; {cure}"
+    return (
+        f"{stepping} do not determine the motion of '{worst.block}': {run.finer(worst)} changes it by {by}{seen}{same};"
+        f" {cure}"
+    )
 
 
-def _once_more(states: States, repeat: Repeat, steps: int) -> tuple[States | None, States | None]:
-    """All of a run or its first steps, as it was and by finer steps."""
-    t = states[0]
-    end = float(t[-1]) if steps <= _REPEATED else float(t[0] + (t[-1] - t[0]) * _REPEATED / steps)
-    last = int(np.searchsorted(t, end, side="right")) - 1
-    if t[last] > t[0]:
-        return [x[: last + 1] for x in states], repeat(0, float(t[last]), True)
-    return repeat(0, end, False), repeat(0, end, True)  # No record lies that early.
+@dataclass(frozen=True)
+class _Run:
+    """A run, parts of which are held against finer steps.
+
+    Attributes:
+        layout: Layout of the diagram's vectors.
+        states: Records of the run.
+        repeat: Makes a part of the run once more.
+        h: Step [s]; 0: it adapts.
+        tolerance: Change that is worth a note.
+        whole: Whether the part is all of the run.
+    """
+
+    layout: Layout
+    states: States
+    repeat: Repeat
+    h: float
+    tolerance: float
+    whole: bool
+
+    def finer(self, changed: _Changed) -> str:
+        """The finest steps that a part was held against, in words."""
+        k = changed.refinements
+        return f"{FRACTIONS[k]} of that" if self.h else f"{('', 'a hundredth', 'a ten thousandth')[min(k, 2)]} of them"
+
+    def changed(self, window: Window) -> _Changed:
+        """What finer steps change in a window; without a block where they do not come to its end.
+
+        They are refined until that changes no more than a part of what is noted, and twice at least where a speed
+        changes by half of the largest from one record to the next: steps over a contact may err by chance alike.
+        """
+        t, i = self.states[0], window.first
+        coarse: States | None
+        if window.last is not None:
+            coarse = [x[i : window.last + 1] for x in self.states]
+        else:
+            coarse = self.repeat(i, window.t_end, 0)
+        worst = _Changed(0.0, "", float(t[i]), window.t_end - float(t[i]))
+        before = 0.0
+        for k in range(1, 1 + (HALVINGS if self.h else 1)):
+            fine = self.repeat(i, window.t_end, k)
+            if coarse is None or fine is None:
+                return replace(worst, block="", refinements=k)
+            now = replace(_changed(self.layout, None if self.whole else self.states, coarse, fine), refinements=k)
+            worst = max(worst, now, key=_size) if worst.block else now
+            settled = abs(now.share - before) <= SETTLED * self.tolerance and (k > 1 or not self._jumps(fine))
+            if settled or _size(worst) > self.tolerance:
+                break
+            before = now.share
+        return worst
+
+    def _jumps(self, fine: States) -> bool:
+        """Whether the speed of a mechanism changes by half of its largest from one record to the next."""
+        v = fine[2]
+        with np.errstate(all="ignore"):
+            return any(
+                2.0 * _largest(np.diff(v[:, places.slice], axis=0)) > _largest(v[:, places.slice])
+                for places in self.layout.v.values()
+            )
+
+    def once_more(self, steps: int) -> _Changed:
+        """What finer steps change in all of a run or its first steps; without a block where they do not come there."""
+        t = self.states[0]
+        end = float(t[-1]) if steps <= _REPEATED else float(t[0] + (t[-1] - t[0]) * _REPEATED / steps)
+        last = int(np.searchsorted(t, end, side="right")) - 1
+        if t[last] > t[0]:
+            end = float(t[last])
+        # No record may lie that early.
+        coarse = [x[: last + 1] for x in self.states] if t[last] > t[0] else self.repeat(0, end, 0)
+        fine = self.repeat(0, end, 1)
+        if coarse is None or fine is None:
+            return _Changed(0.0, "", float(t[0]), end - float(t[0]))
+        return _changed(self.layout, None, coarse, fine, _mean)
 
 
 def _size(changed: _Changed) -> float:
@@ -161,6 +230,10 @@ def _change(layout: Layout, block: str, run: States | None, coarse: States, fine
         reach = norm(moved)
         if run is not None:
             largest = norm(run[2][:, at])
+            # What a motion grows to later is no measure of it, nor of its start where it grows without bounds.
+            by_then = max(fastest, norm(run[2][: np.searchsorted(run[0], fine[0][-1], side="right"), at]))
+            if fine[0][0] > run[0][0] or largest > EXPLODED * by_then:
+                largest = by_then
             wide = norm(difference(layout.segments, np.broadcast_to(run[1][0], run[1].shape), run[1])[:, at])
             # What goes to and fro comes no farther, however long the window is.
             fastest, reach = max(fastest, largest), max(reach, min(largest * span, wide))

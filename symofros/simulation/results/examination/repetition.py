@@ -7,11 +7,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from symofros.runtime.calls.kernel import Array
+from symofros.runtime.manifold import retract
 from symofros.simulation.results.examination.energy_norm import energies_of, energy_norms, metrics
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.loops import run_own
@@ -25,6 +26,12 @@ _CALLED, _SAME = 8, 1e-9
 # Differences of displacements count by this share: they are relative to how they change in the run, while coordinates
 # themselves may be larger; those of energies by another: they are squares.
 _POSITIONS, _ENERGIES = 3.0, 2.0
+# Steps are halved up to so many times while this share of TOLERANCE is still added; fractions of the step in words.
+HALVINGS, SETTLED = 4, 0.1
+FRACTIONS = ("all", "half", "a quarter", "an eighth", "a sixteenth")
+# Power of time with which the change in a window may grow over the run, (17b); parts that show by how much it does grow
+# are so many times as long, each; the longest in steps; states that are compared in one, about.
+_GROWTH, _LONGER, _REPEATED, _COMPARED = 2.0, 8, 20_000, 256
 # Records, about, among which the fastest is looked for; fewest that show where speeds change.
 _SPEEDS, _RECORDS = 64, 3
 # Share of coordinates and energies that is rounding, and what an equilibrium is found to: at rest nothing else moves.
@@ -110,16 +117,24 @@ def halved_step_note(
             f"steps of {h:.4g} s were not held against half of that: the input function gives other inputs when it is"
             " asked again about a state; compare with a smaller dt"
         )
-    status, half = repeated(stepper, settings, (settings.t0, *start), float(t[-1]), 0.5 * h, every=2)
-    if status < 0:
-        return (
-            f"steps of {h:.4g} s do not show the motion: with half of that it does not come to this end; a smaller dt"
-        )
-    change = _change(stepper, start[0], (t, q, v), half)
-    if not change > TOLERANCE:
-        return ""
-    by = f"{100.0 * change:.2g} %" if change < 1.0 else "more than 100 %"
-    return f"steps of {h:.4g} s do not determine the motion: half of that changes it by {by}; a smaller dt"
+    change = before = 0.0
+    for k in range(1, HALVINGS + 1):
+        parts = 2**k
+        status, finer = repeated(stepper, settings, (settings.t0, *start), float(t[-1]), h / parts, every=parts)
+        if status < 0:
+            return (
+                f"steps of {h:.4g} s do not show the motion: with {FRACTIONS[k]} of that it does not come to this end;"
+                " a smaller dt"
+            )
+        change, before = _change(stepper, start[0], (t, q, v), finer), change
+        if change > TOLERANCE:
+            return (
+                f"steps of {h:.4g} s do not determine the motion: {FRACTIONS[k]} of that changes it by"
+                f" {_percent(change)}; a smaller dt"
+            )
+        if abs(change - before) <= SETTLED * TOLERANCE:
+            break
+    return ""
 
 
 def windows_note(stepper: Stepper, settings: Settings, states: Sequence[Array], steps: int) -> str:
@@ -135,42 +150,113 @@ def windows_note(stepper: Stepper, settings: Settings, states: Sequence[Array], 
         return ""
     if not stepper.model.nv or not repeatable(stepper, settings, states):
         return ""
-    t, q, v, u = states
-    h, rows = settings.dt, slice(None, None, -max(1, len(t) // _SPEEDS))
-    fastest, worst, seen = float(energy_norms(stepper, q[rows], u[rows], v[rows]).max()), 0.0, 0.0
-    for window in windows(t, v, h, steps):
-        i = window.first
-        count = max(1, round((window.t_end - t[i]) / h))
-        start, t_end = (float(t[i]), q[i], v[i]), float(t[i]) + count * h
-        every = len(t) == steps + 1  # a record at each step
-        coarse = [x[i : i + count + 1] for x in states] if every else repeated(stepper, settings, start, t_end, h)[1]
-        status, half = repeated(stepper, settings, start, t_end, 0.5 * h, every=2)
-        if status < 0:
+    run = _Run(stepper, settings, states, steps)
+    t, h = states[0], settings.dt
+    worst = _Changed(0.0, float(t[0]), 1)
+    for window in windows(t, states[2], h, steps):
+        changed = run.changed(window.first, max(1, round((window.t_end - t[window.first]) / h)))
+        if changed is None:
             return (
-                f"steps of {h:.4g} s do not show the motion from t = {t[i]:.6g} s: with half of that it does not go on;"
-                " a smaller dt"
+                f"steps of {h:.4g} s do not show the motion from t = {t[window.first]:.6g} s: with half of that it does"
+                " not go on; a smaller dt"
             )
-        if len(coarse[0]) == len(half[0]):
-            change = _change_in_window(stepper, fastest, coarse, half)
-            if change > worst:
-                worst, seen = change, float(t[i])
-    if not worst > TOLERANCE:
+        worst = max(worst, changed, key=lambda one: one.share)
+    worst = run.added_up(worst)
+    if not worst.share > TOLERANCE:
         return ""
-    by = f"{100.0 * worst:.2g} %" if worst < 1.0 else "more than 100 %"
     return (
-        f"steps of {h:.4g} s do not determine the motion: half of that changes it by {by} (seen at t = {seen:.4g} s);"
-        " a smaller dt"
+        f"steps of {h:.4g} s do not determine the motion: half of that changes it by {_percent(worst.share)} (seen at"
+        f" t = {worst.t:.4g} s); a smaller dt"
     )
 
 
-def _change_in_window(stepper: Stepper, fastest: float, coarse: Sequence[Array], fine: Sequence[Array]) -> float:
-    """Largest difference of speeds and displacements, relative to the run's fastest and what that makes of time."""
-    (_, q, v, _), (t, q_fine, v_fine, u) = coarse, fine
-    with np.errstate(all="ignore"):  # What has exploded overflows.
-        changes = v - v_fine, stepper.model.difference(q_fine, q)
-        faster, apart = (float(energy_norms(stepper, q_fine, u, x).max()) for x in changes)
-    largest = max(fastest, _rounding(stepper, fine))
-    return max(_share(faster, largest), _share(apart, largest * float(t[-1] - t[0])) / _POSITIONS)
+@dataclass(frozen=True)
+class _Changed:
+    """What half the step changes in a part of a run.
+
+    Attributes:
+        share: Change of speeds or displacements, relative to those of the run.
+        t: Time at which the part begins [s].
+        steps: Length of the part, in steps.
+    """
+
+    share: float
+    t: float
+    steps: int
+
+
+class _Run:
+    """A run with fixed steps, parts of which are held against half the step.
+
+    Args:
+        stepper: Stepper of the run.
+        settings: Settings of the run.
+        states: States of the run: t (n), q, v, u.
+        steps: Number of steps.
+    """
+
+    def __init__(self, stepper: Stepper, settings: Settings, states: Sequence[Array], steps: int) -> None:
+        self._stepper, self._settings, self._states, self._steps = stepper, settings, states, steps
+        _, q, v, u = (x[:: -max(1, len(x) // _SPEEDS)] for x in states)
+        self._fastest = float(energy_norms(stepper, q, u, v).max())
+        displacements = stepper.model.difference(np.broadcast_to(states[1][0], q.shape), q)
+        self._reach = float(energy_norms(stepper, q, u, displacements).max())
+
+    def changed(self, first: int, count: int, every: int = 1) -> _Changed | None:
+        """What half the step changes in `count` steps from a record on; None where it does not come to their end.
+
+        Args:
+            first: Number of the record.
+            count: Number of steps.
+            every: Number of steps between the states that are compared.
+        """
+        t, q, v, _ = self._states
+        stepper, settings, h = self._stepper, self._settings, self._settings.dt
+        start, t_end = (float(t[first]), q[first], v[first]), float(t[first]) + count * h
+        if len(t) == self._steps + 1:  # a record at each step
+            coarse = [x[first : first + count + 1 : every] for x in self._states]
+        else:
+            coarse = repeated(stepper, settings, start, t_end, h, every=every)[1]
+        status, half = repeated(stepper, settings, start, t_end, 0.5 * h, every=2 * every)
+        if status < 0:
+            return None
+        same = len(coarse[0]) == len(half[0])
+        return _Changed(self._share(coarse, half) if same else 0.0, start[0], count)
+
+    def _share(self, coarse: Sequence[Array], fine: Sequence[Array]) -> float:
+        """Largest difference of speeds and displacements, relative to the run's fastest and what that makes of time."""
+        (_, q, v, _), (t, q_fine, v_fine, u) = coarse, fine
+        stepper = self._stepper
+        with np.errstate(all="ignore"):  # What has exploded overflows.
+            changes = v - v_fine, stepper.model.difference(q_fine, q)
+            faster, apart = (float(energy_norms(stepper, q_fine, u, x).max()) for x in changes)
+        span, rounding = float(t[-1] - t[0]), _rounding(stepper, fine)
+        largest = max(self._fastest, rounding)
+        reach = min(largest * span, max(self._reach, rounding * span))  # To and fro comes no farther.
+        return max(_share(faster, largest), _share(apart, reach) / _POSITIONS)
+
+    def added_up(self, worst: _Changed) -> _Changed:
+        """What the change in a window adds up to over the run, seen in ever longer parts of it from its start, (17b).
+
+        Args:
+            worst: The window that half the step changes most.
+        """
+        if worst.share > TOLERANCE or not worst.share * (self._steps / worst.steps) ** _GROWTH > TOLERANCE:
+            return worst
+        before = worst
+        while before.steps < self._steps:
+            count = min(_LONGER * before.steps, self._steps)
+            if count > _REPEATED:
+                break
+            changed = self.changed(0, count, max(1, count // _COMPARED))
+            if changed is None or changed.share > TOLERANCE:
+                return changed or worst
+            growth = math.log(max(changed.share, 1e-300) / before.share) / math.log(count / before.steps)
+            growth = min(max(growth, 0.0), _GROWTH)
+            if not max(changed.share, worst.share) * (self._steps / count) ** growth > TOLERANCE:
+                break
+            before = changed
+        return worst
 
 
 def tolerance_note(
@@ -206,7 +292,7 @@ def tolerance_note(
 
 
 def _change(stepper: Stepper, q0: Array, states: Sequence[Array], finer: Sequence[Array]) -> float:
-    """Largest difference of speeds, of displacements from q0 and of energies, relative to the largest of each (17).
+    """Largest difference of speeds, displacements from q0 and energies, relative to the largest of each (17), (17a).
 
     Args:
         stepper: Stepper of the run.
@@ -229,7 +315,20 @@ def _change(stepper: Stepper, q0: Array, states: Sequence[Array], finer: Sequenc
             largest = float(np.abs(energies[1] - energies[0]).max() + energies[0].max())
             spread = max(float(energies[0].max()), float(np.ptp(energies[1])), _AT_REST * largest)
             change.append(_share(float(np.abs(others[1] - energies[1][rows]).max()), spread) / _ENERGIES)
+            bent = _potential_norms(stepper, (t[rows], q_finer[rows], u[rows]), changes[0])
+            change.append(_share(float(bent.max()), math.sqrt(2.0 * spread)))
     return max(change)
+
+
+def _potential_norms(stepper: Stepper, states: Sequence[Array], changes: Array) -> Array:
+    """Root of |V(q + x) - 2 V(q) + V(q - x)| of displacements x (n, nv): their norm x^T K x in linear motions (17a)."""
+    (t, q, u), segments = states, stepper.model.record.segments
+
+    def energy(x: Array) -> Array:
+        return stepper.model.potential_energy(retract(segments, q, x), u=u, par=stepper.par, t=t)
+
+    norms: Array = np.sqrt(np.abs(energy(changes) - 2.0 * energy(0.0 * changes) + energy(-changes)))
+    return norms
 
 
 def _rounding(stepper: Stepper, states: Sequence[Array]) -> float:
@@ -239,6 +338,10 @@ def _rounding(stepper: Stepper, states: Sequence[Array]) -> float:
     coordinates = model.difference(model.neutral(), q[-1])[np.newaxis]
     span = float(t[-1] - t[0]) / max(1, len(t) - 1)
     return _AT_REST * float(energy_norms(stepper, q[-1:], u[-1:], coordinates)[0]) / span if span > 0.0 else 0.0
+
+
+def _percent(share: float) -> str:
+    return f"{100.0 * share:.2g} %" if share < 1.0 else "more than 100 %"
 
 
 def _share(part: float, whole: float) -> float:

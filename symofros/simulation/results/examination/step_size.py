@@ -85,24 +85,25 @@ def examine_steps(
         return Resolution()  # What the function serves may be hardware: it is not called beside the run.
     t, q, v, u = states
     good = _finite_rows(q, v)
-    wanted = states_to_examine(steps, stepper.method.tableau.stages, stepper.model.nv)
-    later = sorted({good * k // (wanted - 1) - 1 for k in range(1, wanted)}) if good else []
-    examined = [(settings.t0, *start, u[0]), *((float(t[i]), q[i], v[i], u[i]) for i in later)]
     stride = max(1, good // _SPEEDS)
-    q_all, v_all = (np.concatenate([x[np.newaxis], y[:good:stride]]) for x, y in zip(start, (q, v), strict=True))
-    u_all = np.concatenate([u[:1], u[:good:stride]])
-    places = np.stack([where for _, where, *_ in examined])
-    rows = len(places)
-    metric = metrics(stepper, np.concatenate([places, q_all]), np.concatenate([np.repeat(u_all[:1], rows, 0), u_all]))
-    metric, norms = metric[:rows], norms_in(metric[rows:], v_all)
-    speeds = [_speed_of_motion(norms, i // stride + 2) for i in (0, *later)]
+    rows = np.arange(0, good, stride)
+    q_all, v_all = (np.concatenate([x[np.newaxis], y[rows]]) for x, y in zip(start, (q, v), strict=True))
+    metric = metrics(stepper, q_all, np.concatenate([u[:1], u[rows]]))
+    norms = norms_in(metric, v_all)
+    # The start, and the fastest state of equal parts of the run: modes are fast where the motion is.
+    wanted = states_to_examine(steps, stepper.method.tableau.stages, stepper.model.nv)
+    parts = [part for part in np.array_split(np.arange(1, len(norms)), wanted - 1) if len(part)]
+    chosen = [0, *(int(part[np.argmax(norms[part])]) for part in parts)]
+    later = [(float(t[i]), q[i], v[i], u[i]) for i in (rows[k - 1] for k in chosen[1:])]
+    examined = [(settings.t0, *start, u[0]), *later]
+    speeds = [_speed_of_motion(norms, k + 1) for k in chosen]
 
     def spectrum(i: int) -> Spectrum | None:
         return stepper.spectrum(*examined[i], settings.dt, directions(stepper.model.nv))
 
     with stepper.preserved(), np.errstate(all="ignore"):  # States that have exploded overflow.
         times = [when for when, *_ in examined]
-        return resolution(stepper.method, settings.dt, steps, times, spectrum, speeds, metric)
+        return resolution(stepper.method, settings.dt, steps, times, spectrum, speeds, metric[chosen])
 
 
 def _speed_of_motion(norms: Array, at: int) -> float:

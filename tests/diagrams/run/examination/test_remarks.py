@@ -193,7 +193,7 @@ def test_no_more_than_the_first_20_000_steps_are_made_once_more_however_few_reco
         return sound(task, states, given, i)
 
     monkeypatch.setattr(simulate, "_resumed", resumed)
-    monkeypatch.setattr("symofros.diagrams.run.examination.remarks.energy_note", lambda *_: "")
+    monkeypatch.setattr("symofros.diagrams.run.examination.remarks.energy_note", lambda *_, **__: "")
     pushed("formula", "-2000*x[0]^3", dx=2.0).run(400.0, dt=4e-3, record=200.0)
     begin, end = spans[-1]
     assert begin == 0.0 and end == pytest.approx(20_000 * 4e-3)
