@@ -9,73 +9,77 @@ M = model.mass_matrix(model.neutral())
 
 from __future__ import annotations
 
+import ast
+from functools import cache
 from importlib import import_module
+from sys import modules
 from typing import TYPE_CHECKING, Any
 
-from symofros import interop as interop
-from symofros.base.options import Options as Options
-from symofros.description import solids as solids
-from symofros.description.beams import sections as sections
-from symofros.description.beams.beam import Beam as Beam
-from symofros.description.beams.beam import BeamLoad as BeamLoad
-from symofros.description.beams.beam import Samples as Samples
-from symofros.description.constraints import Closure as Closure
-from symofros.description.constraints import Constraint as Constraint
-from symofros.description.constraints import Coupling as Coupling
-from symofros.description.constraints import KnifeEdge as KnifeEdge
-from symofros.description.constraints import Nonholonomic as Nonholonomic
-from symofros.description.constraints import Rod as Rod
-from symofros.description.constraints import Rolling as Rolling
-from symofros.description.forces import Connection as Connection
-from symofros.description.forces import Damper as Damper
-from symofros.description.forces import Friction as Friction
-from symofros.description.forces import Load as Load
-from symofros.description.forces import Potential as Potential
-from symofros.description.forces import Rotor as Rotor
-from symofros.description.forces import Spring as Spring
-from symofros.description.forces import Stop as Stop
-from symofros.description.forces import VirtualPower as VirtualPower
-from symofros.description.frames import Frame as Frame
-from symofros.description.joints.joint import Joint as Joint
-from symofros.description.joints.joint import Limits as Limits
-from symofros.description.system import Body as Body
-from symofros.description.system import Inertia as Inertia
-from symofros.description.system import Input as Input
-from symofros.description.system import Parameter as Parameter
-from symofros.description.system import RigidBody as RigidBody
-from symofros.description.system import System as System
-from symofros.description.values import Rotation as Rotation
-from symofros.description.values import as_value
-from symofros.errors import ActuationError as ActuationError
-from symofros.errors import ArgumentError as ArgumentError
-from symofros.errors import AssemblyError as AssemblyError
-from symofros.errors import BeamTheoryError as BeamTheoryError
-from symofros.errors import CompileError as CompileError
-from symofros.errors import CompilerMissingWarning as CompilerMissingWarning
-from symofros.errors import DescriptionError as DescriptionError
-from symofros.errors import EquilibriumError as EquilibriumError
-from symofros.errors import ExportError as ExportError
-from symofros.errors import InconsistentModelWarning as InconsistentModelWarning
-from symofros.errors import ParameterError as ParameterError
-from symofros.errors import Problem as Problem
-from symofros.errors import ShapeError as ShapeError
-from symofros.errors import SymofrosError as SymofrosError
-from symofros.errors import UnknownNameError as UnknownNameError
-from symofros.expr.expression import Expression as Expression
-from symofros.expr.expression import evaluate as evaluate
-
+# The public names, each imported at its first use: so neither the import nor `symofros --help` waits for NumPy, cffi or
+# the readers of files.
 if TYPE_CHECKING:
+    from symofros import interop as interop
+    from symofros.base.options import Options as Options
     from symofros.compiler import compile_library as compile_library
     from symofros.compiler import compile_system
     from symofros.compiler import program_of as program_of
+    from symofros.description import solids as solids
+    from symofros.description.beams import sections as sections
+    from symofros.description.beams.beam import Beam as Beam
+    from symofros.description.beams.beam import BeamLoad as BeamLoad
+    from symofros.description.beams.beam import Samples as Samples
+    from symofros.description.constraints import Closure as Closure
+    from symofros.description.constraints import Constraint as Constraint
+    from symofros.description.constraints import Coupling as Coupling
+    from symofros.description.constraints import KnifeEdge as KnifeEdge
+    from symofros.description.constraints import Nonholonomic as Nonholonomic
+    from symofros.description.constraints import Rod as Rod
+    from symofros.description.constraints import Rolling as Rolling
+    from symofros.description.forces import Connection as Connection
+    from symofros.description.forces import Damper as Damper
+    from symofros.description.forces import Friction as Friction
+    from symofros.description.forces import Load as Load
+    from symofros.description.forces import Potential as Potential
+    from symofros.description.forces import Rotor as Rotor
+    from symofros.description.forces import Spring as Spring
+    from symofros.description.forces import Stop as Stop
+    from symofros.description.forces import VirtualPower as VirtualPower
+    from symofros.description.frames import Frame as Frame
+    from symofros.description.joints.joint import Joint as Joint
+    from symofros.description.joints.joint import Limits as Limits
+    from symofros.description.system import Body as Body
+    from symofros.description.system import Inertia as Inertia
+    from symofros.description.system import Input as Input
+    from symofros.description.system import Parameter as Parameter
+    from symofros.description.system import RigidBody as RigidBody
+    from symofros.description.system import System as System
+    from symofros.description.values import Rotation as Rotation
+    from symofros.description.values import as_value
     from symofros.diagrams.diagram import Diagram as Diagram
     from symofros.diagrams.files.reader import load_diagram as load_diagram
     from symofros.diagrams.files.writer import save_diagram as save_diagram
     from symofros.diagrams.result import DiagramRun as DiagramRun
     from symofros.diagrams.simulation import Simulation as Simulation
+    from symofros.errors import ActuationError as ActuationError
+    from symofros.errors import ArgumentError as ArgumentError
+    from symofros.errors import AssemblyError as AssemblyError
+    from symofros.errors import BeamTheoryError as BeamTheoryError
+    from symofros.errors import CompileError as CompileError
+    from symofros.errors import CompilerMissingWarning as CompilerMissingWarning
+    from symofros.errors import DescriptionError as DescriptionError
+    from symofros.errors import EquilibriumError as EquilibriumError
+    from symofros.errors import ExportError as ExportError
+    from symofros.errors import InconsistentModelWarning as InconsistentModelWarning
+    from symofros.errors import ParameterError as ParameterError
+    from symofros.errors import Problem as Problem
+    from symofros.errors import ShapeError as ShapeError
+    from symofros.errors import SymofrosError as SymofrosError
+    from symofros.errors import UnknownNameError as UnknownNameError
     from symofros.exports.equations.equations import ReadableEquations as ReadableEquations
     from symofros.exports.equations.equations import equations as equations
     from symofros.exports.exporting import export as export
+    from symofros.expr.expression import Expression as Expression
+    from symofros.expr.expression import evaluate as evaluate
     from symofros.loading import load as load
     from symofros.loading import save as save
     from symofros.runtime.model import Model as Model
@@ -108,68 +112,41 @@ if TYPE_CHECKING:
     from symofros.studio.viewer.viewer import Viewer as Viewer
 
     compile = compile_system
+    # The number or formula of a text or SymPy expression, as the constructors convert it.
+    formula = as_value
 
 __version__ = "0.1.0"
 
-# The number or formula of a text or SymPy expression, as the constructors convert it.
-formula = as_value
 
-# Loaded at first use: reading files needs pydantic and ruamel.yaml, compiling needs cffi; importing needs neither.
-_LAZY = {
-    "compile": ("symofros.compiler", "compile_system"),
-    "compile_library": ("symofros.compiler", "compile_library"),
-    "program_of": ("symofros.compiler", "program_of"),
-    "equations": ("symofros.exports.equations.equations", "equations"),
-    "ReadableEquations": ("symofros.exports.equations.equations", "ReadableEquations"),
-    "export": ("symofros.exports.exporting", "export"),
-    "load_diagram": ("symofros.diagrams.files.reader", "load_diagram"),
-    "save_diagram": ("symofros.diagrams.files.writer", "save_diagram"),
-    "Diagram": ("symofros.diagrams.diagram", "Diagram"),
-    "DiagramRun": ("symofros.diagrams.result", "DiagramRun"),
-    "Simulation": ("symofros.diagrams.simulation", "Simulation"),
-    "load": ("symofros.loading", "load"),
-    "save": ("symofros.loading", "save"),
-    "advise": ("symofros.studio.advice.search", "advise"),
-    "Advice": ("symofros.studio.advice.advice", "Advice"),
-    "Scene": ("symofros.studio.advice.scene", "Scene"),
-    "Output": ("symofros.studio.advice.scene", "Output"),
-    "load_scene": ("symofros.studio.advice.scene_file", "load_scene"),
-    "Model": ("symofros.runtime.model", "Model"),
-    "actuator_efforts": ("symofros.simulation.analysis.actuator_efforts", "actuator_efforts"),
-    "assemble": ("symofros.simulation.analysis.kinematics.assembly", "assemble"),
-    "base_parameters": ("symofros.simulation.analysis.base_parameters", "base_parameters"),
-    "inverse_kinematics": ("symofros.simulation.analysis.kinematics.inverse_kinematics", "inverse_kinematics"),
-    "joint_motion": ("symofros.simulation.analysis.kinematics.inverse_kinematics", "joint_motion"),
-    "Target": ("symofros.simulation.analysis.kinematics.inverse_kinematics", "Target"),
-    "equilibrium": ("symofros.simulation.analysis.equilibrium", "equilibrium"),
-    "modes": ("symofros.simulation.analysis.modes", "modes"),
-    "rollout": ("symofros.simulation.analysis.rollout", "rollout"),
-    "Rollout": ("symofros.simulation.analysis.rollout", "Rollout"),
-    "Event": ("symofros.simulation.events", "Event"),
-    "Signal": ("symofros.simulation.inputs", "Signal"),
-    "SimulationOptions": ("symofros.simulation.options", "SimulationOptions"),
-    "Outcome": ("symofros.simulation.results.outcome", "Outcome"),
-    "simulate": ("symofros.simulation.simulate", "simulate"),
-    "simulate_batch": ("symofros.simulation.simulate_batch", "simulate_batch"),
-    "Trajectories": ("symofros.simulation.results.trajectories", "Trajectories"),
-    "Trajectory": ("symofros.simulation.results.trajectory", "Trajectory"),
-    "state_space": ("symofros.simulation.analysis.state_space", "state_space"),
-    "record": ("symofros.studio.viewer.record", "record"),
-    "view": ("symofros.studio.viewer.view", "view"),
-    "Viewer": ("symofros.studio.viewer.viewer", "Viewer"),
-}
+@cache
+def _public() -> dict[str, tuple[str, str]]:
+    """Public name -> its module and its name there, read from the imports above."""
+    with open(__file__, encoding="utf-8") as source:
+        block = next(node for node in ast.parse(source.read()).body if isinstance(node, ast.If))
+    imported: dict[str, tuple[str, str]] = {}
+    places: dict[str, tuple[str, str]] = {}
+    for node in block.body:
+        if isinstance(node, ast.ImportFrom):
+            for name in node.names:
+                (places if name.asname else imported)[name.name] = node.module or "", name.name
+        elif (
+            isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name) and isinstance(node.value, ast.Name)
+        ):
+            places[node.targets[0].id] = imported[node.value.id]
+    return places
 
 
 def __getattr__(name: str) -> Any:
     """Import a public name at its first use."""
-    if name not in _LAZY:
+    if name.startswith("__") or name not in _public():
         raise AttributeError(f"module 'symofros' has no attribute '{name}'")
-    module, attribute = _LAZY[name]
-    value = getattr(import_module(module), attribute)
+    place, attribute = _public()[name]
+    names = vars(import_module(place))
+    value = names[attribute] if attribute in names else import_module(f"{place}.{attribute}")
     globals()[name] = value
     return value
 
 
 def __dir__() -> list[str]:
-    """The public names, those not loaded yet included."""
-    return sorted({*globals(), *_LAZY})
+    """The public names, those not loaded yet included, and modules."""
+    return sorted({*_public(), *(name for name in globals() if f"{__name__}.{name}" in modules or name[:2] == "__")})

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import re
-import subprocess
-import sys
 import tomllib
 from pathlib import Path
 
@@ -96,14 +94,3 @@ def test_the_extra_all_brings_what_it_says() -> None:
     wanted = {extra for extra in EXTRAS if extra not in left_out and not extra.startswith("engine-")}
     assert {extra for extra in wanted if not packages(extra) <= packages("all")} == set()
     assert not packages("torch") & packages("all") and "ruff>=0.5,<1" not in packages("all")
-
-
-def test_import_loads_numpy_alone() -> None:
-    """What else the base installation brings is loaded by what needs it: import takes 0.04 s beside NumPy's own."""
-    code = (
-        "import sys; before = set(sys.modules); import symofros; "
-        "names = {name.partition('.')[0] for name in set(sys.modules) - before}; "
-        "print(*sorted(names - set(sys.stdlib_module_names)))"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, check=True)
-    assert done.stdout.split() == ["numpy", "symofros"]
