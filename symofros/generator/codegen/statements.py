@@ -16,6 +16,7 @@ from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph, Slot
 from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.ops import ADD, DIV, MUL, OPS, STOP_GRADIENT
+from symofros.generator.codegen.effort import PackGain, pack_gain
 from symofros.generator.codegen.names import local_name
 from symofros.generator.codegen.packs import PackPlan, Store, Vector, lane_text
 
@@ -59,6 +60,9 @@ class StatementWriter:
         given: Nodes that are read from an input array.
         stores: Outputs of the function.
         packs: Whether values formed by the same operations share vectors.
+
+    Attributes:
+        pack_gain: Whether the function is faster with its packs than without.
     """
 
     def __init__(
@@ -74,8 +78,10 @@ class StatementWriter:
         self.stores = stores
         self._vector_of_node: dict[int, Vector] = {}
         self._vectors: list[Vector] = []
+        self.pack_gain: PackGain = "clear"
         if packs and graph.packs:
             plan = PackPlan(graph, nodes, given, [store.edge for store in stores])
+            self.pack_gain = pack_gain(plan, len(nodes), stores)
             nodes, self._vector_of_node, self._vectors = plan.nodes, plan.vector_of_node, plan.vectors
         self._inlined = self._choose_inlined(nodes, stores)
         self._nodes = nodes
