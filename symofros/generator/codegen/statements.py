@@ -87,6 +87,8 @@ class StatementWriter:
         self._nodes = nodes
         self._variables = [node for node in nodes if node not in self._inlined]
         self._names: dict[int, str] = {}
+        # Names of nodes without a label that are stored as they are: by their first entry, M_8_ of M[8].
+        self._entries = {store.edge: f"{store.array}_{store.index}_" for store in reversed(stores)}
         self.lanes, self._suffix = False, ""
 
     def in_lanes(self, single: bool = False) -> StatementWriter:
@@ -223,7 +225,7 @@ class StatementWriter:
             return lane_text(vector.key, vector.nodes[node][0])
         if node not in self._names:
             label = self.graph.label.get(node)
-            self._names[node] = local_name(label, node) if label else f"t{node}"
+            self._names[node] = local_name(label, node) if label else f"{self._entries.get(node, 't')}{node}"
         return self._names[node]
 
     def operation(self, node: int) -> str:
