@@ -1,6 +1,6 @@
 """Arguments of public functions, held against the types that their signatures state.
 
-A wrong one is refused in words where it enters, and not by an error from deep inside. Arrays are left to
+A wrong one is refused with a message where it enters, and not by an error from deep inside. Arrays are left to
 `base/arrays.py`, which converts them.
 """
 
@@ -43,14 +43,14 @@ class _Kind:
     """What values an annotation allows.
 
     Attributes:
-        words: What they are, as in "a number".
+        noun: The allowed values as a noun phrase: "a number".
         allows: Whether a value is one of them.
         remedy: What to do about another one, given it.
         fault: Name of the entry that is at fault in a container of the right kind, the entry, and what it should be;
             None where the value as a whole is another.
     """
 
-    words: str
+    noun: str
     allows: Callable[[Any], bool]
     remedy: Callable[[Any], str]
     fault: Callable[[Any], tuple[str, Any, _Kind] | None] = lambda _: None
@@ -92,7 +92,7 @@ def check_fields(stated: Any) -> None:
 
 
 class CheckedCalls(ABCMeta):
-    """Metaclass of classes that people make objects of, by keywords: a call that does not fit is refused in words.
+    """Metaclass of public classes: a call by keywords that does not fit is refused with a message.
 
     Only calls that fail are looked at.
     """
@@ -149,7 +149,7 @@ def _refusal(what: str, value: object, kind: _Kind) -> ArgumentError:
         name, part, wanted = entry
         return _refusal(f"{what}{name}", part, wanted)
     stated = f"{type(value).__name__} {value!r:.60}"
-    return ArgumentError(Problem(f"{what} is not {kind.words}", stated, f"it is {kind.words}", kind.remedy(value)))
+    return ArgumentError(Problem(f"{what} is not {kind.noun}", stated, f"it is {kind.noun}", kind.remedy(value)))
 
 
 def _misfit(name: str, signature: inspect.Signature, fault: str, given: Mapping[str, object]) -> ArgumentError:
@@ -199,19 +199,19 @@ def _kind(annotation: Any) -> _Kind | None:
 
 def _object_of(stated: Any) -> _Kind:
     """Objects of a class, or with the methods of a protocol."""
-    words = _with_article(stated.__name__)
-    remedy = _MAKERS.get(stated.__name__, f"give {words}")
+    noun = _with_article(stated.__name__)
+    remedy = _MAKERS.get(stated.__name__, f"give {noun}")
     if not getattr(stated, "_is_protocol", False):
-        return _Kind(words, lambda value: isinstance(value, stated), lambda _: remedy)
+        return _Kind(noun, lambda value: isinstance(value, stated), lambda _: remedy)
     methods = [name for name in vars(stated) if not name.startswith("_")]
     remedy = f"it has {', '.join(methods)}"
-    return _Kind(words, lambda value: all(hasattr(value, name) for name in methods), lambda _: remedy)
+    return _Kind(noun, lambda value: all(hasattr(value, name) for name in methods), lambda _: remedy)
 
 
 def _class_of(base: type) -> _Kind:
-    words = f"a class derived from {base.__name__}"
+    noun = f"a class derived from {base.__name__}"
     return _Kind(
-        words, lambda value: isinstance(value, type) and issubclass(value, base), lambda _: "give the class, no object"
+        noun, lambda value: isinstance(value, type) and issubclass(value, base), lambda _: "give the class, no object"
     )
 
 
@@ -223,13 +223,13 @@ def _any_of(kinds: Sequence[_Kind | None]) -> _Kind | None:
     known = [kind for kind in kinds if kind is not None]
     if len(known) < len(kinds):
         return None
-    told = [kind for kind in known if kind.words != "None"]
-    words = " or ".join(dict.fromkeys(kind.words for kind in told)) + ("" if len(told) == len(known) else ", or None")
+    listed = [kind for kind in known if kind.noun != "None"]
+    noun = " or ".join(dict.fromkeys(kind.noun for kind in listed)) + ("" if len(listed) == len(known) else ", or None")
 
     def fault(value: Any) -> tuple[str, Any, _Kind] | None:
-        return next((entry for kind in told if (entry := kind.fault(value)) is not None), None)
+        return next((entry for kind in listed if (entry := kind.fault(value)) is not None), None)
 
-    return _Kind(words, lambda value: any(kind.allows(value) for kind in known), told[0].remedy, fault)
+    return _Kind(noun, lambda value: any(kind.allows(value) for kind in known), listed[0].remedy, fault)
 
 
 def _one_of(choices: Sequence[Any]) -> _Kind:
@@ -260,9 +260,9 @@ def _list_of(item: _Kind | None, container: Any) -> _Kind:
             return f"one alone: ({value[:40]!r},)" if container is tuple else f"one alone: [{value[:40]!r}]"
         return "put them in a tuple" if container is tuple else "put them in a list"
 
-    what = f", each {item.words}" if item is not None else ""
-    words = ("a tuple" if container is tuple else "a list") + what
-    return _Kind(words, lambda value: is_list(value) and fault(value) is None, remedy, fault)
+    what = f", each {item.noun}" if item is not None else ""
+    noun = ("a tuple" if container is tuple else "a list") + what
+    return _Kind(noun, lambda value: is_list(value) and fault(value) is None, remedy, fault)
 
 
 def _tuple_of(items: Sequence[_Kind | None]) -> _Kind:
@@ -273,8 +273,8 @@ def _tuple_of(items: Sequence[_Kind | None]) -> _Kind:
             and all(item is None or item.allows(part) for item, part in zip(items, value, strict=True))
         )
 
-    words = " and ".join("anything" if item is None else item.words for item in items)
-    return _Kind(f"a tuple of {words}", allows, lambda _: f"put {len(items)} in a tuple")
+    noun = " and ".join("anything" if item is None else item.noun for item in items)
+    return _Kind(f"a tuple of {noun}", allows, lambda _: f"put {len(items)} in a tuple")
 
 
 def _mapping_of(key: _Kind | None, value: _Kind | None) -> _Kind:
@@ -289,9 +289,9 @@ def _mapping_of(key: _Kind | None, value: _Kind | None) -> _Kind:
     def allows(given: Any) -> bool:
         return isinstance(given, Mapping) and fault(given) is None
 
-    parts = [f"{kind.words} for {what}" for what, kind in (("the name", key), ("the value", value)) if kind is not None]
-    words = "a mapping" + (", with " + " and ".join(parts) if parts else "")
-    return _Kind(words, allows, lambda _: "for example {'name': value}", fault)
+    parts = [f"{kind.noun} for {what}" for what, kind in (("the name", key), ("the value", value)) if kind is not None]
+    noun = "a mapping" + (", with " + " and ".join(parts) if parts else "")
+    return _Kind(noun, allows, lambda _: "for example {'name': value}", fault)
 
 
 def is_number(value: object) -> bool:

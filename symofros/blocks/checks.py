@@ -106,19 +106,19 @@ def increasing(name: str, field: str, values: Any, least: int = 2) -> Array:
 
 
 def choice(name: str, field: str, value: Any, known: Iterable[str]) -> str:
-    """One of some words.
+    """One of some names.
 
     Raises:
         DescriptionError: It is another.
     """
-    words = list(known)
-    if value not in words:
+    names = list(known)
+    if value not in names:
         raise refuse(
             name,
             f"unknown {field}",
             repr(value),
-            f"{field} is one of {', '.join(words)}",
-            did_you_mean(str(value), words),
+            f"{field} is one of {', '.join(names)}",
+            did_you_mean(str(value), names),
         )
     return str(value)
 

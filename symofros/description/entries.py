@@ -1,4 +1,4 @@
-"""Entries of description classes: what they are, their units; one that does not exist is refused in words."""
+"""Entries of description classes: what they are, their units; an unknown one is refused with a suggestion."""
 
 from __future__ import annotations
 

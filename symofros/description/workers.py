@@ -16,7 +16,7 @@ def answer_of(script: str, task: Mapping[str, Any], timeout: float, bounds: str)
         script: Path of the worker's script, which bounds its own processor time and memory.
         task: What it reads.
         timeout: Wall time [s].
-        bounds: Bounds that a worker has met which ended otherwise, in words after "it takes".
+        bounds: Limits that a worker may have hit when it ended without an answer, as text after "it takes".
     """
     try:
         # Warnings are dropped: a file may ask for any number of them.

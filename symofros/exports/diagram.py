@@ -119,7 +119,7 @@ def write_diagram(
     )
     files[f"{name}_program.c"] = _program(resolved, name, sources, reads_accelerations(instants), generator)
     until, values = _reference(resolved, outputs, stepping)
-    words = {
+    fields = {
         "name": name,
         "generator": generator,
         "version": generator.rpartition(" ")[2],
@@ -129,8 +129,8 @@ def write_diagram(
         "step": repr(stepping.dt),
         "sources": " ".join(file for file in files if file.endswith(".c")),
     }
-    files["main.c"] = Template(native_text("exports/diagram_main.c.in")).substitute(words)
-    files["CMakeLists.txt"] = Template(native_text("exports/diagram_CMakeLists.txt.in")).substitute(words)
+    files["main.c"] = Template(native_text("exports/diagram_main.c.in")).substitute(fields)
+    files["CMakeLists.txt"] = Template(native_text("exports/diagram_CMakeLists.txt.in")).substitute(fields)
     files |= header_files(*INTEGRATOR_HEADERS, "diagrams/symofros_diagram.h", "diagrams/symofros_program.h")
     files["symofros_diagram.c"] = amalgamated("diagrams/symofros_diagram.c")
     notes = () if layout.condition_names else ("no constraints: accelerations are in closed form",)

@@ -17,7 +17,7 @@ from symofros.expr.program import Program
 from symofros.generator.codegen.cuda import device_code
 from symofros.generator.codegen.dispatch import dispatch_source
 from symofros.generator.codegen.interpreted import InterpretedUnit
-from symofros.generator.codegen.model import model_source
+from symofros.generator.codegen.model import Packs, model_source
 from symofros.generator.codegen.names import identifier
 from symofros.generator.passes import run_passes
 from symofros.generator.programs import ProgramBuilder
@@ -99,7 +99,7 @@ class UnitCompiler:
         program = self._programs.program(requests)
 
         def build_one(build: Build) -> Path:
-            source = model_source(program, self._record, GENERATOR, lanes, packs=build.packs)
+            source = model_source(program, self._record, GENERATOR, lanes, packs=self._packs(build))
             return build_library(source, _header(), build.toolchain, build.flags, self._dispatch, self.symbol)
 
         return self._build(build_one, self._toolchain, lanes)
@@ -144,7 +144,7 @@ class UnitCompiler:
             with self._generating:
                 progress.begin("generating")
                 # Of a unit on vectors, the code for one state is never called.
-                packs = build.packs and lanes is None
+                packs = self._packs(build) if lanes is None else "none"
                 text = model_source(program(), self._record, GENERATOR, lanes, packs=packs)
             progress.begin("compiling")
             return text
@@ -190,6 +190,12 @@ class UnitCompiler:
             with suppress(CompileError):  # It was only worth a try.
                 libraries.append(build_one(build))
         return fastest(libraries, lambda path: CompiledUnit(path, self.symbol, self._record.hash))
+
+    def _packs(self, build: Build) -> Packs:
+        """Packs of a build: where builds are timed, all or none; or else where they pay by count."""
+        if not build.packs:
+            return "none"
+        return "all" if self._options.tune else "where they pay"
 
 
 def _header() -> str:

@@ -52,7 +52,7 @@ class InteropError(SymofrosError):
 
 
 def framework(name: str, extra: str) -> Any:
-    """A package, or words on how to get it.
+    """A package, or an error that says how to install it.
 
     Raises:
         InteropError: It is not installed.

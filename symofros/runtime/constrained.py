@@ -165,7 +165,7 @@ def null_space(G: Array, measures: Measures) -> Array:
 
 
 def pseudo_inverse(G: Array, measures: Measures) -> Array:
-    """The pseudo-inverse of G, its rank judged by natural sizes; rows of unlike sizes count alike, void ones not."""
+    """Pseudo-inverse of G (n, m), its rank judged by natural sizes: rows are scaled to one size, but for zero rows."""
     if not G.size:
         return np.zeros(G.T.shape)
     void = (np.abs(G) <= RANK * natural_sizes(G, measures)).all(axis=1)

@@ -1,4 +1,4 @@
-"""Rotors for engines that know none, from two models of theirs: one without rotors, one where they are bodies.
+"""Rotors for engines that know none, from two models of the same engine: one without rotors, one where they are bodies.
 
 With the rotors' spins coupled to the joints that drive them, speeds of the second model are v' = G v; with the rotors
 locked, v' = G_0 v. What spinning brings is the difference, so that (docs/theory/rigid.md, section 9)
@@ -85,10 +85,10 @@ def _rotor_bodies(system: sf.System) -> tuple[list[sf.RigidBody], list[_Spin]]:
 
 def _speed_maps(plain: sf.System, explicit: sf.System, spins: list[_Spin]) -> tuple[Array, Array, Array]:
     """G, G_0 (nv', nv), and the indices of our coordinates among those of the explicit model (nq)."""
-    ours, theirs = assemble(plain), assemble(explicit)
-    place = {described.joint.name: described for described in theirs.joints}
-    locked, at = np.zeros((theirs.nv, ours.nv)), np.zeros(ours.nq, dtype=int)
-    for described in ours.joints:
+    without, with_rotors = assemble(plain), assemble(explicit)
+    place = {described.joint.name: described for described in with_rotors.joints}
+    locked, at = np.zeros((with_rotors.nv, without.nv)), np.zeros(without.nq, dtype=int)
+    for described in without.joints:
         there = place[described.joint.name]
         locked[there.v, described.v] = np.eye(described.v.stop - described.v.start)
         at[described.q] = np.arange(there.q.start, there.q.stop)

@@ -88,7 +88,7 @@ class Pool:
 
 
 def _connected(address: str) -> distributed.Client:
-    """A client of a scheduler that answers; a port that nobody listens at is told at once."""
+    """A client of a scheduler that answers; a port without a listener is reported at once."""
     match = _ADDRESS.match(address)
     if match is None or int(match[2]) > 65535:
         raise ClusterError(

@@ -99,14 +99,14 @@ def _complete(store: Store, plan: Plan, pool: Pool) -> None:
     if failures:
         raise Unfinished(store.folder, list(failures.values()))
     manifest = manifest_of(store.folder)
-    told = {
+    metadata = {
         **{name: manifest[name] for name in ("hash", "plan", "begun")},
         "identities": manifest["models"],
         "effort": effort(store.journal()),
         "sources": sources(),
         **provenance.stamp(),
     }
-    store.merge(len(wanted), told)
+    store.merge(len(wanted), metadata)
 
 
 @contextmanager

@@ -61,7 +61,7 @@ class Comparison:
         return self.status in ("agree", "unsupported")
 
     @property
-    def words(self) -> str:
+    def title(self) -> str:
         """The quantity, for people."""
         return self.quantity.replace("_", " ")
 

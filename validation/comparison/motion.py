@@ -78,7 +78,7 @@ def fall(model: sf.Model, q: Array, v: Array, weightless: sf.Model | None = None
 
 
 def _fall(model: sf.Model, q: Array, v: Array, weightless: sf.Model | None, duration: float) -> FreeMotion:
-    # A motion that runs away is told by its verdict, not by NumPy.
+    # A diverging motion gets a verdict; NumPy's warning adds nothing.
     with np.errstate(over="ignore", invalid="ignore"):
         coarse, fine = (_integrate(model, q, v, weightless, duration, steps) for steps in (_STEPS, 2 * _STEPS))
         scale = max(float(np.ptp(fine.potential, axis=0).max()), float(fine.kinetic.max())) or 1.0

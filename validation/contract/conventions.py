@@ -118,12 +118,11 @@ class Chart:
         """T(q) (N, nv, nv): v_e = T v."""
         T = np.zeros((len(q), self.nv, self.nv))
         for slot in self.slots:
-            ours = slot.mover.v
-            size = ours.stop - ours.start
-            theirs = slice(slot.v, slot.v + size)
-            T[:, theirs, ours] = np.eye(size)
+            columns = slot.mover.v
+            size = columns.stop - columns.start
+            T[:, slot.v : slot.v + size, columns] = np.eye(size)
             if slot.encoding.startswith("free"):
-                T[:, slot.v : slot.v + 3, ours.start : ours.start + 3] = self._free_rotation(slot, q)
+                T[:, slot.v : slot.v + 3, columns.start : columns.start + 3] = self._free_rotation(slot, q)
         return T
 
     def transform_rate(self, q: Array, v: Array) -> Array:

@@ -17,7 +17,7 @@ from validation.reporting.figures import Figure
 from validation.reporting.numbers import counted, digits
 from validation.reporting.record import MISSED, Block, Bullets, Data, Fact, Report, Section, Table, Text, Topic, verdict
 
-# Where the parts of a problem begin that is told in one line.
+# Beginnings of the parts of a problem, which is written on one line.
 _PARTS = re.compile("; (?=found: |rule: |remedy: )")
 # Up to so many models, each engine has a line of its own on a terminal.
 _DETAILED = 2
@@ -129,7 +129,7 @@ def _facts(record: Record, engines: list[str]) -> list[Fact]:
         row = tables.worst(row for row in record.compared if row.quantity in names)
         if row is not None:
             condition = f", cond(M) {digits(row.extra['condition'])}" if "condition" in row.extra else ""
-            said = f"{label}: {row.words} of {row.model}, {row.engine}{condition}; tolerance {digits(row.tolerance)}"
+            said = f"{label}: {row.title} of {row.model}, {row.engine}{condition}; tolerance {digits(row.tolerance)}"
             facts.append(Fact(digits(row.error), said, row.ok))
     return facts
 
@@ -155,7 +155,7 @@ def _own(record: Record) -> tuple[Section, ...]:
             drifts.append((row.model, digits(coarse), digits(fine), f"{coarse / fine:.1f}" if fine else "", limit))
         elif row.quantity in ELEMENT_ROWS:
             rate = f"{extra['power']:.2f}" if "power" in extra else ""
-            powers.append((row.model, row.words, rate, digits(row.error), limit, row.note))
+            powers.append((row.model, row.title, rate, digits(row.error), limit, row.note))
         elif row.engine == FORMULAS:
             error = verdict(digits(row.error), row.ok)
             procedures.append((row.model, row.quantity, error, digits(row.tolerance)))

@@ -47,7 +47,7 @@ def nearest(record: Record, each: bool) -> Table:
         for name, rows in engines if each else [(_engines(model), list(model.comparisons))]:
             error: tuple[str, ...] = ("", "", "")
             if (row := worst(rows)) is not None:
-                place = row.words if each else f"{row.words}, {row.engine}"
+                place = row.title if each else f"{row.title}, {row.engine}"
                 error = verdict(digits(row.error, 1), row.ok), digits(row.tolerance, 1), place
             lines += [(model.label, name, *error, _result(rows))] if rows or not each else []
     return Table.of(f"model | {'engine' if each else 'engines'} | error | of | in | verdict", lines)
@@ -75,7 +75,7 @@ def opinion(record: Record, engine: str) -> tuple[str, ...]:
     wrong = [row for row in rows if row.status == "disagree"]
     alone, near = sum(others.get((row.model, row.quantity)) == {"agree"} for row in wrong), worst(rows)
     used = "NaN" if near is None or near.error is None else f"{near.error / near.tolerance:.2g}"
-    place = f"{near.words} of {near.model}" if near else ""
+    place = f"{near.title} of {near.model}" if near else ""
     said = "agrees" if not wrong else "suspect" if 2 * alone > len(wrong) else "against our C"
     kind, models = "independent" if ROUTES[engine].independent else "our own", len({row.model for row in rows})
     counts = map(str, (models, len(rows), len(wrong), alone))
@@ -140,15 +140,15 @@ def failure(row: Comparison) -> str:
 
 
 def unsupported(record: Record) -> list[tuple[str, str, str]]:
-    """Models, engine, and what it could not represent and why; the same reason is told once."""
+    """Models, engine, and what it could not represent and why; one line for each reason."""
     grouped: dict[tuple[str, str], list[Comparison]] = {}
     for row in record.rows("unsupported"):
         grouped.setdefault((row.engine, row.note), []).append(row)
-    told = []
+    lines = []
     for (engine, reason), rows in grouped.items():
         names = ", ".join(dict.fromkeys(row.quantity for row in rows if row.quantity != "all"))
-        told.append((", ".join(dict.fromkeys(row.model for row in rows)), engine, f"{names}: " * bool(names) + reason))
-    return told
+        lines.append((", ".join(dict.fromkeys(row.model for row in rows)), engine, f"{names}: " * bool(names) + reason))
+    return lines
 
 
 def headline(record: Record) -> str:

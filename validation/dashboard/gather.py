@@ -66,7 +66,7 @@ def _entry(folder: Path, topic: Topic, installed: Mapping[str, str], today: date
         remarks = ["is not made yet"]
     except (json.JSONDecodeError, OSError) as error:
         remarks = [f"can't be read: {error}"]
-    # A layout of another version may differ in any way; what went wrong with it is told, and the index stands.
+    # A layout of another version may differ in any way; the error is reported, and the index is written without it.
     except (LookupError, TypeError, ValueError, AttributeError, ArithmeticError) as error:
         remarks = [f"has a layout that is not known here ({type(error).__name__}: {error})"]
     return Entry(topic, report, data, origin, tuple(remarks), page)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from validation.reporting.record import Table, verdict
 
-# Commits of the summary that are looked at, the latest ones; changes that are told.
+# Commits of the summary that are read, the latest ones; changes that are listed.
 COMMITS, MOST = 40, 15
 _ROW = re.compile(r"^\| (\w+) \| (.*) \| (?:\*\*missed\*\* )?(\w+) \| [^|]* \|$", re.M)
 
@@ -21,8 +21,8 @@ def history(summary: Path, names: tuple[str, ...]) -> Table:
         A line a change, the latest first; none where there is no repository.
     """
 
-    def git(*words: str) -> str:
-        command = ["git", "-C", str(summary.parent), *words]
+    def git(*arguments: str) -> str:
+        command = ["git", "-C", str(summary.parent), *arguments]
         try:
             return subprocess.run(command, capture_output=True, text=True, timeout=20, check=True).stdout
         except (OSError, subprocess.SubprocessError):

@@ -48,7 +48,7 @@ class Carried:
         J: Velocities of unit speeds (N, K, 3, n).
         J_w: Angular velocities of unit speeds (N, K, 3, n).
         a: Accelerations at the given rates of the speeds (N, K, 3).
-        alpha: Angular accelerations, alike (N, K, 3).
+        alpha: Angular accelerations (N, K, 3), in the same axes.
     """
 
     p: Array

@@ -47,7 +47,7 @@ class StatedJoint(NamedTuple):
         series: Simple joints from the parent outwards, one a coordinate but for quaternions: kind, and axis as an entry
             of the joint or as x, y, z.
         coordinates: Names of its coordinates after the joint's name; "" for that name alone.
-        speeds: Names of its speeds, alike; None where they are the rates of the coordinates.
+        speeds: Names of its speeds after the joint's name; None where they are the rates of the coordinates.
     """
 
     series: tuple[tuple[PartKind, str], ...]

@@ -91,8 +91,8 @@ def _said(answers: dict[str, Any]) -> str:
             return f"{stage}: {answer['fate']}"
         said = answer["answer"]
         if said.get("status") != "passed":
-            words = [said[key] for key in ("model", "reason", "test", "where") if said.get(key)]
-            return f"{stage}: {said['status']} {' '.join(map(str, words))}"
+            details = [said[key] for key in ("model", "reason", "test", "where") if said.get(key)]
+            return f"{stage}: {said['status']} {' '.join(map(str, details))}"
     return ""
 
 

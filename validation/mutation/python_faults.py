@@ -125,7 +125,7 @@ class _Planter:
     def _of_function(self, node: ast.FunctionDef) -> Iterator[SourceFault]:
         if node.returns is not None and re.search(r"\bstr\b|Problem", self._source(node.returns)):
             texts = [x for x in ast.walk(node) if isinstance(x, ast.JoinedStr)]
-            if texts:  # What it gives is words.
+            if texts:  # It returns a text.
                 return
         self.names.append({x.id for x in ast.walk(node) if isinstance(x, ast.Name)} | {a.arg for a in node.args.args})
         for default in (*node.args.defaults, *filter(None, node.args.kw_defaults)):
@@ -260,7 +260,7 @@ def _integer(node: ast.expr | None) -> int | None:
 
 
 def _is_text(node: ast.expr) -> bool:
-    """Whether an operand is words, or a list that others are appended to."""
+    """Whether an operand is a text, or a list that others are appended to."""
     if isinstance(node, ast.BinOp):
         return _is_text(node.left) or _is_text(node.right)
     return isinstance(node, ast.JoinedStr) or (isinstance(node, ast.Constant) and isinstance(node.value, str))

@@ -83,10 +83,10 @@ def agreement(system: sf.System, derive: Derivation, points: int, seed: int) -> 
             known += shorts(*u, *known)
         inputs = {"q": q, "v": v, "u": u, "par": [constants[item.name] for item in par], "t": [constants["t"]]}
         with mpmath.workdps(WORKING):
-            theirs = dict(zip(FUNCTIONS, entries(*q, *v, *u, *known), strict=True))
+            derived_values = dict(zip(FUNCTIONS, entries(*q, *v, *u, *known), strict=True))
             for function in program.functions:
-                ours = [x for output in evaluate_precisely(program, function, inputs, WORKING) for x in output]
-                worst[function.name] = min(worst[function.name], _digits(ours, theirs[function.name]))
+                values = [x for output in evaluate_precisely(program, function, inputs, WORKING) for x in output]
+                worst[function.name] = min(worst[function.name], _digits(values, derived_values[function.name]))
     return worst
 
 
@@ -101,8 +101,8 @@ def _quaternion(x: Sequence[Any]) -> list[Any]:
     return [*(2 * e / (1 + square) for e in x), (1 - square) / (1 + square)]
 
 
-def _digits(ours: Sequence[Any], theirs: Sequence[Any]) -> float:
-    """Relative to the largest entry."""
-    scale = max((abs(x) for x in theirs), default=mpmath.mpf(0)) or mpmath.mpf(1)
-    error = max((abs(a - b) for a, b in zip(ours, theirs, strict=True)), default=mpmath.mpf(0)) / scale
+def _digits(values: Sequence[Any], references: Sequence[Any]) -> float:
+    """Decimal digits in which values agree with references, relative to the largest reference."""
+    scale = max((abs(x) for x in references), default=mpmath.mpf(0)) or mpmath.mpf(1)
+    error = max((abs(a - b) for a, b in zip(values, references, strict=True)), default=mpmath.mpf(0)) / scale
     return float(WORKING) if error == 0 else min(float(WORKING), float(-mpmath.log10(error)))

@@ -116,13 +116,13 @@ def amplified(model: sf.Model) -> Iterator[Cell]:
             rate = z / h
             k, c = (abs(rate) ** 2, -2 * rate.real) if z.imag else (0.0, -rate.real)
             run = sf.simulate(model, [1.0], [0.5], n * h, par=[k, c], method=name, dt=h, adaptive=adaptive)
-            told = method.amplification(z)
+            factor = method.amplification(z)
             # The steps of a linear system obey a linear recursion, of order three for generalised alpha.
             x = run.q[:, 0] if z.imag else run.v[:, 0]
             past = np.stack([x[2:-1], x[1:-2], x[:-3]], axis=1)
             fit = np.linalg.lstsq(past, x[3:], rcond=1e-13)[0]
             roots = np.roots([1.0, *-fit])
-            worst = max(worst, float(np.abs(roots - told).min()), float(np.abs(roots - told.conjugate()).min()))
+            worst = max(worst, float(np.abs(roots - factor).min()), float(np.abs(roots - factor.conjugate()).min()))
         yield Cell(f"modes by {name}", worst, 1e-6)
         ends = [] if name not in EXPLICIT and name != "semi_implicit_euler" else list(_missed(name, method))
         for limit, direction in ((method.real_limit, -1.0), (method.imaginary_limit, 1.0j)):

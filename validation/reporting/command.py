@@ -115,7 +115,7 @@ class Run:
     def each(self, names: Sequence[str], work: Callable[[str], Any], after: Callable[[Done], object] = id) -> Done:
         """Results of `work` on names, one by one: one that fails does not keep the others from being done.
 
-        `after` is told after each what is done so far; Ctrl-C ends them.
+        `after` is called after each with what is done so far; Ctrl-C ends them.
         """
         done = Done()
         for position, name in enumerate(names):

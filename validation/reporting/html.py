@@ -40,7 +40,7 @@ def page(report: Report, provenance: Provenance | None = None, closing: str = ""
 
     Args:
         report: Report to render.
-        provenance: Origin of the numbers, told at the end.
+        provenance: Origin of the numbers, stated at the end.
         closing: Last line.
         listed: Whether links to the sections come before them.
     """

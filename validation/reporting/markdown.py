@@ -13,8 +13,8 @@ def page(report: Report, provenance: Provenance, closing: str) -> str:
     blocks = [f"**{report.summary}**", *report.decisions, *missed, facts, *report.blocks]
     for section in report.sections:
         blocks += () if section.page_only else (f"## {section.title}", *section.blocks)
-    told = "; ".join(f"{name} {value}" for name, value in provenance.rows)
-    return "\n\n".join(filter(None, (f"# {report.title}", *map(block, blocks), f"{told}.", closing))) + "\n"
+    origin = "; ".join(f"{name} {value}" for name, value in provenance.rows)
+    return "\n\n".join(filter(None, (f"# {report.title}", *map(block, blocks), f"{origin}.", closing))) + "\n"
 
 
 def block(item: Block) -> str:

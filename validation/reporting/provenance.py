@@ -110,8 +110,8 @@ def revision(folder: Path = Path(sf.__file__).parent) -> str:
     git = ["git", "-C", str(folder)]
     try:
         head, changes = (
-            subprocess.run([*git, *words], capture_output=True, text=True, timeout=10, check=True).stdout.strip()
-            for words in (["rev-parse", "HEAD"], ["status", "--porcelain", "--untracked-files=no", "--", "."])
+            subprocess.run([*git, *arguments], capture_output=True, text=True, timeout=10, check=True).stdout.strip()
+            for arguments in (["rev-parse", "HEAD"], ["status", "--porcelain", "--untracked-files=no", "--", "."])
         )
     except (OSError, subprocess.SubprocessError):
         return ""

@@ -135,11 +135,11 @@ class _Harness:
         survivors: list[tuple[Fault, float]] = []
         largest_small = 0.0
         sound = {f: _as_compared(f, self.simulator.outputs(f)) for f in self.program.functions}
-        theirs = {f: reference for f, (_, reference) in self.reference.items()}
+        references = {f: reference for f, (_, reference) in self.reference.items()}
         for index in chosen:
             fault = everything[index]
             score.planted[fault.kind] += 1
-            if not self._against(fault, theirs)[1]:
+            if not self._against(fault, references)[1]:
                 score.caught[fault.kind] += 1
                 continue
             change, is_small = self._against(fault, sound)

@@ -109,7 +109,7 @@ def _motion(
             times[name].append(run.processor_seconds)
             errors[name] = float(np.abs(run.q_last - exact).max())
             counts[name] = int(run.steps.sum() + run.rejected.sum())
-    words = {
+    settings = {
         "mujoco": f"RK4, {1e3 * STEP:g} ms",
         "rk4": f"RK4, {1e3 * STEP:g} ms",
         "dopri5": "dopri5, rtol 1e-6",
@@ -118,10 +118,10 @@ def _motion(
     rows = []
     for name, spent in times.items():
         each = [1e9 * x / counts[name] for x in spent]
-        ratio = median(theirs / mine for theirs, mine in zip(times["mujoco"], spent, strict=True))
+        ratio = median(mujoco / own for mujoco, own in zip(times["mujoco"], spent, strict=True))
         who = "MuJoCo, rollout" if name == "mujoco" else "SYMOFROS"
         rows.append(
-            Rollout(motion, who, words[name], threads, errors[name], counts[name], (min(each), median(each)), ratio)
+            Rollout(motion, who, settings[name], threads, errors[name], counts[name], (min(each), median(each)), ratio)
         )
     return rows
 

@@ -137,7 +137,7 @@ def arm(repeats: int, span: float = 10.0, h: float = 1e-3) -> Race:
         run = done(sf.simulate(m, q0, v0, span, u=law, method="rk4", dt=h, every=100))
         return float(np.abs(run.q[-1] - exact).max()), run.statistics.seconds
 
-    def theirs() -> tuple[float, float]:
+    def by_mujoco() -> tuple[float, float]:
         q, _, seconds = mujoco_motion.servo(engine, q0, v0, targets, STIFFNESS, DAMPING, h, round(span / h))
         return float(np.abs(q - exact).max()), seconds
 
@@ -148,7 +148,7 @@ def arm(repeats: int, span: float = 10.0, h: float = 1e-3) -> Race:
         "joints at the end, against dop853 at 1e-12 [rad]",
         (step, ours),
         repeats,
-        ("MuJoCo, mj_step", step, theirs),
+        ("MuJoCo, mj_step", step, by_mujoco),
     )
 
 
@@ -156,15 +156,15 @@ def four_bar(repeats: int, span: float = 10.0) -> Race:
     """A four-bar through its singular posture twice a turn; MuJoCo's closures are soft."""
     m = four_bars.linkage(1)
     q, v = four_bars.state(m, *four_bars.START)
-    h_ours, h_theirs = 5e-3, 1e-4
+    h_ours, h_mujoco = 5e-3, 1e-4
 
     def ours() -> tuple[float, float]:
         run = done(sf.simulate(m, q, v, span, method="rk4", dt=h_ours, every=100))
         end = np.array([np.cos(run.q[-1, 0]), np.sin(run.q[-1, 0])])
         return float(four_bars.tip_error(1, span, end)), run.statistics.seconds
 
-    def theirs() -> tuple[float, float]:
-        text = four_bars.mjcf(1, "RK4", h_theirs, "0.002 1", SOLIMP)
+    def by_mujoco() -> tuple[float, float]:
+        text = four_bars.mjcf(1, "RK4", h_mujoco, "0.002 1", SOLIMP)
         began = perf_counter()
         moved = mujoco_motion.move(text, np.zeros(m.nq), v, span, samples=1)
         return float(four_bars.tip_error(1, span, ends_of_crank(moved.q))), perf_counter() - began
@@ -175,7 +175,7 @@ def four_bar(repeats: int, span: float = 10.0) -> Race:
         "tip of the crank at the end, exact [m]",
         (f"RK4, {1e3 * h_ours:g} ms, projection", ours),
         repeats,
-        ("MuJoCo, mj_step", f"RK4, {1e3 * h_theirs:g} ms, stiff soft closures", theirs),
+        ("MuJoCo, mj_step", f"RK4, {1e3 * h_mujoco:g} ms, stiff soft closures", by_mujoco),
     )
 
 

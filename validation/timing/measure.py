@@ -86,12 +86,12 @@ def measure(
 
 
 def _time(job: Job, record: Record, run: Run) -> None:
-    """One model; what could not be timed is told."""
+    """Time one model, and report what could not be timed."""
     skipped, failed = len(record.skipped), len(record.failed)
 
     def doing(model: str, function: str, part: str) -> None:
-        told = f"{model}: {FUNCTIONS[function]}"
-        run.advance(f"{told}: {part}" if part else told, 0 if part else 1)
+        task = f"{model}: {FUNCTIONS[function]}"
+        run.advance(f"{task}: {part}" if part else task, 0 if part else 1)
 
     run_job(job, record, doing)
     for notes, bad in ((record.skipped[skipped:], False), (record.failed[failed:], True)):

@@ -164,12 +164,12 @@ class Record:
 
     def best(self, model: str, function: str, peer: str, family: str = "") -> Entry | None:
         """The peer's fastest way by the median, of a compiler's family if one is named."""
-        alike = [
+        candidates = [
             x
             for x in self.entries
             if (x.model, x.function, x.peer) == (model, function, peer) and x.variant.startswith(family)
         ]
-        return min(alike, key=lambda x: x.peer_time[1], default=None)
+        return min(candidates, key=lambda x: x.peer_time[1], default=None)
 
     def fastest(self) -> list[Entry]:
         """Each peer's fastest build of each function of each model."""
@@ -177,9 +177,9 @@ class Record:
         return [row for race in races if (row := self.best(*race))]
 
     def cost(self, model: str, function: str, by: str) -> Made | None:
-        """Of the fastest build."""
-        alike = [x for x in self.costs if (x.model, x.function, x.by) == (model, function, by)]
-        return min(alike, key=lambda x: x.time, default=None)
+        """Cost of generating and compiling the fastest build."""
+        candidates = [x for x in self.costs if (x.model, x.function, x.by) == (model, function, by)]
+        return min(candidates, key=lambda x: x.time, default=None)
 
 
 def as_data(record: Record) -> dict[str, Any]:

@@ -144,8 +144,8 @@ def _limits(record: Record, made: Sequence[Made]) -> Section:
     flops, vector, copied = peaks
     rows = []
     for cost in made:
-        alike = (x for x in record.entries if (x.model, x.function) == (cost.model, cost.function) and x.batch)
-        batch = next((x.columns or x.batch for x in alike), None) if cost.by == "symofros" else None
+        raced = (x for x in record.entries if (x.model, x.function) == (cost.model, cost.function) and x.batch)
+        batch = next((x.columns or x.batch for x in raced), None) if cost.by == "symofros" else None
         counts = " | ".join(str(cost.operations.get(kind, 0)) for kind in _KINDS)
         # A Jacobian of one joint takes no operations.
         limit = cost.total / flops or None

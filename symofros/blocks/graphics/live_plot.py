@@ -140,11 +140,11 @@ class _Page:
         if open_browser:
             webbrowser.open(self.url)
 
-    def say(self, words: Mapping[str, Any]) -> None:
+    def say(self, message: Mapping[str, Any]) -> None:
         """A line to the process, if it still listens."""
         assert self.process is not None and self.process.stdin is not None
         with contextlib.suppress(OSError):
-            self.process.stdin.write(json.dumps(words) + "\n")
+            self.process.stdin.write(json.dumps(message) + "\n")
             self.process.stdin.flush()
 
     def send(self, t: float, values: Array) -> None:

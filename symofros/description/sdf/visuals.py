@@ -23,10 +23,10 @@ def _visual(visual: Element) -> Element:
     line, children = visual.line, list[Element]()
     pose, geometry, material = (visual.first(tag) for tag in ("pose", "geometry", "material"))
     if pose is not None and pose.text:
-        words = pose.text.split()
+        entries = pose.text.split()
         # Other than x y z roll pitch yaw in radians is no URDF, which the reader of visuals then says.
         plain = not any(pose.attributes.get(label) for label in ("relative_to", "frame", "rotation_format", "degrees"))
-        placed = {"xyz": " ".join(words[:3]), "rpy": " ".join(words[3:]) if plain else "?"}
+        placed = {"xyz": " ".join(entries[:3]), "rpy": " ".join(entries[3:]) if plain else "?"}
         children.append(Element("origin", placed, line))
     shape = geometry.children[0] if geometry is not None and geometry.children else None
     if shape is not None:
@@ -35,7 +35,7 @@ def _visual(visual: Element) -> Element:
         children.append(Element("geometry", {}, line, [Element(shape.tag, sizes, line)]))
     diffuse = material.first("diffuse") if material is not None else None
     if diffuse is not None:
-        words = diffuse.text.split()
-        color = Element("color", {"rgba": " ".join(words if len(words) == 4 else [*words, "1"])}, line)
+        entries = diffuse.text.split()
+        color = Element("color", {"rgba": " ".join(entries if len(entries) == 4 else [*entries, "1"])}, line)
         children.append(Element("material", {}, line, [color]))
     return Element("visual", dict(visual.attributes), line, children)

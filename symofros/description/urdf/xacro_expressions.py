@@ -104,8 +104,8 @@ def _round(value: Any, digits: int | None = None) -> Any:
     return round(value, digits)
 
 
-def _fatal(*words: Any) -> None:
-    raise Refusal(f"fatal: {' '.join(map(str, words)):.300}")
+def _fatal(*arguments: Any) -> None:
+    raise Refusal(f"fatal: {' '.join(map(str, arguments)):.300}")
 
 
 def _tokenize(text: str, sep: str = ",; ", skip_empty: bool = True) -> list[str]:
@@ -157,12 +157,12 @@ _PYTHON: Mapping[str, Callable[..., Any]] = {
     "zip": lambda *values: list(zip(*values, strict=False)),
 }
 _XACRO: Mapping[str, Callable[..., Any]] = {
-    "error": lambda *words: "",
+    "error": lambda *arguments: "",
     "fatal": _fatal,
-    "message": lambda *words: "",
-    "print_location": lambda *words: "",
+    "message": lambda *arguments: "",
+    "print_location": lambda *arguments: "",
     "tokenize": _tokenize,
-    "warning": lambda *words: "",
+    "warning": lambda *arguments: "",
 }
 _METHODS: Mapping[type, Mapping[str, Callable[..., Any]]] = {
     str: {

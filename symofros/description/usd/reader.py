@@ -325,9 +325,9 @@ def names_of(paths: Iterable[str]) -> dict[str, str]:
         wanted: dict[str, list[str]] = {}
         for path in paths:
             wanted.setdefault("_".join(path.strip("/").split("/")[-depth:]), []).append(path)
-        for name, alike in wanted.items():
-            if len(alike) == 1 and alike[0] not in names and name not in names.values() and name != WORLD:
-                names[alike[0]] = name
+        for name, matches in wanted.items():
+            if len(matches) == 1 and matches[0] not in names and name not in names.values() and name != WORLD:
+                names[matches[0]] = name
         depth += 1
         if depth > max(path.count("/") for path in paths) + 1:
             for path in paths:

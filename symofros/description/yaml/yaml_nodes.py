@@ -141,7 +141,7 @@ def compose_whole(text: str, file: str) -> tuple[Node, list[Problem]]:
     return builder.root, builder.problems
 
 
-# What the scanner calls things -> what their writer would.
+# Messages of the scanner -> messages in the terms of the file's author.
 _PLAINLY = {
     "expected <block end>, but found '<block mapping start>'": "an entry indented unlike its neighbours",
     "expected <block end>, but found '<block sequence start>'": "a '-' indented unlike its neighbours",
@@ -153,8 +153,8 @@ _PLAINLY = {
 
 
 def _plainly(text: str) -> str:
-    for theirs, ours in _PLAINLY.items():
-        text = text.replace(theirs, ours)
+    for message, plain in _PLAINLY.items():
+        text = text.replace(message, plain)
     return text
 
 

@@ -41,7 +41,7 @@ def required(owner: type[Any]) -> frozenset[str]:
 
 
 def words_for(kind: Any) -> str:
-    """A type in plain words."""
+    """A type as a noun phrase for messages."""
     origin, arguments = get_origin(kind), get_args(kind)
     if kind is Any or _is_array(kind):
         return _ANY

@@ -87,27 +87,27 @@ def json_schema() -> Plain:
 
 def _block(kind: str, owner: type[Block]) -> Plain:
     properties: Plain = {"kind": {"const": kind}}
-    words, defaults = _attributes(owner), _defaults(owner)
+    descriptions, defaults = _attributes(owner), _defaults(owner)
     for name, item in types_of(owner).items():
         if name != "name":
-            said = {"description": words[name]} if name in words else {}
-            properties[entry_of(name)] = of_type(item) | said | defaults.get(name, {})
+            described = {"description": descriptions[name]} if name in descriptions else {}
+            properties[entry_of(name)] = of_type(item) | described | defaults.get(name, {})
     schema = _object(properties | {"inputs": _TEXTS}, ["kind", *sorted(map(entry_of, required(owner) - {"name"}))])
     return {"description": (inspect.getdoc(owner) or "").split("\n")[0], **schema}
 
 
 def _attributes(owner: type[Block]) -> dict[str, str]:
     """Field -> what the docstrings of a class and its bases say of it."""
-    words: dict[str, str] = {}
+    descriptions: dict[str, str] = {}
     for base in reversed(owner.__mro__):
         _, _, section = inspect.cleandoc(vars(base).get("__doc__") or "").partition("Attributes:\n")
         name = ""
         for line in section.split("\n\n")[0].splitlines():
             if match := _ATTRIBUTE.match(line):
-                name, words[match["name"]] = match["name"], match["text"]
+                name, descriptions[match["name"]] = match["name"], match["text"]
             elif name:
-                words[name] += " " + line.strip()
-    return words
+                descriptions[name] += " " + line.strip()
+    return descriptions
 
 
 def _defaults(owner: type[Block]) -> dict[str, Plain]:

@@ -229,7 +229,7 @@ def unit_of(
     if toolchain is None:
         return InterpretedUnit(program), ""
     header = native_text("model/symofros_model.h")
-    text = model_source(program, record, GENERATOR, packs=options.packs if options else False)
+    text = model_source(program, record, GENERATOR, packs="where they pay" if options and options.packs else "none")
     path = build_library(text, header, toolchain, options.flags if options else None)
     return CompiledUnit(path, f"{identifier(record.name)}_model", record.hash), text
 

@@ -59,7 +59,7 @@ class Loop:
         diagram: The sym_diagram: state, counters, records.
         failure: Exception that an external block raised; it ended the run.
         failed_block: Name of the block that raised it.
-        fault: First output of an external block that was not finite, in words.
+        fault: Message that names the first output of an external block that was not finite.
     """
 
     def __init__(

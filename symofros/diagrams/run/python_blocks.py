@@ -174,7 +174,7 @@ class ExternalCalls:
         return np.concatenate([np.zeros(0), *(value.reshape(-1) for value in outputs.values())])
 
     def fault(self, which: int, t: float, outputs: Array) -> str:
-        """The first output of a block that is not finite, in words; outputs as `call` returns them."""
+        """Message that names the first output of a block that is not finite; outputs as `call` returns them."""
         name, at = self.names[which], 0
         for port in self._called.ports(name):
             size = math.prod(port.shape or ())

@@ -44,7 +44,7 @@ def write_c_package(material: Material, folder: Path) -> Exported:
     name, functions = material.c_name, named_functions(material)
     dynamics = next(signature for signature in material.signatures if signature.name == "dynamics")
     version = material.generator.rpartition(" ")[2]
-    words = {
+    fields = {
         "name": name,
         "generator": material.generator,
         "version": version,
@@ -60,5 +60,5 @@ def write_c_package(material: Material, folder: Path) -> Exported:
     files = model_files(material) | {f"{name}_selftest.c": selftest_text(material)}
     files |= {f"{name}_functions.h": typed_text(material), f"{name}.hpp": eigen_text(material)}
     files |= {f"{name}_efforts.c": efforts_text(material)} | header_files("exports/symofros_efforts.h")
-    files |= {file: Template(native_text(f"exports/{source}")).substitute(words) for file, source in filled.items()}
+    files |= {file: Template(native_text(f"exports/{source}")).substitute(fields) for file, source in filled.items()}
     return write_folder(folder, "c", name, files, material.generator, material.notes)

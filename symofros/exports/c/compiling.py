@@ -22,7 +22,7 @@ def shared_library(files: Mapping[str, str], main: str, include: Sequence[Path])
         include: Folders of further headers.
 
     Raises:
-        CompileError: There is no compiler, or it refused: with its command and words.
+        CompileError: There is no compiler, or it failed; with its command and messages.
     """
     toolchain = find_toolchain(None)
     if toolchain is None:

@@ -14,7 +14,7 @@ def efforts_text(material: Material) -> str:
     """C text of the efforts of actuators, with the routines of the constraints' null space."""
     record = material.record
     group, unit, speed = record.measures
-    words = {
+    fields = {
         "name": material.c_name,
         "title": comment(record.name),
         "generator": material.generator,
@@ -31,4 +31,4 @@ def efforts_text(material: Material) -> str:
         "section_beams": strings([beam for beam, _ in record.section_names]),
         "section_stations": doubles([xi for _, xi in record.section_names]),
     }
-    return Template(native_text("exports/actuator_efforts.c.in")).substitute(words)
+    return Template(native_text("exports/actuator_efforts.c.in")).substitute(fields)

@@ -43,8 +43,8 @@ def eigen_text(material: Material) -> str:
 
 def _filled(template: str, material: Material, functions: str, **more: object) -> str:
     name = material.c_name
-    words = {"name": name, "upper": name.upper(), "generator": material.generator, "functions": functions}
-    return Template(native_text(template)).substitute(words | more)
+    fields = {"name": name, "upper": name.upper(), "generator": material.generator, "functions": functions}
+    return Template(native_text(template)).substitute(fields | more)
 
 
 def _in_c(name: str, index: int, function: NamedFunction) -> str:

@@ -60,7 +60,7 @@ def write_cuda_package(system: System, name: str | None, frames: Sequence[str] |
         precision: device_code(program, record, GENERATOR, precision, prefix) for precision, prefix in prefixes.items()
     }
     left_out = [function.name for function in program.functions if function.solver is not None]
-    words = {
+    fields = {
         "name": c_name,
         "upper": c_name.upper(),
         "title": comment(record.name),
@@ -86,7 +86,7 @@ def write_cuda_package(system: System, name: str | None, frames: Sequence[str] |
         "CMakeLists.txt": "cuda_CMakeLists.txt.in",
         "README.md": "cuda_README.md.in",
     }
-    files |= {file: Template(native_text(f"exports/{text}")).substitute(words) for file, text in templates.items()}
+    files |= {file: Template(native_text(f"exports/{text}")).substitute(fields) for file, text in templates.items()}
     files |= {f"{c_name}.c": made.source(c_name)} | header_files("model/symofros_model.h")
     return write_folder(folder, "cuda", c_name, files, GENERATOR, (*system.notes, *_notes(made, left_out)))
 

@@ -46,19 +46,19 @@ def write_wasm(material: Material, folder: Path) -> Exported:
     """The module of a model, with what calls it.
 
     Raises:
-        CompileError: There is no ziglang package, or it refused: with its command and words.
+        CompileError: There is no ziglang package, or it failed; with its command and messages.
         ExportError: The folder is not ours.
     """
     name = material.c_name
     module = wasm_module(material)
     script = _script(material, module)
     title = escape(material.record.name)
-    words = {"title": title, "module": script, "segments": _json(segments(material)), "up": json.dumps(up(material))}
+    fields = {"title": title, "module": script, "segments": _json(segments(material)), "up": json.dumps(up(material))}
     files: dict[str, str | bytes] = {
         f"{name}.mjs": script,
         f"{name}.d.ts": _types(material),
         f"{name}.wasm": module,
-        "index.html": Template(native_text("exports/symofros_page.html.in")).substitute(words),
+        "index.html": Template(native_text("exports/symofros_page.html.in")).substitute(fields),
         "selftest.mjs": Template(_SELFTEST).substitute(name=name, tolerance=SELFTEST_TOLERANCE),
     }
     return write_folder(folder, "wasm", name, files, material.generator, material.notes)

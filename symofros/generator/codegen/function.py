@@ -73,6 +73,9 @@ class FunctionWriter:
         outputs: Outputs to be stored, in order.
         given: Whether parameter-only values are read from `pre` (false for the init function itself).
         packs: Whether values formed by the same operations share vectors.
+
+    Attributes:
+        pack_gain: Whether the function is faster with its packs than without.
     """
 
     def __init__(
@@ -91,6 +94,7 @@ class FunctionWriter:
         pre = program.pre if given else {}
         stores = [Store(o.name, i, edge) for o in outputs for i, edge in enumerate(o.edges) if edge != 0]
         self.writer = StatementWriter(program.graph, needed_nodes(program.graph, edges, pre), pre, stores, packs)
+        self.pack_gain = self.writer.pack_gain
         self.statements = self.writer.statements()
         self.chunked = _Chunks.of(_chunks(self.statements) or [[]])
 

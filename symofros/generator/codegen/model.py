@@ -7,12 +7,13 @@ from dataclasses import dataclass
 from itertools import groupby
 from string import Template
 from textwrap import wrap
+from typing import Literal
 
 from symofros.expr.edges import Edge
 from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.program import Function, Output, Program
 from symofros.generator.codegen import lanes, trigonometry
-from symofros.generator.codegen.function import FunctionWriter
+from symofros.generator.codegen.function import FunctionText, FunctionWriter
 from symofros.generator.codegen.names import c_string, identifier
 from symofros.generator.codegen.solvers import routines, sparse_systems, with_solver
 from symofros.generator.codegen.sparse import SparseSystem
@@ -26,6 +27,8 @@ _INIT = "init_par"
 _WIDTH, _SPACE = 112, "\x00"
 # Names of parameters that a value without a name is described by.
 _MOST_NAMES = 4
+# Which packs a text has: those of functions that are faster with them by count, or all, for builds that are timed.
+Packs = Literal["none", "where they pay", "all"]
 
 
 def model_source(
@@ -34,7 +37,7 @@ def model_source(
     generator: str,
     in_lanes: LaneOptions | None = None,
     c_name: str | None = None,
-    packs: bool = False,
+    packs: Packs = "none",
 ) -> str:
     """The C file of a program.
 
@@ -45,7 +48,7 @@ def model_source(
         in_lanes: Options of the code that takes several states of a batch at once; None for none.
             Functions with a solver have none: the solver takes the time, and it pivots (docs/theory/code.md).
         c_name: Prefix of symbols; made of the record's name by default.
-        packs: Whether values of one state formed by the same operations share vectors, which takes GNU C; not in
+        packs: Where values of one state formed by the same operations share vectors, which takes GNU C; not in
             lanes, where every value is a vector already.
     """
     name = c_name or identifier(record.name)
@@ -78,7 +81,7 @@ def model_source(
             [
                 *trigonometry.routines(texts, vectors is not None),
                 *([lanes.routines(vectors)] if vectors is not None else []),
-                *([native_text("model/pack.c.in")] if packs and any("sym_pack " in text for text in texts) else []),
+                *([native_text("model/pack.c.in")] if any("sym_pack " in text for text in texts) else []),
                 *routines(program, bool(sparse)),
                 *texts,
             ]
@@ -220,7 +223,7 @@ def _one_function(
     function: Function,
     c_name: str,
     in_lanes: LaneOptions | None,
-    packs: bool,
+    packs: Packs,
     sparse: SparseSystem | None,
 ) -> tuple[str, _Row]:
     """The code of a function, with its rows of tables."""
@@ -228,13 +231,15 @@ def _one_function(
     vectors, scratch = [], 0
     if function.solver is not None:
         in_lanes = None
-        text = with_solver(program, c_name, function, function.solver, packs, sparse)
+        text = with_solver(program, c_name, function, function.solver, packs != "none", sparse)
     else:
-        writer = FunctionWriter(program, c_name, inputs, function.outputs, packs=packs)
-        text = writer.text()
+        writer = FunctionWriter(program, c_name, inputs, function.outputs, packs=packs != "none")
+        in_doubt = packs == "where they pay" and writer.pack_gain != "clear"
+        needs_scalars = in_doubt or (packs != "none" and in_lanes is not None)
+        scalars = FunctionWriter(program, c_name, inputs, function.outputs) if needs_scalars else writer
+        text = _text_of_one_state(writer, scalars) if in_doubt else writer.text()
         if in_lanes is not None:
-            plain = FunctionWriter(program, c_name, inputs, function.outputs) if packs else writer
-            on_vectors = plain.text_on_vectors(in_lanes)
+            on_vectors = scalars.text_on_vectors(in_lanes)
             strided = lanes.strided(c_name, program, function, on_vectors.work)
             vectors = ["#if SYM_LANES > 1", on_vectors.code, strided, "#endif"]
             scratch = lanes.scratch(program, function, on_vectors.work)
@@ -252,6 +257,21 @@ def _one_function(
     )
     of_lanes = f"    {{sizeof(sym_number), SYM_OWN, {work}, {c_name}_lanes}}" if vectors else "    {0, 0, 0, NULL}"
     return code, _Row(tables, _row(function, c_name, len(inputs), work), of_lanes)
+
+
+def _text_of_one_state(packed: FunctionWriter, scalars: FunctionWriter) -> FunctionText:
+    """A function whose packs hardly pay: without them, or with them where the processor's vectors have up to 256 bits.
+
+    Args:
+        packed: Writer of the function with packs.
+        scalars: Writer of the function without packs.
+    """
+    plain = scalars.text()
+    if packed.pack_gain == "none":
+        return plain
+    text = packed.text()
+    code = "\n".join(["#if SYM_PART < 8", text.code, "#else", plain.code, "#endif"])
+    return FunctionText(code, max(text.work, plain.work))
 
 
 def _row(function: Function, c_name: str, n_in: int, work: int) -> str:

@@ -40,7 +40,7 @@ def identifier(text: str) -> str:
 
 
 def function_symbols(name: str, functions: Iterable[tuple[str, str]]) -> list[str]:
-    """C names of functions by (name, frame), all different: frames that look alike in C are told apart by numbers."""
+    """C names of functions by (name, frame), all different: frames whose names become the same in C get numbers."""
     symbols: list[str] = []
     for function, frame in functions:
         stem = "_".join([name, function, *([identifier(frame)] if frame else [])])

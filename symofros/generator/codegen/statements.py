@@ -16,6 +16,7 @@ from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph, Slot
 from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.ops import ADD, DIV, MUL, OPS, STOP_GRADIENT
+from symofros.generator.codegen.effort import PackGain, pack_gain
 from symofros.generator.codegen.names import local_name
 from symofros.generator.codegen.packs import PackPlan, Store, Vector, lane_text
 
@@ -59,6 +60,9 @@ class StatementWriter:
         given: Nodes that are read from an input array.
         stores: Outputs of the function.
         packs: Whether values formed by the same operations share vectors.
+
+    Attributes:
+        pack_gain: Whether the function is faster with its packs than without.
     """
 
     def __init__(
@@ -74,13 +78,17 @@ class StatementWriter:
         self.stores = stores
         self._vector_of_node: dict[int, Vector] = {}
         self._vectors: list[Vector] = []
+        self.pack_gain: PackGain = "clear"
         if packs and graph.packs:
             plan = PackPlan(graph, nodes, given, [store.edge for store in stores])
+            self.pack_gain = pack_gain(plan, len(nodes), stores)
             nodes, self._vector_of_node, self._vectors = plan.nodes, plan.vector_of_node, plan.vectors
         self._inlined = self._choose_inlined(nodes, stores)
         self._nodes = nodes
         self._variables = [node for node in nodes if node not in self._inlined]
         self._names: dict[int, str] = {}
+        # Names of nodes without a label that are stored as they are: by their first entry, M_8_ of M[8].
+        self._entries = {store.edge: f"{store.array}_{store.index}_" for store in reversed(stores)}
         self.lanes, self._suffix = False, ""
 
     def in_lanes(self, single: bool = False) -> StatementWriter:
@@ -217,7 +225,7 @@ class StatementWriter:
             return lane_text(vector.key, vector.nodes[node][0])
         if node not in self._names:
             label = self.graph.label.get(node)
-            self._names[node] = local_name(label, node) if label else f"t{node}"
+            self._names[node] = local_name(label, node) if label else f"{self._entries.get(node, 't')}{node}"
         return self._names[node]
 
     def operation(self, node: int) -> str:

@@ -122,7 +122,7 @@ def _unit_of(formula: Expression, known: Mapping[str, Powers | None]) -> Powers 
     """Powers of a formula, None where they are open.
 
     Raises:
-        _Clash: Terms or an argument do not go together, in words.
+        _Clash: Dimensions of terms or of an argument that disagree, as a text.
     """
     kind = formula.kind
     if kind == "number":

@@ -1,4 +1,4 @@
-/* symofros_fmi.h - what FMI 2.0 and 3.0 answer alike, over symofros_fmu.h. Written by hand.
+/* symofros_fmi.h - what FMI 2.0 and 3.0 have in common, over symofros_fmu.h. Written by hand.
  *
  * Each function checks whether the call is allowed in the present mode, and returns FMU_OK or the code of what is wrong.
  */

@@ -32,7 +32,7 @@ const char *fmi2GetVersion(void) { return fmi2Version; }
 
 fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t n, const fmi2String categories[]) {
     fmu *f = c;
-    (void)on, (void)n, (void)categories; /* errors are always told; there is nothing else to tell */
+    (void)on, (void)n, (void)categories; /* errors are always logged; nothing else is */
     ALLOWED(1);
     return fmi2OK;
 }

@@ -29,7 +29,7 @@ const char *fmi3GetVersion(void) { return fmi3Version; }
 
 fmi3Status fmi3SetDebugLogging(fmi3Instance c, fmi3Boolean on, size_t n, const fmi3String categories[]) {
     fmu *f = c;
-    (void)on, (void)n, (void)categories; /* errors are always told; there is nothing else to tell */
+    (void)on, (void)n, (void)categories; /* errors are always logged; nothing else is */
     ALLOWED(1);
     return fmi3OK;
 }

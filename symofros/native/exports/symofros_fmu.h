@@ -35,7 +35,7 @@ typedef struct fmu {
     /* What the environment gave. */
     void *environment, *logger;
     char *name;
-    int bending_noted;  /* whether the environment has been told that a beam bends much */
+    int bending_noted;  /* whether the log already says that a beam bends much */
     char message[256]; /* on the beam that bends most */
     void (*release)(void *);
 } fmu;
@@ -224,7 +224,7 @@ static int fmu_initialise(fmu *f) {
     return FMU_OK;
 }
 
-/* Estimated error of the beams' theory from which the environment is told of it. */
+/* Estimated error of the beams' theory from which the log says so. */
 #define FMU_NOTED_ERROR 0.01
 
 /* Write the message on the beam whose theory errs most. Returns whether that is new and worth telling. */

@@ -106,7 +106,7 @@ def build_library(
         symbol: The exported function, which each kind has under a name of its own.
 
     Raises:
-        CompileError: The compiler refused, with its command and words; or the cache folder can't be written or trusted.
+        CompileError: The compiler failed, with its command and messages; or the cache folder can't be used.
     """
     key, chosen = _key(toolchain, flags, dispatch, source, header), _chosen(flags, dispatch)
     folder = cache_folder()

@@ -17,7 +17,7 @@ _LINE = threading.Lock()
 
 
 class Progress:
-    """Stages of making one library: told by the logger "symofros" (INFO), and on a terminal while they last.
+    """Stages of making one library: reported by the logger "symofros" (INFO), and on a terminal while they last.
 
     Args:
         model: Name of the model.
@@ -42,7 +42,7 @@ class Progress:
                 self._teller.start()
 
     def __enter__(self) -> Self:
-        """Nothing is told before a stage begins: most libraries are known."""
+        """Nothing is reported before a stage begins: most libraries are in the cache."""
         return self
 
     def __exit__(

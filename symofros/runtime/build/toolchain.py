@@ -147,7 +147,7 @@ def call_compiler(command: Sequence[str], output: str, folder: Path, remedy: str
         remedy: Remedy to state if it fails.
 
     Raises:
-        CompileError: It refused: with its command and words; or it wrote nothing, or did not end.
+        CompileError: It failed, with its command and messages; or it wrote nothing, or did not end.
     """
     stated = [*command, "-o", output]
     status, said = _run(stated, COMPILATION_LIMIT, folder, subprocess.STDOUT)
@@ -166,7 +166,7 @@ def _version(command: tuple[str, ...]) -> str:
 
 
 def _run(command: Sequence[str], limit: float, folder: Path | None, errors: int) -> tuple[int, str]:
-    """Status and words of a command.
+    """Exit status and output of a command.
 
     What it says goes to a file: of a pipe, the end would be waited for until all its children have ended, too.
 

@@ -1,4 +1,4 @@
-"""Where the mass matrix of a tree is singular, in words: which speeds move no mass, which parameters are zero."""
+"""Where the mass matrix of a tree is singular, as a message: which speeds move no mass, which parameters are zero."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ ADVICE = "give every speed an inertia; a mass, length or radius that is zero tak
 
 
 def singular_mass(model: Model, q: Array, par: ArrayLike | None = None, u: ArrayLike | None = None) -> str:
-    """The motion of a tree that moves no mass in a configuration, in words; "" where there is none.
+    """The motion of a tree that moves no mass in a configuration, as a text; "" where there is none.
 
     Constraints may bind such a motion: of models with constraints nothing is said.
 

@@ -79,7 +79,7 @@ class Trajectories:
         t_last: End time of each run (...) [s].
         q_last: Last good configuration of each (..., nq).
         v_last: Last good speeds of each (..., nv).
-        status: C's last word for each (...); `kinds` and `outcome` put it in words.
+        status: Last status code of each (...); `kinds` and `outcome` state it as text.
         steps: Steps taken (...).
         rejected: Steps tried in vain (...).
         beam_errors: Largest estimated error of each beam's theory in each run (..., number of beams).

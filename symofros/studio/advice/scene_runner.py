@@ -130,7 +130,9 @@ class SceneRunner:
             # Loops are closed by functions that are not stepped with, so those are made when they are called.
             options = Options() if system.constraints else Options(functions, self.scene.frames)
             with warnings.catch_warnings():
-                warnings.simplefilter("ignore", InconsistentModelWarning)  # Tried to be refused, in words.
+                warnings.simplefilter(
+                    "ignore", InconsistentModelWarning
+                )  # It is tried all the same: a candidate that can't be compiled is listed with the reason.
                 self._models[key] = compile_system(system, options)
         return self._models[key]
 
@@ -162,7 +164,7 @@ class SceneRunner:
         return closed.q, closed.v
 
     def trial(self, system: System, stepping: Stepping, most_steps: int = MOST_STEPS) -> Trial:
-        """Run the scene; a model that can't be compiled, or does not get to the end, fails in words."""
+        """Run the scene; a model that can't be compiled, or does not get to the end, fails with the reason."""
         self.runs += 1
         try:
             model = self.model(system, stepping.method)
@@ -290,7 +292,7 @@ def _beyond_theory(system: System, bending: BeamBending) -> BeamTheoryError:
         Problem(
             f"advise: '{system.name}' leaves the theory of its beams in this scene",
             str(bending),
-            "advice compares models of second-order theory, all of which err there alike",
+            "advice compares models of second-order theory, all of which have the same error there",
             bending.remedy,
         )
     )

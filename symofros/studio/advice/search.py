@@ -181,8 +181,8 @@ class _Search:
                 changed = one.apply(self.current)
                 cost, of_rod = self._evaluation(changed), self._evaluation(self.current)
                 if cost >= of_rod:
-                    dear = f"{one.reason}; an evaluation takes {cost} operations, {of_rod} with the rod"
-                    self._note(replace(one, reason=dear), "not tried", None)
+                    costly = f"{one.reason}; an evaluation takes {cost} operations, {of_rod} with the rod"
+                    self._note(replace(one, reason=costly), "not tried", None)
                 elif self._consider(one):
                     self.divided |= {b.name for b in changed.bodies} - {b.name for b in self.full.bodies}
                     self.divided |= {beam.name} if len(changed.bodies) > len(self.full.bodies) else set()

@@ -37,10 +37,10 @@ def test_the_example_finds_the_numbers_of_the_c_code(package: Path, tmp_path: Pa
     kernels.write_text(f'#include "{SHIM}"\n#include "{package}/double_pendulum_double.cu"\n{LAUNCHER}')
     run("gcc", *STRICT, "-O0", "-c", "double_pendulum.c", "-o", tmp_path / "model.o", cwd=package)
     flags = ("-std=c++17", "-O0", "-ffp-contract=off", "-Wall", "-Wno-unknown-pragmas", "-Wno-unused-function")
-    run("g++", *flags, f"-I{package}", f"-I{HERE}", "-x", "c++", package / "main.cu", kernels, "-x", "none",
-        tmp_path / "model.o", "-lm", "-o", tmp_path / "example", cwd=tmp_path)  # fmt: skip
-    told = run(tmp_path / "example", "1000", cwd=tmp_path)
-    assert re.match(r"1000 states in 1 ms: 1e\+06 states/s, 0\.\d+ GB/s; against C at most 0\n", told), told
+    sources = ("-x", "c++", package / "main.cu", kernels, "-x", "none", tmp_path / "model.o")
+    run("g++", *flags, f"-I{package}", f"-I{HERE}", *sources, "-lm", "-o", tmp_path / "example", cwd=tmp_path)
+    output = run(tmp_path / "example", "1000", cwd=tmp_path)
+    assert re.match(r"1000 states in 1 ms: 1e\+06 states/s, 0\.\d+ GB/s; against C at most 0\n", output), output
 
 
 @pytest.mark.parametrize("language", ["c", "c++"])

@@ -6,10 +6,12 @@ import pytest
 
 from symofros.expr.edges import ONE, Edge
 from symofros.expr.graph import Graph, Slot
+from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.packs.combine import linear_combination
 from symofros.expr.packs.pack import WIDTH, Pack
 from symofros.expr.program import Function, Output, Program
-from symofros.generator.codegen.effort import PACKED, TIE, cheapest, effort
+from symofros.generator.codegen.effort import PACKED, SHORT, TIE, cheapest, effort, pack_gain
+from symofros.generator.codegen.packs import PackPlan, Store
 
 
 def program(g: Graph, edges: list[Edge]) -> Program:
@@ -57,3 +59,47 @@ def test_the_cheapest_and_ties(first: int, second: int, name: str) -> None:
     assert 1.04 < TIE < 1.07
     assert cheapest({"first": chained(first), "second": chained(second)}) == name
     assert cheapest({"only": chained(first)}) == "only"
+
+
+def gain(g: Graph, edges: list[Edge]) -> str:
+    """Whether packs pay in a function with these outputs."""
+    stores = [Store("y", i, edge) for i, edge in enumerate(edges)]
+    nodes = needed_nodes(g, edges)
+    return pack_gain(PackPlan(g, nodes, {}, edges), len(nodes), stores)
+
+
+def repeated(g: Graph, times: int) -> tuple[Edge, ...]:
+    """Lanes of eight that are scaled and added so many times, from eight inputs that are put in."""
+    x = Pack(tuple(g.input("x", i) for i in range(WIDTH)))
+    sign, pack = ONE, x
+    for i in range(times):
+        sign, pack = linear_combination(g, [(g.input("q", i), (sign, pack)), (ONE, (ONE, x))])
+    return tuple(sign * lane for lane in pack.lanes)
+
+
+def test_packs_pay_where_more_is_computed_than_put_into_lanes() -> None:
+    g = Graph()
+    assert gain(g, list(repeated(g, 8))) == "clear"
+
+
+def test_packs_do_not_pay_where_all_is_put_in_for_one_operation() -> None:
+    """Eight numbers are put into lanes and eight are read one by one, for two operations on a pack."""
+    g = Graph()
+    lanes = repeated(g, 1)
+    assert gain(g, [g.mul(g.input("v", i), lane) for i, lane in enumerate(lanes)]) == "none"
+
+
+def test_lanes_that_are_stored_together_cost_nothing() -> None:
+    """The same pack beside 160 other operations, stored as a row and read one by one."""
+    g = Graph()
+    lanes = repeated(g, 1)
+    others = [g.mul(g.input("v", i), g.input("v", i + 1)) for i in range(160)]
+    assert gain(g, [*others, *lanes]) == "in doubt"
+    assert gain(g, [*others, *(g.mul(g.input("v", i), lane) for i, lane in enumerate(lanes))]) == "none"
+
+
+def test_packs_of_long_functions_are_not_judged() -> None:
+    g = Graph()
+    lanes = repeated(g, 1)
+    long = [g.mul(lanes[i % WIDTH], g.input("v", i)) for i in range(SHORT)]
+    assert gain(g, long) == "clear"

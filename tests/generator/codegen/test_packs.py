@@ -20,7 +20,7 @@ from symofros.expr.graph import Graph
 from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.packs.combine import linear_combination
 from symofros.expr.packs.pack import WIDTH, Pack
-from symofros.generator.codegen.model import model_source
+from symofros.generator.codegen.model import Packs, model_source
 from symofros.generator.codegen.packs import PackPlan
 from symofros.native import native_text
 from symofros.runtime.calls.kernel import LaneOptions
@@ -43,7 +43,7 @@ CASES = (
 )
 
 
-def source(system: sf.System, functions: tuple[str, ...], packs: bool = True) -> str:
+def source(system: sf.System, functions: tuple[str, ...], packs: Packs = "where they pay") -> str:
     stated = Compilation(system, sf.Options(functions=functions, forward_dynamics="factors"))
     return model_source(stated.program, stated.record, "test", packs=packs)
 
@@ -80,7 +80,7 @@ def test_bits_of_derivatives_are_those_of_scalars(name: str) -> None:
 
 def test_a_long_chain_is_carried_in_vectors() -> None:
     """With packs, a chain's mass matrix is a third fewer statements, stores included, which are as many as before."""
-    packed, single = (source(MODELS["chain22"], ("mass_matrix",), packs) for packs in (True, False))
+    packed, single = source(MODELS["chain22"], ("mass_matrix",)), source(MODELS["chain22"], ("mass_matrix",), "none")
     assert "sym_pack" not in single
     assert packed.count(";\n") < 0.65 * single.count(";\n")
     # Neighbouring entries of a row are stored together.
@@ -107,11 +107,29 @@ def test_small_models_stay_scalar() -> None:
     assert "sym_pack" not in source(MODELS["double_pendulum"], ("dynamics",))
 
 
+@pytest.mark.parametrize(
+    ("name", "function", "with_packs", "without"),
+    [
+        ("spdm", "mass_matrix", False, True),  # More is put into lanes than is saved.
+        ("planar_robot", "dynamics", True, True),  # Which is faster is decided by the width of vectors.
+        ("puma560", "inverse_dynamics_derivatives", True, False),
+    ],
+)
+def test_packs_are_left_out_where_they_do_not_pay(name: str, function: str, with_packs: bool, without: bool) -> None:
+    def first_chunk(packs: Packs) -> str:
+        return source(MODELS[name], (function,), packs).partition(f"_{function}_f0_0(")[2].partition("\n}")[0]
+
+    text, packed, plain = source(MODELS[name], (function,)), first_chunk("all"), first_chunk("none")
+    assert packed != plain
+    assert (packed in text, plain in text) == (with_packs, without)
+    assert ("#if SYM_PART < 8" in text) == (with_packs and without)
+
+
 def test_one_state_has_its_packs_beside_code_for_several() -> None:
     """A library that also has code by vectors of states is as fast for one state as one that has none."""
     stated = Compilation(MODELS["puma560"], sf.Options(functions=("dynamics",)))
-    alone = model_source(stated.program, stated.record, "test", packs=True)
-    beside = model_source(stated.program, stated.record, "test", LaneOptions(), packs=True)
+    alone = model_source(stated.program, stated.record, "test", packs="all")
+    beside = model_source(stated.program, stated.record, "test", LaneOptions(), packs="all")
     head, end = f"static void {stated.record.name}_dynamics_f0", "\nstatic"
     chunks = [text.partition(f"{head}_0(")[2].partition(end)[0] for text in (alone, beside)]
     assert "sym_pack " in chunks[0]

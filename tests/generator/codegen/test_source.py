@@ -156,6 +156,16 @@ def test_names_are_readable() -> None:
     assert c_string('a"\\?é') == '"a\\042\\134\\077\\303\\251"'
 
 
+def test_values_without_a_label_are_called_by_the_entry_that_holds_them() -> None:
+    text = source_of_functions(MODELS["puma560"], ("mass_matrix",))
+    stored = re.findall(r"^    (\w+)\[(\d+)\] = (\w+);$", text, re.MULTILINE)
+    assert any(name.startswith("M_") for _, _, name in stored)
+    assert not [name for _, _, name in stored if re.fullmatch(r"t\d+", name)]
+    for name in {name for _, _, name in stored if name.startswith("M_")}:
+        entry = int(name.split("_")[1])
+        assert ("M", str(entry), name) in stored
+
+
 def test_functions_stay_within_the_chunk_limit() -> None:
     from reference_models.rigid.chain import chain
 

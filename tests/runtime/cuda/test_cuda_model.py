@@ -181,27 +181,41 @@ def test_rollouts_hold_the_inputs_of_each_step(on_device: CudaModel, method: str
                 assert np.abs(record.numpy()[step // 3] - wanted).max() < 1e-12
 
 
+# Three states of two joints.
+STATES = {"q": np.zeros((3, 2)), "v": np.zeros((3, 2))}
+
+
 @pytest.mark.parametrize(
-    ("call", "words"),
+    ("inputs", "message"),
     [
-        (lambda g: g.evaluate("dynamics", q=np.zeros((3, 2))), "no v"),
-        (lambda g: g.evaluate("dynamics", q=np.zeros((3, 3)), v=np.zeros((3, 2))), "q has the wrong shape"),
-        (lambda g: g.evaluate("dynamics", q=np.zeros((3, 2)), v=np.zeros((4, 2))), "one number of states"),
-        (lambda g: g.evaluate("dynamics", q=np.zeros((3, 2)), v=np.zeros((3, 2)), w=1.0), "no input 'w'"),
-        (lambda g: g.evaluate("dynamics", q=OnDevice(np.zeros((3, 2), "f4")), v=np.zeros((3, 2))), "float64"),
-        (lambda g: g.evaluate("dynamics", q=Exchanged(np.zeros((3, 2)), 1), v=np.zeros(2)), "device 1 of DLPack"),
-        (lambda g: g.evaluate("dynamics", q=Exchanged(np.zeros((3, 2)), 2, 1), v=np.zeros(2)), "graphics processor 1;"),
-        (lambda g: g.evaluate("dynamics", q=Exchanged(np.zeros((3, 2), "i8")), v=np.zeros(2)), "type 0 of DLPack"),
-        (lambda g: g.evaluate("dynamics", q=np.zeros((3, 2)), v=np.zeros((3, 2)), t=np.zeros(4)), "one number of"),
-        (lambda g: g.rollout(np.zeros((3, 2)), np.zeros((3, 2)), dt=0.1, steps=2, every=3), "no such rollout"),
-        (lambda g: g.rollout(np.zeros((3, 2)), np.zeros((3, 2)), dt=0.1, steps=2, method="rk5"), "by 'rk5'"),
-        (lambda g: g.rollout(np.zeros((3, 2)), np.zeros((3, 2)), np.zeros((3, 3, 2)), dt=0.1, steps=2), "u has the"),
-        (lambda g: g.rollout(np.zeros((3, 2)), np.zeros((3, 2)), np.zeros((4, 2)), dt=0.1, steps=2), "one number of"),
+        ({"q": np.zeros((3, 2))}, "no v"),
+        (STATES | {"q": np.zeros((3, 3))}, "q has the wrong shape"),
+        (STATES | {"v": np.zeros((4, 2))}, "one number of states"),
+        (STATES | {"w": 1.0}, "no input 'w'"),
+        (STATES | {"q": OnDevice(np.zeros((3, 2), "f4"))}, "float64"),
+        ({"q": Exchanged(np.zeros((3, 2)), 1), "v": np.zeros(2)}, "device 1 of DLPack"),
+        ({"q": Exchanged(np.zeros((3, 2)), 2, 1), "v": np.zeros(2)}, "graphics processor 1;"),
+        ({"q": Exchanged(np.zeros((3, 2), "i8")), "v": np.zeros(2)}, "type 0 of DLPack"),
+        (STATES | {"t": np.zeros(4)}, "one number of"),
     ],
-)  # fmt: skip
-def test_what_does_not_fit_is_refused_in_words(on_device: CudaModel, call: Any, words: str) -> None:
-    with pytest.raises((ShapeError, UnknownNameError), match=words):
-        call(on_device)
+)
+def test_inputs_that_do_not_fit_are_refused(on_device: CudaModel, inputs: dict[str, Any], message: str) -> None:
+    with pytest.raises((ShapeError, UnknownNameError), match=message):
+        on_device.evaluate("dynamics", **inputs)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"every": 3}, "no such rollout"),
+        ({"method": "rk5"}, "by 'rk5'"),
+        ({"u": np.zeros((3, 3, 2))}, "u has the"),
+        ({"u": np.zeros((4, 2))}, "one number of"),
+    ],
+)
+def test_rollouts_that_do_not_fit_are_refused(on_device: CudaModel, options: dict[str, Any], message: str) -> None:
+    with pytest.raises((ShapeError, UnknownNameError), match=message):
+        on_device.rollout(**STATES, **options, dt=0.1, steps=2)
 
 
 def test_memory_that_runs_out_is_the_drivers_word(on_device: CudaModel, device: Driver) -> None:

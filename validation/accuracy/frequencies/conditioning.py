@@ -36,10 +36,10 @@ def study(quick: bool) -> Study:
             f"{family}: condition number with {n} functions",
             float(numbers[family][n - 1]),
             rows[n - 1][family],
-            room,
+            tolerance,
             "computed independently",
         )
-        for family, n, room in (
+        for family, n, tolerance in (
             ("polynomial", 4, 1e-6),
             ("polynomial", 7, 1e-3),
             ("spline", 8, 1e-6),

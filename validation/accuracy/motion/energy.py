@@ -18,7 +18,7 @@ KEPT = 1e-9
 def system(retain: str) -> sf.Model:
     """A beam that bends both ways and twists, on a free hub, with a body on its tip.
 
-    One function a direction, with frequencies alike, so that the integrator's steps are not those of high modes.
+    One function a direction, with equal frequencies, so that the integrator's steps are not those of high modes.
     """
     beam = sf.Beam(
         "b",

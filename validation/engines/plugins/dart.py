@@ -137,9 +137,9 @@ def write(tree: Tree) -> Source | Unsupported:
             R, p, joint = steps[0]
             known = _native(joint)
             if known is None:
-                words = f"{joint.kind} {joint.form or joint.sequence}".strip()
+                described = f"{joint.kind} {joint.form or joint.sequence}".strip()
                 extra = " that mimics" if joint.mimics else " with armature" if any(joint.armature) else ""
-                return Unsupported(f"no joint for {words}{extra}", offered=False)
+                return Unsupported(f"no joint for {described}{extra}", offered=False)
             native = known
             if joint.kind == "free" and not np.array_equal(R, joint.R):
                 return Unsupported("speeds of free joints are along the axes of the link before", offered=False)

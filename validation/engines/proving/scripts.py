@@ -144,8 +144,8 @@ def _proof(plugin: EnginePlugin, red: Judged, script: str, output: str, failed: 
 def file_of(red: Judged) -> str:
     """Name of the script's file."""
     cell = red.cell
-    words = f"{cell.engine}-{cell.model}-{cell.function}".replace(":", "-").replace(" ", "_")
-    return "".join(letter for letter in words if letter.isalnum() or letter in "-_") + ".py"
+    stem = f"{cell.engine}-{cell.model}-{cell.function}".replace(":", "-").replace(" ", "_")
+    return "".join(letter for letter in stem if letter.isalnum() or letter in "-_") + ".py"
 
 
 def text(plugin: EnginePlugin, red: Judged, known: str) -> str:

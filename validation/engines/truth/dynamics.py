@@ -55,7 +55,7 @@ class Truth:
         self.inertias = [Inertia.of(link) for link in tree.links]
         self._rounded = exact(np.ones((len(tree.links), 6)))
         if roundings is not None:
-            # No two alike: what equal ones make of parts that cancel cancels, too.
+            # All different: the effects of equal ones would cancel where the terms cancel.
             parts = np.random.default_rng(roundings).uniform(-1.0, 1.0, (len(tree.links), 6))
             self._rounded = self._rounded + exact(parts * ROUNDING)
         self.armature = zeros(self.nv)

@@ -40,7 +40,7 @@ def pendulum() -> sf.Model:
 
 
 def swing(method: str, h: float, gain: float, t_end: float = END) -> sf.Trajectory:
-    """From rest at (-1, 0), with both gains alike."""
+    """From rest at (-1, 0), with equal gains."""
     return simulate(
         pendulum(),
         [-1.0, 0.0],

@@ -111,7 +111,7 @@ def rows(maps: Maps) -> tuple[list[str], list[str], list[str]]:
     )
 
 
-def passages_told(maps: Maps) -> float:
+def share_of_notes(maps: Maps) -> float:
     """Share of our own stabilised runs that hold whose notes name the posture."""
     cells = [
         c
@@ -120,8 +120,8 @@ def passages_told(maps: Maps) -> float:
         if WAYS.label(way) == "projection" or WAYS.label(way).startswith("Baumgarte")
         for c in line
     ]
-    told = ["singular posture" in c.note for c in cells if c.ended == "finished" and c.value <= BOUND]
-    return float(np.mean(told)) if told else 1.0
+    names_posture = ["singular posture" in c.note for c in cells if c.ended == "finished" and c.value <= BOUND]
+    return float(np.mean(names_posture)) if names_posture else 1.0
 
 
 def unlucky() -> dict[str, float]:
@@ -149,7 +149,7 @@ def judge(maps: Maps) -> Verdict:
     flat = four_bars.linkage(2)
     still = simulate(flat, *four_bars.state(flat, 0.0, 0.0), 0.01)
     reported = float(any("singular posture" in note for note in still.outcome.notes))
-    told = passages_told(maps)
+    noted = share_of_notes(maps)
     level = WAYS.labels.index("projection")
     errors = np.concatenate([runs.at(y=level) for runs in maps.values()])
     findings = (
@@ -193,7 +193,7 @@ def judge(maps: Maps) -> Verdict:
             reason="another program, in absolute coordinates",
         ),
         Finding("a start in the flat posture is reported (1: yes)", reported, 1.0, 1.0, "nothing is silently wrong"),
-        Finding("share of our runs through it that hold and say so", told, 1.0, 1.0, "nothing is silently wrong"),
+        Finding("share of our runs through it that hold and say so", noted, 1.0, 1.0, "nothing is silently wrong"),
         Finding("exact motion against the known one, largest distance [m]", exact, 1e-9, reason="the same equation"),
     )
     wrong = sum(runs.wrong for runs in maps.values())
@@ -205,9 +205,10 @@ def judge(maps: Maps) -> Verdict:
         f"{', '.join(sometimes) or 'none'}. At none: {', '.join(never) or 'none'}. Projection stays within "
         f"{errors.max():.1e} m. MuJoCo's default closures miss by {defaults.min():.1f} to {defaults.max():.1f} m, "
         "because they lose energy, not because of the posture. A start in the flat posture is reported, and "
-        f"{told:.0%} of our runs that pass it note how close they came. A step that all but lands in it loses decades: "
-        f"the worst of four such leave {near['projection']:.0e} m with projection and {near['baumgarte']:.0e} m with "
-        "gains of 20/s."
+        f"{noted:.0%} of our runs that pass it note how close they came. A step that all but lands in it loses "
+        "decades: "
+        f"the worst of four such leave {near['projection']:.0e} m with projection and {near['baumgarte']:.0e} m "
+        "with gains of 20/s."
     )
     see = (
         f"Rows are ways, columns are steps. Blue rows hold; above them and below, {stopped} runs stop with an "

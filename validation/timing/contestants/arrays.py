@@ -47,7 +47,7 @@ def first_compiler(language: str = "c") -> Compiler:
 LINE = 64
 
 
-def room(size: int) -> Array:
+def aligned_zeros(size: int) -> Array:
     """Zeros that begin at a line of the cache (size,)."""
     raw = np.zeros(size + LINE // 8)
     start = (-raw.ctypes.data % LINE) // 8
@@ -92,11 +92,11 @@ class Arrays:
 
     def overwritten(self, states: int = 1) -> Any:
         """Arrays of a race: the results of so many states lie over those before."""
-        return self._filled([room(states * size) for size in self.sizes], False)
+        return self._filled([aligned_zeros(states * size) for size in self.sizes], False)
 
     def results(self, run: Callable[[Any], None], shared: int | None = None) -> Array:
         """The first outputs of every state (n, size), of a run that gets arrays in which they are kept."""
-        outputs = [room(self.count * size).reshape(self.count, size) for size in self.sizes]
+        outputs = [aligned_zeros(self.count * size).reshape(self.count, size) for size in self.sizes]
         run(self._filled(outputs, True))
         return np.concatenate(outputs[:shared], axis=1)
 
@@ -110,14 +110,14 @@ class Arrays:
         filled.out = self._keep(ffi.new("double *[]", [self._pointer(x) for x in outputs]))
         filled.size = self._keep(ffi.new("size_t[]", list(self.sizes)))
         doubles, integers = self._scratch
-        filled.work = self._pointer(room(doubles))
+        filled.work = self._pointer(aligned_zeros(doubles))
         filled.iwork = self._keep(ffi.new("long long[]", integers + 1))
         return self._keep(filled)
 
     def _pointer(self, array: Array) -> Any:
         kept = array
         if array.ctypes.data % LINE or not array.flags.c_contiguous:
-            kept = room(array.size)
+            kept = aligned_zeros(array.size)
             kept[:] = array.ravel()
         self._keep(kept)
         return self._keep(self._ffi.from_buffer("double[]", kept))

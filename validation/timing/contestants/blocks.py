@@ -9,7 +9,7 @@ import numpy as np
 
 from symofros.tools import Numbers, Strided, columns
 from validation.mechanics.geometry import Array
-from validation.timing.contestants.arrays import loops, room
+from validation.timing.contestants.arrays import aligned_zeros, loops
 
 
 class Blocks:
@@ -35,7 +35,7 @@ class Blocks:
         n = max(len(array) for array in inputs if array.ndim == 2)
         self._bounds = [(first, min(first + block, n)) for first in range(0, n, block)]
         self._sizes, self._dtype = tuple(sizes), dtype
-        self._work = room(work)
+        self._work = aligned_zeros(work)
         pre, *others = inputs
         shared = [Strided.of(pre[None], np.float64), *(self._one(x) if x.ndim == 1 else None for x in others)]
         self._inputs = [

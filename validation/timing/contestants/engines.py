@@ -263,7 +263,7 @@ class _States:
 
 @dataclass(frozen=True)
 class _Converted:
-    """An engine's results in our conventions; without a chart they are alike."""
+    """An engine's results in our conventions; without a chart they are the same."""
 
     chart: Chart | None
     task: Task

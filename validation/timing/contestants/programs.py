@@ -31,7 +31,7 @@ Say = Callable[[str], None]
 
 
 def silent(text: str) -> None:
-    """Progress that nobody is told of."""
+    """Progress that is not shown."""
 
 
 class BuildError(Exception):

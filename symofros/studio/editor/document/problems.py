@@ -141,8 +141,8 @@ def _by_formula(problem: Problem, data: Any, entry: Path) -> Path:
         for path, text in formulas(data)
         if path[: len(entry)] == entry and _canonical(text) == wanted
     ]
-    words = {_WORDS.get(word, word) for word in re.findall(r"\w+", problem.what.partition(": ")[2])}
-    return next((path for path in candidates if words & {*path}), candidates[0] if candidates else ())
+    mentioned = {_WORDS.get(word, word) for word in re.findall(r"\w+", problem.what.partition(": ")[2])}
+    return next((path for path in candidates if mentioned & {*path}), candidates[0] if candidates else ())
 
 
 def _canonical(text: str) -> str:

@@ -63,7 +63,7 @@ class Source:
 
     def text(self, code: str = "") -> tuple[str, ...]:
         """The statements that some code needs; all without code."""
-        used = words(code)
+        used = identifiers(code)
         chosen = [lines for name, lines in self.optional.items() if not code or name in used]
         return (*self.lines, *(line for lines in chosen for line in lines), *self.closing)
 
@@ -86,7 +86,7 @@ class SourceModel:
         """A function in the engine's conventions (`EngineModel`)."""
         if function not in self._ways or function in self._source.lacks:
             return Unsupported(f"no {function}", offered=False)
-        for name in (OPTIONAL.keys() & words(self._ways[function].code)) - set(self._source.optional):
+        for name in (OPTIONAL.keys() & identifiers(self._ways[function].code)) - set(self._source.optional):
             return Unsupported(OPTIONAL[name], offered=False)
         names = dict(self._names)
         names.update({name: getattr(state, name).copy() for name in _INPUTS})
@@ -101,12 +101,12 @@ class SourceModel:
     def script(self, function: str, state: State) -> str:
         """The text that the call runs, with the state that it needs (`EngineModel`)."""
         code = self._ways[function].code
-        used = [name for name in _INPUTS if name in words(code)]
+        used = [name for name in _INPUTS if name in identifiers(code)]
         stated = [f"{name} = np.array({getattr(state, name).tolist()!r})" for name in used]
         return "\n".join([*self._source.text(code), *stated, code])
 
 
-def words(code: str) -> set[str]:
+def identifiers(code: str) -> set[str]:
     """The names in some code."""
     return set("".join(letter if letter.isalnum() or letter == "_" else " " for letter in code).split())
 
