@@ -86,6 +86,7 @@ PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
         identities.transposed,
         runs.implicit_steps,
         runs.stabilised,
+        lambda scene: runs.scaled_steps(scene, ((), ())),
         lambda scene: runs.multistep(scene, ("ida", "cvode")),
         batches.trajectories,
         lambda scene: analyses.closed(scene, "q1"),
@@ -97,6 +98,7 @@ PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
     "rolling_disc": (
         runs.fixed_steps,
         runs.chosen_steps,
+        lambda scene: runs.scaled_steps(scene, ((0, 1, 2), (0, 1, 2))),
         reactions.of_constraints,
         lambda scene: analyses.closed(scene, scene.model.names.v[3]),
     ),
