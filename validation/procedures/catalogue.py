@@ -70,6 +70,7 @@ PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
         lambda scene: runs.multistep(scene, ("cvode", "cvode_adams")),
         runs.pace,
         batches.trajectories,
+        batches.lost,
         batches.states,
         analyses.linearised,
         analyses.differentiated,
@@ -94,6 +95,7 @@ PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
         lambda scene: analyses.driven(scene, ("q1", "q2")),
         reactions.of_constraints,
     ),
+    "friction_arm": (lambda scene: analyses.driven(scene, scene.model.names.u),),
     "sleigh": (runs.implicit_steps,),
     "rolling_disc": (
         runs.fixed_steps,
