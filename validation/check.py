@@ -17,6 +17,7 @@ from validation.comparison.errors import Comparison, Scales, compute, judge, sca
 from validation.comparison.loops import of_unique_multipliers
 from validation.comparison.motion import MOTIONS, FreeMotion, fall, judge_drift, smoothness_obstacle
 from validation.comparison.participants import (
+    EPS,
     Factories,
     Participant,
     participants,
@@ -43,8 +44,6 @@ from validation.mechanics.parts import has_quaternion
 FORWARD = "forward_dynamics"
 # Quantities that come from solving a linear system, so that its condition limits their agreement.
 SOLVED = (FORWARD, "multipliers", "constraint_force", "frame_response")
-
-EPS = 2.0**-52
 
 
 @dataclass(frozen=True)
@@ -116,7 +115,8 @@ class _Bench:
         variants: Our models of the subject.
         engines: The engines that take part.
         scales: Typical sizes of M and T.
-        condition: Factor by which solving for v' amplifies rounding; infinite where M is not positive definite.
+        condition: Factor by which solving for v' amplifies rounding; infinite where M is not positive definite by more
+            than rounding.
         seconds: Stage -> time it took [s].
     """
 
@@ -188,7 +188,8 @@ def check(subject: Subject, settings: Settings, factories: Factories | None = No
 def _comparisons(bench: _Bench) -> Iterator[Comparison]:
     """All rows of one model's table but those of engines that can't represent it."""
     if not bench.solvable:
-        reason = "M is not positive definite in some state, so v' is not determined; are the inertias physical?"
+        reason = "M is not positive definite by more than rounding in some state, so v' is not determined;"
+        reason += " are the inertias physical?"
         for name in (FORWARD, MOTION_ENERGY.name):
             yield Comparison(bench.label, "symofros", name, "unsupported", note=reason)
     for quantity in _quantities(bench):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import multiprocessing
 import os
 import signal
@@ -18,6 +19,12 @@ from validation.check import ModelResult, Settings, check, failed
 from validation.inputs.cases import Case
 
 Report = Callable[[ModelResult], None]
+
+# Libraries of linear algebra start a thread for each core in every process. Beside other workers these wait for each
+# other at full load: products of Jacobians of a humanoid took 40 times the processor time, most of it waiting.
+ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+# Objects made between two searches for garbage. Expression graphs are large and hold none.
+COLLECTED_AT = 50_000
 
 
 def _preloaded(settings: Settings) -> list[str]:
@@ -100,6 +107,8 @@ class _WorkerPool:
 
 
 def _context(settings: Settings) -> BaseContext:
+    for name, threads in ONE_THREAD.items():  # Before NumPy is loaded in the process that workers come from.
+        os.environ.setdefault(name, threads)
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
@@ -109,5 +118,7 @@ def _context(settings: Settings) -> BaseContext:
 
 def _work(connection: Connection, case: Case, settings: Settings) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # The parent handles Ctrl-C and ends its workers.
+    gc.freeze()  # Modules stay.
+    gc.set_threshold(COLLECTED_AT)
     connection.send(run_case(case, settings))
     connection.close()

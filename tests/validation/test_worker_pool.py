@@ -8,7 +8,7 @@ from tests.validation.subjects import URDF
 from validation.check import ModelResult, Settings
 from validation.contract.interface import Subject
 from validation.inputs.cases import Case
-from validation.worker_pool import run, run_case
+from validation.worker_pool import ONE_THREAD, _context, run, run_case
 
 FEW = Settings(states=10, engines=("pinocchio",))
 
@@ -65,3 +65,12 @@ def test_an_interrupt_keeps_what_is_finished(tmp_path: Path) -> None:
     with pytest.raises(KeyboardInterrupt):
         run([arm(tmp_path), Faulty("bad"), Faulty("worse")], FEW, 2, done)
     assert len(results) == 1
+
+
+def test_workers_have_one_thread_of_linear_algebra_unless_more_are_stated(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Threads of several workers wait for each other at full load; the variables count where NumPy is loaded later."""
+    for name in ONE_THREAD:
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("MKL_NUM_THREADS", "3")
+    _context(FEW)
+    assert [os.environ[name] for name in ONE_THREAD] == ["1", "1", "3"]

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 import symofros as sf
-from symofros.tools import Evaluators
+from symofros.tools import DEFAULT_FLAGS, Evaluators
 from validation.adapters.reach import stores_energy
 from validation.contract.conventions import times
 from validation.contract.interface import States, Subject
@@ -19,6 +19,11 @@ from validation.mechanics.geometry import Array
 NAME = "symofros"
 
 _FUNCTIONS = tuple(name for name in QUANTITIES if name not in {"gravity", "multipliers", *LOOPS})
+
+# Flags for variants of a description, which no user asked for: beams with all their terms, a file's every digit, no
+# weight. Their C is evaluated a thousand times; to optimise it takes five times as long as to compile it. The
+# description as it stands is compiled as users get it.
+UNOPTIMISED = tuple("-O0" if flag.startswith("-O") else flag for flag in DEFAULT_FLAGS)
 
 # Sections an interval beyond the number of functions, with which rods err by less than 1e-8 of M and h at the states
 # that are drawn.
@@ -133,25 +138,34 @@ class SymofrosEngine:
         return self._frames(lambda frame: self.model.frame_jacobian_rate(frame, states.q, states.v, u=states.u))
 
 
-def build(subject: Subject) -> SymofrosEngine:
+def build(subject: Subject, flags: tuple[str, ...] | None = None) -> SymofrosEngine:
     """Generate, compile and load everything that is compared, in one C file, evaluated state by state.
+
+    Args:
+        subject: The subject.
+        flags: Flags of the C compiler in place of those that users get.
 
     Raises:
         DescriptionError: The system can't be a mechanism.
     """
-    return SymofrosEngine(NAME, evaluators(subject).by_states, subject.frames)
+    return SymofrosEngine(NAME, evaluators(subject, flags).by_states, subject.frames)
 
 
 # The subjects of one check: as described, every term of its beams kept, without their rotary inertia, with rotors.
 _LATEST: deque[tuple[Subject, Evaluators]] = deque(maxlen=4)
 
 
-def evaluators(subject: Subject) -> Evaluators:
-    """The ways to evaluate one program of just the functions and frames that are compared; the latest are kept."""
+def evaluators(subject: Subject, flags: tuple[str, ...] | None = None) -> Evaluators:
+    """The ways to evaluate one program of just the functions and frames that are compared; the latest are kept.
+
+    Args:
+        subject: The subject.
+        flags: Flags of the C compiler, where they are the first to be asked for.
+    """
     for known, made in _LATEST:
         if known is subject:
             return made
-    _LATEST.append((subject, Evaluators(subject.system, options(subject))))
+    _LATEST.append((subject, Evaluators(subject.system, replace(options(subject), flags=flags))))
     return _LATEST[-1][1]
 
 
@@ -164,7 +178,7 @@ def build_verbatim(subject: Subject) -> SymofrosEngine:
     compared = MJCF_ROUTE if subject.format == "mjcf" else SECOND_ROUTE
     functions = tuple(name for name in _FUNCTIONS if name in compared)
     frames = subject.frames if FRAME_QUANTITIES & compared else ()
-    model = sf.compile(subject.verbatim, sf.Options(functions=functions, frames=frames, batch="loop"))
+    model = sf.compile(subject.verbatim, sf.Options(functions, frames, flags=UNOPTIMISED, batch="loop"))
     return SymofrosEngine(NAME, model, frames)
 
 
@@ -204,7 +218,7 @@ def build_weightless(subject: Subject) -> sf.Model | None:
     if not stores_energy(subject.system):
         return None
     weightless = replace(subject.system, gravity=(0.0, 0.0, 0.0))
-    return sf.compile(weightless, sf.Options(functions=("potential_energy",), batch="loop"))
+    return sf.compile(weightless, sf.Options(("potential_energy",), flags=UNOPTIMISED, batch="loop"))
 
 
 def options(subject: Subject) -> sf.Options:

@@ -23,6 +23,8 @@ from validation.mechanics.geometry import Array
 # What constraints are made of, for engines that know trees.
 ANCHORED = frozenset({"frame_pose", "frame_velocity", "frame_acceleration", "frame_jacobian"})
 
+EPS = 2.0**-52
+
 Factories = Mapping[str, EngineFactory | Missing]
 
 
@@ -124,11 +126,16 @@ def sum_of_energies(engine: Engine, states: States) -> Array:
 
 
 def worst_condition(model: SymofrosEngine, states: States) -> float:
-    """Factor by which solving for v' amplifies rounding: the largest condition number of M, and of multipliers."""
+    """Factor by which solving for v' amplifies rounding: the largest condition number of M, and of multipliers.
+
+    Infinite where M is not positive definite, or not by more than rounding: the sign of an eigenvalue that small is
+    chance, and of v' no digit is determined.
+    """
     M = compute(model, QUANTITIES["mass_matrix"], states)
     moments = np.linalg.eigvalsh(M)
     smallest, largest = moments[:, 0], moments[:, -1]
-    worst = float(np.max(np.where(smallest > 0.0, largest / np.where(smallest > 0.0, smallest, 1.0), np.inf)))
+    definite = smallest > M.shape[-1] * EPS * largest
+    worst = float(np.max(np.where(definite, largest / np.where(definite, smallest, 1.0), np.inf)))
     if model.model.nc and np.isfinite(worst):
         worst *= condition(M, model.constraint_jacobian(states))
     return worst

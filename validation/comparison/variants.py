@@ -64,7 +64,9 @@ class ModelVariants:
         """Our model with every term of its beams, for engines that keep them all."""
         system = compiled.untruncated(self.subject.system)
         same = system == self.subject.system
-        return self.as_described if same else compiled.build(replace(self.subject, system=system))
+        if same:
+            return self.as_described
+        return compiled.build(replace(self.subject, system=system), compiled.UNOPTIMISED)
 
     @cached_property
     def without_rotary(self) -> SymofrosEngine:
@@ -77,7 +79,7 @@ class ModelVariants:
             return self.untruncated
         subject = replace(self.subject, system=system)
         finer = any(isinstance(body, sf.Beam) and body.theory == "strain" for body in system.bodies)
-        return interpreted.build(subject) if finer else compiled.build(subject)
+        return interpreted.build(subject) if finer else compiled.build(subject, compiled.UNOPTIMISED)
 
     @cached_property
     def _without_rotary_states(self) -> States:

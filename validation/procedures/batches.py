@@ -70,6 +70,22 @@ def trajectories(scene: Scene, threads: int = 2) -> Iterator[Cell]:
         yield Cell("a batch of constant inputs", off(rows.q[2, -1], one.q[-1]), ROUNDING)
 
 
+def lost(scene: Scene) -> Iterator[Cell]:
+    """Trajectories that start from no motion are lost alone, at once; the others are runs by themselves."""
+    model = scene.model
+    q, v = np.tile(scene.q, (COUNT, 1)), scene.v * np.linspace(0.5, 1.5, COUNT)[:, None]
+    v[3, 0], v[20, 0] = np.nan, 1e200
+    for method in ("rk4", "dopri5"):
+        given: dict[str, Any] = {"method": method, "dt": 0.01, "output": 0.05}
+        runs = sf.simulate_batch(model, q, v, 0.1, **given)
+        # What is no state is recorded nowhere.
+        error = float(np.flatnonzero(~runs.ok).tolist() != [3, 20] or any(len(runs[i]) for i in (3, 20)))
+        for i in (0, 2, 4, 21, COUNT - 1):
+            one = sf.simulate(model, q[i], v[i], 0.1, **given)
+            error = max(error, off(runs[i].q, one.q), off(runs[i].v, one.v))
+        yield Cell(f"a batch by {method} that loses two", error, 1e-8)
+
+
 def states(scene: Scene) -> Iterator[Cell]:
     """Functions of many states by vectors, in double and single precision, against one state at a time."""
     model, rng = scene.model, np.random.default_rng(2)

@@ -21,6 +21,8 @@ EXACT, DIFFERENCED, CHOSEN, DIFFERENCED_STEPS = 1e-10, 1e-6, 1e-6, 1e-4
 T0, T_END, STEP = 0.25, 0.4, 0.02
 TOLERANCES = {"dopri5": 1e-4, "dop853": 1e-7, "rodas4": 1e-4}
 IMPLICIT = ("implicit_euler", "rodas4")
+# Lengths [m] and masses [kg] at which a mechanism moves as at one metre and one kilogram, in its own units of time.
+SCALES = ((1e-4, 1e-5), (1e-6, 1e-9), (1e-3, 1e6), (1e3, 1e-6))
 # Solvers of variable order err by their own estimates: what they are off by, over the tolerance.
 MULTISTEP = 300.0
 
@@ -46,6 +48,35 @@ def implicit_steps(scene: Scene) -> Iterator[Cell]:
         q, v = reference(scene, STEP, steps)
         # MINPACK's solution is good to 1e-13 of the accelerations, whose steps count h^2.
         yield Cell(f"steps by {name}", _worst((run.q, q), (run.v, v)), 1e-8)
+
+
+def scaled_steps(scene: Scene, lengths: tuple[tuple[int, ...], tuple[int, ...]]) -> Iterator[Cell]:
+    """Steps at other scales are those at one metre and one kilogram, which the harness steps, in units of sqrt(L/g).
+
+    Args:
+        scene: Model whose parameters are its mass and its length, both 1, and its first state.
+        lengths: Indices of the coordinates and of the speeds that are lengths; the others are angles, quaternions.
+    """
+    still = replace(scene, law=lambda *_: np.zeros(scene.model.nu), u=None)
+    on_q, on_v = np.ones(scene.model.nq), np.ones(scene.model.nv)
+    for name in IMPLICIT:
+        path = repeated_run(still, name, 0.0, 4 * STEP, STEP)
+        worst = 0.0
+        for L, m in SCALES:
+            on_q[list(lengths[0])] = on_v[list(lengths[1])] = L
+            unit = np.sqrt(L)
+            run = sf.simulate(
+                scene.model.with_parameters(m=m, **{scene.model.names.par[1]: L}),
+                scene.q * on_q,
+                scene.v * on_v / unit,
+                4 * STEP * unit,
+                method=name,
+                dt=STEP * unit,
+                adaptive=False if METHODS[name].adaptive else None,
+            )
+            q, v = scene.manifold.same_sign(run.q / on_q, path.q), run.v * unit / on_v
+            worst = max(worst, _worst((run.t / unit, path.t), (q, path.q), (v, path.v)) + float(not run.outcome.ok))
+        yield Cell(f"steps by {name} at other scales", worst, DIFFERENCED)
 
 
 def chosen_steps(scene: Scene) -> Iterator[Cell]:
