@@ -26,6 +26,8 @@ _STRAIGHT = 1e-9
 _LARGEST = 1e100
 # Tangent stiffness over elastic stiffness below which an axial load counts as critical.
 _CRITICAL = 1e-9
+# Stations of a block in C (SYM_BEAM_BLOCK).
+_BLOCK = 8
 # Largest slope [rad] from which the number of beams that would do is no longer stated: true slopes stay below it.
 _LARGEST_SLOPE = math.pi
 
@@ -152,12 +154,12 @@ class ElasticBeam:
 
     @property
     def angle_blocks(self) -> Array:
-        """Angles as C reads them: by block of four stations that turn, coordinate and station; zeros fill the last."""
+        """Angles as C reads them: by block of eight stations that turn, coordinate and station; zeros fill the last."""
         turning = self.angles[np.any(self.angles != 0.0, axis=1)]
-        blocks = -(-len(turning) // 4)
-        angles = np.zeros((4 * blocks, self.size))
+        blocks = -(-len(turning) // _BLOCK)
+        angles = np.zeros((_BLOCK * blocks, self.size))
         angles[: len(turning)] = turning
-        return np.ascontiguousarray(angles.reshape(blocks, 4, self.size).transpose(0, 2, 1))
+        return np.ascontiguousarray(angles.reshape(blocks, _BLOCK, self.size).transpose(0, 2, 1))
 
     @property
     def contrast(self) -> float:

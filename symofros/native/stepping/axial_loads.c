@@ -8,14 +8,14 @@
 #define SYM_BEAM_TURN 1e-4
 #define SYM_BEAM_LEAST_WORK 1e-9
 /* Share of a run's evaluations that may look at axial loads. */
-#define SYM_BEAM_SHARE 0.008
+#define SYM_BEAM_SHARE 0.005
 /* States from which on axial loads may end a run: a single one may be a passing one. */
 #define SYM_BEAM_LASTING 4
 
 /* Nothing is known of the motion. */
 static void sym_clear_axial_loads(sym_run *r) {
     const double stages = r->tableau.stages > 0 ? r->tableau.stages : 1.0;
-    r->beam_states = 0, r->beam_steps = r->beam_next = 0;
+    r->beam_states = 0, r->beam_wait = 1;
     r->beam_stride = (int64_t)ceil((2.0 * r->system->n_beams + 1.0) / (SYM_BEAM_SHARE * stages));
 }
 
@@ -89,11 +89,12 @@ static int32_t sym_look_at_axial_loads(sym_run *r) {
     sym_system *s = r->system;
     double largest = 0.0;
     int32_t b;
+    if (r->elastic_stiffness == NULL) return 0;
     sym_run_settle_beams(r);
     for (b = 0; b < s->n_beams; ++b)
         if (r->beam_error[b] > largest) largest = r->beam_error[b];
     if (r->beam_states == SYM_BEAM_STATES) sym_thin_beam_states(r);
-    r->beam_next += r->beam_stride;
+    r->beam_wait = r->beam_stride;
     if (largest < SYM_BEAM_UNAMPLIFIED) return 0;
     sym_load_state(r);
     (void)sym_evaluate_inputs(s);
@@ -110,6 +111,5 @@ static int32_t sym_look_at_axial_loads(sym_run *r) {
 
 /* The same if the state is one of those kept. */
 static int32_t sym_judge_axial_loads(sym_run *r) {
-    if (r->elastic_stiffness == NULL || r->beam_steps++ != r->beam_next) return 0;
-    return sym_look_at_axial_loads(r);
+    return --r->beam_wait == 0 ? sym_look_at_axial_loads(r) : 0;
 }

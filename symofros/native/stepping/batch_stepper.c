@@ -175,8 +175,8 @@ static void sym_batch_activate_next(sym_batch *b) {
     r->beam_reach = b->beam_reach.at + trajectory * b->beam_reach.stride;
     r->beam_error = b->beam_error + trajectory * s->n_beams, r->beam_t = b->beam_t + trajectory * s->n_beams;
     r->beam_q = b->beam_q + trajectory * b->n_beam_coordinates;
-    r->beam_reference = b->beam_reference + trajectory * b->n_beam_coordinates;
-    r->beam_guard = b->beam_guard + trajectory * s->n_beams;
+    r->beam_reference = b->beam_reference + 2 * trajectory * b->n_beam_coordinates;
+    r->beam_guard = b->beam_guard + trajectory * s->n_beams, r->beam_weight = b->beam_weight + trajectory * s->nv;
     if (status == 0 && !(sym_all_finite(s->nq, r->q) && sym_all_finite(s->nv, r->v))) status = SYM_DIVERGED;
     if (status == 0) status = sym_run_start(r);
     if (status == 0 && r->t >= r->t_end) status = SYM_FINISHED;

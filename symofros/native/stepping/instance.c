@@ -21,7 +21,7 @@ static int32_t sym_instance_allocate_beams(sym_instance *instance, sym_arena *ar
     s->n_beams = p->n_beams, s->beams = instance->beams;
     r->beam_limit = p->beam_limit, r->beam_scale = instance->beam_scale, r->beam_reach = instance->beam_reach;
     r->beam_error = sym_allocate(arena, n), r->beam_t = sym_allocate(arena, n), r->beam_q = sym_allocate(arena, coordinates);
-    r->beam_reference = sym_allocate(arena, coordinates);
+    r->beam_reference = sym_allocate(arena, 2 * coordinates), r->beam_weight = sym_allocate(arena, (size_t)s->nv);
     r->beam_guard = sym_allocate_bytes(arena, n * sizeof *r->beam_guard);
     r->beam_works = sym_allocate(arena, 2 * SYM_BEAM_STATES * n);
     r->beam_change = sym_allocate(arena, (size_t)s->nv + (size_t)s->nc);
@@ -38,7 +38,7 @@ static void sym_instance_prepare_beams(sym_instance *instance) {
     const double *L = instance->beam_stiffness.out[0], *EI = instance->beam_stiffness.out[1];
     int32_t b, i;
     if (p->n_beams == 0) return;
-    memset(instance->run.beam_reference, 0, (size_t)p->n_beam_coordinates * sizeof(double));
+    memset(instance->run.beam_reference, 0, 2 * (size_t)p->n_beam_coordinates * sizeof(double));
     memset(instance->run.beam_guard, 0, (size_t)p->n_beams * sizeof(sym_beam_guard));
     sym_evaluate(&instance->beam_stiffness);
     for (b = 0; b < p->n_beams; ++b) {

@@ -27,7 +27,7 @@ static int32_t sym_first_slope(sym_run *r, double *k) {
 /* The error norm of an explicit step whose y1 is known. Returns 0 or a status. */
 static int32_t sym_estimate_error(sym_run *r, const sym_workspace *w, double h, double *error) {
     *error = r->adaptive ? sym_error_norm(r, w, h) : 0.0;
-    return sym_all_finite(2 * r->system->nv, w->y1) ? 0 : SYM_DIVERGED;
+    return sym_check_end_of_step(r, w->y1) ? 0 : SYM_DIVERGED;
 }
 
 /* y1 and the error norm of an explicit step whose stages are known. Returns 0 or a status. */
@@ -52,7 +52,7 @@ static int32_t sym_try_step(sym_run *r, sym_workspace *w, double h, double *erro
     } else {
         status = sym_variational_step(r, w, h);
     }
-    if (status == 0 && !sym_all_finite(2 * r->system->nv, w->y1)) status = SYM_DIVERGED;
+    if (status == 0 && !sym_check_end_of_step(r, w->y1)) status = SYM_DIVERGED;
     return status;
 }
 
@@ -140,7 +140,7 @@ static int32_t sym_accept_step(sym_run *r, sym_workspace *w, double h, double t1
         status = sym_load_state_within_step(r, w, h, &dense_ready, stop_x);
         if (status != 0) return status;
         sym_store_end_state(s, w);
-        t1 = *s->t;
+        t1 = *s->t, r->beam_step_way = HUGE_VAL;
     }
     beyond = sym_judge_step(r, t1, w->end_state);
     sym_set_end_state(r, w, t1);

@@ -40,7 +40,7 @@ typedef struct sym_batch {
     double *final_t, *final_q, *final_v;
     int64_t *steps, *rejected;
     double *record_q, *record_v, *record_u;
-    double *beam_error, *beam_t, *beam_q, *beam_reference; /* of each trajectory, as in sym_run; cleared by the caller */
+    double *beam_error, *beam_t, *beam_q, *beam_reference, *beam_weight; /* of each trajectory, as in sym_run; cleared by the caller */
     sym_beam_guard *beam_guard;
     sym_batch_rows beam_scale, beam_reach;
     int64_t n_beam_coordinates; /* of all beams */

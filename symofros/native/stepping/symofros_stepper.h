@@ -60,17 +60,22 @@ typedef struct sym_signal { /* one input, sampled over time */
 typedef struct sym_beam { /* one elastic body: angles of its sections are linear in its elastic coordinates */
     int32_t q, v, first;         /* first index in q, in v, in beam_scale and beam_q */
     int32_t n, n_y, n_z, n_twist; /* number of coordinates, in all and by direction */
-    int32_t blocks;              /* number of blocks of four stations */
-    const double *angles;        /* (blocks, n_y + n_z + n_twist, 4): yaw, pitch and twist per scaled coordinate [rad] */
+    int32_t blocks;              /* number of blocks of eight stations */
+    const double *angles;        /* (blocks, n_y + n_z + n_twist, 8): yaw, pitch and twist per scaled coordinate [rad] */
     double EI_z, EI_y;           /* stiffness against n_y and n_z at mid-length */
     double negligible;           /* error up to which no step is looked for */
     double contrast;             /* |EI_z - EI_y| over the smaller; 0 where bending is rigid in a plane */
 } sym_beam;
 
-typedef struct sym_beam_guard { /* changes of a beam's angles since they were evaluated last [rad] */
-    double settled;              /* up to here the error is not larger than the largest one */
-    double judged;               /* from here on each step is judged; between both one that is farther than the next */
-    double pending;              /* of the present state where that is to be judged yet; 0: it is not */
+typedef struct sym_beam_guard { /* how far a beam is bent in the norm of its kind: docs/theory/beams.md (26d) [rad] */
+    int32_t norm;                /* which one; 0: the beam was not judged yet */
+    int32_t leading;             /* the coordinate that adds most to it where it was evaluated last; -1: none is of use */
+    double evaluated;            /* the norm there */
+    double room;                 /* by which the norm may grow since the beam was judged last until it is again */
+    double largest, target;      /* norms of the largest error so far, and of the one beyond which a step is judged: */
+    double least, limit;         /* between that of a negligible error and that of the limit */
+    double beam_limit;           /* the limit that this is of */
+    double of_yaw, of_pitch, of_twist; /* how norms weigh squares of angles */
 } sym_beam_guard;
 
 typedef struct sym_call { /* a model function with the arrays it reads and writes */
@@ -154,16 +159,20 @@ typedef struct sym_run {
     const double *beam_scale;  /* 1/L of coordinates that are displacements, else 1 */
     const double *beam_reach;  /* largest angle per coordinate */
     double *beam_error, *beam_t, *beam_q;
-    /* Elastic coordinates where the angles of each beam were evaluated last, and what follows from these (n_beams): zeros at
-     * first, and where a beam's length changes. */
+    /* Of each beam the scaled elastic coordinates where it was evaluated last, then their weights in its norm; what follows
+     * (n_beams): zeros at first, and where a beam's length changes. */
     double *beam_reference;
     sym_beam_guard *beam_guard;
+    /* (nv) Changes of norms by coordinates; the way in these norms since beams were judged, of the last step, and up to which
+     * none is to be judged. */
+    double *beam_weight;
+    double beam_way, beam_step_way, beam_room;
     /* Axial loads of the beams, in states of the motion that are kept as those for the diagnosis are: the work of the
      * elastic stiffness (nv, nv) and of the tangent stiffness. NULL: nothing is known of them here. */
     const double *elastic_stiffness;
     double *beam_works;     /* (SYM_BEAM_STATES, n_beams, 2) */
     double *beam_change;    /* (nv + nc) scratch */
-    int64_t beam_steps, beam_next, beam_stride;
+    int64_t beam_wait, beam_stride; /* steps until the next one is kept, and between two of them */
     int32_t beam_states;
     /* Records, row after row; full at capacity, which is n_grid at least. */
     int64_t capacity, n_records;

@@ -94,6 +94,8 @@ static int32_t sym_evaluate_inputs(sym_system *s) {
 /* Times a number beyond some 1e100 it overflows. Such a state is no motion any more in any unit, and the squares in its
  * energies overflow soon, though it is itself a number. */
 #define SYM_BEYOND_MOTION 1e208
+/* The same as a bound. */
+#define SYM_LARGEST_OF_MOTION 1e100
 
 /* Whether all are numbers of a size that a motion may have. */
 static int32_t sym_all_finite(int32_t n, const double *x) {

@@ -181,7 +181,8 @@ class BatchStepper:
             memory.shared(array if array.size else np.zeros(1))
             for array in (results.beam_errors, results.beam_times, results.beam_coordinates)
         )
-        batch.beam_reference = memory.zeros(results.beam_coordinates.size)
+        batch.beam_reference = memory.zeros(2 * results.beam_coordinates.size)
+        batch.beam_weight = memory.zeros(len(results.beam_errors) * model.nv)
         batch.beam_guard = memory.own("sym_beam_guard[]", results.beam_errors.size)
 
     def run(self, stop: Event) -> None:

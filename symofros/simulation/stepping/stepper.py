@@ -117,8 +117,9 @@ class Stepper:
         )
         run.beam_limit = math.inf
         run.beam_scale = memory.doubles(np.concatenate([np.zeros(0), *(beam.scale for beam in self.beams)]))
-        run.beam_reference = memory.zeros(int(firsts[-1]))
+        run.beam_reference = memory.zeros(2 * int(firsts[-1]))
         run.beam_guard = memory.own("sym_beam_guard[]", len(self.beams))
+        run.beam_weight = memory.zeros(self.model.nv)
         run.beam_reach = memory.doubles(np.concatenate([np.zeros(0), *(beam.reach for beam in self.beams)]))
         self._beam_record = np.zeros(len(self.beams)), np.zeros(len(self.beams)), np.zeros(int(firsts[-1]))
         run.beam_error, run.beam_t, run.beam_q = (

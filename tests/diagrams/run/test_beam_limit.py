@@ -38,9 +38,12 @@ def test_a_diagram_notes_the_largest_bending_at_its_parameters() -> None:
 
 def test_interpreted_runs_say_the_same_of_beams() -> None:
     stiff, limp = simulation(0.5), simulation(60.0)
-    notes = [note for note in stiff.run(1.0, dt=0.01, record=0.1).outcome.notes if "second-order theory" in note]
-    run = stiff.interpret(1.0, dt=0.01, record=0.1)
-    assert [note for note in run.outcome.notes if "second-order theory" in note] == notes and len(notes) == 2
+    compiled, run = stiff.run(1.0, dt=0.01, record=0.1), stiff.interpret(1.0, dt=0.01, record=0.1)
+    notes = [note for note in compiled.outcome.notes if "second-order theory" in note]
+    assert len([note for note in run.outcome.notes if "second-order theory" in note]) == len(notes) == 2
+    # Interpreted runs evaluate every step; compiled ones leave out what the slack of (26d) allows.
+    errors = [bending.error for bending in compiled.bendings]
+    assert [bending.error for bending in run.bendings] == pytest.approx(errors, rel=0.04)
     assert [bending.beam for bending in run.bendings] == ["first.blade", "second.blade"]
     outcome = limp.interpret(1.0, dt=0.01).outcome
     assert outcome.kind == "beyond theory" and "'first.blade' bends by" in outcome.reason
