@@ -143,6 +143,7 @@ class Viewer(ViewerPage):
             self._player = None
             self._scene_state.change(mechanism)
             self._panel = self._new_panel()
+            self._judge_bending()
 
     def show(self, q: ArrayLike | None = None, *, u: ArrayLike | None = None, par: ArrayLike | None = None) -> None:
         """Show a configuration, now; a motion that plays is paused.
@@ -200,6 +201,7 @@ class Viewer(ViewerPage):
             self._discard()
             self._player = player
             self._panel = self._new_panel()
+            self._judge_bending()
             self._paint_motion()
         self._call_worker()
 

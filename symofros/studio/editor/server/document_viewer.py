@@ -14,6 +14,7 @@ import numpy as np
 from symofros.description.system import System
 from symofros.errors import Problem, SymofrosError
 from symofros.studio.editor.editing.data_edits import EditError, four_parts, refusal
+from symofros.studio.editor.jobs.bent_beams import bent_beams
 from symofros.studio.editor.jobs.run_states import states_of
 from symofros.studio.editor.jobs.worker import error_of
 from symofros.studio.editor.units import coordinate_units
@@ -215,7 +216,10 @@ class DocumentViewer:
 
 
 def _stand(viewer: Viewer) -> Json:
-    """Where everything stands; `gap`: the largest residual of the loops' conditions [m or rad], None without loops."""
+    """Where everything stands.
+
+    `gap`: largest residual of the loops' conditions [m or rad], None without loops; `beams`: how far each is bent.
+    """
     model, state = viewer.mechanism.model, viewer.state
     gap = float(np.abs(model.constraint(state.q, u=state.u, par=state.par)).max()) if model.nc else None
     labels = (slider.label for slider in viewer.sliders)
@@ -224,6 +228,7 @@ def _stand(viewer: Viewer) -> Json:
         "exaggeration": viewer.exaggeration,
         "gap": gap,
         "frames": "frames" in viewer.layers,
+        "beams": bent_beams(viewer.bendings),
     }
 
 
