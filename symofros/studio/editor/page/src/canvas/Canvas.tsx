@@ -60,10 +60,9 @@ export function Canvas() {
   );
   const simulated = useStore((state) => state.jobs.simulate);
   const bent = useMemo(() => bentBy(simulated, document.revision), [simulated, document.revision]);
-  const edges = useCallback(
-    () => links(document.graph, selected, folding.standIns),
-    [document.graph, selected, folding],
-  );
+  // The same links while a block is dragged, so that only its own are drawn again.
+  const linked = useMemo(() => links(document.graph, selected, folding.standIns), [document.graph, selected, folding]);
+  const edges = useCallback(() => linked, [linked]);
   const drawn = useCallback(
     (before: readonly BlockNode[]) => blocks(document, places, selected, folding, bent, before),
     [document, places, selected, folding, bent],
