@@ -25,7 +25,7 @@ from symofros.generator.passes.count import count_program
 from symofros.mechanics.topology.tree import SpanningTree, build_tree
 from symofros.studio.editor.jobs.bent_beams import bent_beams
 from symofros.studio.editor.jobs.request import Json, Tell, diagram_of, system_of
-from symofros.studio.editor.units import coordinate_units
+from symofros.studio.viewer.playing.coordinate_units import coordinate_units
 
 POINTS, MAX_POINTS = 1000, 5000
 

@@ -17,7 +17,6 @@ from symofros.studio.editor.editing.data_edits import EditError, four_parts, ref
 from symofros.studio.editor.jobs.bent_beams import bent_beams
 from symofros.studio.editor.jobs.run_states import states_of
 from symofros.studio.editor.jobs.worker import error_of
-from symofros.studio.editor.units import coordinate_units
 from symofros.studio.viewer.playing.motion import PlayedMotion, motion_of
 from symofros.studio.viewer.viewer import Viewer
 
@@ -178,11 +177,10 @@ class DocumentViewer:
             return {**_stand(viewer), "why": ""}
 
     def _as_json(self, viewer: Viewer) -> Json:
-        units = coordinate_units(viewer.mechanism.tree)
         coordinates = [
             {
                 "name": slider.label,
-                "unit": units.get(slider.label) or ("rad" if ".turn_" in slider.label else ""),
+                "unit": slider.unit,
                 "low": slider.low,
                 "high": slider.high,
                 "elastic": slider.elastic,

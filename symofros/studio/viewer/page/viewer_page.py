@@ -51,6 +51,7 @@ class ViewerPage:
         self._light: Any = None  # Beside viser's own, in the dark.
         self.painted = 0
         self._scene_state = SceneState(server, mechanism, exaggeration, on_pick)
+        self._height: float | None = None
         self.bendings: tuple[BeamBending, ...] = ()
         self._panel = self._new_panel()
         self._judge_bending()
@@ -234,6 +235,12 @@ class ViewerPage:
         self.bendings = self.mechanism.bendings(self._scene_state.state)
         self._panel.warn(bending_notes(self.bendings))
 
+    def _show_scale(self, height: float | None) -> None:
+        """Show how large the picture is at the depth of what its camera looks at [m]; None: pages differ."""
+        with self._painting:
+            self._height = height
+            self._panel.scale(height)
+
     def _new_panel(self) -> Panel:
         scene_state, mechanism = self._scene_state, self._scene_state.mechanism
         panel = Panel(
@@ -248,4 +255,5 @@ class ViewerPage:
             self._dark,
         )
         panel.follow(scene_state.values, self._player)
+        panel.scale(self._height)
         return panel
