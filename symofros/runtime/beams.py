@@ -38,6 +38,13 @@ def slope_error(square: float) -> float:
     return error / math.sqrt(1.0 + native_number(_JUDGE, "SYM_BEAM_LARGE_SLOPE") * square)
 
 
+def slope_of_error(error: float) -> float:
+    """Largest slope [rad] at which second-order theory errs by so much of the deflection: (24) solved for it."""
+    factor, y = native_number(_JUDGE, "SYM_BEAM_SLOPE_ERROR"), native_number(_JUDGE, "SYM_BEAM_LARGE_SLOPE")
+    y *= 0.5 * error / factor
+    return math.sqrt(error / factor * (y + math.sqrt(1.0 + y * y)))
+
+
 @dataclass(frozen=True)
 class BeamBending:
     """How far one beam is bent, and the error of second-order theory that follows.

@@ -21,6 +21,7 @@ from symofros.studio.viewer.page.viser_server import LOOPBACK, PORT, start_serve
 from symofros.studio.viewer.playing.motion import Played, finite, motion_of, positive
 from symofros.studio.viewer.playing.player import Player
 
+_READY = 60.0  # Seconds that a page's first word waits for the picture.
 RATE = 60.0  # Pictures a second at most; browsers show no more.
 
 
@@ -78,19 +79,23 @@ class Viewer(ViewerPage):
         exaggeration = finite("exaggeration", exaggeration)
         mechanism = Mechanism(system, tracks_of(paths))
         self._token = secrets.token_urlsafe(16)
-        server = start_server(host, port, self._token, f"{system.name} - SYMOFROS")
+        self._ready = threading.Event()
+        title, take = f"{system.name} - SYMOFROS", self._take_colours if controls else None
+        server = start_server(host, port, self._token, title, take)
         self._wake = threading.Condition()  # Guards what is wanted; held for moments only, never while painting.
         self._wanted: _Wanted | None = None
         self._closing = False
         self.dropped = 0
         try:
             super().__init__(server, mechanism, exaggeration, controls, on_pick)
-            self._camera = None if on_zoom is None else CameraWatch(server, on_zoom)
+            self._on_zoom = on_zoom
+            self._camera = CameraWatch(server, self._zoomed)
         except BaseException:
             stop_server(server)
             raise
         self._worker = threading.Thread(target=self._work, name="symofros view", daemon=True)
         self._worker.start()
+        self._ready.set()
 
     # Where it is.
 
@@ -121,11 +126,8 @@ class Viewer(ViewerPage):
 
     @property
     def picture_height(self) -> float | None:
-        """Height of the picture at the depth of what its camera looks at [m]; None unless one browser looks.
-
-        Known where `on_zoom` was given.
-        """
-        return None if self._camera is None else self._camera.height
+        """Height of the picture at the depth of what its camera looks at [m]; None unless one browser looks."""
+        return self._camera.height
 
     # What is shown.
 
@@ -143,6 +145,7 @@ class Viewer(ViewerPage):
             self._player = None
             self._scene_state.change(mechanism)
             self._panel = self._new_panel()
+            self._judge_bending()
 
     def show(self, q: ArrayLike | None = None, *, u: ArrayLike | None = None, par: ArrayLike | None = None) -> None:
         """Show a configuration, now; a motion that plays is paused.
@@ -200,6 +203,7 @@ class Viewer(ViewerPage):
             self._discard()
             self._player = player
             self._panel = self._new_panel()
+            self._judge_bending()
             self._paint_motion()
         self._call_worker()
 
@@ -263,6 +267,18 @@ class Viewer(ViewerPage):
     def _call_worker(self) -> None:
         with self._wake:
             self._wake.notify()
+
+    def _take_colours(self, dark: bool) -> None:
+        """Show the colours of who opens the page first; a page may be opened before all is there."""
+        if self._ready.wait(_READY) and not self._closing:
+            self.set_dark(dark)
+
+    def _zoomed(self, height: float | None) -> None:
+        if self._closing:
+            return
+        self._show_scale(height)
+        if self._on_zoom is not None:
+            self._on_zoom(height)
 
     def _discard(self) -> None:
         with self._wake:

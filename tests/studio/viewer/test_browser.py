@@ -201,6 +201,27 @@ def test_the_controls_move_the_picture(open_page: Open) -> None:
         until(page, lambda: abs(viewer.state.q[0] - 1.0) < 0.02)
 
 
+def test_it_has_a_scale_units_and_its_reader_s_colours(chromium: Any) -> None:
+    with sf.Viewer(MODELS["planar_robot"], port=0) as viewer:
+        context = chromium.new_context(viewport={"width": WIDTH, "height": HEIGHT}, color_scheme="dark")
+        page = context.new_page()
+        page.goto(viewer.url)
+        bar = page.get_by_role("img", name="Scale: ")
+        bar.wait_for(timeout=PATIENCE_MS)
+        number, unit = bar.text_content().split()
+        length = float(number) * {"m": 1.0, "cm": 0.01}[unit]
+        box, canvas = bar.bounding_box(), page.locator("canvas").first.bounding_box()
+        assert box["width"] == pytest.approx(length * canvas["height"] / viewer.picture_height, rel=0.05)
+        assert page.get_by_text("q1 [rad]").count() and page.title() == "planar_robot - SYMOFROS"
+        until(page, lambda: page.locator("html").get_attribute("data-mantine-color-scheme") == "dark")
+        until(page, lambda: np.median(image_of(page)) < 100)
+        # Two pages have two cameras: there is no one scale.
+        other = context.new_page()
+        other.goto(viewer.url)
+        until(page, lambda: not bar.is_visible())
+        context.close()
+
+
 @pytest.mark.slow
 def test_a_motion_plays_and_pauses(open_page: Open) -> None:
     run = sf.simulate(sf.compile(MODELS["double_pendulum"]), [1.5, 0.0], None, 2.0, dt=0.01)

@@ -17,7 +17,9 @@ from symofros.diagrams.signals import entries, split
 from symofros.diagrams.simulation import Simulation
 from symofros.diagrams.wiring import Source, Wired
 from symofros.errors import Problem, SymofrosError
+from symofros.runtime.beams import BEAM_LIMIT
 from symofros.runtime.calls.kernel import Array
+from symofros.studio.editor.jobs.bent_beams import bent_beams
 from symofros.studio.editor.jobs.request import Json, Tell, diagram_of
 
 # Points of a curve that are sent at most at the end, and with one message meanwhile.
@@ -71,6 +73,7 @@ def run_diagram(request: Json, tell: Tell) -> Json:
             for plot, curves in observer.shown
         ],
         "motions": {block: _motion(wired, block, signals, t, kept) for block in wired.mechanisms()},
+        "beams": bent_beams(signals.bendings, settings.get("beam_limit", BEAM_LIMIT)),
         "outcome": end,
         "wall_s": time.perf_counter() - began,
         **cost,

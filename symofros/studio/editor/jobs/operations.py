@@ -23,8 +23,9 @@ from symofros.description.yaml.files import write_yaml
 from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
 from symofros.generator.passes.count import count_program
 from symofros.mechanics.topology.tree import SpanningTree, build_tree
+from symofros.studio.editor.jobs.bent_beams import bent_beams
 from symofros.studio.editor.jobs.request import Json, Tell, diagram_of, system_of
-from symofros.studio.editor.units import coordinate_units
+from symofros.studio.viewer.playing.coordinate_units import coordinate_units
 
 POINTS, MAX_POINTS = 1000, 5000
 
@@ -192,6 +193,7 @@ def _motion(run: sf.Trajectory, tree: SpanningTree) -> Json:
             "potential": _numbers(run.potential_energy),
             "total": _numbers(run.energy),
         },
+        "beams": bent_beams(run.bendings),
         "outcome": {
             "ok": end.ok,
             "kind": end.kind,

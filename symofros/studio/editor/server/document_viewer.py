@@ -14,9 +14,9 @@ import numpy as np
 from symofros.description.system import System
 from symofros.errors import Problem, SymofrosError
 from symofros.studio.editor.editing.data_edits import EditError, four_parts, refusal
+from symofros.studio.editor.jobs.bent_beams import bent_beams
 from symofros.studio.editor.jobs.run_states import states_of
 from symofros.studio.editor.jobs.worker import error_of
-from symofros.studio.editor.units import coordinate_units
 from symofros.studio.viewer.playing.motion import PlayedMotion, motion_of
 from symofros.studio.viewer.viewer import Viewer
 
@@ -177,11 +177,10 @@ class DocumentViewer:
             return {**_stand(viewer), "why": ""}
 
     def _as_json(self, viewer: Viewer) -> Json:
-        units = coordinate_units(viewer.mechanism.tree)
         coordinates = [
             {
                 "name": slider.label,
-                "unit": units.get(slider.label) or ("rad" if ".turn_" in slider.label else ""),
+                "unit": slider.unit,
                 "low": slider.low,
                 "high": slider.high,
                 "elastic": slider.elastic,
@@ -215,7 +214,10 @@ class DocumentViewer:
 
 
 def _stand(viewer: Viewer) -> Json:
-    """Where everything stands; `gap`: the largest residual of the loops' conditions [m or rad], None without loops."""
+    """Where everything stands.
+
+    `gap`: largest residual of the loops' conditions [m or rad], None without loops; `beams`: how far each is bent.
+    """
     model, state = viewer.mechanism.model, viewer.state
     gap = float(np.abs(model.constraint(state.q, u=state.u, par=state.par)).max()) if model.nc else None
     labels = (slider.label for slider in viewer.sliders)
@@ -224,6 +226,7 @@ def _stand(viewer: Viewer) -> Json:
         "exaggeration": viewer.exaggeration,
         "gap": gap,
         "frames": "frames" in viewer.layers,
+        "beams": bent_beams(viewer.bendings),
     }
 
 

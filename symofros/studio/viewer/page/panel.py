@@ -14,6 +14,7 @@ from symofros.studio.viewer.drawing.meshes import Array
 from symofros.studio.viewer.page.force_plot import ForcePlot
 from symofros.studio.viewer.playing.player import Player
 from symofros.studio.viewer.playing.sliders import Slider
+from symofros.studio.viewer.render.scale_bar import scale_bar
 
 _SPEEDS = ("0.01", "0.1", "0.25", "0.5", "1", "2", "5")
 _LAYER_NAMES = {
@@ -25,6 +26,12 @@ _LAYER_NAMES = {
 _DARK = "dark"
 _MOST_EXAGGERATION = 50.0
 _STEPS = 500  # Of a slider.
+# The bar fits the panel in windows of up to 1800 pixels: it is at most 0.3 of this part of their height.
+_SCALE_PART = 2.0
+_SCALE = (
+    '<div role="img" aria-label="Scale: {text}" style="width: {width:.3f}vh; margin: 0 auto 6px; padding-bottom: 2px; '
+    'font-size: 12px; text-align: center; white-space: nowrap; border: solid; border-width: 0 1.5px 1.5px">{text}</div>'
+)
 
 
 class Controls(Protocol):
@@ -95,6 +102,7 @@ class Panel:
         gui.set_panel_label(drawing.name)
         self._status = gui.add_markdown("")
         self._warning = gui.add_markdown("")
+        self._scale = gui.add_html("", visible=False)
         if not controls_shown:
             gui.main_panel.minimize()
             return
@@ -148,7 +156,8 @@ class Panel:
                 for i in chosen:
                     one = sliders[i]
                     step = (one.high - one.low) / _STEPS or 1.0
-                    handle = gui.add_slider(one.label, one.low, one.high, step, float(np.clip(0.0, one.low, one.high)))
+                    label = f"{one.label} [{one.unit}]" if one.unit else one.label
+                    handle = gui.add_slider(label, one.low, one.high, step, float(np.clip(0.0, one.low, one.high)))
                     handles[i] = self._on(handle, partial(self._controls.slide, i))
         if sliders:
             gui.add_button("Reset").on_click(lambda _: self._controls.reset())
@@ -169,6 +178,17 @@ class Panel:
         text = "\n\n".join(f"**Large bending:** {note}" for note in notes)
         if self._warning.content != text:
             self._warning.content = text
+
+    def scale(self, height: float | None) -> None:
+        """Show a bar of a round length as the picture shows it, which is as high as the window.
+
+        Args:
+            height: Height of the picture at the depth of what its camera looks at [m]; None: there is none.
+        """
+        bar = scale_bar(height / _SCALE_PART) if height is not None and np.isfinite(height) and height > 0.0 else None
+        self._scale.visible = bar is not None
+        if bar is not None:
+            self._scale.content = _SCALE.format(text=bar.text, width=100.0 * bar.share / _SCALE_PART)
 
     def show(self, layers: frozenset[str], exaggeration: float) -> None:
         """Let the controls say what is shown."""

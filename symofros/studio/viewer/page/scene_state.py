@@ -13,6 +13,7 @@ from symofros.studio.viewer.drawing.layers import shown_at_first
 from symofros.studio.viewer.drawing.meshes import Array
 from symofros.studio.viewer.drawing.poses import Mechanism, Posture, State
 from symofros.studio.viewer.page.viser_scene import ViserScene
+from symofros.studio.viewer.playing.coordinate_units import coordinate_units
 from symofros.studio.viewer.playing.sliders import Slider, coordinates_of, sliders_of, values_of
 
 
@@ -64,7 +65,7 @@ class SceneState:
     @property
     def sliders(self) -> tuple[Slider, ...]:
         """What moves the mechanism: one a speed."""
-        return sliders_of(self.mechanism.model, self.mechanism.elastic)
+        return sliders_of(self.mechanism.model, self.mechanism.elastic, coordinate_units(self.mechanism.tree))
 
     @property
     def values(self) -> Array:

@@ -13,6 +13,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from http import HTTPStatus
 from importlib import import_module
+from threading import Thread
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -29,6 +30,11 @@ _HEADERS = {
 }
 
 
+# Where the page says which colours its reader's system shows, and whether these are dark.
+_COLOURS = {"/colours/dark": True, "/colours/light": False}
+_ASK = '<script>fetch("colours/" + (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light"));</script>'
+
+
 class ViewerGuard:
     """Refuses a wrong Host, Origin or token before viser sees the request.
 
@@ -36,13 +42,18 @@ class ViewerGuard:
         host: Address that the server is bound to.
         token: First part of the path of every address.
         title: Title of the page.
+        on_colours: Called, in a thread of its own, with whether the system of who opens the page first shows dark
+            colours; nobody is asked without it.
 
     Attributes:
         is_asked: Whether the server asks it.
     """
 
-    def __init__(self, host: str, token: str, title: str = "SYMOFROS") -> None:
+    def __init__(
+        self, host: str, token: str, title: str = "SYMOFROS", on_colours: Callable[[bool], None] | None = None
+    ) -> None:
         self.token, self.title = token, title
+        self._on_colours, self._asks = on_colours, on_colours is not None
         # Bound to another address, the server is known by names that it can't tell itself.
         self._names = LOOPBACK_NAMES | {host.lower()} if is_loopback(host) else None
         self.is_asked = False
@@ -56,13 +67,23 @@ class ViewerGuard:
             if refused is not None:
                 return _response(*refused)
             path = request.path.partition("?")[0].removeprefix(f"/{self.token}") or "/"
+            if path in _COLOURS:
+                self._take_colours(_COLOURS[path])
+                return _empty()
             response = answer(connection, replace(request, path=path)) if answer is not None else None
             if response is not None:
-                _put_title(response, self.title)
+                head = f"<title>{html.escape(self.title)}</title>{_ASK if self._asks else ''}"
+                _put_head(response, head.encode())
                 response.headers.update(_HEADERS)
             return response
 
         return guarded
+
+    def _take_colours(self, dark: bool) -> None:
+        """The first answer counts: all pages show the same colours."""
+        take, self._on_colours = self._on_colours, None
+        if take is not None:
+            Thread(target=take, args=(dark,), daemon=True).start()
 
     def refusal(self, path: str, hosts: list[str], origins: list[str]) -> tuple[HTTPStatus, Problem] | None:
         """Why a request is refused by its head.
@@ -94,13 +115,13 @@ class ViewerGuard:
         return name is not None and (self._names is None or name in self._names)
 
 
-def _put_title(response: Any, title: str) -> None:
-    """Put a title in the place of viser's own, if the response is its page."""
+def _put_head(response: Any, head: bytes) -> None:
+    """Put a title, and what follows it, in the place of viser's own title, if the response is its page."""
     is_packed = response.headers.get("Content-Encoding") == "gzip"
     if not response.body or "text/html" not in response.headers.get("Content-Type", ""):
         return
     page = gzip.decompress(response.body) if is_packed else response.body
-    page = page.replace(b"<title>Viser</title>", f"<title>{html.escape(title)}</title>".encode(), 1)
+    page = page.replace(b"<title>Viser</title>", head, 1)
     response.body = gzip.compress(page, 6, mtime=0) if is_packed else page
     if "Content-Length" in response.headers:
         del response.headers["Content-Length"]
@@ -120,6 +141,11 @@ def _authority(origin: str) -> str:
 
 def _problem(what: str, found: str, rule: str) -> Problem:
     return Problem(f"view: {what}", found[:100] or "none", rule, "open the address that the viewer printed: Viewer.url")
+
+
+def _empty() -> Any:
+    headers = import_module("websockets.datastructures").Headers({**_HEADERS, "Content-Length": "0"})
+    return import_module("websockets.http11").Response(HTTPStatus.OK.value, HTTPStatus.OK.phrase, headers, b"")
 
 
 def _response(status: HTTPStatus, problem: Problem) -> Any:

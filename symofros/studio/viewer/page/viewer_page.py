@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Collection, Mapping
 from typing import Any
 
-from symofros.runtime.beams import bending_notes
+from symofros.runtime.beams import BeamBending, bending_notes
 from symofros.studio.viewer.drawing.meshes import Array
 from symofros.studio.viewer.drawing.poses import Mechanism, State
 from symofros.studio.viewer.page.panel import Panel
@@ -32,6 +32,7 @@ class ViewerPage:
 
     Attributes:
         painted: Number of pictures shown.
+        bendings: Bending of each beam in the state that the controls stand at, as far as it is judged.
     """
 
     def __init__(
@@ -50,7 +51,10 @@ class ViewerPage:
         self._light: Any = None  # Beside viser's own, in the dark.
         self.painted = 0
         self._scene_state = SceneState(server, mechanism, exaggeration, on_pick)
+        self._height: float | None = None
+        self.bendings: tuple[BeamBending, ...] = ()
         self._panel = self._new_panel()
+        self._judge_bending()
 
     @property
     def mechanism(self) -> Mechanism:
@@ -223,12 +227,19 @@ class ViewerPage:
 
     def _follow(self) -> None:
         self._panel.follow(self._scene_state.values, self._player)
-        self._panel.warn(self._bending_notes())
+        self._judge_bending()
         self._followed = time.monotonic()
 
-    def _bending_notes(self) -> tuple[str, ...]:
-        """Remarks on beams that the state, not its exaggerated picture, bends beyond a per cent of error."""
-        return bending_notes(self.mechanism.bendings(self._scene_state.state))
+    def _judge_bending(self) -> None:
+        """Judge the state, not its exaggerated picture; remark on beams that it bends beyond a per cent of error."""
+        self.bendings = self.mechanism.bendings(self._scene_state.state)
+        self._panel.warn(bending_notes(self.bendings))
+
+    def _show_scale(self, height: float | None) -> None:
+        """Show how large the picture is at the depth of what its camera looks at [m]; None: pages differ."""
+        with self._painting:
+            self._height = height
+            self._panel.scale(height)
 
     def _new_panel(self) -> Panel:
         scene_state, mechanism = self._scene_state, self._scene_state.mechanism
@@ -244,5 +255,5 @@ class ViewerPage:
             self._dark,
         )
         panel.follow(scene_state.values, self._player)
-        panel.warn(self._bending_notes())
+        panel.scale(self._height)
         return panel

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import socket
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from importlib import import_module
 from typing import Any
@@ -33,7 +33,9 @@ def load_viser() -> Any:
         raise SymofrosError(missing) from None
 
 
-def start_server(host: str, port: int, token: str, title: str = "SYMOFROS") -> Any:
+def start_server(
+    host: str, port: int, token: str, title: str = "SYMOFROS", on_colours: Callable[[bool], None] | None = None
+) -> Any:
     """A viser server that serves, to whoever knows the token.
 
     Args:
@@ -41,6 +43,7 @@ def start_server(host: str, port: int, token: str, title: str = "SYMOFROS") -> A
         port: 0 for any free one. One that is taken is an error: browsers would be sent to what else is there.
         token: First part of the path of its page and of its socket.
         title: Title of the page, which its tab shows.
+        on_colours: Called with whether the system of who opens the page first shows dark colours.
 
     Raises:
         SymofrosError: viser is not installed, or the address can't be bound to.
@@ -56,7 +59,7 @@ def start_server(host: str, port: int, token: str, title: str = "SYMOFROS") -> A
             _refuse(host, port, error.strerror or str(error), "the address is one of this machine's, the port is free")
     # It logs every connection that ends before its handshake, such as a browser's spare ones.
     logging.getLogger("websockets.server").setLevel(logging.CRITICAL)
-    guard = ViewerGuard(host, token, title)
+    guard = ViewerGuard(host, token, title, on_colours)
     with _quiet(), _guarded(guard):
         server = viser.ViserServer(host=host, port=port, verbose=False)
     if not guard.is_asked:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +21,7 @@ class Slider(NamedTuple):
         low: Least value [rad or m].
         high: Largest value.
         elastic: Whether it bends a beam.
+        unit: Unit of the value; "" where it is not known.
     """
 
     label: str
@@ -26,28 +29,32 @@ class Slider(NamedTuple):
     low: float
     high: float
     elastic: bool
+    unit: str
 
 
-def sliders_of(model: Model, elastic: tuple[bool, ...]) -> tuple[Slider, ...]:
+def sliders_of(
+    model: Model, elastic: tuple[bool, ...], units: Mapping[str, str] = MappingProxyType({})
+) -> tuple[Slider, ...]:
     """One slider a speed, in their order.
 
     Args:
         model: Model that moves.
         elastic: Mask of the elastic coordinates (nq).
+        units: Unit of each coordinate that has one.
     """
     bounds = model.record.sampling_bounds()
     sliders: list[Slider] = []
     for segment in model.record.segments:
         along = segment.translations
         for i in range(along):
-            low, high = (float(f"{bound:.3g}") for bound in bounds[segment.q + i])  # For people to read.
-            sliders.append(
-                Slider(model.names.q[segment.q + i], model.names.v[segment.v + i], low, high, elastic[segment.q + i])
-            )
+            at = segment.q + i
+            low, high = (float(f"{bound:.3g}") for bound in bounds[at])  # For people to read.
+            name, speed = model.names.q[at], model.names.v[segment.v + i]
+            sliders.append(Slider(name, speed, low, high, elastic[at], units.get(name, "")))
         if segment.kind != "linear":
             for i, axis in enumerate("xyz", start=segment.v + along):
                 joint = model.names.v[i].rpartition(".")[0]
-                sliders.append(Slider(f"{joint}.turn_{axis}", model.names.v[i], -3.14, 3.14, False))
+                sliders.append(Slider(f"{joint}.turn_{axis}", model.names.v[i], -3.14, 3.14, False, "rad"))
     return tuple(sliders)
 
 

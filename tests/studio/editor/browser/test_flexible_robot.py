@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -69,6 +70,50 @@ def test_a_beam_is_stated_by_material_and_shape_and_shows_its_frequencies(
     picture("beam-section")
     steps.accept(page)
     steps.problems(page, 0)
+
+
+def test_how_far_its_theory_reaches_is_shown_on_the_beam(
+    serve: Callable[..., Server], page: Page, picture: Callable[[str], None]
+) -> None:
+    text = ROBOT.with_name("flexible_pendulum.yaml").read_text()
+    server = serve("pendulum.yaml", content=text.replace("value: 20.0", "value: 0.25"))
+    steps.open_editor(page, server.url)
+    # In its window, before anything has moved.
+    steps.open_window(page, "bodies/rod")
+    figures = steps.window(page).get_by_role("status", name="What the section brings")
+    expect(figures).to_contain_text("Its theory errs by 1 % at 0.099 m (0.15 rad)")
+    page.keyboard.press("Escape")
+    # After a run: beside the curves, on the block, in the window.
+    steps.run(page, "Simulate…")
+    steps.fill(page, "Start of swing", "1.2")
+    steps.fill(page, "Duration", "0.3")
+    steps.window(page).get_by_role("button", name="Simulate").click()
+    beams = steps.results(page).get_by_role("table", name="Beams where their theory errs most")
+    expect(beams).to_be_visible(timeout=JOB)
+    expect(beams.get_by_role("row", name="rod")).to_contain_text("% of its deflection")
+    expect(steps.results(page)).to_contain_text("second-order theory errs by about")  # The run's own note.
+    badge = steps.block(page, "bodies/rod").locator(".block-theory")
+    expect(badge).to_have_text(re.compile(r"^± \d+(\.\d)? %$"))
+    picture("beam-theory")
+    steps.open_window(page, "bodies/rod")
+    expect(figures).to_contain_text("In the newest simulation beam 'rod' bends by")
+    figures.scroll_into_view_if_needed()
+    picture("beam-reach")
+    page.keyboard.press("Escape")
+    # A pose says the same of itself, whatever the picture exaggerates.
+    page.get_by_role("tab", name="3-D").click()
+    theory = page.get_by_role("group", name="Theory of the beams")
+    page.get_by_role("slider", name="exaggeration").fill("40")
+    expect(theory).to_have_count(0)  # It is straight.
+    instant = beams.get_by_role("row", name="rod").inner_text().partition("t = ")[2].split(" s")[0]
+    steps.results(page).get_by_role("slider", name="Time [s]").fill(instant)
+    expect(theory).to_contain_text("beam 'rod' bends by", timeout=JOB)
+    picture("beam-bent")
+    # Once the model is another one, nothing is said of it.
+    steps.open_window(page, "bodies/rod")
+    steps.fill(page, "Length", "1.1")
+    steps.accept(page)
+    expect(badge).to_have_count(0)
 
 
 def test_a_job_is_cancelled(serve: Callable[..., Server], page: Page) -> None:

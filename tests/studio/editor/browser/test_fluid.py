@@ -1,4 +1,7 @@
-"""A model of thirty bodies stays fluid: moving it draws nothing anew but what moves; subtrees fold, names are found."""
+"""Big models stay fluid: moving one draws nothing anew but what moves; subtrees fold, names are found.
+
+`-s` prints the times between frames, and from a key to the picture that follows.
+"""
 
 from __future__ import annotations
 
@@ -13,9 +16,11 @@ import pytest
 from playwright.sync_api import Page, expect
 
 import symofros as sf
+from reference_models import MODELS
 from reference_models.rigid.chain import chain
 from tests.studio.editor.browser import steps
 from tests.studio.editor.browser.conftest import Server
+from validation.inputs.cases import ROBOTS, robot_file
 
 pytestmark = pytest.mark.browser
 
@@ -52,6 +57,71 @@ def dragged(page: Page, x: float, y: float) -> tuple[list[float], list[str]]:
     found: tuple[list[float], list[str]] = page.evaluate(STOP)
     page.mouse.up()
     return found
+
+
+# From the press of a key to the frame that shows the document's next revision [ms]; and what of it the server took.
+ANSWERED = """() => new Promise((done) => {
+    const began = performance.now();
+    const look = () => {
+        const asked = performance.getEntriesByType("resource").filter(({name}) => name.endsWith("/api/edit")).at(-1);
+        if (asked && asked.responseEnd > began - 50 && !document.querySelector(".react-flow__node.stale"))
+            requestAnimationFrame(() => requestAnimationFrame(() =>
+                done([performance.now() - asked.startTime, asked.responseEnd - asked.startTime])));
+        else requestAnimationFrame(look);
+    };
+    look();
+})"""
+
+
+# Model -> a body of it.
+BIG = {"chain52": "link13", "mss": "spdm_left_link5", "talos": "arm_left_3_link"}
+
+
+def big(name: str) -> sf.System:
+    """A chain of 52 joints; two arms on a base, 22 joints; a humanoid of 38 speeds."""
+    if name == "chain52":
+        return chain(52)
+    return MODELS["mss"] if name == "mss" else sf.load(robot_file(ROBOTS["talos"].file), floating_base=True)
+
+
+def frames(page: Page, x: float, y: float, what: str) -> list[str]:
+    """Print the times between frames of a drag; the blocks that it touched."""
+    times, touched = dragged(page, x, y)
+    print(what, json.dumps({"median_ms": np.median(times), "95_percent_ms": np.quantile(times, 0.95)}))
+    return touched
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", BIG)
+def test_big_models_stay_fluid(serve: Callable[..., Server], page: Page, tmp_path: Path, name: str) -> None:
+    sf.save(big(name), tmp_path / "big.yaml")
+    server = serve("big.yaml")
+    steps.open_editor(page, server.url)
+    steps.problems(page, 0)
+    page.wait_for_timeout(500)
+    node = f"bodies/{BIG[name]}"
+    box = steps.block(page, node).bounding_box()
+    assert box is not None
+    at = box["x"] + box["width"] / 2, box["y"] + min(6, box["height"] / 8)
+    page.mouse.click(*at)
+    assert frames(page, *at, f"{name}: drag") == [node]
+    assert frames(page, 700, 715, f"{name}: pan") == []
+
+    # A mass is changed in its window; nothing but the block that shows it is drawn anew.
+    answers = []
+    for mass in ("1.25", "1.5", "1.75"):
+        steps.open_window(page, node)
+        steps.tab(page, "Inertia")
+        steps.fill(page, "Mass", mass)
+        page.evaluate(RECORD)
+        steps.window(page).get_by_role("button", name="OK").click()
+        answers.append(page.evaluate(ANSWERED))
+        touched = page.evaluate(STOP)[1]
+        expect(steps.window(page)).to_have_count(0)
+        assert set(touched) <= {node}
+        expect(steps.block(page, node)).to_contain_text(mass)
+    shown, answered = np.median(answers, axis=0)
+    print(f"{name}: edit", json.dumps({"shown_ms": shown, "answered_ms": answered}))
 
 
 @pytest.mark.slow

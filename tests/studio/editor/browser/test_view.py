@@ -19,7 +19,7 @@ pytestmark = pytest.mark.browser
 
 MODELS = Path(__file__).parents[4] / "reference_models"
 ROBOT = MODELS / "flexible" / "planar_robot.yaml"
-LINE = 40
+LINE = 66  # Pixels of the line that says so and, below it, the scale bar, which makes room for it.
 
 
 def slide(page: Page, label: str, value: float) -> dict[str, float]:
@@ -131,7 +131,7 @@ def test_it_follows_edits_and_keeps_the_last_that_was_sound(serve: Callable[...,
     steps.accept(page)
     steps.problems(page, 1)
     expect(page.get_by_text("The last model without problems is shown")).to_be_visible()
-    # Below the line that says so, everything is as it was.
+    # Below the line that says so and the scale bar, everything is as it was.
     assert differing(settled(page)[LINE:], longer[LINE:]) < FEW
     page.get_by_role("button", name="Undo: ").first.click()
     expect(page.get_by_text("The last model without problems is shown")).to_have_count(0)

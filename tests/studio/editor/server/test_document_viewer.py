@@ -50,6 +50,16 @@ def test_it_says_what_moves_it(client: TestClient) -> None:
     assert set(view["q"]) == {one["name"] for one in view["coordinates"]}
 
 
+def test_a_pose_says_which_beams_it_bends_how_far(client: TestClient, folder: Path) -> None:
+    shutil.copy(FILES["double_pendulum"].parents[1] / "flexible" / "flexible_pendulum.yaml", folder)
+    assert client.post("/api/open", json={"path": "flexible_pendulum.yaml"}).status_code == 200
+    (straight,) = look(client)["beams"]
+    assert straight["grade"] == "fine" and straight["error"] == 0.0
+    (bent,) = pose(client, q={"rod.bend_z[0]": 0.3}, exaggeration=20)["beams"]
+    assert bent["beam"] == "rod" and bent["grade"] != "fine" and bent["slope"] > 0.1 and bent["t"] is None
+    assert pose(client, reset=True)["beams"] == [straight]
+
+
 def test_loops_close_around_what_is_moved(client: TestClient) -> None:
     view = look(client)
     name = view["coordinates"][0]["name"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 from http.client import HTTPConnection
 from importlib import import_module
@@ -36,6 +37,22 @@ def test_its_page_is_at_the_address_with_the_token(viewer: sf.Viewer) -> None:
     for host in (f"127.0.0.1:{viewer.port}", f"localhost:{viewer.port}", "localhost:9000"):  # The last: by a tunnel.
         code, page = status(viewer, path, Host=host)
         assert code == 200 and b"<title>pendulum - SYMOFROS</title>" in page and b"<title>Viser" not in page
+
+
+def test_the_first_page_says_which_colours_its_reader_prefers() -> None:
+    with sf.Viewer(MODELS["pendulum"], port=0) as viewer:
+        path = urlsplit(viewer.url).path
+        assert b'fetch("colours/"' in status(viewer, path)[1] and not viewer._dark
+        assert status(viewer, "/colours/dark")[0] == 401 and not viewer._dark
+        assert status(viewer, f"{path}colours/dark", Origin="https://evil.example")[0] == 403
+        for first, then in (("dark", True), ("light", True)):  # Pages show the same: a later one does not ask.
+            assert status(viewer, f"{path}colours/{first}") == (200, b"")
+            end = time.monotonic() + 30.0
+            while viewer._dark is not then:
+                assert time.monotonic() < end
+                time.sleep(0.01)
+    with sf.Viewer(MODELS["pendulum"], port=0, controls=False) as viewer:  # The page around it says.
+        assert b"colours/" not in status(viewer, urlsplit(viewer.url).path)[1]
 
 
 @pytest.mark.parametrize("cut", ["/", "", "/index.html", "/wrong/", "/../"])

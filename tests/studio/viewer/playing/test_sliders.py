@@ -7,6 +7,8 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from symofros.mechanics.topology.tree import build_tree
+from symofros.studio.viewer.playing.coordinate_units import coordinate_units
 from symofros.studio.viewer.playing.sliders import coordinates_of, sliders_of, values_of
 
 
@@ -29,6 +31,16 @@ def test_they_are_named_and_bounded() -> None:
     assert tuple(slider.speed for slider in sliders) == m.names.v
     assert all(slider.low < slider.high for slider in sliders)
     assert len({slider.label for slider in sliders}) == m.nv
+
+
+def test_units_are_those_of_coordinates_and_of_turns() -> None:
+    m = model("torque_free_body")
+    assert [slider.unit for slider in sliders_of(m, (False,) * m.nq)] == ["", "", "", "rad", "rad", "rad"]
+    system = MODELS["planar_robot"]
+    units = coordinate_units(build_tree(system))
+    sliders = sliders_of(model("planar_robot"), (False,) * 10, units)
+    assert {slider.unit for slider in sliders if "bend" in slider.label} == {"m"}
+    assert {slider.unit for slider in sliders if "bend" not in slider.label} == {"rad"}
 
 
 def test_a_free_body_moves_along_the_axes_it_stands_in() -> None:

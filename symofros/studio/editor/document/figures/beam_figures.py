@@ -12,6 +12,7 @@ from symofros.description.values import Value
 from symofros.description.yaml.schema_beam import BeamEntry
 from symofros.errors import DescriptionError
 from symofros.expr.expression import Expression, evaluate
+from symofros.runtime.beams import BEAM_LIMIT, NOTED_ERROR, slope_of_error
 from symofros.studio.editor.editing.data_edits import refusal
 
 Json = dict[str, Any]
@@ -20,6 +21,8 @@ Json = dict[str, Any]
 _BENDING = (1.875104068711961, 4.694091132974174, 7.854757438237612)
 # Of twist and stretch: odd quarters of a wave.
 _QUARTERS = (pi / 2, 3 * pi / 2, 5 * pi / 2)
+# Errors of the theory whose deflections are shown.
+_ERRORS = (NOTED_ERROR, 0.1, BEAM_LIMIT)
 _SHOWN = ("rhoA", "EI_y", "EI_z", "GJ", "EA", "rhoJ")
 # Direction -> stiffness, inertia per length, roots, power of root/length in the angular frequency.
 _MOTIONS = {
@@ -40,7 +43,10 @@ def beam_figures(entry: Any, known: Mapping[str, float]) -> Json:
     Returns:
         `section`: property -> number, without those that vary along the beam or have none; `frequencies`: direction ->
         the first three of the uniform slender beam, clamped at its root and free at its tip [Hz], without those
-        beyond the range of numbers. Rotary inertia, shear, gravity and loads are left out.
+        beyond the range of numbers. Rotary inertia, shear, gravity and loads are left out. `validity`: errors of
+        second-order theory relative to the deflection, each with the slope of the tip [rad] and its deflection under a
+        force there [m] that go with it (docs/theory/beams.md, (24)); none of a geometrically exact rod, or without a
+        length.
 
     Raises:
         EditError: The entry is no beam yet.
@@ -61,7 +67,18 @@ def beam_figures(entry: Any, known: Mapping[str, float]) -> Json:
         if length > 0.0 and figures.get(stiffness, 0.0) > 0.0 and figures.get(inertia, 0.0) > 0.0
     }
     finite = {direction: values for direction, values in frequencies.items() if all(map(isfinite, values))}
-    return {"section": figures, "frequencies": finite}
+    errs = stated.get("theory") != "strain" and length > 0.0
+    return {
+        "section": figures,
+        "frequencies": finite,
+        "validity": [_validity(error, length) for error in _ERRORS if errs],
+    }
+
+
+def _validity(error: float, length: float) -> Json:
+    """How far a cantilever may bend for an error; a force at the tip deflects it by 2/3 of slope times length."""
+    slope = slope_of_error(error)
+    return {"error": error, "slope": slope, "deflection": 2.0 / 3.0 * slope * length}
 
 
 def _hertz(ratio: float, wave_numbers: list[float], power: int) -> list[float]:

@@ -23,3 +23,12 @@ def test_frequencies_beyond_all_numbers_are_left_out(stated: dict[str, float | s
     figures = beam_figures({**BEAM, **stated}, {"p": 0.0})
     json.dumps(figures, allow_nan=False)
     assert "bend_z" not in figures["frequencies"]
+
+
+def test_how_far_its_theory_reaches_follows_from_the_length_alone() -> None:
+    validity = beam_figures({**BEAM, "length": "2*L"}, {"L": 0.5})["validity"]
+    assert [line["error"] for line in validity] == [0.01, 0.1, 0.5]
+    # A force at the tip deflects it by 2/3 of slope times length; small slopes err by 16/35 of their square.
+    assert validity[0]["slope"] == pytest.approx(np.sqrt(0.01 / 0.457), rel=0.01)
+    assert validity[0]["deflection"] == pytest.approx(2.0 / 3.0 * validity[0]["slope"], rel=1e-12)
+    assert beam_figures({**BEAM, "theory": "strain"}, {})["validity"] == []

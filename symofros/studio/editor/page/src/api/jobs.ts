@@ -47,10 +47,28 @@ export interface Series {
   values: (number | null)[];
 }
 
+/** How far a beam is bent, and what its theory errs there. */
+export interface BentBeam {
+  beam: string;
+  /** Largest slope [rad], and its place from the root [m]; null where it is no number. */
+  slope: number | null;
+  station: number;
+  /** Null of a pose [s]. */
+  t: number | null;
+  /** Of the deflection, of a geometrically exact rod of its length; null past a critical load. */
+  error: number | null;
+  exact: boolean;
+  grade: "fine" | "noted" | "beyond";
+  text: string;
+  remedy: string;
+}
+
 export interface Simulated {
   t: number[];
   series: Series[];
   energy: { kinetic: (number | null)[]; potential: (number | null)[]; total: (number | null)[] };
+  /** Each where its theory errs most. */
+  beams: BentBeam[];
   outcome: { ok: boolean; t: number; reason: string; advice: string; notes: string[] };
   method: string;
   steps: number;
@@ -79,6 +97,7 @@ export interface Ran {
   plots: RunPlot<RunCurve & { values: (number | null)[] }>[];
   /** By the block that moves the mechanism. */
   motions: Record<string, { t: number[] }>;
+  beams: BentBeam[];
   outcome: { ok: boolean; t: number; reason: string; advice: string; notes: string[] };
   steps: number;
   wall_s: number;

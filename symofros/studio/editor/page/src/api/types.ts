@@ -1,5 +1,7 @@
 /** What the server sends and takes: the contract of symofros/studio/editor/server/app.py. */
 
+import type { BentBeam } from "./jobs";
+
 export type Json = null | boolean | number | string | Json[] | { [key: string]: Json };
 export type JsonMap = { [key: string]: Json };
 export type Key = string | number;
@@ -243,6 +245,8 @@ export interface Curves {
 export interface BeamFigures {
   section: Record<string, number>;
   frequencies: Record<string, number[]>;
+  /** How far it may bend for an error of its theory: slope [rad] and deflection [m] of the tip under a force there. */
+  validity: { error: number; slope: number; deflection: number }[];
 }
 
 /** Of a rigid body [kg, m, kg m^2]; moments and products about the mass centre, along the axes of the body frame. */
@@ -270,6 +274,7 @@ export interface Stand {
   gap: number | null;
   /** Whether frames are drawn. */
   frames: boolean;
+  beams: BentBeam[];
 }
 
 export interface View extends Stand {

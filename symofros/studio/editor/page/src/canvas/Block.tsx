@@ -1,7 +1,9 @@
 import { Handle, type Node, type NodeProps, Position } from "@xyflow/react";
 import { memo, type MouseEvent, type ReactNode } from "react";
 
+import type { BentBeam } from "../api/jobs";
 import type { GraphNode, Port } from "../api/types";
+import { badge } from "../model/bending";
 import { frameId } from "../model/elements";
 import { frames, hasJoint, jointHeight, portHeight, size } from "../model/geometry";
 import type { Summary } from "../model/summary";
@@ -18,6 +20,8 @@ export type BlockNode = Node<
     folded: boolean;
     /** Frames that are chosen. */
     marked: readonly string[];
+    /** Of a beam, how far the newest simulation of the model bends it. */
+    bent: BentBeam | null;
   },
   "block"
 >;
@@ -47,6 +51,18 @@ function Fold({ node, carried, folded }: Props) {
   );
 }
 
+/** What the beam's theory errs in the newest simulation. */
+function Theory({ bent }: { bent: BentBeam | null }) {
+  const words = bent === null ? "" : badge(bent);
+  if (bent === null || words === "") return null;
+  const title = bent.grade === "fine" ? bent.text : `${bent.text}; ${bent.remedy}`;
+  return (
+    <span className={`block-theory ${bent.grade}`} title={title}>
+      {words}
+    </span>
+  );
+}
+
 /** What all blocks have: outline and head. */
 function Outline({ data, note, children }: { data: Props; note: string; children: ReactNode }) {
   const { node } = data;
@@ -57,6 +73,7 @@ function Outline({ data, note, children }: { data: Props; note: string; children
         <Glyph name={node.kind} size={14} />
         <span className="block-title">{node.title}</span>
         {node.problems > 0 ? <span className="block-problems">{node.problems}</span> : null}
+        <Theory bent={data.bent} />
         <span className="block-note">{note}</span>
         {data.carried > 0 ? <Fold {...data} /> : null}
       </div>

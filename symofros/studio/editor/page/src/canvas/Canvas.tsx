@@ -2,6 +2,7 @@ import { type Connection, ConnectionMode, Panel } from "@xyflow/react";
 import { useCallback, useMemo } from "react";
 
 import type { Point } from "../api/types";
+import { bentBy } from "../model/bending";
 import { blockOf } from "../model/elements";
 import { loads, standIns } from "../model/folding";
 import { size } from "../model/geometry";
@@ -57,13 +58,14 @@ export function Canvas() {
     () => ({ loads: loads(document.graph), folded, standIns: standIns(document.graph, folded) }),
     [document.graph, folded],
   );
-  const edges = useCallback(
-    () => links(document.graph, selected, folding.standIns),
-    [document.graph, selected, folding],
-  );
+  const simulated = useStore((state) => state.jobs.simulate);
+  const bent = useMemo(() => bentBy(simulated, document.revision), [simulated, document.revision]);
+  // The same links while a block is dragged, so that only its own are drawn again.
+  const linked = useMemo(() => links(document.graph, selected, folding.standIns), [document.graph, selected, folding]);
+  const edges = useCallback(() => linked, [linked]);
   const drawn = useCallback(
-    (before: readonly BlockNode[]) => blocks(document, places, selected, folding, before),
-    [document, places, selected, folding],
+    (before: readonly BlockNode[]) => blocks(document, places, selected, folding, bent, before),
+    [document, places, selected, folding, bent],
   );
   return (
     <Board

@@ -1,5 +1,6 @@
 /** The document's graph as React Flow's nodes and edges. */
 
+import type { BentBeam } from "../api/jobs";
 import type { Document, Graph, GraphEdge, GraphNode, Point } from "../api/types";
 import { namedFrames } from "../model/elements";
 import { lanes, size } from "../model/geometry";
@@ -24,6 +25,7 @@ export function blocks(
   places: Places,
   selected: readonly string[],
   folding: Folding,
+  bent: ReadonlyMap<string, BentBeam>,
   before: readonly BlockNode[],
 ): BlockNode[] {
   const old = new Map(before.map((node) => [node.id, node]));
@@ -35,6 +37,7 @@ export function blocks(
       summary: summary(node, document.data),
       carried,
       folded: folding.folded.includes(node.id),
+      bent: node.kind === "beam" ? (bent.get(node.title) ?? null) : null,
       marked: namedFrames(node).flatMap(({ id, name }) => (selected.includes(id) ? [name] : [])),
     };
     const [x, y] = places[node.id] ?? [0, 0];

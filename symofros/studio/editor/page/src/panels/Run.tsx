@@ -2,6 +2,7 @@ import type { Ran, RunCurve, RunPlot } from "../api/jobs";
 import { brief } from "../model/plot";
 import { type KeptRun, overlaid } from "../model/runs";
 import { type Live, useStore } from "../store/store";
+import { Beams } from "./Beams";
 import { PlayBar } from "./PlayBar";
 import { Plot, type PlotCurve } from "./Plot";
 import { Runs } from "./Runs";
@@ -89,6 +90,7 @@ export function Run({ result }: { result: Ran }) {
           {note}
         </p>
       ))}
+      <Beams beams={result.beams} />
       {motion === undefined ? null : <PlayBar t={motion.t} />}
       <Runs kind="run" />
       <div className="plots of-run">

@@ -2,6 +2,7 @@ import type { Series, Simulated } from "../api/jobs";
 import { brief } from "../model/plot";
 import { overlaid } from "../model/runs";
 import { useStore } from "../store/store";
+import { Beams } from "./Beams";
 import { PlayBar } from "./PlayBar";
 import { Plot, type PlotCurve } from "./Plot";
 import { Runs } from "./Runs";
@@ -41,7 +42,7 @@ export function Simulation({ result }: { result: Simulated }) {
         .map(({ name, values }) => ({ name: `${name}, ${run.name}`, x: past.t, y: values, beside: name }));
     });
   const units = [...new Set(all.map((each) => each.unit))];
-  const { ok, reason, advice } = result.outcome;
+  const { ok, reason, advice, notes } = result.outcome;
   return (
     <div className="results">
       <p className="quiet">
@@ -52,6 +53,12 @@ export function Simulation({ result }: { result: Simulated }) {
           {reason} {advice}
         </p>
       )}
+      {notes.map((note) => (
+        <p key={note} className="quiet">
+          {note}
+        </p>
+      ))}
+      <Beams beams={result.beams} />
       <PlayBar t={result.t} />
       <Runs kind="simulate" />
       <div className="plots">

@@ -1,6 +1,7 @@
 import { useEffect, useState } from "react";
 
 import type { Coordinate, Fault, View } from "../api/types";
+import { badge } from "../model/bending";
 import { scaleBar } from "../model/scale";
 import { update, useDocument, useStore } from "../store/store";
 import { useTheme } from "../store/theme";
@@ -68,6 +69,23 @@ function Coordinates({ view, chosen }: { view: View; chosen: Coordinate[] }) {
   ));
 }
 
+/** What the theory of beams errs in the pose, not in its exaggerated picture; a sentence from a per cent on. */
+function Bending({ view }: { view: View }) {
+  const known = view.beams.filter((bent) => badge(bent) !== "");
+  const far = known.filter(({ grade }) => grade !== "fine");
+  if (known.length === 0) return null;
+  return (
+    <div className="bending" role="group" aria-label="Theory of the beams">
+      <p className="quiet">Error of the theory: {known.map((bent) => `${bent.beam} ${badge(bent)}`).join(", ")}</p>
+      {far.map(({ beam, text, remedy, grade }) => (
+        <p key={beam} className={grade} title={remedy}>
+          {text}
+        </p>
+      ))}
+    </div>
+  );
+}
+
 /** Sliders of the coordinates, of how much bending is exaggerated, of parameters. */
 function Controls({ view }: { view: View }) {
   const { parameters } = useDocument();
@@ -96,6 +114,7 @@ function Controls({ view }: { view: View }) {
               : `Loops closed within ${view.gap.toExponential(0)}`}
         </span>
       </div>
+      <Bending view={view} />
       <Coordinates view={view} chosen={view.coordinates.filter((one) => !one.elastic)} />
       {view.flexible ? (
         <>

@@ -6,9 +6,10 @@ import { useForm } from "../forms/context";
 import { RecordField } from "../forms/Record";
 import { definition } from "../forms/schema";
 import { isMap, mapAt } from "../model/paths";
+import { bentBy, percent, rough } from "../model/bending";
 import { brief } from "../model/plot";
 import { asked, fitted } from "../model/sizes";
-import { useStore } from "../store/store";
+import { useDocument, useStore } from "../store/store";
 
 const PAUSE = 200;
 /** A strip of aluminium, to begin with. */
@@ -47,9 +48,14 @@ function useFigures(beam: JsonMap): BeamFigures | null {
   return figures;
 }
 
-/** Frequencies and, of a section by its shape, what it brings. */
-function Figures({ beam }: { beam: JsonMap }) {
+/** Frequencies, how far its theory reaches and, of a section by its shape, what it brings. */
+function Figures({ beam, name }: { beam: JsonMap; name: string }) {
   const figures = useFigures(beam);
+  const { revision } = useDocument();
+  const bent = bentBy(
+    useStore((state) => state.jobs.simulate),
+    revision,
+  ).get(name);
   if (figures === null) return null;
   const properties = isMap(beam["section"]) ? Object.entries(figures.section).filter(([, value]) => value !== 0) : [];
   const frequencies = Object.entries(figures.frequencies);
@@ -62,6 +68,21 @@ function Figures({ beam }: { beam: JsonMap }) {
         <p>
           Clamped at its root, free at its tip [Hz]:{" "}
           {frequencies.map(([name, values]) => `${MOTIONS[name] ?? name} ${values.map(brief).join(", ")}`).join(" · ")}
+        </p>
+      )}
+      {figures.validity.length === 0 ? null : (
+        <p>
+          Its theory errs by{" "}
+          {figures.validity
+            .map(({ error, deflection, slope }) => `${percent(error)} at ${rough(deflection)} m (${rough(slope)} rad)`)
+            .join(", ")}{" "}
+          of the tip, under a force there.
+        </p>
+      )}
+      {bent === undefined ? null : (
+        <p className={bent.grade === "beyond" ? "bad" : ""}>
+          In the newest simulation {bent.text}
+          {bent.grade === "fine" ? "" : `; ${bent.remedy}`}.
         </p>
       )}
     </div>
@@ -120,7 +141,7 @@ export function BeamSection({ beam, onChange, path, properties, others }: Props)
       ) : (
         <RecordField shape={shape} value={beam} onChange={onChange} path={path} only={properties} />
       )}
-      <Figures beam={beam} />
+      <Figures beam={beam} name={String(path[1] ?? "")} />
     </>
   );
 }
