@@ -30,8 +30,10 @@ _POSITIONS, _ENERGIES = 3.0, 2.0
 HALVINGS, SETTLED = 4, 0.1
 FRACTIONS = ("all", "half", "a quarter", "an eighth", "a sixteenth")
 # Power of time with which the change in a window may grow over the run, (17b); parts that show by how much it does grow
-# are so many times as long, each; the longest in steps; states that are compared in one, about.
-_GROWTH, _LONGER, _REPEATED, _COMPARED = 2.0, 8, 20_000, 256
+# are so many times as long, each; the longest in steps; states that are compared in one, about; the least change.
+_GROWTH, _LONGER, _REPEATED, _COMPARED, _LEAST = 2.0, 8, 20_000, 256, 1e-300
+# Share of TOLERANCE below which what is to come is left at that.
+_SURE = 0.3
 # Records, about, among which the fastest is looked for; fewest that show where speeds change.
 _SPEEDS, _RECORDS = 64, 3
 # Share of coordinates and energies that is rounding, and what an equilibrium is found to: at rest nothing else moves.
@@ -220,8 +222,8 @@ class _Run:
         status, half = repeated(stepper, settings, start, t_end, 0.5 * h, every=2 * every)
         if status < 0:
             return None
-        same = len(coarse[0]) == len(half[0])
-        return _Changed(self._share(coarse, half) if same else 0.0, start[0], count)
+        rows = slice(min(len(coarse[0]), len(half[0])))  # One of them may end with a part of `every` steps.
+        return _Changed(self._share([x[rows] for x in coarse], [x[rows] for x in half]), start[0], count)
 
     def _share(self, coarse: Sequence[Array], fine: Sequence[Array]) -> float:
         """Largest difference of speeds and displacements, relative to the run's fastest and what that makes of time."""
@@ -251,9 +253,9 @@ class _Run:
             changed = self.changed(0, count, max(1, count // _COMPARED))
             if changed is None or changed.share > TOLERANCE:
                 return changed or worst
-            growth = math.log(max(changed.share, 1e-300) / before.share) / math.log(count / before.steps)
-            growth = min(max(growth, 0.0), _GROWTH)
-            if not max(changed.share, worst.share) * (self._steps / count) ** growth > TOLERANCE:
+            growth = math.log(max(changed.share, _LEAST) / max(before.share, _LEAST)) / math.log(count / before.steps)
+            growth = min(max(growth, 1.0), _GROWTH)  # A part that is shorter than a period may show less.
+            if not max(changed.share, worst.share) * (self._steps / count) ** growth > _SURE * TOLERANCE:
                 break
             before = changed
         return worst
