@@ -744,6 +744,21 @@ FINDS: list[tuple[str, Scene, str]] = [
         },
         "a loop that grows without bounds is judged by its speeds by then",
     ),
+    (
+        "diagram_runs",
+        {
+            "force": "floor",
+            "law": "python",
+            "method": "rk4",
+            "m": 0.001,
+            "k": 0.001,
+            "c": 0.1,
+            "step": 0.003,
+            "record": 0.5,
+            "span": 1.0,
+        },
+        "intervals are halved twice at least: half the step met the same accident",
+    ),
 ]
 
 
