@@ -26,7 +26,7 @@ def linearised(scene: Scene) -> Iterator[Cell]:
     held = replace(scene, law=lambda *_: u)
 
     def accelerations(x: Array) -> Array:
-        return held.acceleration(0.0, manifold.moved(q, x[: model.nv]), v + x[model.nv :])
+        return held.acceleration(0.0, manifold.retract(q, x[: model.nv]), v + x[model.nv :])
 
     by_state = derivative(accelerations, np.zeros(2 * model.nv))
     A, B = model.linearize(q, v, u)
@@ -49,11 +49,11 @@ def linearised(scene: Scene) -> Iterator[Cell]:
         R = model.frame_pose(frame, q, u=u)[1]
 
         def pose(x: Array, frame: str = frame, R: Array = R) -> Array:
-            at, turned = model.frame_pose(frame, manifold.moved(q, x[: model.nv]), u=u)
+            at, turned = model.frame_pose(frame, manifold.retract(q, x[: model.nv]), u=u)
             return np.concatenate([at, Rotation.from_matrix(turned @ R.T).as_rotvec()])
 
         def velocity(x: Array, frame: str = frame) -> Array:
-            moved = manifold.moved(q, x[: model.nv])
+            moved = manifold.retract(q, x[: model.nv])
             return np.asarray(model.frame_velocity(frame, moved, v + x[model.nv :], u=u))
 
         rows = np.vstack([derivative(one, np.concatenate([zero, zero])) for one in (pose, velocity)])
@@ -67,7 +67,7 @@ def differentiated(scene: Scene) -> Iterator[Cell]:
     u, par = scene.law(0.0, q, v), np.asarray(model.parameter_values)
 
     def inverse(x: Array) -> Array:
-        moved = scene.manifold.moved(q, x[: model.nv])
+        moved = scene.manifold.retract(q, x[: model.nv])
         return np.asarray(model.inverse_dynamics(moved, v + x[model.nv :], a, u=u))
 
     by_q, by_v = model.inverse_dynamics_derivatives(q, v, a, u=u)
@@ -116,7 +116,7 @@ def _many(model: sf.Model, rng: np.random.Generator) -> tuple[Array, Array, Arra
 def closed(scene: Scene, held: str) -> Iterator[Cell]:
     """Projection, assembly: residuals, and changes that are least in the metric of M."""
     model, manifold, rng = scene.model, scene.manifold, np.random.default_rng(SEED)
-    q = manifold.moved(scene.q, 1e-3 * rng.standard_normal(model.nv))
+    q = manifold.retract(scene.q, 1e-3 * rng.standard_normal(model.nv))
     v = scene.v + 0.1 * rng.standard_normal(model.nv)
     on_q, on_v, left = model.project(q, v)
     M, G = model.mass_matrix(on_q), model.constraint_jacobian(on_q)
@@ -168,7 +168,7 @@ def at_rest(scene: Scene, guess: Array, held: tuple[str, ...] = ()) -> Iterator[
     still = replace(scene, q=rest.q, v=np.zeros(model.nv), law=lambda *_: u)
 
     def slopes(x: Array) -> Array:
-        q, v = manifold.moved(rest.q, x[: model.nv]), x[model.nv :]
+        q, v = manifold.retract(rest.q, x[: model.nv]), x[model.nv :]
         if model.nc:
             q, v, _ = model.project(q, v, u=u)
         return still.acceleration(0.0, q, v)
@@ -208,7 +208,7 @@ def reached(scene: Scene, frame: str) -> Iterator[Cell]:
     """Inverse kinematics: the pose is reached, the rest is nearest; and a frame's motion gives speeds and rates."""
     model, manifold = scene.model, scene.manifold
     start = np.random.default_rng(SEED)
-    goal = manifold.moved(scene.q, 0.3 * start.standard_normal(model.nv))
+    goal = manifold.retract(scene.q, 0.3 * start.standard_normal(model.nv))
     p, R = model.frame_pose(frame, goal)
     for name, target in (("position", sf.Target(p)), ("pose", sf.Target(p, R)), ("rotation", sf.Target(None, R))):
         answer = sf.inverse_kinematics(model, {frame: target}, scene.q)

@@ -22,7 +22,7 @@ ROUNDING = 1e-11
 def trajectories(scene: Scene, threads: int = 2) -> Iterator[Cell]:
     """Each trajectory of a batch is that of a run by itself; inputs differ from one to the next."""
     model, rng = scene.model, np.random.default_rng(1)
-    moved = [scene.manifold.moved(scene.q, 0.1 * x) for x in rng.standard_normal((COUNT, model.nv))]
+    moved = [scene.manifold.retract(scene.q, 0.1 * x) for x in rng.standard_normal((COUNT, model.nv))]
     v = scene.v * rng.uniform(0.5, 1.5, (COUNT, 1))
     q = np.array(moved)
     if model.nc:
@@ -93,7 +93,7 @@ def states(scene: Scene) -> Iterator[Cell]:
     q = np.array([model.random_state(rng)[0] for _ in range(n)])
     q[0] *= 1e3  # Angles of many turns.
     q[1] = 0.0 * q[1]
-    q = np.array([scene.manifold.moved(one, np.zeros(model.nv)) for one in q]) if scene.manifold.nq == model.nv else q
+    q = np.array([scene.manifold.retract(one, np.zeros(model.nv)) for one in q]) if scene.manifold.nq == model.nv else q
     v, u = rng.standard_normal((n, model.nv)), rng.standard_normal((n, model.nu))
     some = [*range(9), n // 2, *range(n - 9, n)]
     calls: tuple[tuple[str, Callable[[sf.Model, Any], Array]], ...] = (

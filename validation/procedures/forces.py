@@ -142,7 +142,7 @@ def applied(_: Scene) -> Iterator[Cell]:
     still = 0.0 * v
 
     def potential(theta: Array) -> Array:
-        return np.array([model.potential_energy(manifold.moved(q, theta), u=0 * u)])
+        return np.array([model.potential_energy(manifold.retract(q, theta), u=0 * u)])
 
     weight = model.bias(q, still)
     without = sf.compile(carried(loaded=False))
@@ -150,7 +150,7 @@ def applied(_: Scene) -> Iterator[Cell]:
     yield Cell("potential energy of forces", off(derivative(potential, still)[0], conserved), DIFFERENCED)
 
     def inverse(x: Array) -> Array:
-        moved = manifold.moved(q, x[: model.nv])
+        moved = manifold.retract(q, x[: model.nv])
         return np.asarray(model.inverse_dynamics(moved, v + x[model.nv :], v, u=u, t=t))
 
     by_q, by_v = model.inverse_dynamics_derivatives(q, v, v, u=u, t=t)
@@ -170,11 +170,11 @@ def rods(_: Scene) -> Iterator[Cell]:
     q, v = model.random_state(np.random.default_rng(6))
 
     def phi(theta: Array) -> Array:
-        p = np.asarray(model.frame_pose("tip", manifold.moved(q, theta))[0])
+        p = np.asarray(model.frame_pose("tip", manifold.retract(q, theta))[0])
         return np.array([(p @ p - length**2) / (2 * length)])
 
     def rate(s: Array) -> Array:
-        ahead = manifold.moved(q, s[0] * v)
+        ahead = manifold.retract(q, s[0] * v)
         return np.asarray(model.constraint_jacobian(ahead) @ v)
 
     G, still = model.constraint_jacobian(q), np.zeros(model.nv)

@@ -76,7 +76,7 @@ def transposed(scene: Scene) -> Iterator[Cell]:
 
         def values(h: float, name: str = name, of: str = of, inputs: list[str] = inputs) -> list[Array]:
             moved: dict[str, Any] = {group: state[group] + h * steps[group] for group in inputs if group != "q"}
-            return [*model.evaluate(name, of, q=scene.manifold.moved(scene.q, h * steps["q"]), **moved)]
+            return [*model.evaluate(name, of, q=scene.manifold.retract(scene.q, h * steps["q"]), **moved)]
 
         weights = [rng.standard_normal(np.shape(value)) for value in values(0.0)][: len(outputs)]
         change = sum(float(np.sum(w * y)) for w, y in zip(weights, _rates(values), strict=False))
@@ -95,7 +95,7 @@ def twice_differentiated(scene: Scene) -> Iterator[Cell]:
     by_qq, by_vv, by_qv, by_aq = model.inverse_dynamics_second_derivatives(q, v, a)
 
     def first(h: float) -> list[Array]:
-        return [*model.inverse_dynamics_derivatives(scene.manifold.moved(q, h * dq), v + h * dv, a + h * da)]
+        return [*model.inverse_dynamics_derivatives(scene.manifold.retract(q, h * dq), v + h * dv, a + h * da)]
 
     qv, aq = by_qv.swapaxes(1, 2), by_aq.swapaxes(1, 2)
     changes = by_qq @ dq + by_qv @ dv + aq @ da, qv @ dq + by_vv @ dv
@@ -119,7 +119,7 @@ def momenta(scene: Scene) -> Iterator[Cell]:
     yield Cell("C v and the weight", off(C @ v + model.bias(q, 0.0 * v), h), ROUNDING)
 
     def moving(t: float) -> list[Array]:
-        at, speeds = scene.manifold.moved(q, t * v), v + t * a
+        at, speeds = scene.manifold.retract(q, t * v), v + t * a
         return [model.mass_matrix(at), model.centroidal_momentum(at, speeds)]
 
     by_M, by_momentum = _rates(moving)

@@ -161,7 +161,7 @@ def _zeros(path: Path, index: int, level: float, sign: int) -> Iterator[float]:
 
 def stabilised(scene: Scene) -> Iterator[Cell]:
     """Constraints kept by gains, by those of a step's length, and not at all."""
-    away = scene.manifold.moved(scene.q, np.full(scene.model.nv, 1e-3))
+    away = scene.manifold.retract(scene.q, np.full(scene.model.nv, 1e-3))
     cases: tuple[tuple[Any, dict[str, Any], tuple[float, float], float], ...] = (
         ("baumgarte", {"gains": (5.0, 7.0)}, (5.0, 7.0), 0.02),
         ("baumgarte", {}, (10.0, 10.0), 0.05),

@@ -58,7 +58,7 @@ class Manifold:
         parts = [(mover.q.start, mover.v.start, mover.q.stop - mover.q.start) for mover in assembly.movers]
         return cls(tuple(part for part in parts if part[2] > 0), assembly.nq, assembly.nv)
 
-    def moved(self, q: Array, theta: Array, twist: bool = False) -> Array:
+    def retract(self, q: Array, theta: Array, twist: bool = False) -> Array:
         """Configuration q (+) theta, (1); with `twist`, poses move along the screw of that twist."""
         moved = np.array(q, dtype=float)
         for at, to, size in self.segments:
@@ -177,7 +177,7 @@ class Scene:
         """Rate of y = (theta, v) in the chart about q."""
         nv = self.model.nv
         theta, v = y[:nv], y[nv:]
-        a = self.acceleration(t, self.manifold.moved(self.q, theta), v)
+        a = self.acceleration(t, self.manifold.retract(self.q, theta), v)
         return np.concatenate([self.manifold.rate(theta, v), a])
 
 

@@ -232,7 +232,7 @@ def repeated_run(
 
 def _at(scene: Scene, t: float, y: Array) -> tuple[Array, Array]:
     nv = scene.model.nv
-    return scene.projected(t, scene.manifold.moved(scene.q, y[:nv]), y[nv:])
+    return scene.projected(t, scene.manifold.retract(scene.q, y[:nv]), y[nv:])
 
 
 def _scale(scene: Scene, rtol: float, atol: float) -> Callable[[Array], Array]:
@@ -284,7 +284,7 @@ def alpha_run(scene: Scene, h: float, steps: int) -> tuple[Array, Array]:
         def end(a: Array) -> tuple[Array, Array, Array]:
             s = ((1 - alpha_f) * a + alpha_f * a0 - alpha_m * smooth) / (1 - alpha_m)  # noqa: B023
             theta = h * v + h * h * ((0.5 - beta) * smooth + beta * s)  # noqa: B023
-            return scene.manifold.moved(q, theta, True), v + h * ((1 - gamma) * smooth + gamma * s), s  # noqa: B023
+            return scene.manifold.retract(q, theta, True), v + h * ((1 - gamma) * smooth + gamma * s), s  # noqa: B023
 
         def residual(x: Array) -> Array:
             q1, v1, _ = end(x[:nv])
@@ -306,7 +306,7 @@ def alpha_run(scene: Scene, h: float, steps: int) -> tuple[Array, Array]:
 
 def _on_positions(scene: Scene) -> bool:
     """Whether conditions are on positions: phi does not vanish everywhere."""
-    q = scene.manifold.moved(scene.q, np.full(scene.model.nv, 0.1))
+    q = scene.manifold.retract(scene.q, np.full(scene.model.nv, 0.1))
     return bool(np.abs(scene.model.constraint(q)).max() > 0.0)
 
 
@@ -317,11 +317,11 @@ def variational_run(scene: Scene, h: float, steps: int) -> tuple[Array, Array]:
 
     def momenta(theta: Array, sign: float, t: float) -> Array:
         """mu_0 for the sign 1, mu_1 for -1."""
-        middle, w = manifold.moved(q, 0.5 * theta, True), theta / h  # noqa: B023
+        middle, w = manifold.retract(q, 0.5 * theta, True), theta / h  # noqa: B023
         M, bias, Q = model.dynamics(middle, w, scene.law(t, middle, w))
 
         def momentum_ahead(s: Array) -> Array:
-            return np.asarray(model.mass_matrix(manifold.moved(middle, s[0] * w))) @ w
+            return np.asarray(model.mass_matrix(manifold.retract(middle, s[0] * w))) @ w
 
         p = M @ w
         F = derivative(momentum_ahead, np.zeros(1), 1e-2)[:, 0] + Q - bias - manifold.adjoint(w).T @ p
@@ -337,7 +337,7 @@ def variational_run(scene: Scene, h: float, steps: int) -> tuple[Array, Array]:
 
         theta = _solution(left, h * v)
         end = momenta(theta, -1.0, t)
-        q = manifold.moved(q, theta, True)
+        q = manifold.retract(q, theta, True)
         v = np.asarray(np.linalg.solve(model.mass_matrix(q), end), dtype=np.float64)
         states.append((q, v))
     return np.array([q for q, _ in states]), np.array([v for _, v in states])

@@ -108,9 +108,9 @@ class _Importer:
             self._remark_body(self.bodies[path], name)
             if not self.placements[path].is_rigid:
                 rule = "the transform of a rigid body turns, shifts, and scales along its axes"
-                found, remedy = "sheared, mirrored, or without extent", "move the scale into its shapes"
+                stated, remedy = "sheared, mirrored, or without extent", "move the scale into its shapes"
                 what = f"body '{name}' has no frame"
-                self.problems.append(Problem(what, found, rule, remedy, self.where(path)))
+                self.problems.append(Problem(what, stated, rule, remedy, self.where(path)))
         if self.problems:
             return None
         joints = list(self._joints())
@@ -164,10 +164,10 @@ class _Importer:
             ends = tuple(self.stage["carrier"].get(row[end], "") for end in ("body0", "body1"))
             missing = [row[end] for end in ("body0", "body1") if row[end] and row[end] not in self.placements]
             if missing or row["targets"] > 1 or ends[0] == ends[1]:
-                found = f"body0 <{row['body0']}>, body1 <{row['body1']}>"
+                stated = f"body0 <{row['body0']}>, body1 <{row['body1']}>"
                 rule = "a joint joins two different rigid bodies, or one and the world, each by one target"
                 what, remedy = f"joint '{name}' joins no two bodies", "mend its relationships"
-                self.problems.append(Problem(what, found, rule, remedy, self.where(path)))
+                self.problems.append(Problem(what, stated, rule, remedy, self.where(path)))
                 continue
             motion = motion_of(row | {"limits": {}, "kind": "fixed"} if row["kind"] == "distance" else row)
             if isinstance(motion, str):

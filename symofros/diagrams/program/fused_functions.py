@@ -296,7 +296,7 @@ class Fuser:
             if name in layout.q:
                 q, v = layout.q[name], layout.v[name]
                 model = self._pieces[name].block.mechanism()
-                values = self._wired.models.moved(
+                values = self._wired.models.retract(
                     at.g, model, at.input("q", q, part.q.start), at.input("step", v, part.v.start)
                 )
                 rates[q.start - part.q.start : q.start - part.q.start + q.size] = values.flat

@@ -240,8 +240,8 @@ class Models:
                     rubs[link.v[0] + element.coordinate] = True
         return rubs
 
-    def moved(self, g: Graph, model: str, q: Tensor, step: Tensor) -> Tensor:
-        """The configuration that a step (nv) along the manifold leads to."""
+    def retract(self, g: Graph, model: str, q: Tensor, step: Tensor) -> Tensor:
+        """The configuration q (+) step, for a step (nv) along the manifold."""
         kinematics = tree_kinematics(Graph(), self.tree(model))
         edges = retracted(kinematics)
         groups = {"q": q, "step": step}

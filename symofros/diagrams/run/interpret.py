@@ -80,7 +80,7 @@ def step(blocks: Blocks, tableau: Tableau, h: float, projects: bool) -> None:
     t, q, v = float(blocks.t[0]), blocks.q.copy(), blocks.v.copy()
     k: list[Array] = []
 
-    def moved(weights: Array) -> tuple[Array, Array]:
+    def increments(weights: Array) -> tuple[Array, Array]:
         total = np.zeros(2 * nv)
         for weight, slope in zip(weights, k, strict=False):
             if weight != 0.0:
@@ -88,7 +88,7 @@ def step(blocks: Blocks, tableau: Tableau, h: float, projects: bool) -> None:
         return h * total[:nv], h * total[nv:] + v
 
     for i in range(tableau.stages):
-        theta, speeds = moved(tableau.a[i])
+        theta, speeds = increments(tableau.a[i])
         blocks.t[0] = t + tableau.c[i] * h
         blocks.q[:], blocks.v[:] = retract(segments, q, theta), speeds
         blocks.signals()
@@ -96,7 +96,7 @@ def step(blocks: Blocks, tableau: Tableau, h: float, projects: bool) -> None:
         if not np.isfinite(blocks.a).all():
             raise NotFiniteError
         k.append(np.concatenate([chart_rate(segments, theta, speeds), blocks.a]))
-    theta, speeds = moved(tableau.b)
+    theta, speeds = increments(tableau.b)
     blocks.t[0] = t + h
     blocks.q[:], blocks.v[:] = retract(segments, q, theta), speeds
     if projects:

@@ -141,7 +141,7 @@ def composed(onto: tuple[Scalar, Vector, Matrix], link: Link, body: tuple[Scalar
     return onto[0] + m, add(onto[1], h, scale(m, p)), plus(onto[2], J)
 
 
-def moved(link: Link, J: Matrix, H: Matrix, K: Matrix) -> Articulated:
+def shifted_to_parent(link: Link, J: Matrix, H: Matrix, K: Matrix) -> Articulated:
     """An articulated inertia (n = J w' + H a, f = H^T w' + K a) about the parent's origin, in its axes."""
     R, P = link.R, skew(link.p)
     J, H, K = turned(R, J), product(product(R, H), transposed(R)), turned(R, K)

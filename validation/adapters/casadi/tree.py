@@ -40,8 +40,8 @@ from validation.adapters.casadi.links import (
     in_world,
     joined,
     links_of,
-    moved,
     shifted,
+    shifted_to_parent,
 )
 from validation.adapters.reach import unrepresented
 from validation.contract.interface import Unsupported
@@ -186,7 +186,7 @@ class CasadiTree:
             n, f = shifted(link, n, f)
             on_n, on_f = bias[link.parent]
             bias[link.parent] = add(on_n, n), add(on_f, f)
-            inertia[link.parent] = joined(inertia[link.parent], moved(link, J, H, K))
+            inertia[link.parent] = joined(inertia[link.parent], shifted_to_parent(link, J, H, K))
         return self._accelerated(steps, [terms[1] for terms in still])
 
     def _velocity_terms(self) -> list[tuple[Link, Vector, Motion]]:

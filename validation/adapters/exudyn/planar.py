@@ -62,7 +62,7 @@ class Carrier(NamedTuple):
     local: Array
     node: Any = None
 
-    def moved(self, offset: Array, angle: float = 0.0) -> Carrier:
+    def displaced(self, offset: Array, angle: float = 0.0) -> Carrier:
         """Another frame on the same body, at an offset in this one and turned."""
         c, s = np.cos(self.angle), np.sin(self.angle)
         p = self.p + np.array([[c, -s], [s, c]]) @ offset
@@ -155,7 +155,7 @@ class _PlanarBuilder:
 
     def add(self, mover: Mover, angle: float, cables: Mapping[str, Cable]) -> None:
         parent = self.ground if mover.parent == BASE else self.frames[mover.parent]
-        at = parent.moved(mover.X_AP.p[:2], angle)
+        at = parent.displaced(mover.X_AP.p[:2], angle)
         if not np.array_equal(mover.X_AP.R, np.eye(3)):
             raise ValueError(f"joint '{mover.name}': turned against its parent")
         if mover.kind == "elastic":
@@ -173,7 +173,7 @@ class _PlanarBuilder:
 
     def _rigid(self, mass: Mass, at: Carrier) -> Carrier:
         """A rigid body; its frame coincides with the one given."""
-        center = at.moved(mass.p_BC[:2])
+        center = at.displaced(mass.p_BC[:2])
         node = self.mbs.AddNode(items.NodeRigidBody2D(referenceCoordinates=[*center.p, at.angle]))
         body = self.mbs.AddObject(items.ObjectRigidBody2D(mass=mass.mass, inertia=mass.J_BC[2, 2], nodeNumber=node))
         return Carrier(at.p, at.angle, body, -mass.p_BC[:2], node)

@@ -114,7 +114,7 @@ def planar(
     def build() -> tuple[Any, Any, Sequence[Any]]:
         container = exudyn.SystemContainer()
         made = container.AddSystem()
-        last = populate(made, system, angles, cables)[-1].moved(np.array(place))
+        last = populate(made, system, angles, cables)[-1].displaced(np.array(place))
         sensor = _position_sensor(made, last.body, last.place())
         made.Assemble()
         return container, made, [sensor]
@@ -191,7 +191,7 @@ def looped(system: sf.System, angles: Mapping[str, float], torque: float) -> Tim
             site = assembly.frames[anchor_name(assembly, anchor)]
             if site.mover == BASE:
                 return made.AddMarker(items.MarkerBodyPosition(bodyNumber=ground, localPosition=list(site.X_BF.p)))
-            at = carriers[site.mover].moved(site.X_BF.p[:2])
+            at = carriers[site.mover].displaced(site.X_BF.p[:2])
             return made.AddMarker(items.MarkerBodyPosition(bodyNumber=at.body, localPosition=at.place()))
 
         for closure in closures:

@@ -28,9 +28,9 @@ def renaming_in_diagram(data: dict[str, Any], edit: Edit) -> list[Edit]:
     others = ("models",) if section == "models" else ("blocks", "parts")
     taken = {name for other in others for name in _mapping(data, other)} - {old}
     if not _NAME.match(new) or new in taken:
-        found = f"'{new[:50]}' is taken" if new in taken else f"'{new[:50]}'"
+        stated = f"'{new[:50]}' is taken" if new in taken else f"'{new[:50]}'"
         raise fault(
-            edit.path, found, "a name of its own: letters, digits, underscores, a letter first", "choose another"
+            edit.path, stated, "a name of its own: letters, digits, underscores, a letter first", "choose another"
         )
     if section == "models":
         return [*_model(data, old, new), edit]
