@@ -1,7 +1,7 @@
 """What judging beams costs a run: instructions with it over instructions without, less one (docs/theory/beams.md, 6).
 
-Counted by valgrind's callgrind in packages of C, as gcc -O2 compiles them, over the steps alone. No time is measured, so
-that the numbers are those of the compiler and the machine's instruction set, whatever else runs.
+Counted by valgrind's callgrind in packages of C, as gcc -O2 compiles them, over the steps alone. No time is measured:
+the numbers are those of the compiler and the machine's instruction set, whatever else runs.
 """
 
 from __future__ import annotations
@@ -48,10 +48,9 @@ int main(int argc, char **argv) {
 def spatial() -> sf.System:
     """A strip that bends in both planes and twists, two coordinates each."""
     tip = sf.BeamLoad((0.0, sf.formula("F", "load"), 0.0), at=1.0, axes="world")
-    strip = sf.Beam(
-        "strip", sf.Joint("root", "fixed"), 0.5, 1.0, EI_z=4.0, EI_y=1.0, GJ=2.0, rhoJ=0.1, bend_y=2, bend_z=2, twist=2,
-        loads=(tip,),
-    )  # fmt: skip
+    stiffness = {"EI_z": 4.0, "EI_y": 1.0, "GJ": 2.0, "rhoJ": 0.1}
+    shapes = {"bend_y": 2, "bend_z": 2, "twist": 2}
+    strip = sf.Beam("strip", sf.Joint("root", "fixed"), 0.5, 1.0, **stiffness, **shapes, loads=(tip,))
     return sf.System("strip", (strip,), gravity=(0, 0, 0), parameters=(sf.Parameter("F", 0.0),))
 
 
@@ -86,8 +85,8 @@ class Scene:
     par: Mapping[str, float] = field(default_factory=dict)
 
 
-# Periods of the cantilever: 1.79, 0.285, 0.1 s; RK4 is stable up to 0.03 s. Steps that are "few" have the motion grow or
-# turn by much from one to the next.
+# Periods of the cantilever: 1.79, 0.285, 0.1 s; RK4 is stable up to 0.03 s. With "few" or "coarse" steps the motion
+# grows or turns by much from one to the next.
 SCENES = {
     "beam swings": Scene("cantilever", 4000, 1e-3, par={"F": 0.3}),
     "beam swings, many modes": Scene("cantilever", 4000, 1e-3, q={0: 0.1, 1: -0.03, 2: 0.01}),

@@ -44,7 +44,7 @@ def test_a_note_names_the_largest_bending_between_recorded_states() -> None:
     assert "'blade'" in note and "t = " in note and 0.0 < bending.t < 1.0
     every = swung(0.3)
     slopes = [cantilever().beams()[0].bending(q).slope for q in every.q]
-    # Slack of (26d): 4 % of the error, 2 % of the slope.
+    # Slack of (26d): a tenth of the error, 5 % of the slope.
     assert max(slopes) / 1.02 <= bending.slope <= max(slopes) * (1.0 + 1e-12)
     assert bending.t == pytest.approx(every.t[int(np.argmax(slopes))], abs=0.05)
     assert not beam_notes(swung(0.1).outcome)
@@ -52,7 +52,7 @@ def test_a_note_names_the_largest_bending_between_recorded_states() -> None:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_the_stated_error_is_the_largest_of_all_steps(seed: int) -> None:
-    """Up to the slack of (26d), 4 % and 1e-4, over amplitudes, modes and steps; exactly what some step has."""
+    """Up to the slack of (26d), a tenth and 1e-4, over amplitudes, modes and steps; exactly what some step has."""
     rng = np.random.default_rng(seed)
     model, (beam,) = cantilever(), cantilever().beams()
     q = 10.0 ** rng.uniform(-4, -1) * rng.normal(size=(20, 3)) * [1.0, 0.3, 0.1]
@@ -67,7 +67,7 @@ def test_the_stated_error_is_the_largest_of_all_steps(seed: int) -> None:
         stated = errors[int(np.argmin(np.abs(slopes - run.bendings[0].slope)))]
         assert np.min(np.abs(slopes / run.bendings[0].slope - 1.0)) <= 1e-9
         assert runs.beam_errors[row] == pytest.approx([stated], rel=1e-9)
-        assert errors.max() <= max(1.04 * stated, stated + 1e-4)
+        assert errors.max() <= max(1.10 * stated, stated + 1e-4)
 
 
 def test_the_steps_judge_as_python_does() -> None:

@@ -87,8 +87,8 @@ static double sym_planar_slope(const sym_beam *beam, const double *x) {
 
 /* By which factor a beam's error may lie above the largest one before a step is judged, and its root: as (24) grows with the
  * square of the slope at most, the factor of norms that stays below. */
-#define SYM_BEAM_SLACK 1.04
-#define SYM_BEAM_NORM_SLACK 1.0198
+#define SYM_BEAM_SLACK 1.10
+#define SYM_BEAM_NORM_SLACK 1.0488
 
 /* The norm of (26d) that an error has at least. Without twist this inverts (24). */
 static double sym_norm_of_error(const sym_beam *beam, double error) {
