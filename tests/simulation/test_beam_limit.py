@@ -45,7 +45,7 @@ def test_a_note_names_the_largest_bending_between_recorded_states() -> None:
     every = swung(0.3)
     slopes = [cantilever().beams()[0].bending(q).slope for q in every.q]
     # Slack of (26d): a tenth of the error, 5 % of the slope.
-    assert max(slopes) / 1.02 <= bending.slope <= max(slopes) * (1.0 + 1e-12)
+    assert max(slopes) / 1.05 <= bending.slope <= max(slopes) * (1.0 + 1e-12)
     assert bending.t == pytest.approx(every.t[int(np.argmax(slopes))], abs=0.05)
     assert not beam_notes(swung(0.1).outcome)
 
