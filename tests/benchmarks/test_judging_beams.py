@@ -1,6 +1,6 @@
-"""What judging beams costs a run: instructions with it over instructions without, less one (docs/theory/beams.md, 6).
+"""What judging beams costs a run: instructions with it over those without, less one (docs/theory/beams.md, 6).
 
-Counted by valgrind's callgrind in packages of C, as gcc -O2 compiles them, over the steps alone. No time is measured, so
+Counted by callgrind in packages of C, as gcc -O2 compiles them, over the steps alone. No time is measured, so
 that the numbers are those of the compiler and the machine's instruction set, whatever else runs.
 """
 
@@ -86,8 +86,8 @@ class Scene:
     par: Mapping[str, float] = field(default_factory=dict)
 
 
-# Periods of the cantilever: 1.79, 0.285, 0.1 s; RK4 is stable up to 0.03 s. Steps that are "few" have the motion grow or
-# turn by much from one to the next.
+# Periods of the cantilever: 1.79, 0.285, 0.1 s; RK4 is stable up to 0.03 s. In "few" steps the motion grows by
+# much from one to the next.
 SCENES = {
     "beam swings": Scene("cantilever", 4000, 1e-3, par={"F": 0.3}),
     "beam swings, many modes": Scene("cantilever", 4000, 1e-3, q={0: 0.1, 1: -0.03, 2: 0.01}),
