@@ -82,7 +82,8 @@ ALLOWED = table("""
     generator.ablation: base expr mechanics.kinematics mechanics.dynamics generator.passes generator.codegen
         runtime
     # What tools that look inside may use; nothing in the package imports it.
-    tools: base description compiler expr generator.passes generator.ablation runtime simulation diagrams studio.viewer studio.editor
+    tools: base description compiler expr generator.passes generator.ablation runtime simulation diagrams
+        studio.viewer studio.editor
     __init__: base errors expr description runtime compiler loading simulation diagrams diagrams.files
         exports interop studio.advice studio.viewer
 """)
