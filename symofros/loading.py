@@ -178,6 +178,9 @@ def _folder(folder: Path) -> Problem:
 
 
 def _missing(file: Path) -> Problem:
+    if file.is_symlink():
+        found, rule = "a link that leads nowhere", "a description is an existing file"
+        return Problem(f"'{file}' can't be read", found, rule, "mend the link")
     try:
         there = _there(file.parent)
     except OSError:

@@ -18,6 +18,7 @@ notice. Each name has its reason:
 | Numbers, Precision, Strided, columns | batches as the C functions by vectors take them: timing |
 | Jitter, jitter_of | how late the instants of a run in real time began |
 | write_atomically | files that a reader never sees half written |
+| Visual, visual_mesh, read_motion, Session, Workspace | what viewer and editor read files by, without windows: fuzz |
 """
 
 from __future__ import annotations
@@ -32,6 +33,7 @@ from symofros.base.atomic import write_atomically as write_atomically
 from symofros.base.options import Options
 from symofros.compiler import Compilation
 from symofros.description.system import System
+from symofros.description.visual import Visual as Visual
 from symofros.diagrams.run.jitter import Jitter as Jitter
 from symofros.diagrams.run.jitter import jitter_of as jitter_of
 from symofros.expr.edges import Edge as Edge
@@ -66,6 +68,10 @@ from symofros.simulation.options import SimulationOptions
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.methods import METHODS as METHODS
 from symofros.simulation.stepping.stepper import Stepper
+from symofros.studio.editor.document.session import Session as Session
+from symofros.studio.editor.document.workspace import Workspace as Workspace
+from symofros.studio.viewer.drawing.visual_meshes import visual_mesh as visual_mesh
+from symofros.studio.viewer.playing.motion import read_motion as read_motion
 
 
 def fixed_step_loop(model: Model, method: str, dt: float, steps: int, t_end: float) -> Stepper:

@@ -83,6 +83,7 @@ ALLOWED = table("""
         runtime
     # What tools that look inside may use; nothing in the package imports it.
     tools: base description compiler expr generator.passes generator.ablation runtime simulation diagrams
+        studio.viewer studio.editor
     __init__: base errors expr description runtime compiler loading simulation diagrams diagrams.files
         exports interop studio.advice studio.viewer
 """)

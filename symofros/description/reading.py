@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -67,8 +68,19 @@ def read_bytes(path: Path, limit: int) -> bytes:
     return data
 
 
+def resolved(path: Path) -> Path:
+    """The absolute path, links followed; of a loop of links, at which `Path.resolve` raises before Python 3.13, a part.
+
+    Raises:
+        ValueError: A NUL character.
+    """
+    return Path(os.path.realpath(path))
+
+
 def kind_of(path: Path) -> str:
     """What a path leads to that is no regular file."""
+    if path.is_symlink() and not os.path.exists(path):
+        return "a link that leads nowhere"
     kinds = (
         (path.is_dir, "a folder"),
         (path.is_fifo, "a named pipe, whose reader would wait"),

@@ -243,6 +243,21 @@ def test_included_files_share_the_limit_on_length(tmp_path: Path, monkeypatch: p
     assert "'part3.yaml' is too large" in faults(tmp_path / "main.yaml").replace(f"{tmp_path}{os.sep}", "")
 
 
+@pytest.mark.parametrize("suffix", ["yaml", "urdf", "xml", "sdf", "usda"])
+def test_loops_of_links_are_refused_in_words(suffix: str, tmp_path: Path) -> None:
+    """Path.resolve raises RuntimeError of them before Python 3.13."""
+    loop = tmp_path / f"loop.{suffix}"
+    loop.symlink_to(loop.name)
+    with pytest.raises(sf.DescriptionError, match="can't be read\\n  found:  a link that leads nowhere"):
+        sf.load(loop)
+    if suffix == "yaml":
+        (tmp_path / "main.yaml").write_text("symofros: 1\ninclude: [loop.yaml]\n")
+        with pytest.raises(sf.DescriptionError, match=r"loop.yaml"):
+            sf.load(tmp_path / "main.yaml")
+        with pytest.raises(sf.DescriptionError):
+            sf.load_diagram(loop)
+
+
 def test_values_are_counted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(yaml_nodes, "MAX_NODES", 100)
     (tmp_path / "a.yaml").write_text("symofros: 1\nsystem: [" + "1, " * 200 + "]\n")

@@ -1,7 +1,8 @@
 """Feed hostile inputs to the readers: none may crash them, hang them, or be accepted as what it is not.
 
-A reader's answer to any bytes is a description, a diagram or a DescriptionError, within a bounded time. What is
-accepted must survive being written and read again; of the accepted files, a sample must also compile.
+A reader's answer to any bytes is a description, a diagram or a DescriptionError, within a bounded time and memory. What
+is accepted must survive being written and read again; of the accepted files, a sample must also compile. Files of the
+editor and the viewer are fed as `fuzz_files` says.
 """
 
 from __future__ import annotations
@@ -24,10 +25,16 @@ import typer
 import symofros as sf
 from validation.reporting.command import Run
 from validation.reporting.record import Data
-from validation.studies.fuzz_inputs import KINDS, mutated
+from validation.studies.fuzz_file_inputs import FILE_KINDS, mutated_files
+from validation.studies.fuzz_files import feed_file
+from validation.studies.fuzz_inputs import KINDS as TEXT_KINDS
+from validation.studies.fuzz_inputs import mutated
 
+KINDS = (*TEXT_KINDS, *FILE_KINDS)
 # A reader that takes longer on some kilobytes has been made to hang.
 SLOWEST = 10.0
+# A reader that needs more than this beyond what all before it did has been made to swell [MiB].
+MOST_MEMORY = 1024
 # Compiling is slower than reading: one accepted file in so many.
 COMPILED = 25
 # Inputs of a whole run.
@@ -43,7 +50,7 @@ class Answers:
     Attributes:
         read: Accepted.
         refused: Refused with a DescriptionError.
-        compiled: Accepted, and also compiled; a part of `read`.
+        compiled: Accepted, and also compiled, or drawn; a part of `read`.
         slowest: Longest time one input took [s].
         slowest_input: Its number.
     """
@@ -97,7 +104,7 @@ def fuzz(count: int, seed: int, progress: Callable[[int], None] = lambda done: N
         progress: Called with the number of inputs done.
     """
     result = FuzzResult()
-    sources = {kind: mutated(kind, seed) for kind in KINDS}
+    sources = {kind: mutated_files(kind, seed) if kind in FILE_KINDS else mutated(kind, seed) for kind in KINDS}
     with tempfile.TemporaryDirectory() as name, _interrupted(), warnings.catch_warnings():
         warnings.simplefilter("error")  # A warning tells the user nothing about the file.
         folder = Path(name)
@@ -111,27 +118,40 @@ def fuzz(count: int, seed: int, progress: Callable[[int], None] = lambda done: N
 
 def _feed(result: FuzzResult, kind: str, number: int, data: bytes, folder: Path) -> None:
     answers = result.answers[kind]
-    start = time.perf_counter()
+    start, before = time.perf_counter(), peak_memory()
     signal.setitimer(signal.ITIMER_REAL, SLOWEST)
     try:
         if kind == "formula":
             _formula(data)
         elif kind == "diagram":
             _diagram(folder, data)
+        elif kind in FILE_KINDS:
+            answers.compiled += feed_file(kind, folder, data, number)
         else:
             _file(folder / f"hostile.{kind}", data, number, answers)
         answers.read += 1
-    except sf.DescriptionError:
-        answers.refused += 1
+    except sf.SymofrosError as error:
+        if kind in TEXT_KINDS and not isinstance(error, sf.DescriptionError):
+            result.faults.append(Fault(kind, number, f"{type(error).__name__}: {error}"[:300], data))
+        else:
+            answers.refused += 1
     except _Hang:
         result.faults.append(Fault(kind, number, f"took longer than {SLOWEST:g} s", data))
     except Exception as error:  # noqa: BLE001 - anything but a refusal is what is looked for.
         result.faults.append(Fault(kind, number, f"{type(error).__name__}: {error}"[:300], data))
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
-    taken = time.perf_counter() - start
+    taken, grown = time.perf_counter() - start, peak_memory() - before
+    if grown > MOST_MEMORY:
+        result.faults.append(Fault(kind, number, f"took {grown:.0f} MiB more than any input before", data))
     if taken > answers.slowest:
         answers.slowest, answers.slowest_input = taken, number
+
+
+def peak_memory() -> float:
+    """The most memory that this process had at once so far [MiB]."""
+    # Linux counts kilobytes, macOS bytes.
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / (1 << (20 if sys.platform == "darwin" else 10))
 
 
 def _file(path: Path, data: bytes, number: int, answers: Answers) -> None:
@@ -207,13 +227,11 @@ def measure(
         faults = sum(fault.kind == kind for fault in result.faults)
         inputs = answers.read + answers.refused + faults
         kinds[kind] = {**asdict(answers), "inputs": inputs, "faults": faults, "slowest": round(answers.slowest, 4)}
-    # Linux counts kilobytes, macOS bytes.
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / (1 << (20 if sys.platform == "darwin" else 10))
     return {
         "ok": not result.faults,
         "inputs": sum(row["inputs"] for row in kinds.values()),
         "seed": seed,
-        "peak_memory_mib": round(peak),
+        "peak_memory_mib": round(peak_memory()),
         "kinds": kinds,
         "faults": [
             {"kind": f.kind, "number": f.number, "what": f.what, "input": f.data.decode("latin-1")}

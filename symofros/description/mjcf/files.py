@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
-from symofros.description.reading import read_bytes
+from symofros.description.reading import read_bytes, resolved
 from symofros.description.xml_nodes import MAX_DEPTH, Element, XmlFault, parse_xml
 from symofros.errors import DescriptionError, Problem
 
@@ -36,7 +36,7 @@ class Folder:
             XmlFault: A file is no XML.
             DescriptionError: A file can't be read, or all together are too large.
         """
-        root = self._parsed(self.main.resolve(), str(self.main))
+        root = self._parsed(resolved(self.main), str(self.main))
         self._expand(root, self.main.parent, 1)
         return root
 
@@ -147,9 +147,9 @@ class Folder:
     def _inside(self, file: str, user: Element, base: Path) -> Path | None:
         """The path of a file that a model names, if that is inside of the model's folder, links followed."""
         plain = PurePosixPath(file.replace("\\", "/"))
-        folder = self.main.parent.resolve()
+        folder = resolved(self.main.parent)
         if not plain.is_absolute() and not PureWindowsPath(file).drive and ".." not in plain.parts and "\0" not in file:
-            path = (base / plain).resolve()
+            path = resolved(base / plain)
             if path.is_relative_to(folder):
                 return path
         self.fault(

@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path, PurePosixPath
 
+from symofros.description.reading import resolved
 from symofros.description.remarks import Remarks
 from symofros.description.urdf.values import finite_numbers
 from symofros.description.values import Rotation
@@ -48,7 +49,7 @@ class Visuals:
     """
 
     def __init__(self, file: Path, robot: Element, remarks: Remarks) -> None:
-        self.folder = file.resolve().parent
+        self.folder = resolved(file).parent
         self.remarks = remarks
         self.count = 0
         named = ((element.attributes.get("name", ""), _color(element)) for element in robot.all("material"))

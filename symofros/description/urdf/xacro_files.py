@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from symofros.description.reading import read_bytes
+from symofros.description.reading import read_bytes, resolved
 from symofros.description.urdf import xacro_worker
 from symofros.description.workers import answer_of
 from symofros.errors import DescriptionError, Problem
@@ -30,7 +30,7 @@ def expanded(path: str | os.PathLike[str], arguments: Mapping[str, str]) -> byte
     Raises:
         DescriptionError: xacro is not installed, the file can't be expanded, or it asks for what is not allowed.
     """
-    file = Path(path).resolve()
+    file = resolved(Path(path))
     read_bytes(Path(path), xacro_worker.MAX_BYTES)
     task = {"file": str(file), "folder": str(_package(file)), "arguments": {k: str(v) for k, v in arguments.items()}}
     answer = _answer(task)

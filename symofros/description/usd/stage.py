@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 from typing import Any
 
-from symofros.description.reading import read_bytes
+from symofros.description.reading import read_bytes, resolved
 from symofros.description.usd import usd_worker
 from symofros.description.workers import answer_of
 from symofros.errors import DescriptionError, Problem
@@ -27,7 +27,7 @@ def stage_of(path: str | os.PathLike[str]) -> dict[str, Any]:
     """
     file = Path(path)
     read_bytes(file, MAX_BYTES)
-    answer = _answer(str(file.resolve()))
+    answer = _answer(str(resolved(file)))
     if "absent" in answer:
         raise DescriptionError(
             Problem(
@@ -54,10 +54,10 @@ def stage_of(path: str | os.PathLike[str]) -> dict[str, Any]:
 
 def _refuse_outside(file: Path, layers: list[str]) -> None:
     """Refuse a stage that draws on other places than its own folder: who sends a file does not choose what is read."""
-    folder = file.resolve().parent
+    folder = resolved(file).parent
     for layer in layers:
         # What lies in a .usdz is named FILE[MEMBER].
-        inside = Path(layer.partition("[")[0]).resolve()
+        inside = resolved(Path(layer.partition("[")[0]))
         if not inside.is_relative_to(folder):
             raise DescriptionError(
                 Problem(

@@ -12,7 +12,7 @@ from pydantic import ValidationError
 
 from symofros.description.constraints import Constraint, Coupling
 from symofros.description.forces import Connection, Potential, VirtualPower
-from symofros.description.reading import YAML_SUFFIXES, in_order, kind_of, read_bytes, refuse_size
+from symofros.description.reading import YAML_SUFFIXES, in_order, kind_of, read_bytes, refuse_size, resolved
 from symofros.description.reading import Reading as Reading
 from symofros.description.system import Body, Input, Parameter, System
 from symofros.description.yaml.faults import line_of, path_of, problem_of
@@ -57,9 +57,9 @@ def read_yaml(
         wholesale (a section or an included file), because each use of one would then look like a fault of its own.
     """
     main = Path(path)
-    merger = _Merger(main.parent.resolve())
+    merger = _Merger(resolved(main.parent))
     if text is not None:
-        merger.unwritten[main.resolve()] = text.encode("utf-8")
+        merger.unwritten[resolved(main)] = text.encode("utf-8")
     merger.composed = composed
     merger.add(main, str(main), ())
     return merger.reading(main.stem)
@@ -108,7 +108,7 @@ class _Merger:
 
     def add(self, path: Path, shown: str, including: tuple[Path, ...]) -> None:
         """Read one file, after the files it includes."""
-        self.seen.add(path.resolve())
+        self.seen.add(resolved(path))
         try:
             root, problems = self.document(path, shown)
             _refuse_diagram(root, shown)
@@ -122,7 +122,7 @@ class _Merger:
         self.incomplete |= file is None
         if file is None:
             return
-        here = (*including, path.resolve())
+        here = (*including, resolved(path))
         for i, text in enumerate(file.include or ()):
             where = f"{shown}:{root.at(('include', i)).line}"
             self.include(text, path, shown, here, where)
@@ -138,7 +138,7 @@ class _Merger:
 
     def bytes_of(self, path: Path) -> bytes:
         """A file's content; the limit is on the main file and all it includes together."""
-        data = self.unwritten.get(path.resolve())
+        data = self.unwritten.get(resolved(path))
         if data is None:
             data = read_bytes(path, self.bytes_left)
         refuse_size(path, data, self.bytes_left)
@@ -148,7 +148,7 @@ class _Merger:
     def include(self, text: str, path: Path, shown: str, here: tuple[Path, ...], where: str) -> None:
         """Follow one include, if it is allowed; a file that is included twice counts once."""
         try:
-            target = (path.resolve().parent / text).resolve()
+            target = resolved(resolved(path).parent / text)
             problem = self.refusal(text, target, here)
         except (OSError, ValueError) as error:  # A NUL character, or a loop of links.
             problem = Problem(

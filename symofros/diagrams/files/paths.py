@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from symofros.description.reading import kind_of
+from symofros.description.reading import kind_of, resolved
 from symofros.errors import Problem, did_you_mean
 
 DIAGRAMS = (".yaml", ".yml")
@@ -20,7 +20,7 @@ def refused(text: str, base: Path, folder: Path, suffixes: tuple[str, ...] = ())
         suffixes: Suffixes that such files have; any by default.
     """
     try:
-        target = (base / text).resolve()
+        target = resolved(base / text)
         exists = target.is_file()
         is_inside = not Path(text).is_absolute() and target.is_relative_to(folder)
     except (OSError, ValueError, RuntimeError) as error:  # A NUL character, a loop of links, too long a name.

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from symofros.base.arguments import checked
-from symofros.description.reading import MODEL_SUFFIXES, in_order, read_bytes
+from symofros.description.reading import MODEL_SUFFIXES, in_order, read_bytes, resolved
 from symofros.description.system import System
 from symofros.description.yaml.files import DIAGRAM
 from symofros.description.yaml.yaml_nodes import Node, YamlFault
@@ -75,9 +75,9 @@ def read_diagram(
         network: Whether blocks may reach other machines than this one.
     """
     file = Path(path)
-    shared = _Shared(file.parent.resolve(), kinds(blocks), network)
+    shared = _Shared(resolved(file.parent), kinds(blocks), network)
     if text is not None:
-        shared.unwritten[file.resolve()] = text.encode("utf-8")
+        shared.unwritten[resolved(file)] = text.encode("utf-8")
     diagram = shared.file(file, str(file), ())
     return diagram, list(in_order(shared.problems))
 
@@ -99,14 +99,14 @@ class _Shared:
         """A file's diagram, as far as it can be read."""
         self.files += 1
         try:
-            data = self.unwritten.get(path.resolve()) or read_bytes(path, self.bytes_left)
+            data = self.unwritten.get(resolved(path)) or read_bytes(path, self.bytes_left)
             self.bytes_left -= len(data)
             root, repeated = compose(data, shown)
         except (YamlFault, DescriptionError) as error:
             self.problems += error.problems
             return None
         self.problems += repeated
-        reader = _Reader(self, path, shown, (*including, path.resolve()))
+        reader = _Reader(self, path, shown, (*including, resolved(path)))
         entries = reader.mapping(root, "the file", SECTIONS)
         rule = f"a diagram's file begins with {HEAD}: {VERSION}"
         if not reader.missing(root, "the file", HEAD, entries, rule) and entries[HEAD].value != VERSION:
@@ -118,7 +118,7 @@ class _Shared:
                 "take a newer symofros",
             )
         diagram = reader.diagram(entries, path.stem)
-        diagram.file = str(path.resolve())
+        diagram.file = str(resolved(path))
         return diagram
 
 
@@ -179,7 +179,7 @@ class _Reader(Entries):
         )
         if system is None:
             return
-        path, floats = str((self.base / entries["file"].value).resolve()), floating
+        path, floats = str(resolved(self.base / entries["file"].value)), floating
         try:
             diagram.add_model(name, system, start, parameters, functions, ModelFile(path, functions, floats))
         except DescriptionError as error:
@@ -192,7 +192,7 @@ class _Reader(Entries):
         if not text or problem:
             self.take(node, [problem] if problem else [])
             return None
-        path = (self.base / text).resolve()
+        path = resolved(self.base / text)
         key = path, floating_base
         if key not in self.shared.systems:
             try:
@@ -292,7 +292,7 @@ class _Reader(Entries):
             return value
         problem = refused(value, self.base, self.shared.folder)
         self.take(node, [problem] if problem else [])
-        return str((self.base / value).resolve()) if not problem else value
+        return str(resolved(self.base / value)) if not problem else value
 
     def wire(self, diagram: Diagram, block: str, port: str, node: Node) -> None:
         """An input and its source."""
@@ -353,7 +353,7 @@ class _Reader(Entries):
         """A part's file."""
         text = self.text(node, f"{what}: file", 1000)
         problem = refused(text, self.base, self.shared.folder, DIAGRAMS) if text else None
-        target = (self.base / text).resolve() if text and not problem else Path()
+        target = resolved(self.base / text) if text and not problem else Path()
         if not problem and text and target in self.here:
             names = " -> ".join(file.name for file in [*self.here[self.here.index(target) :], target])
             problem = Problem(

@@ -14,6 +14,7 @@ from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
 from symofros.base.arguments import checked
 from symofros.base.atomic import write_atomically
+from symofros.description.reading import resolved
 from symofros.description.yaml.yaml_writer import LINE_WIDTH
 from symofros.diagrams.block import Block, ModelSetup
 from symofros.diagrams.diagram import INSIDE, Diagram, Part
@@ -73,7 +74,7 @@ class _Writer:
     """Collects the models that have no file yet."""
 
     def __init__(self, file: Path) -> None:
-        self.file, self.folder = file, file.parent.resolve()
+        self.file, self.folder = file, resolved(file.parent)
         self.models: dict[Path, ModelSetup] = {}
 
     def document(self, diagram: Diagram) -> Plain:
@@ -139,7 +140,7 @@ class _Writer:
         """A part by its file, or inline."""
         entries: Plain = {}
         path = Path(part.diagram.file) if part.diagram.file else None
-        if path and path != self.file.resolve() and path.is_relative_to(self.folder) and _unchanged(part.diagram, path):
+        if path and path != resolved(self.file) and path.is_relative_to(self.folder) and _unchanged(part.diagram, path):
             entries["file"] = path.relative_to(self.folder).as_posix()
         else:
             inside = self.document(part.diagram)
@@ -205,7 +206,7 @@ def _path(value: Any, folder: Path) -> str:
     Raises:
         TypeError: It lies elsewhere.
     """
-    path = Path(str(value)).resolve()
+    path = resolved(Path(str(value)))
     if not path.is_relative_to(folder):
         raise TypeError(f"'{value}' lies outside the diagram's folder")
     return path.relative_to(folder).as_posix()

@@ -14,7 +14,7 @@ from typing import Literal
 import uvicorn
 
 import symofros
-from symofros.description.reading import YAML_SUFFIXES
+from symofros.description.reading import YAML_SUFFIXES, resolved
 from symofros.description.yaml.files import write_yaml
 from symofros.errors import Problem
 from symofros.studio.editor.document.session import Session
@@ -73,7 +73,7 @@ def _opened(file: Path | None) -> Session:
     """A native file as it stands; of another format, a new document that says the same."""
     if file is None:
         return Session(Workspace(Path.cwd()))
-    path = file.resolve()
+    path = resolved(file)
     if not path.parent.is_dir():
         raise FileError(Problem(f"'{file}' can't be opened", "no such folder", "its folder exists", "make it first"))
     workspace = Workspace(path.parent)

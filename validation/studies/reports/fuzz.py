@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from validation.reporting.numbers import counted
 from validation.reporting.record import Bullets, Data, Fact, Report, Section, Table, Topic, verdict
-from validation.studies.fuzz import COMPILED, SLOWEST, measure
+from validation.studies.fuzz import COMPILED, MOST_MEMORY, SLOWEST, measure
 
 _FAULTS_SHOWN = 20
 _TEXT = f"""An input is one of the package's own descriptions with one to four random changes: of bytes, words, numbers,
 pieces, lines, or a hostile snippet (code, bombs, document types, endless numbers) put in. A fault is any exception but
-the refusal, a warning, an input that takes longer than {SLOWEST:g} s, or an accepted input that is another one after it
-was written and read again. Of the accepted files, one in {COMPILED} is also compiled, to the interpreter, and its mass
-matrix evaluated."""
-_HEAD = "kind | inputs | refused | read | compiled | faults | slowest [ms] | its number"
+the refusal, a warning, an input that takes longer than {SLOWEST:g} s or {MOST_MEMORY} MiB, or an accepted one that is
+another after it was written and read again. Of the accepted files, one in {COMPILED} is also compiled, to the
+interpreter, and its mass matrix evaluated. Meshes, recorded motions, samples of blocks, and the editor's documents with
+their side files and parts are given to what reads them for the viewer and the editor; mutations are also of bits,
+lengths and counts, and some inputs are no files: folders, pipes, devices, loops of links. Of the meshes that are read
+some are drawn."""
+_HEAD = "kind | inputs | refused | read | compiled or drawn | faults | slowest [ms] | its number"
 _ROW = "{} | {inputs} | {refused} | {read} | {compiled} | {} | {:.0f} | {slowest_input}"
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import logging
 import warnings
 from functools import lru_cache
 from importlib import import_module
@@ -10,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from symofros.description.reading import kind_of
 from symofros.description.visual import Visual
 from symofros.studio.viewer.drawing.collada import read_collada
 from symofros.studio.viewer.drawing.meshes import Array, Mesh, box, cylinder, merged, sphere
@@ -58,9 +60,12 @@ def _read(file: Path, changed: int) -> Mesh:  # A file that was changed since is
     """
     if file.suffix.lower() not in SUFFIXES:
         raise ValueError(f"{file.suffix or 'no suffix'} is none of {', '.join(SUFFIXES)}; convert it")
-    if file.stat().st_size > MOST_BYTES:
-        raise ValueError(f"{file.stat().st_size} bytes, {MOST_BYTES} at most")
-    data = file.read_bytes()
+    if not file.is_file():  # A pipe would be waited for, a device has no end.
+        raise ValueError(f"{kind_of(file)}; a mesh is a regular file")
+    with file.open("rb") as stream:
+        data = stream.read(MOST_BYTES + 1)
+    if len(data) > MOST_BYTES:
+        raise ValueError(f"more than {MOST_BYTES} bytes")
     vertices, faces = read_collada(data, MOST_FACES) if file.suffix.lower() == ".dae" else _loaded(file.suffix, data)
     if not 0 < len(faces) <= MOST_FACES or not np.all(np.isfinite(vertices)):
         raise ValueError(f"{len(faces)} triangles; 1 to {MOST_FACES} with finite corners")
@@ -79,14 +84,17 @@ def _loaded(suffix: str, data: bytes) -> Mesh:
         trimesh = import_module("trimesh")
     except ImportError:
         raise ValueError("trimesh is not installed; pip install 'symofros[view]'") from None
+    logging.getLogger("trimesh").addHandler(
+        logging.NullHandler()
+    )  # It writes tracebacks of what is raised here as well.
     try:
         # Of bytes, without a resolver: nothing that the file refers to is opened.
-        surface = trimesh.load(
-            io.BytesIO(data), file_type=suffix.lower()[1:], force="mesh", process=False, skip_materials=True
-        )
-        return Mesh(
-            np.array(surface.vertices, dtype=np.float64).reshape(-1, 3),
-            np.array(surface.faces, dtype=np.int64).reshape(-1, 3),
-        )
+        with np.errstate(all="ignore"):
+            surface = trimesh.load(
+                io.BytesIO(data), file_type=suffix.lower()[1:], force="mesh", process=False, skip_materials=True
+            )
+        with np.errstate(all="ignore"):  # What overflows is not finite, and refused as such.
+            vertices = np.array(surface.vertices, dtype=np.float64).reshape(-1, 3)
+            return Mesh(vertices, np.array(surface.faces, dtype=np.int64).reshape(-1, 3))
     except Exception as error:  # noqa: BLE001 - its readers raise whatever a bad file makes them stumble over.
         raise ValueError(f"not a {suffix} file: {error}") from None

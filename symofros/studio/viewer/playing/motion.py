@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from array import array as packed
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
@@ -10,6 +11,7 @@ from pathlib import Path
 from typing import NamedTuple, NoReturn
 
 import numpy as np
+import numpy.typing as npt
 
 from symofros.base.arrays import numeric
 from symofros.base.npz import TooLargeError, read_npz
@@ -21,6 +23,11 @@ from symofros.studio.viewer.drawing.meshes import Array
 SUFFIXES = (".npz", ".csv", ".parquet")
 # Half a gigabyte.
 MAX_NUMBERS = 64_000_000
+# Bytes of a number in a CSV file, with what is beside it.
+_WIDEST = 26
+# Coordinate beyond which a motion has diverged, and component below which a quaternion has no direction: their squares
+# are numbers.
+_LARGEST, _SHORTEST = 1e100, 1e-100
 
 
 @dataclass(frozen=True)
@@ -170,10 +177,19 @@ def _read_arrays(file: Path, model: Model) -> PlayedMotion:
 
 
 def _read_csv(file: Path, model: Model) -> PlayedMotion:
+    if file.stat().st_size > _WIDEST * MAX_NUMBERS:
+        raise TooLargeError(f"{file.stat().st_size} bytes")
+    numbers = packed("d")
     with file.open(newline="", encoding="utf-8") as stream:
         rows = csv.reader(stream)
         head = next(rows, [])
-        table = np.array([[float(x) for x in row] for row in rows if row]).reshape(-1, len(head) or 1)
+        for row in rows:
+            if row and len(row) != len(head):
+                raise ValueError(f"line {rows.line_num} has {len(row)} of {len(head)} columns")
+            numbers.extend(map(float, row))
+            if len(numbers) > MAX_NUMBERS:
+                raise TooLargeError(f"more than {MAX_NUMBERS} numbers")
+    table = np.array(numbers).reshape(-1, len(head) or 1)
     return _from_columns(dict(zip(head, table.T, strict=True)) if head else {}, file, model)
 
 
@@ -213,8 +229,10 @@ def _from_columns(columns: Mapping[str, Array], file: Path, model: Model) -> Pla
     for i, name in enumerate(model.names.u):
         column = f"u.{name}" if f"u.{name}" in columns else name
         if column in columns and column not in model.names.q:
-            u[:, i] = columns[column]
-    q = np.stack([columns[name] for name in model.names.q], axis=1) if model.nq else np.zeros((n, 0))
+            u[:, i] = numeric(f"{file.name}: {column}", columns[column])
+    q = np.empty((n, model.nq))
+    for i, name in enumerate(model.names.q):
+        q[:, i] = numeric(f"{file.name}: {name}", columns[name])
     return _checked(model, columns["t"], q, u, None, file.name)
 
 
@@ -239,7 +257,7 @@ def _checked(
                 "show it with the model that it was simulated with",
             )
     # A run that diverged ends in states that can't be drawn.
-    finite = np.isfinite(t) & np.isfinite(q).all(axis=1) & np.isfinite(u).all(axis=1)
+    finite = np.isfinite(t) & np.isfinite(q).all(axis=1) & np.isfinite(u).all(axis=1) & _drawable(model, q)
     count = n if finite.all() else int(np.argmin(finite))
     if not count:
         _refuse(
@@ -251,6 +269,16 @@ def _checked(
     if np.any(np.diff(t[:count]) < 0.0):
         _refuse(what, "times that fall", "times rise from state to state", "sort the states by time")
     return PlayedMotion(model, t[:count], q[:count], u[:count], par)
+
+
+def _drawable(model: Model, q: Array) -> npt.NDArray[np.bool_]:
+    """Whether each configuration (n, nq) can be drawn: of a motion's size, no quaternion of length zero."""
+    drawable: npt.NDArray[np.bool_] = np.all(np.abs(q) <= _LARGEST, axis=1)
+    for segment in model.record.segments:
+        if segment.kind != "linear":
+            first = segment.q + segment.translations
+            drawable &= np.any(np.abs(q[:, first : first + 4]) > _SHORTEST, axis=1)
+    return drawable
 
 
 def finite(name: str, value: float) -> float:

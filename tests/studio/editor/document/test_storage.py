@@ -396,3 +396,10 @@ def test_malformed_edits_are_refused(file: Path, edits: object) -> None:
     session = opened(file)
     with pytest.raises(EditError, match="malformed"):
         session.edit({**now(session), "edits": edits})
+
+
+def test_a_file_that_is_a_loop_of_links_is_refused_in_words(tmp_path: Path) -> None:
+    loop = tmp_path / "loop.yaml"
+    loop.symlink_to(loop.name)
+    session = Session(Workspace(tmp_path), loop)
+    json.dumps(session.as_json(), allow_nan=False)

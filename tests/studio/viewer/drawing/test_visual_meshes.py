@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import struct
+import subprocess
+import sys
 import warnings
 from collections.abc import Callable
 from dataclasses import replace
@@ -107,7 +110,7 @@ def test_what_is_no_mesh_is_said_and_left_out(name: str, content: bytes, expecte
 def test_too_large_ones_are_not_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     stl(tmp_path / "m.stl")
     monkeypatch.setattr(visual_meshes, "MOST_BYTES", 100)
-    with pytest.warns(UserWarning, match="284 bytes, 100 at most"):
+    with pytest.warns(UserWarning, match="more than 100 bytes"):
         assert visual_mesh(Visual("mesh", (1.0, 1.0, 1.0), file=str(tmp_path / "m.stl"))) is None
 
 
@@ -162,3 +165,26 @@ def test_a_damaged_collada_file_leaves_its_body_without_a_look_and_all_else_draw
     with pytest.warns(UserWarning):
         shown = [part.name for part in Mechanism(system).drawing().parts if part.kind == "visuals"]
     assert shown == ["visuals/upper.0"]
+
+
+@pytest.mark.parametrize("place", ["pipe", "device", "loop", "folder"])
+def test_meshes_that_are_no_files_are_not_waited_for(place: str, tmp_path: Path) -> None:
+    """A pipe would be read until somebody writes, a device without end."""
+    file = tmp_path / "m.stl"
+    if place == "pipe":
+        os.mkfifo(file)
+    elif place == "folder":
+        file.mkdir()
+    else:
+        file.symlink_to("/dev/zero" if place == "device" else file.name)
+    with pytest.warns(UserWarning, match="'m.stl' is not drawn"):
+        assert visual_mesh(Visual("mesh", (1.0, 1.0, 1.0), file=str(file))) is None
+
+
+def test_what_a_mesh_is_not_is_said_once(tmp_path: Path) -> None:
+    """No traceback of the library's own readers beside the warning."""
+    file = tmp_path / "m.stl"
+    file.write_bytes(b"solid\nfacet normal 0 0 x\nendsolid")
+    code = f"from symofros.tools import Visual, visual_mesh; visual_mesh(Visual('mesh', (1, 1, 1), file={str(file)!r}))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "'m.stl' is not drawn" in done.stderr and "Traceback" not in done.stderr

@@ -97,6 +97,29 @@ def test_other_files_are_refused(name: str, text: str, expected: str, pendulum: 
         read_motion(tmp_path / name, pendulum)
 
 
+def test_quaternions_of_no_direction_and_sizes_that_overflow_end_a_motion() -> None:
+    """Between such states there is no way."""
+    body = sf.RigidBody("body", sf.Joint("j", "free"), sf.Inertia(1.0, moments=(1, 1, 1)))
+    model = sf.compile(sf.System("s", (body,)), sf.Options(backend="interpreter"))
+    still = model.neutral()
+    turned_off, far, unset = still.copy(), still.copy(), still.copy()
+    turned_off[3:], far[0], unset[6] = 0.0, 1e308, 1e-200
+    for bad in (turned_off, far, unset):
+        played = motion(model, [0, 1, 2, 3], [still, still, bad, still])
+        assert len(played.t) == 2 and np.isfinite(played.at([0.0, 0.5, 1.0])[0]).all()
+        with pytest.raises(ShapeError, match="the first not finite"):
+            motion(model, [0, 1], [bad, still])
+
+
+def test_tables_of_dates_and_texts_are_refused(pendulum: sf.Model, tmp_path: Path) -> None:
+    pa = pytest.importorskip("pyarrow")
+    for odd in (np.arange(2).astype("datetime64[s]"), ["a", "b"], [None, None]):
+        table = pa.table({"t": np.zeros(2), "q1": odd, "q2": np.zeros(2)})
+        importlib.import_module("pyarrow.parquet").write_table(table, tmp_path / "m.parquet")
+        with pytest.raises(SymofrosError, match="q1 is not an array of numbers"):
+            read_motion(tmp_path / "m.parquet", pendulum)
+
+
 def test_a_file_that_is_not_there_is_said_to_be(pendulum: sf.Model) -> None:
     with pytest.raises(SymofrosError, match=r"'none.npz' does not exist\n.*\n.*\n  remedy: check the path"):
         read_motion("none.npz", pendulum)
@@ -120,7 +143,7 @@ def test_pickles_in_archives_are_not_opened(pendulum: sf.Model, tmp_path: Path) 
         read_motion(tmp_path / "m.npz", pendulum)
 
 
-@pytest.mark.parametrize("suffix", [".npz", ".parquet"])
+@pytest.mark.parametrize("suffix", [".npz", ".csv", ".parquet"])
 def test_archives_are_not_unpacked_beyond_what_is_shown(
     pendulum: sf.Model, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, suffix: str
 ) -> None:
@@ -129,12 +152,23 @@ def test_archives_are_not_unpacked_beyond_what_is_shown(
     columns = {"t": np.zeros(100), "q1": np.zeros(100), "q2": np.zeros(100)}
     if suffix == ".npz":
         np.savez_compressed(tmp_path / "m.npz", t=columns["t"], q=np.zeros((100, 2)))
+    elif suffix == ".csv":
+        (tmp_path / "m.csv").write_text("t,q1,q2\n" + "0,0,0\n" * 100)
     else:
         pa = pytest.importorskip("pyarrow")
         importlib.import_module("pyarrow.parquet").write_table(pa.table(columns), tmp_path / "m.parquet")
     with pytest.raises(SymofrosError, match=f"'m{suffix}' is too large") as caught:
         read_motion(tmp_path / f"m{suffix}", pendulum)
-    assert "100" in caught.value.problem.found
+    assert ("50" if suffix == ".csv" else "100") in caught.value.problem.found
+
+
+def test_a_long_table_is_refused_before_it_is_read(
+    pendulum: sf.Model, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(motion_module, "MAX_NUMBERS", 50)
+    (tmp_path / "m.csv").write_text("t" * 5000)
+    with pytest.raises(SymofrosError, match="'m.csv' is too large"):
+        read_motion(tmp_path / "m.csv", pendulum)
 
 
 def test_a_run_of_another_system_is_refused(run: sf.Trajectory) -> None:
