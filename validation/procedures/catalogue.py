@@ -118,10 +118,12 @@ PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
     ),
     "cart_pole": (lambda scene: diagrams.looped(scene.system),),
     "stewart": (lambda scene: analyses.driven(scene, scene.model.names.u), reactions.of_constraints),
+    "soft_pendulum": (runs.stated_error,),
     "flexible_pendulum": (
         runs.implicit_steps,
         lambda scene: analyses.at_rest(scene, scene.model.neutral() + 0.1),
         runs.mirrored,
+        reactions.of_sections,
         identities.transposed,
     ),
 }
