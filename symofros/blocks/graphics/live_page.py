@@ -80,9 +80,7 @@ class Page(BaseHTTPRequestHandler):
         self.send_response(200)
         self.send_header("Content-Type", kind)
         self.send_header("Cache-Control", "no-store")
-        self.send_header(
-            "Content-Security-Policy", "default-src 'self' 'unsafe-inline'; img-src data:; frame-ancestors 'none'"
-        )
+        self.send_header("Content-Security-Policy", _POLICY)
 
     def _send(self, kind: str, data: bytes) -> None:
         self._begin(kind)

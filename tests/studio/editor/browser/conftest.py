@@ -10,6 +10,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from PIL import Image
@@ -114,6 +115,21 @@ def node_modules() -> Path:
         if not (folder / "node_modules" / ".package-lock.json").is_file():  # npm writes it last.
             subprocess.run(["npm", "ci", "--no-audit", "--no-fund"], cwd=folder, check=True)
     return folder / "node_modules"
+
+
+@pytest.fixture
+def faults(page: Page, node_modules: Path) -> Callable[[], list[str]]:
+    """Runs axe on what the page shows now."""
+    source = (node_modules / "axe-core" / "axe.min.js").read_text()
+
+    def look() -> list[str]:
+        page.evaluate(source)
+        # The frame of the 3-D pane holds viser's page.
+        run = "axe.run(document, {iframes: false}).then(result => result.violations)"
+        found: list[dict[str, Any]] = page.evaluate(run)
+        return [f"{fault['id']}: {fault['help']}: {node['target']}" for fault in found for node in fault["nodes"]]
+
+    return look
 
 
 @pytest.fixture

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 from playwright.sync_api import Page, expect
@@ -24,21 +23,6 @@ blocks:
   fast: {kind: gain, gain: 2, period: 0.01, inputs: {u: slow}}
   sight: {kind: scope, signals: [held, wave], inputs: {held: fast, wave: wave.y}}
 """
-
-
-@pytest.fixture
-def faults(page: Page, node_modules: Path) -> Callable[[], list[str]]:
-    """Runs axe on what the page shows now."""
-    source = (node_modules / "axe-core" / "axe.min.js").read_text()
-
-    def look() -> list[str]:
-        page.evaluate(source)
-        # The frame of the 3-D pane holds viser's page.
-        run = "axe.run(document, {iframes: false}).then(result => result.violations)"
-        found: list[dict[str, Any]] = page.evaluate(run)
-        return [f"{fault['id']}: {fault['help']}: {node['target']}" for fault in found for node in fault["nodes"]]
-
-    return look
 
 
 @pytest.mark.parametrize("theme", ["light", "dark"])
@@ -143,6 +127,44 @@ def test_small_pages(
     expect(steps.results(page).get_by_role("img").first).to_be_visible(timeout=60_000)
     look()
     picture(f"small-results-{width}")
+
+
+@pytest.mark.parametrize(("width", "height"), [(640, 380), (375, 667)], ids=["zoomed to 200 %", "phone"])
+def test_a_diagram_on_small_pages(
+    serve: Callable[..., Server],
+    page: Page,
+    faults: Callable[[], list[str]],
+    picture: Callable[[str], None],
+    width: int,
+    height: int,
+) -> None:
+    page.set_viewport_size({"width": width, "height": height})
+    server = serve("drawn.yaml", content=DRAWN)
+    steps.open_editor(page, server.url)
+
+    def look() -> None:
+        assert faults() == []
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        for button in page.get_by_role("banner").get_by_role("button").all():
+            button.scroll_into_view_if_needed()
+            box = button.bounding_box()
+            assert box is not None and 0 <= box["x"] and box["x"] + box["width"] <= width, button.inner_text()
+
+    look()
+    picture(f"small-diagram-{width}")
+    steps.open_window(page, "blocks/slow")
+    assert faults() == []
+    for label in ("Name", "Period", "Source of u"):
+        steps.window(page).get_by_label(label, exact=True).click(trial=True)  # Nothing lies over it.
+    page.keyboard.press("Escape")
+    steps.run(page, "Run…")
+    assert faults() == []
+    steps.window(page).get_by_role("button", name="Run").click()
+    expect(steps.results(page).get_by_text("s of computing")).to_be_visible(timeout=60_000)
+    plot = steps.results(page).locator("figure.plot").first.bounding_box()
+    assert plot is not None and plot["x"] + plot["width"] <= width
+    look()
+    picture(f"small-diagram-run-{width}")
 
 
 def test_a_window_holds_the_focus_and_gives_it_back(serve: Callable[..., Server], page: Page) -> None:

@@ -73,7 +73,7 @@ def test_a_beam_is_stated_by_material_and_shape_and_shows_its_frequencies(
 
 
 def test_how_far_its_theory_reaches_is_shown_on_the_beam(
-    serve: Callable[..., Server], page: Page, picture: Callable[[str], None]
+    serve: Callable[..., Server], page: Page, picture: Callable[[str], None], faults: Callable[[], list[str]]
 ) -> None:
     text = ROBOT.with_name("flexible_pendulum.yaml").read_text()
     server = serve("pendulum.yaml", content=text.replace("value: 20.0", "value: 0.25"))
@@ -95,6 +95,9 @@ def test_how_far_its_theory_reaches_is_shown_on_the_beam(
     badge = steps.block(page, "bodies/rod").locator(".block-theory")
     expect(badge).to_have_text(re.compile(r"^± \d+(\.\d)? %$"))
     picture("beam-theory")
+    for colours in ("dark", "light"):
+        page.emulate_media(color_scheme=colours)
+        assert faults() == []
     steps.open_window(page, "bodies/rod")
     expect(figures).to_contain_text("In the newest simulation beam 'rod' bends by")
     figures.scroll_into_view_if_needed()
