@@ -84,4 +84,4 @@ def test_diagrams_of_closed_loops_state_the_error_of_runs() -> None:
     unloaded = max(beam.bending(q[beam.in_q]).error for q in alone.q)
     assert not 0.95 < bent.error / unloaded < 1.05
     for run in runs:  # the slack of (26d): interpreted runs evaluate every step whose error may be larger
-        assert [b.error for b in run.bendings] == pytest.approx([bent.error], rel=0.04)
+        assert [b.error for b in run.bendings] == pytest.approx([bent.error], rel=0.1)

@@ -43,7 +43,7 @@ def test_interpreted_runs_say_the_same_of_beams() -> None:
     assert len([note for note in run.outcome.notes if "second-order theory" in note]) == len(notes) == 2
     # Interpreted runs evaluate every step; compiled ones leave out what the slack of (26d) allows.
     errors = [bending.error for bending in compiled.bendings]
-    assert [bending.error for bending in run.bendings] == pytest.approx(errors, rel=0.04)
+    assert [bending.error for bending in run.bendings] == pytest.approx(errors, rel=0.1)  # The slack of a run, (26d).
     assert [bending.beam for bending in run.bendings] == ["first.blade", "second.blade"]
     outcome = limp.interpret(1.0, dt=0.01).outcome
     assert outcome.kind == "beyond theory" and "'first.blade' bends by" in outcome.reason
