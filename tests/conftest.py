@@ -21,6 +21,9 @@ _CACHE = Path(__file__).parent.parent / ".pytest_cache"
 os.environ.setdefault("SYMOFROS_CACHE", str(_CACHE / "models"))
 # zig would use the home folder, which a machine of CI may lack; it does not end where it can't be made.
 os.environ.setdefault("ZIG_GLOBAL_CACHE_DIR", str(_CACHE / "zig"))
+# A worker a core: linear algebra with a thread for each core would have them wait for each other at full load.
+for _threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(_threads, "1")
 # Nothing here is drawn by MuJoCo, whose import would look for a display in every process.
 os.environ.setdefault("MUJOCO_GL", "disable")
 
