@@ -27,7 +27,7 @@ Token = tuple[str, str, int]
 MAX_LENGTH = 10_000
 MAX_DEPTH = 100
 
-# Of texts that are parsed once and kept; longer ones are rare, and would take room.
+# Of texts that are parsed once and kept; longer ones are rare, and would take memory.
 _SHORT = 100
 # Of the tree: 1 + 1 + 1 + … is a tower. What works on formulas recurses into them.
 MAX_HEIGHT = 300

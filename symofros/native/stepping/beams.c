@@ -222,11 +222,11 @@ static int32_t sym_judge_beam(sym_run *r, int32_t b, double t, const double *q) 
     sym_beam_guard *guard = r->beam_guard + b;
     int32_t status;
     if (guard->leading >= 0) {
-        guard->room = guard->target - sym_bound_by_shape(r, b, q);
-        if (guard->room >= 0.0) return 0;
+        guard->margin = guard->target - sym_bound_by_shape(r, b, q);
+        if (guard->margin >= 0.0) return 0;
     }
     status = sym_evaluate_beam(r, b, t, q);
-    guard->room = guard->target - guard->evaluated;
+    guard->margin = guard->target - guard->evaluated;
     return status;
 }
 
@@ -234,15 +234,15 @@ static int32_t sym_judge_beam(sym_run *r, int32_t b, double t, const double *q) 
  * 0 or SYM_BEYOND_THEORY. */
 static int32_t sym_judge_beams(sym_run *r, double t, const double *q) {
     const double way = r->beam_way;
-    double room = HUGE_VAL;
+    double margin = HUGE_VAL;
     int32_t b, status = 0;
     for (b = 0; b < r->system->n_beams; ++b) {
         sym_beam_guard *guard = r->beam_guard + b;
-        guard->room -= way;
-        if (guard->room < 0.0) status |= sym_judge_beam(r, b, t, q + r->system->beams[b].q);
-        if (guard->room < room) room = guard->room;
+        guard->margin -= way;
+        if (guard->margin < 0.0) status |= sym_judge_beam(r, b, t, q + r->system->beams[b].q);
+        if (guard->margin < margin) margin = guard->margin;
     }
-    r->beam_way = 0.0, r->beam_room = r->project && b > 0 ? -1.0 : room; /* projections change the end of each step */
+    r->beam_way = 0.0, r->beam_margin = r->project && b > 0 ? -1.0 : margin; /* projections change the end of each step */
     return status;
 }
 
@@ -252,7 +252,7 @@ static int32_t sym_judge_beams_anew(sym_run *r, double t, const double *q) {
     for (b = 0; b < r->system->n_beams; ++b) {
         sym_beam_guard *guard = r->beam_guard + b;
         if (guard->norm == SYM_BEAM_UNKNOWN || guard->beam_limit != r->beam_limit) sym_start_beam(r, b);
-        guard->room = guard->target - sym_bound_by_change(r, b, q + r->system->beams[b].q);
+        guard->margin = guard->target - sym_bound_by_change(r, b, q + r->system->beams[b].q);
     }
     r->beam_way = 0.0;
     return sym_judge_beams(r, t, q);
@@ -267,7 +267,7 @@ SYM_EXPORT void sym_run_settle_beams(sym_run *r) {
         const double *q = r->q + r->system->beams[b].q;
         if (guard->norm == SYM_BEAM_UNKNOWN || sym_bound_by_change(r, b, q) <= guard->largest) continue;
         (void)sym_evaluate_beam(r, b, r->t, q);
-        guard->room = guard->target - guard->evaluated + r->beam_way; /* the way that is counted off later */
+        guard->margin = guard->target - guard->evaluated + r->beam_way; /* the way that is counted off later */
     }
 }
 
@@ -275,7 +275,7 @@ SYM_EXPORT void sym_run_settle_beams(sym_run *r) {
  * (26d). Returns 0 or SYM_BEYOND_THEORY. */
 static int32_t sym_judge_step(sym_run *r, double t, const double *q) {
     r->beam_way += r->beam_step_way;
-    if (r->beam_way <= r->beam_room) return 0;
+    if (r->beam_way <= r->beam_margin) return 0;
     return r->project || r->beam_way >= HUGE_VAL ? sym_judge_beams_anew(r, t, q) : sym_judge_beams(r, t, q);
 }
 

@@ -71,7 +71,7 @@ typedef struct sym_beam_guard { /* how far a beam is bent in the norm of its kin
     int32_t norm;                /* which one; 0: the beam was not judged yet */
     int32_t leading;             /* the coordinate that adds most to it where it was evaluated last; -1: none is of use */
     double evaluated;            /* the norm there */
-    double room;                 /* by which the norm may grow since the beam was judged last until it is again */
+    double margin;               /* by which the norm may grow since the beam was judged last until it is again */
     double largest, target;      /* norms of the largest error so far, and of the one beyond which a step is judged: */
     double least, limit;         /* between that of a negligible error and that of the limit */
     double beam_limit;           /* the limit that this is of */
@@ -166,7 +166,7 @@ typedef struct sym_run {
     /* (nv) Changes of norms by coordinates; the way in these norms since beams were judged, of the last step, and up to which
      * none is to be judged. */
     double *beam_weight;
-    double beam_way, beam_step_way, beam_room;
+    double beam_way, beam_step_way, beam_margin;
     /* Axial loads of the beams, in states of the motion that are kept as those for the diagnosis are: the work of the
      * elastic stiffness (nv, nv) and of the tangent stiffness. NULL: nothing is known of them here. */
     const double *elastic_stiffness;

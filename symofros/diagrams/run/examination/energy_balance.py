@@ -162,7 +162,7 @@ def _is_numerical(
             changes[k] = energy[1] - energy[0]
         if float(np.abs(changes).sum()) >= share:
             return True
-        # Steps past a contact's limit of stability may throw a body back by chance alike: once is no proof.
+        # Steps past a contact's limit of stability may throw a body back in the same way by chance: once is no proof.
         if level > 1 and float(np.abs(changes - before).sum()) <= _SETTLED * share:
             break
     if not doubts.evident:
