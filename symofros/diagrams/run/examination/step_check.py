@@ -149,7 +149,7 @@ class _Run:
         """What finer steps change in a window; without a block where they do not come to its end.
 
         They are refined until that changes no more than a part of what is noted, and twice at least where a speed
-        changes by half of the largest from one record to the next: steps over a contact may err in the same way by chance.
+        changes by half of the largest from one record to the next: steps over a contact may all err in the same way.
         """
         t, i = self.states[0], window.first
         coarse: States | None
