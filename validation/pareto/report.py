@@ -45,10 +45,10 @@ def compose(data: Data) -> Report:
     said += f"; {counted(len(failures), 'problem')} could not be done" if failures else ""
     said += f"; interrupted before {', '.join(unfinished)}" if unfinished else ""
     most = max((v.ratio for _, _, v in judged if math.isfinite(v.ratio)), default=0.0)
-    verdicts = {True: "ok", False: "missed", None: "not measured"}
+    labels = {True: "ok", False: "missed", None: "not measured"}
     rows = (
         f"[{one.title}](#{name}) | {one.shown(v.target.error)} | {v.target.engine} | {duration(v.seconds)} | "
-        f"{duration(v.engine_seconds)} | {verdict(v.winner, v.ok)} | {short(v.target.ratio)} | {verdicts[v.ok]}"
+        f"{duration(v.engine_seconds)} | {verdict(v.winner, v.ok)} | {short(v.target.ratio)} | {labels[v.ok]}"
         for name, one, v in judged
     )
     targets = Table.of(_TARGETS, rows)
