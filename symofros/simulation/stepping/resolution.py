@@ -20,7 +20,7 @@ _DIRECTIONS = 24
 # States looked at, as far as their evaluations are below this share of the run's.
 _STATES, _SHARE = 4, 0.01
 # Share of that error below which steps are evidently short enough, however the motion amplifies it.
-_EVIDENT = 1e-3
+_EVIDENT = 1e-4
 # Share of a mode that rounding alone excites.
 _ROUNDING = 1e-16
 # Powers of e by which a mode of the motion grows at the rate of one state; then this has become another.

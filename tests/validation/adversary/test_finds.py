@@ -759,6 +759,22 @@ FINDS: list[tuple[str, Scene, str]] = [
         },
         "intervals are halved twice at least: half the step met the same accident",
     ),
+    (
+        "step_sizes",
+        {
+            "mechanism": "pendulum",
+            "method": "dopri5",
+            "step": 0.1,
+            "steps": 100,
+            "mass": 10.0,
+            "size": 1.0,
+            "damping": 0.0,
+            "scale": 100000.0,
+            "start": [1.0, -0.5],
+            "speed": [0.0, 0.0],
+        },
+        "runs are repeated unless modes err by a ten-thousandth of what is noted",
+    ),
 ]
 
 
