@@ -3,18 +3,35 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any, ClassVar, Literal, Protocol, TypeVar
 
 from numpy.typing import ArrayLike
 
 from symofros.base.arguments import CheckedCalls, check_fields
-from symofros.errors import Problem, UnknownNameError, did_you_mean
+from symofros.errors import Problem, UnknownNameError, did_you_mean, near_name
 from symofros.runtime.beams import BEAM_LIMIT
 
 Stabilisation = Literal["projection", "baumgarte", "none"]
 STABILISATIONS = ("projection", "baumgarte", "none")
+# What the functions that take these options by name call their own arguments.
+_CALL = ("q0", "v0", "t_end", "u", "par")
+# Names that other tools have for options and arguments, in small letters, by ours: by spelling, `t` would be near `t0`.
+_OTHER_NAMES = {
+    "t_end": "t tf t_f t1 tmax t_max tend t_final tfinal t_stop t_span time duration end end_time stop_time seconds",
+    "t0": "t_start start_time",
+    "dt": "h step timestep time_step step_size stepsize delta_t",
+    "method": "solver integrator scheme algorithm",
+    "q0": "x0 y0 q initial initial_state",
+    "v0": "v dq dq0 qd qd0 qdot qdot0",
+    "u": "tau input inputs control controls controller torques",
+    "par": "p params parameter parameters args",
+    "rtol": "tol tolerance reltol",
+    "atol": "abstol",
+    "output": "t_eval",
+}
+_OURS = {name: ours for ours, names in _OTHER_NAMES.items() for name in names.split()}
 
 
 @dataclass(frozen=True)
@@ -70,7 +87,7 @@ class SimulationOptions(metaclass=CheckedCalls):
         Raises:
             UnknownNameError: A name is not that of a field.
         """
-        return with_changes(self, changes)
+        return with_changes(self, changes, _CALL)
 
 
 class _Dataclass(Protocol):
@@ -80,8 +97,13 @@ class _Dataclass(Protocol):
 _Options = TypeVar("_Options", bound=_Dataclass)
 
 
-def with_changes(options: _Options, changes: Mapping[str, Any]) -> _Options:
+def with_changes(options: _Options, changes: Mapping[str, Any], arguments: Sequence[str]) -> _Options:
     """Options with some fields replaced.
+
+    Args:
+        options: Options, a dataclass.
+        changes: Values by field.
+        arguments: Names of the other arguments of the call that the changes were given in, which may have been meant.
 
     Raises:
         UnknownNameError: A name is not that of a field.
@@ -89,12 +111,15 @@ def with_changes(options: _Options, changes: Mapping[str, Any]) -> _Options:
     names = [item.name for item in fields(options)]
     for name in changes:
         if name not in names:
-            raise UnknownNameError(
-                Problem(
-                    f"simulation: no option '{name}'",
-                    name,
-                    f"options are the fields of {type(options).__name__}",
-                    did_you_mean(name, names),
-                )
-            )
+            rule = f"options are the fields of {type(options).__name__}, beside the arguments {', '.join(arguments)}"
+            remedy = _meant(name, names, arguments)
+            raise UnknownNameError(Problem(f"simulation: no option '{name}'", name, rule, remedy))
     return replace(options, **changes)
+
+
+def _meant(name: str, names: Sequence[str], arguments: Sequence[str]) -> str:
+    """The option or argument that is called so elsewhere, or the nearest one, or the list of options."""
+    ours = _OURS.get(name.lower())
+    if ours in names or ours in arguments:
+        return f"did you mean '{ours}'?"
+    return near_name(name, [*names, *arguments]) or did_you_mean(name, names)

@@ -153,7 +153,8 @@ def unsupported(record: Record) -> list[tuple[str, str, str]]:
 
 def headline(record: Record) -> str:
     """The verdict in one sentence, or two."""
-    what = f"{counted(len(record.compared), 'comparison')} on {counted(len(record.models), 'model')}"
+    models = {row.model for row in record.compared}
+    what = f"{counted(len(record.compared), 'comparison')} on {counted(len(models), 'model')}"
     disagreeing = len(record.rows("disagree"))
     failed = len({row.model for row in record.rows("failed")})
     parts = [f"{disagreeing} of {what} disagree" if disagreeing else f"all {what} agree"] if record.compared else []

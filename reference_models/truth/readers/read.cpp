@@ -5,7 +5,11 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-int main(int, char **arguments) {
+int main(int count, char **arguments) {
+    if (count != 2) {
+        std::fputs("usage: read FOLDER, the folder that has manifest.json in it\n", stderr);
+        return 1;
+    }
     std::set<std::filesystem::path> files;
     for (const auto &entry : std::filesystem::directory_iterator(std::filesystem::path(arguments[1]) / "values"))
         if (entry.path().extension() == ".json") files.insert(entry.path());

@@ -8,7 +8,10 @@ from pathlib import Path
 
 def values(folder: str) -> Iterator[tuple[str, int, str, list[int], list[float]]]:
     """(model, state, function, shape, numbers) of all values."""
-    for file in sorted(Path(folder, "values").glob("*.json")):
+    files = sorted(Path(folder, "values").glob("*.json"))
+    if not files:
+        sys.exit(f"no file values/*.json in '{folder}'; FOLDER is the one that has manifest.json in it")
+    for file in files:
         data = json.loads(file.read_text())
         for index, state in enumerate(data["states"]):
             for function, value in state["values"].items():
@@ -16,5 +19,7 @@ def values(folder: str) -> Iterator[tuple[str, int, str, list[int], list[float]]
 
 
 if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit("usage: python read.py FOLDER, the folder that has manifest.json in it")
     for model, state, function, shape, numbers in values(sys.argv[1]):
         print(model, state, function, "x".join(map(str, shape)) or "1", *(f"{x:.17g}" for x in numbers))

@@ -55,7 +55,7 @@ class DiagramOptions:
         Raises:
             UnknownNameError: A name is not that of a field.
         """
-        return with_changes(self, changes)
+        return with_changes(self, changes, ("t_end", "parameters"))
 
     def settings(self, model: Model, t_end: float) -> Settings:
         """Settings of the stepping of one part.

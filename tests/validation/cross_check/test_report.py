@@ -92,6 +92,8 @@ def test_bad_news(mixed: Data) -> None:
     for text in (to_html(mixed), to_markdown(mixed)):
         assert "What disagrees or failed" in text and "bias: error 3.0e-07 in state 4 of 20" in text
         assert "no such file" in text and "not a number" in text and "1 model failed" in text
+        # Of three models one could not be read: nothing was compared on it.
+        assert "on 2 models disagree, 1 model failed" in text
 
 
 def test_nothing_at_all() -> None:
