@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from xml.etree import ElementTree as Tree
 
@@ -98,7 +99,7 @@ def _quaternion(R: Array) -> Array:
     )
     outer = K + K.T - np.diag(np.diag(K)) + np.eye(4)  # 4 q q^T, of q = (x, y, z, w).
     largest = int(np.argmax(np.diag(outer)))
-    x, y, z, w = outer[largest] / np.linalg.norm(outer[largest])
+    x, y, z, w = outer[largest] / math.hypot(*outer[largest])
     return np.array([w, x, y, z])
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
@@ -9,7 +10,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from symofros.base.rotations import skew
+from symofros.base.rotations import matrix_product, skew
 from symofros.description.beams.beam import PRE_STRAINS, STATION, Beam
 from symofros.description.forces import Damper
 from symofros.description.joints.joint import WORLD, Joint
@@ -155,12 +156,13 @@ def _placed(joint: Joint, system: System, numbers: Numbers) -> tuple[Array, Arra
         position, rotation = numbers.values(frame.position), numbers.rotation(frame.rotation)
         if isinstance(parent, Beam):
             position = np.array([frame.station * numbers.value(parent.length), 0.0, 0.0])
-    return position + rotation @ numbers.values(joint.position), rotation @ numbers.rotation(joint.rotation)
+    offset = matrix_product(rotation, numbers.values(joint.position))
+    return position + offset, matrix_product(rotation, numbers.rotation(joint.rotation))
 
 
 def _axes(joint: Joint, numbers: Numbers) -> tuple[Axis, ...]:
     def axis(name: str, turns: bool, direction: Array) -> Axis:
-        x, y, z = (direction / np.linalg.norm(direction)).tolist()
+        x, y, z = (direction / math.hypot(*direction)).tolist()
         return Axis(name, turns, (x, y, z))
 
     if not joint.traits.series:
@@ -189,9 +191,9 @@ def _inertia(inertia: Inertia | None, numbers: Numbers) -> tuple[float, Array, A
     xx, yy, zz, xy, xz, yz = numbers.values(inertia.moments)
     I = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])  # noqa: E741
     if inertia.about == "body":
-        return mass, center, I + mass * skew(center) @ skew(center)
+        return mass, center, I + mass * matrix_product(skew(center), skew(center))
     R = numbers.rotation(inertia.rotation)
-    return mass, center, R @ I @ R.T
+    return mass, center, matrix_product(matrix_product(R, I), R.T)
 
 
 def _beam_inertia(beam: Beam, numbers: Numbers) -> tuple[float, Array, Array]:
@@ -203,10 +205,10 @@ def _beam_inertia(beam: Beam, numbers: Numbers) -> tuple[float, Array, Array]:
     w = np.tile(length / _PIECES / 2 * weights, _PIECES)
     rhoA = np.array([numbers.extended({STATION: float(at)}).value(beam.rhoA) for at in x])
     rhoJ = np.array([numbers.extended({STATION: float(at)}).value(beam.rhoJ) for at in x])
-    mass = float(w @ rhoA)
-    center = float(w @ (rhoA * x)) / mass if mass else 0.0
-    across = float(w @ (rhoA * (x - center) ** 2))
-    return mass, np.array([center, 0.0, 0.0]), np.diag([float(w @ rhoJ), across, across])
+    mass = math.fsum(w * rhoA)
+    center = math.fsum(w * rhoA * x) / mass if mass else 0.0
+    across = math.fsum(w * rhoA * (x - center) ** 2)
+    return mass, np.array([center, 0.0, 0.0]), np.diag([math.fsum(w * rhoJ), across, across])
 
 
 def _lost(system: System) -> Iterator[str]:

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import os
 import shutil
 import subprocess
 import sys
@@ -146,3 +147,13 @@ def test_the_command_says_what_would_change(tmp_path: Path) -> None:
     (tmp_path / "truth/models/two_hinges.urdf").write_text("<robot/>")
     result = CliRunner().invoke(app, arguments)
     assert result.exit_code == 1 and "would change: models/two_hinges.urdf" in result.output
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("core", ["Nehalem", "Haswell"])
+def test_every_processor_writes_the_same_files(core: str) -> None:
+    """Kernels of OpenBLAS sum in orders of their own: nothing that is written may rest on them."""
+    one = f"{Path(__file__)}::test_the_files_are_what_the_truth_gives"
+    command = [sys.executable, "-m", "pytest", "-q", "-n", "0", "--slow", f"{one}[heavy_on_light]", f"{one}[balls]"]
+    done = subprocess.run(command, env=os.environ | {"OPENBLAS_CORETYPE": core}, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout[-2000:]

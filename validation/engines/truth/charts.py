@@ -258,7 +258,7 @@ def _line(nq: int, size: float) -> Callable[[Joint, Draw], Array]:
 
 def _direction(draw: Draw, n: int) -> Array:
     q = draw.normal(size=n)
-    return np.asarray(q / np.linalg.norm(q))
+    return np.asarray(q / math.hypot(*q))  # The sums of BLAS depend on the processor.
 
 
 def _circle(joint: Joint, draw: Draw) -> Array:

@@ -6,6 +6,7 @@ the second, linear, then angular; f acts on the link of the first.
 
 from __future__ import annotations
 
+import math
 from decimal import Decimal
 from typing import NamedTuple
 
@@ -288,5 +289,5 @@ def _on_manifold(kinematics: Kinematics, q: Array) -> Array:
                 unit = places[-4:]
             else:
                 continue
-            q[unit] /= np.linalg.norm(q[unit])
+            q[unit] /= math.hypot(*q[unit])
     return q
