@@ -12,6 +12,7 @@ from symofros.diagrams.run.examination.step_check import Repeat, States
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.manifold import retract
 from symofros.runtime.model import Model
+from symofros.simulation.results.examination.repetition import HALVINGS, SETTLED
 
 # Change of energy without work, over the largest kinetic energy, that is worth a note.
 _NOTED = 0.05
@@ -28,8 +29,6 @@ _SMOOTH = 0.25
 _REPEATED, _CHANGED = 4, 0.3
 # Or share of the largest kinetic energy: beside the work of a contact between records all else is small.
 _CHANGED_MOTION = 0.1
-# Steps are refined up to so many times while this share of that is still added.
-_REFINEMENTS, _SETTLED = 4, 0.1
 # What the changes of all intervals may add up to, relative to the kinetic energy that the motion has had by then, if
 # each changes as the repeated ones do: each of many contacts may give a little. Half of what errors of first order are.
 _DRIFT = 0.15
@@ -113,7 +112,7 @@ def energy_note(
             if not np.any(unexplained + uncertain > noted):
                 continue
             doubts = _Doubts(gained, unseen, kinetic, evident=bool(np.any(unexplained - uncertain > noted)))
-            if _is_numerical(energies, name, states, rows, doubts, repeat, 1 if adaptive else _REFINEMENTS):
+            if _is_numerical(energies, name, states, rows, doubts, repeat, 1 if adaptive else HALVINGS):
                 return (
                     f"the energy of '{name}' changes by {unexplained.max():.3g} J beside the work done on it, where its"
                     f" motion has {kinetic.max():.3g} J at most: finer steps change that; a smaller dt or tighter"
@@ -163,7 +162,7 @@ def _is_numerical(
         if float(np.abs(changes).sum()) >= share:
             return True
         # Steps past a contact's limit of stability may throw a body back in the same way by chance: once is no proof.
-        if level > 1 and float(np.abs(changes - before).sum()) <= _SETTLED * share:
+        if level > 1 and float(np.abs(changes - before).sum()) <= SETTLED * share:
             break
     if not doubts.evident:
         return False

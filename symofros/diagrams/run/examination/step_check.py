@@ -15,7 +15,7 @@ from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import STILL
 from symofros.runtime.manifold import difference
 from symofros.simulation.results.examination.energy_balance import EXPLODED
-from symofros.simulation.results.examination.repetition import FRACTIONS, HALVINGS, SETTLED
+from symofros.simulation.results.examination.repetition import FRACTIONS, HALVINGS, SETTLED, percent
 from symofros.simulation.stepping.resolution import TOLERANCE
 from symofros.simulation.stepping.windows import WHOLE, Window, windows
 
@@ -112,11 +112,10 @@ def step_note(layout: Layout, states: States, repeat: Repeat, h: float, steps: i
             return f"{stepping} do not show the motion: with {run.finer(worst)} it does not come to this end; {cure}"
     if worst.share <= run.tolerance:
         return ""
-    by = f"{100.0 * worst.share:.2g} %" if worst.share < 1.0 else "more than 100 %"
     same = ", even where external blocks answer as they did" if external else ""
     return (
-        f"{stepping} do not determine the motion of '{worst.block}': {run.finer(worst)} changes it by {by}{seen}{same};"
-        f" {cure}"
+        f"{stepping} do not determine the motion of '{worst.block}': {run.finer(worst)} changes it by"
+        f" {percent(worst.share)}{seen}{same}; {cure}"
     )
 
 
@@ -142,8 +141,7 @@ class _Run:
 
     def finer(self, changed: _Changed) -> str:
         """The finest steps that a part was held against, in words."""
-        k = changed.refinements
-        return f"{FRACTIONS[k]} of that" if self.h else f"{('', 'a hundredth', 'a ten thousandth')[min(k, 2)]} of them"
+        return f"{FRACTIONS[changed.refinements]} of that" if self.h else "a hundredth of them"
 
     def changed(self, window: Window) -> _Changed:
         """What finer steps change in a window; without a block where they do not come to its end.

@@ -132,7 +132,7 @@ def halved_step_note(
         if change > TOLERANCE:
             return (
                 f"steps of {h:.4g} s do not determine the motion: {FRACTIONS[k]} of that changes it by"
-                f" {_percent(change)}; a smaller dt"
+                f" {percent(change)}; a smaller dt"
             )
         if abs(change - before) <= SETTLED * TOLERANCE:
             break
@@ -167,7 +167,7 @@ def windows_note(stepper: Stepper, settings: Settings, states: Sequence[Array], 
     if not worst.share > TOLERANCE:
         return ""
     return (
-        f"steps of {h:.4g} s do not determine the motion: half of that changes it by {_percent(worst.share)} (seen at"
+        f"steps of {h:.4g} s do not determine the motion: half of that changes it by {percent(worst.share)} (seen at"
         f" t = {worst.t:.4g} s); a smaller dt"
     )
 
@@ -342,7 +342,8 @@ def _rounding(stepper: Stepper, states: Sequence[Array]) -> float:
     return _AT_REST * float(energy_norms(stepper, q[-1:], u[-1:], coordinates)[0]) / span if span > 0.0 else 0.0
 
 
-def _percent(share: float) -> str:
+def percent(share: float) -> str:
+    """A share in words."""
     return f"{100.0 * share:.2g} %" if share < 1.0 else "more than 100 %"
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.results.examination.energy_balance import EXPLODED, energy_note, energy_that_appeared
 from symofros.simulation.results.examination.energy_norm import metrics, norms_in
-from symofros.simulation.results.examination.repetition import halved_step_note, tolerance_note, windows_note
+from symofros.simulation.results.examination.repetition import halved_step_note, percent, tolerance_note, windows_note
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.methods import Method
 from symofros.simulation.stepping.resolution import (
@@ -140,8 +140,8 @@ def step_size_note(mode: Mode, method: Method, h: float, energy: str = "") -> st
     motion = f"{_rate(mode.rate)} (seen at t = {mode.t:.4g} s)"
     if not mode.amplified:
         return (
-            f"steps of {h:.4g} s follow a mode of the motion to {_percent(mode.error)} only: {motion} with"
-            f" {_percent(mode.share)} of the speed; a smaller dt or an adaptive method"
+            f"steps of {h:.4g} s follow a mode of the motion to {percent(mode.error)} only: {motion} with"
+            f" {percent(mode.share)} of the speed; a smaller dt or an adaptive method"
         )
     limit = largest_stable_step(method, mode.rate)
     allowed = f"stable up to {limit:.4g} s" if limit > 0.0 else "stable at no step"
@@ -165,7 +165,3 @@ def _rate(rate: complex) -> str:
         return decay
     oscillation = f"oscillates at {rate.imag:.4g} rad/s"
     return oscillation if abs(rate.real) <= 1e-3 * abs(rate.imag) else f"{oscillation} and {decay}"
-
-
-def _percent(share: float) -> str:
-    return f"{100.0 * share:.2g} %" if share < 1.0 else "more than 100 %"
