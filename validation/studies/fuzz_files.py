@@ -13,6 +13,7 @@ import socket
 import tempfile
 import warnings
 from collections.abc import Callable
+from contextlib import chdir
 from functools import cache
 from pathlib import Path
 
@@ -60,8 +61,9 @@ def put(path: Path, data: bytes) -> None:
     elif what == "pipe":
         os.mkfifo(path)
     elif what == "socket":
-        with socket.socket(socket.AF_UNIX) as end:
-            end.bind(str(path))
+        # The address of a socket has room for some hundred characters, and folders of tests may have longer names.
+        with socket.socket(socket.AF_UNIX) as end, chdir(path.parent):
+            end.bind(path.name)
     elif what != "nothing":
         path.symlink_to(
             {"loop": path.name, "endless": "/dev/zero", "dangling": "nowhere", "outside": "/etc/passwd"}[what]
