@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
@@ -47,6 +48,24 @@ class Signal(metaclass=CheckedCalls):
                     "sort the samples, drop repeated times",
                 )
             )
+
+
+# Instants that differ by less, relative to themselves, are one; as in native/stepping/system.c.
+_SAME_INSTANT = 2e-15
+
+
+def held_sample(times: Array, t: float, end: float = math.inf) -> int:
+    """Number of the sample that counts at time t where samples are held (docs/theory/simulation.md, section 1).
+
+    Args:
+        times: Instants at which samples begin (n), increasing [s].
+        t: Time [s].
+        end: Where the step under way ends [s]: samples that begin there, or later, do not count yet.
+    """
+    begun = np.searchsorted(times, t + _SAME_INSTANT * abs(t), side="right")
+    if math.isfinite(end):
+        begun = min(begun, np.searchsorted(times, end - _SAME_INSTANT * abs(end), side="right"))
+    return max(0, int(begun) - 1)
 
 
 Callback = Callable[[float, Array, Array], Any]

@@ -79,9 +79,7 @@ class Sequence(Block):
             alone = isinstance(names, str)
             parts = [self._part(arrays, name, len(t)) for name in ([names] if alone else names)]
             values = parts[0] if alone else np.concatenate([part.reshape(len(t), -1) for part in parts], axis=1)
-            signals[output] = (
-                Signal(t, values, "linear") if self.kind == "linear" else Signal(_early(t), values, "hold")
-            )
+            signals[output] = Signal(t, values, "linear" if self.kind == "linear" else "hold")
         return signals
 
     def _chosen(self, names: list[str]) -> dict[str, Any]:
@@ -122,11 +120,6 @@ class Sequence(Block):
     def samples(self) -> Mapping[str, Signal]:
         """All of them."""
         return self._signals
-
-
-def _early(t: Array) -> Array:
-    """Times a billionth of the shortest interval earlier: 35 * 0.01 is above 0.35, yet the same instant is meant."""
-    return np.asarray(t - 1e-9 * np.diff(t).min(initial=1.0), dtype=np.float64)
 
 
 def _read(block: str, path: Path) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -17,6 +18,7 @@ from symofros.generator.passes import run_passes
 from symofros.runtime.build.toolchain import Toolchain
 from symofros.runtime.calls.kernel import Array, Kernel
 from symofros.runtime.constrained import constrained
+from symofros.simulation.inputs import held_sample
 
 Call = Callable[[], None]
 
@@ -32,13 +34,14 @@ class Blocks:
 
     Attributes:
         par: Run-time parameters (npar).
+        step_end: Where the step under way ends [s]: held samples that begin there do not count yet; inf between steps.
     """
 
     def __init__(self, resolved: Resolved, par: Array, gains: tuple[float, float], toolchain: Toolchain | None) -> None:
         self.resolved = resolved
         self.par, self._gains, self._toolchain = par, gains, toolchain
         layout = resolved.layout
-        self.t = np.zeros(1)
+        self.t, self.step_end = np.zeros(1), math.inf
         self.q, self.v = np.array(layout.q0, dtype=np.float64), np.array(layout.v0, dtype=np.float64)
         self.a, self.lam = np.zeros(len(self.v)), np.zeros(len(layout.condition_names))
         self.memory = {key: resolved.pieces[key[0]].memory[key[1]].copy() for key in layout.memory}
@@ -132,7 +135,7 @@ class Blocks:
         if signal.kind == "linear":
             samples = [np.interp(t, signal.t, column) for column in columns]
         else:
-            samples = [column[max(0, int(np.searchsorted(signal.t, t, side="right")) - 1)] for column in columns]
+            samples = columns[:, held_sample(signal.t, t, self.step_end)]
         self.out[source].reshape(-1)[:] = samples
 
     def _call_python(self, called: Called, name: str) -> None:

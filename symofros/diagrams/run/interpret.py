@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -87,6 +88,7 @@ def step(blocks: Blocks, tableau: Tableau, h: float, projects: bool) -> None:
                 total += weight * slope
         return h * total[:nv], h * total[nv:] + v
 
+    blocks.step_end = t + h
     for i in range(tableau.stages):
         theta, speeds = increments(tableau.a[i])
         blocks.t[0] = t + tableau.c[i] * h
@@ -101,6 +103,7 @@ def step(blocks: Blocks, tableau: Tableau, h: float, projects: bool) -> None:
     blocks.q[:], blocks.v[:] = retract(segments, q, theta), speeds
     if projects:
         project_all(blocks)
+    blocks.step_end = math.inf
 
 
 def project_all(blocks: Blocks) -> None:

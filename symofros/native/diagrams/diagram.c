@@ -28,7 +28,7 @@ static void sym_gather_states(sym_diagram *d, double t) {
         memcpy(d->q + d->q_offset[i], r->q, (size_t)r->system->nq * sizeof(double));
         memcpy(d->v + d->v_offset[i], r->v, (size_t)r->system->nv * sizeof(double));
     }
-    for (i = 0; i < d->n_signals; ++i) d->u[d->signals[i].input] = sym_interpolate_signal(&d->signals[i], t);
+    for (i = 0; i < d->n_signals; ++i) d->u[d->signals[i].input] = sym_signal_at(&d->signals[i], t, HUGE_VAL);
 }
 
 /* a, lam <- accelerations and multipliers of the parts at their present states, under the present u. Returns 0 or a

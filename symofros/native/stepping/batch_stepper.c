@@ -288,6 +288,7 @@ static void sym_batch_step(sym_batch *b) {
         if (r->method == SYM_METHOD_SEMI_IMPLICIT) sym_semi_implicit_step(r, b->h[i], w.k, w.y1);
         if (status == 0) status = sym_estimate_error(r, &w, b->h[i], &error);
         status = sym_accept_or_reject(r, &w, b->h[i], b->t1[i], status, error);
+        r->system->in_step = 0;
         if (status == 0 && r->t >= r->t_end) status = SYM_FINISHED;
         if (status != 0 || (b->max_steps > 0 && r->steps >= b->max_steps)) sym_batch_retire(b, i, status);
     }

@@ -71,7 +71,7 @@ SYM_EXPORT int32_t sym_run_start(sym_run *r) {
     sym_workspace w = sym_workspace_of(r);
     sym_system *s = r->system;
     int32_t status;
-    r->slope_valid = 0;
+    r->slope_valid = 0, s->in_step = 0;
     r->steps = r->rejected = r->evaluations = r->jacobians = 0;
     r->n_records = r->n_event_records = r->next_grid = 0;
     r->n_diagnostic = 0, r->diagnostic_stride = 1, r->diagnostic_between = 0;
@@ -113,6 +113,7 @@ static void sym_set_end_state(sym_run *r, const sym_workspace *w, double t1) {
     memcpy(r->q, w->end_state, (size_t)s->nq * sizeof *r->q);
     memcpy(r->v, w->end_state + s->nq, (size_t)s->nv * sizeof *r->v);
     r->t = t1;
+    r->system->in_step = 0;
 }
 
 /* An accepted step from r->t to t1: its end, projected; events and records on the way to it; the new state. Records and
@@ -145,7 +146,7 @@ static int32_t sym_accept_step(sym_run *r, sym_workspace *w, double h, double t1
     beyond = sym_judge_step(r, t1, w->end_state);
     sym_set_end_state(r, w, t1);
     r->slope_valid = 0;
-    if (fsal && !r->project && !stopped) { /* first same as last, but in the chart about the new state, where theta' = v */
+    if (fsal && !r->project && !stopped && !sym_changes_at(s, t1)) { /* first same as last, but in the chart about the new state, where theta' = v */
         memcpy(w->k + nv, w->k + (size_t)r->tableau.fsal_stage * w->stage_stride + nv, (size_t)nv * sizeof(double));
         memcpy(w->k, r->v, (size_t)nv * sizeof(double));
         r->slope_valid = 1;
@@ -187,7 +188,9 @@ static int32_t sym_accept_or_reject(sym_run *r, sym_workspace *w, double h, doub
     }
     if (status != 0) return status;
     if (r->adaptive) {
+        const double proposed = r->next_step;
         r->next_step = sym_next_step_size(r, h, error);
+        if (2.0 * h < proposed && r->next_step < proposed) r->next_step = proposed; /* cut at a sample, not by its error */
         r->previous_error = error > 1e-4 ? error : 1e-4; /* one lucky step does not steer the next */
     }
     return sym_accept_step(r, w, h, t1);
@@ -206,6 +209,7 @@ SYM_EXPORT int32_t sym_run_advance(sym_run *r, int64_t max_steps) {
         if (status != 0) return status;
         status = sym_try_step(r, &w, h, &error);
         status = sym_accept_or_reject(r, &w, h, t1, status, error);
+        r->system->in_step = 0;
         if (status != 0) return status;
     }
     return r->t >= r->t_end ? SYM_FINISHED : SYM_RUNNING;

@@ -115,7 +115,12 @@ static int32_t sym_propose_step(sym_run *r, sym_workspace *w, double *h, double 
     if (r->adaptive && *h < 16.0 * 2.2e-16 * fabs(r->t) + 1e-300) return sym_too_short(r);
     if (*t1 >= r->t_end - 1e-9 * *h) *t1 = r->t_end; /* no sliver of a last step */
     if (r->adaptive && r->max_step > 0.0 && *t1 - r->t > r->max_step) *t1 = r->t + r->max_step;
+    if (r->adaptive) {
+        const double beyond = *t1 + 1e-9 * *h, sample = sym_next_sample(r->system, r->t, beyond);
+        if (sample < beyond) *t1 = sample;
+    }
     *h = *t1 - r->t;
+    r->system->in_step = 1, r->system->step_end = *t1;
     if (r->adaptive) sym_state_magnitudes(r, w->magnitude);
     return 0;
 }

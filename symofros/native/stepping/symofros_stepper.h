@@ -52,7 +52,7 @@ typedef struct sym_segment {
 
 typedef struct sym_signal { /* one input, sampled over time */
     int32_t input;          /* index in u */
-    int32_t linear;         /* 1: linear interpolation; 0: each sample is held until the next */
+    int32_t linear;         /* 1: linear interpolation; 0: each sample is held until the next begins */
     int32_t n;
     const double *t, *value;
 } sym_signal;
@@ -121,6 +121,10 @@ typedef struct sym_system {
     const int32_t *on_speeds; /* (nc) whether a constraint binds speeds only (nonholonomic) */
     /* The evaluation point: inputs and outputs of the calls above. */
     double *q, *v, *u, *t, *gains, *a, *lam, *rank;
+    /* Whether the evaluation point lies within a step under way, and the time at its end: a held sample that begins there
+     * counts from the next step on (docs/theory/simulation.md, section 1). */
+    int32_t in_step;
+    double step_end;
 } sym_system;
 
 /* One integration of a system: method, settings, present state, records. */

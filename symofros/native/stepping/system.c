@@ -56,27 +56,72 @@ static void sym_evaluate(const sym_call *call) {
     call->function->eval((const double *const *)call->in, (double *const *)call->out, call->work);
 }
 
-/* The value of a signal at time t: the first one before its samples, the last one after them. */
-static double sym_interpolate_signal(const sym_signal *signal, double t) {
-    int32_t low = 0, high = signal->n - 1;
-    double x;
-    if (t <= signal->t[0]) return signal->value[0];
-    if (t >= signal->t[high]) return signal->value[high];
-    while (high - low > 1) {
-        const int32_t middle = low + (high - low) / 2;
-        if (signal->t[middle] <= t) low = middle;
-        else high = middle;
+/* Instants that differ by less, relative to themselves, are one: multiples of a step and of a period of samples. */
+#define SYM_SAME_INSTANT 2e-15
+
+/* How many of a signal's samples begin before time t, or at it where `at` is not 0, t being known to rounding. */
+static int32_t sym_samples_begun(const sym_signal *signal, double t, int32_t at) {
+    const double bound = t + (at ? 1.0 : -1.0) * SYM_SAME_INSTANT * fabs(t);
+    int32_t begun = 0, end = signal->n;
+    while (begun < end) {
+        const int32_t middle = begun + (end - begun) / 2;
+        if (signal->t[middle] <= bound) begun = middle + 1;
+        else end = middle;
     }
-    if (!signal->linear) return signal->value[low];
-    x = (t - signal->t[low]) / (signal->t[high] - signal->t[low]);
-    return signal->value[low] + x * (signal->value[high] - signal->value[low]);
+    return begun;
+}
+
+/* The value of a signal at time t: the first one before its samples, the last one after them. Held samples that begin at
+ * `end`, where the step under way ends, or later do not count yet; HUGE_VAL between steps. */
+static double sym_signal_at(const sym_signal *signal, double t, double end) {
+    const int32_t last = signal->n - 1;
+    int32_t low;
+    double x;
+    if (!signal->linear) {
+        low = sym_samples_begun(signal, t, 1);
+        if (end < HUGE_VAL && sym_samples_begun(signal, end, 0) < low) low = sym_samples_begun(signal, end, 0);
+        return signal->value[low > 0 ? low - 1 : 0];
+    }
+    if (t <= signal->t[0]) return signal->value[0];
+    if (t >= signal->t[last]) return signal->value[last];
+    low = sym_samples_begun(signal, t, 0);
+    low -= low > 0;
+    x = (t - signal->t[low]) / (signal->t[low + 1] - signal->t[low]);
+    return signal->value[low] + x * (signal->value[low + 1] - signal->value[low]);
+}
+
+/* The first instant after t, up to t1, at which a held signal changes; t1 where there is none. */
+static double sym_next_sample(const sym_system *s, double t, double t1) {
+    int32_t i, k;
+    for (i = 0; i < s->n_signals; ++i) {
+        const sym_signal *signal = &s->signals[i];
+        if (signal->linear) continue;
+        for (k = sym_samples_begun(signal, t, 1); k < signal->n && signal->t[k] < t1; ++k) {
+            if (k == 0 || signal->value[k] == signal->value[k - 1]) continue;
+            t1 = signal->t[k];
+            break;
+        }
+    }
+    return t1;
+}
+
+/* Whether a held signal changes at time t. */
+static int32_t sym_changes_at(const sym_system *s, double t) {
+    int32_t i;
+    for (i = 0; i < s->n_signals; ++i) {
+        const sym_signal *signal = &s->signals[i];
+        const int32_t k = signal->linear ? 0 : sym_samples_begun(signal, t, 1) - 1;
+        if (k > 0 && sym_samples_begun(signal, t, 0) <= k && signal->value[k] != signal->value[k - 1]) return 1;
+    }
+    return 0;
 }
 
 /* The inputs that depend on time alone, at the evaluation point. */
 static void sym_evaluate_signals(sym_system *s) {
     int32_t i;
     memcpy(s->u, s->u_constant, (size_t)s->nu * sizeof *s->u);
-    for (i = 0; i < s->n_signals; ++i) s->u[s->signals[i].input] = sym_interpolate_signal(&s->signals[i], *s->t);
+    for (i = 0; i < s->n_signals; ++i)
+        s->u[s->signals[i].input] = sym_signal_at(&s->signals[i], *s->t, s->in_step ? s->step_end : HUGE_VAL);
 }
 
 /* All inputs at the evaluation point. Not 0: the caller's function failed. */

@@ -174,11 +174,11 @@ def rollout(
 ) -> Rollout:
     """Move a tree through n fixed steps under inputs that are held over each, for exact derivatives of the motion.
 
-    The steps are those of `simulate` to rounding, but that the inputs of a step hold for all its stages: of "rk4" with
-    a `Signal(t, u, "hold")` the last stage reads the next sample. Steps are not judged here: the derivatives are those
-    of the steps that were made, however long, and of the beams' theory, however far they bend; `simulate` says whether
-    steps of that length resolve the motion, and what the theory misses. Not for constraints, whose drift `simulate`
-    projects away, for ball and free joints that move by themselves, for events, for methods that choose their steps.
+    The steps are those of `simulate` with a `Signal(t, u, "hold")` to rounding: the inputs of a step hold for all its
+    stages. Steps are not judged here: the derivatives are those of the steps that were made, however long, and of the
+    beams' theory, however far they bend; `simulate` says whether steps of that length resolve the motion, and what the
+    theory misses. Not for constraints, whose drift `simulate` projects away, for ball and free joints that move by
+    themselves, for events, for methods that choose their steps.
 
     Args:
         model: Of a tree whose coordinates have the speeds as rates.

@@ -57,3 +57,22 @@ def test_a_run_in_many_pieces_keeps_the_states_of_a_run_in_one_for_its_diagnosis
         np.testing.assert_array_equal(many, one)
     t, *_ = kept[0]
     assert len(t) > min(steps, 100) and np.ptp(np.diff(t)[:-1]) == 0.0 and t[-1] == steps * 2.0**-10
+
+
+@pytest.mark.parametrize("length", [0.8, 1.25])
+def test_rates_at_a_quaternion_of_any_length_are_those_of_its_rotation(length: float) -> None:
+    """Integrators of others let lengths drift: accelerations are those of the unit one, its rate scales (section 7)."""
+    top = sf.compile(MODELS["heavy_top"])
+    q, v = top.random_state(np.random.default_rng(2))
+    settings = Settings.of(top, SimulationOptions("rk4", dt=0.01), 1.0)
+    stepper = Stepper(top, settings.method, plan_inputs(top, None), (), top.parameter_values)
+    settings.apply(stepper)
+    (quaternion,) = (slice(segment.q, segment.q + segment.size) for segment in top.record.segments)
+    rates = []
+    for size in (1.0, length):
+        y, rate = np.concatenate([q, v]), np.zeros(top.nq + top.nv)
+        y[quaternion] *= size
+        assert stepper.slope(0.0, y, rate) >= 0
+        rate[quaternion] /= size
+        rates.append(rate)
+    np.testing.assert_allclose(rates[1], rates[0], rtol=1e-13, atol=1e-13)

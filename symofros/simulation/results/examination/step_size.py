@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from symofros.runtime.calls.kernel import Array
+from symofros.simulation.inputs import InputPlan
 from symofros.simulation.results.examination.energy_balance import EXPLODED, energy_note, energy_that_appeared
 from symofros.simulation.results.examination.energy_norm import metrics, norms_in
 from symofros.simulation.results.examination.repetition import halved_step_note, percent, tolerance_note, windows_note
@@ -26,6 +27,8 @@ from symofros.simulation.stepping.stepper import Stepper
 
 # Records, about, among which the fastest is looked for.
 _SPEEDS = 200
+# Of a step: nearer to one of its ends a sample begins there.
+_AT_END = 1e-6
 
 
 def examine_run(
@@ -56,7 +59,8 @@ def examine_run(
         with np.errstate(all="ignore"):  # What overflows is left out.
             energy = energy_that_appeared(stepper, settings, states) if mode.amplified and not failed else ""
         notes.append(step_size_note(mode, settings.method, settings.dt, energy))
-    if ended_well and not resolution.evident and mode is None:
+    evident = resolution.evident and not _samples_within_steps(stepper.inputs, settings)
+    if ended_well and not evident and mode is None:
         notes.append(halved_step_note(stepper, settings, start, states, steps))
     if ended_well and mode is None:
         notes.append(windows_note(stepper, settings, states, steps))
@@ -104,6 +108,18 @@ def examine_steps(
     with stepper.preserved(), np.errstate(all="ignore"):  # States that have exploded overflow.
         times = [when for when, *_ in examined]
         return resolution(stepper.method, settings.dt, steps, times, spectrum, speeds, metric[chosen])
+
+
+def _samples_within_steps(inputs: InputPlan, settings: Settings) -> bool:
+    """Whether held samples begin within fixed steps, where stages read one or the other: no mode shows the error."""
+    for _, t, values, linear in inputs.signals:
+        if linear or settings.adaptive:
+            continue
+        begins = t[1:][np.diff(values) != 0]
+        steps = (begins[(begins > settings.t0) & (begins < settings.t_end)] - settings.t0) / settings.dt
+        if np.any(np.abs(steps - np.rint(steps)) > _AT_END):
+            return True
+    return False
 
 
 def _speed_of_motion(norms: Array, at: int) -> float:

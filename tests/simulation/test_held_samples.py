@@ -1,0 +1,116 @@
+"""Inputs whose samples are held: each counts from its instant until the next one, in every stage of every step."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+
+PERIOD = 0.05
+VALUES = np.array([1.0, -2.0, 3.0, -1.0, 4.0, -3.0, 2.0, 5.0, -4.0])
+END = PERIOD * (len(VALUES) - 1)
+# Instants as products, as sums and as a division give them: they differ by rounding.
+INSTANTS = {
+    "products": PERIOD * np.arange(len(VALUES)),
+    "sums": np.cumsum([0.0] + [PERIOD] * (len(VALUES) - 1)),
+    "divided": np.linspace(0.0, END, len(VALUES)),
+}
+FIXED = ["euler", "semi_implicit_euler", "rk4", "implicit_euler", "generalized_alpha", "variational"]
+ADAPTIVE = ["dopri5", "dop853", "rodas4"]
+
+
+@pytest.fixture(scope="module")
+def cart() -> sf.Model:
+    return sf.compile(MODELS["cart_pole"])
+
+
+@pytest.fixture(scope="module")
+def sleigh() -> sf.Model:
+    """A sleigh with a motor for each coordinate: its condition on speeds is projected."""
+    system = MODELS["sleigh"]
+    (plate,) = system.bodies
+    return sf.compile(replace(system, bodies=[replace(plate, joint=replace(plate.joint, actuated=True))]))
+
+
+def in_pieces(model: sf.Model, **options: object) -> sf.Trajectory:
+    """The motion under the same inputs, each a constant of a run of its own: no step of it sees a jump."""
+    state: tuple[np.ndarray, ...] = ()
+    for value in VALUES[:-1]:
+        piece = sf.simulate(model, *state, t_end=PERIOD, u={model.names.u[0]: value}, **options)
+        state = piece.q[-1], piece.v[-1]
+    return piece
+
+
+def held(model: sf.Model, t: np.ndarray, **options: object) -> sf.Trajectory:
+    return sf.simulate(model, t_end=END, u={model.names.u[0]: sf.Signal(t, VALUES, "hold")}, **options)
+
+
+@pytest.mark.parametrize("steps", [1, 2])
+@pytest.mark.parametrize("instants", INSTANTS)
+@pytest.mark.parametrize("method", FIXED)
+def test_steps_that_end_at_samples_are_those_of_constant_inputs(
+    cart: sf.Model, method: str, instants: str, steps: int
+) -> None:
+    options = {"method": method, "dt": PERIOD / steps}
+    run, pieces = held(cart, INSTANTS[instants], **options), in_pieces(cart, **options)
+    np.testing.assert_allclose(run.q[-1], pieces.q[-1], rtol=0, atol=1e-13)
+    np.testing.assert_allclose(run.v[-1], pieces.v[-1], rtol=0, atol=1e-12)
+    np.testing.assert_array_equal(run[cart.names.u[0]][::steps], VALUES)
+
+
+@pytest.mark.parametrize("method", ADAPTIVE)
+def test_adaptive_steps_end_where_inputs_change(cart: sf.Model, method: str) -> None:
+    t = INSTANTS["products"]
+    run, pieces = held(cart, t, method=method), in_pieces(cart, method=method, rtol=1e-11, atol=1e-13)
+    assert set(t) <= set(run.t)
+    np.testing.assert_array_equal(run[cart.names.u[0]][np.searchsorted(run.t, t)], VALUES)
+    np.testing.assert_allclose(run.v[-1], pieces.v[-1], rtol=0, atol=1e-6)
+    assert run.statistics.rejected <= 2
+
+
+def test_short_steps_before_a_sample_do_not_shorten_those_after_it(cart: sf.Model) -> None:
+    one = sf.simulate(cart, t_end=1.0, u={cart.names.u[0]: 1.0})
+    nearly = sf.Signal([0.0, 0.5, 0.5 + 1e-9], [1.0, 1.0 + 1e-12, 1.0], "hold")
+    cut = sf.simulate(cart, t_end=1.0, u={cart.names.u[0]: nearly})
+    assert cut.statistics.steps <= one.statistics.steps + 3
+
+
+def test_equal_samples_cut_no_steps(cart: sf.Model) -> None:
+    one = sf.simulate(cart, t_end=1.0, u={cart.names.u[0]: 1.0})
+    same = sf.simulate(cart, t_end=1.0, u={cart.names.u[0]: sf.Signal(np.arange(0, 1, 1e-3), np.ones(1000), "hold")})
+    np.testing.assert_array_equal(same.t, one.t)
+
+
+@pytest.mark.parametrize("method", ["rk4", "dopri5", "generalized_alpha"])
+def test_projected_steps_are_those_of_constant_inputs(sleigh: sf.Model, method: str) -> None:
+    options = {"method": method} | ({"rtol": 1e-10} if method == "dopri5" else {"dt": PERIOD / 5})
+    run, pieces = held(sleigh, INSTANTS["products"], **options), in_pieces(sleigh, **options)
+    assert abs(run.v[-1]).max() > 0.1
+    np.testing.assert_allclose(run.v[-1], pieces.v[-1], rtol=0, atol=1e-9 if method == "dopri5" else 1e-12)
+
+
+@pytest.mark.parametrize("method", ["semi_implicit_euler", "rk4", "dopri5"])
+def test_batches_read_samples_as_single_runs_do(cart: sf.Model, method: str) -> None:
+    options = {"method": method} | ({} if method == "dopri5" else {"dt": PERIOD})
+    values = np.stack([VALUES, -VALUES, VALUES[::-1]])[..., np.newaxis] * np.eye(cart.nu)[0]
+    start = np.zeros(cart.nq), np.zeros(cart.nv)
+    t = INSTANTS["products"]
+    batch = sf.simulate_batch(cart, *start, u=sf.Signal(t, values, "hold"), t_end=END, output=t, **options)
+    for i, one in enumerate(values):
+        run = sf.simulate(cart, *start, u=sf.Signal(t, one, "hold"), t_end=END, output=t, **options)
+        np.testing.assert_allclose(batch.q[i], run.q, rtol=0, atol=1e-12)
+        np.testing.assert_array_equal(batch.u[i], run.u)
+
+
+def test_steps_that_samples_fall_within_are_held_against_half_of_that(cart: sf.Model) -> None:
+    t = 1.37 * INSTANTS["products"]
+    coarse = sf.simulate(
+        cart, t_end=END, u={cart.names.u[0]: sf.Signal(t, 10 * VALUES, "hold")}, dt=PERIOD, method="rk4"
+    )
+    assert any("half of that changes it" in note for note in coarse.outcome.notes)
+    along = sf.simulate(cart, t_end=END, u={cart.names.u[0]: sf.Signal(t, VALUES, "linear")}, dt=1e-3, method="rk4")
+    assert not along.outcome.notes
