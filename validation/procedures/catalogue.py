@@ -12,7 +12,7 @@ import symofros as sf
 from validation.comparison.errors import Comparison
 from validation.mechanics.assembly import Assembly
 from validation.mechanics.geometry import Array
-from validation.procedures import ENGINE, analyses, batches, diagrams, forces, identities, reactions, runs
+from validation.procedures import ENGINE, analyses, batches, beams, diagrams, forces, identities, reactions, runs
 from validation.procedures.scene import Cell, Manifold, Scene
 
 Procedure = Callable[[Scene], Iterator[Cell]]
@@ -94,7 +94,9 @@ PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
         lambda scene: analyses.at_rest(scene, scene.q),
         lambda scene: analyses.driven(scene, ("q1", "q2")),
         reactions.of_constraints,
+        identities.weighted_curvature,
     ),
+    "joint_zoo": (identities.momenta,),
     "friction_arm": (lambda scene: analyses.driven(scene, scene.model.names.u),),
     "sleigh": (runs.implicit_steps,),
     "rolling_disc": (
@@ -116,9 +118,9 @@ PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
         _oscillations,
         lambda _: diagrams.switched(),
     ),
-    "cart_pole": (lambda scene: diagrams.looped(scene.system),),
+    "cart_pole": (lambda scene: diagrams.looped(scene.system), identities.weighted_curvature),
     "stewart": (lambda scene: analyses.driven(scene, scene.model.names.u), reactions.of_constraints),
-    "soft_pendulum": (runs.stated_error,),
+    "soft_pendulum": (runs.stated_error, beams.sampled_shapes, beams.power),
     "flexible_pendulum": (
         runs.implicit_steps,
         lambda scene: analyses.at_rest(scene, scene.model.neutral() + 0.1),

@@ -53,6 +53,13 @@ _MOMENTA = (
     "frame_pose",
     "frame_velocity",
 )
+# Matrix of second derivatives -> the function whose gradient changes by it, its inputs, the outputs that are weighted.
+CURVED: Mapping[str, tuple[str, str, str]] = {
+    "inverse_dynamics_hessian": ("inverse_dynamics", "q v a", "tau"),
+    "forward_dynamics_hessian": ("forward_dynamics", "q v u", "a lam"),
+    "frame_position_hessian": ("frame_pose", "q", "p_WF"),
+}
+_CURVED = sf.Options((*CURVED, *(f"{gradient}_vjp" for gradient, _, _ in CURVED.values())))
 # Of a direction: beams bend by a few hundredths, and differences take two steps of DIFFERENCE along it.
 _REACH = 0.1
 _OF_CONSTRAINTS = ("constraint", "constraint_rate", "constraint_bias")
@@ -104,6 +111,36 @@ def twice_differentiated(scene: Scene) -> Iterator[Cell]:
     products = model.inverse_dynamics_hvp(q, v, a, tau_bar, dq, dv, da)
     contracted = [tau_bar @ change for change in (*changes, by_aq @ dq)]
     yield Cell("Hessian-vector products", off(np.concatenate(products), np.concatenate(contracted)), ROUNDING)
+
+
+def weighted_curvature(scene: Scene) -> Iterator[Cell]:
+    """Second derivatives of weighted dynamics and of a frame's place, against changes of their gradients."""
+    model, rng = sf.compile(scene.system, _CURVED), np.random.default_rng(SEED)
+    sizes = {"a": model.nv, "u": model.nu, "lam": model.nc, "tau": model.nv, "p_WF": 3}
+    state: dict[str, Any] = {"q": scene.q, "v": scene.v} | {group: rng.standard_normal(sizes[group]) for group in "au"}
+    for name, (gradient, inputs, outputs) in CURVED.items():
+        of = model.names.frames[-1] if name.startswith("frame") else ""
+        at = {group: state[group] for group in inputs.split()}
+        weights: dict[str, Any] = {f"{output}_bar": rng.standard_normal(sizes[output]) for output in outputs.split()}
+        steps = {group: rng.standard_normal(model.nv if group == "q" else len(x)) for group, x in at.items()}
+
+        def slopes(
+            h: float,
+            gradient: str = gradient,
+            of: str = of,
+            at: Mapping[str, Any] = at,
+            weights: Mapping[str, Any] = weights,
+            steps: Mapping[str, Array] = steps,
+        ) -> list[Array]:
+            moved: dict[str, Any] = {group: x + h * steps[group] for group, x in at.items() if group != "q"}
+            by = model.vjp(gradient, of, q=scene.manifold.retract(at["q"], h * steps["q"]), **moved, **weights)
+            return [np.concatenate([by[group] for group in at])]
+
+        (change,) = _rates(slopes)
+        (H,) = model.evaluate(name, of, **at, **weights)
+        n = len(change)  # Parameters come last.
+        along = H[:n, :n] @ np.concatenate([*steps.values()])
+        yield Cell(name.replace("_", " "), off(along, change), DIFFERENCED)
 
 
 def momenta(scene: Scene) -> Iterator[Cell]:

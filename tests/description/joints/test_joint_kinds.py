@@ -27,6 +27,11 @@ def test_entries_are_fields_of_a_joint() -> None:
     assert {entry for kind in KINDS.values() for entry in kind.entries} <= {item.name for item in fields(sf.Joint)}
 
 
+def test_kinds_with_one_axis_are_aligned_with_it() -> None:
+    aligned = {kind.name for kind in KINDS.values() if kind.aligned}
+    assert aligned == {"revolute", "continuous", "prismatic", "cylindrical", "screw"}
+
+
 @pytest.mark.parametrize("kind", [kind for kind in DEFINED if kind.coordinates], ids=lambda kind: kind.name)
 class TestKind:
     def test_has_its_coordinates_and_speeds(self, kind: JointKind) -> None:

@@ -67,3 +67,15 @@ def test_paths_to_the_base_share_out_the_speeds(seed: int, prescribed: bool) -> 
         assert path == sorted(path, reverse=True)
         for outer, inner in zip(path, path[1:], strict=False):
             assert link_of[inner] in at.tree.ancestors(link_of[outer])
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_the_first_path_is_the_longest_way_to_the_base(seed: int) -> None:
+    at = case(seed)
+    links = at.kinematics.links
+
+    def depth(i: int) -> int:
+        return 0 if i < 0 else len(links[i].own_speeds) + depth(links[i].parent)
+
+    paths = speeds_by_path(at.kinematics)
+    assert len(paths[0]) == max(depth(i) for i in range(len(links)))

@@ -1,0 +1,59 @@
+"""Beams by other statements of the same beam, and the balance of their power."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+import symofros as sf
+from validation.contract.quantities import ROUNDING
+from validation.mechanics.geometry import Array
+from validation.procedures.scene import Cell, Scene, derivative, off
+
+# A cubic that bends a clamped beam, over x/L, and the places of its samples, unevenly spaced.
+_CUBIC = "3*xi^2 - xi^3"
+_PLACES = (0.0, 0.17, 0.4, 0.58, 0.83, 1.0)
+_AXIS = (0.48, -0.6, 0.64)
+_DIFFERENCED = 1e-8
+
+
+def sampled_shapes(_: Scene) -> Iterator[Cell]:
+    """A shape function by samples of a cubic, as a finite-element program gives them, is that cubic."""
+    samples = sf.Samples(_PLACES, tuple(3 * x**2 - x**3 for x in _PLACES))
+    stated, sampled = (_values(_cantilever(shape)) for shape in (_CUBIC, samples))
+    for name, value in stated.items():
+        yield Cell(f"a shape by samples: {name}", off(sampled[name], value), ROUNDING)
+
+
+def _cantilever(shape: str | sf.Samples) -> sf.Model:
+    clamp, shapes = sf.Joint("clamp", "fixed"), (("bend_z", (shape,)),)
+    beam = sf.Beam("beam", clamp, 1.3, 0.7, EI_y=2.0, bend_z=1, family="user", shapes=shapes)  # type: ignore[arg-type]
+    return sf.compile(sf.System("cantilever", (beam,)))
+
+
+def _values(model: sf.Model) -> dict[str, Array]:
+    q, v = np.array([0.02]), np.array([0.3])
+    place, _ = model.frame_pose("beam.tip", q)
+    energy = np.atleast_1d(model.potential_energy(q))
+    return {"M": model.mass_matrix(q), "h": model.bias(q, v), "V": energy, "place of the tip": place}
+
+
+def power(_: Scene) -> Iterator[Cell]:
+    """Energy changes by what damping takes: a beam that bends both ways and twists, on a hub about an oblique axis."""
+    q, v = np.array([0.4, 0.03, -0.02, 0.04]), np.array([1.3, 0.7, -0.9, 1.1])
+    hub = sf.Joint("hub", "revolute", position=(0.2, 0, 0), axis=_AXIS)
+    beam = sf.Beam(
+        "beam", hub, 1.3, 0.7, EI_z=3.0, EI_y=2.0, GJ=1.5, rhoJ=0.05, rhoI_y=0.02, rhoI_z=0.03,
+        bend_y=1, bend_z=1, twist=1, damping=0.1, rotary_inertia=True, retain="all",
+    )  # fmt: skip
+    model = sf.compile(sf.System("hub", (beam,)))
+    a = model.forward_dynamics(q, v, ())
+
+    def energy(t: Array) -> Array:
+        at, speeds = q + t * v + 0.5 * t * t * a, v + t * a
+        return np.atleast_1d(model.kinetic_energy(at, speeds) + model.potential_energy(at))
+
+    rate = derivative(energy, np.zeros(1))[0, 0]
+    taken = v @ (model.generalized_force(q, v, ()) - model.generalized_force(q, 0 * v, ()))
+    yield Cell("power of damping", abs(rate - taken) / abs(taken), _DIFFERENCED)
