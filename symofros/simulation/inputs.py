@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
@@ -87,6 +88,17 @@ class InputPlan:
     signals: list[tuple[int, Array, Array, bool]] = field(default_factory=list)
     formulas: dict[int, Any] = field(default_factory=dict)
     callback: Callback | None = None
+
+    @cached_property
+    def jumps(self) -> Array:
+        """Instants at which a held signal changes, in order [s]."""
+        held = [t[1:][np.diff(values) != 0] for _, t, values, linear in self.signals if not linear]
+        return np.unique(np.concatenate([np.zeros(0), *held]))
+
+    def next_jump(self, t: float, end: float) -> float:
+        """The first of them after t and before `end`, else `end` [s]."""
+        k = int(np.searchsorted(self.jumps, t + _SAME_INSTANT * abs(t), side="right"))
+        return min(end, float(self.jumps[k])) if k < len(self.jumps) else end
 
 
 def plan_inputs(model: Model, u: Inputs | None) -> InputPlan:

@@ -271,6 +271,14 @@ class Stepper:
         """Make y = (q, v), its quaternions normalised, the present state, and evaluate its inputs; returns a Status."""
         return int(self.native.sym_run_set_state(self.run, t, self._pointer(y)))
 
+    def begin_step(self, end: float) -> None:
+        """Held samples that begin at `end`, or later, do not count from now on; for integrators of others."""
+        self.system.in_step, self.system.step_end = 1, end
+
+    def end_step(self) -> None:
+        """Those that begin there count."""
+        self.system.in_step = 0
+
     def slope(self, t: float, y: Array, rate: Array) -> int:
         """Write the rate y' = (N v, v') of a state y = (q, v) into `rate`; returns a Status."""
         return int(self.native.sym_run_rate(self.run, t, self._pointer(y), self._pointer(rate)))

@@ -116,7 +116,7 @@ class _Run(ABC):
                 if t is not None and self._reached >= t:
                     answer = self._solver.step(t, "normal")  # Interpolates within the last step.
                     return self._placed(float(answer.t), answer.y), []
-                answer = self._solver.step(end, "onestep", end)
+                answer = self._step(end)
                 if not answer.success:
                     return _STATUS.get(int(answer.status), Status.DIVERGED), []
                 self.steps, self._reached = self.steps + 1, float(answer.t)
@@ -129,6 +129,15 @@ class _Run(ABC):
                     return self._placed(self._reached, answer.y), []
         except _InputFailedError:
             return Status.CALLBACK_FAILED, []
+
+    def _step(self, end: float) -> Any:
+        """The solver's answer to one step, which ends where a held input changes: no pulse is stepped over."""
+        stop = self.stepper.inputs.next_jump(self._reached, end)
+        self.stepper.begin_step(stop)
+        try:
+            return self._solver.step(end, "onestep", stop)
+        finally:
+            self.stepper.end_step()
 
     def _placed(self, t: float, y: Array) -> int:
         """Make a state the run's own; returns a status."""
