@@ -7,36 +7,53 @@ from collections.abc import Iterator
 import numpy as np
 
 import symofros as sf
+from symofros.description.beams.beam import UserShape
 from validation.contract.quantities import ROUNDING
 from validation.mechanics.geometry import Array
 from validation.procedures.scene import Cell, Scene, derivative, off
 
-# A cubic that bends a clamped beam, over x/L, and the places of its samples, unevenly spaced.
-_CUBIC = "3*xi^2 - xi^3"
+# Cubics over x/L that bend and twist a clamped beam, and the places of their samples, unevenly spaced.
+_CUBICS = (sf.formula("3*xi^2 - xi^3"), sf.formula("2*xi - xi^3"))
 _PLACES = (0.0, 0.17, 0.4, 0.58, 0.83, 1.0)
 _AXIS = (0.48, -0.6, 0.64)
 _DIFFERENCED = 1e-8
 
 
 def sampled_shapes(_: Scene) -> Iterator[Cell]:
-    """A shape function by samples of a cubic, as a finite-element program gives them, is that cubic."""
-    samples = sf.Samples(_PLACES, tuple(3 * x**2 - x**3 for x in _PLACES))
-    stated, sampled = (_values(_cantilever(shape)) for shape in (_CUBIC, samples))
+    """Shape functions by samples of cubics, as finite-element programs give them, are those cubics."""
+    samples = (sf.Samples(_PLACES, tuple(cubic(x) for x in _PLACES)) for cubic in (_bending, _twist))
+    stated, sampled = (_values(_cantilever(*shapes)) for shapes in (_CUBICS, samples))
     for name, value in stated.items():
-        yield Cell(f"a shape by samples: {name}", off(sampled[name], value), ROUNDING)
+        yield Cell(f"shapes by samples: {name}", off(sampled[name], value), ROUNDING)
 
 
-def _cantilever(shape: str | sf.Samples) -> sf.Model:
-    clamp, shapes = sf.Joint("clamp", "fixed"), (("bend_z", (shape,)),)
-    beam = sf.Beam("beam", clamp, 1.3, 0.7, EI_y=2.0, bend_z=1, family="user", shapes=shapes)  # type: ignore[arg-type]
+def _bending(xi: float) -> float:
+    return 3 * xi**2 - xi**3
+
+
+def _twist(xi: float) -> float:
+    return 2 * xi - xi**3
+
+
+def _cantilever(bending: UserShape, twist: UserShape) -> sf.Model:
+    beam = sf.Beam(
+        "beam", sf.Joint("clamp", "fixed"), 1.3, 0.7, EI_y=2.0, GJ=1.5, rhoJ=0.05, bend_z=1, twist=1,
+        family="user", shapes=(("bend_z", (bending,)), ("twist", (twist,))),
+    )  # fmt: skip
     return sf.compile(sf.System("cantilever", (beam,)))
 
 
 def _values(model: sf.Model) -> dict[str, Array]:
-    q, v = np.array([0.02]), np.array([0.3])
-    place, _ = model.frame_pose("beam.tip", q)
+    q, v = np.array([0.02, 0.1]), np.array([0.3, -0.4])
+    place, turned = model.frame_pose("beam.tip", q)
     energy = np.atleast_1d(model.potential_energy(q))
-    return {"M": model.mass_matrix(q), "h": model.bias(q, v), "V": energy, "place of the tip": place}
+    return {
+        "M": model.mass_matrix(q),
+        "h": model.bias(q, v),
+        "V": energy,
+        "place of the tip": place,
+        "its turn": turned,
+    }
 
 
 def power(_: Scene) -> Iterator[Cell]:

@@ -96,7 +96,7 @@ PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
         reactions.of_constraints,
         identities.weighted_curvature,
     ),
-    "joint_zoo": (identities.momenta,),
+    "space_arm": (identities.momenta,),
     "friction_arm": (lambda scene: analyses.driven(scene, scene.model.names.u),),
     "sleigh": (runs.implicit_steps,),
     "rolling_disc": (
