@@ -37,9 +37,18 @@ def _twist(xi: float) -> float:
 
 def _cantilever(bending: UserShape, twist: UserShape) -> sf.Model:
     beam = sf.Beam(
-        "beam", sf.Joint("clamp", "fixed"), 1.3, 0.7, EI_y=2.0, GJ=1.5, rhoJ=0.05, bend_z=1, twist=1,
-        family="user", shapes=(("bend_z", (bending,)), ("twist", (twist,))),
-    )  # fmt: skip
+        "beam",
+        sf.Joint("clamp", "fixed"),
+        1.3,
+        0.7,
+        EI_y=2.0,
+        GJ=1.5,
+        rhoJ=0.05,
+        bend_z=1,
+        twist=1,
+        family="user",
+        shapes=(("bend_z", (bending,)), ("twist", (twist,))),
+    )
     return sf.compile(sf.System("cantilever", (beam,)))
 
 
@@ -61,9 +70,23 @@ def power(_: Scene) -> Iterator[Cell]:
     q, v = np.array([0.4, 0.03, -0.02, 0.04]), np.array([1.3, 0.7, -0.9, 1.1])
     hub = sf.Joint("hub", "revolute", position=(0.2, 0, 0), axis=_AXIS)
     beam = sf.Beam(
-        "beam", hub, 1.3, 0.7, EI_z=3.0, EI_y=2.0, GJ=1.5, rhoJ=0.05, rhoI_y=0.02, rhoI_z=0.03,
-        bend_y=1, bend_z=1, twist=1, damping=0.1, rotary_inertia=True, retain="all",
-    )  # fmt: skip
+        "beam",
+        hub,
+        1.3,
+        0.7,
+        EI_z=3.0,
+        EI_y=2.0,
+        GJ=1.5,
+        rhoJ=0.05,
+        rhoI_y=0.02,
+        rhoI_z=0.03,
+        bend_y=1,
+        bend_z=1,
+        twist=1,
+        damping=0.1,
+        rotary_inertia=True,
+        retain="all",
+    )
     model = sf.compile(sf.System("hub", (beam,)))
     a = model.forward_dynamics(q, v, ())
 
