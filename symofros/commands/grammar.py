@@ -16,6 +16,8 @@ from symofros.errors import Problem, SymofrosError
 _UsageError: Any = typer.BadParameter.__base__
 _GIVEN = "symofros.arguments"
 BAD_INPUT = 2
+# Characters of a command's first sentence in a list, which is wrapped; Click cuts it to what a line holds.
+_SUMMARY = 300
 
 
 class Group(TyperGroup):
@@ -27,6 +29,12 @@ class Group(TyperGroup):
         with _refusing():
             return super().parse_args(ctx, args)
 
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """The list of all commands in the help, each with its whole first sentence."""
+        commands = {name: self.get_command(ctx, name) for name in self.list_commands(ctx)}
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, one.get_short_help_str(limit=_SUMMARY)) for name, one in commands.items()])
+
     def invoke(self, ctx: Any) -> Any:
         """A command; what it does not refuse itself is refused here."""
         try:
@@ -36,6 +44,11 @@ class Group(TyperGroup):
             raise
         except (SymofrosError, OSError) as error:
             raise import_module("symofros.commands.shared").refuse(error) from None
+
+
+def program(cls: type[Group] = Group, **settings: Any) -> typer.Typer:
+    """A program whose help is plain text: markup would read units, "[s]", as styles, and state "<bool>" of flags."""
+    return typer.Typer(cls=cls, rich_markup_mode=None, **settings)
 
 
 @contextmanager
