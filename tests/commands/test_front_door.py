@@ -56,6 +56,7 @@ def test_the_help_of_all_commands_imports_none_of_them() -> None:
     told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
     *listed, modules = told.strip().splitlines()
     rows: dict[str, str] = {}
+    name = ""
     for words in (line[2:] for line in listed if line.startswith("  ")):
         name = words.split(maxsplit=1)[0] if words[0] != " " else name  # What is further in goes on with the last.
         rows[name] = f"{rows.get(name, '')} {words.removeprefix(name).strip()}".strip()

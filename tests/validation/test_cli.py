@@ -181,7 +181,9 @@ def test_a_model_that_no_engine_can_judge_did_not_fail() -> None:
     assert "1 model judged by no independent engine." in result.stdout
 
 
-@pytest.mark.parametrize("command", [[], ["check"], ["timing"], ["campaign"], ["campaign", "run"], ["truth"], ["render"]])
+@pytest.mark.parametrize(
+    "command", [[], ["check"], ["timing"], ["campaign"], ["campaign", "run"], ["truth"], ["render"]]
+)
 def test_help_is_plain_text_flags_take_no_value_and_no_sentence_is_cut(command: list[str]) -> None:
     told = CliRunner().invoke(app, [*command, "--help"], env={"COLUMNS": "80"}).output
     assert "--help" in told and "<bool>" not in told and "│" not in told

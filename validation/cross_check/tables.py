@@ -64,7 +64,8 @@ def nearest(record: Record, each: bool) -> Table:
                 lines.append((model.label, name, *error, said))
             elif not each:
                 lines.append((model.label, *error, said))
-    return Table.of("model | engine | error | of | in | verdict" if each else "model | error | of | in | engines", lines)
+    head = "model | engine | error | of | in | verdict" if each else "model | error | of | in | engines"
+    return Table.of(head, lines)
 
 
 def _engines(model: ModelResult) -> str:
