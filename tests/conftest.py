@@ -16,6 +16,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tests.progress import Progress
+
 # Compiled models are kept between runs and shared by parallel workers, apart from the user's own cache.
 _CACHE = Path(__file__).parent.parent / ".pytest_cache"
 os.environ.setdefault("SYMOFROS_CACHE", str(_CACHE / "models"))
@@ -54,9 +56,13 @@ def pytest_configure(config: pytest.Config) -> None:
         raise pytest.UsageError("--browser needs Playwright: pip install -e '.[dev]'")
 
 
-def pytest_sessionstart() -> None:
+@pytest.hookimpl(tryfirst=True)
+def pytest_sessionstart(session: pytest.Session) -> None:
     """Nothing that is made while tests are collected is let go of: the collector need not look for it."""
     gc.disable()
+    terminal = session.config.pluginmanager.get_plugin("terminalreporter")
+    if terminal is not None and session.config.getoption("numprocesses", None):
+        session.config.pluginmanager.register(Progress(terminal))
 
 
 def pytest_collection_finish() -> None:

@@ -31,9 +31,10 @@ class Group(TyperGroup):
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
         """The list of all commands in the help, each with its whole first sentence."""
-        commands = {name: self.get_command(ctx, name) for name in self.list_commands(ctx)}
+        listed = ((name, self.get_command(ctx, name)) for name in self.list_commands(ctx))
+        rows = [(name, command.get_short_help_str(limit=_SUMMARY)) for name, command in listed if command]
         with formatter.section("Commands"):
-            formatter.write_dl([(name, one.get_short_help_str(limit=_SUMMARY)) for name, one in commands.items()])
+            formatter.write_dl(rows)
 
     def invoke(self, ctx: Any) -> Any:
         """A command; what it does not refuse itself is refused here."""
