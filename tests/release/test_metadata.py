@@ -44,6 +44,14 @@ def test_the_conda_recipe_needs_what_the_package_needs() -> None:
     assert entry == f"symofros = {PROJECT['project']['scripts']['symofros']}"
 
 
+def test_commands_of_the_conda_recipe_name_files_that_its_tests_get() -> None:
+    """Files keep their folders there, as the build's log shows."""
+    (test,) = (test for test in RECIPE["tests"] if "script" in test)
+    given = set(test["files"]["source"])
+    named = {word for line in test["script"] for word in line.split() if word.endswith(".yaml")}
+    assert named == given and all((ROOT / name).is_file() for name in given)
+
+
 def test_the_conda_recipe_renders() -> None:
     rattler = pytest.importorskip("rattler_build", reason="needs py-rattler-build")
     recipe = rattler.Stage0Recipe.from_file(ROOT / "recipe/recipe.yaml")
