@@ -60,9 +60,8 @@ def pytest_configure(config: pytest.Config) -> None:
 def pytest_sessionstart(session: pytest.Session) -> None:
     """Nothing that is made while tests are collected is let go of: the collector need not look for it."""
     gc.disable()
-    terminal = session.config.pluginmanager.get_plugin("terminalreporter")
-    if terminal is not None and session.config.getoption("numprocesses", None):
-        session.config.pluginmanager.register(Progress(terminal))
+    if session.config.getoption("numprocesses", None) and session.config.pluginmanager.has_plugin("terminalreporter"):
+        session.config.pluginmanager.register(Progress(session.config.get_terminal_writer()))
 
 
 def pytest_collection_finish() -> None:

@@ -18,18 +18,18 @@ class Progress:
     """Lines of a run's progress, told by the process that hands tests to workers.
 
     Args:
-        reporter: Pytest's terminal: `ensure_newline`, `write_line`.
+        writer: Pytest's terminal writer: `width_of_current_line`, `line`.
         clock: Seconds since any time.
     """
 
-    def __init__(self, reporter: Any, clock: Any = time.monotonic) -> None:
-        self._reporter, self._clock = reporter, clock
+    def __init__(self, writer: Any, clock: Any = time.monotonic) -> None:
+        self._writer, self._clock = writer, clock
         self._total, self._done, self._begin, self._told = 0, 0, clock(), clock()
 
     @pytest.hookimpl(optionalhook=True)
     def pytest_xdist_setupnodes(self, specs: list[Any]) -> None:
         """Workers are to be started."""
-        self._reporter.write_line(f"{len(specs)} workers collect the tests: ten seconds, on a busy machine a minute")
+        self._tell(f"{len(specs)} workers collect the tests: ten seconds, on a busy machine a minute")
 
     @pytest.hookimpl(optionalhook=True)
     def pytest_xdist_node_collection_finished(self, ids: list[str]) -> None:
@@ -48,5 +48,6 @@ class Progress:
 
     def _tell(self, text: str) -> None:
         self._told = self._clock()
-        self._reporter.ensure_newline()
-        self._reporter.write_line(text)
+        if self._writer.width_of_current_line:  # Of dots.
+            self._writer.line()
+        self._writer.line(text, flush=True)
