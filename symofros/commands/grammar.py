@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import difflib
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from importlib import import_module
 from typing import Any
@@ -64,9 +65,15 @@ def _refusing() -> Iterator[None]:
         raise typer.Exit(BAD_INPUT) from None
 
 
+def _nearest(given: str, options: Iterable[str]) -> list[str]:
+    """Options alike to what was given; that all begin with dashes makes them no more so."""
+    names = {option.strip("-"): option for option in options}
+    return sorted(names[name] for name in difflib.get_close_matches(given.strip("-"), names))
+
+
 def _problem(error: Any, context: Any) -> Problem:
     path = context.command_path
-    near = sorted(getattr(error, "possibilities", None) or ())
+    near = _nearest(getattr(error, "option_name", ""), getattr(error, "possibilities", None) or ())
     usage = " ".join(context.get_usage().removeprefix("Usage:").split())
     message = error.message if near else error.format_message()
     remedy = f"did you mean {' or '.join(near)}?" if near else f"'{path} --help' lists what it takes"
