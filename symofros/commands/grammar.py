@@ -75,7 +75,8 @@ def _problem(error: Any, context: Any) -> Problem:
     path = context.command_path
     near = _nearest(getattr(error, "option_name", ""), getattr(error, "possibilities", None) or ())
     usage = " ".join(context.get_usage().removeprefix("Usage:").split())
-    message = error.message if near else error.format_message()
+    # Click would append its own suggestions.
+    message = error.message if hasattr(error, "possibilities") else error.format_message()
     remedy = f"did you mean {' or '.join(near)}?" if near else f"'{path} --help' lists what it takes"
     given = " ".join(context.meta.get(_GIVEN, ())) or "no arguments"
     return Problem(f"{path}: {message[:1].lower()}{message[1:].rstrip('.')}", given, usage, remedy)

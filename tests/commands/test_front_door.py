@@ -152,7 +152,7 @@ _PARTS = ("  found:  ", "  rule:   ", "  remedy: ")
         (("info",), "info: missing argument 'model'"),
         (("info", "a.yaml", "b.yaml"), "unexpected extra argument"),
         (("simulate", CART_POLE, "--t", "1"), "did you mean --dt?"),
-        (("info", CART_POLE, "--scene", "x"), "'symofros info --help' lists what it takes"),
+        (("info", CART_POLE, "--scene", "x"), "info --help' lists what it takes"),
         (("simulate", CART_POLE, "soon"), "invalid value for 't_end'"),
         (("simulate", CART_POLE, "--", "-1"), "t_end = -1.0"),
         (("simulate", CART_POLE, "1", "--dt", "0"), "the step is not positive"),
