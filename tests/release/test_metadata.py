@@ -102,3 +102,14 @@ def test_the_extra_all_brings_what_it_says() -> None:
     wanted = {extra for extra in EXTRAS if extra not in left_out and not extra.startswith("engine-")}
     assert {extra for extra in wanted if not packages(extra) <= packages("all")} == set()
     assert not packages("torch") & packages("all") and "ruff>=0.5,<1" not in packages("all")
+
+
+def test_the_readme_says_what_its_commands_take_before_it_uses_them() -> None:
+    """Downloads, disk, time of each; and which environment the lines after them are for."""
+    text = (ROOT / "README.md").read_text()
+    for command in ("the first", "the second"):
+        (row,) = re.findall(rf"^\| {command} \|.*$", text, re.MULTILINE)
+        assert len(re.findall(r"[\d.]+ GB", row)) == 2 and len(re.findall(r"\d to \d minutes", row)) == 2
+    first = re.search(r"^symofros ", text, re.MULTILINE)
+    assert first and text.index(". .venv/bin/activate") < first.start()
+    assert "come next" not in text
