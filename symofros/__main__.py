@@ -15,7 +15,7 @@ import typer
 from typer.core import TyperCommand
 
 import symofros as sf
-from symofros.commands.grammar import Group
+from symofros.commands.grammar import Group, program
 from symofros.errors import did_you_mean
 
 # Name -> module and function. A module is imported when its command is asked for: others need a second of imports.
@@ -41,7 +41,7 @@ _AS_THEY_ARE = {"allow_extra_args": True, "ignore_unknown_options": True, "help_
 @cache
 def _command(name: str) -> Any:
     module, function = _COMMANDS[name]
-    single = typer.Typer(rich_markup_mode=None)
+    single = program()
     settings = _AS_THEY_ARE if name in _OF_THE_HARNESS else None
     single.command(name, context_settings=settings)(getattr(import_module(module), function))
     return typer.main.get_group(single).commands[name]
@@ -102,10 +102,7 @@ class Commands(Group):
         return super().resolve_command(ctx, args)
 
 
-# Help states units in brackets, which are no markup.
-app = typer.Typer(
-    cls=Commands, no_args_is_help=True, rich_markup_mode=None, help="Symbolic multibody models as fast C code."
-)
+app = program(cls=Commands, no_args_is_help=True, help="Symbolic multibody models as fast C code.")
 
 
 def _tell_version(wanted: bool) -> None:

@@ -16,6 +16,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tests.progress import Progress
+
 # Compiled models are kept between runs and shared by parallel workers, apart from the user's own cache.
 _CACHE = Path(__file__).parent.parent / ".pytest_cache"
 os.environ.setdefault("SYMOFROS_CACHE", str(_CACHE / "models"))
@@ -54,9 +56,12 @@ def pytest_configure(config: pytest.Config) -> None:
         raise pytest.UsageError("--browser needs Playwright: pip install -e '.[dev]'")
 
 
-def pytest_sessionstart() -> None:
+@pytest.hookimpl(tryfirst=True)
+def pytest_sessionstart(session: pytest.Session) -> None:
     """Nothing that is made while tests are collected is let go of: the collector need not look for it."""
     gc.disable()
+    if session.config.getoption("numprocesses", None) and session.config.pluginmanager.has_plugin("terminalreporter"):
+        session.config.pluginmanager.register(Progress(session.config.get_terminal_writer()))
 
 
 def pytest_collection_finish() -> None:

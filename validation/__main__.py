@@ -13,7 +13,7 @@ from typing import Any
 import typer
 
 import symofros as sf
-from symofros.commands.grammar import BAD_INPUT, Group
+from symofros.commands.grammar import BAD_INPUT, Group, program
 
 
 def imported(name: str) -> ModuleType:
@@ -38,7 +38,7 @@ def studies() -> Mapping[str, Any]:
 @cache
 def campaign() -> Any:
     """The commands of campaigns alone: each of their processes would import the studies."""
-    app = typer.Typer()
+    app = program()
     imported("validation.campaigns.command").register(app)
     return typer.main.get_group(app).commands["campaign"]
 
@@ -74,7 +74,7 @@ class Commands(Group):
 if __name__ == "__main__" and not {"--help", "--json"} & set(sys.argv):
     # Engines take seconds to load on a busy machine: something is said before.
     print("loading the engines", file=sys.stderr, flush=True)
-app = typer.Typer(cls=Commands, add_completion=False, no_args_is_help=False, pretty_exceptions_enable=False)
+app = program(cls=Commands, add_completion=False, no_args_is_help=False, pretty_exceptions_enable=False)
 imported("validation.reporting.command").add_command(app, imported("validation.cross_check.report").TOPIC)
 
 

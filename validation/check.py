@@ -13,7 +13,7 @@ import reference_models
 import symofros as sf
 from validation.adapters import ROUTES, compiled, has_beams
 from validation.comparison.elements import judge_elements
-from validation.comparison.errors import Comparison, Scales, compute, judge, scaled_errors, typical_scales
+from validation.comparison.errors import NOBODY, Comparison, Scales, compute, judge, scaled_errors, typical_scales
 from validation.comparison.loops import of_unique_multipliers
 from validation.comparison.motion import MOTIONS, FreeMotion, fall, judge_drift, smoothness_obstacle
 from validation.comparison.participants import (
@@ -308,8 +308,8 @@ def _unconfirmed(bench: _Bench, rows: list[Comparison]) -> Iterator[Comparison]:
     independent = {name for name in bench.settings.routes() if ROUTES[name].independent}
     compared = {row.engine for row in rows if row.status in ("agree", "disagree")}
     if independent and not independent & compared:
-        reason = f"none of {', '.join(sorted(independent))} could be asked; see why above"
-        yield Comparison(bench.label, "any", "all", "failed", note=reason)
+        reason = f"none of {', '.join(sorted(independent))} could be asked"
+        yield Comparison(bench.label, NOBODY, "all", "failed", note=reason)
 
 
 def _result(bench: _Bench, rows: list[Comparison]) -> ModelResult:

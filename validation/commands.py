@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import typer
-
+from symofros.commands.grammar import program
 from validation.campaigns import command as campaign
 from validation.dashboard import command as dashboard
 from validation.dashboard.catalogue import TOPICS
 from validation.reporting.command import add_command
 from validation.truth_data import command as truth
 
-app = typer.Typer()
+app = program()
 for topic in TOPICS.values():
     if topic.name != "check":
         add_command(app, topic)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import difflib
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from importlib import import_module
 from typing import Any
@@ -16,6 +17,8 @@ from symofros.errors import Problem, SymofrosError
 _UsageError: Any = typer.BadParameter.__base__
 _GIVEN = "symofros.arguments"
 BAD_INPUT = 2
+# Characters of a command's first sentence in a list, which is wrapped; Click cuts it to what a line holds.
+_SUMMARY = 300
 
 
 class Group(TyperGroup):
@@ -27,6 +30,13 @@ class Group(TyperGroup):
         with _refusing():
             return super().parse_args(ctx, args)
 
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """The list of all commands in the help, each with its whole first sentence."""
+        listed = ((name, self.get_command(ctx, name)) for name in self.list_commands(ctx))
+        rows = [(name, command.get_short_help_str(limit=_SUMMARY)) for name, command in listed if command]
+        with formatter.section("Commands"):
+            formatter.write_dl(rows)
+
     def invoke(self, ctx: Any) -> Any:
         """A command; what it does not refuse itself is refused here."""
         try:
@@ -36,6 +46,11 @@ class Group(TyperGroup):
             raise
         except (SymofrosError, OSError) as error:
             raise import_module("symofros.commands.shared").refuse(error) from None
+
+
+def program(cls: type[Group] = Group, **settings: Any) -> typer.Typer:
+    """A program whose help is plain text: markup would read units, "[s]", as styles, and state "<bool>" of flags."""
+    return typer.Typer(cls=cls, rich_markup_mode=None, **settings)
 
 
 @contextmanager
@@ -50,11 +65,18 @@ def _refusing() -> Iterator[None]:
         raise typer.Exit(BAD_INPUT) from None
 
 
+def _nearest(given: str, options: Iterable[str]) -> list[str]:
+    """Options alike to what was given; that all begin with dashes makes them no more so."""
+    names = {option.strip("-"): option for option in options}
+    return sorted(names[name] for name in difflib.get_close_matches(given.strip("-"), names))
+
+
 def _problem(error: Any, context: Any) -> Problem:
     path = context.command_path
-    near = sorted(getattr(error, "possibilities", None) or ())
+    near = _nearest(getattr(error, "option_name", ""), getattr(error, "possibilities", None) or ())
     usage = " ".join(context.get_usage().removeprefix("Usage:").split())
-    message = error.message if near else error.format_message()
+    # Click would append its own suggestions.
+    message = error.message if hasattr(error, "possibilities") else error.format_message()
     remedy = f"did you mean {' or '.join(near)}?" if near else f"'{path} --help' lists what it takes"
     given = " ".join(context.meta.get(_GIVEN, ())) or "no arguments"
     return Problem(f"{path}: {message[:1].lower()}{message[1:].rstrip('.')}", given, usage, remedy)

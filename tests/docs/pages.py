@@ -18,6 +18,14 @@ ELSEWHERE = {
     "docs/errors.md": "tests/test_errors_page.py",
     "docs/view.md": "tests/test_view_page.py",
 }
+# Languages that those tests run; a block of any other would be left out.
+TAKEN = {
+    "docs/blocks.md": {"python", "sh"},
+    "docs/errors.md": {"python", "yaml", "xml", "text", "sh"},
+    "docs/view.md": {"python", "sh"},
+}
+# Directives of the site; only cells hold code of their own, which building the site runs.
+DIRECTIVES = {"code-cell", "eval-rst", "include", "literalinclude", "report-figure", "toctree"}
 # Files that pages take for granted, of the repository.
 CART_POLE = "reference_models/rigid/cart_pole.yaml"
 GIVEN = {
@@ -69,6 +77,18 @@ def blocks(page: str, language: str | None = None) -> list[Block]:
         if not match["language"].startswith("{")
     ]
     return [block for block in all_blocks if language in (None, block.language)]
+
+
+def unseen(page: str) -> list[str]:
+    """What a page fences that is neither a block nor a directive that is known: tests would leave it out."""
+    text = (ROOT / page).read_text(encoding="utf-8")
+    languages = [match["language"] for match in _BLOCK.finditer(text)]
+    directives = {language.split("}")[0].strip("{") for language in languages if language.startswith("{")}
+    fences = re.findall(r"^[ \t>]*(?:```|~~~).*$", text, re.MULTILINE)
+    indented = [fence for fence in fences if not fence.startswith("```")]
+    cells = [] if "tutorial/" in page else sorted(directives & {"code-cell"})
+    open_ended = [f"{len(fences)} fences, {len(languages)} blocks"] * (len(fences) != 2 * len(languages))
+    return [*indented, *open_ended, *sorted(directives - DIRECTIVES), *cells]
 
 
 def pages() -> list[str]:

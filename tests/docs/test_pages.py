@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import shutil
+import subprocess
 import tomllib
 from importlib.util import find_spec
 from pathlib import Path
@@ -15,11 +16,12 @@ import pytest
 from ruamel.yaml import YAML
 
 import symofros as sf
-from tests.docs.pages import ELSEWHERE, GIVEN, ROOT, Block, blocks, pages
+from tests.docs.pages import ELSEWHERE, GIVEN, ROOT, TAKEN, Block, blocks, pages, unseen
 from tests.docs.shell import commands, try_out
 from validation.campaigns import plan
 
-LANGUAGES = {"python", "sh", "yaml", "toml", "xml", "c", "js", "text"}
+# What is not run here: quotations, and code for Node that its test runs.
+LANGUAGES = {"text": "", "js": "tests/exports/wasm/test_wasm.py"}
 SCHEMA = json.loads((ROOT / "symofros/description/yaml/schema.json").read_text())
 # Pages whose code takes minutes: frameworks that compile and train.
 LONG = {"docs/interop.md": 4}
@@ -56,6 +58,15 @@ def stated(block: Block) -> None:
         plan.make(data, block.page)
 
 
+def declared(block: Block) -> None:
+    """Declarations in C are accepted by a compiler, where there is one."""
+    compiler = shutil.which("cc")
+    if compiler is not None:
+        command = [compiler, "-std=c99", "-Wall", "-Werror", "-fsyntax-only", "-x", "c", "-"]
+        done = subprocess.run(command, input=block.text, capture_output=True, text=True)
+        assert done.returncode == 0, f"{block.page}:{block.line}\n{done.stderr}"
+
+
 @pytest.fixture
 def folder(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder of a reader who has the repository's models and the files that the page takes for granted."""
@@ -86,16 +97,42 @@ def test_the_code_of_a_page_runs(page: str, folder: Path, capsys: pytest.Capture
         elif block.language == "sh":
             for command in commands(block):
                 try_out(command, folder)
+        elif block.language == "c":
+            declared(block)
         else:
             assert block.language in LANGUAGES, f"{where}: a block of language '{block.language}'"
+            test = LANGUAGES[block.language]
+            assert not test or page in (ROOT / test).read_text(encoding="utf-8"), f"{where}: {test} does not run it"
 
 
 @pytest.mark.parametrize("page", sorted(ELSEWHERE))
 def test_pages_that_other_tests_run_are_read_by_those(page: str, folder: Path) -> None:
     assert Path(page).name in (ROOT / ELSEWHERE[page]).read_text(encoding="utf-8")
+    assert {block.language for block in blocks(page)} <= TAKEN[page]
     for block in blocks(page, "sh"):
         for command in commands(block):
             try_out(command, folder)
+
+
+@pytest.mark.parametrize("page", pages())
+def test_no_block_is_left_out_silently(page: str) -> None:
+    assert unseen(page) == []
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "- an item\n\n  ```python\n  raise SystemExit\n  ```\n",
+        "~~~python\nraise SystemExit\n~~~\n",
+        "```{code-block} python\nraise SystemExit\n```\n",
+        "```{code-cell} python\nraise SystemExit\n```\n",
+        "```python\nraise SystemExit\n",
+    ],
+)
+def test_a_block_that_would_be_left_out_is_caught(text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "page.md").write_text(text)
+    monkeypatch.setattr("tests.docs.pages.ROOT", tmp_path)
+    assert unseen("page.md")
 
 
 def test_what_does_not_run_says_why() -> None:

@@ -51,8 +51,8 @@ def test_an_interpreted_model_is_interpreted_there() -> None:
 
 def test_runs_and_batches_come_back_whole(arm: sf.Model) -> None:
     run = sf.simulate(arm, [0.0, 0.2], t_end=0.05, dt=1e-2, events={"top": sf.Event("x")})
-    back = pickle.loads(pickle.dumps(run))
-    assert np.array_equal(back.q, run.q) and back.outcome == run.outcome and np.array_equal(back.energy, run.energy)
+    for back in (pickle.loads(pickle.dumps(run)), copy.deepcopy(run)):
+        assert np.array_equal(back.q, run.q) and back.outcome == run.outcome and np.array_equal(back.energy, run.energy)
     batch = sf.simulate_batch(arm, [[0.0, 0.2], [0.0, 0.3]], t_end=0.05, dt=1e-2)
     assert np.array_equal(pickle.loads(pickle.dumps(batch))[1].q, batch[1].q)
 

@@ -10,6 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
+from symofros.commands.grammar import program
 from validation.campaigns.errors import PlanError, Unfinished
 from validation.campaigns.plan import make, read
 from validation.campaigns.report import TOPIC
@@ -19,7 +20,7 @@ from validation.reporting.terminal import show as show_report
 
 STATES = 100_000
 
-app = typer.Typer(no_args_is_help=True, help="Long campaigns: checkpointed, resumable, over processes or a cluster.")
+app = program(no_args_is_help=True, help="Long campaigns: checkpointed, resumable, over processes or a cluster.")
 
 Workers = Annotated[int, typer.Option(min=1, max=256, help="Processes of this machine.")]
 Scheduler = Annotated[str, typer.Option(help="Address of a dask scheduler, tcp://host:port; none: this machine.")]

@@ -70,7 +70,7 @@ class CrossCheck(CellItem):
     def runtest(self) -> None:
         """Check, and fail with the cells that disagree."""
         result = _result(self.case, self.settings)
-        wrong = [row for row in result.comparisons if row.status in ("disagree", "failed") and row.engine != "any"]
+        wrong = [row for row in result.comparisons if row.status in ("disagree", "failed") and not row.unconfirmed]
         if wrong:
             raise CellFailure("\n".join(map(_stated, wrong)))
         (engine,) = self.settings.engines or ("",)
@@ -115,7 +115,7 @@ class Confirmation(CrossCheck):
             row for name in asked for row in _result(self.case, replace(self.settings, engines=(name,))).comparisons
         ]
         if not any(ROUTES[row.engine].independent for row in rows if row.engine in ROUTES and row.status == "agree"):
-            reasons = dict.fromkeys(f"{row.engine}: {row.note}" for row in rows if row.note and row.engine != "any")
+            reasons = dict.fromkeys(f"{row.engine}: {row.note}" for row in rows if row.note and not row.unconfirmed)
             raise CellFailure("\n".join(["no independent engine confirms this model", *reasons]))
 
 

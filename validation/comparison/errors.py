@@ -19,6 +19,8 @@ LOWEST_DECADE, HIGHEST_DECADE = -18, 0
 BIN_EDGES = tuple(
     10.0 ** (k / BINS_PER_DECADE) for k in range(LOWEST_DECADE * BINS_PER_DECADE, HIGHEST_DECADE * BINS_PER_DECADE + 1)
 )
+# Engine of a row that says that no independent engine could be asked.
+NOBODY = "any"
 
 
 @dataclass(frozen=True)
@@ -59,6 +61,11 @@ class Comparison:
     def ok(self) -> bool:
         """Whether this row is no reason for concern."""
         return self.status in ("agree", "unsupported")
+
+    @property
+    def unconfirmed(self) -> bool:
+        """Whether it says that no independent engine could be asked about the model."""
+        return self.engine == NOBODY
 
     @property
     def title(self) -> str:

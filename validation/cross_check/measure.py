@@ -76,8 +76,10 @@ def measure(
     def done(result: ModelResult) -> None:
         results[result.label] = result
         count = len(result.compared)
-        differs = any(row.status == "disagree" for row in result.comparisons)
-        verdict = f"{count} agree" if result.ok else "DISAGREES" if differs else "FAILED"
+        wrong = [row for row in result.comparisons if not row.ok]
+        differs, unjudged = any(row.status == "disagree" for row in wrong), all(row.unconfirmed for row in wrong)
+        verdict = "DISAGREES" if differs else f"{count} agree, judged by no engine" if unjudged else "FAILED"
+        verdict = f"{count} agree" if result.ok else verdict
         run.advance(f"{result.label}: {verdict}, {sum(result.seconds.values()):.1f} s")
 
     with contextlib.suppress(KeyboardInterrupt):  # What was finished is reported.

@@ -7,6 +7,7 @@ import re
 from validation.adapters import ROUTES, differences
 from validation.check import ModelResult
 from validation.comparison.elements import ROWS as ELEMENT_ROWS
+from validation.comparison.errors import NOBODY
 from validation.contract.quantities import ROUNDING, SMALL, SOLVE
 from validation.cross_check import tables
 from validation.cross_check.figures import error_against_condition, error_distributions
@@ -185,15 +186,18 @@ def _model(model: ModelResult) -> Section:
 
 
 def _digest(record: Record) -> list[Block]:
-    """For a terminal of any width: a line a model, or where there are few, a line an engine."""
+    """For a terminal of any width: a line a model, or where there are few, a line an engine and what it left out."""
     each = len(record.models) <= _DETAILED
     of = "engine" if each else "model"
     said = f"Worst comparison of each {of}: error relative to the largest entry, of its tolerance"
     blocks: list[Block] = [said, tables.nearest(record, each)] if record.compared else []
-    blocks += [Text(f"not compared: {models}, {who}: {why}", "soft") for models, who, why in tables.unsupported(record)]
+    summary = "" if each else tables.left_out(record)
+    apart = (f"not compared: {models}, {who}: {why}" for models, who, why in tables.unsupported(record, not each))
+    blocks += [Text(text, "soft") for text in (summary, *apart) if text]
     for model, who, text in tables.failures(record):
         what, *more = _PARTS.split(text)
-        blocks += [Text(f"{model}, {who}: {what}", "bad"), *((Bullets(tuple(more)),) if more else ())]
+        where = model if who == NOBODY else f"{model}, {who}"
+        blocks += [Text(f"{where}: {what}", "bad"), *((Bullets(tuple(more)),) if more else ())]
     return blocks
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 
 from validation.adapters import ROUTES
 from validation.check import ModelResult
-from validation.comparison.errors import Comparison
+from validation.comparison.errors import NOBODY, Comparison
 from validation.contract.quantities import MOTION_ENERGY, QUANTITIES
 from validation.cross_check.record import Record
 from validation.procedures import ENGINE as FORMULAS
@@ -22,9 +22,13 @@ COLUMNS = {
 } | {"drift": ("energy_drift",)}
 OPINION = "engine | opinion | models | comparisons | disagree | alone | largest error / tolerance | of | verdict"
 # Engines of rows that no other engine is behind: our own drift, and what was asked of any of them.
-_OURS = ("symofros", "any", FORMULAS)
+_OURS = ("symofros", NOBODY, FORMULAS)
 # Statuses with a verdict on numbers.
 _JUDGED = ("agree", "disagree")
+# Of a model that only we had an opinion of.
+UNJUDGED = "not judged"
+# Characters of a place on a line of 80, beside the longest name of our models.
+_PLACE = 30
 # Depth of the background of a cell whose error is at the tolerance.
 _DEEPEST = 0.55
 
@@ -40,17 +44,28 @@ def by_engine(record: Record, engine: str) -> Table:
 
 
 def nearest(record: Record, each: bool) -> Table:
-    """The comparison that is nearest to its tolerance, of each model, or of each engine of each model."""
+    """The comparison that is nearest to its tolerance, of each model, or of each engine of each model.
+
+    For terminals: a model is one line of 80 characters, an engine one of 100.
+    """
     lines: list[tuple[str, ...]] = []
     for model in record.models:
         engines = [(name, _of(model, name)) for name in (*ROUTES, *_OURS)]
         for name, rows in engines if each else [(_engines(model), list(model.comparisons))]:
             error: tuple[str, ...] = ("", "", "")
             if (row := worst(rows)) is not None:
-                place = row.title if each else f"{row.title}, {row.engine}"
-                error = verdict(digits(row.error, 1), row.ok), digits(row.tolerance, 1), place
-            lines += [(model.label, name, *error, _result(rows))] if rows or not each else []
-    return Table.of(f"model | {'engine' if each else 'engines'} | error | of | in | verdict", lines)
+                place = f"{row.title}, {row.engine}"
+                place = row.title if each or len(place) > _PLACE else place
+                error = digits(row.error, 1), digits(row.tolerance, 1), place
+            said = _status(rows)
+            said = f"{name} agree" if not each and said == "agree" else said
+            said = said if _status(rows) in ("agree", "unsupported") else f"**{said}**"
+            if each and rows and name != NOBODY:
+                lines.append((model.label, name, *error, said))
+            elif not each:
+                lines.append((model.label, *error, said))
+    head = "model | engine | error | of | in | verdict" if each else "model | error | of | in | engines"
+    return Table.of(head, lines)
 
 
 def _engines(model: ModelResult) -> str:
@@ -93,13 +108,13 @@ def _table(middle: str, lines: Iterable[tuple[ModelResult, str, Sequence[Compari
 
 
 def _status(rows: Sequence[Comparison]) -> str:
-    """The worst status of some comparisons."""
-    statuses = {row.status for row in rows}
-    return next((status for status in ("failed", "disagree", "agree") if status in statuses), "unsupported")
+    """The worst status of some comparisons; what merely nobody confirms has not failed."""
+    statuses = {UNJUDGED if row.unconfirmed else row.status for row in rows}
+    return next((status for status in ("failed", "disagree", UNJUDGED, "agree") if status in statuses), "unsupported")
 
 
 def _result(rows: Sequence[Comparison]) -> str:
-    return verdict(_status(rows), _status(rows) not in ("failed", "disagree"))
+    return verdict(_status(rows), _status(rows) in ("agree", "unsupported"))
 
 
 def _cell(row: Comparison | None) -> str | Cell:
@@ -132,6 +147,8 @@ def failures(record: Record) -> list[tuple[str, str, str]]:
 
 def failure(row: Comparison) -> str:
     """What disagrees or failed, with its numbers."""
+    if row.unconfirmed:
+        return row.note
     if row.status == "failed":
         return f"{row.quantity}: " + "; ".join(" ".join(line.split()) for line in row.note.splitlines())
     error = "not a number" if row.error is None else f"error {digits(row.error)}"
@@ -139,10 +156,16 @@ def failure(row: Comparison) -> str:
     return f"{row.quantity}: {error}{place}, tolerance {digits(row.tolerance)}" + (f"; {row.note}" if row.note else "")
 
 
-def unsupported(record: Record) -> list[tuple[str, str, str]]:
-    """Models, engine, and what it could not represent and why; one line for each reason."""
+def unsupported(record: Record, unjudged: bool = False) -> list[tuple[str, str, str]]:
+    """Models, engine, and what it could not represent and why; one line for each reason.
+
+    `unjudged`: only of models that no independent engine could be asked about.
+    """
+    alone = {row.model for row in record.rows("failed") if row.unconfirmed}
     grouped: dict[tuple[str, str], list[Comparison]] = {}
     for row in record.rows("unsupported"):
+        if unjudged and row.model not in alone:
+            continue
         grouped.setdefault((row.engine, row.note), []).append(row)
     lines = []
     for (engine, reason), rows in grouped.items():
@@ -151,14 +174,27 @@ def unsupported(record: Record) -> list[tuple[str, str, str]]:
     return lines
 
 
+def left_out(record: Record) -> str:
+    """Of how many models each engine could not represent all, in a sentence; "" if there are none."""
+    models: dict[str, set[str]] = {}
+    for row in record.rows("unsupported"):
+        models.setdefault(row.engine, set()).add(row.model)
+    counts = sorted(((len(names), engine) for engine, names in models.items()), reverse=True)
+    said = ", ".join(f"{engine} {count}" for count, engine in counts)
+    return said and f"not represented, or in part (models, by engine): {said}; reasons: in the report, or check of one"
+
+
 def headline(record: Record) -> str:
     """The verdict in one sentence, or two."""
     models = {row.model for row in record.compared}
     what = f"{counted(len(record.compared), 'comparison')} on {counted(len(models), 'model')}"
     disagreeing = len(record.rows("disagree"))
-    failed = len({row.model for row in record.rows("failed")})
-    parts = [f"{disagreeing} of {what} disagree" if disagreeing else f"all {what} agree"] if record.compared else []
+    failed = len({row.model for row in record.rows("failed") if not row.unconfirmed})
+    unjudged = len({row.model for row in record.rows("failed") if row.unconfirmed})
+    agreeing = f"all {what} agree" if len(record.compared) > 1 else f"{what} agrees"
+    parts = [f"{disagreeing} of {what} disagree" if disagreeing else agreeing] if record.compared else []
     parts += [f"{counted(failed, 'model')} failed"] if failed else []
+    parts += [f"{counted(unjudged, 'model')} judged by no independent engine"] if unjudged else []
     said = ", ".join(parts) or "nothing was compared"
     cut = f" Interrupted: {counted(len(record.unfinished), 'model')} not checked." if record.unfinished else ""
     return f"{said[0].upper()}{said[1:]}.{cut}"

@@ -39,7 +39,10 @@ def compose(data: Data) -> Report:
     judged = [(name, one, v) for name, (one, result) in results.items() for v in verdicts(one, result.points, quick)]
     met, problems = sum(v.ok is True for _, _, v in judged), counted(len(results), "problem")
     doubted = [name for name, (one, result) in results.items() if not result.agreement <= one.trust]
-    said = f"{met} of {counted(len(judged), 'target')} met, in {problems}"
+    asked = sum(v.ok is not None for _, _, v in judged)
+    said = f"{met} of {counted(asked, 'target')} met" if asked else "no target could be judged"
+    said += f", {len(judged) - asked} not measured" if 0 < asked < len(judged) else ""
+    said += f", in {problems}"
     said += " (quick variant: few contestants, so its ratios mean little)" if quick else ""
     said += f"; references disagree on {', '.join(doubted)}" if doubted else ""
     said += f"; {counted(len(failures), 'problem')} could not be done" if failures else ""

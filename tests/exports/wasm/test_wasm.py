@@ -11,6 +11,7 @@ import pytest
 
 import symofros as sf
 from symofros.exports.wasm import wasm
+from tests.docs.pages import blocks
 from tests.exports.cases import PLANAR, STARTS, need, run, system_of
 
 # The double as 16 hexadecimal digits, so that no digit is lost on the way.
@@ -100,6 +101,19 @@ def test_the_module_has_the_native_bits(answers: dict[str, Any], native: dict[st
     for name in "MhQ":
         np.testing.assert_array_equal(doubles(answers["batch"][name]), native[name].ravel())
         np.testing.assert_array_equal(doubles(answers["one"][name]), native[name][0].ravel())
+
+
+@pytest.mark.tools
+def test_the_code_of_the_page_on_exports_runs(package: Path, native: dict[str, Any]) -> None:
+    need("node")
+    (block,) = blocks("docs/exports.md", "js")
+    load, *lines = block.text.splitlines()
+    given = [f"const {key} = {native[key][0].tolist()};" for key in ("q", "v", "u")]
+    assert "./robot/planar_robot.mjs" in load
+    program = [load.replace("robot/planar_robot", "planar"), *given, *lines, "console.log(M.length, robot.t, batch.n)"]
+    (package / "page.mjs").write_text("\n".join(program))
+    entries, t, *_ = run("node", "page.mjs", cwd=package).split()
+    assert int(entries) == native["M"][0].size and float(t) == 2.0
 
 
 @pytest.mark.tools

@@ -62,6 +62,7 @@ def test_what_is_no_compiler_is_told(monkeypatch: pytest.MonkeyPatch, stated: st
 
 
 def test_flags_of_the_environment_follow_the_default_ones(monkeypatch: pytest.MonkeyPatch, cache: Path) -> None:
+    monkeypatch.delenv("SYMOFROS_CFLAGS", raising=False)  # What a plain run of the tests states.
     named = find_toolchain()
     assert named is not None
     text = """

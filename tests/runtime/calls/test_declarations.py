@@ -55,7 +55,7 @@ import sys
 import symofros as sf
 model = sf.compile(sf.load(sys.argv[1]))
 print(model.mass_matrix(model.neutral()).shape)
-loaded = {name.split(".")[0] for name in sys.modules}
+loaded = {name.split(".")[0] for name in list(sys.modules)}  # Threads that compile may still import.
 slow = loaded & {"pydantic", "ruamel", "pycparser", "http", "ssl", "sympy", "scipy"}
 print(*sorted(slow), file=sys.stderr)
 """

@@ -176,3 +176,37 @@ def test_an_unreadable_model_is_refused_in_its_parts_and_tags_are_shown(capsys: 
     told = [line.strip(" •") for line in capsys.readouterr().out.splitlines()]
     expected = "r, symofros: load: r.urdf:1: no links", "found: 0 other elements", "rule: at least one <link>"
     assert [line for line in told if line][:4] == [*expected, "remedy: run xacro"]
+
+
+@pytest.mark.parametrize("width", [80, 100])
+def test_the_standard_set_is_one_line_a_model(
+    width: int, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Piped, and on a terminal of 80 columns: of the committed report, by whole rows."""
+    monkeypatch.setattr("validation.reporting.terminal.TABLE_WIDTH", width)
+    monkeypatch.setattr("validation.reporting.terminal.PLAIN_WIDTH", width)
+    data = json.loads((Path(__file__).parents[3] / "reports/check.json").read_text())
+    show(compose(data))
+    *lines, _ = capsys.readouterr().out.splitlines()
+    assert all(len(line) <= width and line == line.rstrip() for line in lines)
+    rows = [line.split() for line in lines]
+    for model in data["models"]:
+        assert sum(row[:1] == [model["model"]] and row[-1] == "agree" for row in rows) == 1, model["model"]
+
+
+def test_lines_of_few_models_are_one_an_engine_and_fit_100_columns(
+    good: ModelResult, capsys: pytest.CaptureFixture[str]
+) -> None:
+    show(compose(as_data(SETTINGS, [good], 1.0, ())))
+    lines = capsys.readouterr().out.splitlines()
+    assert all(len(line) <= 100 for line in lines)
+    engines = {row.engine for row in good.comparisons}
+    assert {line.split()[1] for line in lines if line.startswith(" pendulum ")} == engines
+
+
+def test_what_disagrees_is_said_in_its_line(mixed: Data, capsys: pytest.CaptureFixture[str]) -> None:
+    show(compose(mixed))
+    lines = [line.strip() for line in capsys.readouterr().out.splitlines()]
+    assert [line for line in lines if line.startswith("gone ")][0].split() == ["gone", "failed"]
+    assert [line for line in lines if line.startswith("pendulum ")][0].endswith(" agree")
+    assert any(line.endswith(" disagree") for line in lines) and not any("missed" in line for line in lines)

@@ -46,3 +46,12 @@ def test_report_end_to_end(tmp_path: Path) -> None:
 def test_an_unknown_problem_is_bad_input() -> None:
     found = CliRunner().invoke(app, ["pareto", "--problem", "spinup"])
     assert found.exit_code == 2 and "spin_up" in found.output
+
+
+@pytest.mark.slow
+def test_a_quick_run_of_the_pendulum_fails_nowhere(tmp_path: Path) -> None:
+    """It reaches none of the errors at which engines are compared, which is no miss."""
+    arguments = ["pareto", "--quick", "--problem", "pendulum", "--report", str(tmp_path)]
+    done = CliRunner().invoke(app, arguments)
+    assert done.exit_code == 0 and "not measured" in done.stdout, done.output
+    assert "nan" not in done.stdout and "missed" not in done.stdout and " of 4 targets met" not in done.stdout
