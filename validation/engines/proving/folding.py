@@ -69,7 +69,8 @@ def _parts(text: str) -> Iterator[str]:
         own = token.string
         if token.type == tokenize.STRING and _is_long_xml(own):
             # What is before it goes on a line with its beginning.
-            own = f'"""{xml_lines(ast.literal_eval(own))}"""'
+            room = WIDTH - len(part + spaces) - 3
+            own = f'"""{xml_lines(ast.literal_eval(own), room)}"""'
         part += spaces + own
         depth += (own in "([{") - (own in ")]}")
         if own == "," and depth:
@@ -83,14 +84,21 @@ def _is_long_xml(literal: str) -> bool:
     return literal.lstrip("\"'").startswith("<") and len(literal) > _SHORT
 
 
-def xml_lines(text: str) -> str:
-    """XML with line breaks between tags, or attributes where a tag is longer than a line."""
-    filled, line = [], ""
+def xml_lines(text: str, room: int = WIDTH) -> str:
+    """XML with line breaks between tags, or attributes where a tag is longer than a line.
+
+    Args:
+        text: The XML.
+        room: Letters that its first line may have.
+    """
+    filled: list[str] = []
+    line = ""
     # An element of text alone stays in one piece.
     for part in re.findall(
-        r"<\w+[^>/]*>[^<]+</\w+>|<[^>]*>|[^<]+", re.sub(r"\s+", " ", text.replace(">\n<", "><")).strip()
+        r"<\w+[^>/]*>[^<]+</\w+>|<[^>]*>|[^<]+", re.sub(r"\s+", " ", re.sub(r">\s+<", "><", text)).strip()
     ):
-        if len(line) + len(part) > WIDTH and line:
+        width = WIDTH if filled else room
+        if len(line) + len(part) > width and line:
             filled.append(line)
             line = ""
         if len(part) <= WIDTH:

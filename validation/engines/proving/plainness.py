@@ -9,10 +9,14 @@ from __future__ import annotations
 import re
 
 # Pattern -> replacement, in the text of a script.
-_DEFAULTS = (
+_NUMBERS = (
     # Whole numbers in quotes or between tags; those of Python's lists stay floating-point numbers.
     (r"(?<=[\" >])(-?\d+)\.0(?=[\" <])", r"\1"),
     (r"(?<=[\" >])-0(?=[\" <])", "0"),
+    # Breaks between tags that a string states by escapes.
+    (r">\\n<", "><"),
+)
+_DEFAULTS = (
     # URDF.
     (r' rpy="0 0 0"', ""),
     (r' xyz="0 0 0"(?=( rpy="[^"]*")?/>)', ""),
@@ -29,13 +33,16 @@ _DEFAULTS = (
     # SDF.
     (r"<pose>0 0 0 0 0 0</pose>", ""),
     (r"<(i(?:xy|xz|yz))>0</\1>", ""),
-    # Breaks between tags that a string states by escapes.
-    (r">\\n<", "><"),
 )
 
 
-def plain(script: str) -> str:
-    """The script without them."""
-    for pattern, replacement in _DEFAULTS:
+def plain(script: str, *, defaults: bool = True) -> str:
+    """The script without them.
+
+    Args:
+        script: The script.
+        defaults: Whether formats' defaults go; there are readers that know none of them.
+    """
+    for pattern, replacement in _NUMBERS + _DEFAULTS * defaults:
         script = re.sub(pattern, replacement, script)
     return script

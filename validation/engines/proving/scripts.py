@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import ast
 import re
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -21,6 +20,7 @@ from validation.engines.proving.folding import folded
 from validation.engines.proving.pieces import assembled, taken
 from validation.engines.proving.plainness import plain
 from validation.engines.proving.pruning import pruned
+from validation.engines.proving.shortening import picked, shortened, still
 from validation.engines.proving.shrink import TRIES, Case, size, smallest
 from validation.engines.proving.threads import NONE, thread
 from validation.engines.workers import Crashed, Job, Worker
@@ -104,11 +104,11 @@ def shrunk(
     def asked(case: Case, how: Truths) -> Judged:
         return next(judged(plugin, replace(job, tree=case.tree, pieces=case.pieces, text=case.text), how, worker))
 
-    def shows(case: Case) -> bool:
+    def shows(case: Case, how: Truths = quick) -> bool:
         if time.monotonic() > end:
             return False
         try:
-            one = asked(case, quick)
+            one = asked(case, how)
         except (ArithmeticError, ValueError, RuntimeError):  # Singular there, or of no size, here or in the worker.
             return False
         return one.cell.verdict == red.cell.verdict and one.cell.error >= _KEPT * min(red.cell.error, 1.0)
@@ -118,10 +118,13 @@ def shrunk(
     known = (shown or Shown()).of(red)
     begun = next((case for case in sorted(known, key=cost) if cost(case) < cost(first) and shows(case)), first)
     case = smallest(begun, shows, tries, cost) if tries else begun
-    if case is first:
-        return red
     final = asked(case, truths)
     if final.cell.verdict != red.cell.verdict:
+        # Where roundings go far, as beside what is singular, nothing is shown: asked of each case.
+        end = time.monotonic() + _PATIENCE
+        case = smallest(first, lambda one: shows(one, truths), tries, cost)
+        final = asked(case, truths)
+    if case is first or final.cell.verdict != red.cell.verdict:
         return red
     known.append(case)
     return final
@@ -176,15 +179,29 @@ def prove(
         else shrunk(plugin, red, worker, truths, tries, shown)
     )
     folder.mkdir(parents=True, exist_ok=True)
-    whole = text(plugin, small, known)
-    # Shorter and plainer, where that is the same to the engine.
-    shorter = text(plugin, _begun(plugin, small), known, merged=True)
-    for script in dict.fromkeys(folded(pruned(one)) for one in (plain(shorter), plain(whole), whole)):
+    for script in _variants(plugin, small, known):
         path.write_text(script, encoding="utf-8")
         output, failed = fails(path)
         if failed and _says(output, small):
             break
     return _proof(plugin, red, script, output, failed, known)
+
+
+def _variants(plugin: EnginePlugin, red: Judged, known: str) -> Iterator[str]:
+    """The script, shorter and plainer ones before it: what is the same to the engine shows when it runs."""
+    merged = text(plugin, _begun(plugin, red), known, merged=True)
+    whole = text(plugin, red, known)
+    made = (
+        still(shortened(pruned(plain(merged)))),
+        shortened(pruned(plain(merged))),
+        still(shortened(pruned(plain(merged, defaults=False)))),
+        shortened(pruned(plain(merged, defaults=False))),
+        plain(merged),
+        plain(whole),
+        whole,
+    )
+    head = "".join(line for line in whole.splitlines(keepends=True) if line.startswith("# "))
+    yield from dict.fromkeys(head + folded(pruned(one)).removeprefix(head) for one in made)
 
 
 def _says(output: str, red: Judged) -> bool:
@@ -258,20 +275,6 @@ def _worst(red: Judged) -> tuple[tuple[int, ...] | None, Array]:
     return tuple(int(k) for k in np.unravel_index(int(np.argmax(off)), want.shape)), value
 
 
-def _expression(line: str) -> str | None:
-    """What is assigned to `value` by a line of a script, as an array's expression."""
-    try:
-        (statement,) = ast.parse(line).body
-    except (SyntaxError, ValueError):
-        return None
-    if not isinstance(statement, ast.Assign) or [ast.unparse(one) for one in statement.targets] != ["value"]:
-        return None
-    answer = line.partition(" = ")[2]
-    if isinstance(statement.value, ast.Call | ast.Attribute | ast.Subscript | ast.Name):
-        return answer
-    return f"np.array({answer})" if isinstance(statement.value, ast.List | ast.ListComp) else f"({answer})"
-
-
 def text(plugin: EnginePlugin, red: Judged, known: str, *, merged: bool = False) -> str:
     """The script of a case: the engine's answer, the truth where it is off most, to 17 digits, and an assertion.
 
@@ -291,23 +294,20 @@ def text(plugin: EnginePlugin, red: Judged, known: str, *, merged: bool = False)
         return f"{head}{red.answer.script}\n"
     place, value = _worst(red)
     raw = np.asarray(red.answer.value)
-    *before, last = red.answer.script.rstrip().split("\n")
-    script = "\n".join([*before, last])
+    script = red.answer.script.rstrip()
     if place is None:
         shape = tuple(red.want.value.shape)
         return f"{head}{script}\nassert np.shape(value) == {shape}, np.shape(value)\n"
-    entry, answer = "value", _expression(last) if merged else None
-    if answer and raw.shape == value.shape:
-        entry = f"{answer}[{', '.join(map(str, place))}]" if place else answer
-        script = "\n".join(before)
+    found = picked(script, place) if merged and raw.shape == value.shape else None
+    if found:
+        script, entry = found
     elif place:
         reshaped = f".reshape({value.shape})" if raw.shape != value.shape else ""
         entry = f"np.array(value){reshaped}[{', '.join(map(str, place))}]"
-    elif raw.ndim:
-        entry = "np.array(value).item()"
-    expected = float(red.want.value[place])
+    else:
+        entry = "np.array(value).item()" if raw.ndim else "value"
     lines = (
-        f"value, expected = {entry}, {expected!r}",
+        f"value, expected = {entry}, {float(red.want.value[place])!r}",
         f'assert abs(value - expected) <= {red.want.allowed:.1e}, f"{{value = }}, {{expected = }}"',
     )
     return head + script + "\n" + "\n".join(lines) + "\n"

@@ -16,6 +16,9 @@ from validation.engines.truth.charts import CHARTS
 OPTIONAL = {
     "js": "not for links without a joint of their own",
     "bs": "not for links without a joint of their own",
+    "points": "not for constraints of this kind",
+    "loops": "not for constraints of this kind",
+    "loops_generic": "not for constraints of this kind",
     "cm": "not for constraints of this kind",
     "axes": "not for trees without constraints",
     "am": "not for constraints of this kind",
