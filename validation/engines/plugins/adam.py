@@ -9,7 +9,7 @@ from validation.engines.plugins.writing.urdf import KINDS, Described, of_files, 
 _SETUP = """import casadi as ca
 import numpy as np
 from adam.casadi import KinDynComputations
-robot = KinDynComputations({text!r}, {joints}, gravity=np.array({gravity} + [0, 0, 0]))"""
+robot = KinDynComputations({text!r}, {joints}, gravity=np.array({gravity}))"""
 _PLACE = (
     "def place(q):",
     "    x, y, z, w = q[3:7]",
@@ -65,7 +65,7 @@ _BASE = "free xyzw, linear and angular before"
 def read(tree: Tree, described: Described) -> Source:
     """A file through adam's reader of URDF."""
     count, floating = len(described.moving), described.floating
-    setup = _SETUP.format(text=described.text, joints=list(described.moving), gravity=list(tree.gravity))
+    setup = _SETUP.format(text=described.text, joints=list(described.moving), gravity=[*tree.gravity, 0.0, 0.0, 0.0])
     # Its forward dynamics let the base float.
     return Source(
         tuple(setup.split("\n")),

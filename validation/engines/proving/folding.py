@@ -11,6 +11,8 @@ from collections.abc import Iterator
 from validation.engines.plugins.writing.source import WIDTH
 
 _INDENT = "    "
+# Lines of XML leave room for quotes and what follows them.
+_XML = WIDTH - 4
 _COMMENT = "# "
 # XML that stands in a line without being hard to read.
 _SHORT = 80
@@ -69,7 +71,7 @@ def _parts(text: str) -> Iterator[str]:
         own = token.string
         if token.type == tokenize.STRING and _is_long_xml(own):
             # What is before it goes on a line with its beginning.
-            room = WIDTH - len(part + spaces) - 3
+            room = WIDTH - len(part + spaces) - 3  # Less the quotes.
             own = f'"""{xml_lines(ast.literal_eval(own), room)}"""'
         part += spaces + own
         depth += (own in "([{") - (own in ")]}")
@@ -97,7 +99,7 @@ def xml_lines(text: str, room: int = WIDTH) -> str:
     for part in re.findall(
         r"<\w+[^>/]*>[^<]+</\w+>|<[^>]*>|[^<]+", re.sub(r"\s+", " ", re.sub(r">\s+<", "><", text)).strip()
     ):
-        width = WIDTH if filled else room
+        width = _XML if filled else room
         if len(line) + len(part) > width and line:
             filled.append(line)
             line = ""

@@ -201,7 +201,7 @@ def _variants(plugin: EnginePlugin, red: Judged, known: str) -> Iterator[str]:
         whole,
     )
     head = "".join(line for line in whole.splitlines(keepends=True) if line.startswith("# "))
-    yield from dict.fromkeys(head + folded(pruned(one)).removeprefix(head) for one in made)
+    yield from dict.fromkeys(folded(head + pruned(one).removeprefix(head)) for one in made)
 
 
 def _says(output: str, red: Judged) -> bool:

@@ -7,6 +7,8 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from validation.engines.plugins.writing.source import WIDTH
 
 
@@ -26,6 +28,9 @@ def picked(script: str, place: Sequence[int]) -> tuple[str, str] | None:
     answer = last.value
     if isinstance(answer, ast.Call) and ast.unparse(answer.func) == "np.array" and len(answer.args) == 1:
         answer = answer.args[0]
+    columns = _columns(answer)
+    if place and columns:
+        answer, rest = columns
     generator = answer.generators[0] if isinstance(answer, ast.ListComp) and len(answer.generators) == 1 else None
     if place and isinstance(answer, ast.ListComp) and generator and isinstance(generator.target, ast.Name):
         item: ast.expr = ast.Subscript(generator.iter, ast.Constant(place[0]), ast.Load())
@@ -33,7 +38,20 @@ def picked(script: str, place: Sequence[int]) -> tuple[str, str] | None:
             before, item = _one_of(before, generator.iter.id, place[0], generator.target.id, item)
         answer = _substituted(answer.elt, {generator.target.id: item})
         place = place[1:]
+        if columns:
+            array = ast.Call(ast.parse("np.array", mode="eval").body, [answer], [])
+            answer = ast.Subscript(array, ast.Tuple(rest, ast.Load()), ast.Load())
     return _text(before), _entry(answer, place)
+
+
+def _columns(answer: ast.expr) -> tuple[ast.ListComp, list[ast.expr]] | None:
+    """A comprehension in an array of which all items are taken, and what is taken of each."""
+    if not isinstance(answer, ast.Subscript) or not isinstance(answer.slice, ast.Tuple):
+        return None
+    first, *rest = answer.slice.elts
+    call = answer.value
+    listed = call.args[0] if isinstance(call, ast.Call) and ast.unparse(call.func) == "np.array" else None
+    return (listed, rest) if isinstance(listed, ast.ListComp) and ast.unparse(first) == ":" else None
 
 
 def _one_of(
@@ -66,7 +84,7 @@ def _entry(answer: ast.expr, place: Sequence[int]) -> str:
 
 def shortened(script: str) -> str:
     """A script whose plain imports share a line, with vectors and data in the one place that uses them."""
-    statements = _statements(script)
+    statements = [_Units().visit(one) for one in _statements(script)]
     while (simpler := _inlined(statements)) is not None:
         statements = simpler
     return _text(_imported(statements))
@@ -78,6 +96,9 @@ def still(script: str) -> str:
 
 
 def _sets_zero(one: ast.stmt) -> bool:
+    if isinstance(one, ast.Assign) and isinstance(one.targets[0], ast.Tuple) and isinstance(one.value, ast.Tuple):
+        parts = all(ast.unparse(target).endswith("[:]") for target in one.targets[0].elts)
+        return parts and all(ast.unparse(value).startswith("np.zeros(") for value in one.value.elts)
     if not isinstance(one, ast.Expr) or not isinstance(one.value, ast.Call) or not one.value.args:
         return False
     name = ast.unparse(one.value.func).rpartition(".")[2]
@@ -116,7 +137,7 @@ def _inlined(statements: list[ast.stmt]) -> list[ast.stmt] | None:
             if isinstance(user, ast.FunctionDef | ast.ClassDef) or (_looped(user, name) and not _is_plain(value)):
                 continue
             changed = _substituted(user, {name: value})
-            if len(ast.unparse(changed).split("\n")[0]) > WIDTH:
+            if _height(changed) > _height(user):
                 continue
             rest = _without(one, name)
             return [
@@ -154,8 +175,12 @@ def _without(one: ast.stmt, name: str) -> list[ast.stmt]:
 
 def _is_plain(value: ast.expr) -> bool:
     """Whether a value is made of numbers and words alone."""
+    if isinstance(value, ast.Subscript):
+        return _is_plain(value.value) and _is_plain(value.slice)
     if isinstance(value, ast.Call):
-        return ast.unparse(value.func) in ("np.array", "np.zeros") and all(map(_is_plain, value.args))
+        return ast.unparse(value.func) in ("np.array", "np.zeros", "np.eye", "np.diag") and all(
+            map(_is_plain, value.args)
+        )
     try:
         ast.literal_eval(value)
     except ValueError:
@@ -172,6 +197,11 @@ def _may_move(value: ast.expr, between: Sequence[ast.stmt]) -> bool:
     return all(_is_plain(part) for one in between for part in _assigned(one).values()) and all(map(_assigned, between))
 
 
+def _height(one: ast.stmt) -> int:
+    """Lines that the first line of a statement takes."""
+    return (len(_line(one).split("\n")[0]) - 1) // WIDTH
+
+
 def _looped(one: ast.stmt, name: str) -> bool:
     parts = (ast.For, ast.ListComp, ast.GeneratorExp, ast.DictComp, ast.Lambda)
     return any(isinstance(node, parts) and name in _loaded(node) for node in ast.walk(one))
@@ -179,6 +209,52 @@ def _looped(one: ast.stmt, name: str) -> bool:
 
 def _loaded(one: ast.AST) -> list[str]:
     return [node.id for node in ast.walk(one) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)]
+
+
+class _Units(ast.NodeTransformer):
+    """Unit vectors, zeros and diagonal matrices by their names."""
+
+    def visit_BinOp(self, node: ast.BinOp) -> ast.expr:  # noqa: N802  (ast's name)
+        """One list in place of the sum of two."""
+        if isinstance(node.op, ast.Add) and isinstance(node.left, ast.List) and isinstance(node.right, ast.List):
+            return self.visit_List(ast.List([*node.left.elts, *node.right.elts], ast.Load()))
+        self.generic_visit(node)
+        return node
+
+    def visit_Call(self, node: ast.Call) -> ast.expr:  # noqa: N802  (ast's name)
+        """An array by its name."""
+        if ast.unparse(node.func) == "np.diag":
+            return node
+        self.generic_visit(node)
+        first = node.args[0] if len(node.args) == 1 and not node.keywords else None
+        named = first is not None and ast.unparse(first).startswith(("np.eye(", "np.diag(", "np.zeros("))
+        return first if named and first is not None and ast.unparse(node.func) == "np.array" else node
+
+    def visit_List(self, node: ast.List) -> ast.expr:  # noqa: N802  (ast's name)
+        """A list of numbers by its name."""
+        name = _named(node) if _is_plain(node) else None
+        if name is None:
+            self.generic_visit(node)
+            return node
+        made: ast.expr = ast.parse(name, mode="eval").body
+        return made
+
+
+def _named(node: ast.List) -> str | None:
+    """What NumPy calls a list of numbers that is mostly zeros."""
+    try:
+        values = np.array(ast.literal_eval(node), dtype=float)
+    except (ValueError, TypeError):
+        return None
+    n = len(values)
+    if values.ndim == 1 and n > 2 and not values.any():
+        return f"np.zeros({n})"
+    if values.ndim == 1 and n > 1 and sorted(values) == [0.0] * (n - 1) + [1.0]:
+        return f"np.eye({n})[{int(values.argmax())}]"
+    if values.ndim == 2 and values.shape == (n, n) and n > 1 and np.array_equal(values, np.diag(values.diagonal())):
+        unit = np.array_equal(values, np.eye(n))
+        return f"np.eye({n})" if unit else f"np.diag({values.diagonal().tolist()!r})"
+    return None
 
 
 class _Substitution(ast.NodeTransformer):

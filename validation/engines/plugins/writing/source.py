@@ -24,7 +24,7 @@ OPTIONAL = {
     "am": "not for constraints of this kind",
 }
 # Longest line of a script.
-WIDTH = 118
+WIDTH = 120
 _INPUTS = ("q", "v", "a", "tau", "v2", "q2")
 
 
