@@ -136,7 +136,10 @@ def write(tree: Tree) -> Source | Unsupported:
                 return Unsupported("speeds of free joints are along the axes of the link before", offered=False)
         parent = "None" if link.parent < 0 else f"b{link.parent}"
         lines.append(f"j, b{k} = s.create{native.name}AndBodyNodePair({parent})")
-        if native.settings:
+        # The axis is z unless another is set.
+        if native.settings and not (
+            native.name in ("RevoluteJoint", "PrismaticJoint") and joint.axis == (0.0, 0.0, 1.0)
+        ):
             axis, second = _array(joint.axis), _array(joint.second)
             lines.append(native.settings.format(axis=axis, second=second, turn=2 * math.pi * joint.pitch))
         if np.any(p) or not np.array_equal(R, np.eye(3)):
