@@ -1,24 +1,11 @@
-"""pinocchio 4.1.0: getJointKinematicHessian, universal.
-
-Result: their derivatives by q (L, 6, nv, nv).
-Known: https://github.com/stack-of-tasks/eigenpy/issues/557.
-"""
-
-import numpy as np
-import pinocchio as pin
+# pinocchio 4.1.0, universal: getJointKinematicHessian is wrong (their derivatives by q).
+# Known: https://github.com/stack-of-tasks/eigenpy/issues/557.
+import numpy as np, pinocchio as pin
 m = pin.Model()
-m.gravity.linear = np.zeros(3)
-j0 = m.addJoint(0, pin.JointModelUniversal(np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])), pin.SE3.Identity(), 'b')
+j0 = m.addJoint(0, pin.JointModelUniversal(np.eye(3)[0], np.eye(3)[1]), pin.SE3.Identity(), 'b')
 m.appendBodyToJoint(j0, pin.Inertia(1.0, np.zeros(3), np.eye(3)), pin.SE3.Identity())
-js = [j0]
 d = m.createData()
-q = np.array([0.0, 0.0])
-pin.computeJointJacobians(m, d, q)
+pin.computeJointJacobians(m, d, np.zeros(2))
 pin.computeJointKinematicHessians(m, d)
-value = np.array([pin.getJointKinematicHessian(m, d, j, pin.LOCAL) for j in js])
-value = np.array(value, dtype=float)
-value = value[0, 5, 0, 1]
-expected = 1.0
-error = np.max(np.abs(value - expected))
-print(f"{value = }\n{expected = }\n{error = :.3g}")
-assert error <= 1.0e-12
+value, expected = pin.getJointKinematicHessian(m, d, j0, pin.LOCAL)[5, 0, 1], 1.0
+assert abs(value - expected) <= 1e-12, f'value = {value!r}, expected = {expected!r}'

@@ -1,39 +1,17 @@
-"""pybullet 3.2.7: calculateInverseDynamics, revolute x.
-
-Result: M a + h (nv).
-Known: none found.
-"""
-
-import tempfile
+# pybullet 3.2.7, revolute x: calculateInverseDynamics is imprecise (M a + h).
+from tempfile import NamedTemporaryFile
 import numpy as np
 import pybullet as p
-TEXT = """<robot name="tree">
-<link name="world"><inertial><mass value="0"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial></link>
-<link name="b"><inertial><origin xyz="0.0 0.0 0.0"/><mass value="1.0"/>
-<inertia ixx="0.10427043973207122" ixy="-0.0004541892541114282" ixz="-0.016110575320656798" iyy="0.13385750473995509" iyz="-0.01328348092080803" izz="0.09889730873039351"/></inertial></link>
-<joint name="joint_b" type="continuous"><parent link="world"/><child link="b"/>
-<origin xyz="0.0 0.0 0.0" rpy="0.0 0.0 0.0"/>
-<axis xyz="1.0 0.0 0.0"/>
-</joint>
-</robot>"""
-if not p.isConnected():
-    p.connect(p.DIRECT)
-p.setGravity(*[0.0, 0.0, 0.0])
-with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
-    file.write(TEXT)
-    file.flush()
-    flags = p.URDF_USE_INERTIA_FROM_FILE | p.URDF_MAINTAIN_LINK_ORDER
-    robot = p.loadURDF(file.name, useFixedBase=True, flags=flags)
-named = {p.getJointInfo(robot, k)[12].decode(): k for k in range(p.getNumJoints(robot))}
-links = [named[name] for name in ['b']]
-moving = [k for k in range(p.getNumJoints(robot)) if p.getJointInfo(robot, k)[2] != p.JOINT_FIXED]
-
-q = np.array([0.0])
-v = np.array([0.0])
-a = np.array([1.0])
-value = p.calculateInverseDynamics(robot, q.tolist(), v.tolist(), a.tolist())
-value = np.array(value, dtype=float)
-expected = np.array([0.10427043973207122])
-error = np.max(np.abs(value - expected))
-print(f"{value = }\n{expected = }\n{error = :.3g}")
-assert error <= 1.6e-13
+p.isConnected() or p.connect(p.DIRECT)
+file = NamedTemporaryFile('w', suffix='.urdf')
+print("""<robot name="tree"><link name="world"><inertial><mass value="0"/>
+<inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial></link><link name="b"><inertial>
+<mass value="1"/>
+<inertia ixx="0.10427043973207122" ixy="-0.000454189254111427" ixz="-0.016110575320656788" iyy="0.13385750473995514"
+iyz="-0.01328348092080805" izz="0.09889730873039354"/></inertial></link><joint name="joint_b" type="continuous">
+<parent link="world"/><child link="b"/></joint></robot>""", file=file, flush=True)
+robot = p.loadURDF(file.name, useFixedBase=True, flags=p.URDF_USE_INERTIA_FROM_FILE | p.URDF_MAINTAIN_LINK_ORDER)
+p.setGravity(0.0, 0.0, 0.0)
+q, v, a = np.zeros(1), np.zeros(1), np.array([1.0])
+value, expected = p.calculateInverseDynamics(robot, q.tolist(), v.tolist(), a.tolist())[0], 0.10427043973207122
+assert abs(value - expected) <= 1.6e-13, f'value = {value!r}, expected = {expected!r}'

@@ -15,13 +15,20 @@ _ILLEGAL = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 def to_junit(models: Sequence[ModelResult], seconds: float, regressions: Sequence[Regression] = ()) -> str:
-    """One suite a model, one case a comparison; a suite of what is worse than in a stored run."""
+    """One suite a model, one case a comparison; a suite of what is worse than in a stored run.
+
+    Args:
+        models: Outcomes; the time of a suite is that of all stages of its check.
+        seconds: Time of the whole run [s].
+        regressions: What is worse than in a stored run.
+    """
     root = ElementTree.Element("testsuites", name="symofros cross-check", time=f"{seconds:.1f}")
     for model in models:
         _suite(root, model)
     if regressions:
         count = str(len(regressions))
         suite = ElementTree.SubElement(root, "testsuite", name="baseline", tests=count, failures=count)
+        suite.attrib |= {"errors": "0", "skipped": "0"}
         for worse in regressions:
             cell = {
                 "classname": f"baseline.{worse.model}",
@@ -43,9 +50,8 @@ def _suite(root: ElementTree.Element, model: ModelResult) -> None:
         "errors": sum(row.status == "failed" for row in rows),
         "skipped": sum(row.status == "unsupported" for row in rows),
     }
-    suite = ElementTree.SubElement(
-        root, "testsuite", {"name": model.label, **{key: str(value) for key, value in counts.items()}}
-    )
+    stated = {"name": model.label, **{key: str(value) for key, value in counts.items()}}
+    suite = ElementTree.SubElement(root, "testsuite", stated, time=f"{sum(model.seconds.values()):.3f}")
     for row in rows:
         case = ElementTree.SubElement(suite, "testcase", classname=f"{row.model}.{row.engine}", name=row.quantity)
         _verdict(case, row)

@@ -17,7 +17,7 @@ from validation.engines.matrix import SEED, Judged, Truths, asked, judged, names
 from validation.engines.models import hostile, kinds, loops, transformed
 from validation.engines.models.formats import formats
 from validation.engines.models.readers import Reading, readings
-from validation.engines.proving.scripts import Proof, prove
+from validation.engines.proving.scripts import Proof, Shown, prove
 from validation.engines.proving.shrink import TRIES
 from validation.engines.workers import Job, Worker, registry
 from validation.reporting.command import Run, known
@@ -113,10 +113,10 @@ def proofs(
     tries: int = TRIES,
 ) -> list[tuple[Proof, tuple[str, ...]]]:
     """A proven script for each fault, with the names of all trees that show it; `tries` bounds the shrinking."""
-    results = []
+    results, shown = [], Shown()
     for group in fault_groups(cells):
         first = group[0]
-        proof = prove(plugins[first.cell.engine], first, worker, Truths(), folder, tries)
+        proof = prove(plugins[first.cell.engine], first, worker, Truths(), folder, tries, shown)
         results.append((proof, tuple(one.cell.model for one in group)))
         after(proof)
     return results

@@ -8,6 +8,7 @@ import xml.etree.ElementTree as ElementTree
 from importlib.metadata import entry_points
 from pathlib import Path
 
+import junitparser
 import pytest
 from typer.testing import CliRunner
 
@@ -67,6 +68,9 @@ def test_a_robot_of_another_project_is_checked_beside_its_own_tests(project: Pat
     assert set(found) == {"test_own", "arm[pinocchio]", "arm[confirmed]"}
     errors = {item.get("name"): float(item.get("value", "")) for item in found["arm[pinocchio]"].iter("property")}
     assert errors["mass_matrix"] < 1e-13 and len(errors) > 10
+    (suite,) = junitparser.JUnitXml.fromfile(str(project / "junit.xml"))
+    assert (suite.tests, suite.failures, suite.errors, suite.skipped) == (3, 0, 0, 0)
+    assert {case.name for case in suite} == set(found) and suite.time > 0.0
 
 
 def test_a_wrong_entry_of_an_engine_is_named(project: Path) -> None:

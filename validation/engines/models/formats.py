@@ -30,15 +30,18 @@ def _chain() -> Tree:
     )
 
 
-def _texts(tree: Tree) -> dict[str, str]:
-    """The tree in each format."""
+def texts(tree: Tree) -> dict[str, str]:
+    """The tree in each format that states it."""
     described, document, model = urdf.describe(tree), mujoco.document(tree), sdf.describe(tree)
-    assert not isinstance(described, Unsupported)
-    assert not isinstance(document, Unsupported)
-    assert not isinstance(model, Unsupported)
-    # Not all readers keep a hinge without limits by its angle.
-    bounded = described.text.replace('type="continuous">', f'type="revolute">{_WIDE}')
-    return {"urdf": bounded, "mjcf": document[0], "sdf": model}
+    made: dict[str, str] = {}
+    if not isinstance(described, Unsupported):
+        # Not all readers keep a hinge without limits by its angle.
+        made["urdf"] = described.text.replace('type="continuous">', f'type="revolute">{_WIDE}')
+    if not isinstance(document, Unsupported):
+        made["mjcf"] = document[0]
+    if not isinstance(model, Unsupported):
+        made["sdf"] = model
+    return made
 
 
 def _one_link(name: str, head: str, inertial: str, axis: str, tree_link: Link, end: str = "") -> tuple[str, Reading]:
@@ -104,7 +107,7 @@ def formats() -> dict[str, Reading]:
     hostile = hostile_trees()
     made = {}
     for tree in (hostile["six oblique hinges"], hostile["fixed links amid"], _chain()):
-        for form, text in _texts(tree).items():
+        for form, text in texts(tree).items():
             name = f"{form} of {tree.name}"
             made[name] = Reading(form, text, Tree(name, tree.links, tree.gravity))
     return made | _variants()

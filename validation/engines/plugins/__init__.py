@@ -20,11 +20,13 @@ from validation.engines.plugins import (
     pykdl,
     roboticstoolbox,
 )
+from validation.engines.plugins.loops import exudyn as exudyn_joints
 
 _MODULES = (
     pinocchio,
     mujoco,
     exudyn,
+    exudyn_joints,
     adam,
     casadi,
     dart,

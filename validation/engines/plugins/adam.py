@@ -6,22 +6,21 @@ from validation.engines.interface import Difference, Tree
 from validation.engines.plugins.writing.source import Source, SourcePlugin, Way
 from validation.engines.plugins.writing.urdf import KINDS, Described, of_files, slots_of, through_reader
 
-_SETUP = '''import casadi as ca
+_SETUP = """import casadi as ca
 import numpy as np
 from adam.casadi import KinDynComputations
-URDF = """{text}"""
-robot = KinDynComputations(URDF, {joints}, gravity=np.array({gravity} + [0, 0, 0]))
-links = {links}
-cut = {cut}
-def place(q):
-    H = np.eye(4)
-    if cut == 0:
-        x, y, z, w = q[3:7]
-        K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-        H[:3, 3], H[:3, :3] = q[:3], np.eye(3) + 2 * w * K + 2 * K @ K
-    return H, q[7 - 7 * (cut > 0):]
-def move(v): return (v[:6], v[6:]) if cut == 0 else (np.zeros(6), v)
-'''
+robot = KinDynComputations({text!r}, {joints}, gravity=np.array({gravity}))"""
+_PLACE = (
+    "def place(q):",
+    "    x, y, z, w = q[3:7]",
+    "    K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])",
+    "    H = np.eye(4)",
+    "    H[:3, 3], H[:3, :3] = q[:3], np.eye(3) + 2 * w * K + 2 * K @ K",
+    "    return H, q[7:]",
+)
+# The base is always there: where it stands still, its rows and columns are left out.
+_FIXED = {"*place(q)": "np.eye(4), q", "*move(v)": "np.zeros(6), v", "cut": "6"}
+_FLOATING = {"*move(v)": "v[:6], v[6:]", "[cut:, cut:]": "", "[:, :, cut:]": "", "[:, cut:]": "", "[cut:]": ""}
 
 
 def _term(method: str, inputs: str, rows: str = "[cut:]") -> str:
@@ -66,17 +65,17 @@ _BASE = "free xyzw, linear and angular before"
 def read(tree: Tree, described: Described) -> Source:
     """A file through adam's reader of URDF."""
     count, floating = len(described.moving), described.floating
-    setup = _SETUP.format(
-        text=described.text,
-        joints=list(described.moving),
-        links=list(described.links),
-        gravity=list(tree.gravity),
-        cut=0 if floating else 6,
-    )
-    slots = slots_of(tree, described, described.moving, _BASE)
+    setup = _SETUP.format(text=described.text, joints=list(described.moving), gravity=[*tree.gravity, 0.0, 0.0, 0.0])
     # Its forward dynamics let the base float.
-    lacks = () if floating else ("forward_dynamics",)
-    return Source((setup,), slots, nq=count + 7 * floating, nv=count + 6 * floating, lacks=lacks)
+    return Source(
+        tuple(setup.split("\n")),
+        slots_of(tree, described, described.moving, _BASE),
+        nq=count + 7 * floating,
+        nv=count + 6 * floating,
+        optional={"links": (f"links = {list(described.links)}",), "place": _PLACE},
+        lacks=() if floating else ("forward_dynamics",),
+        spelling=_FLOATING if floating else _FIXED,
+    )
 
 
 PLUGIN = SourcePlugin(

@@ -33,78 +33,69 @@ _JOINTS = {
     "free": _Native("FreeJoint", "free rotation vector, angular and linear along the parent's axes", 6),
 }
 
-_HELPERS = """def iso(R, p):
-    X = dart.math.Isometry3()
-    X.set_rotation(np.array(R))
-    X.set_translation(np.array(p))
-    return X
-def state(q, v=None, a=None):
-    s.setPositions(q)
-    s.setVelocities(np.zeros(len(q)) if v is None else v)
-    s.setAccelerations(np.zeros(len(q)) if a is None else a)
-W = dy.Frame.World()"""
+_IMPORTS = ("import numpy as np", "import dartpy as dart")
+_Q = "s.setPositions(q)\n"
+_QV = f"{_Q}s.setVelocities(v)\n"
+_QVA = f"{_QV}s.setAccelerations(a)\n"
+_STILL = f"{_QV}s.setAccelerations(0 * v)\n"
+_INTEGRATED = f"{_Q}s.setVelocities(v2)\ns.integratePositions(1.0)\n"
 
 
 def _linear_first(call: str, state: str) -> str:
-    return f"state({state})\nvalue = [np.roll({call}, 3, axis=0) for b in links]"
+    return f"{state}value = [np.roll({call}, 3, axis=0) for b in links]"
 
 
 WAYS = {
-    "mass_matrix": Way("getMassMatrix", "state(q)\nvalue = s.getMassMatrix()"),
-    "mass_matrix_inverse": Way("getInvMassMatrix", "state(q)\nvalue = s.getInvMassMatrix()"),
-    "bias": Way("getCoriolisAndGravityForces", "state(q, v)\nvalue = s.getCoriolisAndGravityForces()"),
-    "coriolis_forces": Way("getCoriolisForces", "state(q, v)\nvalue = s.getCoriolisForces()"),
-    "gravity": Way("getGravityForces", "state(q)\nvalue = s.getGravityForces()"),
-    "inverse_dynamics": Way(
-        "computeInverseDynamics", "state(q, v, a)\ns.computeInverseDynamics()\nvalue = s.getForces()"
-    ),
+    "mass_matrix": Way("getMassMatrix", f"{_Q}value = s.getMassMatrix()"),
+    "mass_matrix_inverse": Way("getInvMassMatrix", f"{_Q}value = s.getInvMassMatrix()"),
+    "bias": Way("getCoriolisAndGravityForces", f"{_QV}value = s.getCoriolisAndGravityForces()"),
+    "coriolis_forces": Way("getCoriolisForces", f"{_QV}value = s.getCoriolisForces()"),
+    "gravity": Way("getGravityForces", f"{_Q}value = s.getGravityForces()"),
+    "inverse_dynamics": Way("computeInverseDynamics", f"{_QVA}s.computeInverseDynamics()\nvalue = s.getForces()"),
     "forward_dynamics": Way(
         "computeForwardDynamics",
-        "state(q, v)\ns.setForces(tau)\ns.computeForwardDynamics()\nvalue = s.getAccelerations()",
+        f"{_QV}s.setForces(tau)\ns.computeForwardDynamics()\nvalue = s.getAccelerations()",
     ),
-    "kinetic_energy": Way("computeKineticEnergy", "state(q, v)\nvalue = s.computeKineticEnergy()"),
-    "potential_energy": Way("computePotentialEnergy", "state(q)\nvalue = s.computePotentialEnergy()"),
+    "kinetic_energy": Way("computeKineticEnergy", f"{_QV}value = s.computeKineticEnergy()"),
+    "potential_energy": Way("computePotentialEnergy", f"{_Q}value = s.computePotentialEnergy()"),
     "link_poses": Way(
         "getTransform",
-        "state(q)\nX = [b.getTransform() for b in links]\nvalue = [[*x.translation(), *x.rotation().flat] for x in X]",
+        f"{_Q}X = [b.getTransform() for b in links]\nvalue = [[*x.translation(), *x.rotation().flat] for x in X]",
     ),
     "link_velocities": Way(
-        "getLinearVelocity", "state(q, v)\nvalue = [[*b.getLinearVelocity(), *b.getAngularVelocity()] for b in links]"
+        "getLinearVelocity", f"{_QV}value = [[*b.getLinearVelocity(), *b.getAngularVelocity()] for b in links]"
     ),
-    "velocity_local": Way("getSpatialVelocity", _linear_first("b.getSpatialVelocity()", "q, v")),
-    "acceleration_local": Way("getSpatialAcceleration", _linear_first("b.getSpatialAcceleration()", "q, v, a")),
+    "velocity_local": Way("getSpatialVelocity", _linear_first("b.getSpatialVelocity()", _QV)),
+    "acceleration_local": Way("getSpatialAcceleration", _linear_first("b.getSpatialAcceleration()", _QVA)),
     "link_accelerations": Way(
         "getLinearAcceleration",
-        "state(q, v, a)\nvalue = [[*b.getLinearAcceleration(), *b.getAngularAcceleration()] for b in links]",
+        f"{_QVA}value = [[*b.getLinearAcceleration(), *b.getAngularAcceleration()] for b in links]",
     ),
-    "link_jacobians": Way("getJacobian, World", _linear_first("s.getJacobian(b, W)", "q")),
-    "jacobian_local": Way("getJacobian", _linear_first("s.getJacobian(b)", "q")),
+    "link_jacobians": Way("getJacobian, World", _linear_first("s.getJacobian(b, dart.dynamics.Frame.World())", _Q)),
+    "jacobian_local": Way("getJacobian", _linear_first("s.getJacobian(b)", _Q)),
     "link_jacobian_rates": Way(
-        "getJacobianClassicDeriv, World", _linear_first("s.getJacobianClassicDeriv(b, W)", "q, v")
+        "getJacobianClassicDeriv, World",
+        _linear_first("s.getJacobianClassicDeriv(b, dart.dynamics.Frame.World())", _QV),
     ),
     # Rates of spatial vectors, in the body's axes: those of the Jacobian at the world's origin, transformed.
     "jacobian_rate_world": Way(
         "getJacobianSpatialDeriv",
-        """state(q, v)
-value = []
+        f"""{_QV}value = []
 for b in links:
     R, p = b.getTransform().rotation(), b.getTransform().translation()
     J = s.getJacobianSpatialDeriv(b)
     value.append([*(R @ J[3:] + np.cross(p, (R @ J[:3]).T).T), *(R @ J[:3])])""",
     ),
-    "mass_centre": Way("getCOM", "state(q)\nvalue = s.getCOM()"),
-    "mass_centre_jacobian": Way("getCOMLinearJacobian", "state(q)\nvalue = s.getCOMLinearJacobian()"),
+    "mass_centre": Way("getCOM", f"{_Q}value = s.getCOM()"),
+    "mass_centre_jacobian": Way("getCOMLinearJacobian", f"{_Q}value = s.getCOMLinearJacobian()"),
     "mass_centre_velocity_products": Way(
-        "getCOMLinearJacobianDeriv", "state(q, v)\nvalue = s.getCOMLinearJacobianDeriv() @ v"
+        "getCOMLinearJacobianDeriv", f"{_QV}value = s.getCOMLinearJacobianDeriv() @ v"
     ),
     "mass_centre_velocity_products:getCOMLinearAcceleration": Way(
-        "getCOMLinearAcceleration", "state(q, v)\nvalue = s.getCOMLinearAcceleration()"
+        "getCOMLinearAcceleration", f"{_STILL}value = s.getCOMLinearAcceleration()"
     ),
-    "integrate": Way("integratePositions", "state(q, v2)\ns.integratePositions(1.0)\nvalue = s.getPositions()"),
-    "difference": Way(
-        "getPositionDifferences",
-        "state(q, v2)\ns.integratePositions(1.0)\nvalue = s.getPositionDifferences(s.getPositions(), q)",
-    ),
+    "integrate": Way("integratePositions", f"{_INTEGRATED}value = s.getPositions()"),
+    "difference": Way("getPositionDifferences", f"{_INTEGRATED}value = s.getPositionDifferences(s.getPositions(), q)"),
 }
 
 
@@ -113,7 +104,7 @@ def _array(values: object) -> str:
 
 
 def _placement(R: Array, p: Array) -> str:
-    return f"iso({_array(R)}, {_array(p)})"
+    return f"dart.math.Isometry3({_array(R)}, {_array(p)})"
 
 
 def _native(joint: Joint) -> _Native | None:
@@ -124,8 +115,8 @@ def _native(joint: Joint) -> _Native | None:
 
 def write(tree: Tree) -> Source | Unsupported:
     """Text that builds a skeleton; links without a joint hang on weld joints."""
-    lines = ["import numpy as np", "import dartpy as dart", "dy = dart.dynamics", _HELPERS, "s = dy.Skeleton('tree')"]
-    lines.append(f"s.setGravity({list(tree.gravity)!r})")
+    lines = [*_IMPORTS, "s = dart.dynamics.Skeleton('tree')"]
+    lines += _gravity(tree)
     slots: list[tuple[Slot, ...]] = []
     count = 0
     for k, link in enumerate(tree.links):
@@ -145,19 +136,29 @@ def write(tree: Tree) -> Source | Unsupported:
                 return Unsupported("speeds of free joints are along the axes of the link before", offered=False)
         parent = "None" if link.parent < 0 else f"b{link.parent}"
         lines.append(f"j, b{k} = s.create{native.name}AndBodyNodePair({parent})")
-        if native.settings:
+        # The axis is z unless another is set.
+        if native.settings and not (
+            native.name in ("RevoluteJoint", "PrismaticJoint") and joint.axis == (0.0, 0.0, 1.0)
+        ):
             axis, second = _array(joint.axis), _array(joint.second)
             lines.append(native.settings.format(axis=axis, second=second, turn=2 * math.pi * joint.pitch))
         if np.any(p) or not np.array_equal(R, np.eye(3)):
             lines.append(f"j.setTransformFromParentBodyNode({_placement(R, p)})")
         if steps and (np.any(p_end) or not np.array_equal(R_end, np.eye(3))):
             lines.append(f"j.setTransformFromChildBodyNode({_placement(R_end.T, -R_end.T @ p_end)})")
-        lines.append(f"b{k}.setInertia(dy.Inertia({link.mass!r}, {_array(link.com)}, {_array(link.inertia)}))")
+        lines.append(
+            f"b{k}.setInertia(dart.dynamics.Inertia({link.mass!r}, {_array(link.com)}, {_array(link.inertia)}))"
+        )
         places = tuple(range(count, count + native.size))
         slots.append((Slot(native.chart, places, places),) if steps else ())
         count += native.size
-    lines.append(f"links = [{', '.join(f'b{k}' for k in range(len(tree.links)))}]")
-    return Source(tuple(lines), tuple(slots), nq=count, nv=count)
+    links = f"links = [{', '.join(f'b{k}' for k in range(len(tree.links)))}]"
+    return Source(tuple(lines), tuple(slots), count, count, {"links": (links,)})
+
+
+def _gravity(tree: Tree) -> list[str]:
+    """What sets the tree's gravity; nothing where it is DART's own."""
+    return [] if tree.gravity == (0.0, 0.0, -9.81) else [f"s.setGravity({list(tree.gravity)!r})"]
 
 
 _READERS = {
@@ -167,8 +168,8 @@ _READERS = {
         "s = loader.parseSkeletonString(TEXT, dart.common.Uri(''))",
     ),
     "sdf": (
-        "import tempfile",
-        "file = tempfile.NamedTemporaryFile('w', suffix='.sdf')",
+        "from tempfile import NamedTemporaryFile",
+        "file = NamedTemporaryFile('w', suffix='.sdf')",
         "print(TEXT, file=file, flush=True)",
         "options = dart.utils.SdfParser.Options(None, dart.utils.SdfParser.RootJointType.FIXED)",
         "s = dart.utils.SdfParser.readSkeleton(dart.common.Uri('file://' + file.name), options)",
@@ -190,14 +191,14 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
                 count += 1
         slots.append(tuple(own))
     names = [link.name for link in tree.links]
-    lines = ["import numpy as np", "import dartpy as dart", "dy = dart.dynamics", _HELPERS, f"TEXT = {text!r}"]
-    lines += [
-        *_READERS[form],
+    lines = [
+        *_IMPORTS,
+        *(line.replace("TEXT", repr(text)) for line in _READERS[form]),
         "if s is None: raise ValueError('no skeleton: see the log')",
-        f"s.setGravity({list(tree.gravity)!r})",
+        *_gravity(tree),
     ]
-    lines.append(f"links = [s.getBodyNode(name) for name in {names!r}]")
-    return Source(tuple(lines), tuple(slots), nq=count, nv=count)
+    links = f"links = [s.getBodyNode(name) for name in {names!r}]"
+    return Source(tuple(lines), tuple(slots), count, count, {"links": (links,)})
 
 
 PLUGIN = SourcePlugin(

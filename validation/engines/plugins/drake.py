@@ -36,85 +36,77 @@ _JOINTS = {
     ),
 }
 
-_SETUP = """import numpy as np
-from pydrake.math import RigidTransform, RotationMatrix
-from pydrake.multibody import tree
-from pydrake.multibody.plant import MultibodyPlant
-p = MultibodyPlant(0.0)
-def X(R, r): return RigidTransform(RotationMatrix(np.array(R)), r)
-def inertia(mass, com, I):
-    if mass == 0 and not np.any(I): return tree.SpatialInertia.Zero()
-    I = np.array(I)
-    about = tree.RotationalInertia(*I.diagonal(), I[0, 1], I[0, 2], I[1, 2])
-    return tree.SpatialInertia.MakeFromCentralInertia(mass, com, about)
-def frame(name, body, R, r): return p.AddFrame(tree.FixedOffsetFrame(name, body, X(R, r)))"""
-_END = """c = p.CreateDefaultContext()
-W = p.world_frame()
-def state(q, v=None):
-    p.SetPositions(c, q)
-    p.SetVelocities(c, np.zeros(p.num_velocities()) if v is None else v)
-def forces():
-    applied = tree.MultibodyForces(p)
-    p.CalcForceElementsContribution(c, applied)
-    return applied
-def jacobian(b, about, speeds=tree.JacobianWrtVariable.kV):
-    return np.roll(p.CalcJacobianSpatialVelocity(c, speeds, b.body_frame(), [0, 0, 0], W, about), 3, axis=0)"""
-
-_ZERO = "tree.MultibodyForces(p)"
-WAYS = {
-    "mass_matrix": Way("CalcMassMatrix", "state(q)\nvalue = p.CalcMassMatrix(c)"),
-    "mass_matrix:CalcMassMatrixViaInverseDynamics": Way(
-        "CalcMassMatrixViaInverseDynamics", "state(q)\nvalue = p.CalcMassMatrixViaInverseDynamics(c)"
+_IMPORTS = ("import numpy as np", "import pydrake.all as drake", "p = drake.MultibodyPlant(0.0)")
+_HELPERS = {
+    "X": ("def X(R, r): return drake.RigidTransform(drake.RotationMatrix(np.array(R)), r)",),
+    "inertia": (
+        "def inertia(mass, com, I):",
+        "    if mass == 0 and not np.any(I): return drake.SpatialInertia.Zero()",
+        "    I = np.array(I)",
+        "    about = drake.RotationalInertia(*I.diagonal(), I[0, 1], I[0, 2], I[1, 2])",
+        "    return drake.SpatialInertia.MakeFromCentralInertia(mass, com, about)",
     ),
-    "coriolis_forces": Way("CalcBiasTerm", "state(q, v)\nvalue = p.CalcBiasTerm(c)"),
-    "gravity": Way("CalcGravityGeneralizedForces", "state(q)\nvalue = -p.CalcGravityGeneralizedForces(c)"),
-    "inverse_dynamics": Way("CalcInverseDynamics", "state(q, v)\nvalue = p.CalcInverseDynamics(c, a, forces())"),
-    "bias": Way("CalcInverseDynamics", "state(q, v)\nvalue = p.CalcInverseDynamics(c, 0 * v, forces())"),
+}
+_QV = "p.SetPositions(c, q)\np.SetVelocities(c, v)\n"
+_Q = "p.SetPositions(c, q)\n"
+_FORCES = "forces = drake.MultibodyForces(p)\np.CalcForceElementsContribution(c, forces)\n"
+_KV = "W, kV = p.world_frame(), drake.JacobianWrtVariable.kV\n"
+_FRAMES = f"{_KV}frames = [b.body_frame() for b in links]\n"
+# The angular part comes first.
+_JACOBIANS = (
+    "value = [np.roll(p.CalcJacobianSpatialVelocity(c, kV, f, [0, 0, 0], W, {about}), 3, axis=0) for f in frames]"
+)
+
+WAYS = {
+    "mass_matrix": Way("CalcMassMatrix", f"{_Q}value = p.CalcMassMatrix(c)"),
+    "mass_matrix:CalcMassMatrixViaInverseDynamics": Way(
+        "CalcMassMatrixViaInverseDynamics", f"{_Q}value = p.CalcMassMatrixViaInverseDynamics(c)"
+    ),
+    "coriolis_forces": Way("CalcBiasTerm", f"{_QV}value = p.CalcBiasTerm(c)"),
+    "gravity": Way("CalcGravityGeneralizedForces", f"{_Q}value = -p.CalcGravityGeneralizedForces(c)"),
+    "inverse_dynamics": Way("CalcInverseDynamics", f"{_QV}{_FORCES}value = p.CalcInverseDynamics(c, a, forces)"),
+    "bias": Way("CalcInverseDynamics", f"{_QV}{_FORCES}value = p.CalcInverseDynamics(c, 0 * v, forces)"),
     "forward_dynamics": Way(
         "EvalTimeDerivatives",
-        "state(q, v)\np.get_applied_generalized_force_input_port().FixValue(c, tau)\n"
+        f"{_QV}p.get_applied_generalized_force_input_port().FixValue(c, tau)\n"
         "value = p.EvalTimeDerivatives(c).CopyToVector()[len(q):]",
     ),
-    "kinetic_energy": Way("CalcKineticEnergy", "state(q, v)\nvalue = p.CalcKineticEnergy(c)"),
-    "potential_energy": Way("CalcPotentialEnergy", "state(q)\nvalue = p.CalcPotentialEnergy(c)"),
+    "kinetic_energy": Way("CalcKineticEnergy", f"{_QV}value = p.CalcKineticEnergy(c)"),
+    "potential_energy": Way("CalcPotentialEnergy", f"{_Q}value = p.CalcPotentialEnergy(c)"),
     "link_poses": Way(
         "EvalBodyPoseInWorld",
-        "state(q)\nposes = [p.EvalBodyPoseInWorld(c, b) for b in links]\n"
+        f"{_Q}poses = [p.EvalBodyPoseInWorld(c, b) for b in links]\n"
         "value = [[*x.translation(), *x.rotation().matrix().flat] for x in poses]",
     ),
     "link_velocities": Way(
         "EvalBodySpatialVelocityInWorld",
-        "state(q, v)\ntwists = [p.EvalBodySpatialVelocityInWorld(c, b) for b in links]\n"
+        f"{_QV}twists = [p.EvalBodySpatialVelocityInWorld(c, b) for b in links]\n"
         "value = [[*t.translational(), *t.rotational()] for t in twists]",
     ),
     "link_accelerations": Way(
         "CalcSpatialAccelerationsFromVdot",
-        "state(q, v)\nall_ = p.CalcSpatialAccelerationsFromVdot(c, a)\n"
-        "value = [[*all_[b.index()].translational(), *all_[b.index()].rotational()] for b in links]",
+        f"{_QV}every = p.CalcSpatialAccelerationsFromVdot(c, a)\n"
+        "value = [[*every[b.index()].translational(), *every[b.index()].rotational()] for b in links]",
     ),
     "link_velocity_products": Way(
         "CalcBiasSpatialAcceleration",
-        """state(q, v)
-kV = tree.JacobianWrtVariable.kV
-products = [p.CalcBiasSpatialAcceleration(c, kV, b.body_frame(), [0, 0, 0], W, W) for b in links]
-value = [[*x.translational(), *x.rotational()] for x in products]""",
+        f"{_QV}{_FRAMES}products = [p.CalcBiasSpatialAcceleration(c, kV, f, [0, 0, 0], W, W) for f in frames]\n"
+        "value = [[*x.translational(), *x.rotational()] for x in products]",
     ),
-    "link_jacobians": Way("CalcJacobianSpatialVelocity", "state(q)\nvalue = [jacobian(b, W) for b in links]"),
-    "jacobian_local": Way(
-        "CalcJacobianSpatialVelocity", "state(q)\nvalue = [jacobian(b, b.body_frame()) for b in links]"
-    ),
-    "mass_centre": Way("CalcCenterOfMassPositionInWorld", "state(q)\nvalue = p.CalcCenterOfMassPositionInWorld(c)"),
+    "link_jacobians": Way("CalcJacobianSpatialVelocity", f"{_Q}{_FRAMES}{_JACOBIANS.format(about='W')}"),
+    "jacobian_local": Way("CalcJacobianSpatialVelocity", f"{_Q}{_FRAMES}{_JACOBIANS.format(about='f')}"),
+    "mass_centre": Way("CalcCenterOfMassPositionInWorld", f"{_Q}value = p.CalcCenterOfMassPositionInWorld(c)"),
     "mass_centre_jacobian": Way(
         "CalcJacobianCenterOfMassTranslationalVelocity",
-        "state(q)\nvalue = p.CalcJacobianCenterOfMassTranslationalVelocity(c, tree.JacobianWrtVariable.kV, W, W)",
+        f"{_Q}{_KV}value = p.CalcJacobianCenterOfMassTranslationalVelocity(c, kV, W, W)",
     ),
     "mass_centre_velocity_products": Way(
         "CalcBiasCenterOfMassTranslationalAcceleration",
-        "state(q, v)\nvalue = p.CalcBiasCenterOfMassTranslationalAcceleration(c, tree.JacobianWrtVariable.kV, W, W)",
+        f"{_QV}{_KV}value = p.CalcBiasCenterOfMassTranslationalAcceleration(c, kV, W, W)",
     ),
     "centroidal_momentum": Way(
         "CalcSpatialMomentumInWorldAboutPoint",
-        "state(q, v)\nL = p.CalcSpatialMomentumInWorldAboutPoint(c, p.CalcCenterOfMassPositionInWorld(c))\n"
+        f"{_QV}L = p.CalcSpatialMomentumInWorldAboutPoint(c, p.CalcCenterOfMassPositionInWorld(c))\n"
         "value = [*L.translational(), *L.rotational()]",
     ),
 }
@@ -125,8 +117,7 @@ def _gradient(result: str, seeds: str) -> str:
     return f"""from pydrake.autodiffutils import AutoDiffXd, ExtractGradient, InitializeAutoDiff
 ad = p.ToAutoDiffXd()
 d = ad.CreateDefaultContext()
-state(q, v)
-N = p.MakeVelocityToQDotMap(c).toarray()
+{_QV}N = p.MakeVelocityToQDotMap(c).toarray()
 {seeds}
 ad.SetPositions(d, q_)
 ad.SetVelocities(d, v_)
@@ -155,6 +146,10 @@ WAYS |= {
 }
 
 
+# Each call has a context of its own: no speeds, no forces of others.
+_CLOSING = ("c = p.CreateDefaultContext()",)
+
+
 def _array(values: object) -> str:
     return repr(np.asarray(values, dtype=float).tolist())
 
@@ -168,13 +163,13 @@ def _native(joint: Joint) -> _Native | None:
 
 
 def _frame(name: str, body: str, R: Array, p: Array) -> str:
-    return f"frame({name!r}, {body}, {_array(R)}, {_array(p)})"
+    return f"p.AddFrame(drake.FixedOffsetFrame({name!r}, {body}, X({_array(R)}, {_array(p)})))"
 
 
 def write(tree: Tree) -> Source | Unsupported:
     """Text that builds a plant; links without a joint are welded."""
-    lines = _SETUP.split("\n")
-    lines.append(f"p.mutable_gravity_field().set_gravity_vector({list(tree.gravity)!r})")
+    lines = [*_IMPORTS, *_HELPERS["X"], *_HELPERS["inertia"]]
+    lines += _gravity(tree)
     chosen: list[list[_Native]] = []
     joints: list[list[str]] = []
     for k, link in enumerate(tree.links):
@@ -187,7 +182,7 @@ def write(tree: Tree) -> Source | Unsupported:
         parent = "p.world_body()" if link.parent < 0 else f"b{link.parent}"
         if not steps:
             ends = f"{_frame(f'P{k}', parent, R_end, p_end)}, b{k}.body_frame()"
-            lines.append(f"p.AddJoint(tree.WeldJoint('j{k}', {ends}, RigidTransform()))")
+            lines.append(f"p.AddJoint(drake.WeldJoint('j{k}', {ends}, drake.RigidTransform()))")
             chosen.append([])
             joints.append([])
             continue
@@ -203,16 +198,16 @@ def write(tree: Tree) -> Source | Unsupported:
             after = _frame(f"C{k}", f"b{k}", R_end.T, -R_end.T @ p_end)
         frames = f"'j{k}', {_frame(f'P{k}', parent, R, p)}, {after}"
         call = native.call.format(frames=frames, axis=_array(joint.axis), turn=2 * math.pi * joint.pitch)
-        lines.append(f"j{k} = p.AddJoint(tree.{call})")
+        lines.append(f"j{k} = p.AddJoint(drake.{call})")
         if any(joint.armature):
             lines.append(f"motor = p.AddJointActuator('m{k}', j{k})")
             lines.append(f"motor.set_default_rotor_inertia({joint.armature[0]!r}); motor.set_default_gear_ratio(1.0)")
         chosen.append([native])
         joints.append([f"j{k}"])
     lines.append("p.Finalize()")
-    lines += [*_END.split("\n"), f"links = [{', '.join(f'b{k}' for k in range(len(tree.links)))}]"]
+    links = f"links = [{', '.join(f'b{k}' for k in range(len(tree.links)))}]"
     slots, nq, nv = _slots(tree, chosen)
-    return Source(tuple(lines), slots, nq=nq, nv=nv)
+    return Source(tuple(lines), slots, nq, nv, {"links": (links,)}, closing=_CLOSING)
 
 
 _PARSERS = {"urdf": "urdf", "sdf": "sdf", "mjcf": "xml"}
@@ -232,18 +227,21 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
         chosen.append(natives)
     names = [link.name for link in tree.links]
     lines = [
-        *_SETUP.split("\n"),
-        "from pydrake.multibody.parsing import Parser",
-        f"TEXT = {text!r}",
-        f"p.mutable_gravity_field().set_gravity_vector({list(tree.gravity)!r})",
-        f"Parser(p).AddModelsFromString(TEXT, {_PARSERS[form]!r})",
+        *_IMPORTS,
+        *_gravity(tree),
+        f"drake.Parser(p).AddModelsFromString({text!r}, {_PARSERS[form]!r})",
         *(["p.WeldFrames(p.world_frame(), p.GetFrameByName('w'))"] if '<link name="w"/>' in text else []),
         "p.Finalize()",
-        *_END.split("\n"),
-        f"links = [p.GetBodyByName(name) for name in {names!r}]",
     ]
+    links = f"links = [p.GetBodyByName(name) for name in {names!r}]"
     slots, nq, nv = _slots(tree, chosen)
-    return Source(tuple(lines), slots, nq=nq, nv=nv)
+    return Source(tuple(lines), slots, nq, nv, {"links": (links,)}, closing=_CLOSING)
+
+
+def _gravity(tree: Tree) -> list[str]:
+    """What sets the tree's gravity; nothing where it is Drake's own."""
+    own = tree.gravity == (0.0, 0.0, -9.81)
+    return [] if own else [f"p.mutable_gravity_field().set_gravity_vector({list(tree.gravity)!r})"]
 
 
 def _slots(tree: Tree, chosen: list[list[_Native]]) -> tuple[tuple[tuple[Slot, ...], ...], int, int]:

@@ -6,32 +6,37 @@ from validation.engines.interface import Difference, Tree
 from validation.engines.plugins.writing.source import Source, SourcePlugin, Way
 from validation.engines.plugins.writing.urdf import KINDS, Described, of_files, slots_of, through_reader
 
-_SETUP = '''import numpy as np
+_SETUP = """import numpy as np
 import idyntree.bindings as iDynTree
-URDF = """{text}"""
 loader = iDynTree.ModelLoader()
 options = loader.parsingOptions()
 options.addSensorFramesAsAdditionalFrames = False
 loader.setParsingOptions(options)
-assert loader.loadReducedModelFromString(URDF, {joints})
+assert loader.loadReducedModelFromString({text!r}, {joints})
 robot = iDynTree.KinDynComputations()
 assert robot.loadRobotModel(loader.model())
 robot.setFrameVelocityRepresentation(iDynTree.MIXED_REPRESENTATION)
-assert robot.setFloatingBase("{root}"), "the reader has dropped the link {root}"
-links, g = {links}, np.array({gravity})
-'''
-
-_FIXED = """cut, n = 6, 6 + robot.getNrOfDegreesOfFreedom()
-def state(q, v): robot.setRobotState(np.eye(4), q, np.zeros(6), v, g)
-def rates(a): return iDynTree.Vector6.FromPython(np.zeros(6)), iDynTree.VectorDynSize.FromPython(a)"""
-_FLOATING = """cut, n = 0, 6 + robot.getNrOfDegreesOfFreedom()
-def state(q, v):
-    x, y, z, w = q[3:7]
-    K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    pose = np.eye(4)
-    pose[:3, 3], pose[:3, :3] = q[:3], np.eye(3) + 2 * w * K + 2 * K @ K
-    robot.setRobotState(pose, q[7:], v[:6], v[6:], g)
-def rates(a): return iDynTree.Vector6.FromPython(a[:6]), iDynTree.VectorDynSize.FromPython(a[6:])"""
+assert robot.setFloatingBase("{root}"), "the reader has dropped the link {root}\""""
+_FLOATING_STATE = (
+    "def state(q, v):",
+    "    x, y, z, w = q[3:7]",
+    "    K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])",
+    "    pose = np.eye(4)",
+    "    pose[:3, 3], pose[:3, :3] = q[:3], np.eye(3) + 2 * w * K + 2 * K @ K",
+    "    robot.setRobotState(pose, q[7:], v[:6], v[6:], {gravity})",
+)
+# The base is always there: where it stands still, its rows and columns are left out.
+_FIXED = {
+    "state(q, v)": "robot.setRobotState(np.eye(4), q, np.zeros(6), v, {gravity})",
+    "*rates(a)": "iDynTree.Vector6.FromPython(np.zeros(6)), iDynTree.VectorDynSize.FromPython(a)",
+    "cut": "6",
+}
+_FLOATING = {
+    "*rates(a)": "iDynTree.Vector6.FromPython(a[:6]), iDynTree.VectorDynSize.FromPython(a[6:])",
+    "[cut:, cut:]": "",
+    "[:, cut:]": "",
+    "[cut:]": "",
+}
 
 WAYS = {
     "mass_matrix": Way(
@@ -139,17 +144,21 @@ def read(tree: Tree, described: Described) -> Source:
     """A file through iDynTree's reader of URDF."""
     count, floating = len(described.moving), described.floating
     setup = _SETUP.format(
-        text=described.text,
-        joints=list(described.moving),
-        root=described.links[0] if floating else "world",
-        links=list(described.links),
-        gravity=list(tree.gravity),
+        text=described.text, joints=list(described.moving), root=described.links[0] if floating else "world"
     )
+    gravity = f"np.array({list(tree.gravity)!r})"
+    spelling = _FLOATING if floating else _FIXED
     return Source(
-        (setup, _FLOATING if floating else _FIXED),
+        tuple(setup.split("\n")),
         slots_of(tree, described, described.moving, _BASE),
         nq=count + 7 * floating,
         nv=count + 6 * floating,
+        optional={
+            "links": (f"links = {list(described.links)}",),
+            "n": ("n = 6 + robot.getNrOfDegreesOfFreedom()",),
+            "state": tuple(line.replace("{gravity}", gravity) for line in _FLOATING_STATE),
+        },
+        spelling={general: own.replace("{gravity}", gravity) for general, own in spelling.items()},
     )
 
 

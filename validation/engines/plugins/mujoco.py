@@ -129,7 +129,8 @@ def write(tree: Tree) -> Source | Unsupported:
     if tree.fused:
         return Source(tuple(lines), slots, nq, nv)
     optional = {"bs": (f"bs = [m.body(name).id for name in {names!r}]",)} | constrained.optional(tree)
-    return Source(tuple(lines), slots, nq, nv, optional)
+    spelling = constrained.spelling(tree) if tree.constraints else {}
+    return Source(tuple(lines), slots, nq, nv, optional, spelling=spelling)
 
 
 def _compiled(tree: Tree, xml: str) -> list[str]:

@@ -12,58 +12,53 @@ from validation.engines.plugins.writing.source import Source, SourcePlugin, Way,
 # Everything is in single precision: some hundred of its roundings.
 _SINGLE = 2e-5
 
-_SETUP = """import numpy as np
-import warp as wp
-wp.config.quiet = True
-import newton
-b = newton.ModelBuilder(gravity={gravity})
-def X(p, x, y, z, w): return wp.transform(p, wp.quat(x, y, z, w))
-def axis(direction, armature=0.0):
-    return newton.ModelBuilder.JointDofConfig(axis=direction, armature=armature, target_ke=0, target_kd=0)"""
-_END = """b.add_articulation(joints)
-m = b.finalize(device="cpu")
-def state(q, v=None):
-    s = m.state()
-    s.joint_q.assign(np.array(q, dtype=np.float32))
-    s.joint_qd.assign(np.zeros(m.joint_dof_count, np.float32) if v is None else np.array(v, dtype=np.float32))
-    newton.eval_fk(m, s.joint_q, s.joint_qd, s)
-    return s
-def rotation(x, y, z, w):
-    K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return np.eye(3) + 2 * w * K + 2 * K @ K
-def centres(s): return [rotation(*x[3:]) @ c for x, c in zip(s.body_q.numpy(), m.body_com.numpy())]
-def passive(name, q, v=None):
-    out = wp.zeros(m.joint_dof_count, dtype=float, device="cpu")
-    newton.eval_inverse_dynamics_passive(m, state(q, v), **{name: out})
-    return out"""
+# Newton's import starts Warp, which then has to be quiet already. `b` is the builder, `m` the model.
+_IMPORTS = ("import numpy as np, warp as wp", "wp.config.quiet = True", "import newton")
+_AXIS = "axis = newton.ModelBuilder.JointDofConfig"
+_ROTATION = (
+    "def rotation(x, y, z, w):",
+    "    K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])",
+    "    return np.eye(3) + 2 * w * K + 2 * K @ K",
+)
+_CENTRES = ("def centres(s): return [rotation(*x[3:]) @ c for x, c in zip(s.body_q.numpy(), m.body_com.numpy())]",)
+_Q = (
+    "s = m.state()\ns.joint_q.assign(q.astype(np.float32))\ns.joint_qd.zero_()\n"
+    "newton.eval_fk(m, s.joint_q, s.joint_qd, s)\n"
+)
+_QV = _Q.replace("s.joint_qd.zero_()", "s.joint_qd.assign(v.astype(np.float32))")
+
+
+def _passive(name: str) -> str:
+    out = f"{name} = wp.zeros(m.joint_dof_count, device='cpu')"
+    return f"{out}\nnewton.eval_inverse_dynamics_passive(m, s, {name}_force={name})\n"
+
 
 WAYS = {
-    "mass_matrix": Way("eval_mass_matrix", "value = newton.eval_mass_matrix(m, state(q)).numpy()[0]", _SINGLE),
-    "gravity": Way("eval_inverse_dynamics_passive", "value = passive('gravity_force', q).numpy()", _SINGLE),
-    "coriolis_forces": Way("eval_inverse_dynamics_passive", "value = passive('coriolis_force', q, v).numpy()", _SINGLE),
+    "mass_matrix": Way("eval_mass_matrix", f"{_Q}value = newton.eval_mass_matrix(m, s).numpy()[0]", _SINGLE),
+    "gravity": Way("eval_inverse_dynamics_passive", f"{_Q}{_passive('gravity')}value = gravity.numpy()", _SINGLE),
+    "coriolis_forces": Way(
+        "eval_inverse_dynamics_passive", f"{_QV}{_passive('coriolis')}value = coriolis.numpy()", _SINGLE
+    ),
     "inverse_dynamics": Way(
         "eval_inverse_dynamics_force",
-        """s, out = state(q, v), wp.zeros(m.joint_dof_count, dtype=float, device="cpu")
-newton.eval_inverse_dynamics_force(
-    m, s, mass_matrix=newton.eval_mass_matrix(m, s), joint_qdd=wp.array(a, dtype=float, device="cpu"), joint_f=out,
-    coriolis_force=passive('coriolis_force', q, v), gravity_force=passive('gravity_force', q))
-value = out.numpy()""",
+        f"{_QV}{_passive('gravity')}{_passive('coriolis')}out = wp.zeros(m.joint_dof_count, device='cpu')\n"
+        "M = newton.eval_mass_matrix(m, s)\n"
+        "newton.eval_inverse_dynamics_force(m, s, mass_matrix=M, joint_qdd=wp.array(a, dtype=float, device='cpu'),"
+        " coriolis_force=coriolis, gravity_force=gravity, joint_f=out)\nvalue = out.numpy()",
         _SINGLE,
     ),
-    "link_poses": Way(
-        "eval_fk", "value = [[*x[:3], *rotation(*x[3:]).flat] for x in state(q).body_q.numpy()]", _SINGLE
-    ),
+    "link_poses": Way("eval_fk", f"{_Q}value = [[*x[:3], *rotation(*x[3:]).flat] for x in s.body_q.numpy()]", _SINGLE),
     "link_velocities": Way(
         "eval_fk",
-        "s = state(q, v)\n"
+        f"{_QV}rotation\n"
         "value = [[*(x[:3] - np.cross(x[3:], r)), *x[3:]] for x, r in zip(s.body_qd.numpy(), centres(s))]",
         _SINGLE,
     ),
     # Of the mass centres.
     "link_jacobians": Way(
         "eval_jacobian",
-        """s = state(q)
-J = newton.eval_jacobian(m, s).numpy()[0].reshape(-1, 6, len(v))
+        f"""rotation
+{_Q}J = newton.eval_jacobian(m, s).numpy()[0].reshape(-1, 6, len(v))
 value = [np.concatenate([j[:3] - np.cross(j[3:].T, r).T, j[3:]]) for j, r in zip(J, centres(s))]""",
         _SINGLE,
     ),
@@ -88,26 +83,32 @@ def _quaternion(R: Array) -> Array:
 
 def _placement(R: Array, p: Array) -> str:
     numbers = ", ".join(repr(float(x)) for x in _quaternion(R))
-    return f"X({_array(p)}, {numbers})"
+    return f"wp.transform({_array(p)}, wp.quat({numbers}))"
 
 
 def _axes(joint: Joint) -> tuple[list[str], list[str], str] | None:
     """Linear and angular axes of a joint with six or fewer, and its chart."""
-    armature = f", {joint.armature[0]!r}" if any(joint.armature) else ""
-    unit = [_array(row) for row in np.eye(3)]
+    own = joint.armature or (0.0,) * 3
+
+    def axis(number: int, along: object) -> str:
+        # An axis without `target_ke` and `target_kd` takes the builder's.
+        return f"axis(axis={_array(along)}, armature={own[number]!r}, target_ke=0, target_kd=0)"
+
+    unit = np.eye(3)
     match joint.kind:
         case "revolute":
-            return [], [f"axis({_array(joint.axis)}{armature})"], "angle"
+            return [], [axis(0, joint.axis)], "angle"
         case "prismatic":
-            return [f"axis({_array(joint.axis)}{armature})"], [], "length"
+            return [axis(0, joint.axis)], [], "length"
         case "universal":
-            return [], [f"axis({_array(joint.axis)})", f"axis({_array(joint.second)})"], "two angles"
+            return [], [axis(0, joint.axis), axis(1, joint.second)], "two angles"
         case "euler":
-            return [], [f"axis({unit['XYZ'.index(letter)]})" for letter in joint.sequence], "three angles"
+            turns = (unit["XYZ".index(letter)] for letter in joint.sequence)
+            return [], [axis(k, row) for k, row in enumerate(turns)], "three angles"
         case "translation":
-            return [f"axis({row})" for row in unit], [], "three lengths"
+            return [axis(k, row) for k, row in enumerate(unit)], [], "three lengths"
         case "planar":
-            return [f"axis({unit[0]})", f"axis({unit[1]})"], [f"axis({unit[2]})"], "planar angle"
+            return [axis(0, unit[0]), axis(1, unit[1])], [axis(2, unit[2])], "planar angle"
     return None
 
 
@@ -141,13 +142,13 @@ def _call(link: Link, steps: tuple[tuple[Array, Array, Joint], ...]) -> tuple[st
 
 def write(tree: Tree) -> Source | Unsupported:
     """Text that builds an articulation."""
-    lines = _SETUP.format(gravity=list(tree.gravity)).split("\n")
+    lines = [*_IMPORTS, f"b = newton.ModelBuilder(gravity={list(tree.gravity)!r})"]
     slots: list[tuple[Slot, ...]] = []
     nq = nv = 0
     for k, link in enumerate(tree.links):
         body = f"mass={link.mass!r}, com={list(link.com)!r}, inertia=wp.mat33({_array(link.inertia)})"
         lines.append(f"b{k} = b.add_link({body}, lock_inertia=True)")
-    lines.append("joints = []")
+    joints = []
     for k, link in enumerate(tree.links):
         steps, (R_end, p_end) = series(link.joints)
         made: Any = _call(link, steps)
@@ -156,16 +157,22 @@ def write(tree: Tree) -> Source | Unsupported:
         call, parts = made
         R, p = (steps[0][0], steps[0][1]) if steps else (R_end, p_end)
         parent = "-1" if link.parent < 0 else f"b{link.parent}"
-        ends = f"{parent}, b{k}, parent_xform={_placement(R, p)}"
-        if steps:
+        ends = f"{parent}, b{k}"
+        if np.any(p) or not np.array_equal(R, np.eye(3)):
+            ends += f", parent_xform={_placement(R, p)}"
+        if steps and (np.any(p_end) or not np.array_equal(R_end, np.eye(3))):
             ends += f", child_xform={_placement(R_end.T, -R_end.T @ p_end)}"
-        lines.append(f"joints.append({call.format(ends=ends)})")
+        if "=[axis(" in call and _AXIS not in lines:
+            lines.append(_AXIS)
+        lines.append(f"j{k} = {call.format(ends=ends)}")
+        joints.append(f"j{k}")
         own = []
         for chart, coordinates, speeds in parts:
             own.append(Slot(chart, tuple(range(nq, nq + coordinates)), tuple(range(nv, nv + speeds))))
             nq, nv = nq + coordinates, nv + speeds
         slots.append(tuple(own))
-    return Source((*lines, *_END.split("\n")), tuple(slots), nq=nq, nv=nv)
+    lines += [f"b.add_articulation([{', '.join(joints)}])", 'm = b.finalize(device="cpu")']
+    return Source(tuple(lines), tuple(slots), nq, nv, {"rotation": _ROTATION, "centres": _CENTRES})
 
 
 PLUGIN = SourcePlugin(

@@ -42,6 +42,10 @@ def _array(values: Any) -> str:
         return "np.eye(3)"
     if not np.any(values):
         return f"np.zeros({np.shape(values) if np.ndim(values) > 1 else len(values)})"
+    if np.ndim(values) == 1 and len(values) == 3 and sorted(values) == [0.0, 0.0, 1.0]:
+        return f"np.eye(3)[{list(values).index(1.0)}]"
+    if np.ndim(values) == 2 and np.array_equal(values, np.diag(np.diagonal(values))):
+        return f"np.diag({np.diagonal(values).tolist()!r})"
     return f"np.array({np.asarray(values, dtype=float).tolist()!r})"
 
 
@@ -68,7 +72,8 @@ def _model(joint: Joint) -> str | Unsupported:
 def write(tree: Tree) -> Source | Unsupported:
     """Text that builds a tree."""
     lines = ["import numpy as np", "import pinocchio as pin", "m = pin.Model()"]
-    lines.append(f"m.gravity.linear = {_array(tree.gravity)}")
+    if tree.gravity != (0.0, 0.0, -9.81):
+        lines.append(f"m.gravity.linear = {_array(tree.gravity)}")
     slots: list[tuple[Slot, ...]] = []
     # For each link: variable of its Pinocchio joint, and its placement there.
     places: list[tuple[str, Array, Array]] = []
@@ -134,13 +139,13 @@ def write(tree: Tree) -> Source | Unsupported:
         inertia = f"pin.Inertia({link.mass!r}, {_array(link.com)}, {_array(link.inertia)})"
         lines.append(f"{m}.appendBodyToJoint({name}, {inertia}, {_placement(R, p)})")
         frame = f"pin.Frame('f{k}', {name}, 0, {_placement(R, p)}, pin.FrameType.OP_FRAME)"
-        frames.append(f"fs.append({m}.addFrame({frame}))")
+        frames.append(f"{m}.addFrame({frame})")
         joints.append(name if not np.any(p) and np.array_equal(R, np.eye(3)) else "")
     if any(armature):
         lines.append(f"m.armature = {_array(armature)}")
-    optional: dict[str, tuple[str, ...]] = {"fs": ("fs = []", *frames)}
+    optional: dict[str, tuple[str, ...]] = {"fs": (f"fs = [{', '.join(frames)}]",)}
     if tree.transformations:
-        lines += ["fs = []", *frames, *_transformed(locked, len(own_model) > 0)]
+        lines += [*frames, *_transformed(locked, len(own_model) > 0)]
         return Source(
             tuple(lines), tuple(slots), nq, nv, {"fs": (_NAMED_FRAMES.format(len(tree.links)),)}, closing=_CLOSING
         )

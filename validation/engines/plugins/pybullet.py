@@ -8,53 +8,56 @@ from validation.engines.interface import Difference, Tree, Unsupported
 from validation.engines.plugins.writing.source import Source, SourcePlugin, Way
 from validation.engines.plugins.writing.urdf import KINDS, describe, slots_of
 
-_SETUP = '''import tempfile
+# One client serves all models; its gravity stays.
+_SETUP = """from tempfile import NamedTemporaryFile
 import numpy as np
 import pybullet as p
-TEXT = """{text}"""
-if not p.isConnected():
-    p.connect(p.DIRECT)
-p.setGravity(*{gravity})
-with tempfile.NamedTemporaryFile("w", suffix=".{form}") as file:
-    file.write(TEXT)
-    file.flush()
-    flags = p.URDF_USE_INERTIA_FROM_FILE | p.URDF_MAINTAIN_LINK_ORDER
-    robot = {load}
-named = {{p.getJointInfo(robot, k)[12].decode(): k for k in range(p.getNumJoints(robot))}}
-links = [named[name] for name in {links}]
-moving = [k for k in range(p.getNumJoints(robot)) if p.getJointInfo(robot, k)[2] != p.JOINT_FIXED]
-def states(q, v):
-    for k, position, speed in zip(moving, q, v):
-        p.resetJointState(robot, k, position, speed)
-    return [p.getLinkState(robot, k, computeLinkVelocity=1, computeForwardKinematics=1) for k in links]
-'''
+p.isConnected() or p.connect(p.DIRECT)
+file = NamedTemporaryFile("w", suffix=".{form}")
+print({text!r}, file=file, flush=True)
+robot = {load}"""
+_JOINTS = "joints = [p.getJointInfo(robot, k) for k in range(p.getNumJoints(robot))]"
+_LINKS = "links = [joint[0] for name in {links} for joint in joints if joint[12].decode() == name]"
+_GRAVITY = "p.setGravity{gravity}"
+_MOVING = "moving = [joint[0] for joint in joints if joint[2] != p.JOINT_FIXED]"
 _LOADS = {
-    "urdf": "p.loadURDF(file.name, useFixedBase=True, flags=flags)",
+    "urdf": (
+        "p.loadURDF(file.name, useFixedBase=True, flags=p.URDF_USE_INERTIA_FROM_FILE | p.URDF_MAINTAIN_LINK_ORDER)"
+    ),
     "sdf": "p.loadSDF(file.name)[0]",
 }
 _MASSLESS = '<inertial><mass value="0"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial>'
+_STATES = """joints
+for k, position, speed in zip(moving, q, {v}): p.resetJointState(robot, k, position, speed)
+states = [p.getLinkState(robot, k, computeLinkVelocity=1, computeForwardKinematics=1) for k in links]
+"""
 WAYS = {
     "mass_matrix": Way("calculateMassMatrix", "value = p.calculateMassMatrix(robot, q.tolist())"),
     "inverse_dynamics": Way(
-        "calculateInverseDynamics", "value = p.calculateInverseDynamics(robot, q.tolist(), v.tolist(), a.tolist())"
+        "calculateInverseDynamics",
+        "gravity\nvalue = p.calculateInverseDynamics(robot, q.tolist(), v.tolist(), a.tolist())",
     ),
     "bias": Way(
-        "calculateInverseDynamics", "value = p.calculateInverseDynamics(robot, q.tolist(), v.tolist(), [0.0] * len(v))"
+        "calculateInverseDynamics",
+        "gravity\nvalue = p.calculateInverseDynamics(robot, q.tolist(), v.tolist(), [0.0] * len(v))",
     ),
     "gravity": Way(
-        "calculateInverseDynamics", "value = p.calculateInverseDynamics(robot, q.tolist(), *[[0.0] * len(q)] * 2)"
+        "calculateInverseDynamics",
+        "gravity\nvalue = p.calculateInverseDynamics(robot, q.tolist(), *[[0.0] * len(q)] * 2)",
     ),
     "link_poses": Way(
-        "getLinkState", "value = [[*s[4], *p.getMatrixFromQuaternion(s[5])] for s in states(q, np.zeros(len(q)))]"
+        "getLinkState",
+        f"{_STATES.format(v='0 * q')}value = [[*s[4], *p.getMatrixFromQuaternion(s[5])] for s in states]",
     ),
     "link_velocities": Way(
         "getLinkState",
-        "value = [[*(np.array(s[6]) + np.cross(s[7], np.array(s[4]) - s[0])), *s[7]] for s in states(q, v)]",
+        f"{_STATES.format(v='v')}"
+        "value = [[*(np.array(s[6]) + np.cross(s[7], np.array(s[4]) - s[0])), *s[7]] for s in states]",
     ),
     # Points are stated from the link's origin, along the principal axes of its inertia.
     "link_jacobians": Way(
         "calculateJacobian",
-        "zero = [0.0] * len(q)\n"
+        "joints\nzero = [0.0] * len(q)\n"
         "value = [np.concatenate(p.calculateJacobian(robot, k, [0, 0, 0], q.tolist(), zero, zero)) for k in links]",
     ),
 }
@@ -76,11 +79,18 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
         return described
     if described.floating:
         return Unsupported("coordinates of floating bases are not documented", offered=False)
-    setup = _SETUP.format(
-        text=text, form=form, load=_LOADS[form], gravity=list(tree.gravity), links=list(described.links)
-    )
+    setup = _SETUP.format(text=text, form=form, load=_LOADS[form])
     count = len(described.moving)
-    return Source((setup,), slots_of(tree, described, described.moving), nq=count, nv=count)
+    optional: dict[str, tuple[str, ...]] = {"gravity": ("gravity = True", _GRAVITY.format(gravity=tree.gravity))}
+    if form == "urdf" and all(len(link.joints) == 1 for link in tree.links):
+        # Links, and the joints before them, are numbered as in the file.
+        places = [k for k, link in enumerate(tree.links) if link.joints[0].kind != "fixed"]
+        optional |= {"joints": ("joints = ()",), "moving": (f"moving = {places}",)}
+        optional |= {"links": (f"links = {list(range(len(tree.links)))}",)}
+    else:
+        optional |= {"joints": (_JOINTS,), "moving": (_MOVING,)}
+        optional |= {"links": (_LINKS.format(links=list(described.links)),)}
+    return Source(tuple(setup.split("\n")), slots_of(tree, described, described.moving), count, count, optional)
 
 
 PLUGIN = SourcePlugin(

@@ -10,8 +10,8 @@ from validation.engines.plugins.writing.source import Source, SourcePlugin, Way
 _LETTERS = {(1.0, 0.0, 0.0): "x", (0.0, 1.0, 0.0): "y", (0.0, 0.0, 1.0): "z"}
 WAYS = {
     "mass_matrix": Way("inertia", "value = robot.inertia(q)"),
-    # On a robot of its own: the call takes the links from the robot.
-    "coriolis_forces": Way("coriolis", "value = make().coriolis(q, v) @ v"),
+    # The call takes the links from the robot: each call has a robot of its own.
+    "coriolis_forces": Way("coriolis", "value = robot.coriolis(q, v) @ v"),
     "gravity": Way("gravload", "value = robot.gravload(q)"),
     "inverse_dynamics": Way("rne", "value = robot.rne(q, v, a)"),
     "bias": Way("rne", "value = robot.rne(q, v, np.zeros(len(v)))"),
@@ -64,9 +64,7 @@ def write(tree: Tree) -> Source | Unsupported:
                     return Unsupported(f"no elementary transform for {joint.kind} {joint.form}".strip(), offered=False)
                 turn = _turned(joint.axis)
                 T[:3, :3] = T[:3, :3] @ turn
-                moves = (
-                    f", ET.{'R' if joint.kind == 'revolute' else 't'}{_LETTERS.get(joint.axis, 'z')}(jindex={count})"
-                )
+                moves = f"ET.{'R' if joint.kind == 'revolute' else 't'}{_LETTERS.get(joint.axis, 'z')}(jindex={count})"
                 own.append(Slot("angle" if joint.kind == "revolute" else "length", (count,), (count,)))
                 count += 1
                 if any(joint.armature):
@@ -76,7 +74,8 @@ def write(tree: Tree) -> Source | Unsupported:
                 com, moments = (turn.T @ link.com).tolist(), (turn.T @ link.inertia @ turn).tolist()
                 inertia = f", m={link.mass!r}, r={com!r}, I=np.array({moments!r})"
             name = f"l{k}_{place}"
-            steps = f"ET.SE3(np.array({T.tolist()!r})){moves}"
+            placed = f"ET.SE3(np.array({T.tolist()!r}))" if not moves or not np.array_equal(T, np.eye(4)) else ""
+            steps = ", ".join(filter(None, (placed, moves)))
             lines.append(f"{name} = Link(ETS([{steps}]), name={title!r}, parent={before}{inertia}{motor})")
             before = name
         paths.append([*([] if link.parent < 0 else paths[link.parent]), *(slot.v[0] for slot in own)])
@@ -84,15 +83,12 @@ def write(tree: Tree) -> Source | Unsupported:
         ends.append(before)
         turns.append(turn)
     every = ", ".join(line.split(" =")[0] for line in lines)
-    made = ["def make():", *(f"    {line}" for line in lines)]
-    made.append(f"    return Robot([{every}], gravity={list(tree.gravity)!r})")
-    setup = ["import numpy as np", "from roboticstoolbox import ET, ETS, Link, Robot", *made, "robot = make()"]
+    robot = f"robot = Robot([{every}], gravity={list(tree.gravity)!r})"
+    setup = ("import numpy as np", "from roboticstoolbox import ET, ETS, Link, Robot")
     # Turn of each link's frame, and the joints that move it.
     pairs = zip(tree.links, turns, paths, strict=True)
-    setup.append(
-        f"links = {{{', '.join(f'{link.name!r}: ({turn.tolist()!r}, {path})' for link, turn, path in pairs)}}}"
-    )
-    return Source(tuple(setup), tuple(slots), nq=count, nv=count)
+    links = f"links = {{{', '.join(f'{link.name!r}: ({turn.tolist()!r}, {path})' for link, turn, path in pairs)}}}"
+    return Source(setup, tuple(slots), count, count, {"links": (links,)}, closing=(*lines, robot))
 
 
 PLUGIN = SourcePlugin(

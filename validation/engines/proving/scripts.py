@@ -5,28 +5,35 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
-from dataclasses import dataclass, replace
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
 from validation.engines.functions import FUNCTIONS
-from validation.engines.interface import EnginePlugin
+from validation.engines.interface import Array, EnginePlugin, Unsupported
 from validation.engines.matrix import SEED, Judged, Truths, judged
-from validation.engines.plugins.writing.source import SourcePlugin
-from validation.engines.proving.pieces import taken
+from validation.engines.plugins.writing.source import WIDTH, SourcePlugin
+from validation.engines.proving.folding import folded
+from validation.engines.proving.pieces import assembled, taken
+from validation.engines.proving.plainness import plain
 from validation.engines.proving.pruning import pruned
-from validation.engines.proving.shrink import TRIES, Case, smallest
-from validation.engines.proving.threads import thread
+from validation.engines.proving.shortening import picked, shortened, still
+from validation.engines.proving.shrink import TRIES, Case, size, smallest
+from validation.engines.proving.threads import NONE, thread
 from validation.engines.workers import Crashed, Job, Worker
 
-# A result of more entries is shown by its worst one.
-_SHOWN = 16
 # A smaller case keeps at least this part of the error, so that it shows the same fault plainly.
 _KEPT = 0.05
 _TIME = 120.0
-# Cases tried where each takes long.
-_SLOW = 24
+# Shapes in functions' texts, such as "(L, 6, nv)".
+_SHAPES = re.compile(r" \((?:10 )?(?:\d+|L|m|n[qv])(?: \+ m|, (?:10 )?(?:\d+|L|m|n[qv])(?: \+ m)?)*\)")
+# Time to shrink one fault: cases of loops, and digits that are lost, take long to judge.
+_PATIENCE = 60.0
+# A line more is worth as many letters.
+_LINE = 60.0
 
 
 @dataclass(frozen=True)
@@ -62,37 +69,101 @@ class Proof:
     thread: str
 
 
-def shrunk(plugin: EnginePlugin, red: Judged, worker: Worker, truths: Truths, tries: int = TRIES) -> Judged:
+@dataclass
+class Shown:
+    """Cases that show faults, by engine and model: the next fault of theirs is looked for there first.
+
+    Attributes:
+        cases: The cases.
+    """
+
+    cases: dict[tuple[str, str], list[Case]] = field(default_factory=dict)
+
+    def of(self, red: Judged) -> list[Case]:
+        """Those of a red cell's engine and model."""
+        return self.cases.setdefault((red.cell.engine, red.cell.model), [])
+
+
+def shrunk(
+    plugin: EnginePlugin,
+    red: Judged,
+    worker: Worker,
+    truths: Truths,
+    tries: int = TRIES,
+    shown: Shown | None = None,
+) -> Judged:
     """The smallest case that shows the fault of a red cell; of a crash, the case itself."""
     answer = red.answer
     if answer.layout is None or answer.state is None or red.cell.verdict not in ("wrong", "imprecise"):
         return red
-    best, final = red, red
-    wrong = red.cell.verdict == "wrong"
     # A fault that is no matter of rounding is seen without asking how far roundings go.
-    quick = Truths(perturbations=0) if wrong else truths
-    job = Job(plugin.name, red.tree, (answer.function,))
-    if red.form:
-        return red
+    quick = Truths(perturbations=0) if red.cell.verdict == "wrong" else truths
+    job = Job(plugin.name, red.tree, (answer.function,), form=red.form)
+    end = time.monotonic() + _PATIENCE
 
-    # A state of a loop is closed anew for each case; lost digits are told from roundings for each.
-    most = min(tries, _SLOW) if red.tree.constraints or not wrong else tries
+    def asked(case: Case, how: Truths) -> Judged:
+        return next(judged(plugin, replace(job, tree=case.tree, pieces=case.pieces, text=case.text), how, worker))
 
-    def shows(case: Case) -> bool:
-        nonlocal best
-        one = next(judged(plugin, replace(job, tree=case.tree, pieces=case.pieces), quick, worker))
-        if one.cell.verdict != red.cell.verdict or one.cell.error < _KEPT * min(red.cell.error, 1.0):
+    def shows(case: Case, how: Truths = quick) -> bool:
+        if time.monotonic() > end:
             return False
-        best = one
-        return True
+        try:
+            one = asked(case, how)
+        except (ArithmeticError, ValueError, RuntimeError):  # Singular there, or of no size, here or in the worker.
+            return False
+        return one.cell.verdict == red.cell.verdict and one.cell.error >= _KEPT * min(red.cell.error, 1.0)
 
-    case = smallest(Case(red.tree, taken(answer.layout, answer.state)), shows, most)
-    if best is not red:
-        final = next(judged(plugin, replace(job, tree=case.tree, pieces=case.pieces), truths, worker))
-    return final if final.cell.verdict == red.cell.verdict else red
+    cost = _cost(plugin, answer.function)
+    first = Case(red.tree, taken(answer.layout, answer.state), red.form, red.text)
+    known = (shown or Shown()).of(red)
+    begun = next((case for case in sorted(known, key=cost) if cost(case) < cost(first) and shows(case)), first)
+    case = smallest(begun, shows, tries, cost) if tries else begun
+    final = asked(case, truths)
+    if final.cell.verdict != red.cell.verdict:
+        # Where roundings go far, as beside what is singular, nothing is shown: asked of each case.
+        end = time.monotonic() + _PATIENCE
+        case = smallest(first, lambda one: shows(one, truths), tries, cost)
+        final = asked(case, truths)
+    if case is first or final.cell.verdict != red.cell.verdict:
+        return red
+    known.append(case)
+    return final
 
 
-def prove(plugin: EnginePlugin, red: Judged, worker: Worker, truths: Truths, folder: Path, tries: int = TRIES) -> Proof:
+def _cost(plugin: EnginePlugin, function: str) -> Callable[[Case], float]:
+    """What a reader of a case's script has to take in: its letters, and its lines."""
+    if not isinstance(plugin, SourcePlugin):
+        return size
+    known: dict[Case, float] = {}
+
+    def cost(case: Case) -> float:
+        if case not in known:
+            known[case] = _letters(plugin, function, case)
+        return known[case]
+
+    return cost
+
+
+def _letters(plugin: SourcePlugin, function: str, case: Case) -> float:
+    source = plugin.written(case.tree, case.form, case.text)
+    if isinstance(source, Unsupported):
+        return np.inf
+    state = assembled(source, case.pieces)
+    if isinstance(state, Unsupported):
+        return np.inf
+    lines = pruned(plain(source.script(plugin.ways[function].code, state))).splitlines()
+    return float(sum(_LINE * (1 + len(line) // WIDTH) + len(line) for line in lines))
+
+
+def prove(
+    plugin: EnginePlugin,
+    red: Judged,
+    worker: Worker,
+    truths: Truths,
+    folder: Path,
+    tries: int = TRIES,
+    shown: Shown | None = None,
+) -> Proof:
     """A script of a red cell, run in a fresh process: the folder's, where it still fails, or else a new one, shrunk."""
     name = red.cell.function
     known = thread(plugin.name, red.cell.model, name)
@@ -100,17 +171,46 @@ def prove(plugin: EnginePlugin, red: Judged, worker: Worker, truths: Truths, fol
     if path.exists():
         kept = path.read_text(encoding="utf-8")
         output, failed = fails(path)
-        if failed and f"{plugin.name} {plugin.version()}:" in kept and pruned(kept) == kept:
+        if failed and kept.startswith(_title(plugin, red)) and pruned(kept) == kept:
             return _proof(plugin, red, kept, output, failed, known)
     small = (
         _with_script(plugin, red, worker)
         if red.cell.verdict == "crashes"
-        else shrunk(plugin, red, worker, truths, tries)
+        else shrunk(plugin, red, worker, truths, tries, shown)
     )
     folder.mkdir(parents=True, exist_ok=True)
-    path.write_text(pruned(text(plugin, small, known)), encoding="utf-8")
-    output, failed = fails(path)
-    return _proof(plugin, red, path.read_text(encoding="utf-8"), output, failed, known)
+    for script in _variants(plugin, small, known):
+        path.write_text(script, encoding="utf-8")
+        output, failed = fails(path)
+        if failed and _says(output, small):
+            break
+    return _proof(plugin, red, script, output, failed, known)
+
+
+def _variants(plugin: EnginePlugin, red: Judged, known: str) -> Iterator[str]:
+    """The script, shorter and plainer ones before it: what is the same to the engine shows when it runs."""
+    merged = text(plugin, _begun(plugin, red), known, merged=True)
+    whole = text(plugin, red, known)
+    made = (
+        still(shortened(pruned(plain(merged)))),
+        shortened(pruned(plain(merged))),
+        still(shortened(pruned(plain(merged, defaults=False)))),
+        shortened(pruned(plain(merged, defaults=False))),
+        plain(merged),
+        plain(whole),
+        whole,
+    )
+    head = "".join(line for line in whole.splitlines(keepends=True) if line.startswith("# "))
+    yield from dict.fromkeys(folded(head + pruned(one).removeprefix(head)) for one in made)
+
+
+def _says(output: str, red: Judged) -> bool:
+    """Whether a script got what the cell's answer was."""
+    said = re.search(r"AssertionError: value = (?:np\.float\d*\()?([^)\s,]*)", output)
+    if red.want is None or said is None:
+        return red.want is None
+    place, value = _worst(red)
+    return place is None or bool(np.isclose(float(said[1]), value[place], rtol=1e-6, atol=1e-12, equal_nan=True))
 
 
 def _with_script(plugin: EnginePlugin, red: Judged, worker: Worker) -> Judged:
@@ -120,6 +220,14 @@ def _with_script(plugin: EnginePlugin, red: Judged, worker: Worker) -> Judged:
     script = answer.script
     if isinstance(answer.value, Crashed) and isinstance(plugin, SourcePlugin):
         script = plugin.building(red.tree, red.form, red.text)
+    return replace(red, answer=replace(red.answer, script=script))
+
+
+def _begun(plugin: EnginePlugin, red: Judged) -> Judged:
+    """A cell whose engine crashes before anything is asked, without what asking needs."""
+    if red.cell.verdict != "crashes" or not isinstance(plugin, SourcePlugin):
+        return red
+    script = plugin.building(red.tree, red.form, red.text, whole=False)
     return replace(red, answer=replace(red.answer, script=script))
 
 
@@ -148,36 +256,61 @@ def file_of(red: Judged) -> str:
     return "".join(letter for letter in stem if letter.isalnum() or letter in "-_") + ".py"
 
 
-def text(plugin: EnginePlugin, red: Judged, known: str) -> str:
-    """The script of a case: the engine's answer, the truth to 17 digits, and an assertion that fails."""
-    function = FUNCTIONS[red.cell.function.partition(":")[0]]
-    head = (
-        f'"""{plugin.name} {plugin.version()}: {plugin.functions[red.cell.function]}, {red.cell.model}.\n\n'
-        f"Result: {function.text}.\nKnown: {known}.\n"
-        f'"""\n\n'
-    )
-    if red.want is None:
-        return f"{head}{red.answer.script}\n"
+def _title(plugin: EnginePlugin, red: Judged) -> str:
+    """What a script begins with: the engine and its version."""
+    return f"# {plugin.name} {plugin.version()}, {red.cell.model}: "
+
+
+def _worst(red: Judged) -> tuple[tuple[int, ...] | None, Array]:
+    """The place where an answer is off most, None for another shape than the truth's, and the answer in its shape."""
     value = np.asarray(red.answer.value)
+    assert red.want is not None
     want = red.want.value
     # A matrix of one column comes as a vector where arrays are Eigen's (`verdicts.judge`).
-    reshaped = value.shape != want.shape and value.size == want.size
-    if reshaped:
+    if value.shape != want.shape and value.size == want.size:
         value = value.reshape(want.shape)
-    shape = f".reshape({want.shape})" if reshaped else ""
-    lines = [red.answer.script.rstrip(), f"value = np.array(value, dtype=float){shape}"]
-    if want.shape == value.shape and want.size > _SHOWN:
-        place = np.unravel_index(int(np.argmax(np.abs(value - want))), want.shape)
-        at = ", ".join(str(int(k)) for k in place)
-        lines += [f"value = value[{at}]", f"expected = {float(want[place])!r}"]
+    if value.shape != want.shape:
+        return None, value
+    off = np.nan_to_num(np.abs(value - want), nan=np.inf)
+    return tuple(int(k) for k in np.unravel_index(int(np.argmax(off)), want.shape)), value
+
+
+def text(plugin: EnginePlugin, red: Judged, known: str, *, merged: bool = False) -> str:
+    """The script of a case: the engine's answer, the truth where it is off most, to 17 digits, and an assertion.
+
+    Args:
+        plugin: The engine.
+        red: The case.
+        known: Public thread that knows the fault.
+        merged: Without a line of its own for the answer, which must be an array then.
+    """
+    function = FUNCTIONS[red.cell.function.partition(":")[0]]
+    verdict = {"crashes": "crashes"}.get(red.cell.verdict, f"is {red.cell.verdict}")
+    about = _SHAPES.sub("", function.text)
+    head = f"{_title(plugin, red)}{plugin.functions[red.cell.function]} {verdict} ({about}).\n"
+    if known != NONE:
+        head += f"# Known: {known}.\n"
+    if red.want is None:
+        return f"{head}{red.answer.script}\n"
+    place, value = _worst(red)
+    raw = np.asarray(red.answer.value)
+    script = red.answer.script.rstrip()
+    if place is None:
+        shape = tuple(red.want.value.shape)
+        return f"{head}{script}\nassert np.shape(value) == {shape}, np.shape(value)\n"
+    found = picked(script, place) if merged and raw.shape == value.shape else None
+    if found:
+        script, entry = found
+    elif place:
+        reshaped = f".reshape({value.shape})" if raw.shape != value.shape else ""
+        entry = f"np.array(value){reshaped}[{', '.join(map(str, place))}]"
     else:
-        lines.append(f"expected = np.array({want.tolist()!r})" if want.ndim else f"expected = {float(want)!r}")
-    lines += [
-        "error = np.max(np.abs(value - expected))",
-        'print(f"{value = }\\n{expected = }\\n{error = :.3g}")',
-        f"assert error <= {red.want.allowed:.1e}",
-    ]
-    return head + "\n".join(lines) + "\n"
+        entry = "np.array(value).item()" if raw.ndim else "value"
+    lines = (
+        f"value, expected = {entry}, {float(red.want.value[place])!r}",
+        f'assert abs(value - expected) <= {red.want.allowed:.1e}, f"{{value = }}, {{expected = }}"',
+    )
+    return head + script + "\n" + "\n".join(lines) + "\n"
 
 
 def fails(path: Path) -> tuple[str, bool]:

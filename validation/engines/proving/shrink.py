@@ -6,12 +6,25 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any
 
-from validation.engines.interface import IDENTITY, ORIGIN, Joint, Link, Tree
+from validation.engines.interface import IDENTITY, ORIGIN, Joint, Link, Rows, Tree, Vector
+from validation.engines.models.formats import texts
+from validation.engines.proving import closing, files
 from validation.engines.proving.pieces import Piece, Pieces
 
 # Cases that are tried for one fault.
-TRIES = 120
+TRIES = 400
 _PRINCIPAL = ((2.0, 0.0, 0.0), (0.0, 3.0, 0.0), (0.0, 0.0, 4.0))
+_UNITS: tuple[Vector, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+# Turns by right angles, and one whose cosine and sine are short.
+_TURNS: tuple[Rows, ...] = (
+    ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)),
+    ((1.0, 0.0, 0.0), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0)),
+    ((0.0, -1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
+    ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0), (-1.0, 0.0, 0.0)),
+    ((0.6, -0.8, 0.0), (0.8, 0.6, 0.0), (0.0, 0.0, 1.0)),
+)
+# Engines' own gravity, which need not be said.
+_DOWN: Vector = (0.0, 0.0, -9.81)
 
 
 @dataclass(frozen=True)
@@ -21,31 +34,41 @@ class Case:
     Attributes:
         tree: The tree.
         pieces: The state.
+        form: Format of the file that states the tree; "" for none.
+        text: The file.
     """
 
     tree: Tree
     pieces: Pieces
+    form: str = ""
+    text: str = ""
 
 
-def smallest(case: Case, shows: Callable[[Case], bool], most: int = TRIES) -> Case:
+def smallest(
+    case: Case, shows: Callable[[Case], bool], most: int = TRIES, cost: Callable[[Case], float] | None = None
+) -> Case:
     """A case that shows a fault, of which no simpler neighbour does.
 
     Args:
         case: Case to begin with.
         shows: Whether a case shows the fault.
         most: Bound on the number of cases that are tried.
+        cost: What a reader has to take in; `size` if not stated.
     """
+    cost = cost or size
     tried: set[Case] = set()
-    place, moved = 0, False
+    place, moved, least = 0, False, cost(case)
     while len(tried) < most:
         for number, candidate in enumerate(_simpler(case)):
-            if number < place or candidate in tried or size(candidate) >= size(case):
+            if number < place or candidate in tried or cost(candidate) >= least:
                 continue
             tried.add(candidate)
             if shows(candidate):
                 # What came before was refused for the larger case: it comes again when the rest is through.
-                case, place, moved = candidate, number, True
+                case, least, place, moved = candidate, cost(candidate), number, True
                 break
+            if len(tried) >= most:
+                return case
         else:
             if not moved:
                 return case
@@ -66,29 +89,58 @@ def size(value: Any) -> int:
 
 
 def _simpler(case: Case) -> Iterator[Case]:
+    if not case.form:
+        yield from _simpler_built(case)
+        return
+    # A file that a tree was written to is written anew; others are changed where their formats say what that means.
+    if texts(case.tree).get(case.form) == case.text:
+        for simpler in _simpler_built(case):
+            written = texts(simpler.tree).get(case.form)
+            if written:
+                yield replace(simpler, form=case.form, text=written)
+        return
+    for file in files.simpler(files.File(case.form, case.text, case.tree, case.pieces)):
+        yield Case(file.tree, file.pieces, case.form, file.text)
+    yield from _simpler_states(case)
+
+
+def _simpler_built(case: Case) -> Iterator[Case]:
+    if case.tree.constraints:
+        for tree, pieces in closing.at_zero(case.tree, case.pieces):
+            yield Case(tree, pieces)
     yield from _without_links(case)
     yield from _all_at_once(case)
     yield from _without_joints(case)
     for tree in _plainer_trees(case.tree):
         yield replace(case, tree=tree)
+    yield from _simpler_states(case)
+
+
+def _simpler_states(case: Case) -> Iterator[Case]:
     for k, pieces in enumerate(case.pieces):
         for number, piece in enumerate(pieces):
-            for simpler in _plainer_pieces(piece):
+            for simpler in _plainer_pieces(piece, bound=bool(case.tree.constraints)):
                 yield replace(case, pieces=_with(case.pieces, k, _with(pieces, number, simpler)))
 
 
 def _all_at_once(case: Case) -> Iterator[Case]:
-    """Placements, inertias and vectors of the state plain in all links together."""
+    """Placements, inertias, axes and vectors of the state plain in all links together."""
     links = case.tree.links
     unplaced = tuple(
         replace(link, joints=tuple(replace(joint, R=IDENTITY, p=ORIGIN) for joint in link.joints)) for link in links
     )
     plain = tuple(replace(link, com=ORIGIN, inertia=IDENTITY, mass=1.0) for link in links)
-    for chosen in (unplaced, plain):
+    aligned = tuple(replace(link, joints=tuple(_about(joint, _UNITS[2]) for joint in link.joints)) for link in links)
+    for chosen in (unplaced, plain, aligned):
         yield replace(case, tree=replace(case.tree, links=chosen))
     for names in (("v2", "tau"), ("a",), ("v",)):
         yield replace(case, pieces=tuple(tuple(_zeroed(piece, names) for piece in own) for own in case.pieces))
     yield replace(case, pieces=tuple(tuple(replace(piece, q2=piece.q) for piece in own) for own in case.pieces))
+
+
+def _about(joint: Joint, axis: Vector) -> Joint:
+    """A joint of one axis about another."""
+    return replace(joint, axis=axis) if joint.kind in ("revolute", "prismatic", "helical") else joint
 
 
 def _zeroed(piece: Piece, names: Sequence[str]) -> Piece:
@@ -135,12 +187,14 @@ def _without_joints(case: Case) -> Iterator[Case]:
 
 
 def _plainer_trees(tree: Tree) -> Iterator[Tree]:
-    yield replace(tree, gravity=ORIGIN)
+    for gravity in (_DOWN, ORIGIN):
+        yield replace(tree, gravity=gravity)
     for number, one in enumerate(tree.constraints):
         if len(tree.constraints) > 1:
             yield replace(tree, constraints=tree.constraints[:number] + tree.constraints[number + 1 :])
         for place, end in enumerate(one.ends):
-            for plain in (end._replace(R=IDENTITY, p=ORIGIN), end._replace(R=IDENTITY), end._replace(p=ORIGIN)):
+            plainer = [end._replace(R=IDENTITY, p=ORIGIN), end._replace(R=IDENTITY)]
+            for plain in (*plainer, *(end._replace(p=p) for p in (ORIGIN, *_UNITS))):
                 changed = replace(one, ends=_with(one.ends, place, plain))
                 yield replace(tree, constraints=_with(tree.constraints, number, changed))
     for k, link in enumerate(tree.links):
@@ -153,7 +207,7 @@ def _plainer_links(link: Link) -> Iterator[Link]:
         for simpler in _plainer_joints(joint):
             yield replace(link, joints=_with(link.joints, number, simpler))
     yield replace(link, com=ORIGIN, inertia=IDENTITY, mass=1.0)
-    for com in (ORIGIN, (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (1.0, 2.0, 3.0)):
+    for com in (ORIGIN, *_UNITS, (1.0, 2.0, 3.0)):
         yield replace(link, com=com)
     for inertia in (IDENTITY, _PRINCIPAL):
         yield replace(link, inertia=inertia)
@@ -163,9 +217,12 @@ def _plainer_links(link: Link) -> Iterator[Link]:
 
 def _plainer_joints(joint: Joint) -> Iterator[Joint]:
     yield replace(joint, R=IDENTITY, p=ORIGIN)
-    yield replace(joint, R=IDENTITY)
-    for p in (ORIGIN, (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)):
+    for R in (IDENTITY, *_TURNS):
+        yield replace(joint, R=R)
+    for p in (ORIGIN, *_UNITS):
         yield replace(joint, p=p)
+    for axis in _UNITS:
+        yield _about(joint, axis)
     if joint.mimics:
         yield replace(joint, offset=0.0)
         yield replace(joint, ratio=2.0)
@@ -177,17 +234,20 @@ def _plainer_joints(joint: Joint) -> Iterator[Joint]:
         yield replace(joint, armature=(1.0,) * len(joint.armature))
 
 
-def _plainer_pieces(piece: Piece) -> Iterator[Piece]:
+def _plainer_pieces(piece: Piece, *, bound: bool = False) -> Iterator[Piece]:
+    """Simpler states of a joint; what constraints bind comes out of closing them, whatever it was before."""
     for name in ("v2", "q2", "tau", "a", "v"):
         values = getattr(piece, name)
         if name == "q2":
             yield replace(piece, q2=piece.q)
         else:
             yield _zeroed(piece, (name,))
+            if bound and name == "v":
+                continue
             for k, value in enumerate(values):
                 for simpler in dict.fromkeys((0.0, 1.0, _rounded(value))):
                     yield _changed(piece, **{name: _with(values, k, simpler)})
-    for q in _plainer_coordinates(piece.chart, piece.q):
+    for q in () if bound else _plainer_coordinates(piece.chart, piece.q):
         yield replace(piece, q=q)
 
 

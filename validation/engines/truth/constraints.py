@@ -255,7 +255,10 @@ def _closed_from(kinematics: Kinematics, q: Array) -> Array | None:
                 return None
             best = error
         step = -np.linalg.pinv(J, rcond=1e-6) @ residual
-        step *= min(1.0, 0.5 / float(np.max(np.abs(step))))
+        longest = float(np.max(np.abs(step)))
+        if not longest:
+            return None
+        step *= min(1.0, 0.5 / longest)
         with many_digits():
             q = _on_manifold(kinematics, digits(exact(q) + kinematics.rates(exact(q)) @ exact(step)))
     return None

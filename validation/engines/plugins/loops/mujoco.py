@@ -74,6 +74,13 @@ def _tendon(number: int, one: Constraint) -> str:
     return ""
 
 
+def spelling(tree: Tree) -> dict[str, str]:
+    """Code of trees whose rows stand along no axes: sums and lengths."""
+    if any(one.kind in ("point", "weld") for one in tree.constraints):
+        return {}
+    return {"axes() @ ": "", " @ axes().T": "", "np.linalg.solve(axes().T, d.efc_force)": "d.efc_force"}
+
+
 def optional(tree: Tree) -> dict[str, tuple[str, ...]]:
     """Statements that define `axes`: what turns a tree's rows into the first frames' axes, block for block.
 

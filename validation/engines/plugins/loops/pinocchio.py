@@ -24,8 +24,8 @@ def optional(constraints: tuple[Constraint, ...], place: Place) -> Mapping[str, 
     ]
     anchors = [f"pin.ConstraintModel(pin.{one})" for one in _calls(constraints, place, _ANCHORS)]
     return {
-        "cm": ("cm = pin.StdVec_RigidConstraintModel()", f"cm.extend([{', '.join(rigid)}])"),
-        "am": ("am = pin.StdVec_ConstraintModel()", f"am.extend([{', '.join(anchors)}])"),
+        "cm": (f"cm = pin.StdVec_RigidConstraintModel([{', '.join(rigid)}])",),
+        "am": (f"am = pin.StdVec_ConstraintModel([{', '.join(anchors)}])",),
     }
 
 
@@ -40,7 +40,7 @@ def _calls(constraints: tuple[Constraint, ...], place: Place, names: Mapping[str
         )
 
 
-_DATA = "cd = pin.StdVec_RigidConstraintData()\ncd.extend([one.createData() for one in cm])\n"
+_DATA = "cd = pin.StdVec_RigidConstraintData([one.createData() for one in cm])\n"
 _SOLVED = f"{_DATA}ps = pin.ProximalSettings(1e-14, 1e-12, 20)\npin.initConstraintDynamics(m, d, cm, cd)\n"
 _DYNAMICS = f"{_SOLVED}value = pin.constraintDynamics(m, d, q, v, tau, cm, cd, ps)\n"
 _IMPACT = f"{_SOLVED}value = pin.impulseDynamics(m, d, q, v2, cm, cd, "
@@ -63,7 +63,7 @@ WAYS = {
     "constraint_jacobian": Way("getConstraintsJacobian", f"{_JACOBIAN}value = J"),
     "constraint_jacobian:anchors": Way(
         "getConstraintsJacobian of anchors",
-        "ad = pin.StdVec_ConstraintData()\nad.extend([one.createData() for one in am])\n"
+        "ad = pin.StdVec_ConstraintData([one.createData() for one in am])\n"
         "pin.computeJointJacobians(m, d, q)\nfor one, data in zip(am, ad): one.calc(m, d, data)\n"
         "value = -pin.getConstraintsJacobian(m, d, am, ad)",
     ),

@@ -16,10 +16,15 @@ from validation.engines.truth.charts import CHARTS
 OPTIONAL = {
     "js": "not for links without a joint of their own",
     "bs": "not for links without a joint of their own",
+    "points": "not for constraints of this kind",
+    "loops": "not for constraints of this kind",
+    "loops_generic": "not for constraints of this kind",
     "cm": "not for constraints of this kind",
     "axes": "not for trees without constraints",
     "am": "not for constraints of this kind",
 }
+# Longest line of a script.
+WIDTH = 120
 _INPUTS = ("q", "v", "a", "tau", "v2", "q2")
 
 
@@ -51,6 +56,7 @@ class Source:
         nv: Length of the engine's v.
         lacks: Functions that the engine doesn't offer for this tree.
         closing: Statements after all of these, run anew for each call: nothing is left of what others wrote there.
+        spelling: Text of functions' code -> what it is for this tree.
     """
 
     lines: tuple[str, ...]
@@ -60,6 +66,21 @@ class Source:
     optional: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     lacks: tuple[str, ...] = ()
     closing: tuple[str, ...] = ()
+    spelling: Mapping[str, str] = field(default_factory=dict)
+
+    def spelled(self, code: str) -> str:
+        """Code as it is for this tree."""
+        for general, own in self.spelling.items():
+            code = code.replace(general, own)
+        return code
+
+    def script(self, code: str, state: State) -> str:
+        """The statements that build the tree, state what the code needs, and run it."""
+        code = self.spelled(code)
+        used = [name for name in _INPUTS if name in identifiers(code)]
+        # A line of one name says no more than that the name is used.
+        run = [line for line in code.split("\n") if not line.isidentifier()]
+        return "\n".join([*self.text(code), *_assignments({name: getattr(state, name) for name in used}), *run])
 
     def text(self, code: str = "") -> tuple[str, ...]:
         """The statements that some code needs; all without code."""
@@ -86,12 +107,13 @@ class SourceModel:
         """A function in the engine's conventions (`EngineModel`)."""
         if function not in self._ways or function in self._source.lacks:
             return Unsupported(f"no {function}", offered=False)
-        for name in (OPTIONAL.keys() & identifiers(self._ways[function].code)) - set(self._source.optional):
+        code = self._source.spelled(self._ways[function].code)
+        for name in (OPTIONAL.keys() & identifiers(code)) - set(self._source.optional):
             return Unsupported(OPTIONAL[name], offered=False)
         names = dict(self._names)
         names.update({name: getattr(state, name).copy() for name in _INPUTS})
         try:
-            exec("\n".join([*self._source.closing, self._ways[function].code]), names)
+            exec("\n".join([*self._source.closing, code]), names)
         except (NameError, SyntaxError):  # A fault of our text is no word of the engine's.
             raise
         except Exception as error:  # The engine refuses, in its own words.
@@ -100,10 +122,17 @@ class SourceModel:
 
     def script(self, function: str, state: State) -> str:
         """The text that the call runs, with the state that it needs (`EngineModel`)."""
-        code = self._ways[function].code
-        used = [name for name in _INPUTS if name in identifiers(code)]
-        stated = [f"{name} = np.array({getattr(state, name).tolist()!r})" for name in used]
-        return "\n".join([*self._source.text(code), *stated, code])
+        return self._source.script(self._ways[function].code, state)
+
+
+def _assignments(values: Mapping[str, Array]) -> list[str]:
+    """Statements that assign vectors, one where a line holds them."""
+    texts = {
+        name: f"np.array({value.tolist()!r})" if np.any(value) else f"np.zeros({len(value)})"
+        for name, value in values.items()
+    }
+    joined = f"{', '.join(texts)} = {', '.join(texts.values())}"
+    return [joined] if texts and len(joined) <= WIDTH else [f"{name} = {text}" for name, text in texts.items()]
 
 
 def identifiers(code: str) -> set[str]:
@@ -172,10 +201,23 @@ class SourcePlugin:
             return Unsupported(f"reads no {form}", offered=False)
         return self._made(self.write_reading(tree, form, text))
 
-    def building(self, tree: Tree, form: str = "", text: str = "") -> str:
-        """The text that would build a tree, or have a file read; "" for none."""
-        made = self.write_reading(tree, form, text) if form and self.write_reading else self.write(tree)
-        return "" if isinstance(made, Unsupported) else "\n".join(made.text())
+    def written(self, tree: Tree, form: str = "", text: str = "") -> Source | Unsupported:
+        """The text of a tree, or of a file's reading."""
+        if not form:
+            return self.write(tree)
+        return self.write_reading(tree, form, text) if self.write_reading else Unsupported("", offered=False)
+
+    def building(self, tree: Tree, form: str = "", text: str = "", *, whole: bool = True) -> str:
+        """The text that would build a tree, or have a file read; "" for none.
+
+        Args:
+            tree: The tree.
+            form: Format of the file; "" for none.
+            text: The file.
+            whole: With what only functions need.
+        """
+        made = self.written(tree, form, text)
+        return "" if isinstance(made, Unsupported) else "\n".join(made.text("" if whole else "pass"))
 
     def _made(self, source: Source | Unsupported) -> EngineModel | Unsupported:
         if not self.version():

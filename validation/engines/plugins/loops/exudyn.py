@@ -1,0 +1,351 @@
+"""Exudyn in redundant coordinates: every link a rigid body with a node of its own, every joint a connector.
+
+Exudyn gives the mass matrix M of its nodes' coordinates x, the forces f, the conditions of its joints and their
+Jacobian C. With x' = D v, D from the placements that the tree states, and s what x'' is where v' = 0,
+
+    D^T M D,    h = D^T (M s - f)                                                                        (1)
+
+are the tree's own, and the accelerations that Exudyn's joints allow are those of
+
+    M x'' + C^T lam = f + F,    C x'' = -C' x',    D^T F = tau,    v' = D^+ (x'' - s)                      (2)
+
+solved by least squares: planar loops repeat conditions, and joints have rows of zeros for what they leave free. C' x'
+is a difference of sixth order along the motion, exact for conditions that are polynomials of degree six or less, as
+those of Euler parameters are.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from validation.engines.interface import Array, Constraint, Difference, Joint, Slot, Tree, Unsupported
+from validation.engines.plugins.loops import exudyn_systems
+from validation.engines.plugins.writing.source import Source, SourcePlugin, Way, series
+
+_X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+# Of conditions that are no polynomials, with steps of 4e-3: rounding over the step, and its sixth power.
+_DIFFERENCE = 1e-9
+_FREE = [0] * 6
+
+
+class _Step(NamedTuple):
+    """An elementary motion: "hinge" and "slide" along an axis, "ball" by a quaternion (w, x, y, z)."""
+
+    kind: str
+    axis: tuple[float, float, float]
+    q: int
+    v: int
+
+
+class _Native(NamedTuple):
+    """How Exudyn has a joint.
+
+    Attributes:
+        blocked: Components that ObjectJointGeneric blocks (6): displacements, rotations.
+        special: Exudyn's own joint for it; "" for none.
+        turned: Rotation (3, 3) of the joint's frame: its z axis is a hinge's, its x axis a slide's.
+    """
+
+    blocked: list[int]
+    special: str = ""
+    turned: Array = np.eye(3)
+
+
+# Kind of a joint -> elementary motions, chart.
+_CHARTS = {
+    "revolute": "angle",
+    "prismatic": "length",
+    "universal": "two angles",
+    "euler": "three angles",
+    "translation": "three lengths",
+    "ball": "quaternion wxyz, body speeds",
+    "free": "free wxyz, linear before and angular after",
+    "planar": "planar angle",
+}
+
+
+def _steps(joint: Joint, q: int, v: int) -> list[_Step]:
+    axes = (_X, _Y, _Z)
+    match joint.kind:
+        case "revolute":
+            return [_Step("hinge", joint.axis, q, v)]
+        case "prismatic":
+            return [_Step("slide", joint.axis, q, v)]
+        case "universal":
+            return [_Step("hinge", joint.axis, q, v), _Step("hinge", joint.second, q + 1, v + 1)]
+        case "euler":
+            return [_Step("hinge", axes["XYZ".index(a)], q + k, v + k) for k, a in enumerate(joint.sequence)]
+        case "translation":
+            return [_Step("slide", axis, q + k, v + k) for k, axis in enumerate(axes)]
+        case "planar":
+            slides = [_Step("slide", axis, q + k, v + k) for k, axis in enumerate(axes[:2])]
+            return [*slides, _Step("hinge", _Z, q + 2, v + 2)]
+        case "ball":
+            return [_Step("ball", _Z, q, v)]
+        case _:
+            slides = [_Step("slide", axis, q + k, v + k) for k, axis in enumerate(axes)]
+            return [*slides, _Step("ball", _Z, q + 3, v + 3)]
+
+
+def _along(axis: tuple[float, float, float], place: int) -> Array:
+    """A rotation, one column of which is an axis."""
+    e = np.array(axis)
+    if axis in (_X, _Y, _Z):
+        return np.roll(np.eye(3), place - axis.index(1.0), axis=1)
+    first = np.cross(np.eye(3)[int(np.argmin(np.abs(e)))], e)
+    first /= np.linalg.norm(first)
+    return np.roll(np.stack([e, first, np.cross(e, first)], axis=1), place, axis=1)
+
+
+def _native(steps: list[_Step]) -> _Native | None:
+    """The joint of a series of motions about one point."""
+    shape = " ".join(step.kind for step in steps)
+    axes = [step.axis for step in steps]
+    match shape:
+        case "":
+            return _Native([1, 1, 1, 1, 1, 1])
+        case "hinge":
+            return _Native([1, 1, 1, 1, 1, 0], "ObjectJointRevoluteZ", _along(axes[0], 2))
+        case "slide":
+            return _Native([0, 1, 1, 1, 1, 1], "ObjectJointPrismaticX", _along(axes[0], 0))
+        case "ball" | "hinge hinge hinge":
+            return _Native([1, 1, 1, 0, 0, 0], "ObjectJointSpherical")
+        case "hinge hinge" if axes == [_X, _Y]:
+            return _Native([1, 1, 1, 0, 0, 1])
+        case "slide hinge" if axes[0] == axes[1]:
+            return _Native([1, 1, 0, 1, 1, 0], turned=_along(axes[0], 2))
+        case "slide ball" if axes[0] == _X:
+            return _Native([0, 1, 1, 0, 0, 0])
+        case "slide slide hinge" if axes == [_X, _Y, _Z]:
+            return _Native([0, 0, 1, 1, 1, 0])
+        case "slide slide slide":
+            return _Native([0, 0, 0, 1, 1, 1])
+        case "slide slide slide ball" | "slide slide slide hinge hinge hinge":
+            return _Native(_FREE)
+    return None
+
+
+_NODES = {"": "EP", ":Rxyz": "Rxyz", ":RotVecLG": "RotVecLG"}
+WAYS: dict[str, Way] = {}
+for _way, _node in _NODES.items():
+    _made = f"s = System('{_node}', [])\n"
+    _name = f"NodeRigidBody{_node}"
+    WAYS |= {
+        f"mass_matrix{_way}": Way(
+            f"{_name}: ComputeMassMatrix", f"{_made}_, D, _, M, _ = s.at(q, 0 * v)\nvalue = D.T @ M @ D"
+        ),
+        f"bias{_way}": Way(
+            f"{_name}: ComputeODE2RHS", f"{_made}_, D, second, M, f = s.at(q, v)\nvalue = D.T @ (M @ second - f)"
+        ),
+        f"link_poses{_way}": Way(
+            f"{_name}: Position, RotationMatrix",
+            f"{_made}value = s.outputs(q, 0 * v, 0 * v, 'Position', 'RotationMatrix')",
+        ),
+        f"link_velocities{_way}": Way(
+            f"{_name}: Velocity, AngularVelocity",
+            f"{_made}value = s.outputs(q, v, 0 * v, 'Velocity', 'AngularVelocity')",
+        ),
+        f"link_accelerations{_way}": Way(
+            f"{_name}: Acceleration, AngularAcceleration",
+            f"{_made}value = s.outputs(q, v, a, 'Acceleration', 'AngularAcceleration')",
+        ),
+        f"kinetic_energy{_way}": Way(
+            f"{_name}: KineticEnergy", f"{_made}value = np.sum(s.outputs(q, v, 0 * v, 'KineticEnergy'))"
+        ),
+    }
+WAYS |= {
+    "forward_dynamics": Way(
+        "ObjectJointRevoluteZ, PrismaticX, Spherical", "value = System('EP', special).solved(q, v, tau, 0.1)[0]"
+    ),
+    "forward_dynamics:generic": Way("ObjectJointGeneric", "value = System('EP', generic).solved(q, v, tau, 0.1)[0]"),
+    "forward_dynamics:generic, Rxyz": Way(
+        "ObjectJointGeneric, NodeRigidBodyRxyz",
+        "value = System('Rxyz', generic).solved(q, v, tau, 4e-3)[0]",
+        _DIFFERENCE,
+    ),
+    "constrained_acceleration": Way(
+        "ObjectJointSpherical, Generic, ConnectorDistance",
+        "loops\nvalue = System('EP', special + loops).solved(q, v, tau, 4e-3)[0]",
+        _DIFFERENCE,
+    ),
+    "constrained_acceleration:generic": Way(
+        "ObjectJointGeneric",
+        "loops_generic\nvalue = System('EP', generic + loops_generic).solved(q, v, tau, 4e-3)[0]",
+        _DIFFERENCE,
+    ),
+    # Of the first body's point, in the world.
+    "constraint_forces": Way(
+        "ObjectJointSpherical: Force",
+        "points\nforces = System('EP', special + loops).reactions(q, v, tau, 'Force')\nframes = moved(q, v)\n"
+        "value = np.concatenate([(frames[k][0] @ R if k >= 0 else R).T @ f for (k, R), f in zip(points, forces)])",
+        _DIFFERENCE,
+    ),
+    "constraint_forces:generic": Way(
+        "ObjectJointGeneric: ForceLocal",
+        "points\nvalue = np.concatenate(System('EP', generic + loops_generic).reactions(q, v, tau, 'ForceLocal'))",
+        _DIFFERENCE,
+    ),
+}
+_NEEDED = {
+    "quaternion": tuple(exudyn_systems.QUATERNION.split("\n")),
+    "cross": tuple(exudyn_systems.MOVED.split("\n")),
+    "System": tuple(exudyn_systems.SYSTEM.split("\n")),
+}
+
+
+def _plain(values: object) -> str:
+    return f"np.array({np.asarray(values, dtype=float).tolist()!r})"
+
+
+def _end(link: int, R: Array, p: Array) -> str:
+    return f"({link}, {_plain(R)}, {_plain(p)})"
+
+
+def _connector(name: str, ends: tuple[str, str], arguments: str = "{}") -> str:
+    return f"({name!r}, [{', '.join(ends)}], {arguments})"
+
+
+def write(tree: Tree) -> Source | Unsupported:
+    """Text that states links and connectors; each call makes the system that it asks."""
+    links: list[str] = []
+    special: list[str] = []
+    generic: list[str] = []
+    slots: list[tuple[Slot, ...]] = []
+    nq = nv = 0
+    for k, link in enumerate(tree.links):
+        folded, (R_end, p_end) = series(link.joints)
+        motions: list[_Step] = []
+        stated: list[str] = []
+        own: list[Slot] = []
+        for number, (R, p, joint) in enumerate(folded):
+            if joint.kind not in _CHARTS or joint.form or joint.mimics or any(joint.armature):
+                return Unsupported(f"no connector for {joint.kind} {joint.form}".strip(), offered=False)
+            if number and (np.any(p) or not np.array_equal(R, np.eye(3))):
+                return Unsupported("a body between two joints in series has no mass", offered=False)
+            parts = _steps(joint, nq, nv)
+            for place, step in enumerate(parts):
+                before = (_plain(R), _plain(p)) if not place else (_plain(np.eye(3)), _plain(np.zeros(3)))
+                stated.append(f"({', '.join(before)}, {step.kind!r}, {_plain(step.axis)}, {step.q}, {step.v})")
+            size = {"ball": (4, 3), "free": (7, 6)}.get(joint.kind, (len(parts), len(parts)))
+            own.append(Slot(_CHARTS[joint.kind], tuple(range(nq, nq + size[0])), tuple(range(nv, nv + size[1]))))
+            nq, nv = nq + size[0], nv + size[1]
+            motions += parts
+        native = _native(motions)
+        if native is None:
+            return Unsupported("no connector leaves these motions free", offered=False)
+        stated.append(f"({_plain(R_end)}, {_plain(p_end)}, '', {_plain(_Z)}, 0, 0)")
+        c, mass = np.array(link.com), link.mass
+        J = np.array(link.inertia) + mass * (c @ c * np.eye(3) - np.outer(c, c))
+        moments = [J[0, 0], J[1, 1], J[2, 2], J[1, 2], J[0, 2], J[0, 1]]
+        body = f"{mass!r}, {np.asarray(c).tolist()!r}, {[float(x) for x in moments]!r}"
+        links.append(f"({link.parent}, [{', '.join(stated)}], {body})")
+        slots.append(tuple(own))
+        if native.blocked == _FREE:
+            continue
+        R, p = (folded[0][0], folded[0][1]) if folded else (np.eye(3), np.zeros(3))
+        ends = (
+            _end(link.parent, R @ native.turned, p),
+            _end(k, R_end.T @ native.turned, -R_end.T @ p_end) if folded else _end(k, R_end.T, -R_end.T @ p_end),
+        )
+        blocked = f"{{'constrainedAxes': {native.blocked}}}"
+        generic.append(_connector("ObjectJointGeneric", ends, blocked))
+        special.append(_connector(native.special, ends) if native.special else generic[-1])
+    lines = (
+        "import numpy as np",
+        "import exudyn as exu",
+        "from exudyn import itemInterface as items",
+        f"n, gravity = {nv}, {list(tree.gravity)!r}",
+        f"links = [{', '.join(links)}]",
+    )
+    optional: dict[str, tuple[str, ...]] = {
+        "special": (f"special = [{', '.join(special)}]",),
+        "generic": (f"generic = [{', '.join(generic)}]",),
+    }
+    optional |= _loops(tree)
+    return Source((*lines, *(line for part in _NEEDED.values() for line in part)), tuple(slots), nq, nv, optional)
+
+
+def _loops(tree: Tree) -> dict[str, tuple[str, ...]]:
+    """Connectors of a tree's constraints; those that Exudyn has no other connector for are of the generic kind."""
+    ids = {"": -1} | {link.name: k for k, link in enumerate(tree.links)}
+    made: list[str] = []
+    generic: list[str] = []
+    for one in tree.constraints:
+        if one.kind == "path" and len(one.ends) != 2:
+            return {}
+        ends = tuple(_end(ids[end.link], np.array(end.R), np.array(end.p)) for end in one.ends)
+        assert len(ends) == 2
+        blocked = f"{{'constrainedAxes': {[1, 1, 1, *[int(one.kind == 'weld')] * 3]}}}"
+        joint = _connector("ObjectJointGeneric", ends, blocked)
+        if one.kind == "path":
+            made.append(_connector("ObjectConnectorDistance", ends, f"{{'distance': {_distance(tree, one)!r}}}"))
+            continue
+        made.append(_connector("ObjectJointSpherical", ends) if one.kind == "point" else joint)
+        generic.append(joint)
+    stated: dict[str, tuple[str, ...]] = {"loops": (f"loops = [{', '.join(made)}]",)}
+    if len(generic) == len(made):
+        stated["loops_generic"] = (f"loops_generic = [{', '.join(generic)}]",)
+    # The torque of a joint that blocks all rotations need not be one, as its documentation says.
+    if all(one.kind == "point" for one in tree.constraints):
+        firsts = ", ".join(f"({ids[one.ends[0].link]}, {_plain(one.ends[0].R)})" for one in tree.constraints)
+        stated["points"] = (f"points = [{firsts}]",)
+    return stated
+
+
+def _distance(tree: Tree, one: Constraint) -> float:
+    """Distance of a path's two points with all coordinates zero."""
+    poses: dict[str, tuple[Array, Array]] = {"": (np.eye(3), np.zeros(3))}
+    for link in tree.links:
+        R, p = poses[tree.links[link.parent].name if link.parent >= 0 else ""]
+        for joint in link.joints:
+            R, p = R @ np.array(joint.R), p + R @ np.array(joint.p)
+        poses[link.name] = (R, p)
+    first, second = (poses[end.link][1] + poses[end.link][0] @ np.array(end.p) for end in one.ends)
+    return float(np.linalg.norm(first - second))
+
+
+PLUGIN = SourcePlugin(
+    name="exudyn-joints",
+    package="exudyn",
+    extra="exudyn",
+    conventions=(
+        Difference("coordinates", "six or seven of each body; here they follow from those of the joints"),
+        Difference("joints", "conditions between two markers; equations of index 1 are solved outside of Exudyn"),
+        Difference("inertia", "about the body's reference point, as xx, yy, zz, yz, xz, xy"),
+        Difference("NodeRigidBodyEP", "Euler parameters (w, x, y, z), their unit length a condition of its own"),
+        Difference("NodeRigidBodyRxyz", "R = Rx Ry Rz; rates of the angles"),
+        Difference("NodeRigidBodyRotVecLG", "rotation vector; the velocity is the angular one, in the body"),
+        Difference("universal joint", "ObjectJointGeneric that blocks the rotation about z: x before, y after"),
+        Difference("armature", "none"),
+    ),
+    kinds={
+        "revolute x": "ObjectJointRevoluteZ",
+        "revolute y": "ObjectJointRevoluteZ",
+        "revolute z": "ObjectJointRevoluteZ",
+        "revolute oblique": "ObjectJointRevoluteZ",
+        "prismatic": "ObjectJointPrismaticX",
+        "prismatic oblique": "ObjectJointPrismaticX",
+        "ball": "ObjectJointSpherical",
+        "euler zyx": "ObjectJointSpherical",
+        "euler xyz": "ObjectJointSpherical",
+        "three hinges": "ObjectJointSpherical",
+        "universal": "ObjectJointGeneric",
+        "translation": "ObjectJointGeneric",
+        "planar": "ObjectJointGeneric",
+        "cylindrical": "ObjectJointGeneric",
+        "two slides and a hinge": "ObjectJointGeneric",
+        "slide and ball": "ObjectJointGeneric",
+        "free": "a body without a joint",
+        "free between links": "a body without a joint",
+        "translation and euler zyx": "a body without a joint",
+    },
+    ways=WAYS,
+    write=write,
+    constraints={
+        "point": "ObjectJointSpherical",
+        "weld": "ObjectJointGeneric",
+        "path": "ObjectConnectorDistance",
+    },
+)
