@@ -89,9 +89,7 @@ def modes(
     return Modes(s, size, damping, shapes, bendings, bending_notes(bendings))
 
 
-def _linearised(
-    model: Model, q: Array, v: Array, u: Array, par: ArrayLike | None, t: float
-) -> tuple[Array, Array]:
+def _linearised(model: Model, q: Array, v: Array, u: Array, par: ArrayLike | None, t: float) -> tuple[Array, Array]:
     """A and the basis of `state_space`; at a rest of many elastic coordinates by shorter functions."""
     if not np.any(v):
         A = matrix_at_rest(model.with_precision("double"), q, u, par, t)
