@@ -172,7 +172,7 @@ class _Search:
         return [b for b in self.current.bodies if isinstance(b, Beam) and b.modes and b.name not in self.divided]
 
     def _simpler_theories(self) -> None:
-        """Beams of second order in place of rods, or segments: one beam if it serves, or what has the fewest operations."""
+        """Beams of second order in place of rods: one if it serves, or the segments of the fewest operations."""
         bendings = {bending.beam: bending for bending in self.reference.run.bendings}
         for beam in self._beams():
             if beam.theory != "strain":

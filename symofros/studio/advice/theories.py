@@ -57,7 +57,7 @@ def missed_by_theory(loads: BeamLoads, bending: BeamBending) -> float:
 
 
 def simpler_theories(loads: BeamLoads, rod: Beam, bending: BeamBending) -> Iterator[Reduction]:
-    """Beams of second order in place of a rod, whole and in segments, and segments of the rod with fewer functions each.
+    """Beams of second order in place of a rod, whole and in segments, and segments of the rod of fewer functions.
 
     Beams of second order are none where they lack what the rod has.
 

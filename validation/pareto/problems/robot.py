@@ -48,10 +48,10 @@ def _body(body: sf.Body, count: int, changed: dict[str, Any]) -> sf.Body:
 
 def of_rods(count: int, stretch: int = 0) -> sf.System:
     """The robot with geometrically exact rods for strips, of so many functions of curvature and of stretch."""
-    rods = []
-    for body in system(count, theory="strain", family="legendre", retain="first_order").bodies:
-        stretched = stretch and isinstance(body, sf.Beam)
-        rods.append(replace(body, stretch=stretch, EA=EA[body.name]) if stretched else body)
+    rods = [
+        replace(body, stretch=stretch, EA=EA[body.name]) if stretch and isinstance(body, sf.Beam) else body
+        for body in system(count, theory="strain", family="legendre", retain="first_order").bodies
+    ]
     return replace(system(count), bodies=tuple(rods))
 
 

@@ -96,8 +96,8 @@ PROBLEM = BenchmarkProblem(
     "bending of 10 ms; 2 s. Every side records its tip each 20 ms.",
     "distance of the tip, largest over the run, as a share of the length",
     "error of the tip / length  [1]",
-    "Exudyn: ANCFCable2D, 2 to 16 elements; generalised alpha with spectral radii 0.6 and 0.9, full and modified Newton "
-    "iterations, dense and sparse; steps from 0.25 to 20 ms. Its explicit solvers refuse joints.",
+    "Exudyn: ANCFCable2D, 2 to 16 elements; generalised alpha with spectral radii 0.6 and 0.9, full and modified "
+    "Newton iterations, dense and sparse; steps from 0.25 to 20 ms. Its explicit solvers refuse joints.",
     prepare,
     (
         Target("Exudyn", 1e-2, 20.0),
