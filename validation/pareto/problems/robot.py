@@ -176,7 +176,7 @@ PROBLEM = BenchmarkProblem(
         Target("Exudyn", 1e-4, 20.0),
         Target("Exudyn", 1e-5, 20.0),
     ),
-    1e-5,
+    5e-6,
     ("SYMOFROS paper, section 7; parameters of reference_models/flexible/planar_robot.yaml; control of this study",),
     percent=True,
 )

@@ -105,6 +105,6 @@ PROBLEM = BenchmarkProblem(
         Target("Exudyn", 1e-4, 20.0),
         Target("Exudyn", 1e-5, 20.0),
     ),
-    1e-5,
+    5e-6,
     ("parameters of this study",),
 )

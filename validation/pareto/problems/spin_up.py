@@ -175,7 +175,7 @@ PROBLEM = BenchmarkProblem(
         Target("Exudyn", 1e-4, 20.0),
         Target("Exudyn", 1e-5, 20.0),
     ),
-    1e-5,
+    5e-6,
     ("Simo & Vu-Quoc, CMAME 66 (1988) 125; J. Appl. Mech. 53 (1986) 855, parameters as commonly quoted",),
     percent=True,
 )
