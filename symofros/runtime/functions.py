@@ -153,6 +153,10 @@ class Functions(Arguments):
         """
         return self._kernel(name, "", "a kernel is a function of the whole model; those of frames are bound")
 
+    def has(self, name: str) -> bool:
+        """Whether a function of the whole model can be called: `Options.functions` may have left it out."""
+        return self._build is not None or (name, "") in self._kernels
+
     def _kernel(self, name: str, frame: str, rule: str) -> Kernel:
         """A function whose name a user gave, of a frame that exists."""
         known = FRAME_FUNCTIONS if frame else MODEL_FUNCTIONS

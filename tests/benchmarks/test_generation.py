@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 
 import pytest
@@ -59,3 +60,36 @@ def test_operation_counts(benchmark: BenchmarkFixture, model: str) -> None:
     for (name, _), count in count_program(program).items():
         benchmark.extra_info[name] = str(count)
         print(f"{model:<12} {name:<17} {count}")
+
+
+@pytest.mark.parametrize("functions", [pytest.param(4, marks=pytest.mark.slow), 1])
+def test_beams_of_many_functions_to_first_modes(
+    benchmark: BenchmarkFixture, functions: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Three beams in series that keep every term: description, rest, modes, nothing cached; 36 elastic coordinates."""
+    counts = {"bend_y": functions, "bend_z": functions, "twist": functions}
+    stiffness = {"EI_z": 3e3, "EI_y": 5e3, "GJ": 2e3, "rhoJ": 0.04}
+    beams = [
+        sf.Beam(
+            f"b{k}",
+            sf.Joint(f"q{k}", "revolute", *((f"b{k - 1}", "tip") if k else ("world", None)), axis=(0, 1, 0)),
+            1.0,
+            2.0,
+            retain="all",
+            **stiffness,
+            **counts,
+        )
+        for k in range(3)
+    ]
+    system, run = sf.System("chain", tuple(beams)), iter(range(10**6))
+
+    def made_anew() -> None:
+        monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path / str(next(run))))
+        started, model = time.process_time(), sf.compile(system)
+        compiled, q = time.process_time(), sf.equilibrium(model, {"q0": 1.5}).q
+        rested = time.process_time()
+        sf.modes(model, q)
+        seconds = (compiled - started, rested - compiled, time.process_time() - rested)
+        print("processor time of Python: compile {:.2f}, equilibrium {:.2f}, modes {:.2f} s".format(*seconds))
+
+    benchmark.pedantic(made_anew, rounds=1)

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
+import symofros as sf
 from validation.accuracy.motion import rods as in_motion
 from validation.accuracy.statics import rods
 
@@ -45,3 +49,25 @@ def test_a_strip_bends_and_twists_as_the_exact_rod(functions: int) -> None:
 @pytest.mark.parametrize("functions", rods.PARALLEL)
 def test_two_rods_joined_at_their_tips_rest_where_exact_rods_do(functions: int) -> None:
     assert rods.parallel(functions) < rods.PARALLEL[functions]
+
+
+@pytest.mark.parametrize(("functions", "error"), [(3, 4e-3), (5, 2e-5), (7, 1.2e-6)])
+def test_a_cantilever_hangs_from_its_root_as_the_heavy_elastica(functions: int, error: float) -> None:
+    """Under a weight of rhoA g L^3/EI = 20, against the equation theta'' = 20 (1 - s) cos(theta) by shooting."""
+    weight = 20.0
+
+    def slope(s: float, y: np.ndarray) -> list[float]:
+        theta, bend = y[:2]
+        return [bend, weight * (1.0 - s) * np.cos(theta), np.cos(theta), np.sin(theta)]
+
+    def ends(bend: float) -> np.ndarray:
+        run = solve_ivp(slope, (0.0, 1.0), [0.0, bend, 0.0, 0.0], "DOP853", rtol=1e-12, atol=1e-13)
+        return np.asarray(run.y[:, -1])
+
+    at_root = brentq(lambda bend: float(ends(bend)[1]), -8.0, -2.0, xtol=1e-13)
+    beam = sf.Beam(
+        "rod", sf.Joint("root", "fixed"), 1.0, 1.0, EI_z=1.0, bend_y=functions, family="legendre", theory="strain"
+    )
+    m = sf.compile(sf.System("heavy", (beam,), gravity=(0.0, -weight, 0.0)))
+    tip = m.frame_pose("tip", sf.equilibrium(m).q)[0]
+    assert np.abs(tip[:2] - ends(at_root)[2:]).max() < error

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from validation.pareto.problem import BenchmarkProblem
-from validation.pareto.problems import andrews, arm, four_bar, pendulum, robot, spin_up
+from validation.pareto.problems import andrews, arm, four_bar, pendulum, robot, soft_pendulum, spin_up
 
 PROBLEMS: dict[str, BenchmarkProblem] = {
     "spin_up": spin_up.PROBLEM,
     "robot": robot.PROBLEM,
+    "soft_pendulum": soft_pendulum.PROBLEM,
     "arm": arm.PROBLEM,
     "four_bar": four_bar.PROBLEM,
     "andrews": andrews.PROBLEM,

@@ -71,13 +71,13 @@ class Choice:
 
 
 def choices(problem: BenchmarkProblem, result: Result) -> list[Choice]:
-    """What to take at each target error, and below the floors of our beams, which no step of ours passes for sure."""
+    """What to take at each target error, and below the floors of second order, which rods alone of ours pass."""
     chosen = []
     for error in sorted({target.error for target in problem.targets}, reverse=True):
         chosen += _choice(problem.shown(error), (p for p in usable(result.points) if p.error <= error))
     if result.floors:
         least = min(result.floors.values())
-        finer = (p for p in usable(result.points) if p.who != OURS and p.error < least)
+        finer = (p for p in usable(result.points) if (p.who != OURS or p.model.startswith("rod")) and p.error < least)
         chosen += _choice(f"< {problem.shown(least)} (floor)", finer)
     return chosen
 

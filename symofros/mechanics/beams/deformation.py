@@ -35,6 +35,10 @@ class Deformation:
     counts: tuple[int, int, int]
     foreshortening: bool
 
+    def __deepcopy__(self, memo: object) -> Deformation:
+        """Itself: it never changes, and what is known of it serves all copies of equations."""
+        return self
+
     @cached_property
     def integrals(self) -> dict[Hashable, UnitIntegral]:
         """Integrals of products of its fields that were formed so far, by what they are of."""

@@ -24,6 +24,8 @@ _FIT_DEGREE = 14
 # Share of a piece's largest coefficient below which one counts as zero: its second derivative, times 14^2 and the
 # square of the number of pieces, is still far below a double's rounding.
 _NEGLIGIBLE = 1e-24
+# Sets of knots beside which a function remembers what it is.
+_KEPT = 64
 
 
 @dataclass(frozen=True)
@@ -178,6 +180,22 @@ class Piecewise:
             scale *= s.denominator
         return total / (self.denominator * scale)
 
+    @cached_property
+    def _alignments(self) -> list[tuple[tuple[Number, ...], Piecewise]]:
+        """What it is beside functions on other knots, found by identity: a factor of many products meets few."""
+        return []
+
+    def beside(self, other: tuple[Number, ...]) -> Piecewise:
+        """The same function on its own and some other knots."""
+        for known, aligned in self._alignments:
+            if known is other:
+                return aligned
+        knots = _merged(*sorted((self.knots, other)))
+        aligned = next((f for _, f in self._alignments if f.knots is knots), None) or self.refined(knots)
+        if len(self._alignments) < _KEPT:
+            self._alignments.append((other, aligned))
+        return aligned
+
     def refined(self, knots: tuple[Number, ...]) -> Piecewise:
         """The same function on finer knots, which contain its own."""
         owners, i = [], 0
@@ -264,8 +282,13 @@ def _aligned(a: Piecewise, b: Piecewise) -> tuple[Piecewise, Piecewise]:
         a, b = (Piecewise.of(f.knots, [[float(c) for c in piece] for piece in f.pieces]) for f in (a, b))
     if a.knots is b.knots or a.knots == b.knots:
         return a, b
-    knots = tuple(sorted({*a.knots, *b.knots}))
-    return a.refined(knots), b.refined(knots)
+    return a.beside(b.knots), b.beside(a.knots)
+
+
+@lru_cache(maxsize=256)
+def _merged(first: tuple[Number, ...], second: tuple[Number, ...]) -> tuple[Number, ...]:
+    """The knots of both, as one object for equal ones."""
+    return tuple(sorted({*first, *second}))
 
 
 def _sum(a: Coefficients, b: Coefficients) -> Coefficients:

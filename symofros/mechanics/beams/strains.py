@@ -59,6 +59,10 @@ class Strains:
     counts: tuple[int, ...]
     points: int
 
+    def __deepcopy__(self, memo: object) -> Strains:
+        """Itself: it never changes, and what is known of it serves all copies of equations."""
+        return self
+
     @cached_property
     def axes(self) -> tuple[tuple[int, int], ...]:
         """Strain that each coordinate is of, below TURNING the axis that it turns sections about; and its sign."""

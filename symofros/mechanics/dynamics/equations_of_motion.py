@@ -263,6 +263,11 @@ class EquationsOfMotion:
         """Residual M a + h - Q - G^T lam, then G a - gamma: zero for the motion that the inputs produce (nv + nc)."""
         return self._less_forces(self.inertia_forces(self.v_rate))
 
+    @cached_property
+    def rest_residual(self) -> list[Edge]:
+        """Residual h - Q - G^T lam, at no accelerations (nv)."""
+        return self._less_forces(self.h)[: self.nv]
+
     # Balances: inertia forces less other forces, and conditions below them.
 
     def _less_passive(self, inertial: Sequence[Edge]) -> list[Edge]:

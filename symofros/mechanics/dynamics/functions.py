@@ -294,10 +294,27 @@ def _formed(
 
 
 def _rest_stiffness(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[str, int]) -> Function:
-    """Derivative of the forces at rest by q: terms with speeds and accelerations are left out before."""
-    still = {e.g.input(group, i): ZERO for group in ("v", "a") for i in range(e.nv)}
-    K = e.by_q(substitute(e.g, e.dynamic_residual, still))
+    """Derivative of the forces at rest by q: terms with speeds are left out before."""
+    K = e.by_q(_at_rest(e, e.rest_residual))
     return Function(row.name, "", row.inputs, (_matrix("K", (e.nv, e.nv), K),))
+
+
+def _rest_forces(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[str, int]) -> Function:
+    """Forces at rest, without the terms of speeds."""
+    return Function(row.name, "", row.inputs, tuple(_vector(name, _at_rest(e, getattr(e, name))) for name in "hQ"))
+
+
+def _rest_damping(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[str, int]) -> Function:
+    """Derivative of the forces by v at rest; h is quadratic in the speeds and those of prescribed motions together."""
+    forces = [e.g.sub(h, Q) for h, Q in zip(e.h, e.Q, strict=True)] if e.implicit_inputs else [-Q for Q in e.Q]
+    return Function(
+        row.name, "", row.inputs, (Output("D", (e.nv, e.nv), tuple(_at_rest(e, _flattened(e.by_v(forces))))),)
+    )
+
+
+def _at_rest(e: Equations, edges: Sequence[Edge]) -> list[Edge]:
+    """Edges at v = 0."""
+    return substitute(e.g, edges, {e.g.input("v", i): ZERO for i in range(e.nv)})
 
 
 _Builder = Callable[[Equations, ModelFunction, Methods, Mapping[str, int]], Function]
@@ -313,5 +330,7 @@ _BUILDERS: dict[str, _Builder] = {
     "inverse_dynamics_hvp": _formed(hessian_vector_product),
     "project": _project,
     "rest_stiffness": _rest_stiffness,
+    "rest_forces": _rest_forces,
+    "rest_damping": _rest_damping,
     "beam_stiffness": _beam_stiffness,
 }

@@ -108,7 +108,10 @@ def _linearised_amplifications(
     """Amplifications in a state whose accelerations are linearised already (26a)."""
     beams = model.beams(par)
     try:
-        tangent = -model.evaluate("dynamics", q=q, v=v, u=u, t=t, par=par)[0] @ slopes
+        tangent = (
+            -model.evaluate("mass_matrix" if model.has("mass_matrix") else "dynamics", q=q, v=v, u=u, t=t, par=par)[0]
+            @ slopes
+        )
     except SymofrosError:  # Options.functions left it out.
         return (1.0,) * len(beams)
     factors = []

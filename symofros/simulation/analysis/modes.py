@@ -14,6 +14,7 @@ from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.beam_theory import bendings_in_motion, refuse_beyond
 from symofros.simulation.analysis.input_rotations import given_inputs
+from symofros.simulation.analysis.rest_linearisation import matrix_at_rest
 from symofros.simulation.analysis.state_space import state_space
 
 Complex = npt.NDArray[np.complex128]
@@ -71,14 +72,14 @@ def modes(
         np.zeros(model.nv) if v is None else numeric("v", model.by_name("v", v)),
         given_inputs(model, u),
     )
-    linear_model = state_space(model, *state, par=par, t=t)
+    A, basis = _linearised(model, *state, par, t)
     # Without constraints A holds the derivatives of the accelerations.
-    slopes = None if model.nc else linear_model.A[model.nv :, : model.nv]
+    slopes = None if model.nc else A[model.nv :, : model.nv]
     bendings = bendings_in_motion(model, *state, par, t, slopes)
     refuse_beyond(model, bendings, beam_limit, "the state of the modes")
-    s, X = np.linalg.eig(linear_model.A)
+    s, X = np.linalg.eig(A)
     kept = s.imag >= 0.0
-    s, X = s[kept], (linear_model.basis @ X[:, kept])[: model.nv]
+    s, X = s[kept], (basis @ X[:, kept])[: model.nv]
     order = np.argsort(np.abs(s), kind="stable")
     s, X = s[order], X[:, order]
     size = np.abs(s)
@@ -86,3 +87,13 @@ def modes(
     largest = np.take_along_axis(X, np.abs(X).argmax(axis=0)[None], axis=0)
     shapes = X / np.where(largest == 0.0, 1.0, largest)
     return Modes(s, size, damping, shapes, bendings, bending_notes(bendings))
+
+
+def _linearised(model: Model, q: Array, v: Array, u: Array, par: ArrayLike | None, t: float) -> tuple[Array, Array]:
+    """A and the basis of `state_space`; at a rest of many elastic coordinates by shorter functions."""
+    if not np.any(v):
+        A = matrix_at_rest(model.with_precision("double"), q, u, par, t)
+        if A is not None:
+            return A, np.eye(2 * model.nv)
+    linear_model = state_space(model, q, v, u, par=par, t=t)
+    return linear_model.A, linear_model.basis

@@ -55,14 +55,22 @@ class Balance:
             return np.zeros((0, self.model.nv))
         return self.model.constraint_jacobian(q, u=self.u, par=self.par, t=self.t)
 
-    def forces(self, q: Array) -> tuple[Array, Array, float]:
-        """Mass matrix M (nv, nv), h - Q (nv), and the largest force of h and Q."""
-        M, h, Q = self.model.dynamics(q, self.v, self.u, par=self.par, t=self.t)
-        return M, h - Q, max(float(np.abs(h).max(initial=0.0)), float(np.abs(Q).max(initial=0.0)))
+    def forces(self, q: Array) -> tuple[Array, float]:
+        """Forces h - Q (nv), and the largest of h and Q; at rest by a function that knows no speeds."""
+        if np.any(self.v) or not self.model.has("rest_forces"):
+            _, h, Q = self.model.dynamics(q, self.v, self.u, par=self.par, t=self.t)
+        else:
+            h, Q = self.model.evaluate("rest_forces", q=q, u=self.u, par=self.par, t=self.t)
+        return h - Q, max(float(np.abs(h).max(initial=0.0)), float(np.abs(Q).max(initial=0.0)))
+
+    def mass(self, q: Array) -> Array:
+        """Mass matrix M (nv, nv)."""
+        name = "mass_matrix" if self.model.has("mass_matrix") else "dynamics"
+        return self.model.evaluate(name, q=q, v=self.v, u=self.u, par=self.par, t=self.t)[0]
 
     def residual(self, q: Array, lam: Array) -> tuple[Array, float]:
         """Imbalance h - Q - G^T lam and residual phi (nv + nc), and the largest force."""
-        _, forces, scale = self.forces(q)
+        forces, scale = self.forces(q)
         reaction = self.jacobian(q).T @ lam
         return self.imbalance(q, forces, reaction), max(scale, float(np.abs(reaction).max(initial=0.0))) or 1.0
 
@@ -164,7 +172,7 @@ def _relax(balance: Balance, start: Search, reach: Array, iterations: int) -> Se
     measures = model.record.measures.of_speeds(free)
     q, scale, damping, before = start.q, start.scale, 0.0, np.inf
     for count in range(iterations):
-        M, forces, largest = balance.forces(q)
+        forces, largest = balance.forces(q)
         jacobian = balance.jacobian(q)
         G = jacobian[:, free]
         inverse, Z = pseudo_inverse(G, measures), null_space(G, measures)
@@ -174,7 +182,7 @@ def _relax(balance: Balance, start: Search, reach: Array, iterations: int) -> Se
         K = balance.stiffness(q, lam)
         if not (np.all(np.isfinite(R)) and np.all(np.isfinite(K))):
             return None
-        Y = Z @ _unit_mass(Z.T @ M[np.ix_(free, free)] @ Z)
+        Y = Z @ _unit_mass(Z.T @ balance.mass(q)[np.ix_(free, free)] @ Z)
         pull = Y.T @ R[free]
         K, stable = _downhill(Y.T @ K[np.ix_(free, free)] @ Y)
         if stable and balance.size(R, scale) <= _NEAR:
@@ -189,7 +197,7 @@ def _relax(balance: Balance, start: Search, reach: Array, iterations: int) -> Se
         step[free] = -Y @ np.linalg.lstsq(K + damping * np.eye(len(K)), pull)[0]
         step *= _bounded(step, reach)
         for _ in range(HALVINGS):  # The forces at its end push back by half of what they push at its begin at most.
-            _, ahead, _ = balance.forces(model.integrate(q, step))
+            ahead, _ = balance.forces(model.integrate(q, step))
             if ahead[free] @ step[free] <= 0.5 * abs(forces[free] @ step[free]):
                 break
             step *= 0.5

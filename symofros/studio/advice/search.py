@@ -172,18 +172,22 @@ class _Search:
         return [b for b in self.current.bodies if isinstance(b, Beam) and b.modes and b.name not in self.divided]
 
     def _simpler_theories(self) -> None:
-        """Beams of second order in place of rods: the first that serves, or of segments what costs least."""
+        """Beams of second order in place of rods: one if it serves, or the segments of the fewest operations."""
         bendings = {bending.beam: bending for bending in self.reference.run.bendings}
         for beam in self._beams():
             if beam.theory != "strain":
                 continue
-            for one in simpler_theories(self.loads[beam.name], beam, bendings[beam.name]):
-                changed = one.apply(self.current)
-                cost, of_rod = self._evaluation(changed), self._evaluation(self.current)
+            of_rod = self._evaluation(self.current)
+            stated = simpler_theories(self.loads[beam.name], beam, bendings[beam.name])
+            priced = [(one.apply(self.current), one) for one in stated]
+            tried = [(len(system.bodies), self._evaluation(system), system, one) for system, one in priced]
+            # One beam comes first: of its functions some may go, of those of segments none.
+            for _, cost, changed, one in sorted(tried, key=lambda row: row[:2]):
                 if cost >= of_rod:
                     costly = f"{one.reason}; an evaluation takes {cost} operations, {of_rod} with the rod"
                     self._note(replace(one, reason=costly), "not tried", None)
-                elif self._consider(one):
+                    continue
+                if self._consider(one):
                     self.divided |= {b.name for b in changed.bodies} - {b.name for b in self.full.bodies}
                     self.divided |= {beam.name} if len(changed.bodies) > len(self.full.bodies) else set()
                     break

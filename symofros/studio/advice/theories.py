@@ -14,6 +14,7 @@ from symofros.studio.advice.loads import BeamLoads
 
 # Numbers of beams in series that a rod may be replaced by.
 _SEGMENTS = (2, 4)
+_COUNTS = ("bend_y", "bend_z", "twist", "stretch", "shear_y", "shear_z")
 # Families of strain functions; those of displacements become Legendre's, which span the same curvatures or more.
 _OF_STRAINS = ("spline", "polynomial", "legendre")
 
@@ -56,33 +57,56 @@ def missed_by_theory(loads: BeamLoads, bending: BeamBending) -> float:
 
 
 def simpler_theories(loads: BeamLoads, rod: Beam, bending: BeamBending) -> Iterator[Reduction]:
-    """Beams of second order in place of a rod, the cheapest first; none where they lack what the rod has.
+    """Beams of second order in place of a rod, whole and in segments, and segments of the rod of fewer functions.
+
+    Beams of second order are none where they lack what the rod has.
 
     Args:
         loads: The rod in the motion.
         rod: The rod as it stands.
         bending: Its largest bending in the motion.
     """
-    beyond = any(getattr(rod, label) for label in ("stretch", "shear_y", "shear_z"))
-    if beyond or any(getattr(rod, label) != 0.0 for label in PRE_STRAINS) or rod.family == "user":
-        return
     error = slope_error(bending.slope**2)
-    plain: dict[str, Any] = {"theory": "second_order", "sections": 0}
-    stated: list[tuple[str, dict[str, Any], int]] = [
-        ("second order, first_order", plain, 1),
-        ("second order, all", plain | {"retain": "all"}, 1),
-    ]
-    body_loads = any(load.axes == "body" for load in rod.loads)
-    if not body_loads:  # Segments have no axes of the undeformed beam.
-        stated += [(f"{n} segments of second order", plain | {"segments": n}, n) for n in _SEGMENTS]
-    for change, changed, n in stated:
-        share = error / n**2
+    body_loads = any(load.axes == "body" for load in rod.loads)  # Segments have no axes of the undeformed beam.
+    divided = () if body_loads or rod.segments > 1 else _SEGMENTS
+    fewer = {n: {label: -(-getattr(rod, label) // n) for label in _COUNTS} for n in divided}
+    stated: list[tuple[str, dict[str, Any], float]] = []
+    if not _is_beyond_second_order(rod):
+        plain: dict[str, Any] = {"theory": "second_order", "sections": 0}
+        stated += [
+            ("second order, first_order", plain, error),
+            ("second order, all", plain | {"retain": "all"}, error),
+        ]
+        for n in divided:
+            segments = plain | {"segments": n}
+            stated += [
+                (f"{n} segments of second order", segments, error / n**2),
+                (f"{n} segments of second order, {_shown(fewer[n])}", segments | fewer[n], error / n**2),
+            ]
+    if rod.family != "user":
+        stated += [
+            (f"{n} segments of it, {_shown(counts)}", counts | {"segments": n}, 0.0) for n, counts in fewer.items()
+        ]
+    for change, changed, share in stated:
+        reason = f"it turns its sections by {bending.slope:.2g} rad"
+        if share:
+            reason += f", of which second order misses {100 * share:.2g} %"
         yield Reduction(
             f"beam '{rod.name}'",
             change,
             "theory",
             share * loads.tip * loads.gain,
-            f"it turns its sections by {bending.slope:.2g} rad, of which second order misses {100 * share:.2g} %",
+            reason,
             changed_beam(rod.name, **changed),
             {"slope": bending.slope, "error": share},
         )
+
+
+def _is_beyond_second_order(rod: Beam) -> bool:
+    """Whether a rod has what beams of second order lack."""
+    beyond = any(getattr(rod, label) for label in ("stretch", "shear_y", "shear_z"))
+    return beyond or any(getattr(rod, label) != 0.0 for label in PRE_STRAINS) or rod.family == "user"
+
+
+def _shown(counts: Mapping[str, int]) -> str:
+    return ", ".join(f"{label} {n}" for label, n in counts.items() if n)

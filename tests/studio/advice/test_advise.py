@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ import symofros as sf
 from reference_models import MODELS
 from symofros.generator.passes.count import count_program
 from symofros.studio.advice import scene_runner
+from symofros.studio.advice.theories import simpler_theories
 
 SCENES = Path(__file__).parents[3] / "reference_models" / "flexible" / "scenes"
 
@@ -278,6 +280,62 @@ def test_a_rod_that_hardly_bends_becomes_what_it_may_be() -> None:
     beam = advice.system.body("rope")
     assert isinstance(beam, sf.Beam) and beam.theory == "second_order" and beam.modes and advice.ok
     assert advice.choice("theory", "rope").verdict == "taken" and advice.gain > 1.0
+
+
+def bowed(absolute: float) -> tuple[sf.System, sf.Scene]:
+    """A rod in space that its weight bends by a quarter of a radian."""
+    counts = {"bend_y": 2, "bend_z": 2, "twist": 1}
+    stiffness = {"EI_z": 6.0, "EI_y": 9.0, "GJ": 6.0, "rhoJ": 1e-3}
+    pin = sf.Joint("pin", "revolute", axis=(0, 1, 0))
+    beam = sf.Beam("rod", pin, 1.0, 1.0, **stiffness, **counts, family="legendre", theory="strain")
+    outputs = (sf.Output("end", "position", "tip", absolute=absolute),)
+    return sf.System("bowed", (beam,), gravity=(0, -5.0, -8.0)), sf.Scene(0.4, outputs, samples=40)
+
+
+@pytest.mark.slow  # In every run: which segments are tried.
+@pytest.mark.parametrize(("absolute", "names"), [(3.5e-3, ["rod", "rod.2"]), (2e-3, ["rod"]), (1e-2, ["rod"])])
+def test_two_segments_are_between_one_beam_and_the_rod(absolute: float, names: list[str]) -> None:
+    """One beam of second order serves a wide tolerance, two in series a narrower one, the rod alone the narrowest."""
+    system, scene = bowed(absolute)
+    advice = sf.advise(system, scene)
+    assert advice.ok and [body.name for body in advice.system.bodies] == names
+    theories = {body.theory for body in advice.system.bodies if isinstance(body, sf.Beam)}
+    assert theories == ({"strain"} if absolute == 2e-3 else {"second_order"})
+    finer = replace(system.body("rod"), bend_y=3, bend_z=3, twist=2)
+    right = independent(advice, system.with_bodies(finer), "dop853", rtol=1e-9, atol=1e-12)
+    found = independent(advice, advice.system, advice.stepping.method, **advice.stepping.settings)
+    assert np.linalg.norm(found - right, axis=1).max() <= advice.bounds["end"]
+
+
+def test_segments_that_take_the_place_of_a_rod() -> None:
+    """Of second order, of the rod itself with fewer functions each; of the rod alone where second order lacks terms."""
+    system, _ = bowed(1e-3)
+    rod = replace(system.body("rod"), bend_y=4, bend_z=3)
+    assert isinstance(rod, sf.Beam)
+    loads = SimpleNamespace(tip=1.0, gain=1.0)
+    bending = SimpleNamespace(slope=0.3)
+
+    def offered(beam: sf.Beam) -> dict[str, list[sf.Beam]]:
+        stated = simpler_theories(loads, beam, bending)  # type: ignore[arg-type]
+        made = {one.change: one.apply(system.with_bodies(beam)).bodies for one in stated}
+        return {change: [body for body in bodies if isinstance(body, sf.Beam)] for change, bodies in made.items()}
+
+    every = offered(rod)
+    counts = {change: (len(bodies), bodies[0].theory, bodies[0].modes) for change, bodies in every.items()}
+    assert counts == {
+        "second order, first_order": (1, "second_order", 8),
+        "second order, all": (1, "second_order", 8),
+        "2 segments of second order": (2, "second_order", 8),
+        "2 segments of second order, bend_y 2, bend_z 2, twist 1": (2, "second_order", 5),
+        "2 segments of it, bend_y 2, bend_z 2, twist 1": (2, "strain", 5),
+        "4 segments of second order": (4, "second_order", 8),
+        "4 segments of second order, bend_y 1, bend_z 1, twist 1": (4, "second_order", 3),
+        "4 segments of it, bend_y 1, bend_z 1, twist 1": (4, "strain", 3),
+    }
+    curved = offered(replace(rod, curvature_y=0.2))
+    assert [*curved] == [change for change in every if "of it" in change]
+    pressed = sf.BeamLoad((0.0, 1.0, 0.0), axes="body")
+    assert [*offered(replace(rod, loads=(pressed,)))] == ["second order, first_order", "second order, all"]
 
 
 def test_a_beam_beyond_its_theory_whose_coordinates_the_scene_starts_from_is_refused() -> None:

@@ -324,8 +324,13 @@ def princeton(load: float, angle: float, elements: int = 32, strip: Strip | None
     return _position(system, nodes[-1]) - (strip.length, 0.0, 0.0), turn
 
 
-def straight_beam(system: Any, length: float, EI: float, EA: float, rhoA: float, elements: int) -> list[Any]:
-    """Add a straight beam of equal elements along x, made of ANCFCable2D, to an Exudyn system; its nodes."""
+def straight_beam(
+    system: Any, length: float, EI: float, EA: float, rhoA: float, elements: int, damping: float = 0.0
+) -> list[Any]:
+    """Add a straight beam of equal elements along x, made of ANCFCable2D, to an Exudyn system; its nodes.
+
+    Damping is that against bending [N m^2 s].
+    """
     h = length / elements
     nodes = [
         system.AddNode(items.NodePoint2DSlope1(referenceCoordinates=[h * k, 0, 1, 0])) for k in range(elements + 1)
@@ -333,7 +338,12 @@ def straight_beam(system: Any, length: float, EI: float, EA: float, rhoA: float,
     for ends in zip(nodes, nodes[1:], strict=False):
         system.AddObject(
             items.ObjectANCFCable2D(
-                length=h, massPerLength=rhoA, bendingStiffness=EI, axialStiffness=EA, nodeNumbers=list(ends)
+                length=h,
+                massPerLength=rhoA,
+                bendingStiffness=EI,
+                axialStiffness=EA,
+                bendingDamping=damping,
+                nodeNumbers=list(ends),
             )
         )
     return nodes

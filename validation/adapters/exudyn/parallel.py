@@ -70,20 +70,38 @@ def motion(robot: Robot, elements: int, step: float, end: float) -> tuple[Array,
     seat = system.AddMarker(items.MarkerBodyPosition(bodyNumber=platform, localPosition=list(robot.foot)))
     ball = system.AddMarker(items.MarkerNodePosition(nodeNumber=second))
     system.AddObject(items.SphericalJoint(markerNumbers=[seat, ball]))
+    return _pushed(system, first, robot, step, end)
+
+
+def cantilever(robot: Robot, elements: int, step: float, end: float) -> tuple[Array, Array]:
+    """The first rod alone, without platform, pushed from rest; arguments and what is returned as of `motion`."""
+    container = exudyn.SystemContainer()
+    system: Any = container.AddSystem()
+    return _pushed(system, _rod(system, robot, (0.0, 0.0, 0.0), elements), robot, step, end)
+
+
+def extrapolated(
+    robot: Robot,
+    elements: int,
+    step: float,
+    end: float,
+    moved: Callable[[Robot, int, float, float], tuple[Array, Array]] = motion,
+) -> tuple[Array, Array]:
+    """A motion without errors of second order, from `elements` and `step`, and from twice and half of them."""
+    t, coarse = moved(robot, elements, step, end)
+    _, fine = moved(robot, 2 * elements, step / 2, end)
+    return t, (4.0 * fine[::2] - coarse) / 3.0
+
+
+def _pushed(system: Any, node: Any, robot: Robot, step: float, end: float) -> tuple[Array, Array]:
+    """Displacement of a node that is pushed."""
     push = np.array(robot.push)
 
     def force(_: Any, t: float, __: Any) -> list[float]:
         return list(robot.share(t) * push)
 
-    _push(system, first, force)
-    return motion_of_node(system, first, "Displacement", 1e-9, end, step)
-
-
-def extrapolated(robot: Robot, elements: int, step: float, end: float) -> tuple[Array, Array]:
-    """The same without errors of second order, from `elements` and `step`, and from twice and half of them."""
-    t, coarse = motion(robot, elements, step, end)
-    _, fine = motion(robot, 2 * elements, step / 2, end)
-    return t, (4.0 * fine[::2] - coarse) / 3.0
+    _push(system, node, force)
+    return motion_of_node(system, node, "Displacement", 1e-9, end, step)
 
 
 def _rod(system: Any, robot: Robot, root: tuple[float, float, float], elements: int) -> Any:

@@ -86,6 +86,35 @@ def spinning(rod: Rod, elements: int) -> Timed:
     return Timed(build)
 
 
+def swinging_rod(rod: Rod, gravity: float, damping: float, elements: int) -> Timed:
+    """A rod of ANCFCable2D elements, along x at first, that swings about its root under its weight; its tip.
+
+    Args:
+        rod: The rod.
+        gravity: Acceleration of gravity along -y [m/s^2].
+        damping: Damping against bending over its stiffness [s].
+        elements: Number of elements.
+    """
+
+    def build() -> tuple[Any, Any, Sequence[Any]]:
+        container = exudyn.SystemContainer()
+        system = container.AddSystem()
+        nodes = straight_beam(system, rod.length, rod.EI, rod.EA, rod.rhoA, elements, damping * rod.EI)
+        ground = system.AddNode(items.NodePointGround())
+        fixed = system.AddMarker(items.MarkerNodeCoordinate(nodeNumber=ground, coordinate=0))
+        for coordinate in (0, 1):
+            marker = system.AddMarker(items.MarkerNodeCoordinate(nodeNumber=nodes[0], coordinate=coordinate))
+            system.AddObject(items.CoordinateConstraint(markerNumbers=[fixed, marker]))
+        for element in range(elements):
+            mass = system.AddMarker(items.MarkerBodyMass(bodyNumber=element))
+            system.AddLoad(items.LoadMassProportional(markerNumber=mass, loadVector=[0.0, -gravity, 0.0]))
+        sensor = node_sensor(system, nodes[-1], "Position")
+        system.Assemble()
+        return container, system, [sensor]
+
+    return Timed(build)
+
+
 def _position_sensor(made: Any, body: Any, place: Any) -> Any:
     """A sensor of the position of a point that is fixed to a body, at a place in the body's frame."""
     return made.AddSensor(

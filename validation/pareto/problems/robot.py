@@ -46,6 +46,15 @@ def _body(body: sf.Body, count: int, changed: dict[str, Any]) -> sf.Body:
     return replace(body, joint=replace(body.joint, elements=(sf.Spring(stiffness, rest), sf.Damper(damping))))
 
 
+def of_rods(count: int, stretch: int = 0) -> sf.System:
+    """The robot with geometrically exact rods for strips, of so many functions of curvature and of stretch."""
+    rods = [
+        replace(body, stretch=stretch, EA=EA[body.name]) if stretch and isinstance(body, sf.Beam) else body
+        for body in system(count, theory="strain", family="legendre", retain="first_order").bodies
+    ]
+    return replace(system(count), bodies=tuple(rods))
+
+
 def exudyn(elements: int) -> ExudynModel:
     """Exudyn's model, whose strips stretch as steel does."""
     cables = {name: Cable(elements, stiffness) for name, stiffness in EA.items()}
@@ -100,6 +109,7 @@ def prepare(quick: bool) -> Prepared:
     first_order = (
         judged_model("4 splines", sf.compile(system(4))).measured(method="rodas4", rtol=1e-8, atol=1e-10).error
     )
+    rod = far(path(sf.compile(of_rods(6, 2)), method="rodas4", rtol=1e-9, atol=1e-11))
     all_terms = far(path(sf.compile(system(4, retain="all")), method="rodas4", rtol=1e-8, atol=1e-10))
     contestants: list[Contestant] = []
     rtols = (1e-3, 1e-5) if quick else (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
@@ -122,6 +132,11 @@ def prepare(quick: bool) -> Prepared:
         for label, change in changes.items():
             one = judged_model(label, sf.compile(system(2, **change)))
             contestants += one.by("rodas4", rtols[:4]) + one.by("generalized_alpha", (0.02, 0.01, 5e-3))
+        for count, stretch in ((2, 0), (3, 0), (4, 0), (4, 1), (5, 2)):
+            label = f"rods of {count}{f' + {stretch}' * (stretch > 0)} strains"
+            one = judged_model(label, sf.compile(of_rods(count, stretch)))
+            contestants += one.by("rodas4", rtols) + one.by("generalized_alpha", (0.02, 0.01, 5e-3, 2e-3, 1e-3))
+            contestants += [] if stretch else one.by("dop853", rtols[1:4]) + one.by("dopri5", rtols[1:4])
         contestants += judged_model("rigid strips", sf.compile(system(0))).by("rk4", (0.02, 0.01))
     for elements in (1, 2) if quick else (1, 2, 3, 4):
         steps = (0.01, 2e-3) if quick else (0.02, 0.01, 5e-3, 2e-3, 1e-3, 5e-4)
@@ -131,14 +146,17 @@ def prepare(quick: bool) -> Prepared:
             contestants += exudyn(elements).by(Solver(tolerance=TOLERANCE, full=False, sparse=True), steps[1:5])
             contestants += exudyn(elements).by(Solver(tolerance=TOLERANCE, radius=0.6), steps[:4])
     if not quick:
+        for elements in (4, 6):  # For errors of 1e-4 and 1e-5.
+            solver = Solver(tolerance=TOLERANCE, full=False, sparse=True)
+            contestants += exudyn(elements).by(solver, (5e-4, 2.5e-4, 1.25e-4, 6.25e-5))
         contestants += exudyn(1).by(Solver("TrapezoidalIndex2", tolerance=TOLERANCE), (5e-3, 1e-3))
         contestants += exudyn(1).by(Solver("RK44"), (1e-4,))
     origin = (
         f"Exudyn, {FINE} ANCFCable2D elements a strip, extrapolated from steps of {1e3 * FINE_STEP:g} and "
-        f"{500 * FINE_STEP:g} ms; and, sharing no code with it, our model of 4 splines with all terms by rodas4 at "
-        "1e-8: their distance counts what the theory leaves, too"
+        f"{500 * FINE_STEP:g} ms; and, sharing no code with it, our robot with rods of 6 functions of curvature and "
+        "2 of stretch for strips by rodas4 at 1e-9"
     )
-    return Prepared(tuple(contestants), all_terms, origin, {"first order": first_order, "all terms": all_terms})
+    return Prepared(tuple(contestants), rod, origin, {"first order": first_order, "all terms": all_terms})
 
 
 PROBLEM = BenchmarkProblem(
@@ -147,12 +165,18 @@ PROBLEM = BenchmarkProblem(
     "another posture by a spring and a damper on each motor; 2 s. Every side records its tool each 20 ms.",
     "distance of the tool, largest over the run, as a share of what flexibility does to it",
     "error of the tool / effect of flexibility  [1]",
-    "Exudyn: ANCFCable2D with the stretch of steel, 1 to 4 elements a strip, rigid bodies in three coordinates; "
+    "Exudyn: ANCFCable2D with the stretch of steel, 1 to 6 elements a strip, rigid bodies in three coordinates; "
     "generalised alpha with spectral radii 0.6 and 0.9, full and modified Newton iterations, dense and sparse; "
-    "trapezoidal rule of index 2; steps from 0.5 to 20 ms. Its explicit solvers refuse joints.",
+    "trapezoidal rule of index 2; steps from 0.06 to 20 ms. Its explicit solvers refuse joints.",
     prepare,
-    (Target("Exudyn", 1e-2, 30.0), Target("Exudyn", 2e-3, 30.0)),
-    1e-3,
+    (
+        Target("Exudyn", 1e-2, 30.0),
+        Target("Exudyn", 2e-3, 30.0),
+        Target("Exudyn", 1e-3, 20.0),
+        Target("Exudyn", 1e-4, 20.0),
+        Target("Exudyn", 1e-5, 20.0),
+    ),
+    5e-6,
     ("SYMOFROS paper, section 7; parameters of reference_models/flexible/planar_robot.yaml; control of this study",),
     percent=True,
 )

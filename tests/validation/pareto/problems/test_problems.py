@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 from scipy.special import ellipk
 
+import symofros as sf
 from tests.models import sampled
 from validation.adapters.exudyn.steps import Solver
 from validation.adapters.exudyn.timed_systems import Rod, pendulum
 from validation.pareto.catalogue import PROBLEMS
 from validation.pareto.front import usable
-from validation.pareto.problems import andrews, arm, closed_forms, four_bar, rod, spin_up
+from validation.pareto.problems import andrews, arm, closed_forms, four_bar, robot, rod, soft_pendulum, spin_up
 from validation.pareto.problems import pendulum as swing
 from validation.pareto.race import race
 
@@ -62,6 +63,23 @@ def test_the_spin_up_is_one_motion() -> None:
         method="rk4", dt=0.02
     )
     assert lost.ended or not lost.error < 1.0, "without foreshortening it runs away"
+
+
+@pytest.mark.slow  # In every run: the chain of links converges, and rods against Exudyn's exact elements.
+def test_the_spin_up_of_a_chain_of_links_is_that_of_the_reference() -> None:
+    """A program that shares nothing with either side."""
+    assert spin_up.far(rod.tip(spin_up.ROD, spin_up.TIMES, 16), spin_up.reference()) < 2e-4
+
+
+@pytest.mark.slow  # In every run: rods against Exudyn's exact elements.
+def test_rods_come_within_a_hundred_thousandth_of_the_references() -> None:
+    """The largest shares of deflection, effect of flexibility, length that are left at steps that are fine enough."""
+    spun = spin_up.judged_model("rod", spin_up.exact_rod(6, 2)).measured(method="rodas4", rtol=1e-6, atol=1e-8)
+    arms = robot.judged_model("rods", sf.compile(robot.of_rods(5, 2))).measured(method="rodas4", rtol=1e-6, atol=1e-8)
+    swung = soft_pendulum.judged_model("rod", soft_pendulum.model(7, 2)).measured(method="rodas4", rtol=1e-6, atol=1e-8)
+    assert max(spun.error, arms.error, swung.error) < 1e-5
+    floor = soft_pendulum.judged_model("x", soft_pendulum.model(5, theory="second_order"))
+    assert not floor.measured(method="dop853", rtol=1e-9).error < 1e-2, "second order does not serve"
 
 
 def test_exudyn_and_the_closed_form_of_the_pendulum() -> None:

@@ -1,0 +1,47 @@
+"""Linear models about a rest of elastic trees, by functions that know no speeds (docs/theory/linear.md, section 4)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from symofros.runtime.calls.kernel import Array
+from symofros.runtime.model import ArrayLike, Model
+
+# Elastic coordinates from which this is derived and compiled sooner than derivatives in motion are.
+MANY = 9
+# Imbalance of what rests, relative to the largest force, as `equilibrium` accepts it, or to the least stiffness where
+# all forces vanish, as of what hangs. d(M a)/dq, which is left out, is as small a share of the forces' derivatives.
+_BALANCED = 1e-9
+_FUNCTIONS = ("rest_forces", "rest_stiffness", "rest_damping", "mass_matrix")
+
+
+def matrix_at_rest(model: Model, q: Array, u: Array, par: ArrayLike | None, t: float) -> Array | None:
+    """A of x' = A x at v = 0, x = (along q, of v) (2 nv, 2 nv).
+
+    Args:
+        model: Model in double precision.
+        q: Configuration (nq).
+        u: Inputs (nu).
+        par: Run-time parameters.
+        t: Time [s].
+
+    Returns:
+        None where `Model.linearize` is to be asked: forces do not balance, there are constraints or few elastic
+        coordinates, a function was not generated, or M is singular.
+    """
+    elastic = sum(sum(beam.counts) for beam in model.beams(par))
+    if model.nc or elastic < MANY or not all(map(model.has, _FUNCTIONS)):
+        return None
+    h, Q = model.evaluate("rest_forces", q=q, u=u, par=par, t=t)
+    K = model.evaluate("rest_stiffness", q=q, u=u, lam=np.zeros(0), par=par, t=t)[0]
+    allowed = _BALANCED * max(np.abs(h).max(), np.abs(Q).max(), np.abs(np.diag(K)).min())
+    if not np.abs(h - Q).max() <= allowed:
+        return None
+    M = model.evaluate("mass_matrix", q=q, u=u, par=par, t=t)[0]
+    D = model.evaluate("rest_damping", q=q, u=u, par=par, t=t)[0]
+    try:
+        rates = -np.linalg.solve(M, np.hstack([K, D]))
+    except np.linalg.LinAlgError:
+        return None
+    A = np.vstack([np.eye(model.nv, 2 * model.nv, model.nv), rates])
+    return A if np.all(np.isfinite(A)) else None
