@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
 import symofros as sf
-from symofros.description.beams.beam import UserShape
 from validation.contract.quantities import ROUNDING
 from validation.mechanics.geometry import Array
 from validation.procedures.scene import Cell, Scene, derivative, off
@@ -35,7 +35,7 @@ def _twist(xi: float) -> float:
     return 2 * xi - xi**3
 
 
-def _cantilever(bending: UserShape, twist: UserShape) -> sf.Model:
+def _cantilever(bending: Any, twist: Any) -> sf.Model:
     beam = sf.Beam(
         "beam",
         sf.Joint("clamp", "fixed"),
