@@ -15,11 +15,11 @@ from validation.mutation.fault import SourceFault
 from validation.mutation.overlay import Overlay
 from validation.mutation.sampling import drawn
 from validation.mutation.store import Store
-from validation.mutation.tests_judge import chosen
+from validation.mutation.tests_judge import HUNG, chosen
 
 CHECK, OUTPUTS, TESTS, LONGER, SOUND = "check", "outputs", "tests", "tests with more time", "sound"
-# Fates of a fault. "stillborn": the C compiler refuses it, so that nobody could use it; "halted": check does not end,
-# which is seen by whoever runs it, but is no verdict; "argued": looked at by a person.
+# Fates of a fault. "stillborn": the C compiler refuses it, so that nobody could use it; "halted": check, or a test,
+# does not end, which is seen by whoever runs it, but is no verdict; "argued": looked at by a person.
 STILLBORN, CAUGHT, UNCHANGED, SURVIVED, OPEN = "stillborn", "caught", "no result changed", "survived", "open"
 HALTED, ARGUED = "halted", "argued"
 # Processor times [s].
@@ -29,7 +29,7 @@ SAMPLE = 4  # One fault in so many goes to `check` first.
 TESTS_BUDGET = 15.0  # Processor time after which no further test of a fault begins [s].
 LONGER_BUDGET = 120.0  # The same where nobody has seen a fault, and tests were left [s].
 # Ends of a process that are its own doing. `check` reports them as a failed row, a run of the tests fails. Not among
-# them: SIGKILL and SIGBUS, which lack of memory or disk space brings, too.
+# them: SIGKILL and SIGBUS, which lack of memory or disk space brings, too; SIGBUS twice is no accident.
 _CRASHES = {-signal.SIGSEGV, -signal.SIGABRT, -signal.SIGFPE, -signal.SIGILL}
 _ARGUED = Path(__file__).with_name("argued.json")
 _CHECK_JUDGE, _TESTS_JUDGE = "validation.mutation.check_judge", "validation.mutation.tests_judge"
@@ -169,15 +169,20 @@ class Study:
         """The last answer of the tests."""
         return self.store.get(fault.id, LONGER) or self.store.get(fault.id, TESTS)
 
+    def _crashes_again(self, fault: SourceFault) -> bool:
+        """Whether the tests ended by SIGBUS both times that they were asked."""
+        answers = (self.store.get(fault.id, stage) for stage in (TESTS, LONGER))
+        return all(answer is not None and answer.get("code") == -signal.SIGBUS for answer in answers)
+
     def fate(self, fault: SourceFault) -> str:
         """What became of a fault, as far as it is known."""
         check, tests = self.store.get(fault.id, CHECK), self.tested(fault)
         outputs = self.store.get(fault.id, OUTPUTS)
         if stillborn(fault, check) or stillborn(fault, outputs):
             return STILLBORN
-        if seen(check) or seen(tests):
+        if seen(check) or seen(tests) or self._crashes_again(fault):
             return CAUGHT
-        if halted(check):
+        if halted(check) or hung(tests):
             return HALTED
         if fault.id in self.argued:
             return ARGUED
@@ -211,3 +216,8 @@ def crashed(answer: Answer | None) -> bool:
 def halted(answer: Answer | None) -> bool:
     """Whether `check` did not end."""
     return answer is not None and answer["answer"] is None and not crashed(answer)
+
+
+def hung(answer: Answer | None) -> bool:
+    """Whether a test went on beyond the time of any sound one."""
+    return answer is not None and answer["answer"] is None and answer.get("code") == HUNG

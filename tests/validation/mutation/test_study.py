@@ -16,7 +16,7 @@ from validation.mutation.measure import as_data
 from validation.mutation.overlay import Overlay
 from validation.mutation.report import compose
 from validation.mutation.store import Store
-from validation.mutation.study import CHECK, LONGER_BUDGET, OUTPUTS, TESTS, TESTS_BUDGET, Study
+from validation.mutation.study import CHECK, LONGER, LONGER_BUDGET, OUTPUTS, TESTS, TESTS_BUDGET, Study
 from validation.mutation.tests_judge import chosen
 
 ROOT = Path(__file__).parents[3]
@@ -228,5 +228,22 @@ def test_a_crash_of_check_is_a_failed_row_of_it_and_no_end_is_no_verdict(
     (tmp_path / "m.py").write_text("a\n")
     store, fault = Store(tmp_path / "answers.jsonl", tmp_path), SourceFault("m.py", 1, SIGN, 0, "a", "b")
     store.put(fault.id, CHECK, {"fate": fate, "code": code, "answer": None, "seconds": 1.0}, "m.py")
+    study = Study((fault,), store, None, tmp_path, print)  # type: ignore[arg-type]
+    assert study.fate(fault) == expected
+
+
+@pytest.mark.parametrize(
+    ("codes", "expected"), [((-7, None), "open"), ((-7, -7), "caught"), ((-7, -9), "open"), ((77, None), "halted")]
+)
+def test_tests_that_end_twice_by_the_same_signal_crash_by_the_fault_and_a_test_without_end_is_no_verdict(
+    tmp_path: Path, codes: tuple[int, int | None], expected: str
+) -> None:
+    (tmp_path / "m.py").write_text("a\n")
+    store, fault = Store(tmp_path / "answers.jsonl", tmp_path), SourceFault("m.py", 1, SIGN, 0, "a", "b")
+    for stage in (CHECK, OUTPUTS):
+        store.put(fault.id, stage, {"fate": "answered", "answer": {"status": "passed"}, "seconds": 1.0}, "m.py")
+    for stage, code in zip((TESTS, LONGER), codes, strict=True):
+        if code is not None:
+            store.put(fault.id, stage, {"fate": "crashed", "code": code, "answer": None, "seconds": 1.0}, "m.py")
     study = Study((fault,), store, None, tmp_path, print)  # type: ignore[arg-type]
     assert study.fate(fault) == expected
