@@ -63,10 +63,10 @@ def held_sample(times: Array, t: float, end: float = math.inf) -> int:
         t: Time [s].
         end: Where the step under way ends [s]: samples that begin there, or later, do not count yet.
     """
-    begun = np.searchsorted(times, t + _SAME_INSTANT * abs(t), side="right")
+    bound = t + _SAME_INSTANT * abs(t)
     if math.isfinite(end):
-        begun = min(begun, np.searchsorted(times, end - _SAME_INSTANT * abs(end), side="right"))
-    return max(0, int(begun) - 1)
+        bound = min(bound, end - _SAME_INSTANT * abs(end))
+    return max(0, int(np.searchsorted(times, bound, side="right")) - 1)
 
 
 Callback = Callable[[float, Array, Array], Any]

@@ -71,7 +71,7 @@ SYM_EXPORT int32_t sym_run_start(sym_run *r) {
     sym_workspace w = sym_workspace_of(r);
     sym_system *s = r->system;
     int32_t status;
-    r->slope_valid = 0, s->in_step = 0;
+    r->slope_valid = 0;
     r->steps = r->rejected = r->evaluations = r->jacobians = 0;
     r->n_records = r->n_event_records = r->next_grid = 0;
     r->n_diagnostic = 0, r->diagnostic_stride = 1, r->diagnostic_between = 0;
@@ -146,7 +146,8 @@ static int32_t sym_accept_step(sym_run *r, sym_workspace *w, double h, double t1
     beyond = sym_judge_step(r, t1, w->end_state);
     sym_set_end_state(r, w, t1);
     r->slope_valid = 0;
-    if (fsal && !r->project && !stopped && !sym_changes_at(s, t1)) { /* first same as last, but in the chart about the new state, where theta' = v */
+    /* First same as last, but in the chart about the new state, where theta' = v. */
+    if (fsal && !r->project && !stopped && !sym_changes_at(s, t1)) {
         memcpy(w->k + nv, w->k + (size_t)r->tableau.fsal_stage * w->stage_stride + nv, (size_t)nv * sizeof(double));
         memcpy(w->k, r->v, (size_t)nv * sizeof(double));
         r->slope_valid = 1;

@@ -59,13 +59,16 @@ static void sym_evaluate(const sym_call *call) {
 /* Instants that differ by less, relative to themselves, are one: multiples of a step and of a period of samples. */
 #define SYM_SAME_INSTANT 2e-15
 
-/* How many of a signal's samples begin before time t, or at it where `at` is not 0, t being known to rounding. */
-static int32_t sym_samples_begun(const sym_signal *signal, double t, int32_t at) {
-    const double bound = t + (at ? 1.0 : -1.0) * SYM_SAME_INSTANT * fabs(t);
+/* The last instant that is the same as t, the last one before it: bounds of samples that begin at t, or before it. */
+static double sym_instant(double t) { return t + SYM_SAME_INSTANT * fabs(t); }
+static double sym_before(double t) { return t - SYM_SAME_INSTANT * fabs(t); }
+
+/* How many of a signal's samples begin up to time t. */
+static int32_t sym_samples_begun(const sym_signal *signal, double t) {
     int32_t begun = 0, end = signal->n;
     while (begun < end) {
         const int32_t middle = begun + (end - begun) / 2;
-        if (signal->t[middle] <= bound) begun = middle + 1;
+        if (signal->t[middle] <= t) begun = middle + 1;
         else end = middle;
     }
     return begun;
@@ -78,14 +81,13 @@ static double sym_signal_at(const sym_signal *signal, double t, double end) {
     int32_t low;
     double x;
     if (!signal->linear) {
-        low = sym_samples_begun(signal, t, 1);
-        if (end < HUGE_VAL && sym_samples_begun(signal, end, 0) < low) low = sym_samples_begun(signal, end, 0);
+        const double bound = end < HUGE_VAL && sym_before(end) < sym_instant(t) ? sym_before(end) : sym_instant(t);
+        low = sym_samples_begun(signal, bound);
         return signal->value[low > 0 ? low - 1 : 0];
     }
     if (t <= signal->t[0]) return signal->value[0];
     if (t >= signal->t[last]) return signal->value[last];
-    low = sym_samples_begun(signal, t, 0);
-    low -= low > 0;
+    low = sym_samples_begun(signal, t) - 1;
     x = (t - signal->t[low]) / (signal->t[low + 1] - signal->t[low]);
     return signal->value[low] + x * (signal->value[low + 1] - signal->value[low]);
 }
@@ -96,7 +98,7 @@ static double sym_next_sample(const sym_system *s, double t, double t1) {
     for (i = 0; i < s->n_signals; ++i) {
         const sym_signal *signal = &s->signals[i];
         if (signal->linear) continue;
-        for (k = sym_samples_begun(signal, t, 1); k < signal->n && signal->t[k] < t1; ++k) {
+        for (k = sym_samples_begun(signal, sym_instant(t)); k < signal->n && signal->t[k] < t1; ++k) {
             if (k == 0 || signal->value[k] == signal->value[k - 1]) continue;
             t1 = signal->t[k];
             break;
@@ -110,8 +112,8 @@ static int32_t sym_changes_at(const sym_system *s, double t) {
     int32_t i;
     for (i = 0; i < s->n_signals; ++i) {
         const sym_signal *signal = &s->signals[i];
-        const int32_t k = signal->linear ? 0 : sym_samples_begun(signal, t, 1) - 1;
-        if (k > 0 && sym_samples_begun(signal, t, 0) <= k && signal->value[k] != signal->value[k - 1]) return 1;
+        const int32_t k = signal->linear ? 0 : sym_samples_begun(signal, sym_instant(t)) - 1;
+        if (k > 0 && signal->t[k] > sym_before(t) && signal->value[k] != signal->value[k - 1]) return 1;
     }
     return 0;
 }

@@ -13,6 +13,7 @@ from symofros.errors import BeamTheoryError, Problem, SymofrosError
 from symofros.runtime.beams import BeamBending, ElasticBeam, amplification_of, largest_bending
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
+from symofros.simulation.analysis.mass_matrix import mass_matrix
 
 # Error of the slope alone below which no axial load of a motion is looked for: to amplify it to a note, a load would
 # have to be within 0.03 % of the critical one.
@@ -108,10 +109,7 @@ def _linearised_amplifications(
     """Amplifications in a state whose accelerations are linearised already (26a)."""
     beams = model.beams(par)
     try:
-        tangent = (
-            -model.evaluate("mass_matrix" if model.has("mass_matrix") else "dynamics", q=q, v=v, u=u, t=t, par=par)[0]
-            @ slopes
-        )
+        tangent = -mass_matrix(model, q, v, u, par, t) @ slopes
     except SymofrosError:  # Options.functions left it out.
         return (1.0,) * len(beams)
     factors = []

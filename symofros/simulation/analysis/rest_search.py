@@ -13,6 +13,7 @@ import numpy.typing as npt
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import HALVINGS, LARGEST_STEP, null_space, pseudo_inverse
 from symofros.runtime.model import ArrayLike, Model
+from symofros.simulation.analysis.mass_matrix import mass_matrix
 
 # Imbalance, relative to the largest force, at which a relaxation leaves the rest of the way to Newton's method.
 _NEAR = 1e-6
@@ -65,8 +66,7 @@ class Balance:
 
     def mass(self, q: Array) -> Array:
         """Mass matrix M (nv, nv)."""
-        name = "mass_matrix" if self.model.has("mass_matrix") else "dynamics"
-        return self.model.evaluate(name, q=q, v=self.v, u=self.u, par=self.par, t=self.t)[0]
+        return mass_matrix(self.model, q, self.v, self.u, self.par, self.t)
 
     def residual(self, q: Array, lam: Array) -> tuple[Array, float]:
         """Imbalance h - Q - G^T lam and residual phi (nv + nc), and the largest force."""

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, get_args
 
-from symofros.description.beams.beam import PRE_STRAINS, Beam
+from symofros.description.beams.beam import PRE_STRAINS, Beam, Direction
 from symofros.description.system import System
 from symofros.runtime.beams import BeamBending, slope_error
 from symofros.studio.advice.candidates import Reduction, changed_beam
@@ -14,7 +14,6 @@ from symofros.studio.advice.loads import BeamLoads
 
 # Numbers of beams in series that a rod may be replaced by.
 _SEGMENTS = (2, 4)
-_COUNTS = ("bend_y", "bend_z", "twist", "stretch", "shear_y", "shear_z")
 # Families of strain functions; those of displacements become Legendre's, which span the same curvatures or more.
 _OF_STRAINS = ("spline", "polynomial", "legendre")
 
@@ -69,7 +68,7 @@ def simpler_theories(loads: BeamLoads, rod: Beam, bending: BeamBending) -> Itera
     error = slope_error(bending.slope**2)
     body_loads = any(load.axes == "body" for load in rod.loads)  # Segments have no axes of the undeformed beam.
     divided = () if body_loads or rod.segments > 1 else _SEGMENTS
-    fewer = {n: {label: -(-getattr(rod, label) // n) for label in _COUNTS} for n in divided}
+    fewer = {n: {label: -(-getattr(rod, label) // n) for label in get_args(Direction)} for n in divided}
     stated: list[tuple[str, dict[str, Any], float]] = []
     if not _is_beyond_second_order(rod):
         plain: dict[str, Any] = {"theory": "second_order", "sections": 0}
