@@ -144,6 +144,8 @@ def chromium() -> Iterator[Any]:
     with import_module("playwright.sync_api").sync_playwright() as playwright:
         # Pages in three dimensions are drawn without a graphics card.
         drawn = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
-        browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox", *drawn])
+        # A browser binds a socket in its TMPDIR, whose name may be long; a socket's may not.
+        environment = {**os.environ, "TMPDIR": "/tmp"}
+        browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox", *drawn], env=environment)
         yield browser
         browser.close()
