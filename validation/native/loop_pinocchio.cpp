@@ -5,6 +5,7 @@
 #include <pinocchio/algorithm/crba.hpp>
 #include <pinocchio/algorithm/frames.hpp>
 #include <pinocchio/algorithm/rnea-derivatives.hpp>
+#include <pinocchio/algorithm/rnea-second-order-derivatives.hpp>
 #include <pinocchio/algorithm/rnea.hpp>
 
 #include "pinocchio_tree.h"
@@ -38,6 +39,8 @@ void frame_jacobian(Engine &e, const State &x) {
     pin::computeFrameJacobian(e.model, e.data, x.q, e.frame, pin::LOCAL_WORLD_ALIGNED, e.J);
 }
 void inverse_derivatives(Engine &e, const State &x) { pin::computeRNEADerivatives(e.model, e.data, x.q, x.v, x.a); }
+// Into tensors that Data has set to zero: it writes what is not zero in every state.
+void inverse_second(Engine &e, const State &x) { pin::ComputeRNEASecondOrderDerivatives(e.model, e.data, x.q, x.v, x.a); }
 void forward_derivatives(Engine &e, const State &x) { pin::computeABADerivatives(e.model, e.data, x.q, x.v, x.tau); }
 
 double *give_M(Engine &e, double *to) {
@@ -52,6 +55,17 @@ double *give_J(Engine &e, double *to) { return put(to, e.J); }
 double *give_dtau(Engine &e, double *to) { return put(put(to, e.data.dtau_dq), e.data.dtau_dv); }
 double *give_da(Engine &e, double *to) { return put(put(to, e.data.ddq_dq), e.data.ddq_dv); }
 
+double *put(double *to, const pin::Data::Tensor3x &tensor) {
+    for (int i = 0; i < tensor.dimension(0); ++i)
+        for (int j = 0; j < tensor.dimension(1); ++j)
+            for (int k = 0; k < tensor.dimension(2); ++k) *to++ = tensor(i, j, k);
+    return to;
+}
+double *give_second(Engine &e, double *to) {
+    to = put(put(to, e.data.d2tau_dqdq), e.data.d2tau_dvdv);
+    return put(put(to, e.data.d2tau_dqdv), e.data.d2tau_dadq);
+}
+
 std::vector<loop_function> functions(int nv) {
     constexpr pin::Convention local = pin::Convention::LOCAL, world = pin::Convention::WORLD;
     return {
@@ -65,6 +79,7 @@ std::vector<loop_function> functions(int nv) {
         {"inverse_dynamics", "", nv, 0, run<Engine, inverse_dynamics, give_tau>},
         {"frame_jacobian", "", 6 * nv, 0, run<Engine, frame_jacobian, give_J>},
         {"inverse_dynamics_derivatives", "", 2 * nv * nv, 0, run<Engine, inverse_derivatives, give_dtau>},
+        {"inverse_dynamics_second_derivatives", "", 4 * nv * nv * nv, 0, run<Engine, inverse_second, give_second>},
         {"forward_dynamics_derivatives", "", 2 * nv * nv, 0, run<Engine, forward_derivatives, give_da>},
     };
 }

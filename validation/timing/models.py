@@ -22,8 +22,19 @@ FUNCTIONS = {
     "frame_jacobian": "frame Jacobian",
     "inverse_dynamics_derivatives": "derivatives of inverse dynamics",
     "forward_dynamics_derivatives": "derivatives of forward dynamics",
+    "inverse_dynamics_second_derivatives": "second derivatives of inverse dynamics",
+    "inverse_dynamics_vjp": "reverse mode of inverse dynamics",
+    "forward_dynamics_vjp": "reverse mode of forward dynamics",
     "step": "one step of RK4",
 }
+
+
+# Vector-Jacobian products, which no engine has: their time stands beside that of the function itself.
+REVERSE = {name: name.removesuffix("_vjp") for name in FUNCTIONS if name.endswith("_vjp")}
+_SECOND = "inverse_dynamics_second_derivatives"
+# The code of second derivatives grows with the cube of the joints: of arms alone.
+_FIRST_ORDER = tuple(name for name in FUNCTIONS if name != _SECOND)
+_ALL = tuple(FUNCTIONS)
 
 
 class Labelled:
@@ -63,7 +74,7 @@ class TimedModel:
 
     title: str
     make: Callable[[], sf.System]
-    functions: tuple[str, ...] = tuple(FUNCTIONS)
+    functions: tuple[str, ...] = _FIRST_ORDER
     closed: Mapping[str, float] | None = None
 
     def load(self) -> sf.System:
@@ -119,10 +130,10 @@ def _reference(name: str) -> sf.System:
 
 
 TIMED_MODELS: dict[str, TimedModel] = {
-    "planar2R": TimedModel("planar 2R", partial(arm, 2)),
-    "planar3R": TimedModel("planar 3R", partial(arm, 3)),
-    "ur5": TimedModel("UR5", partial(_robot, "ur5")),
-    "panda": TimedModel("Panda, 7 joints", panda7),
+    "planar2R": TimedModel("planar 2R", partial(arm, 2), _ALL),
+    "planar3R": TimedModel("planar 3R", partial(arm, 3), _ALL),
+    "ur5": TimedModel("UR5", partial(_robot, "ur5"), _ALL),
+    "panda": TimedModel("Panda, 7 joints", panda7, _ALL),
     "mss": TimedModel("MSS", partial(_reference, "mss")),
     "talos": TimedModel("Talos", partial(_robot, "talos")),
     "four_bar": TimedModel("four-bar, closed", partial(_reference, "four_bar"), ("forward_dynamics",)),
@@ -134,6 +145,6 @@ TIMED_MODELS: dict[str, TimedModel] = {
     f"chain{CHAINS[-1]}": TimedModel(
         f"chain of {CHAINS[-1]}",
         partial(chain, CHAINS[-1], symbolic=False),
-        tuple(name for name in FUNCTIONS if name not in ("mass_matrix", "bias")),
+        tuple(name for name in _FIRST_ORDER if name not in ("mass_matrix", "bias")),
     ),
 }

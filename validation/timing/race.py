@@ -17,7 +17,8 @@ from validation.mechanics.geometry import Array
 from validation.timing.task import Loop
 
 # Of the largest entry of a state's result. Integrators of quaternions differ in method, by the fourth power of a step.
-TOLERANCES = {"forward_dynamics": SOLVE, "forward_dynamics_derivatives": SOLVE, "step": SOLVE}
+_SOLVED = ("forward_dynamics", "forward_dynamics_derivatives", "forward_dynamics_vjp", "step")
+TOLERANCES = dict.fromkeys(_SOLVED, SOLVE)
 # Of floats, whose last place is so much larger; forward dynamics amplifies it by the condition of M, as it does with
 # doubles.
 OF_FLOATS = 2.0**29

@@ -14,7 +14,7 @@ from validation.timing.measure import measure
 from validation.timing.models import FUNCTIONS
 from validation.timing.record import Entry, Record
 from validation.timing.tables import TARGETS_TEXT, duration, ratios, sections, targets_table
-from validation.timing.targets import verdicts
+from validation.timing.targets import MOST_REVERSE, reverse_costs, verdicts
 
 LIMITS = (
     """One thread, pinned to one processor, whose time on it is what is measured. All sides of a function run in one
@@ -58,10 +58,12 @@ def compose(data: Data) -> Report:
     raced = ", ".join(f"{peer} {ratio}" for peer, ratio in medians.items())
     raced = f"; median of their time over ours: {raced}" if raced else ""
     late = [wait for wait in record.waits if not wait.met]
+    any_judged = measured or record.waits or record.failed
+    costly = [cost for cost in reverse_costs(record) if not cost.met]
     return Report(
         "Timing: generated C against engines and symbolic peers",
         f"{said}; {counted(len(best), 'race')} over {' and '.join(sizes)}{raced}{failed}.{cut}",
-        met == len(measured) and not late and not record.failed if measured or record.waits or record.failed else None,
+        met == len(measured) and not (late or costly or record.failed) if any_judged else None,
         (*LIMITS, _conditions(record.machine)),
         (
             Section("Targets", (TARGETS_TEXT, table, ratios(best)), "targets"),
@@ -86,6 +88,10 @@ def compose(data: Data) -> Report:
             f"{v.target.least:g}"
             for v in measured
             if not v.met
+        )
+        + tuple(
+            f"{cost.title}, {cost.task}: {cost.ratio:.2f} times its function's time, asked is at most {MOST_REVERSE:g}"
+            for cost in costly
         )
         + tuple(
             f"{' of '.join(filter(None, (wait.what, wait.model)))}: {duration(wait.seconds)}, asked is at most "

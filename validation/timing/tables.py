@@ -9,9 +9,9 @@ from validation.reporting.figures import Chart, Curve, Figure, Mark
 from validation.reporting.numbers import compact, formatted
 from validation.reporting.record import Section, Table, verdict
 from validation.timing.growth import Growth, growth
-from validation.timing.models import FUNCTIONS, TIMED_MODELS
+from validation.timing.models import FUNCTIONS, REVERSE, TIMED_MODELS
 from validation.timing.record import Entry, Made, Record, Wait
-from validation.timing.targets import Verdict
+from validation.timing.targets import MOST_REVERSE, Verdict, reverse_costs
 
 _GENERATORS = ("symofros", "casadi", "sympy")
 _PEERS = ("pinocchio", "mujoco", "casadi", "sympy")
@@ -53,9 +53,15 @@ _NOTES = {
     "inverse_dynamics_derivatives": "By q and v. CasADi's are made by its differentiation of Newton-Euler.",
     "forward_dynamics_derivatives": """By q and v; ours by u, too. CasADi's are -M^-1 times those of inverse dynamics at
     the acceleration, all in one graph.""",
+    "inverse_dynamics_second_derivatives": """By q and q, v and v, q and v, a and q, as full tensors; Pinocchio's
+    ComputeRNEASecondOrderDerivatives.""",
     "frame_jacobian": "Of the body that most joints carry, in world axes.",
     "step": "Our loop of sf.simulate, mj_step with contacts, constraints and sensors off; free motion.",
 }
+_REVERSE_TEXT = f"""The gradient of w . f by all inputs at once, w held: its time over that of f, medians, one state
+after the other; at most {MOST_REVERSE:g} is asked. No engine has the like; CasADi's reverse mode, by q and v alone,
+takes as many times ours as the last column says."""
+_REVERSE = "model | nv | function | the function [ns] | its gradient [ns] | ratio | casadi / ours"
 _TIMES = """model | nv | ours | batch, rows | columns | floats | Pinocchio, gcc | Pinocchio, best | MuJoCo | CasADi |
     SymPy"""
 _RATIOS = "model | nv | Pinocchio | batch by rows | batch by columns | MuJoCo | CasADi | SymPy"
@@ -71,7 +77,8 @@ def sections(record: Record) -> list[Section]:
         for cost in made
     )
     return [
-        *(_function(record, name) for name in FUNCTIONS),
+        *(_function(record, name) for name in FUNCTIONS if name not in REVERSE),
+        _reverse(record),
         _growth(record),
         _waits_section(record.waits),
         Section("What it costs to make", (_MAKING_TEXT, Table.of(_MAKING, making)), "making"),
@@ -130,6 +137,17 @@ def _function(record: Record, function: str) -> Section:
         Table.of(_RATIOS, ratios).without_empty(),
     )
     return Section(_title(function), blocks, function)
+
+
+def _reverse(record: Record) -> Section:
+    """Vector-Jacobian products beside their functions."""
+    rows = []
+    for one in reverse_costs(record):
+        peer = record.best(one.model, one.function, "casadi")
+        cells = [one.title, str(one.nv), FUNCTIONS[REVERSE[one.function]], f"{one.own:.0f}", f"{one.product:.0f}"]
+        cells += [verdict(f"{one.ratio:.2f}", one.met), formatted(peer.ratio if peer else None, ".2f")]
+        rows.append(" | ".join(cells))
+    return Section("Reverse mode", (_REVERSE_TEXT, Table.of(_REVERSE, rows)), "reverse")
 
 
 def _title(function: str) -> str:

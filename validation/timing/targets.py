@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from validation.timing.models import Labelled
+from validation.timing.models import REVERSE, TIMED_MODELS, Labelled
 from validation.timing.record import Entry, Record
 
 
@@ -76,6 +76,7 @@ TARGETS: tuple[Target, ...] = (
     *(t for model in ("panda", "ur5") for name in _DERIVATIVES for t in _of(model, name, pinocchio=6.0)),
     *(t for model in ("talos", "mss") for name in _DERIVATIVES for t in _of(model, name, pinocchio=4.0)),
     *(t for name in _DERIVATIVES for t in _of("chain52", name, pinocchio=3.0)),
+    *(t for model in ("panda", "ur5") for t in _of(model, "inverse_dynamics_second_derivatives", pinocchio=3.0)),
     Target("panda", "dynamics", "pinocchio", 45.0, "batch by columns"),
     Target("panda", "dynamics", "mujoco", 36.0, "batch by columns"),
     Target("mss", "dynamics", "pinocchio", 20.0, "batch by columns"),
@@ -94,3 +95,42 @@ def verdicts(record: Record) -> list[Verdict]:
         by_rows = entry.batch_ratio if entry is not None and in_columns else None
         judged.append(Verdict(target, entry if ratio is not None else None, ratio or 0.0, by_rows))
     return judged
+
+
+# A vector-Jacobian product takes at most so many times what its function takes.
+MOST_REVERSE = 4.0
+
+
+@dataclass(frozen=True)
+class ReverseCost(Labelled):
+    """A vector-Jacobian product beside its function.
+
+    Attributes:
+        model, function: Model, and name of the product.
+        nv: Degrees of freedom of the model.
+        own: Median of the function, nanoseconds a state.
+        product: Likewise of the product.
+    """
+
+    model: str
+    function: str
+    nv: int
+    own: float
+    product: float
+
+    @property
+    def ratio(self) -> float:
+        """The product's time over the function's."""
+        return self.product / self.own
+
+    @property
+    def met(self) -> bool:
+        """Whether it is at most what is asked for."""
+        return self.ratio <= MOST_REVERSE
+
+
+def reverse_costs(record: Record) -> list[ReverseCost]:
+    """Each vector-Jacobian product that was timed together with its function."""
+    pairs = ((model, name, function) for name, function in REVERSE.items() for model in TIMED_MODELS)
+    timed = ((x, y) for model, *names in pairs for x, y in [[record.cost(model, n, "symofros") for n in names]])
+    return [ReverseCost(x.model, x.function, x.nv, y.time, x.time) for x, y in timed if x is not None and y is not None]

@@ -12,7 +12,8 @@ from tests.validation.timing.records import cubic, entry, made
 from validation.timing.growth import exponent, growth
 from validation.timing.models import CHAINS
 from validation.timing.record import Record, Wait, as_data, read
-from validation.timing.targets import TARGETS, Target, Verdict, verdicts
+from validation.timing.report import TOPIC
+from validation.timing.targets import TARGETS, Target, Verdict, reverse_costs, verdicts
 
 
 def test_ratios_are_of_medians() -> None:
@@ -88,6 +89,16 @@ def test_targets_use_the_family_and_the_batch_they_name() -> None:
     ratios = {(v.target.how, v.target.family): v.ratio for v in found}
     assert ratios == {("state by state", ""): 8.0, ("state by state", "gcc"): 12.0, ("batch by columns", ""): 50.0}
     assert {v.by_rows for v in found} == {None, 40.0}
+
+
+@pytest.mark.parametrize(("time", "met"), [(399.0, True), (401.0, False)])
+def test_a_gradient_is_judged_by_the_time_of_its_function(time: float, met: bool) -> None:
+    costs = [made(function="inverse_dynamics"), made(function="inverse_dynamics_vjp", time=time), made("ur5")]
+    costs.append(made("ur5", "forward_dynamics_vjp"))  # Whose function was not timed.
+    (found,) = reverse_costs(Record(costs=costs))
+    assert (found.model, found.ratio, found.met) == ("panda", time / 100.0, met)
+    report = TOPIC.compose(as_data(Record([entry()], costs)))
+    assert any("reverse mode" in text for text in report.missed) == (not met)
 
 
 def test_a_record_survives_its_file(tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ velocities. Constants are folded as the graph is built; nothing here knows Pinoc
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import casadi as ca
@@ -256,7 +256,7 @@ class CasadiTree:
         return J
 
     def function(self, name: str, body: int) -> Any:
-        """A CasADi function of q, v, a, tau with results row by row.
+        """A CasADi function of q, v, a, tau with results row by row; gradients take what is left of them as cotangents.
 
         Args:
             name: Name as of our generated functions.
@@ -265,7 +265,7 @@ class CasadiTree:
         Raises:
             KeyError: No such function.
         """
-        results = {
+        results: dict[str, Callable[[], list[Any]]] = {
             "mass_matrix": lambda: [_rows(self._mass_matrix())],
             "bias": lambda: [ca.vertcat(*self._newton_euler(None))],
             "dynamics": lambda: [_rows(self._mass_matrix()), ca.vertcat(*self._newton_euler(None))],
@@ -274,6 +274,9 @@ class CasadiTree:
             "frame_jacobian": lambda: [_rows(self._jacobian(body))],
             "inverse_dynamics_derivatives": lambda: [ca.vec(slope.T) for slope in self._inverse_slopes(self.a)],
             "forward_dynamics_derivatives": self._forward_slopes,
+            "inverse_dynamics_second_derivatives": self._inverse_curvatures,
+            "inverse_dynamics_vjp": lambda: self._gradients(self._newton_euler(self.a), self.tau),
+            "forward_dynamics_vjp": lambda: self._gradients(self._articulated(), self.a),
         }
         outputs = ca.cse([ca.densify(result) for result in results[name]()])
         return ca.Function(name, [self.q, self.v, self.a, self.tau], outputs)
@@ -282,6 +285,17 @@ class CasadiTree:
         tau = ca.vertcat(*self._newton_euler(self.a))
         slopes = [ca.jacobian(tau, x) for x in (self.q, self.v)]
         return list(ca.substitute(slopes, [self.a], [rates]))
+
+    def _inverse_curvatures(self) -> list[Any]:
+        """Second derivatives of tau by q and q, v and v, q and v, a and q."""
+        tau, q, v, a = ca.vertcat(*self._newton_euler(self.a)), self.q, self.v, self.a
+        slopes = {name: ca.vec(ca.jacobian(tau, x).T) for name, x in (("q", q), ("v", v), ("a", a))}
+        pairs = (slopes["q"], q), (slopes["v"], v), (slopes["q"], v), (slopes["a"], q)
+        return [ca.vec(ca.jacobian(slope, x).T) for slope, x in pairs]
+
+    def _gradients(self, outputs: Sequence[Scalar], cotangents: Any) -> list[Any]:
+        """Of cotangents . outputs by q and v, in reverse mode; the cotangents are what the outputs don't read."""
+        return [ca.jtimes(ca.vertcat(*outputs), x, cotangents, True) for x in (self.q, self.v)]
 
     def _forward_slopes(self) -> list[Any]:
         """-M^-1 times the slopes of inverse dynamics at the acceleration that forward dynamics gives."""

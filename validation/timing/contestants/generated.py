@@ -33,7 +33,7 @@ def casadi_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
     from validation.adapters.casadi import code as casadi_code
     from validation.adapters.casadi import tree as casadi_tree
 
-    if task.assembly.nv > MOST_DERIVED and any(name.endswith("derivatives") for name in functions):
+    if task.assembly.nv > MOST_DERIVED and any(name.endswith(("derivatives", "vjp")) for name in functions):
         raise Skipped(f"derivatives are made up to {MOST_DERIVED} degrees of freedom, beyond which they take minutes")
 
     def make(name: str) -> Source:

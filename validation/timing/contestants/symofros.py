@@ -27,7 +27,13 @@ SINGLE = "symofros, batch of floats by columns"
 # first; whole vectors of either precision.
 BLOCK, _LEAST_BLOCK, _KEPT = 64, 16, 3 << 17
 # How many of a function's outputs engines have, too: Q, multipliers and derivatives by u are ours alone.
-_SHARED = {"dynamics": 2, "forward_dynamics": 1, "forward_dynamics_derivatives": 2}
+_SHARED = {
+    "dynamics": 2,
+    "forward_dynamics": 1,
+    "forward_dynamics_derivatives": 2,
+    "inverse_dynamics_vjp": 2,
+    "forward_dynamics_vjp": 2,
+}
 # More than any race steps through [s].
 _ENDLESS = 1e6
 # Speeds up to which derivatives of forward dynamics are timed by vectors: beyond, their code takes minutes to compile,
@@ -88,6 +94,7 @@ class _Generated:
         self.lanes: list[Any] = [each.lanes for each in models]
         states, entry = task.states, model.functions[0]
         given = {"pre": pre[: model.npre], "q": states.q, "v": states.v, "a": states.a, "u": states.u}
+        given |= {"tau_bar": states.applied, "a_bar": states.a}  # Cotangents: any numbers, CasADi's as well.
         names = [ffi.string(item.name).decode() for item in getattr(entry, "in")[0 : entry.n_in]]
         entered = [item.rows * item.cols for item in getattr(entry, "in")[0 : entry.n_in]]
         sizes = [item.rows * item.cols for item in entry.out[0 : entry.n_out]]

@@ -32,9 +32,12 @@ FUNCTIONS = (
     "frame_jacobian",
     "inverse_dynamics_derivatives",
     "forward_dynamics_derivatives",
+    "inverse_dynamics_second_derivatives",
+    "inverse_dynamics_vjp",
+    "forward_dynamics_vjp",
 )
 # Rounding of a solve is amplified by the condition of M.
-TOLERANCE = {"forward_dynamics": 1e-11, "forward_dynamics_derivatives": 1e-11}
+TOLERANCE = {"forward_dynamics": 1e-11, "forward_dynamics_derivatives": 1e-11, "forward_dynamics_vjp": 1e-11}
 
 
 def evaluated(given: Task, name: str) -> Array:
