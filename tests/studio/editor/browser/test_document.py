@@ -123,7 +123,7 @@ def test_find_goes_to_a_block_and_enter_opens_it(
     picture("find")
     page.keyboard.press("Enter")
     expect(steps.window(page)).to_have_count(0)
-    expect(steps.block(page, "bodies/upper")).to_be_focused()
+    expect(steps.block(page, "bodies/upper")).to_contain_class("selected")
     page.keyboard.press("Enter")
     expect(page.get_by_role("dialog", name="Body upper")).to_be_visible()
 
