@@ -33,6 +33,8 @@ _TONE = {True: "good", False: "bad", None: "soft"}
 _PAGES = {"wide": 1052.0, "phone": 360.0}
 # Tables of more columns are set closer.
 _MANY_COLUMNS = 11
+# Width that a phone shows whole [px].
+_PHONE = 320.0
 
 
 def page(report: Report, provenance: Provenance | None = None, closing: str = "", listed: bool = True) -> str:
@@ -126,7 +128,8 @@ def chart(item: Chart | Drawing) -> str:
         picture = f'<div class="scroll" tabindex="0">{draw(item)}</div>'
     except ModuleNotFoundError as error:
         picture = block(Text(f"Not drawn: {error}.", "soft"))
-    return f'<div class="chart"><h3>{escape(item.title)}</h3>{picture}</div>'
+    small = " small" if item.size[0] < _PHONE else ""
+    return f'<div class="chart{small}"><h3>{escape(item.title)}</h3>{picture}</div>'
 
 
 def table(item: Table) -> str:
