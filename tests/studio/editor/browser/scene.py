@@ -27,8 +27,9 @@ def shot(page: Page) -> np.ndarray:
 
 
 def differing(a: np.ndarray, b: np.ndarray) -> int:
-    """How many pixels do."""
-    assert a.shape == b.shape
+    """How many pixels do, of what both show: a line of words above a picture takes from its height."""
+    height, width = min(a.shape[0], b.shape[0]), min(a.shape[1], b.shape[1])
+    a, b = a[-height:, :width], b[-height:, :width]
     return int((np.abs(a - b).max(axis=2) > SEEN).sum())
 
 
