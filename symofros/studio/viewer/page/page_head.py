@@ -9,13 +9,18 @@ from importlib.resources import files
 VISER_TITLE = "<title>Viser</title>"
 
 
-def page_head(title: str) -> str:
+# viser's panel floats over the picture, or, where the page is narrow, takes a third of it, with nothing in it as well.
+_NO_PANEL = '<style>.mantine-Paper-root:has([class*="tabler-icon-adjustments"]) { display: none !important; }</style>'
+
+
+def page_head(title: str, panel: bool = True) -> str:
     """What takes the place of VISER_TITLE.
 
     Args:
         title: Title of the page, which its tab shows.
+        panel: Whether the page has a panel of controls.
     """
-    return f"<title>{html.escape(title)}</title>{fragment('access.html')}"
+    return f"<title>{html.escape(title)}</title>{fragment('access.html')}{'' if panel else _NO_PANEL}"
 
 
 @cache

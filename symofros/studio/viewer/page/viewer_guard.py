@@ -44,15 +44,21 @@ class ViewerGuard:
         title: Title of the page.
         on_colours: Called, in a thread of its own, with whether the system of who opens the page first shows dark
             colours; nobody is asked without it.
+        panel: Whether the page has a panel of controls.
 
     Attributes:
         is_asked: Whether the server asks it.
     """
 
     def __init__(
-        self, host: str, token: str, title: str = "SYMOFROS", on_colours: Callable[[bool], None] | None = None
+        self,
+        host: str,
+        token: str,
+        title: str = "SYMOFROS",
+        on_colours: Callable[[bool], None] | None = None,
+        panel: bool = True,
     ) -> None:
-        self.token, self.title = token, title
+        self.token, self.title, self._panel = token, title, panel
         self._on_colours, self._asks = on_colours, on_colours is not None
         # Bound to another address, the server is known by names that it can't tell itself.
         self._names = LOOPBACK_NAMES | {host.lower()} if is_loopback(host) else None
@@ -72,7 +78,7 @@ class ViewerGuard:
                 return _empty()
             response = answer(connection, replace(request, path=path)) if answer is not None else None
             if response is not None:
-                head = page_head(self.title) + (_ASK if self._asks else "")
+                head = page_head(self.title, self._panel) + (_ASK if self._asks else "")
                 _put_head(response, head.encode())
                 response.headers.update(_HEADERS)
             return response

@@ -41,6 +41,11 @@ def test_a_flexible_robot_is_drawn_bends_and_follows_its_file(
     server = serve("robot.yaml", source=ROBOT)
     steps.open_editor(page, server.url)
     open_view(page)
+    # Neither viser's panel nor a second scale bar lies over the picture.
+    inside = page.frame_locator("iframe.view")
+    expect(inside.locator('[class*="tabler-icon-adjustments"]')).to_be_hidden()
+    expect(inside.get_by_role("img", name="Scale: ")).to_be_hidden()
+    expect(page.get_by_role("img", name="Scale: ")).to_be_visible()
     # A word on machines without a graphics card floats over the picture.
     page.frame_locator("iframe.view").locator("body").evaluate(
         "body => body.insertAdjacentHTML('beforeend', '<style>.mantine-Notification-root {display: none}</style>')"
