@@ -25,6 +25,7 @@ from tests.studio.waiting import PATIENCE, until
 pytestmark = pytest.mark.browser
 
 WIDTH, HEIGHT = 800, 500
+PANEL = '[class*="tabler-icon-cloud"]'  # viser's sign of the connection, at the head of its panel.
 PATIENCE_MS = 1000 * PATIENCE
 # Pictures a second that reached the browser from a model of 22 joints: some 35 on two cores that also render them.
 # A floor far below, for it to be called moving; docs/view.md has what was measured.
@@ -293,6 +294,11 @@ def test_it_may_be_embedded(chromium: Any, tmp_path: Path) -> None:
         before = whole(page)
         viewer.push(0.0, [1.2, -1.2, 1.2])
         until(page, lambda: changed(before, whole(page)).sum() > 300)
+        # Nothing lies over the picture, however wide it is.
+        for width in (WIDTH, 2 * WIDTH):
+            page.locator("iframe").evaluate("(frame, width) => { frame.width = width; }", width)
+            page.wait_for_timeout(500)
+            until(page, lambda: not page.frame_locator("iframe").locator(PANEL).first.is_visible())
         assert page.frame_locator("iframe").get_by_text("exaggeration").count() == 0
     page.close()
 

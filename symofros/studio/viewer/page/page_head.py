@@ -9,8 +9,8 @@ from importlib.resources import files
 VISER_TITLE = "<title>Viser</title>"
 
 
-# viser's panel floats over the picture, or, where the page is narrow, takes a third of it, with nothing in it as well.
-_NO_PANEL = '<style>.mantine-Paper-root:has([class*="tabler-icon-adjustments"]) { display: none !important; }</style>'
+# viser's panel, known by its sign of the connection, lies over the picture with nothing in it as well.
+_NO_PANEL = '<style>.mantine-Paper-root:has([class*="tabler-icon-cloud"]) { display: none !important; }</style>'
 
 
 def page_head(title: str, panel: bool = True) -> str:
