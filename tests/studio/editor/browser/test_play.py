@@ -64,7 +64,8 @@ def test_a_motion_plays_at_the_cursor_of_the_plots_and_runs_are_compared(
     expect(page.get_by_label("Frames")).to_be_checked()
     picture("frames")
     page.get_by_label("Frames").click()
-    with page.expect_download() as film:
+    # Its pictures take seconds of processor time, which a busy machine gives in minutes.
+    with page.expect_download(timeout=5 * JOB) as film:
         results.get_by_label("Film of run 1, GIF").click()
     assert film.value.suggested_filename == "run_1.gif" and film.value.path().read_bytes()[:6] == b"GIF89a"
 
