@@ -146,6 +146,8 @@ def chromium() -> Iterator[Any]:
         drawn = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
         # A browser binds a socket in its TMPDIR, whose name may be long; a socket's may not.
         environment = {**os.environ, "TMPDIR": "/tmp"}
+        # Five seconds, the bound that expectations have of themselves, are too few where others want the cores.
+        import_module("playwright.sync_api").expect.set_options(timeout=60_000)
         browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox", *drawn], env=environment)
         yield browser
         browser.close()

@@ -79,8 +79,10 @@ def test_any_lines_read_alike(lines: list[str], newline: str) -> None:
     agree(newline.join(lines))
 
 
-def test_only_the_entry_that_changed_is_read_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    text = "system: {name: s}\nbodies:\n" + "".join(f"  b{i}:\n    mass: {i}\n" for i in range(20))
+@pytest.mark.parametrize("count", [20, 4000], ids=["few", "some thousand"])
+def test_only_the_entry_that_changed_is_read_again(monkeypatch: pytest.MonkeyPatch, count: int) -> None:
+    text = "system: {name: s}\nbodies:\n" + "".join(f"  b{i}:\n    mass: {i}\n" for i in range(count))
+    monkeypatch.setattr(yaml_pieces, "_KEPT", yaml_pieces._Kept())
     compose_text(text, "x")
     read: list[str] = []
 
@@ -91,4 +93,15 @@ def test_only_the_entry_that_changed_is_read_again(monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(yaml_pieces, "compose_whole", counted)
     root, _ = compose_text(text.replace("mass: 7\n", "mass: 7.25\n"), "x")
     assert read == ["  b7:\n    mass: 7.25\n"]
-    assert root.at(("bodies", "b19", "mass")).line == 2 + 2 * 20
+    assert root.at(("bodies", f"b{count - 1}", "mass")).line == 2 + 2 * count
+
+
+def test_as_many_characters_are_kept_as_two_texts_have(monkeypatch: pytest.MonkeyPatch) -> None:
+    kept = yaml_pieces._Kept()
+    monkeypatch.setattr(yaml_pieces, "MAX_KEPT", 30)
+    read: list[str] = []
+    monkeypatch.setattr(yaml_pieces, "_read", lambda part: read.append(part) or part)
+    parts = ["a: 1\n" * 2, "b: 1\n" * 2, "c: 1\n" * 2]
+    for part in (*parts, parts[0], "d: 1\n" * 2, parts[0], parts[1]):
+        kept.read(part)
+    assert read == [*parts, "d: 1\n" * 2, parts[1]]

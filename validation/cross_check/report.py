@@ -23,8 +23,10 @@ _PARTS = re.compile("; (?=found: |rule: |remedy: )")
 # Up to so many models, each engine has a line of its own on a terminal.
 _DETAILED = 2
 
-_DECISION = """**Which engine disagrees with our C:** {}. One that disagrees where all others agree with our C is the
-suspect itself; where several disagree, our C is."""
+_DECISION = "**Which engine disagrees with our C:** {}."
+_SUSPECT = (
+    "One that disagrees where all others agree with our C is the suspect itself; where several disagree, our C is."
+)
 _CLOSE = """Each row is a quantity, each curve an engine that our C is compared with, over all states of all models.
 What lies left of the red bar agrees: see how far left the curves stay, near the rounding of a double (2.2e-16).
 “Exact” is the share of states where every digit is the same. Finite elements (exudyn-beams) are extrapolated over
@@ -66,7 +68,8 @@ def compose(data: Data) -> Report:
     baseline, worse = _against_baseline(data), len(data.get("baseline", {}).get("regressions", ()))
     failed, opinions = tables.failures(record), [tables.opinion(record, name) for name in engines]
     wrong = ", ".join(f"{name} ({said.removeprefix(MISSED)})" for name, *_, said in opinions if said != "agrees")
-    decided = _DECISION.format(wrong or f"none of {len(opinions)}"), Table.of(tables.OPINION, opinions)
+    disagreeing = _DECISION.format(wrong or f"none of {len(opinions)}")
+    decided = disagreeing, Table.of(tables.OPINION, opinions), Text(_SUSPECT, "soft")
     marked = ((model, engine, verdict(text, False)) for model, engine, text in failed)
     apart = ((engine, models, reason) for models, engine, reason in tables.unsupported(record))
     speeds = (

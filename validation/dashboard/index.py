@@ -8,7 +8,8 @@ from pathlib import Path
 
 from symofros.tools import write_atomically
 from validation.dashboard.gather import Entry
-from validation.dashboard.history import history
+from validation.dashboard.history import history, stored
+from validation.dashboard.trends import trends
 from validation.reporting import html, markdown
 from validation.reporting.figures import Figure
 from validation.reporting.record import Block, Bullets, Report, Section, Table, Text, verdict
@@ -34,7 +35,9 @@ def write_index(entries: Mapping[str, Entry], folder: Path, date: str) -> Path:
         OSError: The folder can't be written to.
     """
     report = index(entries)
-    trend = Section("What changed", (_TREND, history(folder / "summary.md", tuple(entries))), "history")
+    summaries = stored(folder / "summary.md")
+    changes = history(summaries, tuple(entries))
+    trend = Section("What changed", (trends(summaries), _TREND, changes), "history")
     closing = f"Gathered {date} by `python -m validation dashboard`; `--regenerate` writes the reports anew before."
     page = html.page(replace(report, sections=(trend, *report.sections)), closing=closing, listed=False)
     said = f"**{report.summary}** (gathered {date})", markdown.table(summary_table(entries)), origins(entries)

@@ -19,8 +19,9 @@ millionth of the largest entry. **imprecise**: off by more, but less than that. 
 can't. **crashes**: takes its process with it. Empty: not offered. Each red cell stands for a script that imports the
 engine alone, was shrunk to the plainest tree and state that still show it, and was run in a process of its own to
 fail."""
-_DECISION = """**Which engine is wrong, against the truth in many digits:** {}; {} more lose digits beyond what rounding
-explains. {} prove it. Where: [the matrix](engines.html#overview)."""
+_DECISION = "**Which engine is wrong:** {}, proven by {}."
+_COUNTED = """A cell counts where the answer is wrong against the truth in many digits; {} more lose digits beyond what
+rounding explains."""
 # Functions that the report begins with, of each engine that is wrong.
 _NAMED = 4
 Row = Mapping[str, Any]
@@ -37,7 +38,8 @@ def compose(data: Data) -> Report:
     tally = Counter(cell["verdict"] for cell in cells)
     red = sum(tally[name] for name in RED)
     wrong = Counter(cell["engine"] for cell in cells if cell["verdict"] in ("wrong", "crashes"))
-    listed = ", ".join(f"{engine} in {counted(number, 'cell')}" for engine, number in wrong.most_common()) or "none"
+    listed = ", ".join(f"{engine} in {number}" for engine, number in wrong.most_common())
+    listed = f"{listed} cells of [the matrix](engines.html#overview)" if listed else "none"
     scripts = counted(sum(proof["proven"] for proof in proofs), "script")
     all_proven, held = all(proof["proven"] for proof in proofs), sum(row["ok"] for row in identities)
     head = "engine | version | right | wrong | imprecise | crashes | refuses | faults proven | measured"
@@ -69,8 +71,9 @@ def compose(data: Data) -> Report:
         ),
         digest=(overview,),
         decisions=(
-            _DECISION.format(listed, counted(tally["imprecise"], "cell"), scripts),
+            _DECISION.format(listed, scripts),
             Table.of("engine | wrong about | cells | of asked", _wrong_about(data, wrong)),
+            Text(_COUNTED.format(counted(tally["imprecise"], "cell")), "soft"),
         ),
     )
 

@@ -25,8 +25,10 @@ INTRO = (
     batches alone, so a motion by itself pays for all lanes of a vector and uses one; what batches gain is in the report
     on timing.""",
 )
-DECISION = """**Which method, on which model.** The fastest run that keeps an error; time of the processor for the
-stepping alone. The next best loses by so much time."""
+DECISION = "**Which method, on which model:** the fastest run that keeps the error, in each scene."
+_EXPLAINED = (
+    "Time is the processor's for the stepping alone; the next best, and the other side, take so much more of it."
+)
 _CHOICES = """scene | error at most | method | model | step or tolerance | time | next best method loses by |
     other side loses by"""
 _TARGETS = "scene | at error | against | ours | its best | winner | asked | verdict"
@@ -73,7 +75,8 @@ def compose(data: Data) -> Report:
         unfinished=unfinished,
         decisions=(
             DECISION,
-            Table.of(_CHOICES, (row for name, pair in results.items() for row in _chosen(name, *pair))),
+            Table.of(_CHOICES, (row for name, pair in results.items() for row in _chosen(name, *pair)), grouped=True),
+            Text(_EXPLAINED, "soft"),
         ),
         missed=tuple(
             f"{one.title} at {one.shown(v.target.error)}: {v.winner}; asked is {short(v.target.ratio)} times "

@@ -81,7 +81,7 @@ def library(name: str) -> Any:
 
 def draw(item: Chart | Drawing) -> str:
     """The picture with its legend as an SVG element, titled and described."""
-    width, height = item.size if isinstance(item, Drawing) else (430.0, 270.0)
+    width, height = item.size
     with library("matplotlib").rc_context(_RC | {"svg.hashsalt": item.title}):
         figure = library("matplotlib.figure").Figure(figsize=(width / 72, height / 72))
         axes = figure.add_axes((0, 0, 1, 1))
@@ -124,7 +124,8 @@ def style(curve: Curve, size: float = 5.0) -> dict[str, Any]:
         "label": curve.label,
         "color": SERIES[curve.color % len(SERIES)],
         "linestyle": "none" if curve.kind == "points" else (0, dashes) if dashes else "-",
-        "marker": mark if curve.kind in ("points", "joined") else "",
+        "drawstyle": "steps-post" if curve.kind == "steps" else "default",
+        "marker": mark if curve.kind in ("points", "joined", "steps") else "",
         "markersize": _GROWN.get(mark, 1.0) * size,
         "markeredgecolor": PAPER,
         "markeredgewidth": 0.5,
@@ -141,6 +142,8 @@ def _curves(chart: Chart, axes: Any) -> None:
     for name in chart.log:
         getattr(axes, f"set_{name}scale")("log", nonpositive="mask")
         logarithmic(getattr(axes, f"{name}axis"))
+    if chart.range_x is not None:
+        axes.set_xlim(chart.range_x)
     if chart.range_y is not None:
         axes.set_ylim(chart.range_y)
     if chart.equal:

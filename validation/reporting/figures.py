@@ -13,9 +13,10 @@ from validation.mechanics.geometry import Array
 from validation.reporting.plain import as_array
 
 Values = Annotated[Array | Sequence[float], PlainValidator(as_array)]
-Kind = Literal["line", "dashed", "dotted", "points", "joined"]
+Kind = Literal["line", "dashed", "dotted", "points", "joined", "steps"]
 # Marks of points: so many series have a colour and a mark of their own.
 SHAPES = 8
+SIZE = (430.0, 270.0)
 
 
 @dataclass(frozen=True)
@@ -24,7 +25,7 @@ class Curve:
 
     Attributes:
         color: Index of a colour of series.
-        kind: Style; "joined" is points on a line.
+        kind: Style; "joined" is points on a line, "steps" points whose value holds until the next one.
         shape: Index of the mark of points, counted from that of the colour.
     """
 
@@ -64,6 +65,8 @@ class Chart:
         log: Names of the logarithmic axes.
         range_y: Part of the ordinate that is shown; None for all.
         equal: Whether a unit is as long on both axes, as on a map.
+        range_x: Part of the abscissa that is shown; None for all.
+        size: Width and height of the axes [px].
     """
 
     title: str
@@ -74,6 +77,8 @@ class Chart:
     log: Literal["", "x", "y", "xy"] = ""
     range_y: tuple[float, float] | None = None
     equal: bool = False
+    range_x: tuple[float, float] | None = None
+    size: tuple[float, float] = SIZE
 
 
 @dataclass(frozen=True)
@@ -91,7 +96,7 @@ class Drawing:
     y: str
     paint: Callable[[Any], None]
     note: str = ""
-    size: tuple[float, float] = (430.0, 270.0)
+    size: tuple[float, float] = SIZE
 
 
 @dataclass(frozen=True)

@@ -33,6 +33,8 @@ _TONE = {True: "good", False: "bad", None: "soft"}
 _PAGES = {"wide": 1052.0, "phone": 360.0}
 # Tables of more columns are set closer.
 _MANY_COLUMNS = 11
+# Width that a phone shows whole [px].
+_PHONE = 320.0
 
 
 def page(report: Report, provenance: Provenance | None = None, closing: str = "", listed: bool = True) -> str:
@@ -126,18 +128,27 @@ def chart(item: Chart | Drawing) -> str:
         picture = f'<div class="scroll" tabindex="0">{draw(item)}</div>'
     except ModuleNotFoundError as error:
         picture = block(Text(f"Not drawn: {error}.", "soft"))
-    return f'<div class="chart"><h3>{escape(item.title)}</h3>{picture}</div>'
+    small = " small" if item.size[0] < _PHONE else ""
+    return f'<div class="chart{small}"><h3>{escape(item.title)}</h3>{picture}</div>'
 
 
 def table(item: Table) -> str:
     """A table that scrolls by itself where it is wider than the page."""
     dense, numeric = len(item.head) > _MANY_COLUMNS, item.numeric
     rows = [[one if isinstance(one, Cell) else Cell(one) for one in row] for row in (item.head, *item.rows)]
+    groups = [""] * len(rows)
+    if item.grouped:
+        groups = ["", *(row[0].text for row in rows[1:])]
+        rows, numeric = [row[1:] for row in rows], numeric[1:]
     tags = ["th"] + ["td"] * len(item.rows)
     lines = [
         "".join(cell(*one, tag) for one in zip(row, numeric, strict=True)) for row, tag in zip(rows, tags, strict=True)
     ]
-    body = "\n".join(f"<tr>{line}</tr>" for line in lines)
+    above = f'<tr class="group"><th scope="rowgroup" colspan="{len(numeric)}"><div>{{}}</div></th></tr>\n'
+    body = "\n".join(
+        f"{above.format(prose(group)) if group else ''}<tr>{line}</tr>"
+        for group, line in zip(groups, lines, strict=True)
+    )
     # About how wide a column is: numbers stay on a line, other texts break between words.
     letter, padding = (6.4, 6.0) if dense else (7.2, 16.0)
     columns = [
@@ -147,7 +158,9 @@ def table(item: Table) -> str:
     width = sum(padding + letter * max(3, *map(len, column)) for column in columns)
     kind = next((kind for kind, room in _PAGES.items() if width > room), "")
     cue = f'<p class="cue {kind}">Wider than the page: scroll it sideways.</p>' if kind else ""
-    return f'{cue}<div class="scroll" tabindex="0"><table{" class=dense" if dense else ""}>\n{body}\n</table></div>'
+    kinds = " ".join(["dense"] * dense + ["grouped"] * item.grouped)
+    kinds = f' class="{kinds}"' if kinds else ""
+    return f'{cue}<div class="scroll" tabindex="0"><table{kinds}>\n{body}\n</table></div>'
 
 
 def cell(item: Cell, is_number: bool, tag: str) -> str:

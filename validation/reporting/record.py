@@ -55,10 +55,16 @@ class Cell:
 
 @dataclass(frozen=True)
 class Table:
-    """Cells under the names of their columns."""
+    """Cells under the names of their columns.
+
+    Attributes:
+        grouped: Whether the first cell of a row is of the rows after it, too, where theirs are empty: a page has it
+            above them, over all columns.
+    """
 
     head: tuple[str, ...]
     rows: tuple[tuple[str | Cell, ...], ...]
+    grouped: bool = False
 
     def __post_init__(self) -> None:
         for row in self.rows:
@@ -66,15 +72,16 @@ class Table:
                 raise ValueError(f"a row of {len(row)} cells, {row}, under {len(self.head)} names, {self.head}")
 
     @classmethod
-    def of(cls, head: str, rows: Iterable[str | Sequence[str | Cell]]) -> Table:
+    def of(cls, head: str, rows: Iterable[str | Sequence[str | Cell]], grouped: bool = False) -> Table:
         """A table as in Markdown: names and cells between " | "; texts from outside come as sequences of cells."""
         cells = (_BAR.split(row) if isinstance(row, str) else row for row in rows)
-        return cls(tuple(_BAR.split(head)), tuple(map(tuple, cells)))
+        return cls(tuple(_BAR.split(head)), tuple(map(tuple, cells)), grouped)
 
     def without_empty(self) -> Table:
         """The table without the columns in which nothing is stated."""
         kept = [k for k in range(len(self.head)) if any(row[k] not in ("", "-") for row in self.rows)]
-        return Table(tuple(self.head[k] for k in kept), tuple(tuple(row[k] for k in kept) for row in self.rows))
+        rows = tuple(tuple(row[k] for k in kept) for row in self.rows)
+        return Table(tuple(self.head[k] for k in kept), rows, self.grouped)
 
     @property
     def numeric(self) -> list[bool]:

@@ -9,15 +9,16 @@ whole text to the one reader that says so (yaml_nodes.py).
 from __future__ import annotations
 
 import re
-from functools import lru_cache
+from collections import OrderedDict
+from threading import Lock
 from typing import NamedTuple
 
 from symofros.description.yaml.yaml_nodes import MAX_DEPTH, MAX_NODES, Node, YamlFault, compose_whole, decoded
 from symofros.errors import Problem
 
-# Pieces of a text, of which as many are kept, and the longest that is kept: together some ten megabytes. A text of
-# more pieces is read as a whole: that is faster the first time.
-MAX_PIECES, MAX_PIECE = 3000, 4096
+# Characters of the pieces that are kept, those asked for last: two of the largest texts that are edited. What a text is
+# read to takes some fifty times as many bytes.
+MAX_KEPT = 2 << 20
 # Levels of mappings that are taken to pieces: sections, and what they list.
 LEVELS = 2
 # A line that begins an entry with a plain name, after its indentation; only a comment may follow one with entries.
@@ -107,12 +108,11 @@ class _Composer:
     """Puts the tree of one text together, as long as it has no more nodes than a text may have.
 
     Attributes:
-        pieces: Number of pieces so far.
         nodes: Number of nodes so far.
     """
 
     def __init__(self) -> None:
-        self.pieces, self.nodes = 0, 0
+        self.nodes = 0
 
     def mapping(self, parts: list[str], at: int, line: int, levels: int) -> Node:
         """The block mapping of some entries.
@@ -128,7 +128,7 @@ class _Composer:
         self.nodes += 1
         for part in parts[1:]:
             name, node = self.entry(part, at, line, levels)
-            if name in owner.value or self.nodes > MAX_NODES or self.pieces > MAX_PIECES:
+            if name in owner.value or self.nodes > MAX_NODES:
                 raise _Unfit
             owner.value[name] = node
             at, line = at + len(part), line + part.count("\n")
@@ -146,8 +146,7 @@ class _Composer:
                 node, key_end = self.mapping(inner, at + head.end(), line + 1, levels - 1), part.index(":")
                 node.key_line, node.key_start, node.key_end = line, at + column, at + key_end
                 return part[column:key_end], node
-        piece = _read(part) if len(part) <= MAX_PIECE else _read.__wrapped__(part)
-        self.pieces += 1
+        piece = _KEPT.read(part)
         self.nodes += piece.nodes
         return piece.name, _moved(piece.node, at, line - 1)
 
@@ -156,7 +155,6 @@ def _indentation(part: str) -> int:
     return len(part) - len(part.lstrip(" "))
 
 
-@lru_cache(maxsize=MAX_PIECES)
 def _read(part: str) -> _Piece:
     """One entry by itself.
 
@@ -171,6 +169,38 @@ def _read(part: str) -> _Piece:
     if depth > MAX_DEPTH - LEVELS:
         raise _Unfit
     return _Piece(name, node, nodes)
+
+
+class _Kept:
+    """Pieces that were read, by their text: the latest that are asked for."""
+
+    def __init__(self) -> None:
+        self._pieces: OrderedDict[str, _Piece] = OrderedDict()
+        self._size = 0
+        self._using = Lock()
+
+    def read(self, part: str) -> _Piece:
+        """A piece, read if it is not kept.
+
+        Raises:
+            YamlFault: It has a fault, or does not end here.
+        """
+        with self._using:
+            piece = self._pieces.get(part)
+            if piece is not None:
+                self._pieces.move_to_end(part)
+                return piece
+        piece = _read(part)
+        with self._using:
+            if part not in self._pieces:
+                self._pieces[part] = piece
+                self._size += len(part)
+            while self._size > MAX_KEPT:
+                self._size -= len(self._pieces.popitem(last=False)[0])
+        return piece
+
+
+_KEPT = _Kept()
 
 
 def _measured(node: Node) -> tuple[int, int]:

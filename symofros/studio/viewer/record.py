@@ -23,8 +23,10 @@ from symofros.errors import Problem, SymofrosError, did_you_mean
 from symofros.studio.viewer.drawing.layers import shown_at_first
 from symofros.studio.viewer.drawing.poses import Mechanism, Posture
 from symofros.studio.viewer.drawing.tracks import tracks_of
+from symofros.studio.viewer.page.replay import replay_page
 from symofros.studio.viewer.page.viser_scene import ViserScene
 from symofros.studio.viewer.page.viser_server import LOOPBACK, start_server, stop_server
+from symofros.studio.viewer.playing.coordinate_units import coordinate_units
 from symofros.studio.viewer.playing.diagram_motion import shown_of
 from symofros.studio.viewer.playing.motion import Played, PlayedMotion, finite, motion_of, positive
 from symofros.studio.viewer.render.camera import Camera
@@ -56,9 +58,10 @@ class _Recording:
         self.t = np.minimum(motion.start + speed * period * np.arange(count), motion.end)
         q, u = motion.at(self.t)
         self.drawing = mechanism.drawing(motion.par)
+        self.q = q
         self.postures = mechanism.posture(q, u, motion.par, exaggeration)
         self.layers = shown_at_first(self.drawing)
-        self.count, self.exaggeration = count, exaggeration
+        self.count, self.exaggeration, self.speed = count, exaggeration, speed
 
     def __iter__(self) -> Iterator[Posture]:
         return (self.postures[i] for i in range(self.count))
@@ -69,8 +72,12 @@ class _Recording:
 
     def captions(self) -> Iterator[str]:
         """Time of each picture, and how much larger deformations are drawn than they are."""
-        factor = "" if self.exaggeration == 1.0 else f", deformation × {self.exaggeration:g}"
-        return (f"t = {t:.3f} s{factor}" for t in self.t)
+        return (f"t = {t:.3f} s{self.factor}" for t in self.t)
+
+    @property
+    def factor(self) -> str:
+        """How much larger deformations are drawn than they are, in words after the time; "" where they are not."""
+        return "" if self.exaggeration == 1.0 else f", deformation × {self.exaggeration:g}"
 
 
 @checked
@@ -127,7 +134,7 @@ def record(
     frames = _Recording(mechanism, motion, period, speed, exaggeration)
     pictures = _captioned(frames, size) if caption else frames.pictures(size)
     write: dict[str, Callable[[], bytes]] = {
-        ".html": lambda: _page(frames),
+        ".html": lambda: _page(frames, mechanism),
         ".mp4": lambda: _film(pictures, frames.period, size),
         ".gif": lambda: _gif(pictures, frames.period),
         ".png": lambda: _png(pictures),
@@ -171,7 +178,9 @@ def _asked(
     return system, run, Path(path)
 
 
-def _page(frames: _Recording) -> bytes:
+def _page(frames: _Recording, mechanism: Mechanism) -> bytes:
+    model, units = mechanism.model, coordinate_units(mechanism.tree)
+    pace = "" if frames.speed == 1.0 else f", at {frames.speed:g} × its speed"
     server = start_server(LOOPBACK, 0, secrets.token_urlsafe(16))
     try:
         scene = ViserScene(server, frames.drawing, frames.postures[0], frames.layers)
@@ -179,8 +188,17 @@ def _page(frames: _Recording) -> bytes:
         for posture in frames:
             scene.move(posture)
             serializer.insert_sleep(frames.period)
-        page: str = serializer.as_html()
-        return page.encode()
+        return replay_page(
+            serializer.as_html(),
+            f"{mechanism.system.name} - SYMOFROS",
+            Camera.of(frames.drawing),
+            frames.t,
+            frames.period,
+            frames.factor + pace,
+            frames.q,
+            model.names.q,
+            [units.get(name, "") for name in model.names.q],
+        ).encode()
     finally:
         stop_server(server)
 

@@ -81,7 +81,7 @@ class Viewer(ViewerPage):
         self._token = secrets.token_urlsafe(16)
         self._ready = threading.Event()
         title, take = f"{system.name} - SYMOFROS", self._take_colours if controls else None
-        server = start_server(host, port, self._token, title, take)
+        server = start_server(host, port, self._token, title, take, panel=controls)
         self._wake = threading.Condition()  # Guards what is wanted; held for moments only, never while painting.
         self._wanted: _Wanted | None = None
         self._closing = False

@@ -13,6 +13,7 @@ import symofros as sf
 from symofros.exports.wasm import wasm
 from tests.docs.pages import blocks
 from tests.exports.cases import PLANAR, STARTS, need, run, system_of
+from tests.studio.waiting import until
 
 # The double as 16 hexadecimal digits, so that no digit is lost on the way.
 PROGRAM = """
@@ -178,14 +179,14 @@ def test_the_page_simulates_without_a_server(package: Path, chromium: Any) -> No
     faults: list[str] = []
     page.on("pageerror", lambda error: faults.append(str(error)))
     page.goto((package / "index.html").as_uri())
-    page.wait_for_function("parseFloat(document.getElementById('time').textContent) > 0.3")
+    until(page, lambda: bool(page.evaluate("parseFloat(document.getElementById('time').textContent) > 0.3")))
     colours = page.evaluate(
         "new Set(new Uint32Array(document.querySelector('canvas').getContext('2d')"
         ".getImageData(0, 0, 800, 600).data.buffer)).size"
     )
     page.get_by_role("checkbox", name="speed of q1").check()
     page.get_by_role("checkbox", name="q1", exact=True).uncheck()
-    page.wait_for_timeout(400)
+    until(page, lambda: (drawn := page.evaluate(PLOTTED))["speed"] > 20 and drawn["angle"] == 0)
     page.get_by_role("button", name="Pause").click()
     drawn = page.evaluate(PLOTTED)
     value = float(page.locator("#signals label", has_text="speed of q1").locator("output").inner_text())

@@ -14,6 +14,8 @@ import symofros as sf
 from reference_models import MODELS
 from symofros.errors import SymofrosError
 from symofros.studio.viewer.drawing.poses import Mechanism
+from symofros.studio.viewer.page.replay import replay_page
+from symofros.studio.viewer.render.camera import Camera
 from symofros.studio.viewer.render.scale_bar import scale_bar
 
 SYSTEM = MODELS["planar_robot"]
@@ -117,3 +119,13 @@ def test_time_and_exaggeration_are_written_on_pictures(tmp_path: Path) -> None:
     bar = scale_bar(1.4 * Mechanism(SYSTEM).drawing().size)
     drawn = columns[(columns > 240) & (rows == rows[columns > 240].max())]
     assert np.ptp(drawn) == pytest.approx(bar.share * 240, abs=1.5)
+
+
+def test_names_can_not_end_the_script_of_a_replay() -> None:
+    evil = "</script><script>alert(1)</script>"
+    camera = Camera(np.array([0.0, -2.0, 1.0]), np.zeros(3), np.array([0.0, 0.0, 1.0]), 0.7)
+    page = f"<head><title>Viser</title>{'{darkMode:false}'}</head>"
+    made = replay_page(page, evil, camera, np.zeros(1), 0.1, "", np.zeros((1, 1)), [evil], [evil])
+    assert (
+        evil not in made and made.count("</script>") == 2 and "prefers-color-scheme" in made.rpartition("</script>")[2]
+    )

@@ -148,3 +148,14 @@ def test_a_section_without_content_is_left_out() -> None:
 def test_a_column_in_which_nothing_is_stated_is_left_out() -> None:
     table = Table(("model", "a", "b"), (("x", "-", "1"), ("y", "", "-")))
     assert table.without_empty() == Table(("model", "b"), (("x", "1"), ("y", "-")))
+
+
+def test_a_page_has_the_name_of_a_group_above_its_rows() -> None:
+    table = Table.of(
+        "scene | error | method", ("beam | 1 % | rk4", " | 0.1 % | dopri5", "robot | 1 % | rk4"), grouped=True
+    )
+    page = html.table(table)
+    rows = re.findall(r"<tr.*?</tr>", page)
+    assert len(rows) == 6 and all(row.count("<td") == 2 for row in rows if 'class="group"' not in row and "<td" in row)
+    assert 'colspan="2"><div>beam</div>' in rows[1] and "dopri5" in rows[3] and "robot" in rows[4]
+    assert "| beam | 1 % | rk4 |" in markdown.table(table)

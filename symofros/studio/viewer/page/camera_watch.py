@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from threading import Timer
 from typing import Any
 
 from symofros.studio.viewer.render.scale_bar import picture_height
 
 _CHANGE = 1e-3  # Of the height, that is worth saying.
+_PLACED = 1e-2  # Of the height that a page begins with: its camera stands where it was put.
+_PLACING = 2.0  # Seconds after which the camera of a page that began elsewhere counts as placed.
 
 
 class CameraWatch:
     """Tells how large a picture is at the depth of its camera's target, when that changes.
 
-    Each page has a camera of its own: while several look, or none, there is no one answer.
+    Each page has a camera of its own: while several look, or none, there is no one answer. A page's first messages are
+    of a camera that it has not put to its place yet: nothing is said of that one.
 
     Args:
         server: Server of viser.
@@ -23,19 +27,34 @@ class CameraWatch:
     def __init__(self, server: Any, on_zoom: Callable[[float | None], None]) -> None:
         self._server, self._on_zoom = server, on_zoom
         self._reported: float | None = None
+        self._placed: set[int] = set()
         server.on_client_connect(self._attend)
         server.on_client_disconnect(lambda _: self._report())
 
     @property
     def height(self) -> float | None:
-        """Height of the picture at the depth of its target [m]; None while there is not one page."""
-        cameras = [client.camera for client in self._server.get_clients().values()]
-        if len(cameras) != 1:
+        """Height of the picture at the depth of its target [m]; None while there is not one page, its camera placed."""
+        pages = self._server.get_clients()
+        if len(pages) != 1 or not self._placed.issuperset(pages):
             return None
-        return picture_height(cameras[0].position, cameras[0].look_at, cameras[0].fov)
+        return _height(next(iter(pages.values())).camera)
 
     def _attend(self, client: Any) -> None:
-        client.camera.on_update(lambda _: self._report())
+        client.camera.on_update(lambda _: self._follow(client))
+        last = Timer(_PLACING, self._place, (client,))
+        last.daemon = True
+        last.start()
+        self._follow(client)
+
+    def _follow(self, client: Any) -> None:
+        if client.client_id not in self._placed:
+            first = _height(self._server.initial_camera)
+            if abs(_height(client.camera) - first) > _PLACED * first:
+                return
+        self._place(client)
+
+    def _place(self, client: Any) -> None:
+        self._placed.add(client.client_id)
         self._report()
 
     def _report(self) -> None:
@@ -47,3 +66,7 @@ class CameraWatch:
         if not isnt_news:
             self._reported = height
             self._on_zoom(height)
+
+
+def _height(camera: Any) -> float:
+    return picture_height(camera.position, camera.look_at, camera.fov)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import gzip
 import hmac
-import html
 from collections.abc import Callable
 from dataclasses import replace
 from http import HTTPStatus
@@ -18,6 +17,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from symofros.errors import Problem
+from symofros.studio.viewer.page.page_head import VISER_TITLE, page_head
 
 LOOPBACK_NAMES = frozenset({"127.0.0.1", "localhost", "::1"})
 # What asks for a page or a socket: a request of the package websockets, whose types viser brings.
@@ -44,15 +44,21 @@ class ViewerGuard:
         title: Title of the page.
         on_colours: Called, in a thread of its own, with whether the system of who opens the page first shows dark
             colours; nobody is asked without it.
+        panel: Whether the page has a panel of controls.
 
     Attributes:
         is_asked: Whether the server asks it.
     """
 
     def __init__(
-        self, host: str, token: str, title: str = "SYMOFROS", on_colours: Callable[[bool], None] | None = None
+        self,
+        host: str,
+        token: str,
+        title: str = "SYMOFROS",
+        on_colours: Callable[[bool], None] | None = None,
+        panel: bool = True,
     ) -> None:
-        self.token, self.title = token, title
+        self.token, self.title, self._panel = token, title, panel
         self._on_colours, self._asks = on_colours, on_colours is not None
         # Bound to another address, the server is known by names that it can't tell itself.
         self._names = LOOPBACK_NAMES | {host.lower()} if is_loopback(host) else None
@@ -72,7 +78,7 @@ class ViewerGuard:
                 return _empty()
             response = answer(connection, replace(request, path=path)) if answer is not None else None
             if response is not None:
-                head = f"<title>{html.escape(self.title)}</title>{_ASK if self._asks else ''}"
+                head = page_head(self.title, self._panel) + (_ASK if self._asks else "")
                 _put_head(response, head.encode())
                 response.headers.update(_HEADERS)
             return response
@@ -121,7 +127,7 @@ def _put_head(response: Any, head: bytes) -> None:
     if not response.body or "text/html" not in response.headers.get("Content-Type", ""):
         return
     page = gzip.decompress(response.body) if is_packed else response.body
-    page = page.replace(b"<title>Viser</title>", head, 1)
+    page = page.replace(VISER_TITLE.encode(), head, 1)
     response.body = gzip.compress(page, 6, mtime=0) if is_packed else page
     if "Content-Length" in response.headers:
         del response.headers["Content-Length"]

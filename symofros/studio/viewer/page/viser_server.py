@@ -34,7 +34,12 @@ def load_viser() -> Any:
 
 
 def start_server(
-    host: str, port: int, token: str, title: str = "SYMOFROS", on_colours: Callable[[bool], None] | None = None
+    host: str,
+    port: int,
+    token: str,
+    title: str = "SYMOFROS",
+    on_colours: Callable[[bool], None] | None = None,
+    panel: bool = True,
 ) -> Any:
     """A viser server that serves, to whoever knows the token.
 
@@ -44,6 +49,7 @@ def start_server(
         token: First part of the path of its page and of its socket.
         title: Title of the page, which its tab shows.
         on_colours: Called with whether the system of who opens the page first shows dark colours.
+        panel: Whether the page has a panel of controls.
 
     Raises:
         SymofrosError: viser is not installed, or the address can't be bound to.
@@ -59,7 +65,7 @@ def start_server(
             _refuse(host, port, error.strerror or str(error), "the address is one of this machine's, the port is free")
     # It logs every connection that ends before its handshake, such as a browser's spare ones.
     logging.getLogger("websockets.server").setLevel(logging.CRITICAL)
-    guard = ViewerGuard(host, token, title, on_colours)
+    guard = ViewerGuard(host, token, title, on_colours, panel)
     with _quiet(), _guarded(guard):
         server = viser.ViserServer(host=host, port=port, verbose=False)
     if not guard.is_asked:

@@ -8,8 +8,8 @@ import numpy as np
 
 from symofros.studio.viewer.drawing.meshes import Array
 
-_LONGEST = 0.3  # Of the picture's height.
-_UNITS = ((1000.0, "km"), (1.0, "m"), (0.01, "cm"), (0.001, "mm"), (1e-6, "µm"))
+LONGEST = 0.3  # Of the picture's height.
+UNITS = ((1000.0, "km"), (1.0, "m"), (0.01, "cm"), (0.001, "mm"), (1e-6, "µm"))
 
 
 class ScaleBar(NamedTuple):
@@ -37,8 +37,8 @@ def scale_bar(height: float) -> ScaleBar:
     Args:
         height: Height of the picture at the depth of its target [m], above 0.
     """
-    most = _LONGEST * height
+    most = LONGEST * height
     power = 10.0 ** np.floor(np.log10(most))
     length = float(max(digit * power for digit in (1.0, 2.0, 5.0) if digit * power <= most))
-    unit, name = next((each for each in _UNITS if length >= 0.999 * each[0]), _UNITS[-1])
+    unit, name = next((each for each in UNITS if length >= 0.999 * each[0]), UNITS[-1])
     return ScaleBar(length, length / height, f"{length / unit:.6g} {name}")

@@ -21,6 +21,7 @@ import symofros.studio.editor
 TOKEN = "token-of-the-tests"
 # The oldest that builds the page.
 NODE = (20, 19)
+LOOKS = 4  # By axe, a second apart.
 # Where pictures for docs/editor.md go, when they are wanted.
 PICTURES = os.environ.get("SYMOFROS_PICTURES")
 
@@ -119,15 +120,22 @@ def node_modules() -> Path:
 
 @pytest.fixture
 def faults(page: Page, node_modules: Path) -> Callable[[], list[str]]:
-    """Runs axe on what the page shows now."""
+    """Runs axe on what the page shows now, and again where a page that still settles has faults: those that stay."""
     source = (node_modules / "axe-core" / "axe.min.js").read_text()
 
     def look() -> list[str]:
+        for _ in range(LOOKS - 1):
+            if not found():
+                return []
+            page.wait_for_timeout(1000)
+        return found()
+
+    def found() -> list[str]:
         page.evaluate(source)
         # The frame of the 3-D pane holds viser's page.
         run = "axe.run(document, {iframes: false}).then(result => result.violations)"
-        found: list[dict[str, Any]] = page.evaluate(run)
-        return [f"{fault['id']}: {fault['help']}: {node['target']}" for fault in found for node in fault["nodes"]]
+        faults: list[dict[str, Any]] = page.evaluate(run)
+        return [f"{fault['id']}: {fault['help']}: {node['target']}" for fault in faults for node in fault["nodes"]]
 
     return look
 

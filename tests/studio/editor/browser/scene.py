@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import io
-import time
 
 import numpy as np
 from PIL import Image
 from playwright.sync_api import Page
 
 from tests.studio.editor.browser import steps
+from tests.studio.waiting import PATIENCE, at_rest, until
 
-PATIENCE = 60.0  # Software rendering on a busy machine.
 # Of 255: what antialiasing does stays below it.
 SEEN = 40
 # Of a picture of some 500 x 300.
@@ -20,36 +19,36 @@ FEW, MANY = 20, 300
 
 def shot(page: Page) -> np.ndarray:
     """What the frame shows, without what floats over the picture (height, width, 3)."""
-    frame = page.frame_locator("iframe.view")
-    return np.asarray(
-        Image.open(io.BytesIO(frame.locator("canvas").first.screenshot(timeout=1000 * PATIENCE))).convert("RGB")
-    ).astype(int)
+    canvas = page.frame_locator("iframe.view").locator("canvas").first
+    # A picture of the element waits until its page's animations let it through, for which a busy machine has no time.
+    clip = canvas.bounding_box() or at_rest(canvas)
+    data = page.screenshot(clip=clip, timeout=1000 * PATIENCE)
+    return np.asarray(Image.open(io.BytesIO(data)).convert("RGB")).astype(int)
 
 
 def differing(a: np.ndarray, b: np.ndarray) -> int:
-    """How many pixels do."""
-    assert a.shape == b.shape
+    """How many pixels do, of what both show: a line of words above a picture takes from its height."""
+    height, width = min(a.shape[0], b.shape[0]), min(a.shape[1], b.shape[1])
+    a, b = a[-height:, :width], b[-height:, :width]
     return int((np.abs(a - b).max(axis=2) > SEEN).sum())
 
 
 def settled(page: Page) -> np.ndarray:
     """The picture once two looks at it agree."""
-    end, before = time.monotonic() + PATIENCE, shot(page)
-    while time.monotonic() < end:
+    looks = [shot(page)]
+
+    def agree() -> bool:
         page.wait_for_timeout(250)
-        after = shot(page)
-        if before.shape == after.shape and differing(before, after) < FEW:
-            return after
-        before = after
-    raise AssertionError("the picture does not come to rest")
+        looks.append(shot(page))
+        return looks[-2].shape == looks[-1].shape and differing(looks[-2], looks[-1]) < FEW
+
+    until(page, agree, "the picture does not come to rest")
+    return looks[-1]
 
 
 def changed(page: Page, before: np.ndarray, least: int = MANY) -> np.ndarray:
     """The picture once it differs from the one before, and has come to rest."""
-    end = time.monotonic() + PATIENCE
-    while differing(shot(page), before) < least:
-        assert time.monotonic() < end, "the picture stays as it was"
-        page.wait_for_timeout(100)
+    until(page, lambda: differing(shot(page), before) >= least, "the picture stays as it was")
     return settled(page)
 
 
@@ -57,8 +56,5 @@ def open_view(page: Page) -> np.ndarray:
     """Open the pane, and wait until the mechanism is drawn."""
     steps.run(page, "3-D")
     page.frame_locator("iframe.view").locator("canvas").first.wait_for(timeout=1000 * PATIENCE)
-    end = time.monotonic() + PATIENCE
-    while (shot(page) < 200).any(axis=2).sum() < MANY:
-        assert time.monotonic() < end, "nothing is drawn"
-        page.wait_for_timeout(250)
+    until(page, lambda: bool((shot(page) < 200).any(axis=2).sum() >= MANY), "nothing is drawn")
     return settled(page)

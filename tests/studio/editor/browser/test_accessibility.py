@@ -10,6 +10,7 @@ from playwright.sync_api import Page, expect
 
 from tests.studio.editor.browser import steps
 from tests.studio.editor.browser.conftest import Server
+from tests.studio.waiting import fits, lies_within
 
 pytestmark = pytest.mark.browser
 
@@ -105,11 +106,10 @@ def test_small_pages(
 
     def look() -> None:
         assert faults() == []
-        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        fits(page, width)
         for button in page.get_by_role("banner").get_by_role("button").all():
             button.scroll_into_view_if_needed()
-            box = button.bounding_box()
-            assert box is not None and 0 <= box["x"] and box["x"] + box["width"] <= width, button.inner_text()
+            lies_within(button, width)
 
     look()
     picture(f"small-{width}")
@@ -117,8 +117,7 @@ def test_small_pages(
     assert faults() == []
     for label in ("Modes along y", "Modes of shear along z", "Length"):
         steps.window(page).get_by_label(label, exact=True).click(trial=True)  # Nothing lies over it.
-    foot = steps.window(page).get_by_role("button", name="OK").bounding_box()
-    assert foot is not None and foot["y"] + foot["height"] <= height and foot["x"] + foot["width"] <= width
+    lies_within(steps.window(page).get_by_role("button", name="OK"), width, height)
     picture(f"small-window-{width}")
     page.keyboard.press("Escape")
     steps.run(page, "Simulate")
@@ -144,11 +143,10 @@ def test_a_diagram_on_small_pages(
 
     def look() -> None:
         assert faults() == []
-        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        fits(page, width)
         for button in page.get_by_role("banner").get_by_role("button").all():
             button.scroll_into_view_if_needed()
-            box = button.bounding_box()
-            assert box is not None and 0 <= box["x"] and box["x"] + box["width"] <= width, button.inner_text()
+            lies_within(button, width)
 
     look()
     picture(f"small-diagram-{width}")
@@ -161,8 +159,7 @@ def test_a_diagram_on_small_pages(
     assert faults() == []
     steps.window(page).get_by_role("button", name="Run").click()
     expect(steps.results(page).get_by_text("s of computing")).to_be_visible(timeout=60_000)
-    plot = steps.results(page).locator("figure.plot").first.bounding_box()
-    assert plot is not None and plot["x"] + plot["width"] <= width
+    lies_within(steps.results(page).locator("figure.plot").first, width)
     look()
     picture(f"small-diagram-run-{width}")
 
@@ -177,7 +174,7 @@ def test_a_window_holds_the_focus_and_gives_it_back(serve: Callable[..., Server]
         assert page.evaluate("document.activeElement === document.body || !!document.activeElement.closest('dialog')")
     page.keyboard.press("Escape")
     expect(steps.window(page)).to_have_count(0)
-    assert page.evaluate("document.activeElement.getAttribute('data-id')") == "bodies/upper"
+    expect(steps.block(page, "bodies/upper")).to_be_focused()
 
 
 def test_a_body_is_added_and_opened_by_the_keyboard_alone(serve: Callable[..., Server], page: Page) -> None:

@@ -11,6 +11,7 @@ from playwright.sync_api import Locator, Page, Position, expect
 
 from tests.studio.editor.browser import steps
 from tests.studio.editor.browser.conftest import Server
+from tests.studio.waiting import until
 
 pytestmark = pytest.mark.browser
 
@@ -69,7 +70,8 @@ def test_the_papers_square_runs_and_another_model_is_one_choice(
     going = steps.results(page).get_by_role("button", name="Go on")
     expect(going).to_be_visible(timeout=JOB)
     expect(steps.results(page).get_by_text("paused at t = 4 s")).to_be_visible()
-    assert steps.results(page).locator("path.series").first.get_attribute("d")  # Drawn while it waits.
+    # Drawn while it waits.
+    until(page, lambda: bool(steps.results(page).locator("path.series").first.get_attribute("d")))
     going.click()
     flexible = curve(page)
     picture("square")
@@ -81,7 +83,7 @@ def test_the_papers_square_runs_and_another_model_is_one_choice(
     steps.fill(page, "Pause at", "")
     steps.window(page).get_by_role("button", name="Run").click()
     expect(steps.results(page).get_by_text("The diagram has changed since")).to_have_count(0)
-    assert curve(page) != flexible
+    until(page, lambda: curve(page) != flexible)
     steps.saved(page)
     plant = "plant: {file: flexible/planar_robot.yaml, start: {q1: -0.1, q2: 0.1, q3: 0}"
     assert square.file.read_text() == text.replace(f"{plant}}}", f"{plant}, functions: 0}}")

@@ -11,6 +11,7 @@ from playwright.sync_api import Browser, Page, Route, expect
 
 from tests.studio.editor.browser import steps
 from tests.studio.editor.browser.conftest import Server
+from tests.studio.waiting import at_rest, fits, until
 
 pytestmark = pytest.mark.browser
 
@@ -108,7 +109,7 @@ def test_copies_have_names_and_coordinates_of_their_own(serve: Callable[..., Ser
     expect(steps.block(page, "bodies/lower2")).to_contain_text("q4")
     expect(steps.wire(page, "bodies/lower2/joint")).to_have_count(1)
     steps.problems(page, 0)
-    assert page.locator(".react-flow__node").count() == 5
+    expect(page.locator(".react-flow__node")).to_have_count(5)
 
 
 def test_find_goes_to_a_block_and_enter_opens_it(
@@ -122,6 +123,7 @@ def test_find_goes_to_a_block_and_enter_opens_it(
     picture("find")
     page.keyboard.press("Enter")
     expect(steps.window(page)).to_have_count(0)
+    expect(steps.block(page, "bodies/upper")).to_contain_class("selected")
     page.keyboard.press("Enter")
     expect(page.get_by_role("dialog", name="Body upper")).to_be_visible()
 
@@ -366,7 +368,7 @@ def test_a_new_file_is_no_fault_and_fits_a_narrow_page(serve: Callable[..., Serv
     expect(button).to_have_class("check")
     for width in (640, 390):
         page.set_viewport_size({"width": width, "height": 760})
-        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        fits(page, width)
 
 
 def test_moves_of_blocks_are_undone_in_turn_with_edits(serve: Callable[..., Server], page: Page) -> None:
@@ -375,8 +377,7 @@ def test_moves_of_blocks_are_undone_in_turn_with_edits(serve: Callable[..., Serv
     lower = steps.block(page, "bodies/lower")
 
     def place() -> tuple[int, int]:
-        box = lower.bounding_box()
-        assert box is not None
+        box = at_rest(lower)
         return round(box["x"]), round(box["y"])
 
     def drag(by: int) -> tuple[int, int]:
@@ -402,15 +403,12 @@ def test_moves_of_blocks_are_undone_in_turn_with_edits(serve: Callable[..., Serv
     for name, there in zip(names, places, strict=True):
         page.get_by_role("button", name=f"Undo: {name}").click()
         expect(page.get_by_role("button", name=f"Redo: {name}")).to_be_enabled()
-        page.wait_for_timeout(100)
-        assert place() == there
+        until(page, lambda there=there: place() == there)
     expect(page.get_by_role("button", name="Undo", exact=True)).to_be_disabled()
     for name, there in zip(reversed(names), (first, second, second, third), strict=True):
         page.get_by_role("button", name=f"Redo: {name}").click()
         expect(page.get_by_role("button", name=f"Undo: {name}")).to_be_enabled()
-        page.wait_for_timeout(100)
-        assert place() == there
+        until(page, lambda there=there: place() == there)
     value(page, "m1")("1.5")
     page.keyboard.press("Control+z")
-    page.wait_for_timeout(200)
-    assert place() == second
+    until(page, lambda: place() == second)

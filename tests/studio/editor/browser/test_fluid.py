@@ -20,6 +20,7 @@ from reference_models import MODELS
 from reference_models.rigid.chain import chain
 from tests.studio.editor.browser import steps
 from tests.studio.editor.browser.conftest import Server
+from tests.studio.waiting import at_rest
 from validation.inputs.cases import ROBOTS, robot_file
 
 pytestmark = pytest.mark.browser
@@ -98,12 +99,11 @@ def test_big_models_stay_fluid(serve: Callable[..., Server], page: Page, tmp_pat
     server = serve("big.yaml")
     steps.open_editor(page, server.url)
     steps.problems(page, 0)
-    page.wait_for_timeout(500)
     node = f"bodies/{BIG[name]}"
-    box = steps.block(page, node).bounding_box()
-    assert box is not None
+    box = at_rest(steps.block(page, node))
     at = box["x"] + box["width"] / 2, box["y"] + min(6, box["height"] / 8)
     page.mouse.click(*at)
+    expect(steps.block(page, node)).to_contain_class("selected")
     assert frames(page, *at, f"{name}: drag") == [node]
     assert frames(page, 700, 715, f"{name}: pan") == []
 
@@ -130,11 +130,11 @@ def test_thirty_bodies_stay_fluid_fold_and_are_found(serve: Callable[..., Server
     server = serve("chain.yaml")
     steps.open_editor(page, server.url)
     blocks = page.locator(".react-flow__node")
-    assert blocks.count() == BODIES + 1
-    page.wait_for_timeout(500)
-    box, name = blocks.nth(12).bounding_box(), blocks.nth(12).get_attribute("data-id")
-    assert box is not None
+    expect(blocks).to_have_count(BODIES + 1)
+    steps.problems(page, 0)
+    box, name = at_rest(blocks.nth(12)), blocks.nth(12).get_attribute("data-id")
     page.mouse.click(box["x"] + box["width"] / 2, box["y"] + 6)
+    expect(blocks.nth(12)).to_contain_class("selected")
     runs: dict[str, Any] = {
         "drag": dragged(page, box["x"] + box["width"] / 2, box["y"] + 6),
         "pan": dragged(page, 700, 700),

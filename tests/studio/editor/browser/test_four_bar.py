@@ -10,6 +10,7 @@ from playwright.sync_api import Locator, Page, expect
 import symofros as sf
 from tests.studio.editor.browser import steps
 from tests.studio.editor.browser.conftest import Server
+from tests.studio.waiting import at_rest
 
 pytestmark = pytest.mark.browser
 
@@ -23,8 +24,7 @@ def port(page: Page, node: str, name: str) -> Locator:
 
 def draw(page: Page, start: Locator, end: Locator) -> None:
     """Draw a link from one port to another."""
-    a, b = start.bounding_box(), end.bounding_box()
-    assert a is not None and b is not None
+    a, b = at_rest(start), at_rest(end)
     page.mouse.move(a["x"] + a["width"] / 2, a["y"] + a["height"] / 2)
     page.mouse.down()
     page.mouse.move(b["x"] + b["width"] / 2, b["y"] + b["height"] / 2, steps=8)
@@ -34,7 +34,7 @@ def draw(page: Page, start: Locator, end: Locator) -> None:
 def add(page: Page, name: str, on: str) -> None:
     """Add a rigid body that the block `on` carries, and name it."""
     page.get_by_role("button", name="Show the whole diagram").click()
-    page.wait_for_timeout(300)  # The diagram moves.
+    at_rest(steps.block(page, on))
     steps.block(page, on).click()
     page.get_by_role("button", name="Rigid body", exact=True).click()
     steps.open_window(page, "bodies/body")
@@ -49,7 +49,7 @@ def test_a_loop_is_closed_by_a_link(serve: Callable[..., Server], page: Page, pi
     add(page, "coupler", "bodies/crank")
     add(page, "rocker", "world")
     page.get_by_role("button", name="Show the whole diagram").click()
-    page.wait_for_timeout(400)
+    at_rest(steps.block(page, "bodies/coupler"))
 
     # A joint's link is taken away, and drawn again.
     steps.wire(page, "bodies/coupler/joint").focus()

@@ -17,6 +17,7 @@ from tests.exports.cases import build
 from tests.studio.editor.browser import steps
 from tests.studio.editor.browser.conftest import Server
 from tests.studio.editor.browser.scene import changed, open_view
+from tests.studio.waiting import at_rest
 
 pytestmark = pytest.mark.browser
 
@@ -121,13 +122,6 @@ def draw_the_law(page: Page) -> None:
     expect(steps.wire(page, "blocks/forward_dynamics/inputs/u")).to_have_count(1)
     steps.problems(page, 0)
     steps.saved(page)
-
-
-def at_rest(element: Locator) -> None:
-    """Wait until an element stays where it is."""
-    before = None
-    while before != (before := element.bounding_box()):
-        element.page.wait_for_timeout(250)
 
 
 def feed(page: Page, name: str, source: str) -> None:

@@ -12,6 +12,7 @@ from playwright.sync_api import Page, Request, expect
 
 from tests.studio.editor.browser import steps
 from tests.studio.editor.browser.conftest import Server
+from tests.studio.waiting import at_rest
 
 pytestmark = pytest.mark.browser
 
@@ -52,8 +53,7 @@ def test_a_motion_plays_at_the_cursor_of_the_plots_and_runs_are_compared(
     expect(angle).to_have_value(re.compile(r"^1\.20"))  # In steps of 0.01.
     expect(results.locator(".cursor")).to_have_count(results.locator("figure.plot").count())
     expect(results.locator(".legend").get_by_text("1.2", exact=True)).to_have_count(1)
-    box = results.get_by_role("img", name="q1, q2 over time").bounding_box()
-    assert box is not None
+    box = at_rest(results.get_by_role("img", name="q1, q2 over time"))
     with page.expect_request_finished(is_seek):
         page.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + box["height"] / 2)
     expect(motion.get_by_role("status")).not_to_have_text("0 s")
@@ -64,7 +64,8 @@ def test_a_motion_plays_at_the_cursor_of_the_plots_and_runs_are_compared(
     expect(page.get_by_label("Frames")).to_be_checked()
     picture("frames")
     page.get_by_label("Frames").click()
-    with page.expect_download() as film:
+    # Its pictures take seconds of processor time, which a busy machine gives in minutes.
+    with page.expect_download(timeout=5 * JOB) as film:
         results.get_by_label("Film of run 1, GIF").click()
     assert film.value.suggested_filename == "run_1.gif" and film.value.path().read_bytes()[:6] == b"GIF89a"
 

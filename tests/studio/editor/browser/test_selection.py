@@ -11,7 +11,8 @@ from playwright.sync_api import Page, expect
 
 from tests.studio.editor.browser import steps
 from tests.studio.editor.browser.conftest import Server
-from tests.studio.editor.browser.scene import PATIENCE, open_view, settled
+from tests.studio.editor.browser.scene import open_view, settled
+from tests.studio.waiting import at_rest, until
 
 pytestmark = pytest.mark.browser
 
@@ -46,13 +47,12 @@ def test_what_is_chosen_is_marked_everywhere(
     rows = page.get_by_role("tree", name="Elements")
     expect(rows.get_by_role("treeitem", selected=True)).to_have_text(["link2 beam"])
     tab(page, "YAML")
-    text = chosen_text(page)
-    assert text[0] == "link2:" and len(text) == 3
+    until(page, lambda: (text := chosen_text(page))[0] == "link2:" and len(text) == 3)
 
     # In the text: the caret chooses what its line defines; what is chosen elsewhere comes into sight.
     page.locator(".text-pane").get_by_text("axis: {position").first.click()
     expect(steps.block(page, "bodies/housing2").locator(".block-frame.marked")).to_have_text("axis")
-    assert len(chosen_text(page)) == 1
+    until(page, lambda: len(chosen_text(page)) == 1)
     tab(page, "Tree")
     expect(rows.get_by_role("treeitem", selected=True)).to_have_text(["axis frame"])
 
@@ -71,14 +71,13 @@ def test_what_is_chosen_is_marked_everywhere(
     page.frame_locator("iframe.view").locator("body").evaluate(
         "body => body.insertAdjacentHTML('beforeend', '<style>.mantine-Notification-root {display: none}</style>')"
     )
+    until(page, lambda: bool(marked(settled(page)).sum() > 20))
     shown = marked(settled(page))
-    assert shown.sum() > 20
     y, x = np.argwhere(shown)[len(np.argwhere(shown)) // 2]
     picture("chosen")
     page.locator(".react-flow__pane").click(position={"x": 5, "y": 5})
     expect(page.locator(".react-flow__node.selected")).to_have_count(0)
-    assert marked(settled(page)).sum() < shown.sum() / 4
-    frame = page.locator("iframe.view").bounding_box()
-    assert frame is not None
+    until(page, lambda: bool(marked(settled(page)).sum() < shown.sum() / 4))
+    frame = at_rest(page.locator("iframe.view"))
     page.mouse.click(frame["x"] + int(x), frame["y"] + int(y))
-    expect(steps.block(page, "bodies/link1")).to_contain_class("selected", timeout=1000 * PATIENCE)
+    expect(steps.block(page, "bodies/link1")).to_contain_class("selected")

@@ -8,8 +8,13 @@ export function chooseImport(): void {
   const input = window.document.createElement("input");
   input.type = "file";
   input.accept = IMPORTED.join(",");
+  // While the dialog is open the page holds it: nothing else does, and what nobody holds may be gone before the answer.
+  input.hidden = true;
+  window.document.body.append(input);
+  input.addEventListener("cancel", () => input.remove());
   input.addEventListener("change", () => {
     const file = input.files?.[0];
+    input.remove();
     if (file !== undefined) void importFile(file);
   });
   input.click();

@@ -14,6 +14,8 @@ import { ParameterSlider } from "./ParameterSlider";
 const UNITS = "units";
 /** Of so many there is a field that finds one. */
 const FEW = 12;
+/** Names of more letters stand above what belongs to them: their column is no wider. */
+const LONG = 10;
 /** Rows that are drawn at once: hundreds of sliders make each edit of a large model wait. */
 const PAGE = 50;
 
@@ -29,15 +31,19 @@ function Row({ parameter }: { parameter: Parameter }) {
       edits.map((each) => asTyped(each, new Map([[keyOf(each.path), text.trim()]]))),
     );
   };
-  return (
+  const isLong = name.length > LONG;
+  const head = (
+    <th scope="row" colSpan={isLong ? 6 : 1}>
+      <Cell
+        value={name}
+        label={`Name of ${name}`}
+        commit={(to) => void edit(`rename ${name}`, [{ op: "rename", path: ["parameters", name], to: to.trim() }])}
+      />
+    </th>
+  );
+  const row = (
     <tr>
-      <th scope="row">
-        <Cell
-          value={name}
-          label={`Name of ${name}`}
-          commit={(to) => void edit(`rename ${name}`, [{ op: "rename", path: ["parameters", name], to: to.trim() }])}
-        />
-      </th>
+      {isLong ? <td /> : head}
       <td>
         <Cell value={shown(parameter.value)} label={`Value of ${name}`} numeric commit={setNumber} />
       </td>
@@ -70,6 +76,14 @@ function Row({ parameter }: { parameter: Parameter }) {
         />
       </td>
     </tr>
+  );
+  return isLong ? (
+    <>
+      <tr>{head}</tr>
+      {row}
+    </>
+  ) : (
+    row
   );
 }
 

@@ -1,0 +1,66 @@
+"""The page of a replay: viser's, with the motion's time, its coordinates, a scale bar and the colours of its reader."""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from symofros.studio.viewer.drawing.meshes import Array
+from symofros.studio.viewer.page.page_head import VISER_TITLE, fragment, page_head
+from symofros.studio.viewer.render.camera import Camera
+from symofros.studio.viewer.render.scale_bar import LONGEST, UNITS
+
+# Of viser's environment, which alone is too weak before a dark ground.
+_DARK_INTENSITY = 3.0
+_LIGHT = "darkMode:false"
+_ASKED = 'darkMode:matchMedia("(prefers-color-scheme: dark)").matches'
+
+
+def replay_page(
+    page: str,
+    title: str,
+    camera: Camera,
+    t: Array,
+    period: float,
+    remark: str,
+    q: Array,
+    names: Sequence[str],
+    units: Sequence[str],
+) -> str:
+    """Put what a reader wants to know beside a recording.
+
+    Args:
+        page: Page of viser, with the recording in it.
+        title: Title of the page, which its tab shows.
+        camera: Camera that the page begins with.
+        t: Times of the pictures (n) [s].
+        period: Time from picture to picture, as they are played [s].
+        remark: Words after the time.
+        q: Coordinates in the pictures (n, nq).
+        names: Their names (nq).
+        units: Their units (nq); "" where there is none.
+    """
+    forward = camera.axes[2]
+    given: dict[str, Any] = {
+        "t": [float(f"{time:.9g}") for time in t],
+        "period": period,
+        "remark": remark,
+        "q": base64.b64encode(np.ascontiguousarray(q, dtype="<f4").tobytes()).decode(),
+        "names": list(names),
+        "unit_of": list(units),
+        "distance": float(np.linalg.norm(camera.target - camera.position)),
+        # What no turn of the world, which viser makes, changes of where the camera is.
+        "from_origin": float(np.linalg.norm(camera.position)),
+        "along": float(camera.position @ forward),
+        "longest": LONGEST,
+        "units": UNITS,
+        "dark_intensity": _DARK_INTENSITY,
+    }
+    # No "<" of a name may end the script.
+    data = json.dumps(given).replace("<", "\\u003c")
+    head = page_head(title) + fragment("replay.html").replace("/*given*/", data)
+    return page.replace(VISER_TITLE, head, 1).replace(_LIGHT, _ASKED, 1)
