@@ -221,7 +221,7 @@ def test_the_motion_is_shown_again_and_goes_on_from_any_instant(package: Path, c
     assert shown() == (end, last)
     instant.fill(str(count // 2))
     assert shown()[0] == pytest.approx(count // 2 / 60, abs=0.01)
-    page.get_by_role("button", name="Simulate on").click()
+    page.get_by_role("button", name="Go on").click()
     page.wait_for_function(f"parseFloat(document.getElementById('time').textContent) >= {end} - 1e-9")
     page.get_by_role("button", name="Pause").click()
     instant.fill(str(count))
