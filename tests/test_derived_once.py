@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
@@ -17,7 +18,7 @@ from symofros.generator import programs
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.topology import graph
 from symofros.runtime.build import build
-from symofros.runtime.calls import binding
+from symofros.runtime.calls import binding, extension
 from symofros.studio.editor.jobs.operations import compile_model
 
 
@@ -25,6 +26,11 @@ from symofros.studio.editor.jobs.operations import compile_model
 def work(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Counter[str]:
     """Work done so far, with an empty cache."""
     done: Counter[str] = Counter()
+    # The extension for plain calls is compiled behind the first one of a process, whichever test that is.
+    extension.load()
+    for thread in threading.enumerate():
+        if thread.name == "symofros_call":
+            thread.join()
 
     def count(owner: Any, name: str, kind: str) -> None:
         original: Callable[..., Any] = getattr(owner, name)

@@ -82,10 +82,10 @@ def environments() -> tuple[Environment, ...]:
         ),
         Environment(
             "CasADi",
-            "`sf.interop.casadi`",
+            "`sf.interop.casadi`; of acados, `write_acados_library`",
             differentiated | {"frame_pose"},
             "exact Jacobians and Hessians with their sparsity; of frames the position",
-            ("tests/interop/test_casadi.py",),
+            ("tests/interop/test_casadi.py", "tests/interop/test_acados.py"),
         ),
     )
 

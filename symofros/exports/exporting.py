@@ -200,7 +200,7 @@ def _material(
         system,
         record,
         c_name,
-        compilation.source(c_name, LaneOptions() if target == "wasm" else None),
+        compilation.source(c_name, LaneOptions(in_rows=True) if target == "wasm" else None),
         order,
         tuple(kernels[key].signature for key in order),
         checks(record, kernels, order, q),

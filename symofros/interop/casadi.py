@@ -4,19 +4,22 @@
     a = dynamics.forward_dynamics(q, v, u)      # SX is not possible: MX, DM or numbers
     p = dynamics.frame_position("tool", q)
 
-The library has CasADi's interface of external functions, which acados takes as well: `dynamics.library`, and the names
-`dynamics.names`. Jacobians, gradients and Hessians of both are exact and have their structural zeros: Ipopt takes its
-exact Hessian.
+The library has CasADi's interface of external functions: `dynamics.library`, and the names `dynamics.names`; acados
+takes what `dynamics.write_acados_library` writes. Jacobians, gradients and Hessians are exact and have their structural
+zeros: Ipopt takes its exact Hessian.
 """
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from symofros.base.arguments import check_argument
+from symofros.base.atomic import write_atomically
 from symofros.base.functions import FUNCTIONS
 from symofros.base.model_function import cotangents
 from symofros.base.options import Options
@@ -81,7 +84,7 @@ class Dynamics:
             the option "hessian_approximation": "limited-memory".
 
     Attributes:
-        library: Path of the shared library.
+        library: Path of the shared library, with CasADi's own whole numbers.
         names: Name of each function in the library, by ours ("frame_position NAME" of a frame). Names of its Jacobian,
             of its gradient and of that one's Jacobian begin with jac_, adj1_ and jac_adj1_.
         functions: Functions of CasADi, by ours; parameters are their last input.
@@ -111,9 +114,28 @@ class Dynamics:
         self.names = {name: f"{c_name}_{identifier(name.replace(' ', '_'))}" for name in wanted}
         self._par = known.record.par_default
         source = _source(compilation, c_name, {self.names[name]: each for name, each in wanted.items()}, second_order)
-        header = native_text("model/symofros_model.h")
-        self.library: Path = build_library(source, header, toolchain, symbol=f"{c_name}_model")
+        self._build = partial(build_library, header=native_text("model/symofros_model.h"), toolchain=toolchain)
+        self._c_name, self._source, self._symbol = c_name, source, f"{c_name}_model"
+        self.library: Path = self._build(source, symbol=self._symbol)
         self.functions = {name: casadi.external(own, str(self.library)) for name, own in self.names.items()}
+
+    def write_acados_library(self, folder: str | os.PathLike[str]) -> str:
+        """Write lib<name>.so for acados, whose whole numbers are `int` where CasADi's are `long long`.
+
+        Args:
+            folder: Where it is written: acados' option `model_external_shared_lib_dir`.
+
+        Returns:
+            The name without "lib" and ".so": acados' option `model_external_shared_lib_name`.
+
+        Raises:
+            CompileError: The C compiler refused.
+        """
+        built = self._build(f"#define casadi_int int\n{self._source}", symbol=self._symbol)
+        place = Path(folder)
+        place.mkdir(parents=True, exist_ok=True)
+        write_atomically(place / f"lib{self._c_name}.so", built.read_bytes())
+        return self._c_name
 
     def forward_dynamics(self, q: Any, v: Any, u: Any, par: Any = None) -> Any:
         """Accelerations (nv) of q (nq), v (nv), u (nu), par (npar)."""

@@ -136,29 +136,29 @@ class External:
         own, n_in, n_out = self.name, len(self.inputs), len(self.outputs)
         lines = []
         for i, given in enumerate(self.inputs):
-            lines.append(f"static const long long {own}_in_{i}[] = {{{given.size}, 1, 1}};")
+            lines.append(f"static const casadi_int {own}_in_{i}[] = {{{given.size}, 1, 1}};")
         for i, output in enumerate(self.outputs):
-            lines.append(f"static const long long {own}_out_{i}[] = {{{_numbers(output.sparsity)}}};")
-            lines.append(f"static const long long {own}_gather_{i}[] = {{{_numbers(output.gather)}}};")
+            lines.append(f"static const casadi_int {own}_out_{i}[] = {{{_numbers(output.sparsity)}}};")
+            lines.append(f"static const casadi_int {own}_gather_{i}[] = {{{_numbers(output.gather)}}};")
         plans = ", ".join(self._plan(i) for i in range(n_out))
         groups = ", ".join(f'"{given.group}"' for given in self.inputs)
         lines += [
             f"static const char *const {own}_groups[] = {{{groups}}};",
             f"static const sym_casadi_output {own}_outputs[] = {{{plans}}};",
-            f"SYM_EXPORT long long {own}_n_in(void) {{ return {n_in}; }}",
-            f"SYM_EXPORT long long {own}_n_out(void) {{ return {n_out}; }}",
+            f"SYM_EXPORT casadi_int {own}_n_in(void) {{ return {n_in}; }}",
+            f"SYM_EXPORT casadi_int {own}_n_out(void) {{ return {n_out}; }}",
             *_table(f"const char *{own}_name_in", [f'"{given.label}"' for given in self.inputs]),
             *_table(f"const char *{own}_name_out", [f'"{output.label}"' for output in self.outputs]),
-            *_table(f"const long long *{own}_sparsity_in", [f"{own}_in_{i}" for i in range(n_in)]),
-            *_table(f"const long long *{own}_sparsity_out", [f"{own}_out_{i}" for i in range(n_out)]),
-            f"SYM_EXPORT int {own}_work(long long *arg, long long *res, long long *iw, long long *w) {{",
+            *_table(f"const casadi_int *{own}_sparsity_in", [f"{own}_in_{i}" for i in range(n_in)]),
+            *_table(f"const casadi_int *{own}_sparsity_out", [f"{own}_out_{i}" for i in range(n_out)]),
+            f"SYM_EXPORT int {own}_work(casadi_int *arg, casadi_int *res, casadi_int *iw, casadi_int *w) {{",
             f"    if (arg != NULL) *arg = {n_in};",
             f"    if (res != NULL) *res = {n_out};",
             "    if (iw != NULL) *iw = 0;",
-            f"    if (w != NULL) *w = (long long)sym_casadi_work({c_name}_model());",
+            f"    if (w != NULL) *w = (casadi_int)sym_casadi_work({c_name}_model());",
             "    return 0;",
             "}",
-            f"SYM_EXPORT int {own}(const double **arg, double **res, long long *iw, double *w, int mem) {{",
+            f"SYM_EXPORT int {own}(const double **arg, double **res, casadi_int *iw, double *w, int mem) {{",
             f"    const sym_model *model = {c_name}_model();",
             "    (void)iw, (void)mem;",
             f"    return sym_casadi_call(model, {own}_groups, {n_in}, {own}_outputs, {n_out}, arg, res, w);",
@@ -177,7 +177,7 @@ class External:
 def _table(declared: str, entries: Sequence[str]) -> list[str]:
     """A C function of an index."""
     cases = " ".join(f"case {i}: return {entry};" for i, entry in enumerate(entries))
-    return [f"SYM_EXPORT {declared}(long long i) {{", f"    switch (i) {{ {cases} default: return NULL; }}", "}"]
+    return [f"SYM_EXPORT {declared}(casadi_int i) {{", f"    switch (i) {{ {cases} default: return NULL; }}", "}"]
 
 
 def _numbers(values: Sequence[int]) -> str:

@@ -13,6 +13,7 @@ from tests.description.usd_models import body, joint, prim, stage
 
 pytest.importorskip("pxr.Usd")
 newton = pytest.importorskip("newton")
+pytest.importorskip("newton_usd_schemas", reason="Newton reads USD by it: pip install 'symofros[engine-newton]'")
 
 SINGLE = 5e-6
 LINKS = 6

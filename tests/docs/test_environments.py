@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from importlib import import_module
 from typing import Any
 
@@ -27,3 +28,12 @@ def test_environments_have_functions_of_the_table_and_tests_that_are_there(made:
     for environment in made.environments():
         assert environment.functions and environment.functions <= FUNCTIONS.keys(), environment.name
         assert all((ROOT / test).exists() for test in environment.tests), environment.name
+
+
+def test_what_shows_an_environment_is_there() -> None:
+    _, _, shown = (ROOT / "docs/environments.md").read_text(encoding="utf-8").partition("## How each is shown")
+    files = {name.replace(".", "/") + ".py" for name in re.findall(r"-m (validation\.[\w.]+)", shown)}
+    files |= set(re.findall(r"(?:validation|examples)/[\w/]+\.(?:py|mjs)", shown))
+    assert len(files) >= 5 and all((ROOT / file).is_file() for file in files)
+    commands = set(re.findall(r"python -m validation (\w+)", shown))
+    assert commands and commands <= set(re.findall(r"python -m validation (\w+)", (ROOT / "README.md").read_text()))

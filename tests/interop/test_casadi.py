@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import re
-import shutil
-import subprocess
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -140,66 +136,6 @@ def test_wrong_frames_are_refused() -> None:
         sf.interop.casadi.Dynamics(MODELS["cart_pole"], frames="tip")
     with pytest.raises(sf.UnknownNameError, match="tipp"):
         sf.interop.casadi.Dynamics(MODELS["cart_pole"], frames=["tipp"])
-
-
-PROGRAM = """
-#include <stdio.h>
-#include <stdlib.h>
-typedef long long casadi_int;
-#define DECLARE(f) casadi_int f##_n_in(void), f##_n_out(void); const casadi_int *f##_sparsity_in(casadi_int), \\
-    *f##_sparsity_out(casadi_int); int f##_work(casadi_int *, casadi_int *, casadi_int *, casadi_int *); \\
-    int f(const double **, double **, casadi_int *, double *, int);
-DECLARE(F)
-#define EACH(f, what) f##_##what
-/* Dense outputs, column by column, as acados unpacks CasADi's. */
-int main(void) {
-    const double q[] = {0.1, 0.4}, v[] = {-0.3, 0.7}, u[] = {1.5}, par[] = {PAR}, w[] = {0.8, -0.6};
-    const double *given[] = {q, v, u, par, NULL, w, NULL, NULL, NULL, NULL};
-    casadi_int arg, res, iw, size, o, c, k;
-    F_work(&arg, &res, &iw, &size);
-    const double **in = malloc((size_t)arg * sizeof *in);
-    double **out = malloc((size_t)res * sizeof *out), *work = malloc((size_t)size * sizeof *work);
-    for (k = 0; k < F_n_in(); ++k) in[k] = given[k];
-    for (o = 0; o < F_n_out(); ++o) {
-        const casadi_int *s = F_sparsity_out(o);
-        out[o] = calloc((size_t)s[2 + s[1]] + 1, sizeof(double));
-    }
-    if (F(in, out, NULL, work, 0)) return 1;
-    for (o = 0; o < F_n_out(); ++o) {
-        const casadi_int *s = F_sparsity_out(o), *colind = s + 2, *row = colind + s[1] + 1;
-        for (c = 0; c < s[1]; ++c)
-            for (k = colind[c]; k < colind[c + 1]; ++k)
-                printf("%lld %lld %lld %.17g\\n", o, row[k], c, out[o][k]);
-    }
-    return 0;
-}
-"""
-
-
-@pytest.mark.parametrize("prefix", ["", "jac_", "adj1_", "jac_adj1_"])
-def test_a_c_program_calls_the_library_as_acados_does(
-    dynamics: Any, model: sf.Model, prefix: str, tmp_path: Path
-) -> None:
-    """Beside CasADi's own reading of the same functions."""
-    compiler = shutil.which("cc") or pytest.skip("needs a program called cc")
-    name = f"{prefix}{dynamics.names['forward_dynamics']}"
-    text = PROGRAM.replace("PAR", ", ".join(map(repr, model.parameter_values.tolist())))
-    (tmp_path / "main.c").write_text(re.sub(r"\bF(?=_|\(|\))", name, text))
-    link = [str(dynamics.library), f"-Wl,-rpath,{dynamics.library.parent}"]
-    run = [compiler, "-std=c99", "-Wall", "-Werror", "main.c", *link, "-o", "main"]
-    subprocess.run(run, cwd=tmp_path, check=True)
-    lines = subprocess.run(["./main"], cwd=tmp_path, check=True, capture_output=True, text=True).stdout.splitlines()
-    given = [[0.1, 0.4], [-0.3, 0.7], [1.5], model.parameter_values, [0.0, 0.0], [0.8, -0.6]]
-    function = casadi.external(name, str(dynamics.library))
-    given += [np.zeros(function.size1_in(i)) for i in range(6, function.n_in())]
-    outputs = function.call(given[: function.n_in()])
-    mine = [np.zeros(output.shape) for output in outputs]
-    for line in lines:
-        o, row, column, value = line.split()
-        mine[int(o)][int(row), int(column)] = float(value)
-    assert lines
-    for ours, theirs in zip(mine, outputs, strict=True):
-        np.testing.assert_array_equal(ours, np.array(theirs))
 
 
 def test_ipopt_swings_the_pole_by_the_external_function(dynamics: Any, model: sf.Model) -> None:

@@ -4,7 +4,8 @@
 //     npm install @mujoco/mujoco
 //     node race_wasm.mjs panda_wasm/panda.mjs panda_mjcf/panda.xml
 //
-// Loops are in JavaScript on both sides, one state a call; ours is timed in batches of 64 states, too, with the loop in C.
+// Loops are in JavaScript on both sides, one state a call; ours is timed in batches of 64 and of 4096 states, too, with the
+// loop in C.
 // MuJoCo's are the calls that its M and qfrc_bias need, without collisions: kinematics, comPos, makeM, comVel, rne.
 // Both get the same states (speeds and angles within 1); how far M and h differ is printed, and too much is an error.
 import { createRequire } from "node:module";
@@ -23,7 +24,8 @@ const robot = await load(),
 const model = mujoco.MjModel.from_xml_string(readFileSync(theirs, "utf8")),
   data = new mujoco.MjData(model);
 const { nq, nv } = robot.sizes,
-  STATES = 64;
+  STATES = 64,
+  MANY = 4096;
 if (model.nq !== nq || model.nv !== nv)
   throw new Error(`nq ${nq}, nv ${nv} and MuJoCo's ${model.nq}, ${model.nv} differ`);
 
@@ -33,12 +35,15 @@ const states = Array.from({ length: STATES }, () => ({
   q: Float64Array.from({ length: nq }, random),
   v: Float64Array.from({ length: nv }, random),
 }));
-const batch = robot.prepareBatch("dynamics", STATES),
-  one = (await load()).prepareBatch("dynamics", 1); // Memories of their own.
-states.forEach(({ q, v }, i) => {
-  batch.inputs.q.set(q, i * nq);
-  batch.inputs.v.set(v, i * nv);
-});
+const prepare = async (n) => {
+  const { inputs, outputs, run } = (await load()).prepareBatch("dynamics", n); // A memory of its own.
+  for (let i = 0; i < n; ++i) {
+    inputs.q.set(states[i % STATES].q, i * nq);
+    inputs.v.set(states[i % STATES].v, i * nv);
+  }
+  return { inputs, outputs, run };
+};
+const [one, batch, large] = [await prepare(1), await prepare(STATES), await prepare(MANY)];
 
 const bias = new mujoco.DoubleBuffer(nv),
   full = new mujoco.DoubleBuffer(nv * nv);
@@ -74,6 +79,10 @@ const turns = {
   "symofros, 64 states a call": () => {
     for (let k = 0; k < 40; ++k) batch.run();
     return 40 * STATES;
+  },
+  "symofros, 4096 states a call": () => {
+    large.run();
+    return MANY;
   },
   "symofros, one state a call": () => {
     for (let k = 0; k < 20; ++k) states.forEach(ourState);

@@ -112,12 +112,13 @@ class FunctionWriter:
     def text_on_vectors(self, lanes: LaneOptions) -> FunctionText:
         """The C text for several states, one in each lane of a vector; of a writer without packs.
 
-        Chunk by chunk, each for all vectors of states; entries that are always zero are left out. The chunks stay apart
-        from the loops around them, out of which compilers would carry their constants.
+        Chunk by chunk, each for all vectors of states; entries that are always zero are left out, unless lanes are
+        rows. The chunks stay apart from the loops around them, out of which compilers would carry their constants.
         """
         chunked = _Chunks.of(_chunks_in_lanes(self.statements) or [[]])
-        writer = self.writer.in_lanes(lanes.single)
-        parts = [self._chunk_in_lanes(i, chunked, writer) for i in range(len(chunked.chunks))]
+        writer, last = self.writer.in_lanes(lanes.single), len(chunked.chunks) - 1
+        zeros = self._zeros("sym_set(0.0)") if lanes.in_rows else []
+        parts = [self._chunk_in_lanes(i, chunked, writer, zeros if i == last else ()) for i in range(last + 1)]
         columns = [f"in[{i}]" for i in range(1, len(self.inputs))] + [f"out[{i}]" for i in range(len(self.outputs))]
         arguments = ["(const sym_p *)(in[0].at + i * in[0].next)"]
         arguments += [*(f"{x}.at + i * {x}.next, {x}.step" for x in columns), f"work + i * {chunked.work}"]
@@ -140,9 +141,7 @@ class FunctionWriter:
         names = [*inputs, *(output.name for output in self.outputs)]
         arguments = [pre, *(f"{name}_at, {name}_step" for name in names), "work" if work else "NULL"]
         body = [f"    sym_v work[{work}];"] * (work > 0)
-        for output in self.outputs:
-            zeros = (i for i, edge in enumerate(output.edges) if edge == 0)
-            body += [f"    SYM_PUT({output.name}, {i}, 0);" for i in zeros]
+        body += self._zeros("0")
         calls = [f"    {self.c_name}_v_{k}({', '.join(arguments)});" for k in range(len(parts))]
         head = f"static inline void {self.c_name}_of_state({', '.join(self._strided_arguments())}) {{"
         return FunctionText("\n".join([*parts, head, *body, *calls, "}"]), work)
@@ -153,6 +152,11 @@ class FunctionWriter:
         arguments = [f"const sym_p *restrict {pre}"]
         arguments += [f"const sym_number *restrict {name}_at, ptrdiff_t {name}_step" for name in inputs]
         return arguments + [f"sym_number *restrict {o.name}_at, ptrdiff_t {o.name}_step" for o in self.outputs]
+
+    def _zeros(self, zero: str) -> list[str]:
+        """Lines that fill the entries that are always zero, with their text of zero."""
+        entries = ((output.name, i) for output in self.outputs for i, edge in enumerate(output.edges) if edge == 0)
+        return [f"    SYM_PUT({name}, {i}, {zero});" for name, i in entries]
 
     def _clear(self, output: Output) -> list[str]:
         zeros = [i for i, edge in enumerate(output.edges) if edge == 0]
@@ -172,8 +176,8 @@ class FunctionWriter:
         kind = "static SYM_NOINLINE" if len(self.chunked.chunks) > 1 else "static"
         return "\n".join([f"{kind} void {self.c_name}_{index}({', '.join(arguments)}) {{", *lines, "}"])
 
-    def _chunk_in_lanes(self, index: int, chunked: _Chunks, writer: StatementWriter) -> str:
-        lines, used = self._body(index, chunked, writer, "sym_v")
+    def _chunk_in_lanes(self, index: int, chunked: _Chunks, writer: StatementWriter, more: Sequence[str] = ()) -> str:
+        lines, used = self._body(index, chunked, writer, "sym_v", more)
         pre, *inputs = self.inputs
         unused = [
             f"    (void){name}_at, (void){name}_step;"
@@ -185,14 +189,17 @@ class FunctionWriter:
         head = f"static SYM_NOINLINE void {self.c_name}_v_{index}({', '.join(arguments)}) {{"
         return "\n".join([head, *unused, *lines, "}"])
 
-    def _body(self, index: int, chunked: _Chunks, writer: StatementWriter, real: str) -> tuple[list[str], set[str]]:
-        """Lines of a chunk, and the arrays that they mention."""
+    def _body(
+        self, index: int, chunked: _Chunks, writer: StatementWriter, real: str, more: Sequence[str] = ()
+    ) -> tuple[list[str], set[str]]:
+        """Lines of a chunk, and of `more` behind them, and the arrays that they mention."""
         statements = chunked.chunks[index]
         local = {key for statement in statements for key in statement.keys}
         crossing = dict.fromkeys(n for statement in statements for n in statement.reads if n not in local)
         lines = [self._load(key, chunked.slots[key], writer, real) for key in crossing]
         for statement in statements:
             lines += self._lines(statement, chunked.slots, writer, real)
+        lines += more
         used = {a or b for line in lines for a, b in _ARRAY.findall(line)}
         return lines, used
 

@@ -53,6 +53,16 @@ def batch(c_name: str, function: Function, lanes: LaneOptions | None) -> str:
 def _rows(c_name: str, function: Function, lanes: LaneOptions) -> list[str]:
     """The way to the vectors, unless they share one set of parameters and are given several."""
     n_in, n_out = len(function.inputs) + 1, len(function.returns)
+    if lanes.in_rows:
+        return [
+            "#if SYM_LANES > 1",
+            "    if (n > 1 && in_stride[0] == 0) {",
+            f"        sym_column columns[{n_in + n_out}];",
+            f"        sym_batch_rows(&{c_name}_vectors, n, in, in_stride, out, columns, work);",
+            "        return;",
+            "    }",
+            "#endif",
+        ]
     return [
         "#if SYM_LANES > 1",
         # One state alone is evaluated as the others are where that is less precise.
@@ -68,14 +78,15 @@ def _rows(c_name: str, function: Function, lanes: LaneOptions) -> list[str]:
     ]
 
 
-def strided(c_name: str, program: Program, function: Function, work: int) -> str:
-    """What the C file says of a function on vectors, and its batch in any layout.
+def strided(c_name: str, program: Program, function: Function, work: int, lanes: LaneOptions) -> str:
+    """What the C file says of a function on vectors, and its batch in any layout unless lanes are rows.
 
     Args:
         c_name: Name of the C function that evaluates one state.
         program: Program of the function.
         function: Function that it evaluates.
         work: Scratch of one vector.
+        lanes: Options of the code by vectors.
     """
     inputs = [len(program.init), *(program.sizes[name] for name in function.inputs)]
     outputs = [prod(shape) for _, shape in function.returns]
@@ -83,6 +94,14 @@ def strided(c_name: str, program: Program, function: Function, work: int) -> str
     zero_runs = "".join(f"{k}, {first}, {count}, " for k, first, count in zeros)
     most = vectors_at_once(program, function, work)
     n = len(inputs) + len(outputs)
+    if lanes.in_rows:
+        return "\n".join(
+            [
+                f"static const int {c_name}_out_size[] = {{{', '.join(map(str, outputs))}}};",
+                f"static const sym_vectors {c_name}_vectors = {{{len(inputs)}, {len(outputs)}, {most},",
+                f"    {c_name}_out_size, {c_name}_v}};",
+            ]
+        )
     return "\n".join(
         [
             f"static const int {c_name}_in_size[] = {{{', '.join(map(str, inputs))}}};",
@@ -121,15 +140,18 @@ def vectors_at_once(program: Program, function: Function, work: int) -> int:
     return max(1, min(_MOST, _CACHE // bytes_each)) if work else 1
 
 
-def scratch(program: Program, function: Function, work: int) -> int:
+def scratch(program: Program, function: Function, work: int, lanes: LaneOptions) -> int:
     """Doubles of scratch that a batch in lanes needs, alignment included.
 
     Args:
         program: Program of the function.
         function: Function whose inputs and outputs are kept in lanes.
         work: Vectors of scratch for one vector of states.
+        lanes: Options of the code by vectors.
     """
     most = vectors_at_once(program, function, work)
+    if lanes.in_rows:
+        return 2 * (1 + most * work)
     return _WIDEST * (
         1 + most * work + sum(most * size + max(0, _MOST_LANES - size) for size in _sizes(program, function))
     )
@@ -150,7 +172,9 @@ def routines(lanes: LaneOptions) -> str:
         functions="\n".join(f"{makers[arity]}({name}, {function})" for name, function, arity in called_functions()),
         own=int(lanes.own_parameters),
         single=int(lanes.single),
+        in_rows=int(lanes.in_rows),
         sines=trigonometry.of_lanes(lanes.single),
+        batches=native_text(f"model/lane_{'rows' if lanes.in_rows else 'columns'}.c.in"),
     )
 
 

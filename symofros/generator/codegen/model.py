@@ -90,7 +90,7 @@ def model_source(
             [*(row.tables for row in rows), _function_table(name, rows), *_lane_table(name, rows, vectors)]
         ),
         n_functions=len(rows),
-        lanes="NULL" if vectors is None else f"SYM_LANE_TABLE({name})",
+        lanes="NULL" if vectors is None or vectors.in_rows else f"SYM_LANE_TABLE({name})",
         c_name=name,
         name=c_string(record.name),
         nq=len(record.q_names),
@@ -240,9 +240,9 @@ def _one_function(
         text = _text_of_one_state(writer, scalars) if in_doubt else writer.text()
         if in_lanes is not None:
             on_vectors = scalars.text_on_vectors(in_lanes)
-            strided = lanes.strided(c_name, program, function, on_vectors.work)
+            strided = lanes.strided(c_name, program, function, on_vectors.work, in_lanes)
             vectors = ["#if SYM_LANES > 1", on_vectors.code, strided, "#endif"]
-            scratch = lanes.scratch(program, function, on_vectors.work)
+            scratch = lanes.scratch(program, function, on_vectors.work, in_lanes)
     work = max(text.work, scratch)
     title = f"{function.name} {function.frame}".rstrip()
     described = f"{title}: {function.summary}" if function.summary else title
@@ -287,8 +287,8 @@ def _function_table(name: str, rows: Sequence[_Row]) -> str:
 
 
 def _lane_table(name: str, rows: Sequence[_Row], vectors: LaneOptions | None) -> list[str]:
-    """The table of functions on vectors, for compilers that have vectors."""
-    if vectors is None:
+    """The table of functions on vectors, for compilers that have vectors; none where lanes are rows."""
+    if vectors is None or vectors.in_rows:
         return []
     table = f"static const sym_lanes {name}_lanes[] = {{\n" + ",\n".join(row.lanes for row in rows) + "\n};"
     return [

@@ -1,13 +1,17 @@
-/* Functions of a model by CasADi's interface of external functions, which acados takes as well: the model's C text stands
- * before this one, the functions of that interface after it (symofros/interop/casadi.py writes them). */
+/* Functions of a model by CasADi's interface of external functions: the model's C text stands before this one, the
+ * functions of that interface after it (symofros/interop/casadi.py writes them). Its whole numbers are as in C that CasADi
+ * generates: long long, or what its option "casadi_int" says; acados has int. */
+#ifndef casadi_int
+#define casadi_int long long int
+#endif
 #define SYM_CASADI_MOST 16
 
 /* One output: an array of a function of the model, whose entries are gathered into columns. */
 typedef struct sym_casadi_output {
     const char *function, *frame; /* frame NULL: of the whole model */
     int32_t array;
-    long long count;
-    const long long *gather; /* (count) index of each nonzero in the array, which is row by row */
+    casadi_int count;
+    const casadi_int *gather; /* (count) index of each nonzero in the array, which is row by row */
 } sym_casadi_output;
 
 static size_t sym_casadi_size(const sym_array *array) { return (size_t)array->rows * (size_t)array->cols; }
@@ -53,7 +57,7 @@ static int sym_casadi_call(const sym_model *model, const char *const *names, int
     for (o = 0; o < n_outputs; ++o) {
         const sym_casadi_output *output = &outputs[o];
         const sym_function *f;
-        long long j;
+        casadi_int j;
         if (res[o] == NULL || output->count == 0) continue;
         f = sym_find(model, output->function, output->frame);
         if (f == NULL || f->n_in > SYM_CASADI_MOST || f->n_out > SYM_CASADI_MOST) return 1;

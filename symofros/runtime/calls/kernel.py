@@ -41,10 +41,13 @@ class LaneOptions:
     Attributes:
         own_parameters: Whether each state may have parameters of its own.
         precision: Floating-point type of the lanes: "double" or "single".
+        in_rows: Whether lanes read and write the rows of two states where they lie: for vectors of two doubles, and
+            callers that have no other layout. In doubles, of shared parameters.
     """
 
     own_parameters: bool = False
     precision: Precision = "double"
+    in_rows: bool = False
 
     @property
     def single(self) -> bool:

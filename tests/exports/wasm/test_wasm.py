@@ -197,6 +197,41 @@ def test_the_page_simulates_without_a_server(package: Path, chromium: Any) -> No
     assert drawn["speed"] > 20 and drawn["angle"] == 0 and np.isfinite(value)
 
 
+@pytest.mark.tools
+@pytest.mark.browser
+def test_the_motion_is_shown_again_and_goes_on_from_any_instant(package: Path, chromium: Any) -> None:
+    """On a telephone's screen, which nothing is wider than."""
+    page = chromium.new_page(viewport={"width": 390, "height": 844})
+    faults: list[str] = []
+    page.on("pageerror", lambda error: faults.append(str(error)))
+    page.goto((package / "index.html").as_uri())
+    page.wait_for_function("parseFloat(document.getElementById('time').textContent) > 0.8")
+    page.get_by_role("button", name="Pause").click()
+
+    def shown() -> tuple[float, float]:
+        angle = page.locator("#signals label", has_text="q1").first.locator("output")
+        page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+        return float(page.locator("#time").inner_text().split()[0]), float(angle.inner_text())
+
+    instant = page.get_by_role("slider", name="Instant that is shown")
+    (end, last), count = shown(), int(instant.get_attribute("max"))
+    instant.fill("0")
+    assert shown() == (0.0, 0.4)
+    page.get_by_role("button", name="Replay").click()
+    page.wait_for_function(f"document.getElementById('instant').value == {count}")
+    assert shown() == (end, last)
+    instant.fill(str(count // 2))
+    assert shown()[0] == pytest.approx(count // 2 / 60, abs=0.01)
+    page.get_by_role("button", name="Go on").click()
+    page.wait_for_function(f"parseFloat(document.getElementById('time').textContent) >= {end} - 1e-9")
+    page.get_by_role("button", name="Pause").click()
+    instant.fill(str(count))
+    assert shown() == (end, last)  # The same motion, simulated anew.
+    assert page.evaluate("document.documentElement.scrollWidth") == 390
+    page.close()
+    assert not faults
+
+
 def test_without_zig_it_is_said_in_words(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(wasm.importlib.util, "find_spec", lambda name: None)
     with pytest.raises(sf.CompileError, match=r"pip install 'symofros\[zig\]'"):

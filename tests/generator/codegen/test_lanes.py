@@ -17,7 +17,9 @@ from reference_models import MODELS
 from symofros.base.functions import MODEL_FUNCTIONS
 from symofros.compiler import Compilation, compile_library
 from symofros.generator.codegen.model import model_source
-from symofros.runtime.build.toolchain import DEFAULT_FLAGS, cpu_identity
+from symofros.native import native_text
+from symofros.runtime.build.build import build_library
+from symofros.runtime.build.toolchain import DEFAULT_FLAGS, cpu_identity, find_toolchain
 from symofros.runtime.calls import library
 from symofros.runtime.calls.kernel import Array, BatchOptions, Kernel, LaneOptions
 from symofros.runtime.calls.library import CompiledUnit
@@ -216,7 +218,8 @@ OWN_IN_EVERY_RUN = {(): True, ("-std=gnu99", "-O2"): False, ("-std=gnu99", "-O2"
         for flags in ((), ("-std=gnu99", "-O2"), ("-std=gnu99", "-O2", "-mavx512f"), ("-std=gnu99", "-mavx"))
         for own in (False, True)
         for precision in ("double", "single")
-    ],
+    ]
+    + [pytest.param(("-std=gnu99", "-O2", "-mavx2"), LaneOptions(in_rows=True), id="rows")],
 )
 def test_builds_without_warnings(flags: tuple[str, ...], lanes: LaneOptions, tmp_path: Path) -> None:
     """As strict C99, where batches are loops, and on vectors of every width."""
@@ -250,3 +253,22 @@ def test_sines_of_sines_wait() -> None:
     inputs = [x if name == "q" else np.zeros((1, size)) for name, size in kernel.signature.inputs]
     (found,) = kernel.run(len(x), kernel.prepare(np.zeros((1, 0))), inputs)
     np.testing.assert_allclose(found, np.sin(2 * x + np.sin(x)) * np.sin(3 * x), rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize("case", sampled(("friction_arm", "heavy_top", "planar_robot"), ("friction_arm",)))
+def test_lanes_in_rows(case: str) -> None:
+    """Two states where they lie, as in modules for WebAssembly: the bits of a loop, odd states at the end."""
+    loops = unit(case, "loop", WIDTHS["sse2"], (*CHEAP, *SCALAR))
+    stated = Compilation(MODELS[case], sf.Options((*CHEAP, *SCALAR)))
+    source = model_source(stated.program, stated.record, "test", LaneOptions(in_rows=True), "rows")
+    toolchain = find_toolchain()
+    assert toolchain is not None and "sym_lanes rows" not in source
+    path = build_library(source, native_text("model/symofros_model.h"), toolchain, WIDTHS["sse2"])
+    rows = CompiledUnit(path, "rows_model", stated.record.hash)
+    for key, kernel in loops.kernels.items():
+        pre = kernel.prepare(np.array([parameters(case)]))
+        for n, shared in ((1, ()), (2, ()), (3, ("v", "t")), (4, ("q",)), (37, ())):
+            inputs = given(kernel, n, shared)
+            results = [each.kernels[key].run(n, pre, inputs) for each in (loops, rows)]
+            for expected, found in zip(*results, strict=True):
+                assert np.array_equal(found, expected, equal_nan=True), (key, n)

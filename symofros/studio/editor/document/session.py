@@ -24,7 +24,7 @@ from symofros.studio.editor.editing.yaml_spans import yaml_text_of
 
 Json = dict[str, Any]
 
-MECHANISM_JOBS = ("compile", "crosscheck", "simulate", "export")
+MECHANISM_JOBS = ("compile", "crosscheck", "simulate", "page", "export")
 DIAGRAM_JOBS = ("run", "export")
 MAX_DEPTH = 10
 

@@ -1,4 +1,4 @@
-"""The operations of worker processes: compile, cross-check, simulate, export, import."""
+"""The operations of worker processes: compile, cross-check, simulate here or in the page, export, import."""
 
 from __future__ import annotations
 
@@ -217,6 +217,20 @@ def export(request: Json, tell: Tell) -> Json:
     return {"files": files, "notes": list(done.notes), "target": done.target}
 
 
+def page(request: Json, tell: Tell) -> Json:
+    """A page that simulates the model by itself, from a start, by WebAssembly."""
+    tell(0, 2, "reading")
+    system, options = system_of(request), request.get("options", {})
+    start = {str(name): _number(x, str(name)) for name, x in (options.get("q0") or {}).items()}
+    start |= {f"d{name}": _number(x, str(name)) for name, x in (options.get("v0") or {}).items()}
+    stepping: Json = {"method": options["method"]} if options.get("method") else {}
+    stepping |= {key: _number(options[key], key) for key in ("dt", "rtol") if options.get(key) is not None}
+    tell(1, 2, "compiling for WebAssembly; the first time takes a minute or two")
+    with tempfile.TemporaryDirectory() as folder:
+        done = sf.export(system, "wasm", folder, start=start, **stepping)
+        return {"page": (Path(folder) / "index.html").read_text(encoding="utf-8"), "notes": list(done.notes)}
+
+
 def import_model(request: Json, tell: Tell) -> Json:
     """A description of another format as the text of a native one."""
     tell(0, 1, "reading")
@@ -266,6 +280,7 @@ TASKS: dict[str, Callable[[Json, Tell], Any]] = {
     "compile": compile_model,
     "crosscheck": cross_check,
     "simulate": simulate,
+    "page": page,
     "export": export,
     "import": import_model,
 }

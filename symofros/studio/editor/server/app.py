@@ -97,6 +97,7 @@ class Editor:
             Route("/api/events", self.listen),
             Route("/api/view", self.look),
             Route("/api/pose", self.pose, methods=["POST"]),
+            Route(f"{self.relay.address}page/{{key}}", self.page),
             *self.relay.routes(),
         ]
 
@@ -199,8 +200,19 @@ class Editor:
         return JSONResponse({"id": job.key}, 202)
 
     async def job(self, request: Request) -> Response:
-        """How far a job is."""
-        return JSONResponse(self.jobs.get(request.path_params["key"]).as_json())
+        """How far a job is; of a page that simulates its address."""
+        job = self.jobs.get(request.path_params["key"])
+        stated = job.as_json()
+        if job.kind == "page" and job.result is not None:
+            stated["result"] = {"address": f"{self.relay.address}page/{job.key}", "notes": job.result["notes"]}
+        return JSONResponse(stated)
+
+    async def page(self, request: Request) -> Response:
+        """A page that simulates by itself: kept apart from ours as that of the 3-D view is."""
+        job = self.jobs.get(request.path_params["key"])
+        if job.kind != "page" or job.result is None:
+            raise HTTPException(404, "no page that simulates")
+        return Response(job.result["page"], media_type="text/html")
 
     async def order_job(self, request: Request) -> Response:
         """Pause a job, let it go on, or end it with what it has."""

@@ -17,11 +17,13 @@ from symofros.studio.editor.editing.data_edits import four_parts
 # Four times the largest text: JSON escapes some of it.
 MAX_BODY = 4 << 20
 API = "/api/"
-# viser's page and socket: their token is in the address, and good for nothing else.
+# viser's page and socket, pages that simulate: their token is in the address, and good for nothing else.
 VIEW = "/view/"
 # Only here may the token stand in the address: a browser's event source sends no headers of ours.
 EVENTS = "/api/events"
 
+# The token, and what it opens: viser's page and socket, or the page of a job.
+_VIEWED = re.compile(r"([^/]*)(?:/|/page/[0-9]{1,9})?")
 _LENGTH = re.compile(r"[0-9]{1,15}")
 _READING = frozenset({"GET", "HEAD"})
 HEADERS = {
@@ -38,7 +40,7 @@ HEADERS = {
     "Permissions-Policy": "camera=(), geolocation=(), microphone=()",
 }
 # Somebody else's page: it is kept apart from ours (its origin is none), and talks to its socket only. It is one file of
-# inline scripts that compiles parts of itself.
+# inline scripts that compiles parts of itself; so is a page that simulates.
 _VIEW_POLICY = (
     "sandbox allow-scripts; default-src 'none'; script-src 'unsafe-inline' 'unsafe-eval'; "
     "style-src 'unsafe-inline'; img-src data: blob:; font-src data:; worker-src data:; "
@@ -116,7 +118,7 @@ class Guard:
         return None
 
     def _refusal_of_view(self, scope: Scope, headers: dict[str, list[str]]) -> tuple[int, Problem] | None:
-        """The same for viser's page, which ours frames, and for its socket: of a page whose origin is none."""
+        """The same for pages that ours frames, and for the socket of viser's: of a page whose origin is none."""
         is_socket = scope["type"] == "websocket"
         if is_socket:
             allowed = self.origins | {"null"}
@@ -125,7 +127,8 @@ class Guard:
             foreign = [origin for origin in (self._foreign(headers),) if origin]
         if foreign:
             return 403, _from_elsewhere(foreign[0])
-        given = scope["path"].removeprefix(VIEW).removesuffix("/")
+        stated = _VIEWED.fullmatch(scope["path"].removeprefix(VIEW))
+        given = stated[1] if stated is not None else ""
         if not (scope["path"].startswith(VIEW) and hmac.compare_digest(given.encode(), self.view_token.encode())):
             return 401, _unknown_token()
         return None if is_socket or scope["method"] in _READING else (405, _method(scope["method"]))

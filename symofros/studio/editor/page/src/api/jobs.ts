@@ -2,7 +2,7 @@
 
 import type { Fault } from "./types";
 
-export type JobKind = "compile" | "crosscheck" | "simulate" | "export" | "run";
+export type JobKind = "compile" | "crosscheck" | "simulate" | "page" | "export" | "run";
 export type JobState = "running" | "done" | "failed" | "cancelled";
 
 export interface Count {
@@ -73,6 +73,12 @@ export interface Simulated {
   method: string;
   steps: number;
   wall_s: number;
+}
+
+/** A page that simulates by itself. */
+export interface InPage {
+  address: string;
+  notes: string[];
 }
 
 export interface RunCurve {

@@ -4,6 +4,7 @@ import type {
   Compiled as CompiledResult,
   Crosschecked as CrosscheckedResult,
   Exported,
+  InPage,
   Job,
   JobKind,
   Ran,
@@ -25,6 +26,7 @@ const TITLES: Record<JobKind, string> = {
   compile: "Operations",
   crosscheck: "Cross-check",
   simulate: "Simulation",
+  page: "In this page",
   export: "Export",
   run: "Run",
 };
@@ -81,6 +83,15 @@ function Result({ job }: { job: Job }) {
       return <Crosschecked result={job.result as CrosscheckedResult} />;
     case "simulate":
       return <Simulation result={job.result as Simulated} />;
+    case "page":
+      return (
+        <iframe
+          className="in-page"
+          title="The mechanism, simulated in this page"
+          src={(job.result as InPage).address}
+          sandbox="allow-scripts"
+        />
+      );
     case "run":
       return <Run result={job.result as Ran} />;
     case "export":

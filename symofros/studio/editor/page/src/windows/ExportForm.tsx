@@ -9,10 +9,12 @@ import { dismiss, useDocument, useStore } from "../store/store";
 
 const TITLES: Record<string, string> = {
   c: "C source package",
+  cuda: "CUDA kernels",
   mex: "MEX function for MATLAB and Octave",
   sfunction: "S-function for Simulink",
   fmu2: "FMU 2.0",
   fmu3: "FMU 3.0",
+  wasm: "WebAssembly, with a page that simulates",
   urdf: "URDF",
   mjcf: "MJCF (MuJoCo)",
 };

@@ -113,23 +113,35 @@ export function SimulateForm() {
     positive(asked.end) &&
     positive(isAdaptive ? asked.tolerance : asked.step) &&
     starts.every(([, text]) => isNumber(text));
-  const start = (): void => {
+  const begin = (kind: "simulate" | "page"): void => {
     if (!isFine) return;
     last = asked;
     dismiss();
     const { end, step, tolerance, method, q0, v0 } = asked;
     const accuracy = isAdaptive ? { rtol: Number(tolerance) } : { dt: Number(step) };
-    void run("simulate", {
-      t_end: Number(end),
-      method,
-      ...accuracy,
-      q0: numbers(q0),
-      v0: numbers(v0),
-      inputs: Object.fromEntries(given(asked.inputs)),
-    });
+    const driven = { t_end: Number(end), inputs: Object.fromEntries(given(asked.inputs)) };
+    const more = kind === "simulate" ? driven : {}; // The page goes on and on, and has sliders.
+    void run(kind, { method, ...accuracy, q0: numbers(q0), v0: numbers(v0), ...more });
   };
   return (
-    <Window title="Simulate" onClose={dismiss} onSubmit={start} foot={<Foot word="Simulate" disabled={!isFine} />}>
+    <Window
+      title="Simulate"
+      onClose={dismiss}
+      onSubmit={() => begin("simulate")}
+      foot={
+        <>
+          <button
+            type="button"
+            disabled={!isFine}
+            title="Compile to WebAssembly: then this page simulates by itself, without end, with sliders of inputs and parameters"
+            onClick={() => begin("page")}
+          >
+            In this page
+          </button>
+          <Foot word="Simulate" disabled={!isFine} />
+        </>
+      }
+    >
       <NumberRow title="Duration" unit="s" text={asked.end} onChange={(end) => set({ end })} />
       <Row title="Method">
         {(id) => (

@@ -1,0 +1,42 @@
+"""A mechanism simulates in the editor's page by itself: also when the server is gone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.studio.editor.browser import steps
+from tests.studio.editor.browser.conftest import Server
+
+pytestmark = pytest.mark.browser
+
+ROBOT = Path(__file__).parents[4] / "reference_models" / "flexible" / "planar_robot.yaml"
+# The first module of a machine takes the compiler a minute or two.
+JOB = 300_000
+
+
+def test_the_flexible_robot_moves_on_without_the_server(
+    serve: Callable[..., Server], page: Page, picture: Callable[[str], None]
+) -> None:
+    pytest.importorskip("ziglang", reason="the extra zig is not installed: pip install 'symofros[zig]'")
+    server = serve("robot.yaml", source=ROBOT)
+    steps.open_editor(page, server.url)
+    steps.run(page, "Simulate…")
+    for what, text in (("Start of q1", "0.3"), ("Speed of q2", "1"), ("Step", "0.0001")):
+        steps.fill(page, what, text)
+    steps.window(page).get_by_role("button", name="In this page").click()
+    inner = steps.results(page).frame_locator("iframe.in-page")
+    time = inner.locator("#time")
+    expect(time).to_be_visible(timeout=JOB)
+    server.kill()
+    before = float(time.inner_text().split()[0])
+    inner.get_by_role("slider", name="q1", exact=True).fill("3")  # An effort of the first motor.
+    page.wait_for_timeout(1500)
+    inner.get_by_role("button", name="Pause").click()
+    after = float(time.inner_text().split()[0])
+    assert after > before + 0.2
+    assert inner.locator("#said").inner_text() == ""
+    picture("in-page")
