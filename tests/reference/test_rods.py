@@ -10,12 +10,35 @@ from scipy.optimize import brentq
 import symofros as sf
 from validation.accuracy.motion import rods as in_motion
 from validation.accuracy.statics import rods
+from validation.accuracy.statics.elastica import exact
 
 
 @pytest.mark.parametrize("functions", rods.ELASTICA)
 def test_the_tip_converges_to_that_of_the_elastica(functions: int) -> None:
     error = rods.elastica(functions)
     assert 0.5 * rods.ELASTICA[functions] < error < rods.ELASTICA[functions]
+
+
+def ritz(functions: int) -> float:
+    """The error that the report's bounds are of: least energy over Legendre curvatures, integrals by 60 Gauss nodes."""
+    s, w = (np.polynomial.legendre.leggauss(60)[0] + 1) / 2, np.polynomial.legendre.leggauss(60)[1] / 2
+    P = np.array([np.polynomial.Legendre.basis(k, domain=[0, 1]) for k in range(functions)])
+    turn = np.array([p.integ(lbnd=0)(s) for p in P])
+    K = np.array([np.sum(w * p(s) ** 2) for p in P])
+    q = np.zeros(functions)
+    for load in (5.0, 10.0, *[rods.LOAD] * 6):
+        theta = q @ turn
+        gradient = K * q - load * turn @ (w * np.cos(theta))
+        q = q - np.linalg.solve(np.diag(K) + load * (turn * (w * np.sin(theta))) @ turn.T, gradient)
+    deflection, shortening = exact(rods.LOAD)
+    return max(abs(w @ np.cos(q @ turn) - 1 + shortening), abs(w @ np.sin(q @ turn) - deflection))
+
+
+@pytest.mark.parametrize(
+    ("functions", "error"), [(3, "2.3e-03"), (4, "3.5e-05"), (5, "1.8e-05"), (6, "3.6e-06"), (7, "5.7e-07")]
+)
+def test_bounds_of_the_elastica_are_what_a_ritz_solution_with_exact_integrals_errs(functions: int, error: str) -> None:
+    assert f"{ritz(functions):.1e}" == error
 
 
 def test_a_moment_rolls_a_cantilever_up_to_a_circle() -> None:
