@@ -123,11 +123,11 @@ def bathe(functions: int) -> float:
     return float(np.linalg.norm(tip - known)) / RADIUS
 
 
-def strip(functions: int, degrees: float) -> float:
+def strip(functions: int, degrees: float, load: float = HEAVY) -> float:
     """Distance of the tip of the Princeton strip from that of the exact rod, over its length."""
     beam, turned = Strip(), np.radians(degrees)
     stiffness = np.array([beam.GJ, beam.EI_y, beam.EI_z])
-    loads = {"Fy": HEAVY * float(np.cos(turned)), "Fz": HEAVY * float(np.sin(turned))}
+    loads = {"Fy": load * float(np.cos(turned)), "Fz": load * float(np.sin(turned))}
     known = shooting(beam.length, stiffness, np.zeros(3), np.array([0.0, loads["Fy"], loads["Fz"]]))
     return float(np.linalg.norm(spatial(beam.length, functions, stiffness, loads) - known)) / beam.length
 
@@ -190,7 +190,12 @@ def study(quick: bool) -> Study:
     angles = ANGLES[1:2] if quick else ANGLES
     strips = {n: max(strip(n, at) for at in angles) for n in PRINCETON}
     findings = [
-        Finding(f"elastica, {n} functions: error of the tip over L, larger component", error, ELASTICA[n], reason="a Ritz solution's")
+        Finding(
+            f"elastica, {n} functions: error of the tip over L, larger component",
+            error,
+            ELASTICA[n],
+            reason="a Ritz solution's",
+        )
         for n, error in plane.items()
     ]
     findings.append(
