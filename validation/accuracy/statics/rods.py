@@ -17,7 +17,7 @@ from validation.reporting.figures import Chart, Figure, curves
 from validation.reporting.findings import Finding, Study
 
 FUNCTIONS = ("generalized_force", "frame_pose")
-# P L^2/EI of the elastica, bent by 86 degrees; errors of its tip over L, in the larger component, by a Ritz solution with
+# P L^2/EI of the elastica, bent by 86 degrees; errors of its tip over L, the larger component, by a Ritz solution with
 # 3 to 7 curvatures and exact integrals, to two digits: 3.6e-6 is 3.645e-6.
 LOAD, ELASTICA = 15.0, {3: 2.3e-3, 4: 3.5e-5, 5: 1.8e-5, 6: 3.65e-6, 7: 5.7e-7}
 # Bathe and Bolourchi 1979: an arc of 45 degrees of radius 100 under a force across its plane; errors over the radius.
