@@ -9,13 +9,38 @@ from scipy.optimize import brentq
 
 import symofros as sf
 from validation.accuracy.motion import rods as in_motion
-from validation.accuracy.statics import rods
+from validation.accuracy.statics import princeton, rods
+from validation.accuracy.statics.elastica import exact
+from validation.adapters.exudyn.ancf import Strip
+from validation.adapters.exudyn.ancf import princeton as exact_elements
 
 
 @pytest.mark.parametrize("functions", rods.ELASTICA)
 def test_the_tip_converges_to_that_of_the_elastica(functions: int) -> None:
     error = rods.elastica(functions)
     assert 0.5 * rods.ELASTICA[functions] < error < rods.ELASTICA[functions]
+
+
+def ritz(functions: int) -> float:
+    """The error that the report's bounds are of: least energy over Legendre curvatures, integrals by 60 Gauss nodes."""
+    s, w = (np.polynomial.legendre.leggauss(60)[0] + 1) / 2, np.polynomial.legendre.leggauss(60)[1] / 2
+    P = np.array([np.polynomial.Legendre.basis(k, domain=[0, 1]) for k in range(functions)])
+    turn = np.array([p.integ(lbnd=0)(s) for p in P])
+    K = np.array([np.sum(w * p(s) ** 2) for p in P])
+    q = np.zeros(functions)
+    for load in (5.0, 10.0, *[rods.LOAD] * 6):
+        theta = q @ turn
+        gradient = K * q - load * turn @ (w * np.cos(theta))
+        q = q - np.linalg.solve(np.diag(K) + load * (turn * (w * np.sin(theta))) @ turn.T, gradient)
+    deflection, shortening = exact(rods.LOAD)
+    return max(abs(w @ np.cos(q @ turn) - 1 + shortening), abs(w @ np.sin(q @ turn) - deflection))
+
+
+@pytest.mark.parametrize(
+    ("functions", "error"), [(3, "2.3e-03"), (4, "3.5e-05"), (5, "1.8e-05"), (6, "3.6e-06"), (7, "5.7e-07")]
+)
+def test_bounds_of_the_elastica_are_what_a_ritz_solution_with_exact_integrals_errs(functions: int, error: str) -> None:
+    assert f"{ritz(functions):.1e}" == error
 
 
 def test_a_moment_rolls_a_cantilever_up_to_a_circle() -> None:
@@ -43,6 +68,28 @@ def test_a_curved_cantilever_bends_out_of_its_plane_as_the_exact_rod(functions: 
 @pytest.mark.parametrize("functions", rods.PRINCETON)
 def test_a_strip_bends_and_twists_as_the_exact_rod(functions: int) -> None:
     assert rods.strip(functions, 45.0) < rods.PRINCETON[functions]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("load", princeton.LOADS)
+def test_a_strip_under_each_load_of_the_experiment_bends_as_the_exact_rod_at_all_angles(load: float) -> None:
+    """In place of measured points, which stand in the paper's figures alone."""
+    errors = [rods.strip(3, degrees, load) for degrees in np.linspace(0.0, 90.0, 7)]
+    assert max(errors) < rods.PRINCETON[3]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("load", princeton.LOADS)
+def test_a_strip_under_each_load_of_the_experiment_bends_as_elements_of_exudyn(load: float) -> None:
+    """Elements without their error of second order; they stretch and shear, which moves the tip by 1.5e-5 L."""
+    strip = Strip()
+    stiffness = np.array([strip.GJ, strip.EI_y, strip.EI_z])
+    for angle in np.radians([0.0, 30.0, 60.0, 90.0]):
+        coarse, fine = (exact_elements(load, angle, elements)[0] for elements in (32, 64))
+        known = (4.0 * fine - coarse) / 3.0 + (strip.length, 0.0, 0.0)
+        loads = {"Fy": load * float(np.cos(angle)), "Fz": load * float(np.sin(angle))}
+        tip = rods.spatial(strip.length, 3, stiffness, loads)
+        assert np.abs(tip - known).max() < (2e-5 + rods.PRINCETON[3]) * strip.length
 
 
 @pytest.mark.slow

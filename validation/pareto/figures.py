@@ -55,14 +55,14 @@ def figure(problem: BenchmarkProblem, result: Result) -> Figure:
             axes.plot(*_xy([p for p in best if method(p) == name]), **_style(name, k, "points"), zorder=3)
         colors = {name: SERIES[_COLORS[k]] for k, name in enumerate(fronted)}
         runs = [(p.seconds, p.error, f"{p.model}, {p.setting}", colors.get(method(p), LINE)) for p in best]
-        _margin(axes, runs + [(x, y, f"floor of our beams, {name}", color) for x, y, name, color in floors])
+        _margin(axes, runs + [(x, y, f"floor of second-order beams, {name}", color) for x, y, name, color in floors])
 
     def paint_methods(axes: Any) -> None:
         _frame(axes, problem, points)
         for k, name in enumerate(names[:MOST]):
             series = min(grouped(methods[name], lambda p: p.series).values(), key=rank)
             axes.plot(*_xy(sorted(series, key=lambda p: p.seconds)), **_style(name, k, "joined"))
-        _margin(axes, [(x, y, f"floor, {name}", color) for x, y, name, color in floors])
+        _margin(axes, [(x, y, f"floor of second-order beams, {name}", color) for x, y, name, color in floors])
 
     hidden = f" Not drawn: {', '.join(names[MOST:])}; the table of methods has them." if names[MOST:] else ""
     caption = f"""Down is more accurate, left is faster. First: the front, which no run beats in both, and what its runs

@@ -64,15 +64,22 @@ class Field:
                     terms[mono] = terms[mono] + f * h if mono in terms else f * h
         return Field(self.power + other.power, self.lengths, {m: f for m, f in terms.items() if not f.is_zero})
 
+    @cached_property
+    def _derivatives(self) -> dict[int, Field]:
+        """Derivatives that were asked for, by coordinate: products of them are formed by pairs."""
+        return {}
+
     def by(self, i: int) -> Field:
         """The derivative with respect to coordinate i."""
-        terms: dict[Monomial, Piecewise] = {}
-        for mono, f in self.terms.items():
-            count = mono.count(i)
-            if count:
-                at = mono.index(i)
-                terms[mono[:at] + mono[at + 1 :]] = f.scaled(count)
-        return Field(self.power - self.lengths[i], self.lengths, terms)
+        if i not in self._derivatives:
+            terms: dict[Monomial, Piecewise] = {}
+            for mono, f in self.terms.items():
+                count = mono.count(i)
+                if count:
+                    at = mono.index(i)
+                    terms[mono[:at] + mono[at + 1 :]] = f.scaled(count)
+            self._derivatives[i] = Field(self.power - self.lengths[i], self.lengths, terms)
+        return self._derivatives[i]
 
     def along(self) -> Field:
         """The derivative with respect to x."""
@@ -221,13 +228,15 @@ class Form:
     def rate(self, speeds: Sequence[Edge], upto: float = EVERY_DEGREE) -> Edge:
         """The time derivative with given rates of the coordinates; the degree counts coordinates and rates."""
         g = self.g
-        return g.sum(g.mul(part.value(upto - 1), x) for part, x in zip(self.gradient, speeds, strict=True))
+        parts = zip(self.gradient, speeds, strict=True)
+        return g.sum(g.mul(part.value(upto - 1), x) for part, x in parts if x != ZERO)
 
     def second_rate(self, speeds: Sequence[Edge], upto: float = EVERY_DEGREE) -> Edge:
         """The part of the second time derivative that is quadratic in the rates."""
         g = self.g
         total = ZERO
-        for i, j in combinations_with_replacement(range(len(speeds)), 2):
+        moving = [i for i, speed in enumerate(speeds) if speed != ZERO]
+        for i, j in combinations_with_replacement(moving, 2):
             part = self.gradient[i].gradient[j].value(upto - 2)
             if part != ZERO:
                 product = g.mul(speeds[i], speeds[j])

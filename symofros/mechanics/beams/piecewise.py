@@ -12,7 +12,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, cached_property, lru_cache
-from itertools import pairwise, zip_longest
+from itertools import chain, pairwise, zip_longest
+from typing import cast
 
 from symofros.expr.numerics.extended import Extended, extended_context
 
@@ -28,6 +29,36 @@ _NEGLIGIBLE = 1e-24
 _KEPT = 64
 
 
+class Knots(tuple[Number, ...]):
+    """Ends of the intervals of functions, with what sums over them ask for many times."""
+
+    @cached_property
+    def key(self) -> int:
+        """A number that equal knots share and others hardly do: fractions are slow to compare."""
+        return hash(self)
+
+    @cached_property
+    def whole_widths(self) -> tuple[int, tuple[int, ...]]:
+        """A denominator of the knots, and the widths of the intervals times it."""
+        ends = [Fraction(knot) for knot in self]
+        span = math.lcm(*(knot.denominator for knot in ends))
+        return span, tuple(int((b - a) * span) for a, b in pairwise(ends))
+
+    def equal(self, other: Knots) -> bool:
+        """Whether these are the same numbers."""
+        return self is other or (self.key == other.key and self == other)
+
+
+def _as_knots(ends: Sequence[Number]) -> Knots:
+    return ends if isinstance(ends, Knots) else _shared(tuple(ends), tuple(map(type, ends)))
+
+
+@lru_cache(maxsize=256)
+def _shared(knots: tuple[Number, ...], _: tuple[type, ...]) -> Knots:
+    """One object for equal knots of the same types."""
+    return Knots(knots)
+
+
 @dataclass(frozen=True)
 class Piecewise:
     """A function of xi in [0, 1]: polynomials on consecutive intervals.
@@ -41,30 +72,31 @@ class Piecewise:
         denominator: Denominator of all coefficients, without a factor that they share.
     """
 
-    knots: tuple[Number, ...]
+    knots: Knots
     numerators: tuple[Coefficients, ...]
     denominator: int = 1
 
     @classmethod
     def of(cls, knots: Sequence[Number], pieces: Sequence[Sequence[Number]]) -> Piecewise:
         """The function of these coefficients; of floats where one of them is."""
+        ends = _as_knots(knots)
         if any(isinstance(c, float) for piece in pieces for c in piece):
-            return cls(tuple(knots), tuple(tuple(float(c) for c in piece) for piece in pieces))
+            return cls(ends, tuple(tuple(float(c) for c in piece) for piece in pieces))
         exact = [[Fraction(c) for c in piece] for piece in pieces]
         common = math.lcm(*(c.denominator for piece in exact for c in piece))
         whole = tuple(tuple(c.numerator * (common // c.denominator) for c in piece) for piece in exact)
-        return cls._reduced(tuple(knots), whole, common)
+        return cls._reduced(ends, whole, common)
 
     @classmethod
-    def _reduced(cls, knots: tuple[Number, ...], numerators: tuple[Coefficients, ...], denominator: int) -> Piecewise:
+    def _reduced(cls, knots: Knots, numerators: tuple[Coefficients, ...], denominator: int) -> Piecewise:
         """The function without factors that its numbers share."""
         if isinstance(numerators[0][0], float):
             return cls(knots, numerators)
-        factor = math.gcd(denominator, *(int(c) for piece in numerators for c in piece))
+        whole = cast(tuple[tuple[int, ...], ...], numerators)
+        factor = math.gcd(denominator, *chain.from_iterable(whole))
         if factor == 1:
             return cls(knots, numerators, denominator)
-        whole = tuple(tuple(int(c) // factor for c in piece) for piece in numerators)
-        return cls(knots, whole, denominator // factor)
+        return cls(knots, tuple([tuple([c // factor for c in piece]) for piece in whole]), denominator // factor)
 
     @property
     def pieces(self) -> tuple[Coefficients, ...]:
@@ -136,16 +168,15 @@ class Piecewise:
             return total
         # Over one denominator as well: of the coefficients, of 1/(k + 1), of the powers of the intervals.
         count = self.degree + 1
-        span, widths = _whole_widths(self.knots)
-        by_width: dict[int, list[int]] = {}
-        for width, piece in zip(widths, self.numerators, strict=True):
-            sums = by_width.setdefault(width, [0] * count)
-            for k, c in enumerate(piece):
-                sums[k] += int(c)
+        span, widths = self.knots.whole_widths
+        by_width: dict[int, list[tuple[int, ...]]] = {}
+        for width, piece in zip(widths, cast(tuple[tuple[int, ...], ...], self.numerators), strict=True):
+            by_width.setdefault(width, []).append(piece)
         shares, whole = math.lcm(*range(1, count + 1)), 0
-        for width, sums in by_width.items():
-            value, scale = 0, 1
-            for k in reversed(range(count)):
+        for width, pieces in by_width.items():
+            sums = [sum(column) for column in zip_longest(*pieces, fillvalue=0)]
+            value, scale = 0, span ** (count - len(sums))
+            for k in reversed(range(len(sums))):
                 value = value * width + sums[k] * (shares // (k + 1)) * scale
                 scale *= span
             whole += value * width
@@ -181,11 +212,11 @@ class Piecewise:
         return total / (self.denominator * scale)
 
     @cached_property
-    def _alignments(self) -> list[tuple[tuple[Number, ...], Piecewise]]:
+    def _alignments(self) -> list[tuple[Knots, Piecewise]]:
         """What it is beside functions on other knots, found by identity: a factor of many products meets few."""
         return []
 
-    def beside(self, other: tuple[Number, ...]) -> Piecewise:
+    def beside(self, other: Knots) -> Piecewise:
         """The same function on its own and some other knots."""
         for known, aligned in self._alignments:
             if known is other:
@@ -196,9 +227,9 @@ class Piecewise:
             self._alignments.append((other, aligned))
         return aligned
 
-    def refined(self, knots: tuple[Number, ...]) -> Piecewise:
+    def refined(self, finer: Sequence[Number]) -> Piecewise:
         """The same function on finer knots, which contain its own."""
-        owners, i = [], 0
+        owners, i, knots = [], 0, _as_knots(finer)
         for a in knots[:-1]:
             while i < len(self.numerators) - 1 and a >= self.knots[i + 1]:
                 i += 1
@@ -214,14 +245,6 @@ class Piecewise:
             moved = _shifted(piece, int(shift * q))
             pieces.append(tuple(c * powers[k] for k, c in enumerate(moved)))
         return self._reduced(knots, tuple(pieces), self.denominator * powers[n])
-
-
-@lru_cache(maxsize=256)
-def _whole_widths(knots: tuple[Number, ...]) -> tuple[int, tuple[int, ...]]:
-    """A denominator of the knots, and the widths of the intervals times it."""
-    ends = [Fraction(knot) for knot in knots]
-    span = math.lcm(*(knot.denominator for knot in ends))
-    return span, tuple(int((b - a) * span) for a, b in pairwise(ends))
 
 
 def polynomial(*coefficients: Number | int) -> Piecewise:
@@ -280,15 +303,15 @@ def _aligned(a: Piecewise, b: Piecewise) -> tuple[Piecewise, Piecewise]:
     """Two functions on the same knots, both exact or both of floats."""
     if a.is_float != b.is_float:
         a, b = (Piecewise.of(f.knots, [[float(c) for c in piece] for piece in f.pieces]) for f in (a, b))
-    if a.knots is b.knots or a.knots == b.knots:
+    if a.knots.equal(b.knots):
         return a, b
     return a.beside(b.knots), b.beside(a.knots)
 
 
 @lru_cache(maxsize=256)
-def _merged(first: tuple[Number, ...], second: tuple[Number, ...]) -> tuple[Number, ...]:
+def _merged(first: Knots, second: Knots) -> Knots:
     """The knots of both, as one object for equal ones."""
-    return tuple(sorted({*first, *second}))
+    return _as_knots(sorted({*first, *second}))
 
 
 def _sum(a: Coefficients, b: Coefficients) -> Coefficients:

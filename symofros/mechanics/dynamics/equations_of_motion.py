@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import cached_property
 from typing import Self
 
@@ -52,6 +53,17 @@ class EquationsOfMotion:
         assert self.kinematics.g is self.g  # Formed once, for all copies.
         kept = (self.tree, self.tree.coordinates)
         return copy.deepcopy(self, {id(item): item for item in kept})
+
+    @cached_property
+    def at_rest(self) -> Self:
+        """The same in the same graph without speeds, except prescribed ones: what they would multiply is not formed."""
+        links = tuple(
+            replace(link, speeds=(ZERO,) * len(link.speeds)) if link.rates is None else link
+            for link in self.kinematics.links
+        )
+        still = type(self)(self.tree)
+        still.g, still.kinematics = self.g, replace(self.kinematics, links=links)
+        return still
 
     @cached_property
     def kinematics(self) -> TreeKinematics:

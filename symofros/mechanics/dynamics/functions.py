@@ -295,13 +295,15 @@ def _formed(
 
 def _rest_stiffness(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[str, int]) -> Function:
     """Derivative of the forces at rest by q: terms with speeds are left out before."""
-    K = e.by_q(_at_rest(e, e.rest_residual))
+    K = e.by_q(_at_rest(e, e.at_rest.rest_residual))
     return Function(row.name, "", row.inputs, (_matrix("K", (e.nv, e.nv), K),))
 
 
 def _rest_forces(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[str, int]) -> Function:
     """Forces at rest, without the terms of speeds."""
-    return Function(row.name, "", row.inputs, tuple(_vector(name, _at_rest(e, getattr(e, name))) for name in "hQ"))
+    return Function(
+        row.name, "", row.inputs, tuple(_vector(name, _at_rest(e, getattr(e.at_rest, name))) for name in "hQ")
+    )
 
 
 def _rest_damping(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[str, int]) -> Function:
@@ -313,7 +315,7 @@ def _rest_damping(e: Equations, row: ModelFunction, methods: Methods, known: Map
 
 
 def _at_rest(e: Equations, edges: Sequence[Edge]) -> list[Edge]:
-    """Edges at v = 0."""
+    """Edges at v = 0: formulas of loads may name speeds."""
     return substitute(e.g, edges, {e.g.input("v", i): ZERO for i in range(e.nv)})
 
 

@@ -68,21 +68,29 @@ static int32_t sym_rosenbrock_matrix(sym_run *r, double g, sym_implicit_workspac
     return sym_eliminate(nv, n, w->matrix, w->scale, r->pivots, r->pivots + n);
 }
 
-/* U = (U_1, U_2) with (g - J) U = right = (r_1, r_2), J the Jacobian of f: U_1 by (5), then U_2 = (g - T) U_1 - r_1. */
+/* U = (U_1, U_2) with (g - J) U = right = (r_1, r_2), J the Jacobian of f: U_1 less r_1/g by (5a), then U_2, which is not
+ * a difference of speeds. */
 static void sym_rosenbrock_solve(sym_run *r, double g, int32_t rank, sym_implicit_workspace *w, const double *right,
                                  double *U) {
     const sym_system *s = r->system;
     const int32_t nv = s->nv, nc = s->nc, n = nv + nc;
     const double *M = s->implicit_terms.out[SYM_TERM_M], *G = s->implicit_terms.out[SYM_TERM_G];
+    const double *R_q = s->implicit_terms.out[SYM_TERM_R_Q];
+    double *turned = w->correction; /* T r_1/g */
     int32_t i, j;
-    sym_apply_rate_jacobian(r, g, right, w->right);
+    memset(turned, 0, (size_t)nv * sizeof(double));
+    sym_chart_rate_jacobian(s, r->v, right, 1.0 / g, turned);
+    sym_apply_rate_jacobian(r, g, turned, w->right);
     for (i = 0; i < n; ++i) {
-        const double *X = i < nv ? M + (size_t)i * nv : G + (size_t)(i - nv) * nv;
-        for (j = 0; j < nv; ++j) w->right[i] += X[j] * right[nv + j];
+        const double *X = i < nv ? M + (size_t)i * nv : G + (size_t)(i - nv) * nv, *stiff = R_q + (size_t)i * nv;
+        for (j = 0; j < nv; ++j) w->right[i] += X[j] * right[nv + j] - stiff[j] * right[j] / g;
         w->right[i] /= g * g;
     }
     sym_solve(n, rank, w->matrix, w->scale, r->pivots, r->pivots + n, w->right, w->solution, w->scratch);
-    for (i = 0; i < nv; ++i) U[i] = w->solution[i], U[nv + i] = g * w->solution[i] - right[i];
+    for (i = 0; i < nv; ++i) {
+        U[i] = w->solution[i] + right[i] / g;
+        U[nv + i] = g * w->solution[i] - turned[i];
+    }
     sym_chart_rate_jacobian(s, r->v, w->solution, -1.0, U + nv);
 }
 

@@ -69,7 +69,7 @@ def test_the_front_is_named_beside_the_figure_and_what_is_far_off_does_not_stret
     found = result(1e-4, 1e-1)
     far_off = Point(OURS, "none", "euler", "1 s", 1e3, 1e-9)
     every, methods = (draw(one) for one in figure(PROBLEM, replace(found, points=(far_off, *found.points))).charts)
-    for name in ("3 modes, 20 ms", "8 elements, 1 ms", "floor of our beams, first order", "Exudyn", "rk4"):
+    for name in ("3 modes, 20 ms", "8 elements, 1 ms", "floor of second-order beams, first order", "Exudyn", "rk4"):
         assert f">{name}</text>" in every, name
     assert "4 elements, 5 ms" not in every and ">euler<" not in methods and ">10⁻⁷<" not in every
 

@@ -169,7 +169,7 @@ def distance(known: Array, errors: dict[int, Array], apart: Array) -> Figure:
         "While the beam is bent most, around 6 s, three functions or eight make no difference: the error rests at the "
         "floor of second-order theory, drawn red, and what a finer basis or integrator gains lies below it. Once the "
         "beam is straight again, small vibrations remain, and there more functions count. Exudyn, "
-        "geometrically exact, has no such floor.",
+        "geometrically exact, has no such floor, nor has a rod by its strains (`theory: strain`).",
         (
             Chart("distance from the exact rod, across", TIME, y, (*through, cable), floor, log="y"),
             Chart("largest distance against number of functions", count, y, largest, floor, log="y"),

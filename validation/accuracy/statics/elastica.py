@@ -69,8 +69,8 @@ def study(quick: bool) -> Study:
     answer = (
         f"The deflection errs by 1 % at {begins['0.01']:.3f} L, 5 % at {begins['0.05']:.3f} L and 10 % at "
         f"{begins['0.1']:.3f} L. It is linear theory's deflection: what second order adds is the shortening, right to "
-        "5 % up to 0.17 L, which linear theory lacks altogether. Beyond 0.1 L ask a geometrically exact code for more "
-        "than a per cent; beyond 0.3 L believe nothing but trends."
+        "5 % up to 0.17 L, which linear theory lacks altogether. Beyond 0.1 L take a rod by its strains "
+        "(`theory: strain`) for more than a per cent; beyond 0.3 L believe nothing but trends of second order."
     )
     cable = np.array([static_tip(1.0, 1.0, STRETCH, (0.0, a)) for a in alphas.tolist()])
     cable = np.stack([cable[:, 1], 1.0 - cable[:, 0]], axis=-1)

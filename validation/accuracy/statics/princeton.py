@@ -137,7 +137,7 @@ def study(quick: bool) -> Study:
         f"twists the strip, which is followed with everything kept, to {np.abs(turned['all'][low] - 1).max():.0%} "
         f"up to 0.05 L, and unknown to first order. Under a load at 60° of {lost:.1f} N the "
         "second-order strip finds no rest any more: its cubic strain energy has no bottom there. "
-        "Ask a geometrically exact code."
+        "A rod by its strains (`theory: strain`) does."
     )
     figures = (around(angles, loads, reference, tips_of_loads), growth(deflection, errors))
     return Study(

@@ -1,4 +1,4 @@
-"""A parallel robot of two rods in Exudyn, of geometrically exact elements (github.com/jgerstm/EXUDYN).
+"""Rods of geometrically exact elements in Exudyn: a parallel robot of two, one alone, one that flies.
 
 Both rods lie along x at first. The tip of the first bears a rigid platform, on which the tip of the second is hinged by
 a ball; both rods are straight then, and nothing is strained. Elements have two nodes, and everything that errs in them
@@ -80,6 +80,13 @@ def cantilever(robot: Robot, elements: int, step: float, end: float) -> tuple[Ar
     return _pushed(system, _rod(system, robot, (0.0, 0.0, 0.0), elements), robot, step, end)
 
 
+def flying(robot: Robot, elements: int, step: float, end: float) -> tuple[Array, Array]:
+    """The first rod alone, held nowhere, pushed at its tip from rest; arguments and what is returned as of `motion`."""
+    container = exudyn.SystemContainer()
+    system: Any = container.AddSystem()
+    return _pushed(system, _elements(system, robot, (0.0, 0.0, 0.0), elements)[-1], robot, step, end)
+
+
 def extrapolated(
     robot: Robot,
     elements: int,
@@ -106,6 +113,18 @@ def _pushed(system: Any, node: Any, robot: Robot, step: float, end: float) -> tu
 
 def _rod(system: Any, robot: Robot, root: tuple[float, float, float], elements: int) -> Any:
     """Add a rod along x, held at its root; its last node."""
+    nodes = _elements(system, robot, root, elements)
+    ground = system.AddObject(items.ObjectGround(referencePosition=list(root)))
+    held = [
+        system.AddMarker(items.MarkerBodyRigid(bodyNumber=ground)),
+        system.AddMarker(items.MarkerNodeRigid(nodeNumber=nodes[0])),
+    ]
+    system.AddObject(items.GenericJoint(markerNumbers=held))
+    return nodes[-1]
+
+
+def _elements(system: Any, robot: Robot, root: tuple[float, float, float], elements: int) -> list[Any]:
+    """Add a rod along x; its nodes."""
     rhoA, rhoJ, rhoI_y, rhoI_z = robot.inertia
     section: Any = exudyn.BeamSection()
     section.massPerLength = rhoA
@@ -118,13 +137,7 @@ def _rod(system: Any, robot: Robot, root: tuple[float, float, float], elements: 
     ]
     for ends in zip(nodes, nodes[1:], strict=False):
         system.AddObject(items.ObjectBeamGeometricallyExact(nodeNumbers=list(ends), length=h, sectionData=section))
-    ground = system.AddObject(items.ObjectGround(referencePosition=[x, y, z]))
-    held = [
-        system.AddMarker(items.MarkerBodyRigid(bodyNumber=ground)),
-        system.AddMarker(items.MarkerNodeRigid(nodeNumber=nodes[0])),
-    ]
-    system.AddObject(items.GenericJoint(markerNumbers=held))
-    return nodes[-1]
+    return nodes
 
 
 def _push(system: Any, node: Any, force: Callable[[Any, float, Any], list[float]]) -> None:

@@ -114,7 +114,7 @@ STUDY = ParameterStudy(
     BOUND,
     tuple(Subject(WORDS[name], measure(name)) for name in MODELS),
     judge,
-    "beams of several shorter pieces joined rigidly, each of which bends less than 0.1 of its length; or a "
-    "geometrically exact code, such as Exudyn, beyond 0.3 L.",
+    "beams of several segments (`segments`), each of which bends less than 0.1 of its length; or rods by their strains "
+    "(`theory: strain`), which are right at any bending.",
     (source("pendulum"),),
 )

@@ -95,7 +95,10 @@ def deformation_wrench(
 
 
 def _relative_wrench(forms: BeamForms, w: Vec3, speeds: Sequence[Edge], rates: Sequence[Edge]) -> Wrench:
-    """Force and moment of the motion relative to B, and of Coriolis' acceleration (eqs. 15, 16)."""
+    """Force and moment of the motion relative to B, and of Coriolis' acceleration (eqs. 15, 16).
+
+    Forms of what is zero, at rest and without accelerations, are not asked for their values.
+    """
     g, order = w.g, forms.order
     S_rate = Vec3(g, *(form.rate(speeds, order) for form in forms.first_moment))
     twice = w + w
@@ -104,11 +107,13 @@ def _relative_wrench(forms: BeamForms, w: Vec3, speeds: Sequence[Edge], rates: S
     n = _moment_rate(g, E_rate).times(w)
     spin = Vec3(g)
     for i, (angular, speed, rate) in enumerate(zip(forms.angular, speeds, rates, strict=True)):
-        linear = Vec3(g, *(form.gradient[i].value(order) for form in forms.first_moment))
-        f = f + linear.scaled(rate)
-        n = n + _vector(g, angular, order).scaled(rate)
-        n = n + Vec3(g, *(form.rate(speeds, order - 1) for form in angular)).scaled(speed)
-        spin = spin + _vector(g, angular, order - 1).scaled(speed)
+        if rate != ZERO:
+            linear = Vec3(g, *(form.gradient[i].value(order) for form in forms.first_moment))
+            f = f + linear.scaled(rate)
+            n = n + _vector(g, angular, order).scaled(rate)
+        if speed != ZERO:
+            n = n + Vec3(g, *(form.rate(speeds, order - 1) for form in angular)).scaled(speed)
+            spin = spin + _vector(g, angular, order - 1).scaled(speed)
     return Wrench(f, n + w.cross(spin))
 
 
@@ -119,10 +124,12 @@ def _modal_force(
     g, order = w.g, forms.order
     linear = Vec3(g, *(form.gradient[i].value(order) for form in forms.first_moment))
     total = g.add(linear.dot(a), _vector(g, forms.angular[i], order).dot(alpha))
-    total = g.add(total, g.sum(g.mul(_form_mass(forms, i, j), rate) for j, rate in enumerate(rates)))
+    total = g.add(total, g.sum(g.mul(_form_mass(forms, i, j), rate) for j, rate in enumerate(rates) if rate != ZERO))
     total = g.add(total, _centrifugal(g, w, [form.gradient[i].value(order) for form in forms.second_moment]))
     curl = Vec3(g)
     for j, speed in enumerate(speeds):
+        if speed == ZERO:
+            continue
         there = _vector(g, _slopes(forms.angular[i], j), order - 1)
         back = _vector(g, _slopes(forms.angular[j], i), order - 1)
         curl = curl + (there - back).scaled(speed)
@@ -150,6 +157,8 @@ def _convective(forms: BeamForms, i: int, speeds: Sequence[Edge]) -> Edge:
     g, order, M = forms.along.g, forms.order, forms.modal_mass
     half, total = g.constant(0.5), ZERO
     for j, speed in enumerate(speeds):
+        if speed == ZERO:
+            continue
         total = g.add(total, g.mul(M[min(i, j), max(i, j)].rate(speeds, order - 1), speed))
         for k in range(j, len(speeds)):
             slope = M[j, k].gradient[i].value(order - 2)
