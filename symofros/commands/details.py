@@ -79,7 +79,7 @@ def frames_line(facts: dict[str, Any]) -> str:
 def _mass(beam: Beam, numbers: Numbers) -> float:
     """Mass of a beam, by Gauss's quadrature where its section changes."""
     xi, w = stations((0.0, 1.0), _POINTS)
-    along = section_values(beam, "rhoA", np.array(xi), numbers.parameters)[0]
+    along = section_values(beam, beam.rhoA, np.array(xi), numbers.parameters)[0]
     return numbers.value(beam.length) * float(along @ np.array(w))
 
 

@@ -84,6 +84,8 @@ class _Interval:
 class StrainRod(BeamSection):
     """A rod of a description at the default parameters; it stands where an `ElasticBeam` does.
 
+    Its sections have their centres on the axis, and couple no strains.
+
     Args:
         beam: The rod.
         parameters: Values of the description's parameters.

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, fields
-from itertools import pairwise
+from itertools import combinations, pairwise
 from numbers import Real
 from typing import Any, Literal, get_args
 
 from symofros.description.entries import refuses_unknown_entries
 from symofros.description.frames import Frame
 from symofros.description.joints.joint import Joint
-from symofros.description.values import ORIGIN, Value, Vector, as_value, as_vector
+from symofros.description.values import ORIGIN, Value, Vector, as_value, as_values, as_vector
 from symofros.errors import DescriptionError, Problem, did_you_mean
 
 Direction = Literal["bend_y", "bend_z", "twist", "stretch", "shear_y", "shear_z"]
@@ -32,9 +32,14 @@ STATIONS = tuple(k / 8 for k in range(9))
 # Stiffnesses that rods alone have.
 ROD_STIFFNESSES = ("EA", "GA_y", "GA_z")
 # What may depend on the station x, and so taper.
-SECTION = ("rhoA", "EI_y", "EI_z", "GJ", *ROD_STIFFNESSES, "rhoJ", "rhoI_y", "rhoI_z")
+SECTION = ("rhoA", "EI_y", "EI_z", "GJ", *ROD_STIFFNESSES, "rhoJ", "rhoI_y", "rhoI_z", "EI_yz", "rhoI_yz")
+# Points (y, z) of the section, of rods alone, which may depend on it too.
+CENTERS = ("tension_center", "shear_center", "mass_center")
 # Strains of a rod without stress: functions of the station as well.
 PRE_STRAINS = ("twist_rate", "curvature_y", "curvature_z")
+# Strains in the order of a matrix of stiffness, and what such a matrix takes the place of.
+MATRIX_ORDER = ("stretch", "shear_y", "shear_z", "twist_rate", "curvature_y", "curvature_z")
+IN_MATRIX = ("EI_y", "EI_z", "GJ", *ROD_STIFFNESSES, "EI_yz", "tension_center", "shear_center")
 STATION = "x"
 
 
@@ -77,7 +82,13 @@ class Samples:
             )
 
 
+# Difference of two entries across the diagonal of a matrix of stiffness, over the root of the product of the
+# diagonal's: programs for sections write seven digits.
+_ASYMMETRY = 1e-6
+
 UserShape = Value | Samples
+Point = tuple[Value, Value]
+_AXIS: Point = (0.0, 0.0)
 
 
 @refuses_unknown_entries
@@ -134,8 +145,8 @@ class Beam:
         joint: Joint between the root and its parent; kind "fixed" clamps it there.
         length: Length [m].
         rhoA: Mass per length [kg/m].
-        EI_z: Stiffness against bending in the x-y plane [N m^2].
-        EI_y: Stiffness against bending in the x-z plane [N m^2].
+        EI_z: Stiffness against bending in the x-y plane, about the tension centre [N m^2].
+        EI_y: Stiffness against bending in the x-z plane, about the tension centre [N m^2].
         GJ: Stiffness against twist [N m^2].
         rhoJ: Polar moment of inertia per length, about x [kg m].
         rhoI_y: Moment of inertia per length about y; counts with rotary_inertia, without it is drawn alone [kg m].
@@ -172,6 +183,14 @@ class Beam:
         stretch: Number of shape functions for the stretch of a rod's axis; 0 leaves its length as it is.
         shear_y: Number of shape functions for the shear of a rod's sections along y; 0 keeps them across the axis.
         shear_z: Number of shape functions for the shear of a rod's sections along z.
+        EI_yz: Integral of E y z about the tension centre, of a rod whose axes y and z are not principal ones [N m^2].
+        rhoI_yz: Integral of rho y z about the mass centre, of a rod; counts as rhoI_y [kg m].
+        tension_center: Point (y, z) of a rod's section where a force along x does not bend it [m].
+        shear_center: Point (y, z) of a rod's section where a force across does not twist it [m].
+        mass_center: Mass centre (y, z) of a rod's section; moments of inertia are about it [m].
+        stiffness: Stiffness of a rod's section about the axis, six rows of six, in place of EA to EI_yz and of the
+            tension and shear centres: force and moment (N, V_y, V_z, T, M_y, M_z) per strain (stretch, shear_y,
+            shear_z; twist rate, curvature_y, curvature_z), symmetric.
     """
 
     name: str
@@ -209,12 +228,21 @@ class Beam:
     stretch: int = 0
     shear_y: int = 0
     shear_z: int = 0
+    EI_yz: Value = 0.0
+    rhoI_yz: Value = 0.0
+    tension_center: Point = _AXIS
+    shear_center: Point = _AXIS
+    mass_center: Point = _AXIS
+    stiffness: tuple[tuple[Value, ...], ...] = ()
 
     def __post_init__(self) -> None:
         """Convert numbers, freeze collections, check the choices."""
         what = f"beam '{self.name}'"
         for label in ("length", "damping", *SECTION, *PRE_STRAINS):
             object.__setattr__(self, label, as_value(getattr(self, label), f"{what}: {label}"))
+        for label in CENTERS:
+            object.__setattr__(self, label, as_values(getattr(self, label), 2, f"{what}: {label}"))
+        self._set_stiffness(what)
         for label in ("frames", "loads", "waive"):
             object.__setattr__(self, label, tuple(getattr(self, label)))
         given: Any = dict(self.shapes)
@@ -257,6 +285,25 @@ class Beam:
                 )
             )
         self._check_stations(what)
+
+    def _set_stiffness(self, what: str) -> None:
+        """Convert the matrix of stiffness, and check its form."""
+        if not len(self.stiffness):
+            object.__setattr__(self, "stiffness", ())
+            return
+        size = len(MATRIX_ORDER)
+        label = f"{what}: stiffness"
+        rows = tuple(as_values(row, size, f"{label}[{i}]") for i, row in enumerate(self.stiffness))
+        if len(rows) != size:
+            rule = f"{size} rows of {size} entries: {', '.join(MATRIX_ORDER)}"
+            raise DescriptionError(Problem(label, f"{len(rows)} rows", rule, "give all, zeros included"))
+        object.__setattr__(self, "stiffness", tuple(map(tuple, _symmetric([*map(list, rows)], label))))
+        stated = [name for name in IN_MATRIX if getattr(self, name) not in (0.0, _AXIS)]
+        if stated:
+            rule = "a matrix has all stiffnesses, about the axis"
+            raise DescriptionError(
+                Problem(f"{what}: stiffness and {', '.join(stated)}", "both", rule, "keep the one or the other")
+            )
 
     def _check_stations(self, what: str) -> None:
         """Convert the stations of section forces, and check that they rise along the beam."""
@@ -338,11 +385,15 @@ class Beam:
             theory, lacking = "a geometrically exact rod (theory 'strain')", "keeps every term, and shortens by itself"
         else:
             plain = (
-                {"sections": 0} | dict.fromkeys((*PRE_STRAINS, *ROD_STIFFNESSES), 0.0) | dict.fromkeys(STRAINS[3:], 0)
+                {"sections": 0, "stiffness": ()}
+                | dict.fromkeys((*PRE_STRAINS, *ROD_STIFFNESSES, "EI_yz", "rhoI_yz"), 0.0)
+                | dict.fromkeys(STRAINS[3:], 0)
+                | dict.fromkeys(CENTERS, _AXIS)
             )
             theory, lacking = (
                 "a beam of second order in its displacements",
-                "is straight without stress, and neither stretches nor shears",
+                "is straight without stress, neither stretches nor shears, has its centres on the axis, and principal"
+                " axes y and z",
             )
         for label, value in plain.items():
             if getattr(self, label) != value:
@@ -359,6 +410,12 @@ class Beam:
     def inertia(self) -> None:
         """A beam's mass is in its section, not in an inertia of a rigid body."""
         return None
+
+    @property
+    def is_coupled(self) -> bool:
+        """Whether the section has a centre off the axis, axes that are no principal ones, or a matrix of stiffness."""
+        off = any(getattr(self, label) != _AXIS for label in CENTERS)
+        return off or bool(self.stiffness) or self.EI_yz != 0.0 or self.rhoI_yz != 0.0
 
     @property
     def modes(self) -> int:
@@ -379,9 +436,47 @@ class Beam:
         """Names of the elastic coordinates: beam.bend_y[0] and so on."""
         return tuple(f"{self.name}.{key}[{i}]" for key in STRAINS for i in range(getattr(self, key)))
 
+    def along_axis(self) -> Iterator[tuple[str, Value]]:
+        """What may depend on the station, by label: properties of the section, and strains without stress."""
+        for label in (*SECTION, *PRE_STRAINS):
+            yield label, getattr(self, label)
+        for label in CENTERS:
+            yield from ((f"{label}[{k}]", value) for k, value in enumerate(getattr(self, label)))
+        for i, row in enumerate(self.stiffness):
+            yield from ((f"stiffness[{i}][{j}]", row[j]) for j in range(i, len(row)))
+
+    def changed_along_axis(self, change: Callable[[Value], Value]) -> dict[str, Any]:
+        """The entries of `along_axis`, each value changed."""
+        return (
+            {label: change(getattr(self, label)) for label in (*SECTION, *PRE_STRAINS)}
+            | {label: tuple(map(change, getattr(self, label))) for label in CENTERS}
+            | {"stiffness": tuple(tuple(map(change, row)) for row in self.stiffness)}
+        )
+
     def plain_values(self) -> list[tuple[str, Value]]:
         """What may depend on parameters only, by label."""
         return [(item.name, getattr(self, item.name)) for item in fields(self) if item.name in ("length", "damping")]
+
+
+def _symmetric(rows: list[list[Value]], label: str) -> list[list[Value]]:
+    """A matrix of stiffness without what rounding left of a difference between an entry and that across the diagonal.
+
+    Raises:
+        DescriptionError: There is more of it.
+    """
+    for i, j in combinations(range(len(rows)), 2):
+        a, b, sizes = rows[i][j], rows[j][i], (rows[i][i], rows[j][j])
+        if a == b:
+            continue
+        if isinstance(a, float) and isinstance(b, float) and all(isinstance(size, float) for size in sizes):
+            size = math.sqrt(abs(sizes[0] * sizes[1]))  # type: ignore[operator]
+            if abs(a - b) <= _ASYMMETRY * size:
+                rows[i][j] = rows[j][i] = 0.5 * (a + b)
+                continue
+        rule = "a matrix of stiffness is symmetric: forces have the strain energy as their potential"
+        found = f"[{i}][{j}] is {a}, [{j}][{i}] is {b}"
+        raise DescriptionError(Problem(f"{label} is not symmetric", found, rule, "state the same value for both"))
+    return rows
 
 
 def _shape(stated: Any, what: str) -> UserShape:

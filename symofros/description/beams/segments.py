@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import fields, replace
+from functools import partial
 from typing import Any
 
-from symofros.description.beams.beam import PRE_STRAINS, SECTION, STATION, Beam, BeamLoad
+from symofros.description.beams.beam import STATION, Beam, BeamLoad
 from symofros.description.forces import Anchor
 from symofros.description.frames import Frame
 from symofros.description.joints.joint import Joint
@@ -56,9 +57,7 @@ def segments_of(beam: Beam) -> tuple[Beam, ...]:
     for k, name in enumerate(names):
         station = _station(beam.length, k, n)
         clamp = Joint(f"{name}.clamp", "fixed", names[k - 1], end)
-        section: dict[str, Any] = {
-            label: substituted(getattr(beam, label), STATION, station) for label in (*SECTION, *PRE_STRAINS)
-        }
+        along_axis = beam.changed_along_axis(partial(substituted, name=STATION, replacement=station))
         segments.append(
             replace(
                 beam,
@@ -69,7 +68,7 @@ def segments_of(beam: Beam) -> tuple[Beam, ...]:
                 loads=tuple(_loads(beam.loads, k, n, station)),
                 segments=1,
                 stations=tuple(_stations(beam, k)),
-                **section,
+                **along_axis,
             )
         )
     return tuple(segments)

@@ -26,12 +26,14 @@ from symofros.description.yaml.fields import (
     RotationEntry,
     Text,
     Three,
+    Two,
     fault,
 )
 from symofros.errors import DescriptionError
 
 _TEXTS = ("unit", "description")
 _VECTOR = (Value, Value, Value)
+_POINT = (Value, Value)
 _ANCHOR = (str, str | None)
 
 
@@ -45,6 +47,8 @@ def _entry_type(name: str, kind: Any) -> Any:
         return _entry_type(name, inner) | None
     if arguments == _VECTOR:
         return Three
+    if arguments == _POINT:
+        return Two
     if arguments == _ANCHOR:
         return AnchorEntry
     if kind is Rotation:

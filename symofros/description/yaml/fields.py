@@ -157,6 +157,7 @@ Formula = TypeAliasType(
         ),
     ],
 )
+Two = Annotated[list[Formula], Field(min_length=2, max_length=2)]
 Three = Annotated[list[Formula], Field(min_length=3, max_length=3)]
 Four = Annotated[list[Formula], Field(min_length=4, max_length=4)]
 Six = Annotated[list[Formula], Field(min_length=6, max_length=6)]

@@ -6,9 +6,18 @@ from typing import Annotated, Any, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from symofros.description.beams.beam import MOST_SECTIONS, SECTION, STATIONS, Beam, BeamLoad, Direction, Samples
+from symofros.description.beams.beam import (
+    CENTERS,
+    MOST_SECTIONS,
+    SECTION,
+    STATIONS,
+    Beam,
+    BeamLoad,
+    Direction,
+    Samples,
+)
 from symofros.description.yaml.derived import NounEntry
-from symofros.description.yaml.fields import Formula, Number, fault
+from symofros.description.yaml.fields import Formula, Number, Six, fault
 from symofros.description.yaml.schema_section import SectionEntry
 from symofros.errors import Problem
 
@@ -49,10 +58,11 @@ class BeamEntry(NounEntry, noun=Beam, without=("name", "joint", "frames", "waive
     section: SectionEntry | None = None
     """Material and shape, in place of rhoA, EI_y and the other properties of the section."""
     rhoA: Formula | None = None
+    stiffness: Annotated[list[Six], Field(max_length=6)] = []
 
     @model_validator(mode="after")
     def _one_section(self) -> Self:
-        stated = [label for label in SECTION if label in self.model_fields_set]
+        stated = [label for label in (*SECTION, *CENTERS, "stiffness") if label in self.model_fields_set]
         if self.section is not None and stated:
             rule = "a section gives all properties per length"
             raise fault(Problem("a section and its properties", ", ".join(stated), rule, "keep the one or the other"))

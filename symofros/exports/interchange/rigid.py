@@ -203,12 +203,20 @@ def _beam_inertia(beam: Beam, numbers: Numbers) -> tuple[float, Array, Array]:
     edges = np.linspace(0.0, length, _PIECES + 1)
     x = np.concatenate([(a + b) / 2 + (b - a) / 2 * nodes for a, b in zip(edges, edges[1:], strict=False)])
     w = np.tile(length / _PIECES / 2 * weights, _PIECES)
-    rhoA = np.array([numbers.extended({STATION: float(at)}).value(beam.rhoA) for at in x])
-    rhoJ = np.array([numbers.extended({STATION: float(at)}).value(beam.rhoJ) for at in x])
-    mass = math.fsum(w * rhoA)
-    center = math.fsum(w * rhoA * x) / mass if mass else 0.0
-    across = math.fsum(w * rhoA * (x - center) ** 2)
-    return mass, np.array([center, 0.0, 0.0]), np.diag([math.fsum(w * rhoJ), across, across])
+    at = [numbers.extended({STATION: float(station)}) for station in x]
+    about = ("rhoI_y", "rhoI_z", "rhoI_yz") if beam.rotary_inertia else ()
+    rhoA, *moments = (
+        w * np.array([values.value(getattr(beam, label)) for values in at]) for label in ("rhoA", "rhoJ", *about)
+    )
+    places = np.column_stack([x, np.array([values.values(beam.mass_center) for values in at])])
+    mass = math.fsum(rhoA)
+    center = np.array([math.fsum(rhoA * column) / mass if mass else 0.0 for column in places.T])
+    second = np.array([[math.fsum(rhoA * a * b) for b in (places - center).T] for a in (places - center).T])
+    inertia = np.trace(second) * np.eye(3) - second
+    for (i, j, sign), moment in zip(((0, 0, 1.0), (1, 1, 1.0), (2, 2, 1.0), (1, 2, -1.0)), moments, strict=False):
+        inertia[i, j] += sign * math.fsum(moment)
+    inertia[2, 1] = inertia[1, 2]
+    return mass, center, inertia
 
 
 def _lost(system: System) -> Iterator[str]:

@@ -106,6 +106,15 @@ class Nodes:
             row += [(b - a) * weight * share for weight, share in zip(weights, shares, strict=True)]
         return tuple(row)
 
+    def through(self, xi: float) -> tuple[float, ...]:
+        """Weights of the nodes in the value at a station inside an interval, by the polynomials through its nodes."""
+        row: list[float] = []
+        for (a, b), (nodes, weights) in zip(pairwise(map(float, self.knots)), self.rules, strict=True):
+            inside = a < xi < b
+            polynomials = (_polynomial(len(nodes), node, (xi - a) / (b - a)) if inside else 0.0 for node in nodes)
+            row += [weight * value for weight, value in zip(weights, polynomials, strict=True)]
+        return tuple(row)
+
     def beyond(self, xi: float) -> tuple[float, ...]:
         """Weights of the nodes in the integral from a station to the tip, by the polynomials through them."""
         return tuple(w - a for w, a in zip(self.weights, self.from_root(xi), strict=True))
@@ -129,6 +138,12 @@ def _partial_weight(points: int, node: float, upto: float) -> float:
     """
     at, end = _legendre_values(points + 1, 2.0 * node - 1.0), _legendre_values(points + 1, 2.0 * upto - 1.0)
     return upto + sum(at[n] * 0.5 * (end[n + 1] - end[n - 1]) for n in range(1, points))
+
+
+def _polynomial(points: int, node: float, xi: float) -> float:
+    """A node's polynomial of Lagrange at a station, over the node's weight."""
+    at, end = _legendre_values(points, 2.0 * node - 1.0), _legendre_values(points, 2.0 * xi - 1.0)
+    return sum((2 * n + 1) * at[n] * end[n] for n in range(points))
 
 
 def _legendre_values(count: int, z: float) -> list[float]:

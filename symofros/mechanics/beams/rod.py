@@ -8,14 +8,15 @@ from functools import cached_property
 from itertools import pairwise
 
 from symofros.description.beams.beam import PRE_STRAINS, STATION, Beam
-from symofros.description.values import Value, symbols
-from symofros.expr.edges import ZERO, Edge
+from symofros.description.values import Term, Value, symbols
+from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.expression import Expression
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Vec3
 from symofros.mechanics.beams.fields import Form, no_form
 from symofros.mechanics.beams.integrals import LengthIntegrator, at_station
 from symofros.mechanics.beams.quadrature import gauss
+from symofros.mechanics.beams.section_law import SectionLaw, section_law
 from symofros.mechanics.beams.strains import TURNING, Strains
 from symofros.mechanics.beams.turn import Moments, Turn
 
@@ -43,7 +44,7 @@ class InertiaAxis:
     Attributes:
         section: Index of the section.
         inertia: Moment of inertia about the axis, of the section's share of the rod [kg m^2].
-        direction: Unit vector of the axis, in B.
+        direction: Vector along the axis, in B, of unit length unless the inertia is that of a product (14a).
     """
 
     section: int
@@ -81,6 +82,16 @@ class Rod:
         pre = {k for k, label in enumerate(PRE_STRAINS) if getattr(self.beam, label) != 0.0}
         axes = pre | {k for k, _ in self.strains.axes if k < TURNING}
         return axes.pop() if len(axes) == 1 else None
+
+    @cached_property
+    def law(self) -> SectionLaw:
+        """What its sections resist, and the stretch and shear that follow from bending and twist (2), (2a)."""
+        return section_law(self.beam, {axis for axis, _ in self.strains.axes})
+
+    @property
+    def mass_center(self) -> tuple[Value, Value] | None:
+        """Mass centre (y, z) of the sections, where it is not on the axis."""
+        return self.beam.mass_center if self.beam.mass_center != (0.0, 0.0) else None
 
     # Sections.
 
@@ -207,30 +218,66 @@ class Rod:
             for section, shift in zip(self.sections, self.shifted(self.coordinates), strict=True)
         )
 
+    @cached_property
+    def _slips(self) -> tuple[tuple[dict[int, Edge], ...], ...]:
+        """Stretch (0) and shears (1, 2) of each section by a unit of each coordinate, where there are any (1b)."""
+        g, sections = self.g, []
+        per_length = g.div(ONE, self.along.L)
+        for xi, row in zip(self.strains.sections.stations, self.strains.values, strict=True):
+            slips: list[dict[int, Edge]] = []
+            for (axis, _), value in zip(self.strains.axes, row, strict=True):
+                unit = g.constant(value)
+                own = {axis - TURNING: unit} if axis >= TURNING and value else {}
+                if axis < TURNING:
+                    unit = g.mul(unit, per_length)
+                followed = {
+                    k - TURNING: g.mul(self._at(share, xi), unit)
+                    for (k, by), share in self.law.following.items()
+                    if by == axis
+                }
+                slips.append(own | {k: edge for k, edge in followed.items() if edge != ZERO})
+            sections.append(tuple(slips))
+        return tuple(sections)
+
+    def _at(self, value: Value, xi: float) -> Edge:
+        """A property of the section at a station."""
+        return self.along.lower(at_station(value, self.along.length, xi) if isinstance(value, Expression) else value)
+
     def shifted(self, values: Sequence[Edge]) -> list[Vec3]:
         """Stretch and shear of the sections by coordinates, or by their rates at constant sections, in B."""
-        vectors = []
-        for section, row in zip(self.sections, self.strains.shifts, strict=True):
-            vector = Vec3(self.g)
-            for (axis, _), unit, value in zip(self.strains.axes, row, values, strict=True):
-                if unit:
-                    vector = vector + section.R_BS.column(axis - TURNING).scaled(
-                        self.g.mul(self.g.constant(unit), value)
-                    )
+        g, vectors = self.g, []
+        for section, slips in zip(self.sections, self._slips, strict=True):
+            vector = Vec3(g)
+            for k in range(3):
+                total = g.sum(g.mul(slip[k], value) for slip, value in zip(slips, values, strict=True) if k in slip)
+                vector = vector + section.R_BS.column(k).scaled(total)
             vectors.append(vector)
         return vectors
+
+    @cached_property
+    def partial_slips(self) -> tuple[tuple[Vec3, ...], ...]:
+        """Derivatives of stretch and shear, where sections do not turn, by each coordinate: one row a coordinate."""
+        rows = []
+        for i in range(len(self.coordinates)):
+            row = []
+            for section, slips in zip(self.sections, self._slips, strict=True):
+                vector = Vec3(self.g)
+                for k, unit in slips[i].items():
+                    vector = vector + section.R_BS.column(k).scaled(unit)
+                row.append(vector)
+            rows.append(tuple(row))
+        return tuple(rows)
 
     @cached_property
     def partial_tangents(self) -> tuple[tuple[Vec3, ...], ...]:
         """Derivatives of the tangents at the sections by each coordinate: one row a coordinate."""
         rows = []
-        for i, (axis, _) in enumerate(self.strains.axes):
+        for i, ((axis, _), slips) in enumerate(zip(self.strains.axes, self.partial_slips, strict=True)):
             if axis < TURNING:
-                rows.append(tuple(s.spins[i].cross(t) for s, t in zip(self.sections, self.tangents, strict=True)))
+                turned = (s.spins[i].cross(t) for s, t in zip(self.sections, self.tangents, strict=True))
+                rows.append(tuple(spin + slip for spin, slip in zip(turned, slips, strict=True)))
             else:
-                units = (self.g.constant(row[i]) for row in self.strains.shifts)
-                columns = (section.R_BS.column(axis - TURNING) for section in self.sections)
-                rows.append(tuple(column.scaled(unit) for column, unit in zip(columns, units, strict=True)))
+                rows.append(slips)
         return tuple(rows)
 
     def combined(self, row: Sequence[float], vectors: Sequence[Vec3]) -> Vec3:
@@ -283,18 +330,55 @@ class Rod:
     # Mass and stiffness.
 
     @cached_property
+    def _arms(self) -> tuple[Vec3, ...]:
+        """From the axis to the mass centres of the sections, in B; none where these are on the axis."""
+        if self.mass_center is None:
+            return ()
+        y, z = self.mass_center
+        return tuple(
+            section.R_BS.column(1).scaled(self._at(y, xi)) + section.R_BS.column(2).scaled(self._at(z, xi))
+            for xi, section in zip(self.strains.sections.stations, self.sections, strict=True)
+        )
+
+    @cached_property
+    def mass_vectors(self) -> tuple[Vec3, ...]:
+        """What positions of the mass are sums of, in B: the tangents, then the arms of the mass centres (12a)."""
+        return self.tangents + self._arms
+
+    @cached_property
+    def partial_mass_vectors(self) -> tuple[tuple[Vec3, ...], ...]:
+        """Derivatives of these by each coordinate: one row a coordinate."""
+        return tuple(
+            row + tuple(section.spins[i].cross(arm) for section, arm in zip(self.sections, self._arms, strict=False))
+            for i, row in enumerate(self.partial_tangents)
+        )
+
+    def mass_positions(self, vectors: Sequence[Vec3]) -> list[Vec3]:
+        """Positions of the stations of masses, by the mass vectors or others in their place."""
+        count = len(self.sections)
+        positions = [self.combined(row, vectors[:count]).scaled(self.along.L) for row in self.strains.positions]
+        if self.mass_center is None:
+            return positions
+        arms = (self.combined(row, vectors[count:]) for row in self.strains.interpolation)
+        return [position + arm for position, arm in zip(positions, arms, strict=True)]
+
+    @cached_property
     def mass_points(self) -> tuple[tuple[Edge, ...], ...]:
-        """Weights of the tangents in points that have the second moments of the rod, each of unit mass (12).
+        """Weights of the mass vectors in points that have the second moments of the rod, each of unit mass (12), (12a).
 
         The root of the mass is in the weights, which depend on parameters alone.
         """
         g, L = self.g, self.along.L
-        if STATION not in symbols(self.beam.rhoA):
+        if STATION not in symbols(self.beam.rhoA) and self.mass_center is None:
             rows, masses = self.strains.mass_points, (self.mass,) * len(self.sections)
         else:
             rows, masses = self.strains.positions, self.masses()
-        roots = (g.mul(g.sqrt(mass), L) for mass in masses)
-        return tuple(tuple(g.mul(g.constant(x), root) for x in row) for row, root in zip(rows, roots, strict=True))
+        roots = [g.sqrt(mass) for mass in masses]
+        arms = self.strains.interpolation if self.mass_center is not None else ((),) * len(rows)
+        return tuple(
+            tuple(g.mul(g.constant(x), long) for x in row) + tuple(g.mul(g.constant(x), root) for x in arm)
+            for row, arm, root, long in zip(rows, arms, roots, (g.mul(root, L) for root in roots), strict=True)
+        )
 
     def masses(self, weights: Sequence[float] | None = None) -> tuple[Edge, ...]:
         """Mass at each of the stations of masses; of a part, with its weights."""
@@ -305,20 +389,19 @@ class Rod:
         """Integral of a property of the section over the length, by stations."""
         g, shares = self.g, []
         for xi, w in zip(stations, weights, strict=True):
-            value = at_station(weight, self.along.length, xi) if isinstance(weight, Expression) else weight
-            shares.append(g.mul(g.constant(w), g.mul(self.along.lower(value), self.along.L)))
+            shares.append(g.mul(g.constant(w), g.mul(self._at(weight, xi), self.along.L)))
         return tuple(shares)
 
     @cached_property
     def point_positions(self) -> tuple[Vec3, ...]:
         """Positions of the mass points times the roots of their masses, in B."""
-        return tuple(self.weighted(row, self.tangents) for row in self.mass_points)
+        return tuple(self.weighted(row, self.mass_vectors) for row in self.mass_points)
 
     @cached_property
     def point_partials(self) -> tuple[tuple[Vec3, ...], ...]:
         """Derivatives of these positions by each coordinate: one row a coordinate."""
         return tuple(
-            tuple(self.weighted(row, partial) for row in self.mass_points) for partial in self.partial_tangents
+            tuple(self.weighted(row, partial) for row in self.mass_points) for partial in self.partial_mass_vectors
         )
 
     @cached_property
@@ -328,16 +411,29 @@ class Rod:
 
     def inertia_axes_of(self, weights: Sequence[float]) -> tuple[InertiaAxis, ...]:
         """The same of a part of the rod, by its weights of the sections."""
+        axes, stations = [], self.strains.sections.stations
+        for axis, per_length, skew in self._inertias:
+            shares = self.shares(per_length, stations, weights)
+            for k, (section, xi, share) in enumerate(zip(self.sections, stations, shares, strict=True)):
+                direction = section.R_BS.column(axis)
+                if skew != 0.0:
+                    direction = direction + section.R_BS.column(2).scaled(self._at(skew, xi))
+                axes.append(InertiaAxis(k, share, direction))
+        return tuple(axes)
+
+    @property
+    def _inertias(self) -> list[tuple[int, Value, Value]]:
+        """Axis of the section, moment of inertia per length about it, and the share of z that is added to it (14a)."""
         beam = self.beam
-        stated = (beam.rhoJ, beam.rhoI_y, beam.rhoI_z) if beam.rotary_inertia else (beam.rhoJ,)
-        return tuple(
-            InertiaAxis(k, share, section.R_BS.column(axis))
-            for axis, per_length in enumerate(stated)
-            if per_length != 0.0
-            for k, (section, share) in enumerate(
-                zip(self.sections, self.shares(per_length, self.strains.sections.stations, weights), strict=True)
-            )
-        )
+        stated: list[tuple[int, Value, Value]] = [(0, beam.rhoJ, 0.0)]
+        if beam.rotary_inertia:
+            about_z, skew = beam.rhoI_z, 0.0
+            if beam.rhoI_yz != 0.0:
+                share = Term(beam.rhoI_yz) / Term(beam.rhoI_y)
+                about_z = (Term(beam.rhoI_z) - share * Term(beam.rhoI_yz)).value
+                skew = (Term(0.0) - share).value
+            stated += [(1, beam.rhoI_y, skew), (2, about_z, 0.0)]
+        return [item for item in stated if item[1] != 0.0]
 
     @cached_property
     def mass(self) -> Edge:
@@ -347,33 +443,30 @@ class Rod:
         return self.g.sum(self.masses())
 
     def first_moment(self, vectors: Sequence[Vec3]) -> Vec3:
-        """Mass times the position that vectors in place of the tangents give to the mass centre, S of section 4."""
+        """Mass times the position that vectors in place of the mass vectors give to the mass centre, S of section 4."""
         return self.weighted(self.first_moment_weights, vectors)
 
     @cached_property
     def first_moment_weights(self) -> tuple[Edge, ...]:
         """Weights of the vectors in `first_moment`."""
-        g = self.g
+        g, masses = self.g, self.masses()
+        arms = zip(*self.strains.interpolation, strict=True) if self.mass_center is not None else ()
+        of_arms = tuple(g.sum(map(g.mul, map(g.constant, column), masses)) for column in arms)
         if STATION not in symbols(self.beam.rhoA):
             whole = g.mul(self.mass, self.along.L)
-            return tuple(g.mul(g.constant(weight), whole) for weight in self.strains.first_moments)
+            return tuple(g.mul(g.constant(weight), whole) for weight in self.strains.first_moments) + of_arms
         columns = zip(*self.strains.positions, strict=True)
-        return tuple(
-            g.mul(
-                g.sum(g.mul(g.constant(row), mass) for row, mass in zip(column, self.masses(), strict=True)),
-                self.along.L,
-            )
-            for column in columns
+        return (
+            tuple(g.mul(g.sum(map(g.mul, map(g.constant, column), masses)), self.along.L) for column in columns)
+            + of_arms
         )
 
     @cached_property
     def strain_energy(self) -> Form:
         """Strain energy: half the integral of stiffnesses times squares of the changes of strain (2)."""
-        beam, total = self.beam, no_form(self.g, self.coordinates)
-        for axis, stiffness in enumerate((beam.GJ, beam.EI_y, beam.EI_z, beam.EA, beam.GA_y, beam.GA_z)):
-            strain = self.strains.strain(axis)
-            if strain.terms:
-                total = total + self.along.integral(strain.times(strain), stiffness)
+        total = no_form(self.g, self.coordinates)
+        for (a, b), stiffness in self.law.stiffness.items():
+            total = total + self.along.integral(self.strains.strain(a).times(self.strains.strain(b)), stiffness)
         return total.scaled(self.g.constant(0.5))
 
     def damping_energy(self, speeds: tuple[Edge, ...]) -> Form:

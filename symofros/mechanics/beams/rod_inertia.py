@@ -27,7 +27,7 @@ def rod_moments(rod: Rod) -> tuple[Vec3, Sym3]:
     for axis in rod.inertia_axes:
         c = axis.direction
         J = J + Sym3(g, *(g.mul(axis.inertia, g.mul(tuple(c)[a], tuple(c)[b])) for a, b in PAIRS))
-    return rod.first_moment(rod.tangents), J
+    return rod.first_moment(rod.mass_vectors), J
 
 
 def rod_modal_mass(rod: Rod, i: int, j: int) -> Edge:
@@ -53,7 +53,7 @@ def rod_momentum(rod: Rod, i: int) -> tuple[Vec3, Vec3]:
     for axis in rod.inertia_axes:
         spin = axis.direction.dot(rod.sections[axis.section].spins[i])
         angular = angular + axis.direction.scaled(g.mul(axis.inertia, spin))
-    return rod.first_moment(rod.partial_tangents[i]), angular
+    return rod.first_moment(rod.partial_mass_vectors[i]), angular
 
 
 def rod_forces(
@@ -77,10 +77,13 @@ def rod_forces(
     motion = _section_motion(rod, w, alpha, speeds, rates)
     curves = motion.curves
     points = [rod.weighted(row, curves) for row in rod.mass_points]
-    # Force per unit change of each tangent, f_k of (16).
+    # Force per unit change of each mass vector, f_k of (16).
     arms = [rod.weighted(column, points) for column in zip(*rod.mass_points, strict=True)]
     arms = [arm + a.scaled(weight) for arm, weight in zip(arms, rod.first_moment_weights, strict=True)]
-    torques = [t.cross(arm) for t, arm in zip(rod.tangents, arms, strict=True)]
+    count = len(rod.sections)
+    torques = [t.cross(arm) for t, arm in zip(rod.tangents, arms[:count], strict=True)]
+    for k, (vector, arm) in enumerate(zip(rod.mass_vectors[count:], arms[count:], strict=True)):
+        torques[k] = torques[k] + vector.cross(arm)
     for axis in rod.inertia_axes:
         torques[axis.section] = torques[axis.section] + _torque(axis, motion)
     moment = Vec3(rod.g)
@@ -90,7 +93,7 @@ def rod_forces(
 
 
 class _SectionMotion(NamedTuple):
-    """Angular velocity and acceleration of each section in the world; second derivative of each tangent, in B."""
+    """Angular velocity and acceleration of each section in the world; second derivative of each mass vector, in B."""
 
     spins: list[Vec3]
     accelerations: list[Vec3]
@@ -108,6 +111,10 @@ def _section_motion(rod: Rod, w: Vec3, alpha: Vec3, speeds: Sequence[Edge], rate
         motion.spins.append(total)
         motion.accelerations.append(total_rate)
         motion.curves.append(total_rate.cross(t) + total.cross(total.cross(t) + (slip + slip)) + slip_rate)
+    for vector, spin, rate in zip(
+        rod.mass_vectors[len(rod.sections) :], motion.spins, motion.accelerations, strict=False
+    ):
+        motion.curves.append(rate.cross(vector) + spin.cross(spin.cross(vector)))
     return motion
 
 
@@ -139,11 +146,8 @@ def wrenches_beyond(
         speeds: Rates of the strain coordinates.
         rates: Second derivatives of the strain coordinates.
     """
-    motion, L = _section_motion(rod, w, alpha, speeds, rates), rod.along.L
-    positions, relative = (
-        [rod.combined(row, vectors).scaled(L) for row in rod.strains.positions]
-        for vectors in (rod.tangents, motion.curves)
-    )
+    motion = _section_motion(rod, w, alpha, speeds, rates)
+    positions, relative = rod.mass_positions(rod.mass_vectors), rod.mass_positions(motion.curves)
     for xi in stations:
         weights = rod.strains.masses.beyond(xi)
         f, n = Vec3(rod.g), Vec3(rod.g)
@@ -156,10 +160,11 @@ def wrenches_beyond(
 
 
 def _power(rod: Rod, i: int, arms: Sequence[Vec3], torques: Sequence[Vec3]) -> Edge:
-    """Power per unit rate of a coordinate: of torques where it turns sections, else of forces."""
+    """Power per unit rate of a coordinate: of torques where it turns sections, of forces where it moves them."""
+    power = [slip.dot(arm) for slip, arm in zip(rod.partial_slips[i], arms, strict=False)]
     if rod.strains.axes[i][0] < TURNING:
-        return rod.g.sum(section.spins[i].dot(torque) for section, torque in zip(rod.sections, torques, strict=True))
-    return rod.g.sum(d.dot(arm) for d, arm in zip(rod.partial_tangents[i], arms, strict=True))
+        power += [section.spins[i].dot(torque) for section, torque in zip(rod.sections, torques, strict=True)]
+    return rod.g.sum(power)
 
 
 def rod_energy_twice(rod: Rod, w: Vec3, v: Vec3, speeds: Sequence[Edge]) -> Edge:
@@ -174,6 +179,8 @@ def rod_energy_twice(rod: Rod, w: Vec3, v: Vec3, speeds: Sequence[Edge]) -> Edge
     g = rod.g
     spins = [w + rod.spin(section, speeds) for section in rod.sections]
     moved = [spin.cross(t) + slip for spin, t, slip in zip(spins, rod.tangents, rod.shifted(speeds), strict=True)]
+    count = len(spins)
+    moved += [spin.cross(vector) for spin, vector in zip(spins, rod.mass_vectors[count:], strict=False)]
     points = [rod.weighted(row, moved) for row in rod.mass_points]
     linear = rod.first_moment(moved).dot(v)
     total = g.add(g.add(linear, linear), g.sum(p.dot(p) for p in points))

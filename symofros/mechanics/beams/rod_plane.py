@@ -336,4 +336,5 @@ def rod_of(g: Graph, lower: Lower, beam: Beam, coordinates: tuple[Edge, ...]) ->
     strains = strains_of(beam)
     rod = Rod(beam, LengthIntegrator(g, lower, beam.length, coordinates, strains.knots), strains)
     is_plane = rod.axis in (1, 2) and {k for k, _ in strains.axes} == {rod.axis}
+    is_plane = is_plane and not rod.law.following and rod.mass_center is None and beam.rhoI_yz == 0.0
     return PlaneRod(beam, rod.along, strains) if is_plane else rod

@@ -69,13 +69,10 @@ class Strains:
         return tuple(AXES[d] for d, count in zip(STRAINS, self.counts, strict=True) for _ in range(count))
 
     @cached_property
-    def shifts(self) -> Rows:
-        """Stretch or shear of each section by a unit of each coordinate; zero of one that turns sections (N, n)."""
+    def values(self) -> Rows:
+        """Strain of each section by a unit of each coordinate, of twist rate and curvatures over the length (N, n)."""
         xi = self.sections.stations
-        columns = [
-            f.rounded(xi) if axis >= TURNING else [0.0] * len(xi)
-            for f, (axis, _) in zip(self.functions, self.axes, strict=True)
-        ]
+        columns = [f.scaled(sign).rounded(xi) for f, (_, sign) in zip(self.functions, self.axes, strict=True)]
         return tuple(zip(*columns, strict=True)) if columns else tuple(() for _ in xi)
 
     @cached_property
@@ -134,6 +131,11 @@ class Strains:
         return tuple(self.sections.from_root(xi) for xi in self.masses.stations)
 
     @cached_property
+    def interpolation(self) -> Rows:
+        """Weights of the sections in the value of what is known at them, at each of the stations of `masses`."""
+        return tuple(self.sections.through(xi) for xi in self.masses.stations)
+
+    @cached_property
     def first_moments(self) -> tuple[float, ...]:
         """Weights of the tangents in the integral of the position, for a section that does not change (N)."""
         w, n = self.masses.weights, len(self.sections.stations)
@@ -167,7 +169,7 @@ class Strains:
             if axis < TURNING:
                 sizes.append(share * _LARGEST_TURN / max(abs(row[i]) for row in rows))
             else:
-                sizes.append(share * _LARGEST_STRAIN / max(abs(row[i]) for row in self.shifts))
+                sizes.append(share * _LARGEST_STRAIN / max(abs(row[i]) for row in self.values))
         return tuple(sizes)
 
 

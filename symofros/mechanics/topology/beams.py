@@ -8,7 +8,7 @@ from functools import lru_cache, partial
 import numpy as np
 
 from symofros.base.rotations import Array
-from symofros.description.beams.beam import PRE_STRAINS, SECTION, STATION, STRAINS, Beam
+from symofros.description.beams.beam import MATRIX_ORDER, STATION, STRAINS, Beam
 from symofros.description.values import ORIGIN, Term, Value, substituted, symbols
 from symofros.errors import Problem
 from symofros.mechanics.beams.deformation import deformation_of
@@ -60,8 +60,10 @@ def beam_conditions(beam: Beam, where: str) -> Iterator[Condition]:
 
 
 def beam_number_problems(beam: Beam, numbers: Numbers, where: str) -> Iterator[Problem]:
-    """Section properties too abrupt for the quadrature, and ill-conditioned shape functions."""
-    yield from _Section(beam, where).quadrature_problems(numbers)
+    """Section properties too abrupt for the quadrature, stiffness without a sign, ill-conditioned shape functions."""
+    section = _Section(beam, where)
+    yield from section.quadrature_problems(numbers)
+    yield from section.stiffness_problems(numbers)
     yield from _conditioning(beam, where)
 
 
@@ -79,7 +81,8 @@ def omitted_rotary_inertia(beam: Beam, numbers: Numbers) -> Iterator[tuple[str, 
         if not count or getattr(beam, label) == 0.0:
             continue
         mode = max(1, count * beam.segments - 1)
-        inertia, mass = (section_values(beam, name, middle, numbers.parameters).item() for name in (label, "rhoA"))
+        stated = getattr(beam, label), beam.rhoA
+        inertia, mass = (section_values(beam, value, middle, numbers.parameters).item() for value in stated)
         share = 1.0 - 1.0 / np.sqrt(1.0 + _squared_slope(mode) / length**2 * inertia / mass)
         if share > MOST_ROTARY_INERTIA:
             yield label, mode, float(share)
@@ -104,30 +107,35 @@ class _Section:
             "positive",
             partial(self._wrong_number, "length", "the length of a beam is positive", "give a positive length"),
         )
+        by_entries = not beam.stiffness  # A matrix has all stiffnesses: `stiffness_problems`.
         for label, needed, why in (
             ("rhoA", True, "a beam has mass all along"),
-            ("EI_z", bool(beam.bend_y), "bending along y bends against EI_z"),
-            ("EI_y", bool(beam.bend_z), "bending along z bends against EI_y"),
-            ("GJ", bool(beam.twist), "twist acts against GJ"),
-            ("EA", bool(beam.stretch), "a rod stretches against EA"),
-            ("GA_y", bool(beam.shear_y), "shear along y is against GA_y"),
-            ("GA_z", bool(beam.shear_z), "shear along z is against GA_z"),
+            ("EI_z", by_entries and bool(beam.bend_y), "bending along y bends against EI_z"),
+            ("EI_y", by_entries and bool(beam.bend_z), "bending along z bends against EI_y"),
+            ("GJ", by_entries and bool(beam.twist), "twist acts against GJ"),
+            ("EA", by_entries and bool(beam.stretch), "a rod stretches against EA"),
+            ("GA_y", by_entries and bool(beam.shear_y), "shear along y is against GA_y"),
+            ("GA_z", by_entries and bool(beam.shear_z), "shear along z is against GA_z"),
             ("rhoJ", bool(beam.twist), "a twist coordinate moves the polar inertia rhoJ"),
             ("rhoI_y", False, "no moment of inertia is negative"),
             ("rhoI_z", False, "no moment of inertia is negative"),
         ):
             rule = f"{label} is {'positive' if needed else 'not negative'}: {why}"
             sign: Sign = "positive" if needed else "not negative"
-            yield Condition(self._margins(label), sign, partial(self._wrong_sign, label, rule))
+            yield Condition(self._margins(getattr(beam, label)), sign, partial(self._wrong_sign, label, rule))
+        for product, first, second in (("EI_yz", "EI_y", "EI_z"), ("rhoI_yz", "rhoI_y", "rhoI_z")):
+            stated = [Term(getattr(beam, label)) for label in (first, second, product)]
+            if stated[2].value != 0.0:
+                margin = (stated[0] * stated[1] - stated[2] * stated[2]).value
+                yield Condition(self._margins(margin), "positive", partial(self._wrong_product, product, first, second))
         yield Condition(
             (beam.damping,),
             "not negative",
             partial(self._wrong_number, "damping", "a retardation time is not negative", "give zero or more seconds"),
         )
 
-    def _margins(self, label: str) -> tuple[Value, ...]:
-        """The property at stations; along a beam of no length, which is reported, at the root."""
-        value = getattr(self.beam, label)
+    def _margins(self, value: Value) -> tuple[Value, ...]:
+        """A property at stations; along a beam of no length, which is reported, at the root."""
         if STATION not in symbols(value):
             return (value,)
         length = Term(self.beam.length).maximum(Term(0.0))
@@ -138,7 +146,8 @@ class _Section:
         return Problem(f"{self.what}: {label} {numbers.value(stated):g}", f"'{stated}'", rule, remedy, self.where)
 
     def _wrong_sign(self, label: str, rule: str, numbers: Numbers) -> Problem:
-        values, length = self._along(label, _STATIONS, numbers), numbers.value(self.beam.length)
+        values = self._along(getattr(self.beam, label), _STATIONS, numbers)
+        length = numbers.value(self.beam.length)
         at = int(np.argmin(np.where(np.isfinite(values), values, -np.inf)))
         return Problem(
             f"{self.what}: {label} = {values[at]:g} at x = {_STATIONS[at] * length:g}",
@@ -148,13 +157,30 @@ class _Section:
             self.where,
         )
 
-    def _along(self, label: str, xi: Array, numbers: Numbers) -> Array:
-        return np.asarray(section_values(self.beam, label, xi, numbers.parameters)[0])
+    def _wrong_product(self, product: str, first: str, second: str, numbers: Numbers) -> Problem:
+        found = ", ".join(f"{label} = '{getattr(self.beam, label)}'" for label in (product, first, second))
+        rule = f"{first} and {second} are positive, and their product exceeds the square of {product}"
+        return Problem(f"{self.what}: {product} too large", found, rule, "mend the value", self.where)
+
+    def _along(self, value: Value, xi: Array, numbers: Numbers) -> Array:
+        return np.asarray(section_values(self.beam, value, xi, numbers.parameters)[0])
+
+    def stiffness_problems(self, numbers: Numbers) -> Iterator[Problem]:
+        """A matrix of stiffness that is not positive definite at a station."""
+        least, at = least_stiffness(self.beam, numbers.parameters)
+        if not least[0] > 0.0:
+            yield Problem(
+                f"{self.what}: stiffness is not positive definite",
+                f"at x = {at[0]:g} m the least eigenvalue, of unit diagonal, is {least[0]:.3g}",
+                "every strain takes energy",
+                "mend the matrix, or give EA, GA_y, GA_z, GJ, EI_y and EI_z in its place",
+                self.where,
+            )
 
     def quadrature_problems(self, numbers: Numbers) -> Iterator[Problem]:
         """Properties whose integral is not determined by their values at stations."""
-        for label in (*SECTION, *PRE_STRAINS):
-            error = float(quadrature_error(self.beam, label, numbers.parameters)[0])
+        for label, value in self.beam.along_axis():
+            error = float(quadrature_error(self.beam, value, numbers.parameters)[0])
             if not error <= QUADRATURE_TOLERANCE:
                 yield Problem(
                     f"{self.what}: {label} changes too abruptly along x",
@@ -165,31 +191,54 @@ class _Section:
                 )
 
 
-def section_values(beam: Beam, label: str, xi: Array, values: Mapping[str, Array | float]) -> Array:
+def section_values(beam: Beam, value: Value, xi: Array, values: Mapping[str, Array | float]) -> Array:
     """A section property at stations xi = x/L (n) for each of several states (states, n).
 
     Args:
         beam: Beam.
-        label: Name of the property.
+        value: The property.
         xi: Stations (n).
         values: Number of each parameter, or one for each state (states).
     """
     columns = {name: np.reshape(value, (-1, 1)) for name, value in values.items()}
     x = Formulas([beam.length])(columns)[0] * xi[None, :]
-    (along,) = Formulas([getattr(beam, label)])({**columns, STATION: x})
+    (along,) = Formulas([value])({**columns, STATION: x})
     return np.array(np.broadcast_to(along, np.broadcast_shapes(np.shape(along), x.shape)))
 
 
-def quadrature_error(beam: Beam, label: str, values: Mapping[str, Array | float]) -> Array:
+def least_stiffness(beam: Beam, values: Mapping[str, Array | float]) -> tuple[Array, Array]:
+    """Least eigenvalue of a matrix of stiffness, its diagonal scaled to one, and its station x [m] (states).
+
+    It is 1 at the root of a beam that has no such matrix.
+    """
+    if not beam.stiffness:
+        return np.ones(1), np.zeros(1)
+    size = len(MATRIX_ORDER)
+    entries = [section_values(beam, value, _STATIONS, values) for row in beam.stiffness for value in row]
+    K = np.stack(np.broadcast_arrays(*entries), axis=-1)
+    K = K.reshape(*K.shape[:-1], size, size)
+    diagonal = np.diagonal(K, axis1=-2, axis2=-1)
+    scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
+    scaled = scale[..., :, None] * K * scale[..., None, :]
+    finite = np.isfinite(scaled).all(axis=(-2, -1))
+    least = np.linalg.eigvalsh(np.where(finite[..., None, None], scaled, -np.eye(size)))[..., 0]
+    columns = {name: np.reshape(value, (-1, 1)) for name, value in values.items()}
+    x = np.broadcast_to(Formulas([beam.length])(columns)[0] * _STATIONS[None, :], least.shape)
+    at = np.argmin(least, axis=1)[:, None]
+    return np.take_along_axis(least, at, axis=1)[:, 0], np.take_along_axis(x, at, axis=1)[:, 0]
+
+
+def quadrature_error(beam: Beam, value: Value, values: Mapping[str, Array | float]) -> Array:
     """Relative difference of a property's total by two quadratures, which is the error of the coarser one (states)."""
-    if STATION not in symbols(getattr(beam, label)):
+    if STATION not in symbols(value):
         return np.zeros(1)
     knots = sorted({float(k) for f in _functions(beam) for k in f.knots} or {0.0, 1.0})
     totals = []
     for points in _POINTS:
         xi, w = stations(knots, points)
-        totals.append(section_values(beam, label, np.array(xi), values) @ np.array(w))
-    scale = np.abs(totals[1])
+        along = section_values(beam, value, np.array(xi), values)
+        totals.append(along @ np.array(w))
+    scale = np.abs(along) @ np.array(w)  # Not of the total: what changes its sign, as a centre may, has a small one.
     return np.asarray(np.abs(totals[0] - totals[1]) / np.where(scale > 0.0, scale, 1.0))
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from typing import Literal, NamedTuple
 
-from symofros.description.beams.beam import PRE_STRAINS, SECTION, STATION, STRAINS, Beam, BeamLoad, Samples
+from symofros.description.beams.beam import MATRIX_ORDER, STATION, STRAINS, Beam, BeamLoad, Samples
 from symofros.description.constraints import Constraint, Coupling, Nonholonomic
 from symofros.description.entries import units_of
 from symofros.description.forces import Connection, Load, Rotor
@@ -141,8 +141,8 @@ def _beam_values(beam: Beam) -> Iterator[Stated]:
     what, key = f"beam '{beam.name}'", ("body", beam.name)
     for label in ("length", "damping"):
         yield Stated(f"{what}: {label}", getattr(beam, label), key, units=units_of(Beam, label))
-    for label in (*SECTION, *PRE_STRAINS):
-        yield Stated(f"{what}: {label}", getattr(beam, label), key, "section", units=units_of(Beam, label))
+    for label, value in beam.along_axis():
+        yield Stated(f"{what}: {label}", value, key, "section", units=_units_along_axis(label))
     for load in beam.loads:
         for entry in ("force", "torque"):
             for value in getattr(load, entry):
@@ -153,6 +153,14 @@ def _beam_values(beam: Beam) -> Iterator[Stated]:
         for shape in beam.user_shapes(direction):
             if not isinstance(shape, Samples):
                 yield Stated(f"{what}: shapes of {direction}", shape, key, "shape")
+
+
+def _units_along_axis(label: str) -> tuple[str, ...]:
+    """Unit of a property of a section, an entry of a matrix of stiffness among them."""
+    entry, *indices = label.replace("]", "").split("[")
+    if entry != "stiffness":
+        return units_of(Beam, entry)
+    return (("N", "N m", "N m^2")[sum(int(index) >= len(MATRIX_ORDER) // 2 for index in indices)],)
 
 
 @dataclass(frozen=True)

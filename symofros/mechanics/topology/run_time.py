@@ -9,7 +9,7 @@ from functools import cached_property, partial, reduce
 import numpy as np
 
 from symofros.base.rotations import Array
-from symofros.description.beams.beam import PRE_STRAINS, SECTION, STATION, Beam
+from symofros.description.beams.beam import STATION, Beam
 from symofros.description.joints.joint import Joint
 from symofros.description.system import Body, System
 from symofros.description.values import Rotation, Value, symbols
@@ -18,6 +18,7 @@ from symofros.mechanics.topology.beams import (
     QUADRATURE_TOLERANCE,
     beam_conditions,
     beam_number_problems,
+    least_stiffness,
     quadrature_error,
 )
 from symofros.mechanics.topology.conditions import Condition, Conditions
@@ -108,15 +109,16 @@ class RunTimeCheck:
         return self._section_problems(par, values) or self._sampled_problems(par)
 
     def _section_problems(self, par: Array, values: Mapping[str, Array | float]) -> list[Problem]:
-        """Section properties that parameters have made too abrupt for the quadrature."""
+        """Section properties that parameters have made too abrupt for the quadrature, or without a sign."""
         for beam in self._sections:
-            errors = [quadrature_error(beam, label, values) for label in (*SECTION, *PRE_STRAINS)]
-            abrupt = np.flatnonzero(~(reduce(np.maximum, errors) <= QUADRATURE_TOLERANCE))
-            if abrupt.size:
-                lane = int(abrupt[0])
+            errors = [quadrature_error(beam, value, values) for _, value in beam.along_axis()]
+            least, _ = least_stiffness(beam, values)
+            wrong = np.flatnonzero(~((reduce(np.maximum, errors) <= QUADRATURE_TOLERANCE) & (least > 0.0)))
+            if wrong.size:
+                lane = int(wrong[0])
                 where = self.system.origin.get(("body", beam.name), "")
                 problems = beam_number_problems(beam, Numbers(self.system, self._at(par, lane)), where)
-                names = self._names_in(*(getattr(beam, label) for label in (*SECTION, *PRE_STRAINS, "length")))
+                names = self._names_in(*(value for _, value in beam.along_axis()), beam.length)
                 return [self._of_lane(problem, names, par, lane) for problem in problems]
         return []
 
@@ -159,10 +161,13 @@ class RunTimeCheck:
 
     @cached_property
     def _sections(self) -> list[Beam]:
-        """Beams whose section properties depend on parameters and change along the beam."""
+        """Beams with section properties that depend on parameters, and change along the beam or are a matrix."""
         beams = [body for body in self.system.bodies if isinstance(body, Beam)]
-        stated = {beam.name: [getattr(beam, label) for label in (*SECTION, *PRE_STRAINS)] for beam in beams}
-        return [b for b in beams if any(STATION in symbols(v) and self._names_in(v) for v in stated[b.name])]
+        return [
+            beam
+            for beam in beams
+            if any((beam.stiffness or STATION in symbols(v)) and self._names_in(v) for _, v in beam.along_axis())
+        ]
 
     def _names_in(self, *values: Value) -> tuple[str, ...]:
         """Run-time parameters that values depend on."""

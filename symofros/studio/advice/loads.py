@@ -11,10 +11,12 @@ import numpy as np
 
 from symofros.base.options import Options
 from symofros.compiler import compile_system
-from symofros.description.beams.beam import STATION, Beam, Direction
+from symofros.description.beams.beam import DIRECTIONS, STATION, Beam, Direction
 from symofros.description.system import Body, System
 from symofros.description.values import Value
 from symofros.expr.expression import evaluate
+from symofros.mechanics.beams.section_law import section_law
+from symofros.mechanics.beams.strains import AXES, TURNING
 from symofros.runtime.calls.kernel import Array
 from symofros.studio.advice import estimators
 from symofros.studio.advice.scene import Scene
@@ -220,11 +222,7 @@ class Observed:
             beam,
             length,
             self.mass(beam) / length,
-            {
-                "bend_y": self._least(beam, "EI_z", length),
-                "bend_z": self._least(beam, "EI_y", length),
-                "twist": self._least(beam, "GJ", length),
-            },
+            self._least_stiffness(beam, length),
             sum(map(self.mass, carried)),
             float(np.linalg.norm(w[:, 1:], axis=1).max()),
             (float(size[1]), float(size[2])),
@@ -238,9 +236,15 @@ class Observed:
             *self.reach(beam.name, self.poses[tip_frame][0], length),
         )
 
-    def _least(self, beam: Beam, label: str, length: float) -> float:
-        least = min(self.number(getattr(beam, label), float(x) * length) for x in _STATIONS)
-        return least if least > 0.0 else math.inf
+    def _least_stiffness(self, beam: Beam, length: float) -> dict[Direction, float]:
+        """Of each direction that turns sections the least along the beam, no force acting along or across it."""
+        stiffness = section_law(beam, range(TURNING)).stiffness
+        least = {}
+        for direction in DIRECTIONS:
+            axis, _ = AXES[direction]
+            value = stiffness.get((axis, axis), 0.0)
+            least[direction] = min(self.number(value, float(x) * length) for x in _STATIONS) or math.inf
+        return least
 
     def _on_tip(self, bodies: Iterable[Body], tip: Array, R: Array, gravity: Array) -> tuple[Array, Array]:
         """Largest force (3) and moment (3) about a tip, in the beam's axes, by masses at the bodies' mass centres."""

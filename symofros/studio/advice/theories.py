@@ -104,7 +104,8 @@ def simpler_theories(loads: BeamLoads, rod: Beam, bending: BeamBending) -> Itera
 def _is_beyond_second_order(rod: Beam) -> bool:
     """Whether a rod has what beams of second order lack."""
     beyond = any(getattr(rod, label) for label in ("stretch", "shear_y", "shear_z"))
-    return beyond or any(getattr(rod, label) != 0.0 for label in PRE_STRAINS) or rod.family == "user"
+    curved = any(getattr(rod, label) != 0.0 for label in PRE_STRAINS)
+    return beyond or curved or rod.is_coupled or rod.family == "user"
 
 
 def _shown(counts: Mapping[str, int]) -> str:

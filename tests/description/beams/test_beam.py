@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from dataclasses import fields
 
+import pytest
+
 import symofros as sf
 
 NAMES = ["EI_z", "EI_y", "GJ", "rhoJ", "rhoI_y", "rhoI_z", "EA", "GA_y", "GA_z", "damping"]
-NAMES += ["curvature_y", "curvature_z", "twist_rate"]
+NAMES += ["curvature_y", "curvature_z", "twist_rate", "EI_yz", "rhoI_yz"]
 
 
 def test_stiffnesses_inertias_and_damping_that_are_not_stated_are_zero() -> None:
@@ -15,3 +17,56 @@ def test_stiffnesses_inertias_and_damping_that_are_not_stated_are_zero() -> None
     assert {name: getattr(beam, name) for name in NAMES} == dict.fromkeys(NAMES, 0.0)
     stated = {item.name for item in fields(sf.Beam) if item.type == "Value" and isinstance(item.default, float)}
     assert stated == set(NAMES)
+
+
+IDENTITY = [[float(i == j) for j in range(6)] for i in range(6)]
+
+
+def rod_by(**entries: object) -> sf.Beam:
+    return sf.Beam("b", sf.Joint("clamp", "fixed"), 1.0, 1.0, theory="strain", bend_y=1, **entries)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("entries", "message"),
+    [
+        ({"stiffness": IDENTITY[:5]}, "5 rows"),
+        ({"stiffness": [[1.0, 0.1, 0, 0, 0, 0], *IDENTITY[1:]]}, r"not symmetric[\s\S]*\[0\]\[1\] is 0.1"),
+        ({"stiffness": IDENTITY, "EI_z": 2.0, "shear_center": (0.1, 0.0)}, "stiffness and EI_z, shear_center"),
+        ({"mass_center": (0.1,)}, "mass_center: wrong number of entries"),
+    ],
+)
+def test_sections_that_contradict_themselves_are_refused(entries: dict[str, object], message: str) -> None:
+    with pytest.raises(sf.DescriptionError, match=message):
+        rod_by(**entries)
+
+
+@pytest.mark.parametrize("entry", ["EI_yz", "tension_center", "shear_center", "mass_center", "stiffness"])
+def test_beams_of_second_order_refuse_coupled_sections(entry: str) -> None:
+    value = {"EI_yz": 1.0, "stiffness": IDENTITY}.get(entry, (0.1, 0.0))
+    with pytest.raises(sf.DescriptionError, match=f"{entry}.*\n.*second_order"):
+        sf.Beam("b", sf.Joint("clamp", "fixed"), 1.0, 1.0, bend_y=1, **{entry: value})  # type: ignore[arg-type]
+
+
+def test_rounding_across_the_diagonal_is_no_asymmetry() -> None:
+    rows = [list(row) for row in IDENTITY]
+    rows[0][3], rows[3][0] = 0.1, 0.1 + 1e-9
+    stated = rod_by(stiffness=rows).stiffness
+    assert stated[0][3] == stated[3][0] == pytest.approx(0.1, rel=1e-8)
+
+
+def test_sections_without_a_sign_are_refused_by_the_model_and_at_run_time() -> None:
+    matrix = [[*row] for row in IDENTITY]
+    matrix[0][3] = matrix[3][0] = "c"
+    for c, ok in ((0.5, True), (1.5, False)):
+        system = sf.System("s", (rod_by(stiffness=matrix),), parameters=(sf.Parameter("c", c, constant=False),))
+        if not ok:
+            with pytest.raises(sf.DescriptionError, match="stiffness is not positive definite"):
+                sf.compile(system, sf.Options(("mass_matrix",), backend="interpreter"))
+            continue
+        m = sf.compile(system, sf.Options(("potential_energy",), backend="interpreter"))
+        m.potential_energy([0.1])
+        with pytest.raises(sf.ParameterError, match=r"run-time parameters[\s\S]*stiffness is not positive definite"):
+            m.potential_energy([0.1], par=[2.0])
+    product = sf.System("s", (rod_by(EI_z=1.0, EI_y=2.0, EI_yz=1.5),))
+    with pytest.raises(sf.DescriptionError, match="EI_yz too large"):
+        sf.compile(product, sf.Options(("mass_matrix",), backend="interpreter"))

@@ -63,6 +63,19 @@ FOLLOWING = (
     sf.BeamLoad((-0.4, 0.3, 0.2), (0.1, 0.2, -0.1), at=0.7, axes="section"),
     sf.BeamLoad(("0.2*x", 0.3, 0.0), axes="section"),
 )
+# Sections whose centres are three points that wander along the rod, and whose axes are not principal ones.
+OFF_AXIS: dict[str, Any] = {
+    "tension_center": (0.06, "0.02*x"),
+    "shear_center": ("0.04 - 0.03*x", -0.05),
+    "mass_center": ("0.03 + 0.02*x", 0.07),
+    "EI_yz": 1.2,
+    "rhoI_yz": -0.011,
+}
+# A section that couples every strain with every other.
+_SIZES = np.sqrt([40.0, 25.0, 20.0, 1.5, 5.0, 3.0])
+_SHARES = np.eye(6) + 0.12 * np.array([[(-1.0) ** (i * j // 2) * (i != j) for j in range(6)] for i in range(6)])
+MATRIX = tuple(map(tuple, (_SIZES[:, None] * _SHARES * _SIZES).tolist()))
+COUPLED: dict[str, Any] = {"stiffness": MATRIX, "EI_y": 0.0, "EI_z": 0.0, "GJ": 0.0}
 CASES: dict[str, tuple[sf.Beam, tuple[str, ...]]] = {
     "clamped, in a plane": (rod((3, 0, 0)), ()),
     "in the other plane, at a hub, with a body": (rod((0, 2, 0), HUB, rhoA="2 + x"), ("tip",)),
@@ -72,6 +85,13 @@ CASES: dict[str, tuple[sf.Beam, tuple[str, ...]]] = {
     "a shaft": (rod((0, 0, 2), HUB), ("tip",)),
     "stretched and sheared in a plane": (rod((2, 0, 0), HUB, stretch=1, shear_y=2, **STIFF), ("tip",)),
     "stretched and sheared in space": (rod((1, 1, 1), HUB, stretch=1, shear_y=1, shear_z=1, **ALL, **STIFF), ("tip",)),
+    "off the centres of its sections": (rod((2, 1, 1), HUB, **OFF_AXIS, rotary_inertia=True, damping=0.03), ("tip",)),
+    "off the centres, stretched and sheared along y": (
+        rod((1, 1, 1), HUB, stretch=1, shear_y=1, **ALL, **OFF_AXIS, **STIFF, rhoA="2 + x"),
+        ("tip",),
+    ),
+    "off the centres, in a plane": (rod((2, 0, 0), HUB, tension_center=(0.1, 0.0), mass_center=(0.05, 0.0)), ("tip",)),
+    "with every strain coupled": (rod((1, 1, 1), HUB, stretch=1, **COUPLED), ("tip",)),
     "in a plane, with bodies along it": (rod((2, 0, 0), HUB, frames=STATIONS), ("middle", "tip", "quarter")),
 }
 

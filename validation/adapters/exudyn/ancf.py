@@ -128,7 +128,11 @@ def motion_of_node(
     Raises:
         RuntimeError: Exudyn did not finish.
     """
-    sensor = node_sensor(system, node, quantity)
+    return motion_at(system, node_sensor(system, node, quantity), tolerance, end, step)
+
+
+def motion_at(system: Any, sensor: int, tolerance: float, end: float, step: float) -> tuple[Array, Array]:
+    """The same of a sensor; arguments and what is returned as of `motion_of_node`."""
     system.Assemble()
     settings: Any = exudyn.SimulationSettings()
     settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = round(end / step), end

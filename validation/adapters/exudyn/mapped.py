@@ -174,6 +174,11 @@ def engine(subject: Subject, name: str) -> MappedEngine | Unsupported:
         if mover.kind not in carried.KINDS:
             what = "a section of a beam" if mover.kind == "section" else "a motion by formulas"
             return Unsupported(f"joint '{mover.joint.name}': {what}")
+    for body in subject.system.bodies:
+        if isinstance(body, sf.Beam) and body.is_coupled:
+            return Unsupported(
+                f"beam '{body.name}': a section whose centres are not on the axis, or that couples strains"
+            )
     plain = without_rotary(subject.system)
     approximate = any(
         isinstance(body, sf.Beam) and body.theory == "second_order" and body.rotary_inertia

@@ -15,10 +15,11 @@ import exudyn
 import numpy as np
 from exudyn import itemInterface as items
 
-from validation.adapters.exudyn.ancf import motion_of_node
+from validation.adapters.exudyn.ancf import motion_at, motion_of_node
 from validation.mechanics.geometry import Array
 
-_NO_TURN = (1.0, 0.0, 0.0, 0.0)
+# Absolute tolerance of Newton's method.
+_TOLERANCE = 1e-9
 
 
 class Robot(NamedTuple):
@@ -31,6 +32,8 @@ class Robot(NamedTuple):
         mass: Of the platform, at the first tip.
         moment: Its moment of inertia about every axis.
         push: Largest force on the first tip, in the world (3).
+        turn: Angle about x of the axes that stiffness and inertia are along [rad].
+        center: The sections' centres (y, z), where the first tip is pushed on the axis.
         duration: The force grows from nothing and falls to it again: push sin^2(pi t/duration) up to the duration.
     """
 
@@ -41,6 +44,8 @@ class Robot(NamedTuple):
     moment: float = 0.02
     push: tuple[float, float, float] = (-1.0, 4.0, 3.0)
     duration: float = 1.0
+    turn: float = 0.0
+    center: tuple[float, float] = (0.0, 0.0)
 
     def share(self, t: float) -> float:
         """Share of the push at an instant."""
@@ -101,20 +106,30 @@ def extrapolated(
 
 
 def _pushed(system: Any, node: Any, robot: Robot, step: float, end: float) -> tuple[Array, Array]:
-    """Displacement of a node that is pushed."""
+    """Displacement of a node that is pushed, or of the place beside it that is."""
     push = np.array(robot.push)
 
     def force(_: Any, t: float, __: Any) -> list[float]:
         return list(robot.share(t) * push)
 
-    _push(system, node, force)
-    return motion_of_node(system, node, "Displacement", 1e-9, end, step)
+    if robot.center == (0.0, 0.0):
+        _push(system, system.AddMarker(items.MarkerNodePosition(nodeNumber=node)), force)
+        return motion_of_node(system, node, "Displacement", _TOLERANCE, end, step)
+    (y, z), c, s = robot.center, np.cos(robot.turn), np.sin(robot.turn)
+    place = [0.0, -c * y - s * z, s * y - c * z]  # The axis, along the axes of the node.
+    arm = system.AddObject(items.ObjectRigidBody(mass=0.0, inertia=[0.0] * 6, nodeNumber=node))
+    _push(system, system.AddMarker(items.MarkerBodyPosition(bodyNumber=arm, localPosition=place)), force)
+    quantity = exudyn.OutputVariableType.Displacement
+    sensor = items.SensorBody(bodyNumber=arm, localPosition=place, storeInternal=True, outputVariableType=quantity)
+    return motion_at(system, system.AddSensor(sensor), _TOLERANCE, end, step)
 
 
 def _rod(system: Any, robot: Robot, root: tuple[float, float, float], elements: int) -> Any:
     """Add a rod along x, held at its root; its last node."""
     nodes = _elements(system, robot, root, elements)
-    ground = system.AddObject(items.ObjectGround(referencePosition=list(root)))
+    (x, y, z), (c_y, c_z), c, s = root, robot.center, np.cos(robot.turn), np.sin(robot.turn)
+    R = np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
+    ground = system.AddObject(items.ObjectGround(referencePosition=[x, y + c_y, z + c_z], referenceRotation=R))
     held = [
         system.AddMarker(items.MarkerBodyRigid(bodyNumber=ground)),
         system.AddMarker(items.MarkerNodeRigid(nodeNumber=nodes[0])),
@@ -130,9 +145,10 @@ def _elements(system: Any, robot: Robot, root: tuple[float, float, float], eleme
     section.massPerLength = rhoA
     section.inertia = np.diag([rhoJ, rhoI_y, rhoI_z])
     section.stiffnessMatrix = np.diag(robot.stiffness)
-    h, (x, y, z) = 1.0 / elements, root
+    h, (x, y, z), (c_y, c_z) = 1.0 / elements, root, robot.center
+    turned = np.cos(robot.turn / 2), np.sin(robot.turn / 2), 0.0, 0.0
     nodes = [
-        system.AddNode(items.NodeRigidBodyEP(referenceCoordinates=[x + h * k, y, z, *_NO_TURN]))
+        system.AddNode(items.NodeRigidBodyEP(referenceCoordinates=[x + h * k, y + c_y, z + c_z, *turned]))
         for k in range(elements + 1)
     ]
     for ends in zip(nodes, nodes[1:], strict=False):
@@ -140,6 +156,5 @@ def _elements(system: Any, robot: Robot, root: tuple[float, float, float], eleme
     return nodes
 
 
-def _push(system: Any, node: Any, force: Callable[[Any, float, Any], list[float]]) -> None:
-    marker = system.AddMarker(items.MarkerNodePosition(nodeNumber=node))
+def _push(system: Any, marker: Any, force: Callable[[Any, float, Any], list[float]]) -> None:
     system.AddLoad(items.LoadForceVector(markerNumber=marker, loadVectorUserFunction=force))

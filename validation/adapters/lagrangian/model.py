@@ -198,8 +198,11 @@ class Translation:
                 functions, ends = families.strain_family(beam.family, count)
                 breaks |= {L * end for end in ends}
             strains += [Strain(axis, sign, value) for value in functions]
-        labels = (*SECTION, "EA", "GA_y", "GA_z")
+        labels = (*SECTION, "EA", "GA_y", "GA_z", "EI_yz", "rhoI_yz")
         sections: dict[str, Any] = {name: self._section(getattr(beam, name)) for name in labels}
+        for name in ("tension_center", "shear_center", "mass_center"):
+            sections[name] = tuple(map(self._section, getattr(beam, name)))
+        sections["stiffness"] = tuple(tuple(map(self._section, row)) for row in beam.stiffness)
         pre = beam.twist_rate, beam.curvature_y, beam.curvature_z
         unstressed = self._section(pre[0]), self._section(pre[1]), self._section(pre[2])
         return ExactRod(

@@ -53,6 +53,12 @@ class ExactRod:
     rhoJ: Section = 0.0
     rhoI_y: Section = 0.0
     rhoI_z: Section = 0.0
+    EI_yz: Section = 0.0
+    rhoI_yz: Section = 0.0
+    tension_center: tuple[Section, Section] = (0.0, 0.0)
+    shear_center: tuple[Section, Section] = (0.0, 0.0)
+    mass_center: tuple[Section, Section] = (0.0, 0.0)
+    stiffness: tuple[tuple[Section, ...], ...] = ()  # About the axis, of stretch, shears, twist rate, curvatures.
     damping: float = 0.0
     rotary_inertia: bool = False
     sixth: bool = True  # Order of Magnus's series; else the fourth.
@@ -101,6 +107,36 @@ class ExactRod:
             values[:, strain.axis, i] = scale * strain.value(x / self.length)
         return values
 
+    def strained(self, x: Array) -> Array:
+        """Strains of unit coordinates (K, 6, n), those that no function has among them where they take least energy."""
+        table = self.table(x)
+        counted = sorted({strain.axis for strain in self.strains})
+        free = [k for k in range(3, 6) if k not in counted]
+        for K, values in zip(self.section_stiffness(x), table, strict=True):
+            values[free] = -np.linalg.solve(K[np.ix_(free, free)], K[np.ix_(free, counted)] @ values[counted])
+        return table
+
+    def section_stiffness(self, x: Array) -> Array:
+        """Stiffness about the axis at stations (K, 6, 6): of twist rate, curvatures, stretch and shears.
+
+        Stretch and shear that have no stiffness, since no function is of them, get one: any will do.
+        """
+        if self.stiffness:
+            rows = [[at_stations(value, x) for value in row] for row in self.stiffness]
+            return np.roll(np.array(rows).transpose(2, 0, 1), (3, 3), (1, 2))
+        stated = (self.GJ, self.EI_y, self.EI_z, self.EA or 1.0, self.GA_y or 1.0, self.GA_z or 1.0)
+        about_centers = np.zeros((len(x), 6, 6))
+        about_centers[:, range(6), range(6)] = np.stack([at_stations(value, x) for value in stated], axis=1)
+        about_centers[:, 1, 2] = about_centers[:, 2, 1] = -at_stations(self.EI_yz, x)
+        # Fibres through a centre stretch, and sections shear there, by turning about the axis: strain + k x (0, y, z).
+        at_centers = np.tile(np.eye(6), (len(x), 1, 1))
+        for center, moved in ((self.tension_center, (3,)), (self.shear_center, (4, 5))):
+            y, z = (at_stations(value, x) for value in center)
+            arms = _arms(y, z)
+            for row in moved:
+                at_centers[:, row, :3] = arms[:, row - 3]
+        return at_centers.swapaxes(1, 2) @ about_centers @ at_centers
+
     def moments(self, a: float, b: float, q: SX) -> tuple[SX, SX, SX]:
         """Integral of the strains over an interval, and their first and second moments about its middle (5)."""
         node, w = np.polynomial.legendre.leggauss(NODES)
@@ -117,6 +153,12 @@ class ExactRod:
                 first += share * at * strain
                 second += share * (at**2 - 1 / 12) * strain
         return zeroth, first, second
+
+
+def _arms(y: Array, z: Array) -> Array:
+    """Matrices of k -> k x (0, y, z) (K, 3, 3)."""
+    place = np.stack([np.zeros_like(y), y, z], axis=1)
+    return np.cross(np.eye(3)[None], place[:, None, :]).swapaxes(1, 2)
 
 
 def _radau(count: int) -> tuple[Array, Array]:
@@ -192,9 +234,27 @@ def _weights(rod: ExactRod, x: float) -> Array:
     return np.array(weights)
 
 
+def _through(rod: ExactRod, x: float) -> Array:
+    """Weights of the sections in the value at a station between knots, by the polynomial through its interval's."""
+    weights = []
+    for a, b, (own, _) in zip(rod.ends, rod.ends[1:], rod.spans, strict=False):
+        for k in range(len(own)):
+            others = np.delete(own, k)
+            weights.append(np.prod((x - others) / (own[k] - others)) if a < x < b else 0.0)
+    return np.array(weights)
+
+
+def mass_centers(rod: ExactRod, x: Array, q: SX) -> SX:
+    """Places of the mass at stations, in B (3, n): off the axis, by a polynomial through the sections."""
+    y, z = (at_stations(value, rod.at) for value in rod.mass_center)
+    arms = (R @ ca.SX([0.0, y[k], z[k]]) for k, R in enumerate(rotations(rod, q)))
+    weights = ca.SX(np.stack([_through(rod, at) for at in x.tolist()], axis=1))
+    return centroids(rod, x, q) + ca.horzcat(*arms) @ weights
+
+
 def centroids(rod: ExactRod, x: Array, q: SX) -> SX:
     """Places of the axis at stations, in B (3, n)."""
-    shifts = ca.SX(rod.table(rod.at)[:, 3:].reshape(-1, rod.modes)) @ q
+    shifts = ca.SX(rod.strained(rod.at)[:, 3:].reshape(-1, rod.modes)) @ q
     moved = (ca.SX([1, 0, 0]) + shifts[3 * k : 3 * k + 3] for k in range(len(rod.at)))
     tangents = ca.horzcat(*(R @ t for R, t in zip(rotations(rod, q), moved, strict=True)))
     return tangents @ ca.SX(np.stack([_weights(rod, at) for at in x.tolist()], axis=1))
@@ -206,13 +266,11 @@ def section(rod: ExactRod, x: float, q: SX) -> tuple[SX, SX]:
 
 
 def strain_energy(rod: ExactRod, q: SX) -> SX:
-    """1/2 the integral of stiffnesses times squares of the changes of strain."""
+    """1/2 the integral of the products of the changes of strain and the stiffness against them."""
     x, weight = stations(rod.length, rod.breaks, NODES)
-    table, total = rod.table(x), ca.SX(0)
-    for axis, stiffness in enumerate((rod.GJ, rod.EI_y, rod.EI_z, rod.EA, rod.GA_y, rod.GA_z)):
-        K = np.einsum("k,ki,kj->ij", weight * at_stations(stiffness, x), table[:, axis], table[:, axis])
-        total += 0.5 * ca.dot(q, ca.SX(K) @ q)
-    return total
+    strained = rod.strained(x)
+    K = np.einsum("k,kab,kai,kbj->ij", weight, rod.section_stiffness(x), strained, strained)
+    return 0.5 * ca.dot(q, ca.SX(K) @ q)
 
 
 def dissipation(rod: ExactRod, rates: SX) -> SX:
@@ -229,11 +287,11 @@ def turning_energy(rod: ExactRod, q: SX, rate: Callable[[SX], SX], w_B: SX) -> S
         rate: The rate of an expression of them.
         w_B: Angular velocity of its frame, along its axes.
     """
-    stated = (rod.rhoJ, rod.rhoI_y, rod.rhoI_z) if rod.rotary_inertia else (rod.rhoJ,)
-    inertias = [at_stations(value, rod.at) * rod.weights for value in stated]
+    stated = (rod.rhoJ, rod.rhoI_y, rod.rhoI_z, rod.rhoI_yz) if rod.rotary_inertia else (rod.rhoJ, 0.0, 0.0, 0.0)
+    inertias = np.stack([at_stations(value, rod.at) * rod.weights for value in stated], axis=1)
     total = ca.SX(0)
-    for k, R in enumerate(rotations(rod, q)):
+    for (I_x, I_y, I_z, I_yz), R in zip(inertias, rotations(rod, q), strict=True):
         spin = ca.inv_skew(R.T @ rate(R)) + R.T @ w_B
-        for axis, inertia in enumerate(inertias):
-            total += 0.5 * inertia[k] * spin[axis] ** 2
+        inertia = ca.SX(np.array([[I_x, 0.0, 0.0], [0.0, I_y, -I_yz], [0.0, -I_yz, I_z]]))
+        total += 0.5 * ca.dot(spin, inertia @ spin)
     return total

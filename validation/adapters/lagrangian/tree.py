@@ -246,7 +246,7 @@ class Lagrangian:
         points = beam.points + 2 if isinstance(beam, ExactRod) else beam.points
         at, weight = beams.stations(beam.length, beam.breaks, points)
         rhoA = ca.SX(beams.at_stations(beam.rhoA, at) * weight)
-        r = theory.centroids(beam, at, q)
+        r = rods.mass_centers(beam, at, q) if isinstance(beam, ExactRod) else beams.centroids(beam, at, q)
         places, velocities = pose.place(r, rate(r))
         self.T += 0.5 * ca.dot(rhoA, ca.sum1(velocities**2).T) + theory.turning_energy(beam, q, rate, pose.spin())
         self.weight -= ca.dot(rhoA, (self.gravity.T @ places).T)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
-from symofros.description.beams.beam import ROD_STIFFNESSES, SECTION, Theory
+from symofros.description.beams.beam import CENTERS, IN_MATRIX, ROD_STIFFNESSES, SECTION, Theory
 from symofros.description.beams.sections.shear import ShearShape, is_inside, unit_stresses
 from symofros.description.entries import refuses_unknown_entries
 from symofros.description.values import Term, Value, as_value, symbols
@@ -19,6 +19,9 @@ from symofros.expr.expression import evaluate
 # Relative to the section's size, what counts as on the axis: meshes of symmetric outlines are not symmetric, and their
 # shear centres err by some 1e-5; bending twists a beam by as much.
 _ON_AXIS = 1e-4
+# What counts as a matrix of a section's form, relative to its diagonal: programs write six or seven digits.
+_OF_SECTION = 1e-6
+_PRODUCTS = ("EI_yz", "rhoI_yz")
 
 
 @refuses_unknown_entries
@@ -64,6 +67,9 @@ class Section:
         tension_center: Point (y, z) where a force along x does not bend [m].
         shear_center: Point (y, z) where a force across does not twist [m].
         mass_center: Mass centre (y, z) [m].
+        stiffness: Stiffness about the axis (6, 6) where it couples more strains than centres off the axis and products
+            do, in the order of `stiffness_matrix`; the entries from EA to the shear centre then are what is about the
+            centres, without the couplings.
         E: Young's modulus, for stresses [N/m^2]; None where it is not known, or not the same all over the section.
         corners: Points (y, z) whose convex hull has the section's extreme fibres [m].
         radii: Two conjugate radii (y, z) of an elliptic outline, in place of corners [m].
@@ -84,6 +90,7 @@ class Section:
     tension_center: tuple[Value, Value] = (0.0, 0.0)
     shear_center: tuple[Value, Value] = (0.0, 0.0)
     mass_center: tuple[Value, Value] = (0.0, 0.0)
+    stiffness: tuple[tuple[Value, ...], ...] = ()
     E: Value | None = None
     corners: tuple[tuple[Value, Value], ...] = ()
     radii: tuple[tuple[Value, Value], ...] = ()
@@ -96,6 +103,57 @@ class Section:
             if stated is not None and item.name != "shape":
                 object.__setattr__(self, item.name, _as_values(stated, f"section: {item.name}"))
 
+    @staticmethod
+    def of_matrices(stiffness: npt.ArrayLike, mass: npt.ArrayLike, axis: Literal["x", "z"] = "x") -> Section:
+        """A section by its matrices, as programs for sections of composites write them.
+
+        Args:
+            stiffness: Force and moment per strain (6, 6), symmetric and positive definite [N, N m, N m^2].
+            mass: Momentum and angular momentum per length, per velocity and angular velocity (6, 6) [kg/m, kg, kg m].
+            axis: The axis of both that is along the beam: "x", with y and z across (VABS), or "z", with x and y across
+                (BeamDyn), which become y and z of the beam.
+
+        Raises:
+            DescriptionError: A matrix is of another shape, or is none of a section.
+        """
+        order = {"x": [0, 1, 2, 3, 4, 5], "z": [2, 0, 1, 5, 3, 4]}[axis]
+        K, M = (_matrix(stated, label)[np.ix_(order, order)] for stated, label in ((stiffness, "K"), (mass, "M")))
+        if not np.linalg.eigvalsh(K)[0] > 0.0:
+            rule, found = "every strain takes energy", f"its least eigenvalue is {np.linalg.eigvalsh(K)[0]:.3g}"
+            raise DescriptionError(Problem("section: stiffness is not positive definite", found, rule, "mend it"))
+        flexibility = np.linalg.inv(K[:3, :3])
+        to_centers = flexibility @ K[:3, 3:]
+        bending = K[3:, 3:] - K[3:, :3] @ to_centers
+        m = M[0, 0]
+        y, z = -M[0, 5] / m, M[0, 4] / m
+        I_y, I_z, I_yz = M[4, 4] - m * z * z, M[5, 5] - m * y * y, -M[4, 5] - m * y * z
+        EA, GA_y, GA_z = (1.0 / np.diag(flexibility)).tolist()
+        GJ, EI_y, EI_z = np.diag(bending).tolist()
+        section = Section(
+            EA=EA,
+            GA_y=GA_y,
+            GA_z=GA_z,
+            GJ=GJ,
+            EI_y=EI_y,
+            EI_z=EI_z,
+            EI_yz=-float(bending[1, 2]),
+            tension_center=(-float(to_centers[0, 2]), float(to_centers[0, 1])),
+            shear_center=(float(to_centers[2, 0]), -float(to_centers[1, 0])),
+            rhoA=float(m),
+            rhoI_y=float(I_y),
+            rhoI_z=float(I_z),
+            rhoI_yz=float(I_yz),
+            mass_center=(float(y), float(z)),
+        )
+        unlike = _difference(M, section.mass_matrix())
+        if not unlike <= _OF_SECTION:
+            rule = "matter in one plane: m, m, m, and moments about x that are the sum of those about y and z"
+            found = f"of a section's with the same m, centre and moments it is off by {unlike:.2g}"
+            raise DescriptionError(Problem("section: M is no mass matrix of a section", found, rule, "mend it"))
+        if _difference(K, section.stiffness_matrix()) > _OF_SECTION:
+            section = replace(section, stiffness=tuple(map(tuple, K.tolist())))
+        return section
+
     @property
     def rhoJ(self) -> Value:
         """Polar moment of inertia, about x through the mass centre [kg m]."""
@@ -105,27 +163,43 @@ class Section:
         """The section properties of a Beam: `Beam(name, joint, length, **section.beam_properties())`.
 
         Args:
-            theory: Theory of the beam: one by strains takes the stiffnesses against stretching and shear, too.
+            theory: Theory of the beam: one by strains takes the stiffnesses against stretching and shear, too, and
+                centres off the axis.
 
         Raises:
-            DescriptionError: The axis does not go through all three centres, or y and z are no principal axes.
+            DescriptionError: For a beam of second order the axis does not go through all three centres, y and z are no
+                principal axes, or strains are coupled.
         """
+        if theory == "strain":
+            return self._rod_properties()
         for label, value, size in self._off_axis():
-            known = isinstance(value, float) and (
-                value == 0.0 or isinstance(size, float) and abs(value) <= _ON_AXIS * size
-            )
-            if not known:
+            if not _is_small(value, size):
                 raise DescriptionError(
                     Problem(
                         f"section: {label} is not zero",
                         f"{value:g}" if isinstance(value, float) else str(value),
-                        "a Beam has its mass centre, tension centre and shear centre on its axis, and y and z are"
-                        " principal axes",
-                        "for axes that are not principal ones turn the section (`turned`); a section whose centres"
-                        " differ couples bending and twist, which a Beam can't represent",
+                        "a beam of second order has its mass centre, tension centre and shear centre on its axis, and y"
+                        " and z are principal axes",
+                        "for axes that are not principal ones turn the section (`turned`); for a section whose centres"
+                        " differ, which couples bending and twist, state theory: strain",
                     )
                 )
-        labels = SECTION if theory == "strain" else tuple(label for label in SECTION if label not in ROD_STIFFNESSES)
+        if self.stiffness:
+            rule = "a beam of second order in its displacements has no such couplings"
+            found = "a matrix of stiffness"
+            raise DescriptionError(Problem("section: couples strains", found, rule, "state theory: strain"))
+        return {label: getattr(self, label) for label in SECTION if label not in (*ROD_STIFFNESSES, *_PRODUCTS)}
+
+    def _rod_properties(self) -> dict[str, Any]:
+        """Of a geometrically exact rod all that differs from a rod's defaults; small distances are the mesh's."""
+        off_axis = {label for label, value, size in self._off_axis() if not _is_small(value, size)}
+        centers = {label for label in CENTERS if {f"{label}'s y", f"{label}'s z"} & off_axis}
+        labels = [label for label in SECTION if label not in _PRODUCTS or label in off_axis]
+        labels += [label for label in CENTERS if label in centers]
+        if self.stiffness:
+            labels = [label for label in labels if label not in IN_MATRIX] + ["stiffness"]
+        elif "EI_yz" in off_axis:  # Then shears along y and z are coupled, by what is not known.
+            labels = [label for label in labels if label not in ("GA_y", "GA_z")]
         return {label: getattr(self, label) for label in labels if getattr(self, label) is not None}
 
     def _off_axis(self) -> list[tuple[str, Value, Value]]:
@@ -163,6 +237,9 @@ class Section:
             new[name] = (c * y + s * z, c * z - s * y)
         for name in ("corners", "radii"):
             new[name] = tuple((c * y + s * z, c * z - s * y) for y, z in self._points(name))
+        if self.stiffness:
+            T = np.kron(np.eye(2), [[1.0, 0.0, 0.0], [0.0, c, s], [0.0, -s, c]])
+            new["stiffness"] = tuple(map(tuple, (T @ self.stiffness_matrix() @ T.T).tolist()))
         # Shear along axes that are not principal ones of shear is coupled: unknown, unless the angle is a right one.
         quarter = round(angle / (0.5 * np.pi))
         if abs(angle - quarter * 0.5 * np.pi) > 1e-12:
@@ -182,6 +259,8 @@ class Section:
         Raises:
             DescriptionError: The stiffness against shear is not known.
         """
+        if self.stiffness:
+            return np.array([[number_of(value, "stiffness", values or {}) for value in row] for row in self.stiffness])
         if self.GA_y is None or self.GA_z is None:
             raise DescriptionError(
                 Problem(
@@ -331,6 +410,36 @@ class Section:
     def _point(self, label: str, values: Mapping[str, float] | None = None) -> tuple[float, float]:
         y, z = (number_of(value, label, values or {}) for value in getattr(self, label))
         return y, z
+
+
+def _matrix(stated: npt.ArrayLike, label: str) -> npt.NDArray[np.float64]:
+    """A symmetric matrix (6, 6).
+
+    Raises:
+        DescriptionError: It is of another shape, not finite, or not symmetric.
+    """
+    matrix = np.asarray(stated, dtype=np.float64)
+    rule = "six rows of six numbers, symmetric"
+    if matrix.shape != (6, 6) or not np.isfinite(matrix).all():
+        found = f"of shape {matrix.shape}" if matrix.shape != (6, 6) else "entries that are not finite"
+        raise DescriptionError(Problem(f"section: matrix {label}", found, rule, "give all, zeros included"))
+    unlike = _difference(matrix, matrix.T)
+    if not unlike <= _OF_SECTION:
+        found = f"off by {unlike:.2g} of the diagonal"
+        raise DescriptionError(Problem(f"section: matrix {label} is not symmetric", found, rule, "mend it"))
+    return 0.5 * (matrix + matrix.T)
+
+
+def _difference(matrix: npt.NDArray[np.float64], other: npt.NDArray[np.float64]) -> float:
+    """Largest difference of two matrices, over the roots of the diagonal's entries."""
+    size = np.sqrt(np.abs(np.diag(matrix)))
+    scale = np.outer(size, size)
+    return float(np.max(np.abs(matrix - other) / np.where(scale > 0.0, scale, 1.0)))
+
+
+def _is_small(value: Value, size: Value) -> bool:
+    """Whether a distance, or a product of inertia, is what a mesh leaves of zero."""
+    return isinstance(value, float) and (value == 0.0 or isinstance(size, float) and abs(value) <= _ON_AXIS * size)
 
 
 def _as_values(stated: Any, label: str) -> Any:

@@ -181,7 +181,7 @@ def deformed(kinematics: TreeKinematics, beam: MovingBeam) -> LinkInertia:
 def first_moment_change(kinematics: TreeKinematics, beam: MovingBeam) -> Vec3:
     """Change of a beam's first moment by deformation, one order further: its gradient is the weight's force."""
     if isinstance(beam.forms, Rod):
-        return kinematics.links[beam.root].R_LB.times(beam.forms.first_moment(beam.forms.tangents))
+        return kinematics.links[beam.root].R_LB.times(beam.forms.first_moment(beam.forms.mass_vectors))
     upto = beam.order + 1
     S = Vec3(kinematics.g, *(form.without_constant().value(upto) for form in beam.forms.first_moment))
     return kinematics.links[beam.root].R_LB.times(S)

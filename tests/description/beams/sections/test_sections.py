@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import fields
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ import pytest
 import symofros as sf
 from symofros.description.beams import sections
 from symofros.description.beams.sections import Material, Section
+from symofros.errors import DescriptionError
 
 STEEL = Material(E=2.6, G=1.0, rho=3.0)  # Poisson's ratio 0.3.
 elements = pytest.mark.skipif(find_spec("sectionproperties") is None, reason="needs the extra sections")
@@ -194,3 +196,77 @@ def test_faults_of_sections_are_said(tmp_path: Path, entry: str, fault: str) -> 
     (tmp_path / "a.yaml").write_text(FILE.format(section=entry))
     with pytest.raises(sf.DescriptionError, match=fault):
         sf.load(tmp_path / "a.yaml")
+
+
+COUPLED = Section(
+    EA=100.0,
+    GJ=2.0,
+    EI_y=3.0,
+    EI_z=5.0,
+    EI_yz=0.5,
+    GA_y=30.0,
+    GA_z=20.0,
+    rhoA=2.0,
+    rhoI_y=0.03,
+    rhoI_z=0.02,
+    rhoI_yz=0.004,
+    tension_center=(0.1, -0.2),
+    shear_center=(0.05, 0.03),
+    mass_center=(0.02, -0.04),
+)
+# Rows of x, y, z where the axis is x, by those where it is z.
+BEAMDYN = np.argsort([2, 0, 1, 5, 3, 4])
+
+
+@pytest.mark.parametrize("axis", ["x", "z"])
+def test_matrices_give_the_section_back(axis: str) -> None:
+    K, M = COUPLED.stiffness_matrix(), COUPLED.mass_matrix()
+    if axis == "z":
+        K, M = K[np.ix_(BEAMDYN, BEAMDYN)], M[np.ix_(BEAMDYN, BEAMDYN)]
+    found = Section.of_matrices(K, M, axis)  # type: ignore[arg-type]
+    for item in fields(Section):
+        stated = getattr(COUPLED, item.name)
+        assert getattr(found, item.name) == pytest.approx(stated, rel=1e-12, abs=1e-15) if stated is not None else True
+    assert not found.stiffness
+
+
+def test_a_matrix_with_more_couplings_is_kept() -> None:
+    K = COUPLED.stiffness_matrix()
+    K[3, 4] = K[4, 3] = 0.7
+    found = Section.of_matrices(K, COUPLED.mass_matrix())
+    assert found.stiffness_matrix() == pytest.approx(K, rel=1e-15)
+    entries = found.beam_properties("strain")
+    assert np.array(entries["stiffness"]) == pytest.approx(K, rel=1e-15)
+    assert not {"EA", "GJ", "EI_y", "EI_yz", "shear_center"} & entries.keys()
+    with pytest.raises(DescriptionError, match="theory: strain"):
+        found.beam_properties()
+    turned = found.turned(0.3)
+    assert turned.turned(-0.3).stiffness_matrix() == pytest.approx(K, rel=1e-12, abs=1e-13)
+    strain = np.array([0.1, 0.2, -0.3, 0.4, 0.5, -0.6])
+    c, s = np.cos(0.3), np.sin(0.3)
+    along = np.kron(np.eye(2), [[1, 0, 0], [0, c, s], [0, -s, c]]) @ strain
+    assert along @ turned.stiffness_matrix() @ along == pytest.approx(strain @ K @ strain, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda K, M: (K[:5], M), "shape"),
+        (lambda K, M: (K + np.triu(np.ones((6, 6)), 1), M), "not symmetric"),
+        (lambda K, M: (K - 3.0 * np.eye(6), M), "not positive definite"),
+        (lambda K, M: (K, M + np.diag([0, 0, 0, 0.1, 0, 0])), "no mass matrix of a section"),
+        (lambda K, M: (K, M * np.nan), "not finite"),
+    ],
+)
+def test_matrices_of_no_section_are_refused(change: Any, message: str) -> None:
+    with pytest.raises(DescriptionError, match=message):
+        Section.of_matrices(*change(COUPLED.stiffness_matrix(), COUPLED.mass_matrix()))
+
+
+def test_a_rod_takes_a_section_off_its_axis_as_it_is() -> None:
+    entries = COUPLED.beam_properties("strain")
+    beam = sf.Beam("b", sf.Joint("clamp", "fixed"), 1.0, theory="strain", bend_y=1, twist=1, **entries)
+    assert (beam.tension_center, beam.shear_center, beam.mass_center) == ((0.1, -0.2), (0.05, 0.03), (0.02, -0.04))
+    assert (beam.EI_yz, beam.rhoI_yz) == (0.5, 0.004)
+    # Shears along y and z are coupled then, by what is not known.
+    assert not {"GA_y", "GA_z"} & entries.keys()

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from tests.mechanics.beams.rods import BODY, HUB, SECTION, integrated, rod
+from tests.mechanics.beams.rods import BODY, HUB, OFF_AXIS, SECTION, integrated, rod
 
 G = 9.81
 L = 1.3
@@ -23,6 +23,7 @@ THEORIES: dict[str, dict[str, Any]] = {
     "strain": {"theory": "strain"},
     "stretch and shear": {"theory": "strain", "stretch": 1, "shear_y": 1, "EA": 900.0, "GA_y": 400.0},
 }
+OFF_THE_CENTRES: dict[str, Any] = {"theory": "strain"} | OFF_AXIS
 
 
 def beam(joint: sf.Joint, **more: Any) -> sf.Beam:
@@ -34,16 +35,16 @@ def compiled(bodies: list[sf.Beam | sf.RigidBody], gravity: tuple[float, float, 
     return sf.compile(sf.System("s", bodies, gravity=gravity), INTERPRETED)
 
 
-@pytest.mark.parametrize("theory", THEORIES)
+@pytest.mark.parametrize("entries", [*THEORIES.values(), OFF_THE_CENTRES], ids=[*THEORIES, "off the centres"])
 @pytest.mark.parametrize("tapered", [False, True])
-def test_the_sections_at_root_and_tip_hold_what_joint_and_tip_transmit(theory: str, tapered: bool) -> None:
+def test_the_sections_at_root_and_tip_hold_what_joint_and_tip_transmit(entries: dict[str, Any], tapered: bool) -> None:
     """In any motion, whatever the theory leaves out, with loads, rotary inertia and a body on the tip."""
     loads = (
         sf.BeamLoad(force=(0.3, "0.2*x", -3.0), torque=(0.1, 0, 0.2), axes="world"),
         sf.BeamLoad(force=(0, 1.0, -2.0), torque=(0.3, 0.1, 0.2), at=0.6),
     )
     more: dict[str, Any] = {"rhoA": "2 + x", "EI_z": "3 - x"} if tapered else {}
-    one = beam(HUB, rotary_inertia=True, loads=loads, **THEORIES[theory], **more)
+    one = beam(HUB, rotary_inertia=True, loads=loads, **entries, **more)
     m = compiled([one, sf.RigidBody("body", sf.Joint("wrist", "revolute", "b", "tip", axis=(0, 1, 0)), BODY)])
     rng = np.random.default_rng(2)
     q, v, a = (rng.normal(size=(3, m.nq)) * scale for scale in (0.3, 1.0, 1.0))
@@ -164,14 +165,14 @@ def rod_shape(q: np.ndarray, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return L * p[:-1], R[:-1]
 
 
-@pytest.mark.parametrize("theory", ["all", "strain"])
-def test_they_change_the_momentum_of_what_lies_beyond(theory: str) -> None:
+@pytest.mark.parametrize(("theory", "center"), [("all", (0.0, 0.0)), ("strain", (0.0, 0.0)), ("strain", (0.05, -0.08))])
+def test_they_change_the_momentum_of_what_lies_beyond(theory: str, center: tuple[float, float]) -> None:
     """Newton and Euler for the part beyond a station: its momentum by differences of positions that share nothing."""
     shape = {"all": second_order_shape, "strain": rod_shape}[theory]
     hub = sf.Joint("hub", "revolute", axis=(0, 0, 1))
     plain: dict[str, Any] = {"rhoJ": 1e-12}
     plain |= {"family": "polynomial"} if theory == "all" else {"sections": 12}  # To the digits of the differences.
-    m = compiled([beam(hub, **THEORIES[theory], **plain)])
+    m = compiled([beam(hub, mass_center=center, **THEORIES[theory], **plain)])
     rng = np.random.default_rng(5)
     q, v, a = rng.normal(size=(3, m.nv)) * [[0.2], [0.5], [0.5]]
     station = 2
@@ -181,7 +182,8 @@ def test_they_change_the_momentum_of_what_lies_beyond(theory: str) -> None:
 
     def positions(t: float) -> np.ndarray:
         at = q + v * t + a * t**2 / 2
-        return shape(at[1:], xi)[0] @ _turn(2, at[0]).T
+        places, turns = shape(at[1:], xi)
+        return (places + turns @ (0.0, *center)) @ _turn(2, at[0]).T
 
     h = 2e-3
     there = [positions(k * h) for k in (-2, -1, 0, 1, 2)]

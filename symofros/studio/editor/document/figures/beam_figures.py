@@ -8,6 +8,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from symofros.description.beams.beam import CENTERS
 from symofros.description.values import Value
 from symofros.description.yaml.schema_beam import BeamEntry
 from symofros.errors import DescriptionError
@@ -43,10 +44,10 @@ def beam_figures(entry: Any, known: Mapping[str, float]) -> Json:
     Returns:
         `section`: property -> number, without those that vary along the beam or have none; `frequencies`: direction ->
         the first three of the uniform slender beam, clamped at its root and free at its tip [Hz], without those
-        beyond the range of numbers. Rotary inertia, shear, gravity and loads are left out. `validity`: errors of
-        second-order theory relative to the deflection, each with the slope of the tip [rad] and its deflection under a
-        force there [m] that go with it (docs/theory/beams.md, (24)); none of a geometrically exact rod, or without a
-        length.
+        beyond the range of numbers; none where the section couples directions. Rotary inertia, shear, gravity and loads
+        are left out. `validity`: errors of second-order theory relative to the deflection, each with the slope of the
+        tip [rad] and its deflection under a force there [m] that go with it (docs/theory/beams.md, (24)); none of a
+        geometrically exact rod, or without a length.
 
     Raises:
         EditError: The entry is no beam yet.
@@ -61,10 +62,11 @@ def beam_figures(entry: Any, known: Mapping[str, float]) -> Json:
     if figures.get("rhoJ") == 0.0:  # Not stated: twist without inertia of its own.
         del figures["rhoJ"]
     length = figures.pop("length", 0.0)
+    is_plain = not _couples_directions(stated)
     frequencies = {
         direction: _hertz(figures[stiffness] / figures[inertia], [root / length for root in roots], power)
         for direction, (stiffness, inertia, roots, power) in _MOTIONS.items()
-        if length > 0.0 and figures.get(stiffness, 0.0) > 0.0 and figures.get(inertia, 0.0) > 0.0
+        if is_plain and length > 0.0 and figures.get(stiffness, 0.0) > 0.0 and figures.get(inertia, 0.0) > 0.0
     }
     finite = {direction: values for direction, values in frequencies.items() if all(map(isfinite, values))}
     errs = stated.get("theory") != "strain" and length > 0.0
@@ -73,6 +75,13 @@ def beam_figures(entry: Any, known: Mapping[str, float]) -> Json:
         "frequencies": finite,
         "validity": [_validity(error, length) for error in _ERRORS if errs],
     }
+
+
+def _couples_directions(stated: Json) -> bool:
+    """Whether bending, twist and stretch do not vibrate by themselves."""
+    off_axis = [stated.get(label) for label in ("EI_yz", "rhoI_yz")]
+    off_axis += [value for label in CENTERS for value in stated.get(label) or ()]
+    return bool(stated.get("stiffness")) or any(value not in (None, 0.0) for value in off_axis)
 
 
 def _validity(error: float, length: float) -> Json:

@@ -1,0 +1,181 @@
+"""Rods whose centres are off the axis, or whose strains are coupled (docs/theory/rods.md, sections 2 to 4)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.linalg import eigh, expm
+from scipy.optimize import brentq, fsolve
+
+import symofros as sf
+from symofros.description.beams.sections import Section
+from symofros.mechanics.beams.section_law import section_law
+from tests.mechanics.beams.rods import BODY, COUPLED, GRAVITY, HUB, MATRIX, STIFF, rod
+from validation.mechanics.geometry import skew
+
+L = 1.3
+ARM = np.array([0.0, 0.07, -0.04])  # From the axis to all three centres.
+TREE = ("mass_matrix", "bias", "generalized_force", "kinetic_energy", "potential_energy", "frame_pose")
+
+
+def on_hub(off: bool, **more: Any) -> sf.Model:
+    """A rod on a hub, its axis through its centres, or beside them so that these are where they were."""
+    position, given = np.array((0.1, 0.05, 0.02)), dict(more)
+    if off:
+        position = position - ARM
+        given |= dict.fromkeys(("tension_center", "shear_center", "mass_center"), tuple(ARM[1:]))
+    joint = sf.Joint("clamp", "fixed", "hub", position=tuple(position.tolist()))
+    system = sf.System("s", (sf.RigidBody("hub", HUB, BODY), rod((2, 2, 2), joint, L, **given)), gravity=GRAVITY)
+    return sf.compile(system, sf.Options(TREE, ("tip",), backend="interpreter"))
+
+
+def strains_at_the_axis(nv: int) -> np.ndarray:
+    """Coordinates of the rod beside its centres by those of the rod through them: stretch and shears differ."""
+    T, (_, y, z) = np.eye(nv), ARM
+    if nv > 7:
+        bend_y, bend_z, twist, stretch, shear_y, shear_z = (1 + 2 * i + np.arange(2) for i in range(6))
+        T[stretch, bend_z], T[stretch, bend_y] = z / L, y / L
+        T[shear_y, twist], T[shear_z, twist] = z / L, -y / L
+    return T
+
+
+@pytest.mark.parametrize(
+    ("more", "errors"),
+    # Sections err by the sixth power of their distance, in either rod by itself.
+    [
+        ({"sections": 6}, (4e-8, 4e-10)),
+        ({"sections": 12}, (2e-9, 1e-11)),
+        ({"sections": 8, "stretch": 2, "shear_y": 2, "shear_z": 2, "rotary_inertia": True} | STIFF, (1e-8, 2e-11)),
+    ],
+    ids=["6 sections", "12 sections", "stretched and sheared"],
+)
+def test_where_the_axis_is_put_does_not_matter(more: dict[str, Any], errors: tuple[float, float]) -> None:
+    through, beside = on_hub(False, **more), on_hub(True, **more)
+    T, rng = strains_at_the_axis(through.nv), np.random.default_rng(0)
+    q, v = 0.5 * rng.standard_normal(through.nv), rng.standard_normal(through.nv)
+    q[7:] *= 0.2
+    p, w = T @ q, T @ v
+    dynamics, places = errors
+    assert T.T @ beside.mass_matrix(p) @ T == pytest.approx(through.mass_matrix(q), abs=dynamics)
+    assert T.T @ beside.bias(p, w) == pytest.approx(through.bias(q, v), abs=dynamics)
+    assert T.T @ beside.generalized_force(p, w, ()) == pytest.approx(through.generalized_force(q, v, ()), abs=1e-12)
+    assert beside.kinetic_energy(p, w) == pytest.approx(through.kinetic_energy(q, v), abs=dynamics)
+    weights = [m.potential_energy(x) - m.potential_energy(0 * x) for m, x in ((through, q), (beside, p))]
+    assert weights[1] == pytest.approx(weights[0], abs=dynamics)
+    (place, _), (tip, R) = through.frame_pose("tip", q), beside.frame_pose("tip", p)
+    assert tip + R @ ARM == pytest.approx(place, abs=places)
+
+
+@pytest.mark.parametrize("shears", [{}, {"stretch": 1}, {"stretch": 1, "shear_y": 1, "shear_z": 1}], ids=str)
+def test_a_matrix_is_what_centres_and_stiffnesses_make(shears: dict[str, int]) -> None:
+    stated: dict[str, Any] = {"EI_z": 3.0, "EI_y": 5.0, "GJ": 1.5, "EI_yz": 1.2} | STIFF
+    centers: dict[str, Any] = {"tension_center": (0.06, -0.02), "shear_center": (0.04, -0.05)}
+    matrix = Section(rhoA=2.0, rhoI_y=0.03, rhoI_z=0.02, **stated, **centers).stiffness_matrix()
+    options = sf.Options(("mass_matrix", "generalized_force"), backend="interpreter")
+    found = []
+    for given in (stated | centers, {"stiffness": matrix.tolist()} | dict.fromkeys(("EI_y", "EI_z", "GJ"), 0.0)):
+        m = sf.compile(sf.System("s", (rod((1, 1, 1), **shears, **given),)), options)
+        q = 0.3 * np.random.default_rng(2).standard_normal(m.nv)
+        found.append((m.mass_matrix(q), m.generalized_force(q, 0 * q, ())))
+    for a, b in zip(*found, strict=True):
+        assert a == pytest.approx(b, rel=1e-12, abs=1e-14)
+
+
+def test_strains_without_functions_take_no_force() -> None:
+    """Of a matrix: the energy is the least that the strains with functions leave."""
+    law = section_law(rod((1, 1, 1), stretch=1, **COUPLED), {0, 1, 2, 3})
+    K = np.roll(np.array(MATRIX), (3, 3), (0, 1))
+    counted, free = [0, 1, 2, 3], [4, 5]
+    follow = -np.linalg.solve(K[np.ix_(free, free)], K[np.ix_(free, counted)])
+    found = np.array([[law.following[k, b] for b in counted] for k in free], dtype=float)
+    assert found == pytest.approx(follow, rel=1e-12)
+    e = np.array([0.3, -0.2, 0.5, 0.1])
+    whole = np.concatenate([e, follow @ e])
+    twice = sum(float(value) * e[a] * e[b] for (a, b), value in law.stiffness.items())  # type: ignore[arg-type]
+    assert twice == pytest.approx(whole @ K @ whole, rel=1e-12)
+
+
+def test_a_force_through_the_shear_centre_does_not_twist() -> None:
+    P, (y, z), GJ = 1e-4, (0.05, -0.03), 1.5
+    for torque, twist in ((0.0, z * P), (-z * P, 0.0)):
+        load = sf.BeamLoad((0.0, P, 0.0), (torque, 0.0, 0.0), at=1.0)
+        system = sf.System(
+            "s", (rod((2, 2, 1), None, L, shear_center=(y, z), GJ=GJ, loads=(load,)),), gravity=(0, 0, 0)
+        )
+        q = sf.equilibrium(sf.compile(system)).q
+        assert q[4] == pytest.approx(twist * L / GJ, rel=1e-5, abs=1e-6 * P)
+
+
+def test_a_force_along_the_axis_bends_about_the_tension_centre() -> None:
+    P, (y, z) = 1e-3, (0.05, -0.03)
+    load = sf.BeamLoad((P, 0.0, 0.0), at=1.0, axes="section")
+    system = sf.System("s", (rod((1, 1, 0), None, L, tension_center=(y, z), loads=(load,)),), gravity=(0, 0, 0))
+    turned_y, turned_z = sf.equilibrium(sf.compile(system)).q
+    # The axis is at -y, -z from the centre: the moment about z is P y, about y it is -P z; bend_z turns about -y.
+    assert turned_y == pytest.approx(P * y * L / 3.0, rel=1e-4)
+    assert turned_z == pytest.approx(P * z * L / 5.0, rel=1e-4)
+
+
+def test_bending_and_twist_vibrate_together_about_two_centres() -> None:
+    """Frequencies of the cantilever whose mass centre is off the shear centre, by an exponential."""
+    z, EI, GJ, m, J = 0.08, 3.0, 1.5, 2.0, 0.04
+
+    def closed(squared: float) -> float:
+        A = np.zeros((6, 6))  # Of deflection, slope, moment, shear force, twist, torque.
+        A[0, 1], A[1, 2], A[2, 3], A[4, 5] = 1.0, 1 / EI, -1.0, 1 / GJ
+        A[3, [0, 4]] = -squared * m * np.array([1.0, -z])
+        A[5, [0, 4]] = -squared * np.array([-z * m, J + m * z * z])
+        return float(np.linalg.det(expm(A * L)[np.ix_([2, 3, 5], [2, 3, 5])]))
+
+    system = sf.System("s", (rod((9, 0, 9), None, L, mass_center=(0.0, z)),), gravity=(0, 0, 0))
+    rigidity = sf.compile(system, sf.Options(("mass_matrix", "generalized_force"), backend="interpreter"))
+    still = np.zeros(18)
+    K = -np.stack([rigidity.generalized_force(x, still, ()) for x in np.eye(18)], axis=1)
+    squares = eigh(K, rigidity.mass_matrix(still), eigvals_only=True)
+    for square in squares[:3]:
+        exact = brentq(closed, 0.999 * square, 1.001 * square, xtol=1e-12, rtol=1e-14)
+        assert np.sqrt(square / exact) == pytest.approx(1.0, abs=1e-8)
+
+
+def shooting(force: np.ndarray, D: np.ndarray, F: np.ndarray) -> np.ndarray:
+    """Tip of a clamped rod under a force on it, with D k = M + F^T N and with the stretch and shears F k."""
+
+    def from_tip(turn: np.ndarray) -> np.ndarray:
+        def slope(_: float, state: np.ndarray) -> np.ndarray:
+            R, moment = state[:9].reshape(3, 3), state[9:12]
+            k = np.linalg.solve(D, R.T @ moment + F.T @ (R.T @ force))
+            t = R @ (np.array([1.0, 0.0, 0.0]) + F @ k)
+            return np.concatenate([(R @ skew(k)).ravel(), -np.cross(t, force), t])
+
+        start = np.concatenate([expm(skew(turn)).ravel(), np.zeros(6)])
+        return solve_ivp(slope, (L, 0.0), start, method="DOP853", rtol=1e-11, atol=1e-12).y[:, -1]
+
+    def missed(turn: np.ndarray) -> np.ndarray:
+        R = from_tip(turn)[:9].reshape(3, 3)
+        return np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
+
+    turn = np.zeros(3)
+    for share in (0.25, 0.5, 0.75, 1.0):
+        whole, force = force, share * force
+        turn = fsolve(missed, turn, xtol=1e-13)
+        force = whole
+    return -from_tip(turn)[12:]
+
+
+@pytest.mark.parametrize(("functions", "error"), [(2, 3e-2), (3, 3e-3), (5, 2e-5)])
+def test_a_large_force_places_a_rod_off_its_centres(functions: int, error: float) -> None:
+    """Bent by more than a radian, the tip is where shooting has it: what functions leave out falls exponentially."""
+    (y_t, z_t), (y_s, z_s) = centers = (0.1, -0.05), (-0.06, 0.12)
+    force = np.array([-1.0, 3.0, 4.0])
+    D = np.array([[1.5, 0.0, 0.0], [0.0, 5.0, -1.2], [0.0, -1.2, 3.0]])
+    F = -np.array([[0.0, z_t, -y_t], [-z_s, 0.0, 0.0], [y_s, 0.0, 0.0]])
+    load = sf.BeamLoad(tuple(force.tolist()), at=1.0, axes="world")
+    given: dict[str, Any] = {"tension_center": centers[0], "shear_center": centers[1], "EI_yz": 1.2}
+    system = sf.System("s", (rod((functions,) * 3, None, L, loads=(load,), **given),), gravity=(0, 0, 0))
+    m = sf.compile(system)
+    place, _ = m.frame_pose("tip", sf.equilibrium(m).q)
+    exact = shooting(force, D, F)
+    assert place == pytest.approx(exact, abs=error)
