@@ -427,7 +427,7 @@ class Rod:
         beam = self.beam
         stated: list[tuple[int, Value, Value]] = [(0, beam.rhoJ, 0.0)]
         if beam.rotary_inertia:
-            about_z, skew = beam.rhoI_z, 0.0
+            about_z, skew = beam.rhoI_z, beam.rhoI_yz
             if beam.rhoI_yz != 0.0:
                 share = Term(beam.rhoI_yz) / Term(beam.rhoI_y)
                 about_z = (Term(beam.rhoI_z) - share * Term(beam.rhoI_yz)).value

@@ -111,10 +111,9 @@ def _section_motion(rod: Rod, w: Vec3, alpha: Vec3, speeds: Sequence[Edge], rate
         motion.spins.append(total)
         motion.accelerations.append(total_rate)
         motion.curves.append(total_rate.cross(t) + total.cross(total.cross(t) + (slip + slip)) + slip_rate)
-    for vector, spin, rate in zip(
-        rod.mass_vectors[len(rod.sections) :], motion.spins, motion.accelerations, strict=False
-    ):
-        motion.curves.append(rate.cross(vector) + spin.cross(spin.cross(vector)))
+    arms = rod.mass_vectors[len(rod.sections) :]
+    for arm, total, total_rate in zip(arms, motion.spins, motion.accelerations, strict=False):
+        motion.curves.append(total_rate.cross(arm) + total.cross(total.cross(arm)))
     return motion
 
 

@@ -72,7 +72,7 @@ def _by_centers(beam: Beam, counted: Collection[int]) -> Coefficients:
     Rows of these are the strains at the centres by those of the axis, which are zero: they need no stiffness.
     """
     (y_t, z_t), (y_s, z_s) = beam.tension_center, beam.shear_center
-    at_centers = (
+    at_centers: tuple[tuple[int, dict[int, Value], Value], ...] = (
         (3, {1: z_t, 2: _negative(y_t)}, beam.EA),
         (4, {0: _negative(z_s)}, beam.GA_y),
         (5, {0: y_s}, beam.GA_z),
@@ -83,7 +83,7 @@ def _by_centers(beam: Beam, counted: Collection[int]) -> Coefficients:
         if k not in counted:
             K |= {(k, b): arm for b, arm in arms.items()}
             continue
-        row: dict[int, Value] = {k: 1.0} | arms
+        row: dict[int, Value] = {k: 1.0, **arms}
         for a, first in row.items():
             for b, second in row.items():
                 more = _product(_product(stiffness, first), second)
