@@ -22,10 +22,12 @@ STARTS: dict[str, dict[str, float]] = {
     "planar_robot": {"q1": 0.3, "dq2": 1.0},
     "panda": {"panda_joint2": 0.5, "panda_joint4": -1.0, "dpanda_joint1": 0.4},
     "four_bar": {"q1": 1.2, "dq1": 0.5},
+    "spatial_rod": {"hinge": 0.3, "whip.bend_y[0]": 0.4, "dwhip.twist[0]": -0.5},
 }
-STEP = {"planar_robot": 1e-4, "panda": 1e-3, "four_bar": 1e-3}
+STEP = {"planar_robot": 1e-4, "panda": 1e-3, "four_bar": 1e-3, "spatial_rod": 1e-4}
 MODELS = tuple(STARTS)
-# In every run beams with inputs and a loop; an arm of nine joints, which compiles as long as both, with --slow.
+# In every run beams with inputs and a loop; an arm of nine joints, which compiles as long as both, and a geometrically
+# exact rod with --slow.
 SAMPLED = sampled(MODELS, ("planar_robot", "four_bar"))
 # A beam that a motor turns in the plane, the least that has elastic coordinates and an input.
 PLANAR = sf.System(

@@ -19,7 +19,7 @@ def compiled(folder: Path, name: str) -> None:
     build(folder, "../block", "symoSFunction.c", f"{name}.c", f"{name}_plant.c", "symofros_stepper.c", include=HEADERS)
 
 
-@pytest.fixture(scope="module", params=sampled(MODELS, ("four_bar",)))
+@pytest.fixture(scope="module", params=sampled(MODELS, ("four_bar", "spatial_rod")))
 def block(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
     name = request.param
     folder = tmp_path_factory.mktemp("block") / name

@@ -120,9 +120,9 @@ def version(request: pytest.FixtureRequest) -> int:
 
 ONE_VERSION = [pytest.param(2, marks=pytest.mark.slow), 3]
 # Every model by one version of the standard in every run, by the other with --slow; a loop by both.
-VERSIONS = {"planar_robot": 3, "floating": 2, "driven": 3, "planar": 3}
+VERSIONS = {"planar_robot": 3, "floating": 2, "driven": 3, "planar": 3, "spatial_rod": 3}
 # The robot takes as long to make as all others: a beam that a motor turns stands for it.
-SAMPLED = sampled(MODELS, ("four_bar",))
+SAMPLED = sampled(MODELS, ("four_bar", "spatial_rod"))
 
 
 def by_version(*cases: Any) -> list[Any]:
