@@ -6,7 +6,10 @@ import { field } from "./schema";
 
 export const DIRECTIONS = ["bend_y", "bend_z", "twist", "stretch", "shear_y", "shear_z"];
 /** What a section by material and shape takes the place of (Beam's section properties). */
-const PROPERTIES = ["rhoA", "EI_y", "EI_z", "GJ", "EA", "GA_y", "GA_z", "rhoJ", "rhoI_y", "rhoI_z"];
+const PROPERTIES = [
+  ...["rhoA", "EI_y", "EI_z", "EI_yz", "GJ", "EA", "GA_y", "GA_z", "rhoJ", "rhoI_y", "rhoI_z", "rhoI_yz"],
+  ...["tension_center", "shear_center", "mass_center", "stiffness"],
+];
 const SHAPE_FUNCTIONS = [...DIRECTIONS, "family", "shapes"];
 
 /** The properties of a beam by the parts of its window, in the order of the schema: formulas are of the section. */
