@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import symofros as sf
-from symofros.tools import DEFAULT_FLAGS, find_toolchain
+from symofros.tools import find_toolchain
 from validation.reporting.numbers import named
 
 # Packages that have a say in the numbers of one report or another.
@@ -58,7 +58,7 @@ def stamp() -> dict[str, Any]:
     return {
         "versions": versions(),
         "machine": machine(),
-        "flags": " ".join(DEFAULT_FLAGS),
+        "flags": " ".join(toolchain.default_flags) if toolchain else "none",
         "compiler": toolchain.identity.partition(" ")[2] if toolchain else "none",
         "revision": revision(),
         "date": now(),

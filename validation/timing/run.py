@@ -13,7 +13,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from symofros.tools import DEFAULT_FLAGS
+from symofros.tools import find_toolchain
 from validation.reporting.plain import restored
 from validation.reporting.provenance import machine
 from validation.timing.contestants.arrays import first_compiler
@@ -131,8 +131,9 @@ def prepare(todo: Iterable[Job], say: Say) -> list[str]:
 
 def facts() -> Mapping[str, Any]:
     """What times depend on: processor, its measured limits, compilers, flags."""
+    toolchain = find_toolchain()
     flags = {
-        "symofros": " ".join(DEFAULT_FLAGS),
+        "symofros": " ".join(toolchain.default_flags) if toolchain else "none",
         "pinocchio": " ".join(PINOCCHIO_FLAGS),
         "casadi, sympy": " or ".join(" ".join(flags) for flags in BUILDS) + " -march=native",
         "mujoco": "as in its wheel",

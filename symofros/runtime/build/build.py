@@ -22,7 +22,6 @@ from symofros.base.atomic import write_atomically
 from symofros.runtime.build.cache import cache_folder, create_cache_folder, install, is_intact, unusable
 from symofros.runtime.build.identity import CODE_IDENTITY
 from symofros.runtime.build.toolchain import (
-    DEFAULT_FLAGS,
     SHARED_FLAGS,
     Toolchain,
     call_compiler,
@@ -75,15 +74,15 @@ def recall_library(
 
 def _key(toolchain: Toolchain, flags: Sequence[str] | None, dispatch: str, *parts: str) -> str:
     suited = platform.machine() if dispatch else cpu_identity()
-    stated = [*parts, dispatch, *_chosen(flags, dispatch), *SHARED_FLAGS, toolchain.identity, suited]
+    stated = [*parts, dispatch, *_chosen(toolchain, flags, dispatch), *SHARED_FLAGS, toolchain.identity, suited]
     return hashlib.sha256("\0".join(stated).encode()).hexdigest()[:32]
 
 
-def _chosen(flags: Sequence[str] | None, dispatch: str) -> tuple[str, ...]:
+def _chosen(toolchain: Toolchain, flags: Sequence[str] | None, dispatch: str) -> tuple[str, ...]:
     """The flags of all kinds: where there are several, none is the machine's own."""
     if flags is not None:
         return tuple(flags)
-    kept = tuple(flag for flag in DEFAULT_FLAGS if not (dispatch and flag.startswith("-march")))
+    kept = tuple(flag for flag in toolchain.default_flags if not (dispatch and flag.startswith("-march")))
     return (*kept, *stated_flags())
 
 
@@ -108,7 +107,7 @@ def build_library(
     Raises:
         CompileError: The compiler failed, with its command and messages; or the cache folder can't be used.
     """
-    key, chosen = _key(toolchain, flags, dispatch, source, header), _chosen(flags, dispatch)
+    key, chosen = _key(toolchain, flags, dispatch, source, header), _chosen(toolchain, flags, dispatch)
     folder = cache_folder()
     library = folder / f"{key}{_SUFFIX}"
     if is_intact(library):

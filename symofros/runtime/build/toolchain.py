@@ -23,6 +23,9 @@ from symofros.errors import CompileError, Problem
 # -fno-math-errno lets sqrt and sincos be instructions and single calls; -ffast-math was measured and gains nothing.
 # Packs (generator/codegen/packs.py) share vectors already: the compiler's own search for more costs up to a quarter.
 DEFAULT_FLAGS = ("-O2", "-march=native", "-fno-math-errno", "-fno-tree-slp-vectorize")
+# Passes of gcc that look for repeated expressions and dead stores, where the generator has left none: the code is as
+# fast without them, and sooner there (docs/theory/code.md, section 8). Other compilers refuse these flags.
+GCC_FLAGS = ("-fno-gcse", "-fno-rerun-cse-after-loop", "-fno-tree-dse", "-fno-dse")
 # Kinds of x86 processors, the best first: name, what it must have, its flags.
 KINDS: tuple[tuple[str, tuple[str, ...], tuple[str, ...]], ...] = (
     (
@@ -62,11 +65,18 @@ class Toolchain:
         command: Program and leading arguments.
         identity: Version as the compiler states it; part of the cache key.
         is_fallback: Whether it is the ziglang package's rather than the system's.
+        is_gcc: Whether it is GNU's, by whatever name it is called.
     """
 
     command: tuple[str, ...]
     identity: str
     is_fallback: bool = False
+    is_gcc: bool = False
+
+    @property
+    def default_flags(self) -> tuple[str, ...]:
+        """Flags of models whose options state none."""
+        return (*DEFAULT_FLAGS, *(GCC_FLAGS if self.is_gcc else ()))
 
 
 @cache
@@ -85,14 +95,13 @@ def find_toolchain(compiler: str | None = None) -> Toolchain | None:
     wanted = compiler or os.environ.get("CC")
     if wanted:
         command = _command(wanted, "Options(compiler=…)" if compiler else "$CC")
-        return Toolchain(command, _version(command))
+        return _toolchain(command)
     for name in ("cc", "gcc", "clang"):
         path = shutil.which(name)
         if path is not None:
-            return Toolchain((path,), _version((path,)))
+            return _toolchain((path,))
     if importlib.util.find_spec("ziglang") is not None:
-        command = (sys.executable, "-m", "ziglang", "cc")
-        return Toolchain(command, _version(command), is_fallback=True)
+        return _toolchain((sys.executable, "-m", "ziglang", "cc"), is_fallback=True)
     return None
 
 
@@ -160,9 +169,11 @@ def call_compiler(command: Sequence[str], output: str, folder: Path, remedy: str
         raise CompileError(Problem(what, shown, f"the command writes the file '{output}'", remedy))
 
 
-def _version(command: tuple[str, ...]) -> str:
+def _toolchain(command: tuple[str, ...], is_fallback: bool = False) -> Toolchain:
+    """A command as what it says of itself: its first line is the version, and gcc names its owner below, like no other."""
     said = _run([*command, "--version"], VERSION_LIMIT, None, subprocess.DEVNULL)[1]
-    return f"{' '.join(command)} {said.splitlines()[0] if said else ''}"
+    identity = f"{' '.join(command)} {said.splitlines()[0] if said else ''}"
+    return Toolchain(command, identity, is_fallback, is_gcc="Free Software Foundation" in said)
 
 
 def _run(command: Sequence[str], limit: float, folder: Path | None, errors: int) -> tuple[int, str]:

@@ -20,7 +20,7 @@ import numpy as np
 
 from symofros.base.atomic import write_atomically
 from symofros.base.options import Options
-from symofros.runtime.build.toolchain import DEFAULT_FLAGS, Toolchain, find_toolchain
+from symofros.runtime.build.toolchain import Toolchain, find_toolchain
 from symofros.runtime.calls.library import CompiledKernel, CompiledUnit
 
 _STATES, _ROUNDS = 64, 15
@@ -86,8 +86,8 @@ def _compilers() -> list[str]:
 
 def _flags(toolchain: Toolchain) -> list[tuple[str, ...] | None]:
     if "clang" in toolchain.identity:
-        return [(*DEFAULT_FLAGS, _CONTRACTED)]
-    return [None, tuple("-O3" if flag == "-O2" else flag for flag in DEFAULT_FLAGS)]
+        return [(*toolchain.default_flags, _CONTRACTED)]
+    return [None, tuple("-O3" if flag == "-O2" else flag for flag in toolchain.default_flags)]
 
 
 def fastest(libraries: Sequence[Path], load: Callable[[Path], CompiledUnit]) -> Path:

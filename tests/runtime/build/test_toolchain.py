@@ -15,7 +15,7 @@ from symofros.errors import Problem
 from symofros.exports.c.compiling import shared_library
 from symofros.runtime.build import toolchain
 from symofros.runtime.build.build import build_library
-from symofros.runtime.build.toolchain import find_toolchain
+from symofros.runtime.build.toolchain import GCC_FLAGS, find_toolchain, kinds
 
 
 @pytest.fixture(autouse=True)
@@ -86,6 +86,33 @@ def test_flags_of_the_environment_follow_the_default_ones(monkeypatch: pytest.Mo
     monkeypatch.setenv("SYMOFROS_CFLAGS", "-O0 '")
     problem = refused()
     assert problem.what.startswith("$SYMOFROS_CFLAGS can't be read") and problem.found == '"-O0 \'"'
+
+
+@pytest.mark.parametrize(
+    ("says", "is_gcc"),
+    [
+        ("cc (Debian 12.2.0-14) 12.2.0\nCopyright (C) 2022 Free Software Foundation, Inc.", True),
+        ("Debian clang version 19.1.7\nTarget: x86_64-pc-linux-gnu", False),
+        ("clang version 20.1.2 (https://github.com/ziglang/zig-bootstrap)", False),
+    ],
+)
+def test_flags_of_gcc_are_given_to_gcc_alone(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, cache: Path, says: str, is_gcc: bool
+) -> None:
+    """A compiler that writes down its arguments."""
+    told = tmp_path / "told"
+    answers = f'case "$*" in *--version*) echo "{says}";; *) echo "$*" >> {told}; for x; do :; done; echo > "$x";; esac'
+    monkeypatch.setenv("CC", str(script(tmp_path, f"#!/bin/sh\n{answers}\n")))
+    monkeypatch.delenv("SYMOFROS_CFLAGS", raising=False)
+    named = find_toolchain()
+    assert named is not None and named.is_gcc == is_gcc
+    build_library("int x;\n", "", named)
+    build_library("int y;\n", "", named, dispatch="int z;\n", symbol="model")
+    build_library("int z;\n", "", named, flags=("-O1",))
+    calls = [set(GCC_FLAGS) & set(line.split()) for line in told.read_text().splitlines()]
+    of_model = set(GCC_FLAGS) if is_gcc else set()
+    # One library for this machine; what chooses, the kinds of processors, the link; flags that a model states.
+    assert calls == [of_model, set(), *[of_model] * len(kinds()), set(), set()]
 
 
 def test_a_program_that_the_machine_can_t_run_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ from typing import Any, Literal
 import numpy as np
 
 import symofros as sf
-from symofros.tools import DEFAULT_FLAGS, Precision, count_program, find_toolchain, fixed_step_loop
+from symofros.tools import Precision, count_program, find_toolchain, fixed_step_loop
 from validation.mechanics.geometry import Array
 from validation.timing.contestants.arrays import Arrays, Turns, loops
 from validation.timing.contestants.blocks import Blocks
@@ -152,7 +152,7 @@ def _cost(task: Task, name: str, made: _Generated) -> Cost:
     text = made.path.with_suffix(".c").read_text(encoding="utf-8")
     sources = {"model.c": text, "symofros_model.h": source("symofros_model.h")}
     compiler = Compiler(toolchain.command[0], "", toolchain.identity)
-    built = build(compiler, sources, (*toolchain.command[1:], *DEFAULT_FLAGS, "-std=gnu99"))
+    built = build(compiler, sources, (*toolchain.command[1:], *toolchain.default_flags, "-std=gnu99"))
     return Cost(
         made.seconds, built.seconds, len(text), built.text, built.constants, asdict(counted), made.arrays.memory
     )
