@@ -6,6 +6,7 @@ import contextlib
 import importlib.util
 import os
 import platform
+import re
 import shlex
 import shutil
 import signal
@@ -23,9 +24,21 @@ from symofros.errors import CompileError, Problem
 # -fno-math-errno lets sqrt and sincos be instructions and single calls; -ffast-math was measured and gains nothing.
 # Packs (generator/codegen/packs.py) share vectors already: the compiler's own search for more costs up to a quarter.
 DEFAULT_FLAGS = ("-O2", "-march=native", "-fno-math-errno", "-fno-tree-slp-vectorize")
-# Passes of gcc that look for repeated expressions and dead stores, where the generator has left none: the code is as
-# fast without them, and sooner there (docs/theory/code.md, section 8). Other compilers refuse these flags.
-GCC_FLAGS = ("-fno-gcse", "-fno-rerun-cse-after-loop", "-fno-tree-dse", "-fno-dse")
+# What takes gcc time and finds nothing in straight code, whose expressions the generator has merged: searches for
+# repeated expressions and dead stores, for what was stored far back, for longer combinations of instructions. The code
+# is as fast, its bits are the same (docs/theory/code.md, section 8). Other compilers and older versions refuse these.
+GCC_FLAGS = (
+    "-fno-gcse",
+    "-fno-rerun-cse-after-loop",
+    "-fno-tree-dse",
+    "-fno-dse",
+    "-fno-lra-remat",
+    "--param=max-cselib-memory-locations=20",
+    "--param=sccvn-max-alias-queries-per-access=10",
+    "--param=max-combine-insns=2",
+)
+_OLDEST_GCC = 8
+_GCC = re.compile(r"^.*\) (\d+)\..*$(?s:.*)Free Software Foundation", re.MULTILINE)
 # Kinds of x86 processors, the best first: name, what it must have, its flags.
 KINDS: tuple[tuple[str, tuple[str, ...], tuple[str, ...]], ...] = (
     (
@@ -65,18 +78,18 @@ class Toolchain:
         command: Program and leading arguments.
         identity: Version as the compiler states it; part of the cache key.
         is_fallback: Whether it is the ziglang package's rather than the system's.
-        is_gcc: Whether it is GNU's, by whatever name it is called.
+        gcc: Major version where it is GNU's, by whatever name it is called; 0 for others.
     """
 
     command: tuple[str, ...]
     identity: str
     is_fallback: bool = False
-    is_gcc: bool = False
+    gcc: int = 0
 
     @property
     def default_flags(self) -> tuple[str, ...]:
         """Flags of models whose options state none."""
-        return (*DEFAULT_FLAGS, *(GCC_FLAGS if self.is_gcc else ()))
+        return (*DEFAULT_FLAGS, *(GCC_FLAGS if self.gcc >= _OLDEST_GCC else ()))
 
 
 @cache
@@ -170,10 +183,11 @@ def call_compiler(command: Sequence[str], output: str, folder: Path, remedy: str
 
 
 def _toolchain(command: tuple[str, ...], is_fallback: bool = False) -> Toolchain:
-    """A command as what it says of itself: its first line is the version, and gcc names its owner below, like no other."""
+    """A command as what it says of itself: the first line is its version, and gcc names its owner below."""
     said = _run([*command, "--version"], VERSION_LIMIT, None, subprocess.DEVNULL)[1]
     identity = f"{' '.join(command)} {said.splitlines()[0] if said else ''}"
-    return Toolchain(command, identity, is_fallback, is_gcc="Free Software Foundation" in said)
+    gcc = _GCC.match(said)
+    return Toolchain(command, identity, is_fallback, int(gcc[1]) if gcc else 0)
 
 
 def _run(command: Sequence[str], limit: float, folder: Path | None, errors: int) -> tuple[int, str]:

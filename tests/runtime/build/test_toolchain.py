@@ -89,15 +89,17 @@ def test_flags_of_the_environment_follow_the_default_ones(monkeypatch: pytest.Mo
 
 
 @pytest.mark.parametrize(
-    ("says", "is_gcc"),
+    ("says", "gcc", "flags"),
     [
-        ("cc (Debian 12.2.0-14) 12.2.0\nCopyright (C) 2022 Free Software Foundation, Inc.", True),
-        ("Debian clang version 19.1.7\nTarget: x86_64-pc-linux-gnu", False),
-        ("clang version 20.1.2 (https://github.com/ziglang/zig-bootstrap)", False),
+        ("cc (Debian 12.2.0-14) 12.2.0\nCopyright (C) 2022 Free Software Foundation, Inc.", 12, GCC_FLAGS),
+        ("gcc (GCC) 8.5.0 20210514 (Red Hat 8.5.0-4)\nCopyright (C) 2018 Free Software Foundation", 8, GCC_FLAGS),
+        ("gcc (Ubuntu 7.5.0-3ubuntu1) 7.5.0\nCopyright (C) 2017 Free Software Foundation, Inc.", 7, ()),
+        ("Debian clang version 19.1.7\nTarget: x86_64-pc-linux-gnu", 0, ()),
+        ("clang version 20.1.2 (https://github.com/ziglang/zig-bootstrap)", 0, ()),
     ],
 )
 def test_flags_of_gcc_are_given_to_gcc_alone(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, cache: Path, says: str, is_gcc: bool
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, cache: Path, says: str, gcc: int, flags: tuple[str, ...]
 ) -> None:
     """A compiler that writes down its arguments."""
     told = tmp_path / "told"
@@ -105,12 +107,12 @@ def test_flags_of_gcc_are_given_to_gcc_alone(
     monkeypatch.setenv("CC", str(script(tmp_path, f"#!/bin/sh\n{answers}\n")))
     monkeypatch.delenv("SYMOFROS_CFLAGS", raising=False)
     named = find_toolchain()
-    assert named is not None and named.is_gcc == is_gcc
+    assert named is not None and named.gcc == gcc
     build_library("int x;\n", "", named)
     build_library("int y;\n", "", named, dispatch="int z;\n", symbol="model")
     build_library("int z;\n", "", named, flags=("-O1",))
     calls = [set(GCC_FLAGS) & set(line.split()) for line in told.read_text().splitlines()]
-    of_model = set(GCC_FLAGS) if is_gcc else set()
+    of_model = set(flags)
     # One library for this machine; what chooses, the kinds of processors, the link; flags that a model states.
     assert calls == [of_model, set(), *[of_model] * len(kinds()), set(), set()]
 
