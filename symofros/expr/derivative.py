@@ -74,7 +74,7 @@ def _rates(graph: Graph, nodes: Sequence[int], directions: Sequence[Mapping[Edge
             if pack is not EMPTY:
                 partial = OPS[graph.op[node]].derivative(graph, args, node, i)
                 terms.append((partial, (sign if arg > 0 else -sign, pack)))
-        sign, pack = linear_combination(graph, terms, range(len(directions)))
+        sign, pack = linear_combination(graph, terms, range(len(directions))) if terms else (ONE, EMPTY)
         if any(pack.lanes):
             rates[node] = sign, pack
     return rates

@@ -98,6 +98,11 @@ class Settings:
     beam_limit: float
     realtime: float
 
+    @property
+    def judged(self) -> bool:
+        """Whether its steps can be judged by what they make of a mode: fixed ones, of most families."""
+        return not self.adaptive and self.method.family.judged
+
     @classmethod
     def of(cls, model: Model, options: SimulationOptions, t_end: float) -> Settings:
         """Settings of a run of a model.

@@ -20,7 +20,6 @@ from symofros.simulation.results.examination.diagnosis import diagnose
 from symofros.simulation.results.trajectory import Found, Statistics, Trajectory
 from symofros.simulation.settings import Settings, check_fit, check_start, refuse_lengths, vector
 from symofros.simulation.stepping.loops import run_own, run_sundials
-from symofros.simulation.stepping.methods import Method
 from symofros.simulation.stepping.stepper import Stepper
 
 
@@ -78,7 +77,7 @@ def simulate(
     looked_for = named_events(events)
     inputs = plan_inputs(model, u)
     check_fit(model, settings, inputs)
-    _prepare(model, settings.method)
+    _prepare(model, settings)
     stepper = Stepper(model, settings.method, inputs, looked_for, values)
     settings.apply(stepper)
     check_start(model, settings, q, v, stepper.inputs_at(settings.t0, q, v), np.asarray(values))
@@ -95,10 +94,11 @@ def simulate(
     return Trajectory(model, t, q_all, v_all, u_all, np.array(values), outcome, met, statistics, bendings)
 
 
-def _prepare(model: Model, method: Method) -> None:
+def _prepare(model: Model, settings: Settings) -> None:
     """Compile what a run and its diagnosis call, all at the same time; the integrator is compiled once a machine."""
-    names = ["forward_dynamics", *method.family.functions, "kinetic_energy"]
+    names = ["forward_dynamics", *settings.method.family.functions, "kinetic_energy"]
     names += ["project", "constraint"] if model.nc else []
+    names += ["dynamics"] if settings.judged else []
     with ThreadPoolExecutor(1) as pool:
         integrator = pool.submit(native_library)
         model.prepare(*names)

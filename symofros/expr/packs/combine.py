@@ -33,7 +33,7 @@ def linear_combination(
         return signed[0]
     first_node = len(g)
     sums = [
-        g.sum(g.mul(factor, pack.lanes[lane]) for factor, pack in signed) if lane in lanes else ZERO
+        g.sum(g.mul(factor, pack.lanes[lane]) for factor, pack in signed if pack.lanes[lane]) if lane in lanes else ZERO
         for lane in range(WIDTH)
     ]
     pack = with_exact_lanes(g, Pack(tuple(sums), signed, first_node=first_node, min_lanes=min_lanes), range(WIDTH))
@@ -74,22 +74,27 @@ def with_exact_lanes(g: Graph, pack: Pack, candidates: Collection[int]) -> Pack:
 
 def is_sum(g: Graph, edge: Edge, products: Sequence[tuple[Edge, Edge]]) -> bool:
     """Whether an edge is the sum of products (factor, operand) from the left, rounded as a vector rounds it."""
-    products = [product for product in products if ZERO not in product]
-    *first, last = products or [(ZERO, ZERO)]
+    products = [product for product in products if product[0] and product[1]]
+    return _is_sum(g, edge, products) if products else edge == ZERO
+
+
+def _is_sum(g: Graph, edge: Edge, products: Sequence[tuple[Edge, Edge]]) -> bool:
+    """The same of one product or more, none of which is zero."""
+    *first, last = products
     if not first:
         return is_product(g, edge, *last)
     if g.is_constant(edge) and sum((_product_of_numbers(g, *product) for product in products), 0.0) == g.number(edge):
         return True
     if edge == ZERO:
         return _is_minus(g, last, first)
-    return any(is_product(g, addend, *last) and is_sum(g, rest, first) for rest, addend in _addends(g, edge))
+    return any(is_product(g, addend, *last) and _is_sum(g, rest, first) for rest, addend in _addends(g, edge))
 
 
 def _is_minus(g: Graph, product: tuple[Edge, Edge], products: Sequence[tuple[Edge, Edge]]) -> bool:
     """Whether a product cancels the sum of those before it; the graph has no node for the zero that remains."""
     factor, operand = product
     if abs(factor) == ONE:
-        return is_sum(g, -factor * operand, products)
+        return _is_sum(g, -factor * operand, products)
     sets = [{abs(edge) for edge in pair} for pair in (product, products[0])]
     return len(products) == 1 and sets[0] == sets[1] and (factor * operand < 0) != (products[0][0] * products[0][1] < 0)
 
@@ -97,23 +102,26 @@ def _is_minus(g: Graph, product: tuple[Edge, Edge], products: Sequence[tuple[Edg
 def _addends(g: Graph, edge: Edge) -> Iterator[tuple[Edge, Edge]]:
     """Pairs of edges whose sum the graph states by an edge."""
     sign = ONE if edge > 0 else -ONE
-    op, args = g.op[abs(edge)], g.args[abs(edge)]
-    for a, b in (args, args[::-1]) if op in (ADD, MUL) else ():
-        if op == ADD:
-            yield sign * a, sign * b
-        elif g.number(a) == 2.0:  # The graph has 2 x for x + x.
-            yield sign * b, sign * b
+    op = g.op[abs(edge)]
+    if op in (ADD, MUL):
+        a, b = g.args[abs(edge)]
+        for rest, addend in ((a, b), (b, a)):
+            if op == ADD:
+                yield sign * rest, sign * addend
+            elif g.number(rest) == 2.0:  # The graph has 2 x for x + x.
+                yield sign * addend, sign * addend
     yield ZERO, edge  # What precedes the last term may have cancelled.
 
 
 def is_product(g: Graph, edge: Edge, a: Edge, b: Edge) -> bool:
     """Whether an edge is a * b to the last bit; the graph states c1 (c2 x) by (c1 c2) x, which is rounded otherwise."""
-    if ZERO in (a, b) or ONE in (abs(a), abs(b)):
+    node, first, second = abs(edge), abs(a), abs(b)
+    if first <= ONE or second <= ONE:
         return edge == a * b  # One of them is a sign or zero, and so the product of the edges is an edge.
-    if g.is_constant(a) and g.is_constant(b):
+    if first in g.value and second in g.value:
         return _product_of_numbers(g, a, b) == g.number(edge)
-    node, is_negative = abs(edge), edge < 0
-    return is_negative == (a * b < 0) and g.op[node] == MUL and set(g.args[node]) == {abs(a), abs(b)}
+    has_sign = (edge < 0) == (a * b < 0)
+    return has_sign and g.op[node] == MUL and g.args[node] in ((first, second), (second, first))
 
 
 def _product_of_numbers(g: Graph, a: Edge, b: Edge) -> float:

@@ -83,7 +83,7 @@ def examine_steps(
         states: States of the run: t (n), q, v, u.
         steps: Number of steps.
     """
-    if settings.adaptive or not stepper.method.family.judged or not stepper.model.nv or steps < 1:
+    if not settings.judged or not stepper.model.nv or steps < 1:
         return Resolution()
     if settings.realtime and stepper.system.callback != stepper.ffi.NULL:
         return Resolution()  # What the function serves may be hardware: it is not called beside the run.
