@@ -70,8 +70,8 @@ ALLOWED = table("""
         generator.passes runtime generator.codegen compiler loading simulation diagrams
     # Models in other frameworks, each of them imported by its own module alone.
     interop: base errors native expr description compiler generator.codegen runtime simulation
-    # Advice compiles and simulates reduced systems, and counts what they take.
-    studio.advice: base errors expr description generator.passes runtime compiler simulation
+    # Advice compiles and simulates reduced systems, and counts what they take; rods tell what their sections resist.
+    studio.advice: base errors expr description mechanics.beams generator.passes runtime compiler simulation
     # The picture compiles its own frame poses, plays trajectories, and closes loops; beams lend their shape.
     studio.viewer: base errors description mechanics.beams mechanics.topology runtime compiler loading
         simulation diagrams __init__
