@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import tempfile
 from collections.abc import Callable
 from functools import partial
@@ -40,12 +41,14 @@ def transformed(jax: Any, values: dict[str, Function], function: str) -> Callabl
     return gradient
 
 
-def _offer(who: str, values: Callable[[Subject], dict[str, Function]], subject: Subject) -> Offer:
+def _offer(
+    who: str, values: Callable[[Subject], dict[str, Function]], subject: Subject, most: float = math.inf
+) -> Offer:
     jax, values_of = _jax(), values(subject)
 
     def offer(function: str, states: int) -> Side | None:
         own = transformed(jax, values_of, function)
-        if own is None:
+        if own is None or states > most:
             return None
         compiled = jax.jit(own if states == 1 else jax.vmap(own))
         given = [jax.numpy.asarray(x[0] if states == 1 else x) for x in subject.at(function, states)]
@@ -118,11 +121,18 @@ JAX = Environment(
     ),
     (
         Peer("frax", "frax", "frax", "pip install 'symofros[engine-frax]'", partial(_offer, "frax", _frax)),
-        Peer("MJX", "mujoco.mjx", "mujoco-mjx", "pip install 'symofros[engine-mjx]'", partial(_offer, "MJX", _mjx)),
+        Peer(
+            "MJX",
+            "mujoco.mjx",
+            "mujoco-mjx",
+            "pip install 'symofros[engine-mjx]'",
+            partial(_offer, "MJX", _mjx, most=1),
+        ),
     ),
     "All are jitted, and mapped by `vmap` where a call has several states; derivatives are by `jacfwd`, reverse mode "
     "by `grad`. frax and MJX are written in JAX and get the settings of one thread that frax recommends; MJX runs "
-    "kinematics, M and bias alone, without collisions, and solves M by Cholesky.",
+    "kinematics, M and bias alone, without collisions, and solves M by Cholesky. It is asked for one state a call: it "
+    "is made for accelerators, and on a processor a call of many takes minutes.",
     {
         "JAX_ENABLE_X64": "1",
         "OPENBLAS_NUM_THREADS": "1",

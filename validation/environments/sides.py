@@ -64,13 +64,14 @@ class Subject:
 
     def urdf(self) -> str:
         """The mechanism as text of a URDF in which every link has an inertia."""
-        base = self.system.bodies[0].name
         with tempfile.TemporaryDirectory() as folder:
             sf.export(self.system, "urdf", folder, name="robot")
             text = (Path(folder) / "robot.urdf").read_text(encoding="utf-8")
 
+        children = re.findall(r'<child link="([^"]*)"', text)
+
         def with_inertia(link: re.Match[str]) -> str:
-            return f'<link name="{link[1]}">{_INERTIAL.format(int(link[1] == base))}</link>'
+            return f'<link name="{link[1]}">{_INERTIAL.format(int(link[1] not in children))}</link>'
 
         return re.sub(r'<link name="([^"]*)"\s*/>', with_inertia, text)
 
@@ -153,14 +154,18 @@ def native(subject: Subject, function: str, states: int) -> Side:
     if cotangent:
         named |= dict(zip(cotangents, (*cotangent, np.zeros((*q.shape[:-1], 0))), strict=False))
 
+    wanted = {"dynamics": ("M", "h"), f"{base}_vjp": ("by_q", "by_v", f"by_{third}")}.get(function)
+    names = [name for name, _ in model.kernel(function).signature.outputs]
+    kept = [names.index(name) for name in wanted] if wanted else range(1 if function == base else 3)
+
     def call() -> list[Array]:
         values = model.evaluate(function, **named)
         if function == "inverse_dynamics_derivatives":
             values += model.evaluate("mass_matrix", q=q)
-        return [value for value in values if value.size]
+        return values
 
     def results() -> Array:
-        shared = {base: 1, "dynamics": 2}.get(function, 3)  # Not Q, nor derivatives by parameters.
-        return flat(*(value.reshape(states, -1) for value in call()[:shared]))
+        values = call()
+        return flat(*(values[k].reshape(states, -1) for k in kept))
 
     return Side(NATIVE, call, results)

@@ -191,9 +191,7 @@ def _asked(
     return system, run, Path(path)
 
 
-def _onward(
-    system: System, run: Played, frames: _Recording, simulate: bool | Mapping[str, Any]
-) -> Mapping[str, Any]:
+def _onward(system: System, run: Played, frames: _Recording, simulate: bool | Mapping[str, Any]) -> Mapping[str, Any]:
     return onward(system, run, frames.t, frames.q, {} if simulate is True else dict(simulate or {}))
 
 

@@ -1,4 +1,4 @@
-"""What lets a replay simulate on: the model as WebAssembly in a page of its own, and the states that it may begin at."""
+"""What lets a replay simulate on: the model as WebAssembly in a page of its own, and states to begin at."""
 
 from __future__ import annotations
 
@@ -60,10 +60,11 @@ def onward(system: System, run: object, t: Array, q: Array, stepping: Stepping) 
         export(system, "wasm", Path(folder) / "page", **{**own, **stepping})
         page = (Path(folder) / "page" / "index.html").read_text(encoding="utf-8")
     states = {"q": q, "v": _at(t, run.t, run.v), "u": _at(t, run.t, run.u)}
+    doubles = {name: np.ascontiguousarray(values, dtype="<f8").tobytes() for name, values in states.items()}
     return {
         "page": page,
         "par": [float(x) for x in run.par],
-        **{name: base64.b64encode(np.ascontiguousarray(x, dtype="<f8").tobytes()).decode() for name, x in states.items()},
+        **{name: base64.b64encode(raw).decode() for name, raw in doubles.items()},
     }
 
 
