@@ -40,9 +40,9 @@ def _called(who: str, functions: Callable[[str], Any], subject: Subject, functio
     shapes = [own.size_out(k) for k in range(own.n_out())]
     outputs = [np.zeros((states, columns, rows)) for rows, columns in shapes]
     for k, array in enumerate(given):
-        buffer.set_arg(k, memoryview(array))
+        buffer.set_arg(k, array.data)
     for k, array in enumerate(outputs):
-        buffer.set_res(k, memoryview(array))
+        buffer.set_res(k, array.data)
 
     def call() -> object:
         trigger()
@@ -122,8 +122,7 @@ def _written(
 def _adam(subject: Subject) -> Callable[..., Mapping[str, Any]]:
     """Its base floats; here it stands still: M and the bias of the joints, and M solved."""
     ca, adam = import_module("casadi"), import_module("adam.casadi")
-    gravity = np.array([*map(float, subject.system.gravity), 0.0, 0.0, 0.0])
-    robot = adam.KinDynComputations(subject.urdf(), list(subject.model.names.q), gravity=gravity)
+    robot = adam.KinDynComputations(subject.urdf(), list(subject.model.names.q), gravity=np.array(subject.gravity))
     base, still = np.eye(4), np.zeros(6)
 
     def values(q: Any, v: Any, a: Any, tau: Any) -> Mapping[str, Any]:
@@ -159,12 +158,13 @@ def _pinocchio(subject: Subject) -> Callable[..., Mapping[str, Any]]:
     return values
 
 
-def _peers(name: str, values: Any, *place: str) -> tuple[Peer, Peer]:
+def _peers(name: str, values: Any, module: str, package: str, install: str) -> tuple[Peer, Peer]:
     """One way to write the equations, in CasADi's virtual machine and compiled."""
-    return (
-        Peer(f"{name}, VM", *place, partial(_written, f"{name}, VM", False, values)),
-        Peer(f"{name}, compiled", *place, partial(_written, f"{name}, compiled", True, values)),
-    )
+
+    def peer(who: str, compiled: bool) -> Peer:
+        return Peer(who, module, package, install, partial(_written, who, compiled, values))
+
+    return peer(f"{name}, VM", False), peer(f"{name}, compiled", True)
 
 
 CASADI = Environment(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import tempfile
 from collections.abc import Callable
 from functools import partial
@@ -42,13 +41,13 @@ def transformed(jax: Any, values: dict[str, Function], function: str) -> Callabl
 
 
 def _offer(
-    who: str, values: Callable[[Subject], dict[str, Function]], subject: Subject, most: float = math.inf
+    who: str, values: Callable[[Subject], dict[str, Function]], subject: Subject, plain_only: bool = False
 ) -> Offer:
     jax, values_of = _jax(), values(subject)
 
     def offer(function: str, states: int) -> Side | None:
         own = transformed(jax, values_of, function)
-        if own is None or states > most:
+        if own is None or (plain_only and (states > 1 or function not in values_of)):
             return None
         compiled = jax.jit(own if states == 1 else jax.vmap(own))
         given = [jax.numpy.asarray(x[0] if states == 1 else x) for x in subject.at(function, states)]
@@ -126,13 +125,13 @@ JAX = Environment(
             "mujoco.mjx",
             "mujoco-mjx",
             "pip install 'symofros[engine-mjx]'",
-            partial(_offer, "MJX", _mjx, most=1),
+            partial(_offer, "MJX", _mjx, plain_only=True),
         ),
     ),
     "All are jitted, and mapped by `vmap` where a call has several states; derivatives are by `jacfwd`, reverse mode "
     "by `grad`. frax and MJX are written in JAX and get the settings of one thread that frax recommends; MJX runs "
-    "kinematics, M and bias alone, without collisions, and solves M by Cholesky. It is asked for one state a call: it "
-    "is made for accelerators, and on a processor a call of many takes minutes.",
+    "kinematics, M and bias alone, without collisions, and solves M by Cholesky. It is asked for values of one state a "
+    "call: it is made for accelerators, and on a processor many states, and compiling its derivatives, take minutes.",
     {
         "JAX_ENABLE_X64": "1",
         "OPENBLAS_NUM_THREADS": "1",

@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import tempfile
 from collections.abc import Iterator, Sequence
+from functools import partial
 from importlib.resources import as_file, files
 from importlib.util import find_spec
 from pathlib import Path
@@ -68,7 +69,7 @@ def rows(subject: Subject, race: dict[str, Any], turns: int, fail: Fail) -> Iter
     reference = native(subject, function, states)
     expected, errors = reference.results(), {NATIVE: 0.0}
     for who, results in race["results"].items():
-        off = checked(np.array(results), expected, lambda reason, who=who: fail(who, reason))
+        off = checked(np.array(results), expected, partial(fail, who))
         if off is not None:
             errors[who] = off
     times = {NATIVE: raced([reference], states, turns)[NATIVE], **race["times"]}

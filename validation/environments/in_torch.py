@@ -63,7 +63,7 @@ def _ours(subject: Subject) -> dict[str, Function]:
 def _adam(subject: Subject) -> dict[str, Function]:
     """Its base floats; here it stands still: M and the bias of the joints, and M solved."""
     torch, adam = _torch(), import_module("adam.pytorch")
-    gravity = torch.tensor([*map(float, subject.system.gravity), 0.0, 0.0, 0.0], dtype=torch.float64)
+    gravity = torch.tensor(subject.gravity, dtype=torch.float64)
     joints = list(subject.model.names.q)
     robot = adam.KinDynComputationsBatch(
         subject.urdf(), joints, device=torch.device("cpu"), dtype=torch.float64, gravity=gravity

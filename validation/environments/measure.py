@@ -19,6 +19,7 @@ from validation.environments.race import TURNS
 from validation.environments.record import Absent, Record, Row
 from validation.reporting.command import Quick, Run, known
 from validation.reporting.plain import plain, restored
+from validation.reporting.provenance import stamp
 from validation.reporting.record import Data
 
 SETTINGS: Mapping[str, Mapping[str, str]] = {
@@ -83,7 +84,7 @@ def take(line: str, record: Record, doing: Callable[[str], object]) -> None:
     elif kind == "failed":
         record.failed.append(tuple(value))
     elif kind == "version":
-        record.versions[value[0]] = value[1]
+        record.packages[value[0]] = value[1]
 
 
 def measure(
@@ -108,5 +109,6 @@ def measure(
         return name
 
     done = run.each(names, work)
-    extra: dict[str, Any] = {"turns": turns, "load": os.getloadavg()[0]} if hasattr(os, "getloadavg") else {}
-    return {**done.head(record.ok, quick), **plain(record), **extra, "environments": names}
+    origin: dict[str, Any] = stamp()
+    origin["versions"] = origin["versions"] | record.packages
+    return {**origin, **done.head(record.ok, quick), **plain(record), "turns": turns, "environments": names}

@@ -84,13 +84,13 @@ class Record:
         rows: What was measured.
         absent: What was not.
         failed: Environment, function, side, and what went wrong: it could not be computed, or differs.
-        versions: Package -> version.
+        packages: Package -> version.
     """
 
     rows: list[Row] = field(default_factory=list)
     absent: list[Absent] = field(default_factory=list)
     failed: list[tuple[str, str, str, str]] = field(default_factory=list)
-    versions: dict[str, str] = field(default_factory=dict)
+    packages: dict[str, str] = field(default_factory=dict)
 
     @property
     def ok(self) -> bool:

@@ -16,7 +16,7 @@ from validation.environments.measure import measure
 from validation.environments.record import NATIVE, OURS, TOLERANCE, Absent, Record, Row
 from validation.reporting.charts import logarithmic, style
 from validation.reporting.figures import Curve, Drawing, Figure
-from validation.reporting.numbers import counted, digits, duration, named, times
+from validation.reporting.numbers import counted, digits, duration, times
 from validation.reporting.plain import restored
 from validation.reporting.questions import failure_texts
 from validation.reporting.record import Bullets, Data, Fact, Report, Section, Table, Text, Topic
@@ -25,8 +25,8 @@ _TITLES = {in_node.NAME: in_node.TITLE} | {one.name: one.title for one in (JAX, 
 _LIMITS = {in_node.NAME: in_node.LIMITS} | {one.name: one.limits for one in (JAX, TORCH, CASADI)}
 _INTRO = """Does a model give the same numbers in every environment, and is it faster there than what one would
 otherwise use? Each row is one race: the same seeded states for all sides, each side checked first against native C
-(called from Python, arrays in and out), then timed in turn on one processor by the clock. Times are the least of the
-turns, of a state; in brackets the median over the turns of a side's time over ours: where it is above 1×, ours is the
+(called from Python, arrays in and out), then timed in turn on one processor by the clock. Times are the least of
+{turns}, of a state; in brackets the median over the turns of a side's time over ours: where it is above 1×, ours is the
 faster. Native C has no framework around it: what it is faster by is what the framework costs."""
 _ELSEWHERE = """C, Python, MEX, FMU: [timing](timing.html) and [exports](exports.html). CUDA needs a graphics processor:
 `symofros kernels MODEL --bandwidth` gives registers, spills and the bound by the memory."""
@@ -57,12 +57,11 @@ def compose(data: Data) -> Report:
         f"{races}: ours differ from native C by at most {digits(worst)}; "
         f"ours is the faster beside {beaten} of {counted(len(peers), 'time')} of peers{wrong}{failed}.",
         bool(data["ok"]),
-        (_INTRO, *failure_texts(failures), *failed_texts),
+        (_INTRO.format(turns=counted(data["turns"], "turn")), *failure_texts(failures), *failed_texts),
         (
             *(_section(name, [row for row in record.rows if row.environment == name]) for name in names),
             Section("Not here", (Bullets(tuple(map(_said, record.absent))),), "not-here"),
             Section("Elsewhere", (_ELSEWHERE,), "elsewhere"),
-            Section("Versions", (named(record.versions, ", "), f"{data['turns']} turns."), "versions"),
         ),
         facts=tuple(fact for name in names for fact in _facts(name, record.rows)),
         unfinished=tuple(data.get("unfinished", ())),

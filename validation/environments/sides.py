@@ -7,6 +7,7 @@ import tempfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -61,6 +62,12 @@ class Subject:
         """The arguments of a function at the first states: q, v, w, and cotangents where it takes them."""
         given = (self.q, self.v, self.w, *([self.cotangent] if function.endswith("_vjp") else []))
         return tuple(array[:states] for array in given)
+
+    @property
+    def gravity(self) -> list[float]:
+        """Acceleration of gravity, with zeros for a spatial vector's angular part (6) [m/s^2, rad/s^2]."""
+        stated: Any = self.system.gravity  # Numbers, in the models that are raced.
+        return [*map(float, stated), 0.0, 0.0, 0.0]
 
     def urdf(self) -> str:
         """The mechanism as text of a URDF in which every link has an inertia."""
@@ -150,7 +157,7 @@ def native(subject: Subject, function: str, states: int) -> Side:
         q, v, w, *cotangent = (array[0] for array in (q, v, w, *cotangent))
     base = plain(function)
     third, cotangents = _INPUTS[base]
-    named = {"q": q, "v": v, third: w}
+    named: dict[str, Any] = {"q": q, "v": v, third: w}
     if cotangent:
         named |= dict(zip(cotangents, (*cotangent, np.zeros((*q.shape[:-1], 0))), strict=False))
 

@@ -39,7 +39,7 @@ ROWS = [
 
 
 def report(ok: bool = True, **of: Any) -> Report:
-    record = Record(**{"rows": ROWS, "versions": {"jax": "0.10"}} | of)
+    record = Record(**{"rows": ROWS, "packages": {"jax": "0.10"}} | of)
     return composed(TOPIC, {"ok": ok, "failures": {}, "unfinished": [], "turns": 3, **plain(record)})
 
 
@@ -103,7 +103,7 @@ def test_words_of_a_worker_are_taken_and_others_left() -> None:
     ]
     for word in words:
         take(word, record, said.append)
-    assert record.rows == ROWS[:1] and said == ["panda: compiling"] and record.versions == {"jax": "0.10"}
+    assert record.rows == ROWS[:1] and said == ["panda: compiling"] and record.packages == {"jax": "0.10"}
     assert record.absent[0].who == "frax" and record.failed == [("jax", "forward_dynamics", "MJX", "differs")]
 
 
