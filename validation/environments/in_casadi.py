@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from importlib import import_module
 from typing import Any
@@ -18,27 +19,40 @@ from validation.timing.contestants.programs import build
 from validation.timing.task import flat
 
 _FLAGS = ("-O3", "-march=native", "-std=gnu99", '-DCASADI_SYMBOL_EXPORT=__attribute__((visibility("default")))')
-# Function of CasADi, by ours.
-Functions = Mapping[str, Any]
 
 
-def _called(who: str, functions: Callable[[str], Any], subject: Subject, function: str, states: int) -> Side | None:
+@dataclass(frozen=True)
+class _Call:
+    """A function of CasADi as it is called.
+
+    Attributes:
+        function: The function itself, whatever it is made by: nothing is wrapped around it.
+        inputs: Value of each input, by the names of the subject's arrays; others are the same in all states.
+    """
+
+    function: Any
+    inputs: Sequence[str | Array]
+
+
+def _called(who: str, calls: Callable[[str], _Call], subject: Subject, function: str, states: int) -> Side:
     """A side that calls a function of CasADi on arrays in place, without conversions.
 
     Args:
         who: Name of the side.
-        functions: Function of CasADi by our name of it; dense, or None.
+        calls: The function of CasADi by our name of it.
         subject: Model and states.
         function: Name of the function.
         states: States in a call.
     """
-    own = functions(function)
-    if own is None:
-        return None
+    called = calls(function)
+    own = called.function
     buffer, trigger = own.map(states).buffer() if states > 1 else own.buffer()
-    given = [np.ascontiguousarray(array) for array in subject.at(function, states)]
-    shapes = [own.size_out(k) for k in range(own.n_out())]
-    outputs = [np.zeros((states, columns, rows)) for rows, columns in shapes]
+    arguments = dict(zip(("q", "v", "w", "cotangent"), subject.at(function, states), strict=False))
+    values = (arguments[x] if isinstance(x, str) else np.tile(x, (states, 1)) for x in called.inputs)
+    given = [np.ascontiguousarray(value) for value in values]
+    wanted = 1 if function == plain(function) else 3  # Derivatives by parameters are not asked for.
+    sparsities = [own.sparsity_out(k) for k in range(wanted)]
+    outputs = [np.zeros((states, sparsity.nnz())) for sparsity in sparsities]
     for k, array in enumerate(given):
         buffer.set_arg(k, array.data)
     for k, array in enumerate(outputs):
@@ -46,31 +60,29 @@ def _called(who: str, functions: Callable[[str], Any], subject: Subject, functio
 
     def call() -> object:
         trigger()
-        return buffer  # Which holds the memory that the trigger reads.
+        return buffer, given, outputs  # Named here, so that what the trigger reads and writes stays.
 
     def results() -> Array:
         call()
-        return flat(*(array.transpose(0, 2, 1) for array in outputs))  # Columns lie one after the other.
+        dense = [np.zeros((states, *sparsity.shape)) for sparsity in sparsities]
+        for full, array, sparsity in zip(dense, outputs, sparsities, strict=True):
+            full[:, *sparsity.get_triplet()] = array
+        return flat(*dense)
 
     return Side(who, call, results)
 
 
 def _ours(subject: Subject) -> Offer:
-    ca: Any = import_module("casadi")
     dynamics = sf.interop.casadi.Dynamics(subject.system)
-    nv, par = subject.model.nv, ca.DM(subject.model.parameter_values)
+    par, unread = np.array(subject.model.parameter_values), np.zeros(subject.model.nv)
 
-    def made(function: str) -> Any:
-        base = plain(function)
-        own = dynamics.functions[base]
-        q, v, w, cotangent = symbols = [ca.MX.sym(name, nv) for name in ("q", "v", "w", "c")]
-        if function == base:
-            return ca.Function(function, symbols[:3], [own(q, v, w, par)])
+    def made(function: str) -> _Call:
+        own = dynamics.functions[plain(function)]
         if function.endswith("_derivatives"):
-            slopes = own.jacobian()(q, v, w, par, ca.DM(nv, 1))[:3]
-            return ca.Function(function, symbols[:3], [ca.densify(slope) for slope in slopes])
-        gradient = own.reverse(1)(q, v, w, par, ca.DM(nv, 1), cotangent)[:3]
-        return ca.Function(function, symbols, list(gradient))
+            return _Call(own.jacobian(), ("q", "v", "w", par, unread))
+        if function.endswith("_vjp"):
+            return _Call(own.reverse(1), ("q", "v", "w", par, unread, "cotangent"))
+        return _Call(own, ("q", "v", "w", par))
 
     return partial(_called, OURS, made, subject)
 
@@ -112,9 +124,10 @@ def _written(
 ) -> Offer:
     expressions = values(subject)
 
-    def made(function: str) -> Any:
+    def made(function: str) -> _Call:
         own = expressed(subject, expressions, function)
-        return _compiled(own) if compiled else own
+        inputs = ("q", "v", "w", *(("cotangent",) if function.endswith("_vjp") else ()))
+        return _Call(_compiled(own) if compiled else own, inputs)
 
     return partial(_called, who, made, subject)
 
