@@ -74,7 +74,7 @@ ALLOWED = table("""
     studio.advice: base errors expr description mechanics.beams generator.passes runtime compiler simulation
     # The picture compiles its own frame poses, plays trajectories, and closes loops; beams lend their shape.
     studio.viewer: base errors description mechanics.beams mechanics.topology runtime compiler loading
-        simulation diagrams __init__
+        simulation diagrams exports __init__
     # The editor checks documents itself, and hands the rest to workers that use the front doors.
     studio.editor: base errors expr description mechanics.beams mechanics.topology generator.passes
         runtime compiler simulation diagrams diagrams.files exports studio.viewer __init__
@@ -112,13 +112,14 @@ STUDIES = table("""
     accuracy:
     timing:      oracle
     passes:      timing
+    environments: timing
     stability:   accuracy
     studies:     accuracy oracle stability timing
     pareto:      stability studies timing
     adversary:   accuracy
     mutation:
-    dashboard:   adversary cross_check engines campaigns diagrams accuracy timing passes stability studies pareto
-                 mutation
+    dashboard:   adversary cross_check engines environments campaigns diagrams accuracy timing passes stability studies
+                 pareto mutation
 """)
 # The oracle answers for itself: of the harness it knows how joints come apart, nothing else.
 MAY_USE = HARNESS | {name: others | set(HARNESS) for name, others in STUDIES.items()} | {"oracle": {"mechanics"}}

@@ -54,9 +54,9 @@ def environments() -> tuple[Environment, ...]:
         ),
         Environment(
             "WebAssembly",
-            '`sf.export(system, "wasm", folder)`',
+            '`sf.export(system, "wasm", folder)`, those below, and others by `functions=`',
             frozenset(wasm.functions(constrained=True)),
-            "none",
+            "exact, by `functions=`",
             ("tests/exports/wasm/test_wasm.py",),
         ),
         Environment(

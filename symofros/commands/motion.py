@@ -78,6 +78,9 @@ def simulate(
     record_view: Annotated[
         Path | None, typer.Option(help="Write what --view shows: .html (a replay in one page), .mp4, .gif or .png.")
     ] = None,
+    interactive: Annotated[
+        bool, typer.Option("--interactive", help="The page of --record-view simulates on, too; of a model, needs zig.")
+    ] = False,
     exaggeration: Annotated[float, typer.Option(help="Multiplies the elastic coordinates in the picture.")] = 1.0,
     network: Network = False,
     as_json: AsJson = False,
@@ -87,7 +90,7 @@ def simulate(
     settings = {"method": method, "dt": dt, "rtol": rtol, "beam_limit": beam_limit}
     stated: dict[str, Any] = {name: value for name, value in settings.items() if value is not None}
     wanted = not as_json and err.is_terminal
-    viewing = view_options.ViewOptions(view, view_block, record_view, exaggeration)
+    viewing = view_options.ViewOptions(view, view_block, record_view, exaggeration, interactive)
     try:
         if is_diagram(model):
             if inputs:

@@ -68,6 +68,9 @@ def export_command(
     floating_base: Floating = False,
     name: Annotated[str | None, typer.Option(help="Of files and functions; made of the model's by default.")] = None,
     frames: Annotated[str | None, typer.Option(help="Frames of kinematics, comma-separated; all by default.")] = None,
+    functions: Annotated[
+        str | None, typer.Option(help="Further functions of WebAssembly, such as joint_wrenches; comma-separated.")
+    ] = None,
     outputs: Annotated[
         str | None, typer.Option(help="Frames whose positions an FMU gives, or signals of a diagram; comma-separated.")
     ] = None,
@@ -88,6 +91,7 @@ def export_command(
             output,
             name=name,
             frames=names_of(frames),
+            functions=names_of(functions) or (),
             outputs=names_of(outputs),
             start=start,
             method=method,

@@ -10,6 +10,8 @@ from symofros.blocks.graphics.view import View3D, with_view
 from symofros.description.system import System
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.result import DiagramRun
+from symofros.errors import Problem, SymofrosError
+from symofros.exports.wasm.wasm import check_compiler
 from symofros.simulation.results.trajectory import Trajectory
 from symofros.studio.viewer.page.viser_server import load_viser
 from symofros.studio.viewer.playing.diagram_motion import chosen_block, shown_of
@@ -26,19 +28,28 @@ class ViewOptions:
         block: Mechanism block of a diagram to be shown; "" for the only one.
         output: File to record to.
         exaggeration: Factor on elastic coordinates in the picture.
+        interactive: Whether the page that is recorded simulates on.
     """
 
     view: bool = False
     block: str = ""
     output: Path | None = None
     exaggeration: float = 1.0
+    interactive: bool = False
 
     def check(self) -> None:
         """Raise before the run what would fail only after it.
 
         Raises:
-            SymofrosError: The file has another suffix, or viser is not installed.
+            SymofrosError: The file has another suffix, or viser is not installed; or no page is to simulate on.
+            CompileError: The page is to simulate, and ziglang is not installed.
         """
+        if self.interactive:
+            if self.output is None or self.output.suffix != ".html":
+                stated = str(self.output or "no --record-view")
+                rule, remedy = "the page of a replay simulates on", "--record-view FILE.html"
+                raise SymofrosError(Problem("--interactive: there is no page", stated, rule, remedy))
+            check_compiler()
         if self.output is not None:
             check_suffix(self.output)
         if self.view:
@@ -49,8 +60,12 @@ def with_live_view(diagram: Diagram, options: ViewOptions, keeps_pace: bool) -> 
     """The diagram to run, and the block in it that shows it, if it keeps pace with the clock.
 
     Raises:
-        SymofrosError: As `ViewOptions.check`; or the mechanism to be shown is not there, or not the only one.
+        SymofrosError: As `ViewOptions.check`; or the page is to simulate on; or the mechanism to be shown is not there,
+            or not the only one.
     """
+    if options.interactive:
+        rule, remedy = "the page simulates models: blocks are not in it", "leave --interactive out"
+        raise SymofrosError(Problem("--interactive: the file is a diagram", diagram.name, rule, remedy))
     options.check()
     if options.view and keeps_pace:
         return with_view(diagram, options.block, exaggeration=options.exaggeration)
@@ -72,7 +87,8 @@ def record_run(run: DiagramRun | Trajectory, options: ViewOptions, system: Syste
     if isinstance(run, DiagramRun):
         return [str(record(run, options.output, block=options.block, exaggeration=options.exaggeration))]
     assert system is not None
-    return [str(record(system, run, options.output, exaggeration=options.exaggeration))]
+    factor, onward = options.exaggeration, options.interactive
+    return [str(record(system, run, options.output, exaggeration=factor, simulate=onward))]
 
 
 def show_run(

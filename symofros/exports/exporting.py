@@ -70,6 +70,7 @@ def export(
     *,
     name: str | None = None,
     frames: Sequence[str] | None = None,
+    functions: Sequence[str] = (),
     outputs: Sequence[str] | None = None,
     start: Mapping[str, float] | None = None,
     method: str | None = None,
@@ -89,8 +90,10 @@ def export(
         folder: A new one, an empty one, or one of an earlier export.
         name: Name of files and functions; made of the system's name by default.
         frames: Frames to generate kinematics for; all by default, of CUDA the last one.
-        outputs: Of those, frames whose positions are outputs of FMUs; the last one by default. Of a diagram, the
-            signals that its program tells; by default what moves.
+        functions: Of "wasm", functions of the model beside those that every module has, such as
+            "forward_dynamics_derivatives" or "joint_wrenches"; each makes it larger.
+        outputs: Of those frames, the ones whose positions are outputs of FMUs; the last one by default. Of a diagram,
+            the signals that its program tells; by default what moves.
         start: Names of coordinates, and d + names of speeds -> first values; the neutral state at rest by default.
             A model with constraints starts at the nearest state that meets them.
         method: Stepping method of Co-Simulation, as in `simulate`; not those of SUNDIALS. Of a diagram, this and what
@@ -108,7 +111,7 @@ def export(
         ExportError: The folder is not ours, or the format can't hold the model.
         DescriptionError: The description can't be a mechanism.
         ArgumentError: No such target, or an argument of another type.
-        UnknownNameError: No such frame, coordinate or method.
+        UnknownNameError: No such frame, function, coordinate or method.
         AssemblyError: No state near the start meets the constraints.
         CompileError: An FMU's binary or a WebAssembly module does not compile.
     """
@@ -119,12 +122,21 @@ def export(
     system = model if isinstance(model, System) else load(model)
     place = Path(folder)
     check_folder(place)  # Before the work, not only after it.
+    if functions and target != "wasm":
+        raise ExportError(
+            Problem(
+                f"export: '{target}' has functions of its own",
+                ", ".join(functions),
+                'further ones are for "wasm"',
+                "leave `functions` out",
+            )
+        )
     if target in _DESCRIBED:
         build_tree(system)
         return _DESCRIBED[target](system, name, place, GENERATOR)
     if target == "cuda":
         return write_cuda_package(system, name, frames, place)
-    material = _material(system, name, frames, outputs, start or {}, _stepping(given), target)
+    material = _material(system, name, frames, functions, outputs, start or {}, _stepping(given), target)
     return _COMPILED[target](material, place)
 
 
@@ -172,6 +184,7 @@ def _material(
     system: System,
     name: str | None,
     frames: Sequence[str] | None,
+    further: Sequence[str],
     outputs: Sequence[str] | None,
     start: Mapping[str, float],
     stepping: Stepping,
@@ -184,7 +197,7 @@ def _material(
         needs = (*needs, "beam_stiffness", "mass_matrix")
     constrained = bool(system.constraints)
     offered = wasm.functions(constrained) if target == "wasm" else exported(constrained)
-    functions = tuple(dict.fromkeys((*offered, *needs)))
+    functions = tuple(dict.fromkeys((*offered, *further, *needs)))
     compilation = Compilation(system, Options(functions, None if frames is None else tuple(frames)))
     record = compilation.record
     c_name = identifier(name or record.name)

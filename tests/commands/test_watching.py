@@ -81,6 +81,8 @@ def test_one_of_several_mechanisms_is_chosen(seen: list[sf.Viewer], tmp_path: Pa
     [
         (["--record-view", "r.avi"], "one of .html, .mp4, .gif, .png"),
         (["--view"], "pip install 'symofros[view]'"),
+        (["--interactive"], "--interactive: "),
+        (["--interactive", "--record-view", "r.gif"], "--interactive: "),
     ],
 )
 def test_what_can_not_be_shown_is_not_run(

@@ -8,6 +8,7 @@ from validation.campaigns import report as campaign
 from validation.cross_check import report as check
 from validation.diagrams import catalogue as diagrams
 from validation.engines import report as engines
+from validation.environments import report as environments
 from validation.mutation import report as mutants
 from validation.pareto import report as pareto
 from validation.passes import report as passes
@@ -17,5 +18,5 @@ from validation.studies.reports import exports, fuzz, mutation, oracle, realtime
 from validation.timing import report as timing
 
 _CORRECTNESS = (check, oracle, mutation, mutants, fuzz, adversary, engines, campaign, accuracy, diagrams, stability)
-_SPEED = (timing, simulation, rollouts, realtime, passes, exports, pareto)
+_SPEED = (timing, simulation, rollouts, realtime, passes, exports, environments, pareto)
 TOPICS: dict[str, Topic] = {module.TOPIC.name: module.TOPIC for module in (*_CORRECTNESS, *_SPEED)}

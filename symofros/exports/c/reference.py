@@ -40,6 +40,9 @@ def checks(
             if key[0] == "project":
                 move = _NEAR * rng.standard_normal(len(record.v_names))
                 given["q"] = manifold.integrate(record.segments, closed, move)
+            for name, size in kernel.signature.inputs:
+                if name not in given:  # Cotangents, directions: any numbers.
+                    given[name] = rng.standard_normal(size)
             inputs = [np.ascontiguousarray(given[name].reshape(1, -1)) for name, _ in kernel.signature.inputs]
             outputs = kernel.run(1, pre, inputs)
             rows.append(Check(_flat(inputs), _flat(outputs)))

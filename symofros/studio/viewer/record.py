@@ -8,7 +8,7 @@ from __future__ import annotations
 import io
 import secrets
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -23,6 +23,7 @@ from symofros.errors import Problem, SymofrosError, did_you_mean
 from symofros.studio.viewer.drawing.layers import shown_at_first
 from symofros.studio.viewer.drawing.poses import Mechanism, Posture
 from symofros.studio.viewer.drawing.tracks import tracks_of
+from symofros.studio.viewer.page.onward import onward
 from symofros.studio.viewer.page.replay import replay_page
 from symofros.studio.viewer.page.viser_scene import ViserScene
 from symofros.studio.viewer.page.viser_server import LOOPBACK, start_server, stop_server
@@ -93,6 +94,7 @@ def record(
     rate: float = 30.0,
     size: tuple[int, int] = (960, 720),
     caption: bool = False,
+    simulate: bool | Mapping[str, Any] = False,
 ) -> Path:
     """Write a motion as a file that others can look at without SYMOFROS.
 
@@ -110,12 +112,18 @@ def record(
         rate: Pictures a second; those of a GIF last whole hundredths of a second.
         size: Width and height of films and pictures, even numbers.
         caption: Whether time, exaggeration and a scale bar are on films and pictures (Pillow, of the extra `view`).
+        simulate: Whether the page simulates, too, on from any instant of the replay, with states, inputs and parameters
+            that its reader may change (needs a trajectory, and the extra `zig`); or how: `method`, `dt`, `rtol`,
+            `atol`, `beam_limit` as of `sf.export`. By default the method of the run and steps of a millisecond; inputs
+            stay what they were at that instant.
 
     Returns:
         The path; the file is there whole or not at all.
 
     Raises:
-        SymofrosError: Another suffix, too long a motion, a size or a rate that can't be, or an extra that is missing.
+        SymofrosError: Another suffix, too long a motion, a size or a rate that can't be, an extra that is missing, or
+            a motion that can't be simulated on.
+        CompileError: `simulate` without the package ziglang.
         ShapeError: The motion does not fit the system, or a path can't be drawn.
         UnknownNameError: The diagram's run has no such mechanism, or several.
     """
@@ -126,6 +134,11 @@ def record(
         raise SymofrosError(
             Problem("record: no such size", str(size), "even numbers of pixels, 2 to 4096", "such as (960, 720)")
         )
+    asked = simulate is not False
+    if asked and file.suffix != ".html":
+        raise SymofrosError(
+            Problem("record: only pages simulate", f"'{file.name}'", "simulate is for .html", "leave simulate out")
+        )
     mechanism = Mechanism(system, tracks_of(paths))
     motion = motion_of(mechanism.model, run)
     if file.suffix == ".png":
@@ -134,7 +147,7 @@ def record(
     frames = _Recording(mechanism, motion, period, speed, exaggeration)
     pictures = _captioned(frames, size) if caption else frames.pictures(size)
     write: dict[str, Callable[[], bytes]] = {
-        ".html": lambda: _page(frames, mechanism),
+        ".html": lambda: _page(frames, mechanism, _onward(system, run, frames, simulate) if asked else None),
         ".mp4": lambda: _film(pictures, frames.period, size),
         ".gif": lambda: _gif(pictures, frames.period),
         ".png": lambda: _png(pictures),
@@ -178,7 +191,11 @@ def _asked(
     return system, run, Path(path)
 
 
-def _page(frames: _Recording, mechanism: Mechanism) -> bytes:
+def _onward(system: System, run: Played, frames: _Recording, simulate: bool | Mapping[str, Any]) -> Mapping[str, Any]:
+    return onward(system, run, frames.t, frames.q, {} if simulate is True else dict(simulate or {}))
+
+
+def _page(frames: _Recording, mechanism: Mechanism, simulated: Mapping[str, Any] | None) -> bytes:
     model, units = mechanism.model, coordinate_units(mechanism.tree)
     pace = "" if frames.speed == 1.0 else f", at {frames.speed:g} × its speed"
     server = start_server(LOOPBACK, 0, secrets.token_urlsafe(16))
@@ -198,6 +215,7 @@ def _page(frames: _Recording, mechanism: Mechanism) -> bytes:
             frames.q,
             model.names.q,
             [units.get(name, "") for name in model.names.q],
+            simulated,
         ).encode()
     finally:
         stop_server(server)

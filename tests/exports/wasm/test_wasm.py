@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from reference_models import MODELS
 from symofros.exports.wasm import wasm
 from tests.docs.pages import blocks
 from tests.exports.cases import PLANAR, STARTS, need, run, system_of
@@ -170,6 +171,23 @@ def test_the_arm_of_seven_axes_fits_into_200_kilobytes(tmp_path: Path) -> None:
     sf.export(system_of("panda"), "wasm", tmp_path, start=STARTS["panda"])
     assert (tmp_path / "panda.wasm").stat().st_size < 200_000
     assert run("node", "selftest.mjs", cwd=tmp_path).startswith("selftest 0.000e+0")
+
+
+@pytest.mark.tools
+def test_other_functions_are_in_the_module_where_they_are_asked_for(tmp_path: Path) -> None:
+    need("node")
+    asked = ["mass_matrix", "forward_dynamics_derivatives", "inverse_dynamics_vjp", "joint_wrenches"]
+    sf.export(MODELS["double_pendulum"], "wasm", tmp_path, functions=asked)
+    assert run("node", "selftest.mjs", cwd=tmp_path).startswith("selftest 0.000e+0")
+    types = next(tmp_path.glob("*.d.ts")).read_text()
+    assert all(f'"{name}"' in types for name in asked)
+
+
+def test_other_functions_are_of_modules_alone_and_of_the_table(tmp_path: Path) -> None:
+    with pytest.raises(sf.ExportError, match='further ones are for "wasm"'):
+        sf.export(MODELS["double_pendulum"], "c", tmp_path, functions=["joint_wrenches"])
+    with pytest.raises(sf.SymofrosError, match="joint_wrenches"):
+        sf.export(MODELS["double_pendulum"], "wasm", tmp_path, functions=["joint_wrench"])
 
 
 @pytest.mark.tools

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import importlib.util
 import re
 from importlib import import_module
 from pathlib import Path
@@ -129,3 +130,20 @@ def test_names_can_not_end_the_script_of_a_replay() -> None:
     assert (
         evil not in made and made.count("</script>") == 2 and "prefers-color-scheme" in made.rpartition("</script>")[2]
     )
+
+
+def test_a_page_that_simulates_needs_a_trajectory_a_page_and_zig(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with pytest.raises(SymofrosError, match="simulate is for .html"):
+        sf.record(SYSTEM, swing(1.0), tmp_path / "m.gif", simulate=True)
+    with pytest.raises(SymofrosError, match="a motion of tuple"):
+        sf.record(SYSTEM, swing(1.0), tmp_path / "m.html", simulate=True)
+    model = sf.compile(SYSTEM)
+    run = sf.simulate(model, model.neutral(), np.zeros(model.nv), 0.01, method="rk4", dt=1e-3)
+    with pytest.raises(SymofrosError, match="any of method, dt"):
+        sf.record(SYSTEM, run, tmp_path / "m.html", simulate={"step": 1e-3})
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    with pytest.raises(sf.CompileError, match=r"pip install 'symofros\[zig\]'"):
+        sf.record(SYSTEM, run, tmp_path / "m.html", simulate=True)
+    assert not list(tmp_path.iterdir())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -30,6 +30,7 @@ def replay_page(
     q: Array,
     names: Sequence[str],
     units: Sequence[str],
+    onward: Mapping[str, Any] | None = None,
 ) -> str:
     """Put what a reader wants to know beside a recording.
 
@@ -43,6 +44,7 @@ def replay_page(
         q: Coordinates in the pictures (n, nq).
         names: Their names (nq).
         units: Their units (nq); "" where there is none.
+        onward: What simulates on (`onward.onward`), where the page is to do that.
     """
     forward = camera.axes[2]
     given: dict[str, Any] = {
@@ -59,6 +61,7 @@ def replay_page(
         "longest": LONGEST,
         "units": UNITS,
         "dark_intensity": _DARK_INTENSITY,
+        "onward": onward,
     }
     # No "<" of a name may end the script.
     data = json.dumps(given).replace("<", "\\u003c")

@@ -1,0 +1,145 @@
+"""The report of recorded numbers, and what the command takes of a worker's words."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import asdict, replace
+from importlib import import_module
+from typing import Any
+
+import pytest
+
+from validation.environments import in_node, worker
+from validation.environments.in_jax import JAX
+from validation.environments.in_torch import TORCH
+from validation.environments.measure import SETTINGS, take
+from validation.environments.record import NATIVE, OURS, Absent, Record, Row
+from validation.environments.report import TOPIC
+from validation.reporting import html, markdown
+from validation.reporting.command import composed
+from validation.reporting.plain import plain
+from validation.reporting.provenance import Provenance
+from validation.reporting.record import Report
+
+
+def row(who: str, least: float, ratio: float = 1.0, states: int = 1024, **others: Any) -> Row:
+    made = Row("jax", "panda", "forward_dynamics", states, who, least, 1.1 * least, ratio, 2e-14)
+    return replace(made, **others)
+
+
+ROWS = [
+    row(OURS, 90.0),
+    row(NATIVE, 60.0, 0.67, error=0.0),
+    row("frax", 6600.0, 73.0),
+    row(OURS, 20_000.0, states=1),
+    row("frax", 900_000.0, 45.0, states=1),
+    row(OURS, 1e6, environment="torch"),
+]
+
+
+def report(ok: bool = True, **of: Any) -> Report:
+    record = Record(**{"rows": ROWS, "packages": {"jax": "0.10"}} | of)
+    return composed(TOPIC, {"ok": ok, "failures": {}, "unfinished": [], "turns": 3, **plain(record)})
+
+
+def test_a_race_is_a_row_of_times_and_ratios() -> None:
+    text = markdown.page(report(), Provenance(), "")
+    assert "| Panda, 7 joints | forward dynamics | 1024 | **0.09 µs** | 0.06 µs (0.67×) | 6.6 µs (73×) |" in text
+    assert "|  | forward dynamics | 1 | **20 µs** | - | 900 µs (45×) |" in text
+    assert "3 races in 2 environments: ours differ from native C by at most 2.0e-14" in text
+    assert "ours is the faster beside 2 of 2 times of peers" in text
+    assert "| JAX | 2.0e-14 | 45× to 45× | 73× to 73× |" in text and "| PyTorch | 2.0e-14 | - | - |" in text
+    assert "73× JAX: peers' time over ours, median with 1024 states a call" in text
+
+
+def test_the_page_shows_a_figure_of_each_environment_and_says_what_to_see() -> None:
+    page = html.page(report(), Provenance(), "")
+    assert page.count("<figure>") == 2 and "Look at how far to the right" in page
+
+
+def test_who_is_not_there_is_named_with_what_installs_it() -> None:
+    absent = [
+        Absent("casadi", "Pinocchio", "pinocchio.casadi is not installed", "conda install pinocchio"),
+        Absent("wasm", OURS, "Node is not installed", "apt install nodejs"),
+    ]
+    text = markdown.page(report(absent=absent), Provenance(), "")
+    assert "- Pinocchio in CasADi: pinocchio.casadi is not installed; `conda install pinocchio`" in text
+    assert "- WebAssembly: Node is not installed; `apt install nodejs`" in text
+
+
+def test_a_side_that_differs_is_told_at_the_top() -> None:
+    failed = [("torch", "forward_dynamics", "adam", "differs from native C by 1.0e-03: its time means nothing")]
+    missed = report(False, failed=failed)
+    assert missed.ok is False and "1 side could not be raced" in missed.summary
+    assert "PyTorch: forward_dynamics, adam: differs" in markdown.page(missed, Provenance(), "")
+
+
+def test_a_record_is_good_where_something_was_measured_and_nothing_differs() -> None:
+    assert Record(rows=ROWS).ok and not Record().ok
+    assert not Record(rows=[row(OURS, 1.0, error=1e-3)]).ok
+    assert not Record(rows=ROWS, failed=[("jax", "f", "frax", "differs")]).ok
+
+
+def test_a_race_that_ours_is_missing_from_has_no_ratio() -> None:
+    alone = Row.of("jax", "panda", "forward_dynamics", 1, "frax", [2.0, 1.0, 3.0], None, 0.0)
+    assert (alone.least, alone.median) == (1.0, 2.0) and math.isnan(alone.ratio)
+    paired = Row.of("jax", "panda", "forward_dynamics", 1, "frax", [2.0, 1.0, 9.0], [1.0, 1.0, 3.0], 0.0)
+    assert paired.ratio == 2.0
+    text = markdown.page(report(rows=[alone]), Provenance(), "")
+    assert "| Panda, 7 joints | forward dynamics | 1 | 0.001 µs |" in text
+
+
+def test_words_of_a_worker_are_taken_and_others_left() -> None:
+    record, said = Record(), list[str]()
+    words = [
+        "Failed to import warp: No module named 'warp'",
+        "[1]",
+        json.dumps({"doing": ["panda", "compiling"]}),
+        json.dumps({"row": asdict(ROWS[0])}),
+        json.dumps({"absent": asdict(Absent("jax", "frax", "frax is not installed", "pip install frax"))}),
+        json.dumps({"failed": ["jax", "forward_dynamics", "MJX", "differs"]}),
+        json.dumps({"version": ["jax", "0.10"]}),
+    ]
+    for word in words:
+        take(word, record, said.append)
+    assert record.rows == ROWS[:1] and said == ["panda: compiling"] and record.packages == {"jax": "0.10"}
+    assert record.absent[0].who == "frax" and record.failed == [("jax", "forward_dynamics", "MJX", "differs")]
+
+
+@pytest.mark.parametrize("environment", [JAX, TORCH])
+def test_a_framework_that_is_missing_is_told_with_its_command(
+    environment: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def absent(name: str) -> Any:
+        raise ModuleNotFoundError(name)
+
+    monkeypatch.setattr(worker, "import_module", absent)
+    told: list[tuple[str, Any]] = []
+    worker.work(environment, ["planar2R"], [1], 1, lambda kind, value: told.append((kind, value)))
+    ((kind, value),) = told
+    assert kind == "absent" and value["who"] == OURS and value["remedy"].startswith("pip install")
+
+
+def test_a_peer_that_is_missing_is_told_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    def found(name: str) -> Any:
+        if name in ("adam.casadi", "pinocchio.casadi"):
+            raise ModuleNotFoundError(name)
+        return import_module(name)
+
+    monkeypatch.setattr(worker, "import_module", found)
+    told: list[tuple[str, Any]] = []
+    casadi = worker.ENVIRONMENTS["casadi"]
+    worker.work(casadi, [], [1], 1, lambda kind, value: told.append((kind, value)))
+    assert [value["who"] for kind, value in told if kind == "absent"] == ["adam", "Pinocchio"]
+
+
+def test_webassembly_says_what_it_lacks(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(in_node.shutil, "which", lambda name: None)
+    told: list[tuple[str, Any]] = []
+    worker.work_in_node(["planar2R"], [1], 1, lambda kind, value: told.append((kind, value)))
+    assert told[0][1]["reason"] == "Node is not installed"
+
+
+def test_every_environment_has_a_process_of_its_own() -> None:
+    assert list(SETTINGS) == ["wasm", "jax", "torch", "casadi"] and set(worker.ENVIRONMENTS) | {"wasm"} == set(SETTINGS)

@@ -1,0 +1,176 @@
+"""The report of its record: times and differences of each environment, and who was not there."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from functools import partial
+from statistics import median
+from typing import Any
+
+from validation.environments import in_node
+from validation.environments.in_casadi import CASADI
+from validation.environments.in_jax import JAX
+from validation.environments.in_torch import TORCH
+from validation.environments.measure import measure
+from validation.environments.record import NATIVE, OURS, TOLERANCE, Absent, Record, Row
+from validation.reporting.charts import logarithmic, style
+from validation.reporting.figures import Curve, Drawing, Figure
+from validation.reporting.numbers import counted, digits, duration, times
+from validation.reporting.plain import restored
+from validation.reporting.questions import failure_texts
+from validation.reporting.record import Bullets, Data, Fact, Report, Section, Table, Text, Topic
+
+_TITLES = {in_node.NAME: in_node.TITLE} | {one.name: one.title for one in (JAX, TORCH, CASADI)}
+_LIMITS = {in_node.NAME: in_node.LIMITS} | {one.name: one.limits for one in (JAX, TORCH, CASADI)}
+_INTRO = """Does a model give the same numbers in every environment, and is it faster there than what one would
+otherwise use? Each row is one race: the same seeded states for all sides, each side checked first against native C
+(called from Python, arrays in and out), then timed in turn on one processor by the clock. Times are the least of
+{turns}, of a state; in brackets the median over the turns of a side's time over ours: where it is above 1×, ours is the
+faster. Native C has no framework around it: what it is faster by is what the framework costs."""
+_ELSEWHERE = """C, Python, MEX, FMU: [timing](timing.html) and [exports](exports.html). CUDA needs a graphics processor:
+`symofros kernels MODEL --bandwidth` gives registers, spills and the bound by the memory."""
+_DIFFERENCES = f"""Largest difference from native C over the states, relative to a state's largest entry; at most
+{TOLERANCE:.0e} is asked for, as solving M amplifies rounding. 0 is bit for bit."""
+
+Races = dict[tuple[str, str, int], dict[str, Row]]
+
+
+def compose(data: Data) -> Report:
+    """The report of its JSON."""
+    record = restored(Record, data)
+    names = list(dict.fromkeys(row.environment for row in record.rows))
+    own = [row for row in record.rows if row.who == OURS]
+    peers = [row for row in record.rows if row.who not in (OURS, NATIVE)]
+    worst = max((row.error for row in own), default=0.0)
+    beaten = sum(row.ratio > 1.0 for row in peers)
+    races = f"{counted(len(own), 'race')} in {counted(len(names), 'environment')}"
+    wrong = f"; {counted(len(record.failed), 'side')} could not be raced" if record.failed else ""
+    failures = data.get("failures", {})
+    failed = f"; {counted(len(failures), 'environment')} could not be done" if failures else ""
+    failed_texts = tuple(
+        Text(f"{_TITLES[environment]}: {function}, {who}: {reason}", "bad")
+        for environment, function, who, reason in record.failed
+    )
+    return Report(
+        "Environments: numbers beside native C, speed beside a peer",
+        f"{races}: ours differ from native C by at most {digits(worst)}; "
+        f"ours is the faster beside {beaten} of {counted(len(peers), 'time')} of peers{wrong}{failed}.",
+        bool(data["ok"]),
+        (_INTRO.format(turns=counted(data["turns"], "turn")), *failure_texts(failures), *failed_texts),
+        (
+            *(_section(name, [row for row in record.rows if row.environment == name]) for name in names),
+            Section("Not here", (Bullets(tuple(map(_said, record.absent))),), "not-here"),
+            Section("Elsewhere", (_ELSEWHERE,), "elsewhere"),
+        ),
+        facts=tuple(fact for name in names for fact in _facts(name, record.rows)),
+        unfinished=tuple(data.get("unfinished", ())),
+        decisions=(_overview(names, record.rows),) if names else (),
+    )
+
+
+def _said(one: Absent) -> str:
+    who = _TITLES[one.environment] if one.who == OURS else f"{one.who} in {_TITLES[one.environment]}"
+    return f"{who}: {one.reason}" + (f"; `{one.remedy}`" if one.remedy else "")
+
+
+def races_of(rows: Iterable[Row]) -> Races:
+    """Rows of the same race by side, keyed by model, function and number of states."""
+    races: Races = {}
+    for row in rows:
+        races.setdefault((row.model, row.function, row.states), {})[row.who] = row
+    return races
+
+
+def _sides(rows: Iterable[Row]) -> list[str]:
+    """Sides in the order of the columns: ours, native C, peers."""
+    return sorted(dict.fromkeys(row.who for row in rows), key=lambda who: (who != OURS, who != NATIVE))
+
+
+def _section(name: str, rows: list[Row]) -> Section:
+    sides = _sides(rows)
+    timed = _by_race(rows, sides, _time)
+    differing = _by_race(rows, [who for who in sides if who != NATIVE], lambda row: digits(row.error))
+    fold = Section("Differences from native C", (_DIFFERENCES, differing))
+    return Section(_TITLES[name], (_LIMITS[name], timed, _figure(name, rows, sides), fold), name)
+
+
+def _by_race(rows: list[Row], sides: list[str], shown: Any) -> Table:
+    """A row a race, a column a side; models above their functions."""
+    lines: list[tuple[str, ...]] = []
+    model = ""
+    for race in races_of(rows).values():
+        first = next(iter(race.values()))
+        cells = (shown(race[who]) if who in race else "-" for who in sides)
+        lines.append((first.title if first.model != model else "", first.task, str(first.states), *cells))
+        model = first.model
+    heads = ("model", "function", "states", *("ours" if who == OURS else who for who in sides))
+    return Table(heads, tuple(lines), grouped=True)
+
+
+def _time(row: Row) -> str:
+    taken = duration(1e-9 * row.least)
+    beside = f" ({times(row.ratio)})" if math.isfinite(row.ratio) else ""
+    return f"**{taken}**" if row.who == OURS else f"{taken}{beside}"
+
+
+def _facts(name: str, rows: Iterable[Row]) -> Iterator[Fact]:
+    """How many times longer peers take, in the middle of their races of most states; none where nobody raced."""
+    ratios = _ratios(name, rows)
+    if ratios:
+        most = max(ratios)
+        said = f"{_TITLES[name]}: peers' time over ours, median with {counted(most, 'state')} a call"
+        yield Fact(times(median(ratios[most])), said)
+
+
+def _ratios(name: str, rows: Iterable[Row]) -> Mapping[int, list[float]]:
+    """Peers' times over ours, by states in a call."""
+    ratios: dict[int, list[float]] = {}
+    for row in rows:
+        if row.environment == name and row.who not in (OURS, NATIVE) and math.isfinite(row.ratio):
+            ratios.setdefault(row.states, []).append(row.ratio)
+    return ratios
+
+
+def _overview(names: list[str], rows: list[Row]) -> Table:
+    counts = sorted({row.states for row in rows})
+    lines = []
+    for name in names:
+        ours = [row.error for row in rows if row.environment == name and row.who == OURS]
+        ratios = _ratios(name, rows)
+        spans = (f"{times(min(ratios[n]))} to {times(max(ratios[n]))}" if n in ratios else "-" for n in counts)
+        lines.append((_TITLES[name], digits(max(ours, default=None)), *spans))
+    heads = (f"peers' time over ours, {counted(n, 'state')} a call" for n in counts)
+    return Table(("environment", "largest difference from C", *heads), tuple(lines))
+
+
+def _figure(name: str, rows: list[Row], sides: list[str]) -> Figure:
+    """Each side's time of each function of the first model, with most states in a call."""
+    races = races_of(rows)
+    model, most = rows[0].model, max(row.states for row in rows)
+    shown = [race for (label, _, states), race in races.items() if label == model and states == most]
+    caption = f"""{rows[0].title}, {counted(most, "state")} a call. Look at how far to the right of ours (circles) the
+    marks of peers are: a decade is a factor of ten. Native C, without the framework, is what ours can come near to."""
+    drawing = Drawing(
+        f"{_TITLES[name]}: time of a state",
+        "time of a state  [s]",
+        "",
+        partial(_paint, shown, sides),
+        size=(640.0, 34.0 * len(shown) + 20.0),
+    )
+    return Figure(caption, (drawing,))
+
+
+def _paint(shown: list[dict[str, Row]], sides: list[str], axes: Any) -> None:
+    for k, who in enumerate(sides):
+        places = [(1e-9 * race[who].least, -line) for line, race in enumerate(shown) if who in race]
+        label = "ours" if who == OURS else who
+        axes.plot(*zip(*places, strict=True), **style(Curve(label, (), (), k, "points"), 8.0))
+    axes.set_yticks([-line for line in range(len(shown))], [next(iter(race.values())).task for race in shown])
+    axes.set_ylim(0.6 - len(shown), 0.5)
+    axes.set_xscale("log")
+    logarithmic(axes.xaxis)
+
+
+_QUESTION = "Is a model the same, and the faster, in JAX, PyTorch, CasADi and a web page?"
+TOPIC = Topic("environments", "Speed", _QUESTION, compose, measure)
