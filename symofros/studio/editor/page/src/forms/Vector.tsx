@@ -73,5 +73,6 @@ const NAMES: Record<string, readonly string[]> = {
 };
 
 export function partNames(key: string, size: number): readonly string[] {
+  if (key.endsWith("_center")) return AXES.slice(1); // A point of a section.
   return NAMES[key] ?? (size === 3 ? AXES : Array.from({ length: size }, (_, i) => String(i + 1)));
 }
