@@ -8,7 +8,7 @@ from functools import lru_cache, partial
 import numpy as np
 
 from symofros.base.rotations import Array
-from symofros.description.beams.beam import MATRIX_ORDER, STATION, STRAINS, Beam
+from symofros.description.beams.beam import CENTERS, MATRIX_ORDER, STATION, STRAINS, Beam
 from symofros.description.values import ORIGIN, Term, Value, substituted, symbols
 from symofros.errors import Problem
 from symofros.mechanics.beams.deformation import deformation_of
@@ -24,6 +24,8 @@ MOST_CONDITION = 1e12
 # Relative error of the quadrature of section properties that change along the beam.
 QUADRATURE_TOLERANCE = 1e-9
 _POINTS = (16, 24)
+# Error of centres between a rod's sections, over their largest distance from the axis.
+INTERPOLATION_TOLERANCE = 1e-3
 # What rotary inertia may lower a frequency by without a word, where it is stated and left out.
 MOST_ROTARY_INERTIA = 0.01
 # Stations x/L at which section properties are looked at.
@@ -63,6 +65,7 @@ def beam_number_problems(beam: Beam, numbers: Numbers, where: str) -> Iterator[P
     """Section properties too abrupt for the quadrature, stiffness without a sign, ill-conditioned shape functions."""
     section = _Section(beam, where)
     yield from section.quadrature_problems(numbers)
+    yield from section.center_problems(numbers)
     yield from section.stiffness_problems(numbers)
     yield from _conditioning(beam, where)
 
@@ -177,6 +180,19 @@ class _Section:
                 self.where,
             )
 
+    def center_problems(self, numbers: Numbers) -> Iterator[Problem]:
+        """Centres that a rod's few sections do not follow along the axis (docs/theory/rods.md, section 6)."""
+        for label in CENTERS:
+            error = float(center_error(self.beam, label, numbers.parameters)[0])
+            if not error <= INTERPOLATION_TOLERANCE:
+                yield Problem(
+                    f"{self.what}: {label} changes more along x than its sections follow",
+                    f"between them it is off by {error:.1g} of its largest value",
+                    f"centres are taken through the sections: to {INTERPOLATION_TOLERANCE:g}",
+                    "state more sections, or split the rod",
+                    self.where,
+                )
+
     def quadrature_problems(self, numbers: Numbers) -> Iterator[Problem]:
         """Properties whose integral is not determined by their values at stations."""
         for label, value in self.beam.along_axis():
@@ -240,6 +256,23 @@ def quadrature_error(beam: Beam, value: Value, values: Mapping[str, Array | floa
         totals.append(along @ np.array(w))
     scale = np.abs(along) @ np.array(w)  # Not of the total: what changes its sign, as a centre may, has a small one.
     return np.asarray(np.abs(totals[0] - totals[1]) / np.where(scale > 0.0, scale, 1.0))
+
+
+def center_error(beam: Beam, label: str, values: Mapping[str, Array | float]) -> Array:
+    """Largest difference of a centre to the polynomials through a rod's sections, over its largest distance (states)."""
+    point = getattr(beam, label)
+    if not any(STATION in symbols(value) for value in point):
+        return np.zeros(1)
+    strains, off, distance = strains_of(beam), np.zeros(1), np.zeros(1)
+    for value in point:
+        known, between = (
+            section_values(beam, value, np.array(nodes.stations), values)
+            for nodes in (strains.sections, strains.masses)
+        )
+        through = known @ np.array(strains.interpolation).T
+        off = np.maximum(off, np.abs(through - between).max(axis=1))
+        distance = np.maximum(distance, np.abs(between).max(axis=1))
+    return np.asarray(off / np.where(distance > 0.0, distance, 1.0))
 
 
 def _functions(beam: Beam) -> list[Piecewise]:

@@ -54,6 +54,17 @@ def test_rounding_across_the_diagonal_is_no_asymmetry() -> None:
     assert stated[0][3] == stated[3][0] == pytest.approx(0.1, rel=1e-8)
 
 
+def test_centres_that_the_sections_do_not_follow_are_refused() -> None:
+    def compiled(**more: int) -> sf.Model:
+        beam = rod_by(EI_z=1.0, EI_y=1.0, mass_center=("0.1*sin(4*x)", 0.0), **more)
+        return sf.compile(sf.System("s", (beam,)), sf.Options(("mass_matrix",), backend="interpreter"))
+
+    with pytest.raises(sf.DescriptionError, match=r"mass_center changes more[\s\S]*more sections"):
+        compiled()
+    few, many = (compiled(sections=n).mass_matrix([0.3])[0, 0] for n in (6, 12))
+    assert few == pytest.approx(many, rel=1e-4)
+
+
 def test_sections_without_a_sign_are_refused_by_the_model_and_at_run_time() -> None:
     matrix = [[*row] for row in IDENTITY]
     matrix[0][3] = matrix[3][0] = "c"
