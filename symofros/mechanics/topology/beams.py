@@ -259,7 +259,7 @@ def quadrature_error(beam: Beam, value: Value, values: Mapping[str, Array | floa
 
 
 def center_error(beam: Beam, label: str, values: Mapping[str, Array | float]) -> Array:
-    """Largest difference of a centre to the polynomials through a rod's sections, over its largest distance (states)."""
+    """Largest error of a centre by the polynomials through a rod's sections, over its largest distance (states)."""
     point = getattr(beam, label)
     if not any(STATION in symbols(value) for value in point):
         return np.zeros(1)
