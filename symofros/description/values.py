@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import numbers
 import operator
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -78,7 +78,12 @@ def as_values(values: Iterable[Any], size: int, what: str) -> tuple[Value, ...]:
     Raises:
         DescriptionError: The count is wrong, or a value is.
     """
-    listed = list(values) if not isinstance(values, str) else [values]
+    if isinstance(values, str) or not isinstance(values, Iterable):
+        listed = [values]
+    elif isinstance(values, Mapping | Set):
+        listed = []  # Entries without an order.
+    else:
+        listed = list(values)
     if len(listed) != size:
         raise DescriptionError(
             Problem(

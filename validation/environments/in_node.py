@@ -27,6 +27,8 @@ LIMITS = (
     "and the bias need, without collisions; the rows of native C were timed after the others, in a process of their "
     "own."
 )
+# Time for all races of a model [s].
+_LIMIT = 600.0
 INSTALL_PEER = f"npm install {PEER} (in the folder where the command runs)"
 
 
@@ -56,8 +58,8 @@ def run(subject: Subject, states: Sequence[int], turns: int) -> dict[str, Any]:
             module = folder / "wasm" / f"{made.name}.mjs"
             described = next(path for path in scene.files if path.suffix == ".xml")
             command = ["node", str(program), str(module), str(folder / "states.json"), str(described)]
-            done = subprocess.run(command, capture_output=True, text=True, check=False)
-    if done.returncode != 0:
+            done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=_LIMIT)
+    if done.returncode != 0 or not done.stdout.strip():
         raise RuntimeError(f"node: {(done.stderr.strip() or 'no word').splitlines()[-1]}")
     printed: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
     return printed
@@ -69,7 +71,7 @@ def rows(subject: Subject, race: dict[str, Any], turns: int, fail: Fail) -> Iter
     reference = native(subject, function, states)
     expected, errors = reference.results(), {NATIVE: 0.0}
     for who, results in race["results"].items():
-        off = checked(np.array(results), expected, partial(fail, who))
+        off = checked(np.array(results, dtype=np.float64), expected, partial(fail, who))
         if off is not None:
             errors[who] = off
     times = {NATIVE: raced([reference], states, turns)[NATIVE], **race["times"]}

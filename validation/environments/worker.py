@@ -108,7 +108,15 @@ def _offers(
         try:
             yield side.name, side.offer(subject)
         except Exception as problem:  # Readers raise errors of every kind.
-            say("failed", [environment.name, subject.label, side.name, f"{type(problem).__name__}: {problem}"])
+            say(
+                "failed",
+                [
+                    environment.name,
+                    f"all functions of {subject.label}",
+                    side.name,
+                    f"{type(problem).__name__}: {problem}",
+                ],
+            )
 
 
 def _print(kind: str, value: Any) -> None:

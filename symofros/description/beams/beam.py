@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass, fields
 from itertools import combinations, pairwise
 from numbers import Real
@@ -94,7 +94,7 @@ _AXIS: Point = (0.0, 0.0)
 @refuses_unknown_entries
 @dataclass(frozen=True)
 class BeamLoad:
-    """A force and a moment on the centroid axis, at one station or spread over the length.
+    """A force and a moment on the axis, at one station or spread over the length.
 
     Attributes:
         force: Force [N], or [N/m] if spread; formulas as for a Load, and of the station x [m] if spread.
@@ -148,7 +148,7 @@ class Beam:
         EI_z: Stiffness against bending in the x-y plane, about the tension centre [N m^2].
         EI_y: Stiffness against bending in the x-z plane, about the tension centre [N m^2].
         GJ: Stiffness against twist [N m^2].
-        rhoJ: Polar moment of inertia per length, about x [kg m].
+        rhoJ: Polar moment of inertia per length, about x through the mass centre [kg m].
         rhoI_y: Moment of inertia per length about y; counts with rotary_inertia, without it is drawn alone [kg m].
         rhoI_z: Moment of inertia per length about z, as rhoI_y [kg m].
         bend_y: Number of shape functions for the displacement along y; 0 is rigid.
@@ -287,19 +287,11 @@ class Beam:
         self._check_stations(what)
 
     def _set_stiffness(self, what: str) -> None:
-        """Convert the matrix of stiffness, and check its form."""
-        if not len(self.stiffness):
-            object.__setattr__(self, "stiffness", ())
-            return
-        size = len(MATRIX_ORDER)
-        label = f"{what}: stiffness"
-        rows = tuple(as_values(row, size, f"{label}[{i}]") for i, row in enumerate(self.stiffness))
-        if len(rows) != size:
-            rule = f"{size} rows of {size} entries: {', '.join(MATRIX_ORDER)}"
-            raise DescriptionError(Problem(label, f"{len(rows)} rows", rule, "give all, zeros included"))
-        object.__setattr__(self, "stiffness", tuple(map(tuple, _symmetric([*map(list, rows)], label))))
+        """Convert the matrix of stiffness, and check that it stands alone."""
+        rows = stiffness_rows(self.stiffness, f"{what}: stiffness")
+        object.__setattr__(self, "stiffness", rows)
         stated = [name for name in IN_MATRIX if getattr(self, name) not in (0.0, _AXIS)]
-        if stated:
+        if rows and stated:
             rule = "a matrix has all stiffnesses, about the axis"
             raise DescriptionError(
                 Problem(f"{what}: stiffness and {', '.join(stated)}", "both", rule, "keep the one or the other")
@@ -458,12 +450,25 @@ class Beam:
         return [(item.name, getattr(self, item.name)) for item in fields(self) if item.name in ("length", "damping")]
 
 
-def _symmetric(rows: list[list[Value]], label: str) -> list[list[Value]]:
-    """A matrix of stiffness without what rounding left of a difference between an entry and that across the diagonal.
+def stiffness_rows(stated: Any, label: str) -> tuple[tuple[Value, ...], ...]:
+    """A matrix of stiffness (6, 6), made symmetric where rounding left a difference; empty where none is stated.
+
+    Args:
+        stated: Its rows, or nothing.
+        label: What it is, for errors.
 
     Raises:
-        DescriptionError: There is more of it.
+        DescriptionError: It has other rows, or is not symmetric.
     """
+    is_list = isinstance(stated, Iterable) and not isinstance(stated, str | Mapping | Set)
+    listed = list(stated) if is_list else [stated]
+    if not listed:
+        return ()
+    size = len(MATRIX_ORDER)
+    if len(listed) != size:
+        rule = f"{size} rows of {size} entries: {', '.join(MATRIX_ORDER)}"
+        raise DescriptionError(Problem(label, f"{len(listed)} rows", rule, "give all, zeros included"))
+    rows = [list(as_values(row, size, f"{label}[{i}]")) for i, row in enumerate(listed)]
     for i, j in combinations(range(len(rows)), 2):
         a, b, sizes = rows[i][j], rows[j][i], (rows[i][i], rows[j][j])
         if a == b:
@@ -476,7 +481,7 @@ def _symmetric(rows: list[list[Value]], label: str) -> list[list[Value]]:
         rule = "a matrix of stiffness is symmetric: forces have the strain energy as their potential"
         found = f"[{i}][{j}] is {a}, [{j}][{i}] is {b}"
         raise DescriptionError(Problem(f"{label} is not symmetric", found, rule, "state the same value for both"))
-    return rows
+    return tuple(map(tuple, rows))
 
 
 def _shape(stated: Any, what: str) -> UserShape:

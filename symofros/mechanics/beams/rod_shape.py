@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from symofros.description.beams.beam import Beam
+from symofros.description.beams.beam import MOST_SECTIONS, Beam
 from symofros.description.values import Value
 from symofros.expr.edges import Edge
 from symofros.expr.expression import evaluate
@@ -59,7 +59,7 @@ class RodShape:
 
 
 class IntegrationError:
-    """Error of a rod's shape by its number of sections, as the difference to that of twice as many.
+    """Error of a rod's shape by its number of sections, as the difference to that of twice as many, or of half.
 
     Args:
         beam: The rod as described.
@@ -68,10 +68,12 @@ class IntegrationError:
 
     def __init__(self, beam: Beam, values: Mapping[str, float]) -> None:
         points = strains_of(beam).points
+        # Of half as many, which err by more, where twice as many are more than a rod may have.
+        compared = 2 * points if 2 * points <= MOST_SECTIONS else points // 2
         self._own = RodShape(beam, values, _COMPARED)
-        self._finer = RodShape(replace(beam, sections=2 * points), values, _COMPARED)
+        self._other = RodShape(replace(beam, sections=compared), values, _COMPARED)
 
     def __call__(self, q: Array) -> float:
         """Largest error of a position over the length, for coordinates (n)."""
-        (own, _), (finer, _) = (shape.sections(np.asarray(q, dtype=np.float64)) for shape in (self._own, self._finer))
-        return float(np.linalg.norm(own - finer, axis=-1).max())
+        (own, _), (other, _) = (shape.sections(np.asarray(q, dtype=np.float64)) for shape in (self._own, self._other))
+        return float(np.linalg.norm(own - other, axis=-1).max())

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from functools import lru_cache, partial
+from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache, partial, reduce
 
 import numpy as np
 
 from symofros.base.rotations import Array
-from symofros.description.beams.beam import CENTERS, MATRIX_ORDER, STATION, STRAINS, Beam
+from symofros.description.beams.beam import MATRIX_ORDER, STATION, STRAINS, Beam
 from symofros.description.values import ORIGIN, Term, Value, substituted, symbols
 from symofros.errors import Problem
 from symofros.mechanics.beams.deformation import deformation_of
 from symofros.mechanics.beams.piecewise import Piecewise
 from symofros.mechanics.beams.quadrature import stations
+from symofros.mechanics.beams.section_law import section_law
 from symofros.mechanics.beams.shape_functions import FamilyError
-from symofros.mechanics.beams.strains import strains_of
+from symofros.mechanics.beams.strains import AXES, strains_of
 from symofros.mechanics.topology.conditions import Condition, Formulas, Sign
 from symofros.mechanics.topology.numbers import Numbers
 
@@ -24,7 +25,7 @@ MOST_CONDITION = 1e12
 # Relative error of the quadrature of section properties that change along the beam.
 QUADRATURE_TOLERANCE = 1e-9
 _POINTS = (16, 24)
-# Error of centres between a rod's sections, over their largest distance from the axis.
+# Error, between a rod's sections, of what is known at them alone, over its largest value.
 INTERPOLATION_TOLERANCE = 1e-3
 # What rotary inertia may lower a frequency by without a word, where it is stated and left out.
 MOST_ROTARY_INERTIA = 0.01
@@ -65,7 +66,7 @@ def beam_number_problems(beam: Beam, numbers: Numbers, where: str) -> Iterator[P
     """Section properties too abrupt for the quadrature, stiffness without a sign, ill-conditioned shape functions."""
     section = _Section(beam, where)
     yield from section.quadrature_problems(numbers)
-    yield from section.center_problems(numbers)
+    yield from section.interpolation_problems(numbers)
     yield from section.stiffness_problems(numbers)
     yield from _conditioning(beam, where)
 
@@ -163,7 +164,9 @@ class _Section:
     def _wrong_product(self, product: str, first: str, second: str, numbers: Numbers) -> Problem:
         found = ", ".join(f"{label} = '{getattr(self.beam, label)}'" for label in (product, first, second))
         rule = f"{first} and {second} are positive, and their product exceeds the square of {product}"
-        return Problem(f"{self.what}: {product} too large", found, rule, "mend the value", self.where)
+        missing = [label for label in (first, second) if getattr(self.beam, label) == 0.0]
+        remedy = f"state {' and '.join(missing)}" if missing else f"state a smaller {product}, or turn the section"
+        return Problem(f"{self.what}: {product} too large", found, rule, remedy, self.where)
 
     def _along(self, value: Value, xi: Array, numbers: Numbers) -> Array:
         return np.asarray(section_values(self.beam, value, xi, numbers.parameters)[0])
@@ -176,19 +179,19 @@ class _Section:
                 f"{self.what}: stiffness is not positive definite",
                 f"at x = {at[0]:g} m the least eigenvalue, of unit diagonal, is {least[0]:.3g}",
                 "every strain takes energy",
-                "mend the matrix, or give EA, GA_y, GA_z, GJ, EI_y and EI_z in its place",
+                "check the order of its rows and their units, or state EA, GA_y, GA_z, GJ, EI_y and EI_z in its place",
                 self.where,
             )
 
-    def center_problems(self, numbers: Numbers) -> Iterator[Problem]:
-        """Centres that a rod's few sections do not follow along the axis (docs/theory/rods.md, section 6)."""
-        for label in CENTERS:
-            error = float(center_error(self.beam, label, numbers.parameters)[0])
+    def interpolation_problems(self, numbers: Numbers) -> Iterator[Problem]:
+        """What a rod's few sections do not follow along the axis (docs/theory/rods.md, section 6)."""
+        for labels, values in _through_sections(self.beam):
+            error = float(_interpolation_error(self.beam, values, numbers.parameters)[0])
             if not error <= INTERPOLATION_TOLERANCE:
                 yield Problem(
-                    f"{self.what}: {label} changes more along x than its sections follow",
+                    f"{self.what}: {labels} changes more along x than the rod's sections follow",
                     f"between them it is off by {error:.1g} of its largest value",
-                    f"centres are taken through the sections: to {INTERPOLATION_TOLERANCE:g}",
+                    f"it is taken through the sections, to {INTERPOLATION_TOLERANCE:g}",
                     "state more sections, or split the rod",
                     self.where,
                 )
@@ -258,21 +261,36 @@ def quadrature_error(beam: Beam, value: Value, values: Mapping[str, Array | floa
     return np.asarray(np.abs(totals[0] - totals[1]) / np.where(scale > 0.0, scale, 1.0))
 
 
-def center_error(beam: Beam, label: str, values: Mapping[str, Array | float]) -> Array:
-    """Largest error of a centre by the polynomials through a rod's sections, over its largest distance (states)."""
-    point = getattr(beam, label)
-    if not any(STATION in symbols(value) for value in point):
+def interpolation_error(beam: Beam, values: Mapping[str, Array | float]) -> Array:
+    """Largest relative error of what is taken through a rod's sections (states)."""
+    errors = [_interpolation_error(beam, stated, values) for _, stated in _through_sections(beam)]
+    return np.asarray(reduce(np.maximum, errors, np.zeros(1)))
+
+
+def _through_sections(beam: Beam) -> Iterator[tuple[str, list[Value]]]:
+    """What a rod has at its sections alone: mass centres, and how strains without functions follow others; labels."""
+    if beam.theory != "strain" or not beam.modes:
+        return
+    yield "mass_center", list(beam.mass_center)
+    with_functions = {AXES[direction][0] for direction, n in zip(STRAINS, beam.counts, strict=True) if n}
+    labels = "stiffness" if beam.stiffness else "tension_center or shear_center"
+    yield labels, list(section_law(beam, with_functions).following.values())
+
+
+def _interpolation_error(beam: Beam, stated: Sequence[Value], values: Mapping[str, Array | float]) -> Array:
+    """Largest difference of values to polynomials through a rod's sections, over the largest value (states)."""
+    if not any(STATION in symbols(value) for value in stated):
         return np.zeros(1)
-    strains, off, distance = strains_of(beam), np.zeros(1), np.zeros(1)
-    for value in point:
+    strains, off, largest = strains_of(beam), np.zeros(1), np.zeros(1)
+    for value in stated:
         known, between = (
             section_values(beam, value, np.array(nodes.stations), values)
             for nodes in (strains.sections, strains.masses)
         )
         through = known @ np.array(strains.interpolation).T
         off = np.maximum(off, np.abs(through - between).max(axis=1))
-        distance = np.maximum(distance, np.abs(between).max(axis=1))
-    return np.asarray(off / np.where(distance > 0.0, distance, 1.0))
+        largest = np.maximum(largest, np.abs(between).max(axis=1))
+    return np.asarray(off / np.where(largest > 0.0, largest, 1.0))
 
 
 def _functions(beam: Beam) -> list[Piecewise]:

@@ -9,7 +9,7 @@ from functools import cached_property, partial, reduce
 import numpy as np
 
 from symofros.base.rotations import Array
-from symofros.description.beams.beam import CENTERS, STATION, Beam
+from symofros.description.beams.beam import STATION, Beam
 from symofros.description.joints.joint import Joint
 from symofros.description.system import Body, System
 from symofros.description.values import Rotation, Value, symbols
@@ -19,7 +19,7 @@ from symofros.mechanics.topology.beams import (
     QUADRATURE_TOLERANCE,
     beam_conditions,
     beam_number_problems,
-    center_error,
+    interpolation_error,
     least_stiffness,
     quadrature_error,
 )
@@ -114,10 +114,9 @@ class RunTimeCheck:
         """Section properties that parameters have made too abrupt for the quadrature, or without a sign."""
         for beam in self._sections:
             errors = [quadrature_error(beam, value, values) for _, value in beam.along_axis()]
-            off = [center_error(beam, label, values) for label in CENTERS]
             least, _ = least_stiffness(beam, values)
             right = (reduce(np.maximum, errors) <= QUADRATURE_TOLERANCE) & (least > 0.0)
-            wrong = np.flatnonzero(~(right & (reduce(np.maximum, off) <= INTERPOLATION_TOLERANCE)))
+            wrong = np.flatnonzero(~(right & (interpolation_error(beam, values) <= INTERPOLATION_TOLERANCE)))
             if wrong.size:
                 lane = int(wrong[0])
                 where = self.system.origin.get(("body", beam.name), "")

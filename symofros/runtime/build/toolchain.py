@@ -26,7 +26,8 @@ from symofros.errors import CompileError, Problem
 DEFAULT_FLAGS = ("-O2", "-march=native", "-fno-math-errno", "-fno-tree-slp-vectorize")
 # What takes gcc time and finds nothing in straight code, whose expressions the generator has merged: searches for
 # repeated expressions and dead stores, for what was stored far back, for longer combinations of instructions. The code
-# is as fast, its bits are the same (docs/theory/code.md, section 8). Other compilers and older versions refuse these.
+# is as fast, its bits are the same (docs/theory/code.md, section 8). Other compilers and older versions refuse these,
+# and gcc promises none of its parameters to later ones.
 GCC_FLAGS = (
     "-fno-gcse",
     "-fno-rerun-cse-after-loop",
@@ -37,7 +38,7 @@ GCC_FLAGS = (
     "--param=sccvn-max-alias-queries-per-access=10",
     "--param=max-combine-insns=2",
 )
-_OLDEST_GCC = 8
+_GCC_VERSIONS = range(8, 16)
 _GCC = re.compile(r"^.*\) (\d+)\..*$(?s:.*)Free Software Foundation", re.MULTILINE)
 # Kinds of x86 processors, the best first: name, what it must have, its flags.
 KINDS: tuple[tuple[str, tuple[str, ...], tuple[str, ...]], ...] = (
@@ -89,7 +90,7 @@ class Toolchain:
     @property
     def default_flags(self) -> tuple[str, ...]:
         """Flags of models whose options state none."""
-        return (*DEFAULT_FLAGS, *(GCC_FLAGS if self.gcc >= _OLDEST_GCC else ()))
+        return (*DEFAULT_FLAGS, *(GCC_FLAGS if self.gcc in _GCC_VERSIONS else ()))
 
 
 @cache

@@ -56,7 +56,7 @@ class ReactionFunctions(Functions):
         """Force and moment inside elastic beams (..., sections, 6) [N, N m], in the order of `names.sections`.
 
         Normal force N, shear forces Vy and Vz, torque T and bending moments My and Mz: what the part of the beam beyond
-        the station does to the part before it, about the section's centroid and along the section's axes; N is positive
+        the station does to the part before it, about the beam's axis and along the section's axes; N is positive
         in tension. They hold what lies beyond in its motion against its weight and all loads, so that in equilibrium
         they are exact for the deformed shape (docs/theory/beams.md, section 9). A load at a station counts there as
         beyond it. Stations are those of `Beam.stations`.

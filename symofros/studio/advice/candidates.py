@@ -136,7 +136,7 @@ def _of_beam(loads: BeamLoads) -> Iterator[Reduction]:
         changed_beam(beam.name, **none, stations=STATIONS),
         numbers,
     )
-    if len(flexible) > 1:
+    if len(flexible) > 1 and not beam.is_coupled:  # A direction by itself tells nothing of what others bring to it.
         for direction, (moved, text, more) in by.items():
             yield Reduction(
                 what, f"rigid in {direction}", "direction", moved, text, changed_beam(beam.name, **{direction: 0}), more

@@ -134,7 +134,10 @@ def record(
         raise SymofrosError(
             Problem("record: no such size", str(size), "even numbers of pixels, 2 to 4096", "such as (960, 720)")
         )
-    asked = simulate is not False
+    asked = simulate if isinstance(simulate, bool) else True
+    if not isinstance(simulate, bool | Mapping):
+        found, rule = f"{simulate!r:.40}", "True, False, or how: method, dt, rtol, atol, beam_limit"
+        raise SymofrosError(Problem("record: simulate says neither whether nor how", found, rule, "simulate=True"))
     if asked and file.suffix != ".html":
         raise SymofrosError(
             Problem("record: only pages simulate", f"'{file.name}'", "simulate is for .html", "leave simulate out")

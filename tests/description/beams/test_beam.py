@@ -33,6 +33,12 @@ def rod_by(**entries: object) -> sf.Beam:
         ({"stiffness": [[1.0, 0.1, 0, 0, 0, 0], *IDENTITY[1:]]}, r"not symmetric[\s\S]*\[0\]\[1\] is 0.1"),
         ({"stiffness": IDENTITY, "EI_z": 2.0, "shear_center": (0.1, 0.0)}, "stiffness and EI_z, shear_center"),
         ({"mass_center": (0.1,)}, "mass_center: wrong number of entries"),
+        ({"mass_center": None}, "mass_center: wrong number of entries"),
+        ({"shear_center": {"y": 1.0, "z": 2.0}}, "shear_center: wrong number of entries"),
+        ({"stiffness": 5.0}, "1 rows"),
+        ({"stiffness": "EI"}, "1 rows"),
+        ({"stiffness": [1.0] * 6}, r"stiffness\[0\]: wrong number of entries"),
+        ({"stiffness": [[None] * 6] * 6}, "neither a number nor a formula"),
     ],
 )
 def test_sections_that_contradict_themselves_are_refused(entries: dict[str, object], message: str) -> None:
@@ -61,6 +67,12 @@ def test_centres_that_the_sections_do_not_follow_are_refused() -> None:
 
     with pytest.raises(sf.DescriptionError, match=r"mass_center changes more[\s\S]*more sections"):
         compiled()
+    matrix = [list(row) for row in IDENTITY]
+    matrix[0][5] = matrix[5][0] = "0.02*sin(9*x)"
+    for entries in ({"EI_z": 1.0, "tension_center": ("0.02*sin(9*x)", 0.0)}, {"stiffness": matrix}):
+        system = sf.System("s", (rod_by(**entries),))
+        with pytest.raises(sf.DescriptionError, match=r"(tension_center|stiffness).* changes more"):
+            sf.compile(system, sf.Options(("mass_matrix",), backend="interpreter"))
     few, many = (compiled(sections=n).mass_matrix([0.3])[0, 0] for n in (6, 12))
     assert few == pytest.approx(many, rel=1e-4)
 

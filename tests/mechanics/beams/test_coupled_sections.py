@@ -179,3 +179,10 @@ def test_a_large_force_places_a_rod_off_its_centres(functions: int, error: float
     place, _ = m.frame_pose("tip", sf.equilibrium(m).q)
     exact = shooting(force, D, F)
     assert place == pytest.approx(exact, abs=error)
+
+
+def test_a_rod_of_the_most_sections_is_judged() -> None:
+    """Twice as many would be more than there may be: it is compared with half of them."""
+    m = sf.compile(sf.System("s", (rod((2, 1, 0), sections=40),), gravity=(0, 0, 0)))
+    run = sf.simulate(m, [0.3, 0.1, 0.2], t_end=0.01)
+    assert run.bendings[0].error < 1e-6

@@ -9,11 +9,18 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from symofros.description.beams.beam import CENTERS, IN_MATRIX, ROD_STIFFNESSES, SECTION, Theory
+from symofros.description.beams.beam import (
+    CENTERS,
+    IN_MATRIX,
+    ROD_STIFFNESSES,
+    SECTION,
+    Theory,
+    stiffness_rows,
+)
 from symofros.description.beams.sections.shear import ShearShape, is_inside, unit_stresses
 from symofros.description.entries import refuses_unknown_entries
-from symofros.description.values import Term, Value, as_value, symbols
-from symofros.errors import DescriptionError, Problem
+from symofros.description.values import Term, Value, as_value, as_values, symbols
+from symofros.errors import DescriptionError, Problem, did_you_mean
 from symofros.expr.expression import evaluate
 
 # Relative to the section's size, what counts as on the axis: meshes of symmetric outlines are not symmetric, and their
@@ -21,6 +28,7 @@ from symofros.expr.expression import evaluate
 _ON_AXIS = 1e-4
 # What counts as a matrix of a section's form, relative to its diagonal: programs write six or seven digits.
 _OF_SECTION = 1e-6
+_CHECK = "check the order of the axes (axis='x' or 'z'), and the units"
 _PRODUCTS = ("EI_yz", "rhoI_yz")
 
 
@@ -100,8 +108,16 @@ class Section:
         """Convert the numbers."""
         for item in fields(self):
             stated: Any = getattr(self, item.name)
-            if stated is not None and item.name != "shape":
-                object.__setattr__(self, item.name, _as_values(stated, f"section: {item.name}"))
+            if item.name == "shape" or stated is None and item.name not in CENTERS:
+                continue
+            label = f"section: {item.name}"
+            if item.name == "stiffness":
+                stated = stiffness_rows(stated, label)
+            elif item.name in CENTERS:
+                stated = as_values(stated, 2, label)
+            else:
+                stated = _as_values(stated, label)
+            object.__setattr__(self, item.name, stated)
 
     @staticmethod
     def of_matrices(stiffness: npt.ArrayLike, mass: npt.ArrayLike, axis: Literal["x", "z"] = "x") -> Section:
@@ -116,15 +132,22 @@ class Section:
         Raises:
             DescriptionError: A matrix is of another shape, or is none of a section.
         """
-        order = {"x": [0, 1, 2, 3, 4, 5], "z": [2, 0, 1, 5, 3, 4]}[axis]
+        orders = {"x": [0, 1, 2, 3, 4, 5], "z": [2, 0, 1, 5, 3, 4]}
+        if axis not in orders:
+            rule, remedy = "the axis along the beam is x (VABS) or z (BeamDyn)", did_you_mean(str(axis), orders)
+            raise DescriptionError(Problem("section: no such axis", repr(axis), rule, remedy))
+        order = orders[axis]
         K, M = (_matrix(stated, label)[np.ix_(order, order)] for stated, label in ((stiffness, "K"), (mass, "M")))
         if not np.linalg.eigvalsh(K)[0] > 0.0:
             rule, found = "every strain takes energy", f"its least eigenvalue is {np.linalg.eigvalsh(K)[0]:.3g}"
-            raise DescriptionError(Problem("section: stiffness is not positive definite", found, rule, "mend it"))
+            raise DescriptionError(Problem("section: stiffness is not positive definite", found, rule, _CHECK))
         flexibility = np.linalg.inv(K[:3, :3])
         to_centers = flexibility @ K[:3, 3:]
         bending = K[3:, 3:] - K[3:, :3] @ to_centers
         m = M[0, 0]
+        if not m > 0.0:
+            rule = "a section has mass"
+            raise DescriptionError(Problem("section: M has no mass", f"its first entry is {m:g}", rule, _CHECK))
         y, z = -M[0, 5] / m, M[0, 4] / m
         I_y, I_z, I_yz = M[4, 4] - m * z * z, M[5, 5] - m * y * y, -M[4, 5] - m * y * z
         EA, GA_y, GA_z = (1.0 / np.diag(flexibility)).tolist()
@@ -149,7 +172,7 @@ class Section:
         if not unlike <= _OF_SECTION:
             rule = "matter in one plane: m, m, m, and moments about x that are the sum of those about y and z"
             found = f"of a section's with the same m, centre and moments it is off by {unlike:.2g}"
-            raise DescriptionError(Problem("section: M is no mass matrix of a section", found, rule, "mend it"))
+            raise DescriptionError(Problem("section: M is no mass matrix of a section", found, rule, _CHECK))
         if _difference(K, section.stiffness_matrix()) > _OF_SECTION:
             section = replace(section, stiffness=tuple(map(tuple, K.tolist())))
         return section
@@ -211,7 +234,11 @@ class Section:
             for label in ("tension_center", "shear_center", "mass_center")
             for axis, value in zip("yz", getattr(self, label), strict=True)
         ]
-        return [*centers, ("EI_yz", self.EI_yz, self.EI_z), ("rhoI_yz", self.rhoI_yz, self.rhoI_z)]
+        bending, inertia = (
+            (Term(first) * Term(second)).sqrt().value
+            for first, second in ((self.EI_y, self.EI_z), (self.rhoI_y, self.rhoI_z))
+        )
+        return [*centers, ("EI_yz", self.EI_yz, bending), ("rhoI_yz", self.rhoI_yz, inertia)]
 
     @property
     def principal_angle(self) -> float:
@@ -418,15 +445,19 @@ def _matrix(stated: npt.ArrayLike, label: str) -> npt.NDArray[np.float64]:
     Raises:
         DescriptionError: It is of another shape, not finite, or not symmetric.
     """
-    matrix = np.asarray(stated, dtype=np.float64)
     rule = "six rows of six numbers, symmetric"
+    try:
+        matrix = np.asarray(stated).astype(np.float64, casting="same_kind")
+    except (TypeError, ValueError):
+        found = f"{stated!r:.60}"
+        raise DescriptionError(Problem(f"section: matrix {label}", found, rule, "give numbers")) from None
     if matrix.shape != (6, 6) or not np.isfinite(matrix).all():
         found = f"of shape {matrix.shape}" if matrix.shape != (6, 6) else "entries that are not finite"
         raise DescriptionError(Problem(f"section: matrix {label}", found, rule, "give all, zeros included"))
     unlike = _difference(matrix, matrix.T)
     if not unlike <= _OF_SECTION:
         found = f"off by {unlike:.2g} of the diagonal"
-        raise DescriptionError(Problem(f"section: matrix {label} is not symmetric", found, rule, "mend it"))
+        raise DescriptionError(Problem(f"section: matrix {label} is not symmetric", found, rule, _CHECK))
     return 0.5 * (matrix + matrix.T)
 
 

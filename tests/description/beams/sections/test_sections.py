@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import fields
+from dataclasses import fields, replace
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -256,6 +256,11 @@ def test_a_matrix_with_more_couplings_is_kept() -> None:
         (lambda K, M: (K - 3.0 * np.eye(6), M), "not positive definite"),
         (lambda K, M: (K, M + np.diag([0, 0, 0, 0.1, 0, 0])), "no mass matrix of a section"),
         (lambda K, M: (K, M * np.nan), "not finite"),
+        (lambda K, M: ("abc", M), "six rows of six numbers"),
+        (lambda K, M: ([[1.0], [1.0, 2.0]], M), "six rows of six numbers"),
+        (lambda K, M: (K + 1j, M), "six rows of six numbers"),
+        (lambda K, M: (K, 0.0 * M), "M has no mass"),
+        (lambda K, M: (K, M, "y"), "axis along the beam is x"),
     ],
 )
 def test_matrices_of_no_section_are_refused(change: Any, message: str) -> None:
@@ -270,3 +275,16 @@ def test_a_rod_takes_a_section_off_its_axis_as_it_is() -> None:
     assert (beam.EI_yz, beam.rhoI_yz) == (0.5, 0.004)
     # Shears along y and z are coupled then, by what is not known.
     assert not {"GA_y", "GA_z"} & entries.keys()
+
+
+@pytest.mark.parametrize(
+    "entries", [{"tension_center": [1.0]}, {"mass_center": None}, {"shear_center": 5.0}, {"stiffness": [[1.0, 0.0]]}]
+)
+def test_sections_of_other_sizes_are_refused(entries: dict[str, Any]) -> None:
+    with pytest.raises(DescriptionError, match="wrong number of entries|1 rows"):
+        replace(COUPLED, **entries)
+
+
+def test_a_product_is_small_beside_both_stiffnesses() -> None:
+    flat = replace(COUPLED, EI_y=1e-3, EI_z=10.0, EI_yz=5e-4)
+    assert flat.beam_properties("strain")["EI_yz"] == 5e-4
