@@ -469,13 +469,12 @@ def stiffness_rows(stated: Any, label: str) -> tuple[tuple[Value, ...], ...]:
         rule = f"{size} rows of {size} entries: {', '.join(MATRIX_ORDER)}"
         raise DescriptionError(Problem(label, f"{len(listed)} rows", rule, "give all, zeros included"))
     rows = [list(as_values(row, size, f"{label}[{i}]")) for i, row in enumerate(listed)]
-    for i, j in combinations(range(len(rows)), 2):
-        a, b, sizes = rows[i][j], rows[j][i], (rows[i][i], rows[j][j])
+    for i, j in combinations(range(size), 2):
+        a, b, first, second = rows[i][j], rows[j][i], rows[i][i], rows[j][j]
         if a == b:
             continue
-        if isinstance(a, float) and isinstance(b, float) and all(isinstance(size, float) for size in sizes):
-            size = math.sqrt(abs(sizes[0] * sizes[1]))  # type: ignore[operator]
-            if abs(a - b) <= _ASYMMETRY * size:
+        if isinstance(a, float) and isinstance(b, float) and isinstance(first, float) and isinstance(second, float):
+            if abs(a - b) <= _ASYMMETRY * math.sqrt(abs(first * second)):
                 rows[i][j] = rows[j][i] = 0.5 * (a + b)
                 continue
         rule = "a matrix of stiffness is symmetric: forces have the strain energy as their potential"
