@@ -34,5 +34,5 @@ def test_the_examples_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
 
 def test_its_pictures_are_there_and_small() -> None:
     named = re.findall(r"!\[[^]]+\]\((images/[^)]+)\)", PAGE.read_text())
-    assert len(named) == 5
+    assert len(named) == 6
     assert all(10_000 < (PAGE.parent / name).stat().st_size < 120_000 for name in named)

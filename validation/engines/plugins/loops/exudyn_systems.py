@@ -103,6 +103,11 @@ SYSTEM = """class System:
         for k, weight in ((1, 3 / 4), (2, -3 / 20), (3, 1 / 60)):
             drift += weight / h * (self.jacobian(x + k * h * rate) - self.jacobian(x - k * h * rate)) @ rate
         f = f + D @ np.linalg.solve(D.T @ D, tau)
+        # In units in which every coordinate has mass 1 and every condition length 1: masses of 1e8 would hide those of 1e-8.
+        S = 1 / np.sqrt(np.where(np.diag(M) > 0, np.diag(M), 1.0))
+        lengths = np.linalg.norm(C * S, axis=1)
+        rows = 1 / np.where(lengths > 0, lengths, 1.0)
+        M, C, f, drift = S[:, None] * M * S, rows[:, None] * C * S, S * f, rows * drift
         U, sigma, Vt = np.linalg.svd(C)
         rank = int(np.sum(sigma > 1e-10 * sigma[0])) if len(sigma) else 0
         Y, Z = Vt[:rank].T, Vt[rank:].T
@@ -113,6 +118,7 @@ SYSTEM = """class System:
             change = least + Z @ np.linalg.solve(Z.T @ M @ Z, Z.T @ (left - M @ least))
             L += U[:, :rank] @ (Y.T @ (left - M @ change) / sigma[:rank])
             X += change
+        X, L = S * X, rows * L
         xtt, lam = X.astype(float), L.astype(float)
         return np.linalg.lstsq(D, xtt - s, rcond=None)[0], lam
     def outputs(self, q, v, a, *names):
