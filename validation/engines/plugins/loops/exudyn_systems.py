@@ -103,7 +103,7 @@ SYSTEM = """class System:
         for k, weight in ((1, 3 / 4), (2, -3 / 20), (3, 1 / 60)):
             drift += weight / h * (self.jacobian(x + k * h * rate) - self.jacobian(x - k * h * rate)) @ rate
         f = f + D @ np.linalg.solve(D.T @ D, tau)
-        # In units in which every coordinate has mass 1 and every condition length 1: masses of 1e8 would hide those of 1e-8.
+        # Units that make every mass 1 and every condition of length 1: masses of 1e8 would hide those of 1e-8.
         S = 1 / np.sqrt(np.where(np.diag(M) > 0, np.diag(M), 1.0))
         lengths = np.linalg.norm(C * S, axis=1)
         rows = 1 / np.where(lengths > 0, lengths, 1.0)
