@@ -11,7 +11,6 @@ from symofros.description.system import System
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.result import DiagramRun
 from symofros.errors import Problem, SymofrosError
-from symofros.exports.wasm.wasm import check_compiler
 from symofros.simulation.results.trajectory import Trajectory
 from symofros.studio.viewer.page.viser_server import load_viser
 from symofros.studio.viewer.playing.diagram_motion import chosen_block, shown_of
@@ -49,6 +48,10 @@ class ViewOptions:
                 stated = str(self.output or "no --record-view")
                 rule, remedy = "the page of a replay simulates on", "--record-view FILE.html"
                 raise SymofrosError(Problem("--interactive: there is no page", stated, rule, remedy))
+            from symofros.exports.wasm.wasm import (
+                check_compiler,  # Exports take long to import: no run else needs them.
+            )
+
             check_compiler()
         if self.output is not None:
             check_suffix(self.output)

@@ -76,7 +76,7 @@ def _frax(subject: Subject) -> dict[str, Function]:
         file = Path(folder) / "robot.urdf"
         file.write_text(subject.urdf(), encoding="utf-8")
         robot = frax.Robot(str(file), joint_ordering=list(subject.model.names.q))
-    upwards = np.array([*(-np.array(subject.gravity)).tolist(), 0.0, 0.0, 0.0])
+    upwards = -np.array(subject.gravity)
     return {
         "forward_dynamics": lambda q, v, u: robot.forward_dynamics(q, v, u, None),
         "inverse_dynamics": lambda q, v, a: robot.rnea(q, v, a, upwards, None),

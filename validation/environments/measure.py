@@ -3,10 +3,9 @@
 # Annotations are values here: the options of a command name the environments.
 import json
 import os
-import subprocess
 import sys
-import tempfile
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Annotated, Any
 
 import typer
@@ -21,6 +20,7 @@ from validation.reporting.command import Quick, Run, known
 from validation.reporting.plain import plain, restored
 from validation.reporting.provenance import stamp
 from validation.reporting.record import Data
+from validation.timing.processes import WorkerError, follow, message
 
 SETTINGS: Mapping[str, Mapping[str, str]] = {
     in_node.NAME: {},
@@ -49,32 +49,15 @@ def run_environment(
     """
     job = json.dumps({"environment": name, "models": models, "states": STATES, "turns": turns})
     command = [sys.executable, "-m", "validation.environments.worker", job]
-    environment = {**os.environ, **SETTINGS[name]}
-    with tempfile.TemporaryFile("w+") as complaints:
-        worker = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=complaints, text=True, env=environment)
-        assert worker.stdout is not None
-        try:
-            for line in worker.stdout:
-                take(line, record, doing)
-            status = worker.wait()
-        except BaseException:
-            worker.kill()
-            worker.wait()
-            raise
-        finally:
-            worker.stdout.close()
-        if status != 0:
-            complaints.seek(0)
-            last = (complaints.read().strip() or "no word").splitlines()[-1]
-            raise RuntimeError(f"the process ended with {status}: {last}")
+    try:
+        follow(command, partial(take, record=record, doing=doing), {**os.environ, **SETTINGS[name]})
+    except WorkerError as error:
+        raise RuntimeError(f"the process {error}") from None
 
 
 def take(line: str, record: Record, doing: Callable[[str], object]) -> None:
     """Add what a worker printed to a record; lines of other origin are the frameworks', and are left."""
-    try:
-        ((kind, value),) = json.loads(line).items()
-    except (ValueError, AttributeError):
-        return
+    kind, value = message(line)
     if kind == "doing":
         doing(": ".join(value))
     elif kind == "row":

@@ -21,6 +21,7 @@ from validation.timing.contestants.engines import CLOSED, PINOCCHIO_FLAGS, TREES
 from validation.timing.contestants.generated import BUILDS
 from validation.timing.contestants.programs import BuildError, Say, Skipped, compilers, source
 from validation.timing.models import TIMED_MODELS
+from validation.timing.processes import WorkerError, follow, message
 from validation.timing.race import pin_to_one_cpu
 from validation.timing.record import Entry, Made, Record
 from validation.timing.worker import Job
@@ -47,33 +48,15 @@ def run_job(job: Job, record: Record, doing: Doing = lambda model, function, par
     }
     record.forget([job.model], [LEFT], [])
     command = [sys.executable, "-m", "validation.timing.worker", json.dumps(stated)]
-    with tempfile.TemporaryFile("w+") as complaints:
-        pipe = subprocess.PIPE
-        worker = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=complaints, text=True)
-        assert worker.stdin is not None and worker.stdout is not None
-        try:
-            for line in worker.stdout:
-                take(line, job, record, doing)
-            status = worker.wait()
-        except BaseException:
-            worker.kill()
-            worker.wait()
-            raise
-        finally:
-            worker.stdin.close()
-            worker.stdout.close()
-        if status != 0:
-            complaints.seek(0)
-            last = (complaints.read().strip() or "no word").splitlines()[-1]
-            record.failed.append((job.model, LEFT, "symofros", f"the worker ended with {status}: {last}"))
+    try:
+        follow(command, partial(take, job=job, record=record, doing=doing))
+    except WorkerError as error:
+        record.failed.append((job.model, LEFT, "symofros", f"the worker {error}"))
 
 
 def take(line: str, job: Job, record: Record, doing: Doing) -> None:
     """Add what a worker printed to a record; lines of other origin are MuJoCo's or Pinocchio's, and are left."""
-    try:
-        ((kind, value),) = json.loads(line).items()
-    except (ValueError, AttributeError):
-        return
+    kind, value = message(line)
     if kind == "doing":
         record.forget([job.model], [value], job.peers)
         doing(job.model, value, "")

@@ -427,7 +427,8 @@ class Rod:
         beam = self.beam
         stated: list[tuple[int, Value, Value]] = [(0, beam.rhoJ, 0.0)]
         if beam.rotary_inertia:
-            about_z, skew = beam.rhoI_z, beam.rhoI_yz
+            about_z: Value = beam.rhoI_z
+            skew: Value = 0.0
             if beam.rhoI_yz != 0.0:
                 share = Term(beam.rhoI_yz) / Term(beam.rhoI_y)
                 about_z = (Term(beam.rhoI_z) - share * Term(beam.rhoI_yz)).value
@@ -449,17 +450,19 @@ class Rod:
     @cached_property
     def first_moment_weights(self) -> tuple[Edge, ...]:
         """Weights of the vectors in `first_moment`."""
-        g, masses = self.g, self.masses()
+        g = self.g
         arms = zip(*self.strains.interpolation, strict=True) if self.mass_center is not None else ()
-        of_arms = tuple(g.sum(map(g.mul, map(g.constant, column), masses)) for column in arms)
+        of_arms = tuple(map(self._mass_weighted, arms))
         if STATION not in symbols(self.beam.rhoA):
             whole = g.mul(self.mass, self.along.L)
             return tuple(g.mul(g.constant(weight), whole) for weight in self.strains.first_moments) + of_arms
         columns = zip(*self.strains.positions, strict=True)
-        return (
-            tuple(g.mul(g.sum(map(g.mul, map(g.constant, column), masses)), self.along.L) for column in columns)
-            + of_arms
-        )
+        return tuple(g.mul(self._mass_weighted(column), self.along.L) for column in columns) + of_arms
+
+    def _mass_weighted(self, column: Sequence[float]) -> Edge:
+        """The sum of the masses, each times a number."""
+        g = self.g
+        return g.sum(g.mul(g.constant(number), mass) for number, mass in zip(column, self.masses(), strict=True))
 
     @cached_property
     def strain_energy(self) -> Form:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass
+from functools import reduce
 
 from symofros.description.beams.beam import MATRIX_ORDER, Beam
 from symofros.description.values import Term, Value
@@ -40,10 +41,7 @@ def section_law(beam: Beam, counted: Collection[int]) -> SectionLaw:
         counted: Strains that have functions.
     """
     free = [k for k in range(TURNING, _STRAINS) if k not in counted]
-    K = _by_matrix(beam) if beam.stiffness else _by_centers(beam, counted)
-    if beam.stiffness:
-        for k in free:
-            K = _swept(K, k)
+    K = reduce(_swept, free, _by_matrix(beam)) if beam.stiffness else _by_centers(beam, counted)
     kept = sorted(counted)
     stiffness = {
         (a, b): value if a == b else _doubled(value)
@@ -92,7 +90,7 @@ def _by_centers(beam: Beam, counted: Collection[int]) -> Coefficients:
 
 
 def _swept(K: Coefficients, k: int) -> Coefficients:
-    """A matrix after one step of elimination: its rest is Schur's complement, its row k what strain k follows by."""
+    """A matrix after one step of elimination: Schur's complement, and as row k what strain k follows by, less its sign."""
     pivot = K[k, k]
     row = {j: (Term(value) / Term(pivot)).value for (i, j), value in K.items() if i == k and j != k}
     swept = {(i, j): value for (i, j), value in K.items() if k not in (i, j)}

@@ -11,6 +11,7 @@ from symofros.base.rotations import Array
 from symofros.description.beams.beam import MATRIX_ORDER, STATION, STRAINS, Beam
 from symofros.description.values import ORIGIN, Term, Value, substituted, symbols
 from symofros.errors import Problem
+from symofros.expr.expression import Expression
 from symofros.mechanics.beams.deformation import deformation_of
 from symofros.mechanics.beams.piecewise import Piecewise
 from symofros.mechanics.beams.quadrature import stations
@@ -241,8 +242,7 @@ def least_stiffness(beam: Beam, values: Mapping[str, Array | float]) -> tuple[Ar
     scaled = scale[..., :, None] * K * scale[..., None, :]
     finite = np.isfinite(scaled).all(axis=(-2, -1))
     least = np.linalg.eigvalsh(np.where(finite[..., None, None], scaled, -np.eye(size)))[..., 0]
-    columns = {name: np.reshape(value, (-1, 1)) for name, value in values.items()}
-    x = np.broadcast_to(Formulas([beam.length])(columns)[0] * _STATIONS[None, :], least.shape)
+    x = np.broadcast_to(section_values(beam, Expression("symbol", name=STATION), _STATIONS, values), least.shape)
     at = np.argmin(least, axis=1)[:, None]
     return np.take_along_axis(least, at, axis=1)[:, 0], np.take_along_axis(x, at, axis=1)[:, 0]
 

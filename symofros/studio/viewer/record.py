@@ -23,7 +23,6 @@ from symofros.errors import Problem, SymofrosError, did_you_mean
 from symofros.studio.viewer.drawing.layers import shown_at_first
 from symofros.studio.viewer.drawing.poses import Mechanism, Posture
 from symofros.studio.viewer.drawing.tracks import tracks_of
-from symofros.studio.viewer.page.onward import onward
 from symofros.studio.viewer.page.replay import replay_page
 from symofros.studio.viewer.page.viser_scene import ViserScene
 from symofros.studio.viewer.page.viser_server import LOOPBACK, start_server, stop_server
@@ -134,10 +133,10 @@ def record(
         raise SymofrosError(
             Problem("record: no such size", str(size), "even numbers of pixels, 2 to 4096", "such as (960, 720)")
         )
-    asked = simulate if isinstance(simulate, bool) else True
     if not isinstance(simulate, bool | Mapping):
         found, rule = f"{simulate!r:.40}", "True, False, or how: method, dt, rtol, atol, beam_limit"
         raise SymofrosError(Problem("record: simulate says neither whether nor how", found, rule, "simulate=True"))
+    asked = simulate is not False
     if asked and file.suffix != ".html":
         raise SymofrosError(
             Problem("record: only pages simulate", f"'{file.name}'", "simulate is for .html", "leave simulate out")
@@ -195,7 +194,9 @@ def _asked(
 
 
 def _onward(system: System, run: Played, frames: _Recording, simulate: bool | Mapping[str, Any]) -> Mapping[str, Any]:
-    return onward(system, run, frames.t, frames.q, {} if simulate is True else dict(simulate or {}))
+    from symofros.studio.viewer.page.onward import onward  # With exports, which other recordings need not import.
+
+    return onward(system, run, frames.t, frames.q, {} if isinstance(simulate, bool) else simulate)
 
 
 def _page(frames: _Recording, mechanism: Mechanism, simulated: Mapping[str, Any] | None) -> bytes:
