@@ -90,7 +90,7 @@ def _by_centers(beam: Beam, counted: Collection[int]) -> Coefficients:
 
 
 def _swept(K: Coefficients, k: int) -> Coefficients:
-    """A matrix after one step of elimination: Schur's complement, and as row k what strain k follows by, less its sign."""
+    """A matrix after one step of elimination: Schur's complement; row k is what strain k follows by, less its sign."""
     pivot = K[k, k]
     row = {j: (Term(value) / Term(pivot)).value for (i, j), value in K.items() if i == k and j != k}
     swept = {(i, j): value for (i, j), value in K.items() if k not in (i, j)}
