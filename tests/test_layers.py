@@ -113,12 +113,13 @@ STUDIES = table("""
     timing:      oracle
     passes:      timing
     environments: timing
+    cuda:        timing
     stability:   accuracy
     studies:     accuracy oracle stability timing
     pareto:      stability studies timing
     adversary:   accuracy
     mutation:
-    dashboard:   adversary cross_check engines environments campaigns diagrams accuracy timing passes stability studies
+    dashboard:   adversary cross_check cuda engines environments campaigns diagrams accuracy timing passes stability studies
                  pareto mutation
 """)
 # The oracle answers for itself: of the harness it knows how joints come apart, nothing else.

@@ -6,6 +6,7 @@ from validation.accuracy import catalogue as accuracy
 from validation.adversary import report as adversary
 from validation.campaigns import report as campaign
 from validation.cross_check import report as check
+from validation.cuda import report as cuda
 from validation.diagrams import catalogue as diagrams
 from validation.engines import report as engines
 from validation.environments import report as environments
@@ -18,5 +19,5 @@ from validation.studies.reports import exports, fuzz, mutation, oracle, realtime
 from validation.timing import report as timing
 
 _CORRECTNESS = (check, oracle, mutation, mutants, fuzz, adversary, engines, campaign, accuracy, diagrams, stability)
-_SPEED = (timing, simulation, rollouts, realtime, passes, exports, environments, pareto)
+_SPEED = (timing, simulation, rollouts, realtime, passes, exports, environments, cuda, pareto)
 TOPICS: dict[str, Topic] = {module.TOPIC.name: module.TOPIC for module in (*_CORRECTNESS, *_SPEED)}

@@ -130,6 +130,8 @@ def placed(name: str, array: Any, dtype: npt.DTypeLike, driver: Driver) -> Place
         ShapeError: It is of another type or on another device.
     """
     wanted = np.dtype(dtype)
+    if isinstance(array, DeviceArray) and array.dtype == wanted:
+        return Placed(array.address, array.shape, tuple(x // wanted.itemsize for x in array.strides), array)
     kind, ordinal = map(int, array.__dlpack_device__()) if hasattr(array, "__dlpack_device__") else (0, 0)
     if kind == _CUDA and ordinal != driver.ordinal:
         raise _unfit(name, f"an array on graphics processor {ordinal}; the kernels are on {driver.ordinal}", wanted)

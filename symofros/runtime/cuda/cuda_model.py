@@ -15,7 +15,7 @@ from symofros.runtime.calls.kernel import Array, BatchOptions, Precision
 from symofros.runtime.cuda.arrays import DeviceArray, Placed, Strided, StridedSequence, placed
 from symofros.runtime.cuda.device_code import BLOCK, DeviceCode
 from symofros.runtime.cuda.driver import Driver, driver
-from symofros.runtime.cuda.nvrtc import KernelUsage, compile_cuda
+from symofros.runtime.cuda.nvrtc import KernelUsage, compile_cuda, usage_of
 from symofros.runtime.cuda.receivers import receivers, strided_result
 from symofros.runtime.record import ModelRecord
 
@@ -63,6 +63,7 @@ class CudaModel:
         self._codes: dict[Key, DeviceCode] = {}
         self._loaded: dict[Key, _Loaded] = {}
         self._dtype = BatchOptions(precision=precision).dtype
+        self._defaults: dict[str, DeviceArray] = {}
 
     def code(self, name: str, frame: str = "") -> DeviceCode:
         """Kernels of a function as text, which no processor is needed for.
@@ -102,7 +103,7 @@ class CudaModel:
         Raises:
             CompileError: There is no compiler, or no such architecture.
         """
-        return compile_cuda(self.code(name, frame).text, architecture or driver().architecture, self.contract).usage
+        return usage_of(self.code(name, frame).text, architecture or driver().architecture, self.contract)
 
     def evaluate(
         self, name: str, frame: str = "", *, out: Mapping[str, Any] | None = None, wait: bool = True, **inputs: Any
@@ -196,7 +197,7 @@ class CudaModel:
         sizes = {"q": len(self.record.q_names), "v": len(self.record.v_names), "t": 1}
         given = self._placed(sizes, {"q": q, "v": v, "t": t}, device)
         n = self._states("rollout", given)
-        inputs = placed("u", self.record.u_default if u is None else u, self._dtype, device)
+        inputs = placed("u", self._default("u", device) if u is None else u, self._dtype, device)
         held = self._held(inputs, steps, n)
         records = steps // every
         results = [DeviceArray(device, (records, n, sizes[x]), self._dtype, batch=1) for x in ("q", "v")]
@@ -224,7 +225,7 @@ class CudaModel:
     def _load(self, key: Key) -> _Loaded:
         if key not in self._loaded:
             code, device = self.code(*key), driver()
-            module = device.load(compile_cuda(code.text, device.architecture, self.contract).image)
+            module = device.load(compile_cuda(code.text, device.architecture, self.contract))
             values = code.prepare(self._par.reshape(1, -1))[0]
             pre = DeviceArray(device, (max(1, len(values)),), self._dtype)
             if len(values):
@@ -239,7 +240,7 @@ class CudaModel:
 
     def _placed(self, sizes: Mapping[str, int], inputs: Mapping[str, Any], device: Driver) -> dict[str, Placed]:
         """Inputs on the device, in their shapes: (n, size) or (size); t as (n, 1) or (1)."""
-        values = {"u": None, "t": 0.0} | dict(inputs)
+        values = {"u": None, "t": None} | dict(inputs)
         for group in inputs:
             if group not in sizes:
                 raise UnknownNameError(
@@ -251,12 +252,20 @@ class CudaModel:
                 raise ShapeError(
                     Problem(f"CUDA: no {group}", ", ".join(inputs) or "nothing", ", ".join(sizes), "add it")
                 )
-            value = self.record.u_default if group == "u" and values[group] is None else values[group]
+            value = self._default(group, device) if group in "ut" and values[group] is None else values[group]
             array = placed(group, value, self._dtype, device)
-            if group == "t":
+            if group == "t" and value is not self._defaults.get(group):
                 array = Placed(array.address, (*array.shape, 1), (*array.strides, 1), array.owner)
             arrays[group] = self._fitting(group, array, size)
         return arrays
+
+    def _default(self, group: str, device: Driver) -> DeviceArray:
+        """What u and t are where they are left out, (size): copied once, as a copy waits for what was started."""
+        if group not in self._defaults:
+            values = np.asarray(self.record.u_default if group == "u" else np.zeros(1), self._dtype)
+            self._defaults[group] = DeviceArray(device, values.shape, self._dtype)
+            self._defaults[group].write(values)
+        return self._defaults[group]
 
     def _fitting(self, group: str, array: Placed, size: int) -> Placed:
         if len(array.shape) not in (1, 2) or array.shape[-1] != size:

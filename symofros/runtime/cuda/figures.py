@@ -15,8 +15,10 @@ from symofros.runtime.cuda.cuda_model import CudaModel
 from symofros.runtime.cuda.driver import Driver, driver
 from symofros.runtime.cuda.nvrtc import KernelUsage
 
-# States of a timed batch, and repetitions of which the fastest counts.
-_STATES, _REPEATS = 1 << 20, 20
+# A timed batch: its states at most, their arrays at most [bytes], and different states.
+_STATES, _MEMORY, _DIFFERENT = 1 << 21, 2e9, 1 << 10
+# Batches started one behind the other, and repetitions of which the fastest counts.
+_STARTED, _REPEATS = 10, 5
 
 
 @dataclass(frozen=True)
@@ -59,7 +61,7 @@ def figures_of(model: CudaModel, name: str, frame: str, architecture: str, bandw
     device = present()
     measured = None
     if device is not None and device.architecture == architecture:
-        measured = _states_per_second(model, name, frame, device)
+        measured = states_per_second(model, name, frame, device)
     return KernelFigures(f"{name} {frame}".rstrip(), model.precision, usage, moved, bandwidth / moved, measured)
 
 
@@ -71,19 +73,34 @@ def present() -> Driver | None:
         return None
 
 
-def _states_per_second(model: CudaModel, name: str, frame: str, device: Driver) -> float:
-    """The fastest of some repetitions on arrays that lie on the device, states side by side."""
+def states_per_second(model: CudaModel, name: str, frame: str, device: Driver) -> float:
+    """The fastest of some repetitions on arrays that lie on the device, states side by side.
+
+    Args:
+        model: Model whose kernel it is.
+        name: Name of the function.
+        frame: Frame of a function of frames.
+        device: This machine's processor.
+
+    Raises:
+        SymofrosError: The function has no kernel, there is no compiler, or the device's memory is full.
+    """
     kernel, dtype = model.code(name, frame).kernels[0], np.dtype(np.float32 if model.precision == "single" else float)
-    inputs: dict[str, Any] = {
-        group: DeviceArray(device, (_STATES, size), dtype) for group, size in kernel.signature.inputs if group != "t"
-    }
+    copies = max(1, int(min(_STATES, _MEMORY / kernel.bytes_of_state(model.precision))) // _DIFFERENT)
+    states = copies * _DIFFERENT
+    inputs: dict[str, Any] = {}
     rng = np.random.default_rng(0)
-    for array in inputs.values():
-        array.write(rng.standard_normal(array.shape))
-    out = {label: DeviceArray(device, (_STATES, *shape), dtype) for label, shape in kernel.signature.outputs}
+    for group, size in kernel.signature.inputs:
+        if group != "t":
+            inputs[group] = DeviceArray(device, (states, size), dtype)
+            inputs[group].write(np.tile(rng.standard_normal((_DIFFERENT, size)), (copies, 1)))
+    out = {label: DeviceArray(device, (states, *shape), dtype) for label, shape in kernel.signature.outputs}
+    model.evaluate(name, frame, out=out, **inputs)
     best = np.inf
     for _ in range(_REPEATS):
         begun = time.perf_counter()
-        model.evaluate(name, frame, out=out, **inputs)
-        best = min(best, time.perf_counter() - begun)
-    return _STATES / best
+        for _ in range(_STARTED):
+            model.evaluate(name, frame, out=out, wait=False, **inputs)
+        device.wait()
+        best = min(best, (time.perf_counter() - begun) / _STARTED)
+    return states / best

@@ -1,4 +1,4 @@
-"""CUDA text -> machine code of one architecture, by NVRTC, the compiler that the package nvidia-cuda-nvrtc-cu12 brings.
+"""CUDA text -> machine code of one architecture, by NVRTC, the compiler in packages of NVIDIA and in CUDA's toolkit.
 
 No driver and no graphics processor take part, so that what a kernel takes is known where there is none.
 """
@@ -20,6 +20,9 @@ _ENTRY = re.compile(r"Compiling entry function '(?P<name>\w+)'(?P<rest>(?:(?!Com
 _REGISTERS = re.compile(r"Used (\d+) registers")
 _STACK = re.compile(r"(\d+) bytes cumulative stack size")
 _STORES, _LOADS = re.compile(r"(\d+) bytes spill stores"), re.compile(r"(\d+) bytes spill loads")
+# Versions of CUDA whose NVRTC is looked for.
+_VERSIONS = (12, 13)
+_FIRST_WITH_CACHE = (12, 9)
 # Lines of the compiler's message that an error shows.
 _SHOWN = 6
 
@@ -41,21 +44,8 @@ class KernelUsage:
     spill_loads: int
 
 
-@dataclass(frozen=True)
-class MachineCode:
-    """Kernels of one architecture.
-
-    Attributes:
-        image: Contents of a cubin.
-        usage: Name of a kernel -> what it takes.
-    """
-
-    image: bytes
-    usage: dict[str, KernelUsage]
-
-
-def compile_cuda(text: str, architecture: str, contract: bool = False) -> MachineCode:
-    """Compile CUDA C++.
+def compile_cuda(text: str, architecture: str, contract: bool = False) -> bytes:
+    """Compile CUDA C++ to the contents of a cubin.
 
     Args:
         text: Source that includes nothing.
@@ -65,6 +55,19 @@ def compile_cuda(text: str, architecture: str, contract: bool = False) -> Machin
     Raises:
         CompileError: NVRTC is not installed, knows no such architecture, or refuses the text.
     """
+    return _compiled(text, architecture, contract, [])[0]
+
+
+def usage_of(text: str, architecture: str, contract: bool = False) -> dict[str, KernelUsage]:
+    """What each kernel of CUDA C++ takes, by name; arguments and errors as of `compile_cuda`."""
+    # NVRTC from 12.9 on returns what its cache holds without the assembler's words.
+    options = ["--no-cache"] if _version(_library()) >= _FIRST_WITH_CACHE else []
+    log = _compiled(text, architecture, contract, ["--ptxas-options=-v", *options])[1]
+    return {match["name"]: _usage(match["rest"]) for match in _ENTRY.finditer(log)}
+
+
+def _compiled(text: str, architecture: str, contract: bool, more: list[str]) -> tuple[bytes, str]:
+    """A cubin, and the compiler's words."""
     if not _ARCHITECTURE.fullmatch(architecture):
         raise CompileError(
             Problem(
@@ -75,7 +78,7 @@ def compile_cuda(text: str, architecture: str, contract: bool = False) -> Machin
             )
         )
     nvrtc, program = _library(), ctypes.c_void_p()
-    options = [f"-arch={architecture}", "--ptxas-options=-v", f"-fmad={str(contract).lower()}", "-std=c++17"]
+    options = [f"-arch={architecture}", f"-fmad={str(contract).lower()}", "-std=c++17", *more]
     given = (ctypes.c_char_p * len(options))(*(option.encode() for option in options))
     if nvrtc.nvrtcCreateProgram(ctypes.byref(program), text.encode(), b"kernels.cu", 0, None, None):
         raise _failed(architecture, "NVRTC takes no program")
@@ -84,10 +87,9 @@ def compile_cuda(text: str, architecture: str, contract: bool = False) -> Machin
         log = _text(nvrtc, "ProgramLog", program).rstrip(b"\0").decode(errors="replace")
         if failed:
             raise _failed(architecture, "; ".join(log.strip().splitlines()[:_SHOWN]) or f"NVRTC error {failed}")
-        image = _text(nvrtc, "CUBIN", program)
+        return _text(nvrtc, "CUBIN", program), log
     finally:
         nvrtc.nvrtcDestroyProgram(ctypes.byref(program))
-    return MachineCode(image, {match["name"]: _usage(match["rest"]) for match in _ENTRY.finditer(log)})
 
 
 def _usage(text: str) -> KernelUsage:
@@ -110,25 +112,38 @@ def _text(nvrtc: ctypes.CDLL, what: str, program: ctypes.c_void_p) -> bytes:
     return content.raw
 
 
+def _version(nvrtc: ctypes.CDLL) -> tuple[int, int]:
+    major, minor = ctypes.c_int(), ctypes.c_int()
+    nvrtc.nvrtcVersion(ctypes.byref(major), ctypes.byref(minor))
+    return major.value, minor.value
+
+
 @cache
 def _library() -> ctypes.CDLL:
-    """NVRTC as a package of Python's, or of the system."""
-    spec = find_spec("nvidia.cuda_nvrtc") if find_spec("nvidia") else None
-    folders = [Path(place) / "lib" for place in (spec.submodule_search_locations or ())] if spec else []
-    packaged = [str(path) for folder in folders for path in sorted(folder.glob("libnvrtc.so.*"))]
-    for name in (*packaged, "libnvrtc.so.12"):
+    """NVRTC of a package (nvidia-cuda-nvrtc-cu12, or nvidia-cuda-nvrtc of CUDA 13), or of the system."""
+    spec = find_spec("nvidia")
+    places = map(Path, (spec.submodule_search_locations or ()) if spec else ())
+    packaged = [str(path) for place in places for path in sorted(place.glob("*/lib/libnvrtc.so.*"))]
+    for name in (*packaged, *(f"libnvrtc.so.{version}" for version in _VERSIONS)):
         try:
+            _load_builtins(Path(name).parent)
             return ctypes.CDLL(name)
         except OSError:
             continue
     raise CompileError(
         Problem(
             "CUDA: no compiler",
-            "neither the package nvidia-cuda-nvrtc-cu12 nor libnvrtc.so.12",
+            f"no package of NVIDIA that has NVRTC, nor libnvrtc.so of CUDA {' or '.join(map(str, _VERSIONS))}",
             "kernels are compiled by NVRTC, which needs no graphics processor",
             "pip install 'symofros[cuda]'",
         )
     )
+
+
+def _load_builtins(folder: Path) -> None:
+    """Load the library that NVRTC of CUDA 13.0 looks for in the system's places alone, from where NVRTC lies."""
+    for path in folder.glob("libnvrtc-builtins.so.*"):
+        ctypes.CDLL(str(path), ctypes.RTLD_GLOBAL)
 
 
 def _failed(architecture: str, found: str) -> CompileError:
@@ -137,6 +152,6 @@ def _failed(architecture: str, found: str) -> CompileError:
             f"CUDA: the kernels do not compile for {architecture}",
             found,
             "NVRTC compiles generated kernels for each architecture that it knows",
-            "choose another architecture, or install a newer nvidia-cuda-nvrtc-cu12",
+            "choose another architecture, or install a newer NVRTC",
         )
     )

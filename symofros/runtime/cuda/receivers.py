@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from symofros.base.arrays import share_memory
 from symofros.errors import Problem, ShapeError, UnknownNameError, did_you_mean
-from symofros.runtime.cuda.arrays import Placed, Strided, lies_on_device, placed
+from symofros.runtime.cuda.arrays import DeviceArray, Placed, Strided, lies_on_device, placed
 from symofros.runtime.cuda.driver import Driver
 
 Shape = tuple[int, ...]
@@ -47,12 +47,16 @@ def receivers(
         _check_writeable(label, array)
     places = {label: placed(label, array, dtype, driver) for label, array in out.items()}
     batches = {label: strided_result(label, place, shapes[label]) for label, place in places.items()}
-    for label, place in places.items():
+    kind = np.dtype(dtype)
+    others = {other: (read, _bounds(read, kind)) for other, read in inputs.items()} if places else {}
+    for label, place in sorted(places.items()):
         if _overlaps_itself(place):
             raise _shared(label, "with itself: entries of it have one place")
-        for other, read in [*inputs.items(), *((other, at) for other, at in places.items() if other < label)]:
-            if share_memory(_outline(place, dtype), _outline(read, dtype)):
+        start, end = _bounds(place, kind)
+        for other, (array, (other_start, other_end)) in others.items():
+            if start < other_end and other_start < end and share_memory(_outline(place, kind), _outline(array, kind)):
                 raise _shared(label, f"with {other}")
+        others[label] = place, (start, end)
     return batches
 
 
@@ -80,6 +84,8 @@ def strided_result(label: str, array: Placed, shape: Shape) -> Strided:
 
 
 def _check_writeable(label: str, array: Any) -> None:
+    if isinstance(array, DeviceArray):
+        return
     if not lies_on_device(array):
         raise ShapeError(
             Problem(
@@ -107,15 +113,23 @@ def _overlaps_itself(array: Placed) -> bool:
     return False
 
 
-def _outline(array: Placed, dtype: npt.DTypeLike) -> npt.NDArray[Any]:
+def _bounds(array: Placed, dtype: np.dtype[Any]) -> tuple[int, int]:
+    """Addresses of the first byte of an array and of that after its last one."""
+    if 0 in array.shape:
+        return array.address, array.address
+    reaches = [dtype.itemsize * stride * (size - 1) for stride, size in zip(array.strides, array.shape, strict=True)]
+    lowest = array.address + sum(reach for reach in reaches if reach < 0)
+    return lowest, lowest + sum(map(abs, reaches)) + dtype.itemsize
+
+
+def _outline(array: Placed, dtype: np.dtype[Any]) -> npt.NDArray[Any]:
     """An array at addresses of the device, for questions about its layout alone: nothing may read it."""
-    kind = np.dtype(dtype)
-    strides = tuple(kind.itemsize * stride for stride in array.strides)
+    strides = tuple(dtype.itemsize * stride for stride in array.strides)
 
     class _Outline:
         __array_interface__ = {
             "shape": array.shape,
-            "typestr": kind.str,
+            "typestr": dtype.str,
             "data": (array.address, False),
             "strides": strides,
             "version": 3,

@@ -50,9 +50,9 @@ def test_the_header_is_c_and_cpp(package: Path, language: str) -> None:
 
 def test_files_compile_without_any_header(package: Path) -> None:
     pytest.importorskip("nvidia.cuda_nvrtc", reason="the extra cuda is not installed: pip install 'symofros[cuda]'")
-    from symofros.runtime.cuda.nvrtc import compile_cuda
+    from symofros.runtime.cuda.nvrtc import usage_of
 
-    usage = compile_cuda((package / "double_pendulum_single.cu").read_text(), "sm_90").usage
+    usage = usage_of((package / "double_pendulum_single.cu").read_text(), "sm_90")
     assert {"double_pendulum_single_dynamics", "double_pendulum_single_rollout_rk4"} <= set(usage)
     assert all(taken.spill_stores == 0 for taken in usage.values())
 

@@ -15,7 +15,6 @@ from symofros.errors import ShapeError, SymofrosError, UnknownNameError
 from symofros.runtime.cuda import cuda_model
 from symofros.runtime.cuda.cuda_model import CudaModel
 from symofros.runtime.cuda.driver import Driver, driver
-from symofros.runtime.cuda.nvrtc import MachineCode
 from tests.cuda_on_host import on_host
 from tests.models import model
 
@@ -34,12 +33,12 @@ def on_device(device: Driver, tmp_path_factory: pytest.TempPathFactory) -> CudaM
     """The double pendulum, its kernels compiled as C++."""
     folder = tmp_path_factory.mktemp("kernels")
 
-    def compiled(text: str, architecture: str, contract: bool) -> MachineCode:
+    def compiled(text: str, architecture: str, contract: bool) -> bytes:
         assert architecture == "sm_90"
         code = next(code for code in gpu._codes.values() if code.text == text)
         place = folder / code.kernels[0].symbol
         place.mkdir()
-        return MachineCode(str(on_host(code, place)).encode() + b"\0", {})
+        return str(on_host(code, place)).encode() + b"\0"
 
     patch = pytest.MonkeyPatch()
     patch.setattr(cuda_model, "driver", lambda: device)

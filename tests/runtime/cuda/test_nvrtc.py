@@ -12,7 +12,7 @@ from symofros.errors import CompileError
 from symofros.generator.codegen.cuda import device_code
 from symofros.runtime.calls.kernel import Precision
 from symofros.runtime.cuda.device_code import DeviceCode
-from symofros.runtime.cuda.nvrtc import compile_cuda
+from symofros.runtime.cuda.nvrtc import compile_cuda, usage_of
 from tests.exports.cases import system_of
 from tests.models import system
 
@@ -50,7 +50,7 @@ def code(name: str, precision: Precision) -> DeviceCode:
 @pytest.mark.parametrize(("name", "precision"), MOST)
 def test_registers_and_spills_are_those_of_the_table(name: str, precision: Precision, architecture: str) -> None:
     """Spills are zero where the table says so: such a kernel moves nothing but its arrays."""
-    usage = compile_cuda(code(name, precision).text, architecture).usage
+    usage = usage_of(code(name, precision).text, architecture)
     assert set(usage) == {f"{name}_{kernel}" for kernel in MOST[name, precision]}
     for kernel, (registers, spills) in MOST[name, precision].items():
         taken = usage[f"{name}_{kernel}"]
@@ -72,4 +72,4 @@ def test_architectures_are_names_of_compute_capabilities(architecture: str) -> N
 def test_fused_products_are_taken_only_when_asked_for() -> None:
     """Else the kernels round as the C code does."""
     text = 'extern "C" __global__ void k(double *x) { *x = x[1] * x[2] + x[3]; }'
-    assert compile_cuda(text, "sm_90", contract=True).image != compile_cuda(text, "sm_90").image
+    assert compile_cuda(text, "sm_90", contract=True) != compile_cuda(text, "sm_90")

@@ -1,0 +1,138 @@
+"""Kernels beside C, with a driver whose processor is the host; the report with and without a graphics processor."""
+
+from __future__ import annotations
+
+import ctypes
+import json
+import math
+import subprocess
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from symofros.runtime.cuda import cuda_model, figures
+from symofros.runtime.cuda.driver import Driver
+from symofros.runtime.cuda.nvrtc import KernelUsage
+from tests import runtime
+from tests.cuda_on_host import on_host
+from validation.cuda import kernels, measure, record, report, states, warp
+from validation.cuda.record import PEER, KernelRow, PeerRow, Record, RolloutRow
+from validation.cuda.states import Subject
+from validation.reporting.command import Run
+from validation.reporting.markdown import page
+from validation.reporting.plain import plain
+from validation.reporting.provenance import Provenance, stamp
+
+USAGE = KernelUsage(registers=40, stack=16, spill_stores=8, spill_loads=24)
+
+
+@pytest.fixture(scope="module")
+def device(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Driver]:
+    """A driver of the host, whose kernels are C++, and batches small enough for it."""
+    folder = tmp_path_factory.mktemp("driver")
+    library = folder / "libcuda.so.1"
+    source = Path(runtime.__file__).parent / "cuda/driver_on_host.c"
+    subprocess.run(["gcc", "-shared", "-fPIC", source, "-o", library, "-ldl"], check=True)
+    made = Driver(ctypes.CDLL(str(library)))
+    patch = pytest.MonkeyPatch()
+    known: dict[str, Path] = {}
+    code = cuda_model.CudaModel.code
+
+    def seen(self: cuda_model.CudaModel, name: str, frame: str = "") -> object:
+        """Keeps each text, whose library is made when it is loaded."""
+        found = code(self, name, frame)
+        if found.text not in known:
+            place = folder / str(len(known))
+            place.mkdir()
+            known[found.text] = on_host(found, place)
+        return found
+
+    patch.setattr(cuda_model.CudaModel, "code", seen)
+    patch.setattr(cuda_model, "driver", lambda: made)
+    patch.setattr(cuda_model, "compile_cuda", lambda text, *_: str(known[text]).encode() + b"\0")
+    patch.setattr(measure, "present", lambda: made)
+    patch.setattr(measure, "copied", lambda _: 4e12)
+    patch.setattr(measure, "_STATES", 8)
+    patch.setattr(kernels, "usage_of", lambda *_: _Everything())
+    patch.setattr(kernels, "MOTIONS", 16)
+    patch.setattr(kernels, "_REPEATS", 1)
+    patch.setattr(figures, "_STATES", 16)
+    patch.setattr(figures, "_DIFFERENT", 8)
+    for module in (states, kernels):
+        patch.setattr(module, "STEPS", 4)
+    yield made
+    patch.undo()
+
+
+class _Everything(dict[str, KernelUsage]):
+    def __missing__(self, key: str) -> KernelUsage:
+        return USAGE
+
+
+def test_kernels_and_rollouts_are_compared_with_c(device: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(warp, "missing", lambda: f"{PEER}: not here")
+    monkeypatch.setattr(measure, "MODELS", ("planar2R",))
+    monkeypatch.setattr(measure, "FUNCTIONS", ("dynamics", "forward_dynamics"))
+    data = measure.measure(Run(report.TOPIC, Path("nowhere")))
+    assert data["ok"], data
+    assert len(data["kernels"]) == 8 and len(data["rollouts"]) == 4
+    for row in data["kernels"]:
+        assert row["rate"] > 0.0 and row["spilled"] == 32
+        assert 0.0 <= row["error"] < (1e-12 if row["precision"] == "double" else 1e-4)
+    assert all(0.0 <= row["error"] < (1e-12 if row["precision"] == "double" else 1e-4) for row in data["rollouts"])
+    text = shown(data)
+    assert "8 kernels differ from C by at most" in text and "MuJoCo Warp: not here" in text
+
+
+def test_numbers_that_are_not_those_of_c_are_told(device: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A planted fault: C's side gets other inputs."""
+    subject = Subject.of("planar2R", 4)
+    kernel = kernels.kernels_of(subject, ("bias",))[0]
+    monkeypatch.setattr(Subject, "expected", lambda self, function: 1.001 * np.ones((4, 2)))
+    row = kernels.row(kernel, USAGE, device)
+    assert not row.right
+    assert not Record(kernels=[row]).ok
+
+
+@pytest.mark.parametrize("error", [math.nan, 0.0, record.TOLERANCES["double"]])
+def test_rows_are_right_within_the_tolerance_and_where_nothing_was_run(error: float) -> None:
+    assert KernelRow("panda", "bias", "double", False, 1, 0, 0, 8, 1e9, error).right
+
+
+def shown(data: Mapping[str, object]) -> str:
+    data = json.loads(json.dumps({"seconds": 1.0, **stamp(), **data}))
+    return page(report.TOPIC.compose(data), Provenance.of(data), "")
+
+
+def measured(rate: float, error: float = 1e-15) -> Record:
+    rows = [
+        KernelRow("panda", "dynamics", precision, False, 168, 40, 0, size, rate, error)
+        for precision, size in (("double", 680), ("single", 340))
+    ]
+    rollouts = [RolloutRow("panda", "step", "semi_implicit_euler", "single", 1e10, 1e-7)]
+    peers = [PeerRow("panda", "dynamics", 8192, 1e8, 1e-6), PeerRow("panda", "step", 8192, 2e8, 1e-6)]
+    return Record("A processor", "sm_90", 4e12, rows, rollouts, peers)
+
+
+def test_the_report_says_which_goals_are_missed() -> None:
+    some = measured(3e9)
+    text = shown({"ok": some.ok, **plain(some)})
+    assert "| Panda, 7 joints | M + h | single | 5.0e+09 | **missed** 3.00e+09 |" in text
+    assert "| Panda, 7 joints | M + h | double | 2.5e+09 | 3.00e+09 |" in text
+    assert "51%" in text and "26%" in text  # Of 4e12 B/s: 680 B and 340 B at 3e9 states a second.
+    assert "30×" in text and "50×" in text  # Beside the peer: functions by functions, steps by rollouts.
+
+
+def test_numbers_further_from_c_than_is_asked_for_make_the_report_bad() -> None:
+    some = measured(3e9, 1e-3)
+    assert not some.ok
+    assert "**missed** 1.0e-03" in shown({"ok": some.ok, **plain(some)})
+
+
+def test_without_a_processor_the_report_gives_what_kernels_take() -> None:
+    some = measured(math.nan, math.nan)
+    some.device, some.copied, some.rollouts, some.peers, some.absent = "", math.nan, [], [], "MuJoCo Warp: no module"
+    text = shown({"ok": some.ok, **plain(some)})
+    assert "no graphics processor was at hand" in text and "not measured" in text and "168" in text
