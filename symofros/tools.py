@@ -17,6 +17,8 @@ notice. Each name has its reason:
 | fixed_step_loop | the C loop of an integrator, called without the recording around it: timing |
 | Numbers, Precision, Strided, columns | batches as the C functions by vectors take them: timing |
 | Jitter, jitter_of | how late the instants of a run in real time began |
+| CudaModel, DeviceArray, Driver, KernelUsage, compile_cuda, present | kernels and copies on a graphics processor |
+| states_per_second | the rate of a kernel there |
 | write_atomically | files that a reader never sees half written |
 | Visual, visual_mesh, read_motion, Session, Workspace | what viewer and editor read files by, without windows: fuzz |
 """
@@ -62,6 +64,13 @@ from symofros.runtime.calls.kernel import Precision as Precision
 from symofros.runtime.calls.layout import Numbers as Numbers
 from symofros.runtime.calls.layout import Strided as Strided
 from symofros.runtime.calls.layout import columns as columns
+from symofros.runtime.cuda.arrays import DeviceArray as DeviceArray
+from symofros.runtime.cuda.cuda_model import CudaModel as CudaModel
+from symofros.runtime.cuda.driver import Driver as Driver
+from symofros.runtime.cuda.figures import present as present
+from symofros.runtime.cuda.figures import states_per_second as states_per_second
+from symofros.runtime.cuda.nvrtc import KernelUsage as KernelUsage
+from symofros.runtime.cuda.nvrtc import compile_cuda as compile_cuda
 from symofros.runtime.model import Model
 from symofros.simulation.inputs import plan_inputs
 from symofros.simulation.options import SimulationOptions

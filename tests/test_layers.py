@@ -119,8 +119,8 @@ STUDIES = table("""
     pareto:      stability studies timing
     adversary:   accuracy
     mutation:
-    dashboard:   adversary cross_check cuda engines environments campaigns diagrams accuracy timing passes stability studies
-                 pareto mutation
+    dashboard:   adversary cross_check cuda engines environments campaigns diagrams accuracy timing passes stability
+                 studies pareto mutation
 """)
 # The oracle answers for itself: of the harness it knows how joints come apart, nothing else.
 MAY_USE = HARNESS | {name: others | set(HARNESS) for name, others in STUDIES.items()} | {"oracle": {"mechanics"}}

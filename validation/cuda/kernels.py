@@ -10,12 +10,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from symofros.runtime.calls.kernel import Precision
-from symofros.runtime.cuda.arrays import DeviceArray
-from symofros.runtime.cuda.cuda_model import CudaModel
-from symofros.runtime.cuda.driver import Driver
-from symofros.runtime.cuda.figures import states_per_second
-from symofros.runtime.cuda.nvrtc import KernelUsage, compile_cuda, usage_of
+from symofros.tools import (
+    CudaModel,
+    DeviceArray,
+    Driver,
+    KernelUsage,
+    Precision,
+    compile_cuda,
+    states_per_second,
+)
 from validation.cuda.record import KernelRow, RolloutRow
 from validation.cuda.states import STEP, STEPS, Subject
 from validation.mechanics.geometry import Array
@@ -51,6 +54,11 @@ class Kernel:
     gpu: CudaModel
 
     @property
+    def symbol(self) -> str:
+        """Name of the kernel."""
+        return self.gpu.code(self.function).kernels[0].symbol
+
+    @property
     def title(self) -> str:
         """In words, for progress."""
         fused = ", fused" if self.gpu.contract else ""
@@ -65,13 +73,14 @@ def kernels_of(subject: Subject, functions: Sequence[str]) -> list[Kernel]:
 
 def usages(kernels: Sequence[Kernel], architecture: str, threads: int) -> Iterator[KernelUsage]:
     """What each kernel takes; they are compiled side by side."""
-    texts = [(kernel.gpu.code(kernel.function).text, kernel.gpu.contract) for kernel in kernels]
+    for kernel in kernels:  # The generator is not for threads; NVRTC is.
+        kernel.gpu.code(kernel.function)
 
-    def usage(kernel: Kernel, text: str, fused: bool) -> KernelUsage:
-        return usage_of(text, architecture, fused)[kernel.gpu.code(kernel.function).kernels[0].symbol]
+    def usage(kernel: Kernel) -> KernelUsage:
+        return kernel.gpu.usage(kernel.function, architecture=architecture)[kernel.symbol]
 
     with ThreadPoolExecutor(threads) as pool:
-        yield from pool.map(lambda job: usage(job[0], *job[1]), zip(kernels, texts, strict=True))
+        yield from pool.map(usage, kernels)
 
 
 def row(kernel: Kernel, usage: KernelUsage, device: Driver | None) -> KernelRow:

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 import symofros as sf
-from symofros.runtime.cuda.figures import present
+from symofros.tools import present
 from validation.cuda import warp
 from validation.cuda.kernels import copied, kernels_of, rollout_rows, row, usages
 from validation.cuda.record import PEER, Record
@@ -72,8 +72,9 @@ def measure(
     labels = known(models, MODELS, "--model", "model")
     if quick:
         labels = labels[:1]
-    run.writes = run.asked or not models
     device = present()
+    # Without a graphics processor the report of a machine that has one stays.
+    run.writes = run.asked or (device is not None and not models)
     record = Record(absent=warp.missing())
     record.architecture = device.architecture if device else _ARCHITECTURE
     if device is not None:

@@ -216,7 +216,7 @@ def _paint(record: Record, shown: list[KernelRow], functions: list[str], axes: A
     def series(kept: Callable[[KernelRow], bool], value: Callable[[KernelRow], float]) -> list[tuple[float, float]]:
         return [(value(row), line[row.function]) for row in shown if kept(row) and not row.fused]
 
-    curves = {
+    curves: dict[str, list[tuple[float, float]]] = {
         "double": series(lambda row: row.precision == "double", lambda row: row.rate),
         "double: bound by the memory": series(
             lambda row: row.precision == "double", lambda row: record.copied / row.moved

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from symofros.runtime.manifold import retract
+from validation.mechanics.assembly import assemble
 from validation.mechanics.geometry import Array
+from validation.procedures.scene import Manifold
 from validation.timing.models import TIMED_MODELS
 from validation.timing.task import flat
 
@@ -44,7 +45,8 @@ class Subject:
         model = sf.compile(system)
         rng = np.random.default_rng(24)
         v, u, a = (rng.uniform(-1.0, 1.0, (states, size)) for size in (model.nv, model.nu, model.nv))
-        q = retract(model.record.segments, model.neutral(), rng.uniform(-1.0, 1.0, (states, model.nv)))
+        manifold, neutral = Manifold.of(assemble(system)), model.neutral()
+        q = np.array([manifold.retract(neutral, theta) for theta in rng.uniform(-1.0, 1.0, (states, model.nv))])
         return cls(label, system, model, q, v, u, a)
 
     def inputs(self, function: str) -> dict[str, Any]:

@@ -28,8 +28,8 @@ otherwise use? Each row is one race: the same seeded states for all sides, each 
 (called from Python, arrays in and out), then timed in turn on one processor by the clock. Times are the least of
 {turns}, of a state; in brackets the median over the turns of a side's time over ours: where it is above 1×, ours is the
 faster. Native C has no framework around it: what it is faster by is what the framework costs."""
-_ELSEWHERE = """C, Python, MEX, FMU: [timing](timing.html) and [exports](exports.html). CUDA needs a graphics processor:
-`symofros kernels MODEL --bandwidth` gives registers, spills and the bound by the memory."""
+_ELSEWHERE = """C, Python, MEX, FMU: [timing](timing.html) and [exports](exports.html). CUDA, beside
+MuJoCo Warp: [graphics processor](cuda.html)."""
 _DIFFERENCES = f"""Largest difference from native C over the states, relative to a state's largest entry; at most
 {TOLERANCE:.0e} is asked for, as solving M amplifies rounding. 0 is bit for bit."""
 

@@ -242,3 +242,13 @@ def test_without_a_driver_the_error_says_so() -> None:
             driver()
     else:
         pytest.skip("this machine has a driver")
+
+
+def test_inputs_that_are_left_out_are_copied_once(on_device: CudaModel, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A copy from the host would wait for every batch that was started before."""
+    q, v = OnDevice(np.zeros((3, 2))), OnDevice(np.zeros((3, 2)))
+    on_device.evaluate("forward_dynamics", q=q, v=v)
+    copies = []
+    monkeypatch.setattr(Driver, "write", lambda *arguments: copies.append(arguments))
+    on_device.evaluate("forward_dynamics", q=q, v=v, wait=False)
+    assert not copies

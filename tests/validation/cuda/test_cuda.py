@@ -55,7 +55,7 @@ def device(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Driver]:
     patch.setattr(measure, "present", lambda: made)
     patch.setattr(measure, "copied", lambda _: 4e12)
     patch.setattr(measure, "_STATES", 8)
-    patch.setattr(kernels, "usage_of", lambda *_: _Everything())
+    patch.setattr(cuda_model, "usage_of", lambda *_: _Everything())
     patch.setattr(kernels, "MOTIONS", 16)
     patch.setattr(kernels, "_REPEATS", 1)
     patch.setattr(figures, "_STATES", 16)
