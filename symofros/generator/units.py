@@ -10,6 +10,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from symofros.base.options import Options
 from symofros.description.values import as_value
 from symofros.errors import CompileError
@@ -51,7 +53,7 @@ class UnitCompiler:
     ) -> None:
         self._programs, self._record, self._options, self._toolchain = programs, record, options, toolchain
         # Dataclasses print every field, so that this states all that a text depends on besides the request.
-        self._recipe = repr((programs.tree.system, options))
+        self._recipe = repr((programs.tree.system, options, np.__version__))
         # Units may be asked for by several threads: C compilers run beside each other, graphs are formed in turn.
         self._generating = threading.Lock()
 

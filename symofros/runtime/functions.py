@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any, Self
 
 import numpy as np
@@ -16,6 +17,7 @@ from symofros.runtime.beams import ElasticBeam
 from symofros.runtime.calls.bound import into, receivers
 from symofros.runtime.calls.kernel import Array, BatchOptions, Kernel, Numbers, Precision, Unit
 from symofros.runtime.calls.layout import by_columns, flat, states
+from symofros.runtime.calls.library import CompiledKernel
 from symofros.runtime.calls.single import SingleCall, SingleCalls, single_call
 from symofros.runtime.cuda.device_code import DeviceCode
 from symofros.runtime.record import ModelRecord
@@ -156,6 +158,11 @@ class Functions(Arguments):
     def has(self, name: str) -> bool:
         """Whether a function of the whole model can be called: `Options.functions` may have left it out."""
         return self._build is not None or (name, "") in self._kernels
+
+    @property
+    def libraries(self) -> frozenset[Path]:
+        """The shared libraries of the functions made so far; none of those that are interpreted."""
+        return frozenset(kernel.library for kernel in self._kernels.values() if isinstance(kernel, CompiledKernel))
 
     def _kernel(self, name: str, frame: str, rule: str) -> Kernel:
         """A function whose name a user gave, of a frame that exists."""
