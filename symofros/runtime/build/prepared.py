@@ -95,7 +95,7 @@ def note_prepared(
 
 def _file_name(description: Path, request: str, toolchain: Toolchain) -> str:
     # Files that are included lie in the folder by which the description is opened, or below.
-    place = os.path.join(os.path.realpath(description.parent), description.name)
+    place = os.path.realpath(description.parent), description.name, os.path.realpath(description)
     recipe = repr(("description", place, request, sys.version, *map(_installation, _PACKAGES)))
     return f"{cache_key(toolchain, None, '', recipe, CODE_IDENTITY)}.known"
 
