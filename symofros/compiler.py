@@ -187,7 +187,12 @@ class Compilation:
     def _units(self, toolchain: Toolchain | None) -> UnitCompiler:
         return UnitCompiler(self.programs, self.record, self.options, toolchain)
 
-    def _model(self, units: UnitCompiler, on_demand: Callable[[Sequence[Key]], Unit] | None, *made: Unit) -> Model:
+    def _model(
+        self,
+        units: UnitCompiler,
+        on_demand: Callable[[Sequence[Key], Callable[[], None] | None], Unit] | None,
+        *made: Unit,
+    ) -> Model:
         return Model(
             self.record,
             on_demand,

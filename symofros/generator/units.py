@@ -57,11 +57,16 @@ class UnitCompiler:
         # Units may be asked for by several threads: C compilers run beside each other, graphs are formed in turn.
         self._generating = threading.Lock()
 
-    def functions(self, keys: Sequence[Key]) -> Unit:
-        """A unit of the model's functions."""
+    def functions(self, keys: Sequence[Key], meanwhile: Callable[[], None] | None = None) -> Unit:
+        """A unit of the model's functions.
+
+        Args:
+            keys: The functions.
+            meanwhile: Called as a C compiler starts to work: begins what else has to be done before the first call.
+        """
         requests = tuple(Request(*key) for key in keys)
         names = ", ".join(f"{name}({frame})" if frame else name for name, frame in keys)
-        return self._unit(requests, names, lambda: self._programs.program(requests))
+        return self._unit(requests, names, lambda: self._programs.program(requests), meanwhile)
 
     def by_vectors(self, keys: Sequence[Key], functions: Collection[str]) -> Unit:
         """A unit of some functions of a program that evaluates several states at a time.
@@ -122,14 +127,16 @@ class UnitCompiler:
         """C that chooses among kinds of processors, where a library is for several."""
         return dispatch_source(self.symbol) if self._options.processors == "any" else ""
 
-    def _unit(self, request: object, names: str, form: Callable[[], Program]) -> Unit:
+    def _unit(
+        self, request: object, names: str, form: Callable[[], Program], meanwhile: Callable[[], None] | None = None
+    ) -> Unit:
         """The unit of a request, of functions of some names; its program is formed only where no library is known."""
         program = cache(form)
         if self._toolchain is None:
             with self._generating:
                 return InterpretedUnit(program())
         in_lanes = self._in_lanes(request, program) if self._options.batch == "vector" else None
-        return self._compile((request, "one by one"), names, program, self._toolchain, None, in_lanes)
+        return self._compile((request, "one by one"), names, program, self._toolchain, None, in_lanes, meanwhile)
 
     def _compile(
         self,
@@ -139,6 +146,7 @@ class UnitCompiler:
         toolchain: Toolchain,
         lanes: LaneOptions | None,
         in_lanes: Callable[[Key, LaneOptions], CompiledKernel | None] | None = None,
+        meanwhile: Callable[[], None] | None = None,
     ) -> CompiledUnit:
         progress = Progress(self._record.name, names)
 
@@ -149,6 +157,8 @@ class UnitCompiler:
                 packs = self._packs(build) if lanes is None else "none"
                 text = model_source(program(), self._record, GENERATOR, lanes, packs=packs)
             progress.begin("compiling")
+            if meanwhile is not None:
+                meanwhile()
             return text
 
         def recall_one(build: Build) -> Path:

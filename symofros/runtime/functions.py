@@ -15,6 +15,7 @@ from symofros.runtime.arguments import Arguments
 from symofros.runtime.arguments import ArrayLike as ArrayLike
 from symofros.runtime.beams import ElasticBeam
 from symofros.runtime.calls.bound import into, receivers
+from symofros.runtime.calls.extension import begin
 from symofros.runtime.calls.kernel import Array, BatchOptions, Kernel, Numbers, Precision, Unit
 from symofros.runtime.calls.layout import by_columns, flat, states
 from symofros.runtime.calls.library import CompiledKernel
@@ -46,7 +47,8 @@ class Functions(Arguments):
 
     Args:
         record: Sizes, names, defaults.
-        build: Generates and compiles functions by key; None where all there is has been built.
+        build: Generates and compiles functions by key, and calls what it is given as a C compiler starts to work; None
+            where all there is has been built.
         units: Functions built already.
         par: Values of the run-time parameters; None for the defaults.
         formulas: Generates and compiles a user's formulas.
@@ -61,7 +63,7 @@ class Functions(Arguments):
     def __init__(
         self,
         record: ModelRecord,
-        build: Callable[[tuple[Key, ...]], Unit] | None,
+        build: Callable[[tuple[Key, ...], Callable[[], None] | None], Unit] | None,
         units: tuple[Unit, ...] = (),
         par: Array | None = None,
         formulas: Callable[[tuple[Any, ...], bool], Unit] | None = None,
@@ -253,7 +255,7 @@ class Functions(Arguments):
         key = (name, frame) if frame else name
         calls = self._single_calls  # As they are before: a better call may be there before this one is made.
         if key not in calls.prepared:
-            kernel = self._kernels.get((name, frame)) or self._make(name, frame)
+            kernel = self._kernels.get((name, frame)) or self._make(name, frame, begin)
             default = np.array(self.record.u_default)
             calls.prepared[key] = single_call(kernel, self._par, default, self._forget_single_calls)
         return calls.prepared[key]
@@ -320,7 +322,7 @@ class Functions(Arguments):
             self._prepared[key] = kernel.prepare(self._par.reshape(1, -1))
         return self._prepared[key]
 
-    def _make(self, name: str, frame: str) -> Kernel:
+    def _make(self, name: str, frame: str, meanwhile: Callable[[], None] | None = None) -> Kernel:
         if self._build is None:
             what = f"{name} of frame '{frame}'" if frame else name
             raise SymofrosError(
@@ -332,5 +334,5 @@ class Functions(Arguments):
                 )
             )
         together = ((name, frame),) if frame else tuple((other, "") for other in generated_with(name, self.nc > 0))
-        self._kernels.update(self._build(together).kernels)
+        self._kernels.update(self._build(together, meanwhile).kernels)
         return self._kernels[name, frame]

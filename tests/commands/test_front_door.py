@@ -43,8 +43,9 @@ GENERATOR = "symofros.compiler symofros.generator symofros.mechanics.dynamics sy
 # Typer would load pydantic for the arguments alone.
 READERS = "sympy ruamel.yaml pydantic importlib.metadata"
 WITHOUT = {
-    "compile": f"{GENERATOR} {READERS} numpy rich _cffi_backend symofros.description symofros.loading symofros.mechanics"
-    " symofros.expr symofros.base.options symofros.base.arguments symofros.runtime.calls symofros.runtime.model",
+    "compile": f"{GENERATOR} {READERS} numpy rich _cffi_backend symofros.description symofros.loading"
+    " symofros.mechanics symofros.expr symofros.base.options symofros.base.arguments symofros.runtime.calls"
+    " symofros.runtime.model",
     "info": f"{GENERATOR} {READERS} _cffi_backend symofros.runtime.build symofros.runtime.model symofros.simulation"
     " symofros.blocks symofros.diagrams.diagram symofros.studio",
 }
