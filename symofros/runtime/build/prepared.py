@@ -102,10 +102,10 @@ def _file_name(description: Path, request: str, toolchain: Toolchain) -> str:
 
 def _installation(package: str) -> str:
     """Which installation of a package this is: where its first file lies, and when it was put there."""
-    spec = find_spec(package)
-    file = str(spec and spec.origin)
     try:
+        spec = find_spec(package)
+        file = str(spec and spec.origin)
         status = os.stat(file)
-    except OSError:  # Packages are not always files.
-        return file
+    except (ImportError, OSError):  # Whatever needs it says that it is not there; and packages are not always files.
+        return package
     return f"{file} {status.st_size} {status.st_mtime_ns} {status.st_ctime_ns}"
