@@ -128,6 +128,24 @@ def test_a_link_to_another_description_is_followed(compiling: Compiling, tmp_pat
         assert compiling.read == read
 
 
+def test_a_folder_that_is_known_by_another_path_is_looked_at_itself(compiling: Compiling, tmp_path: Path) -> None:
+    """The path by which it was known leads to the same file as before; the folder's own link leads elsewhere."""
+    for mass in (1, 2):
+        (tmp_path / f"{mass}.urdf").write_text(URDF.format(mass=mass))
+    for folder in ("first", "second"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "robot.urdf").symlink_to(tmp_path / "1.urdf")
+    way = tmp_path / "way"
+    way.symlink_to("first")
+    compiling(way / "robot.urdf")
+    way.unlink()
+    way.symlink_to("second")
+    (tmp_path / "first/robot.urdf").unlink()
+    (tmp_path / "first/robot.urdf").symlink_to(tmp_path / "2.urdf")
+    compiling(tmp_path / "first/robot.urdf")
+    assert compiling.read == 2
+
+
 def test_another_request_is_no_known_one(compiling: Compiling, tmp_path: Path) -> None:
     robot = tmp_path / "robot.urdf"
     robot.write_text(URDF.format(mass=1))
