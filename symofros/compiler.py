@@ -17,7 +17,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from functools import cache, cached_property, partial
 from pathlib import Path
 
@@ -167,7 +167,8 @@ class Compilation:
     def model(self) -> Model:
         """The functions that the options name, callable; where they name none, each is generated when first called."""
         chosen = self.requests  # A description that can't be a mechanism is refused here, not at the first call.
-        _warn_inconsistent(self.system)
+        for text in inconsistencies(self.system):
+            warnings.warn(text, InconsistentModelWarning, stacklevel=3)
         units = self._units(_choose_toolchain(self.options))
         if self.options.functions is None:
             return self._model(units, units.functions)
@@ -186,7 +187,12 @@ class Compilation:
     def _units(self, toolchain: Toolchain | None) -> UnitCompiler:
         return UnitCompiler(self.programs, self.record, self.options, toolchain)
 
-    def _model(self, units: UnitCompiler, on_demand: Callable[[Sequence[Key]], Unit] | None, *made: Unit) -> Model:
+    def _model(
+        self,
+        units: UnitCompiler,
+        on_demand: Callable[[Sequence[Key], Callable[[], None] | None], Unit] | None,
+        *made: Unit,
+    ) -> Model:
         return Model(
             self.record,
             on_demand,
@@ -208,27 +214,23 @@ class Compilation:
         return units.library(self.requests, lanes), units.symbol
 
 
-def _warn_inconsistent(system: System) -> None:
-    """Warn of beams that soften when they spin, as they lack what would stiffen them, and of inertia that is unused."""
+def inconsistencies(system: System) -> Iterator[str]:
+    """What is warned of: beams that soften when they spin, as they lack what would stiffen them; unused inertia."""
     beams = [body for body in system.bodies if isinstance(body, Beam)]
     if not beams:
         return
     numbers = Numbers(system)
     for body in beams:
         for label, mode, share in omitted_rotary_inertia(body, numbers):
-            warnings.warn(
+            yield (
                 f"beam '{body.name}': {label} is stated and does not count, as rotary_inertia is false: it would lower"
-                f" the frequency of bending mode {mode} by {share:.1%}. Set rotary_inertia: true, or state no {label}.",
-                InconsistentModelWarning,
-                stacklevel=4,
+                f" the frequency of bending mode {mode} by {share:.1%}. Set rotary_inertia: true, or state no {label}."
             )
         if not body.foreshortening and body.retain == "first_order" and body.modes:
-            warnings.warn(
+            yield (
                 f"beam '{body.name}': first order without foreshortening keeps the softening of a spinning beam and"
                 " drops its stiffening: it diverges at its first natural frequency. For studies only; otherwise turn"
-                " foreshortening on, or use retain: zeroth_order.",
-                InconsistentModelWarning,
-                stacklevel=4,
+                " foreshortening on, or use retain: zeroth_order."
             )
 
 

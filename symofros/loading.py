@@ -10,6 +10,7 @@ from pathlib import Path
 
 from symofros.base.arguments import checked
 from symofros.base.atomic import write_atomically
+from symofros.base.sources import Source
 from symofros.description.reading import MODEL_SUFFIXES, USD_SUFFIXES, YAML_SUFFIXES, Reading, in_order
 from symofros.description.remarks import note
 from symofros.description.system import WAIVERS, System
@@ -51,6 +52,22 @@ def load(
     Raises:
         DescriptionError: With every problem of the file and of the mechanism it describes.
     """
+    return load_with_sources(path, floating_base, snap_tol, waive, mimic, arguments)[0]
+
+
+def load_with_sources(
+    path: str | os.PathLike[str],
+    floating_base: bool = False,
+    snap_tol: float = SNAP_TOL,
+    waive: Collection[str] = (),
+    mimic: bool = False,
+    arguments: Mapping[str, str] | None = None,
+) -> tuple[System, tuple[Source, ...]]:
+    """The system of `load`, and all files that it was made of; none where a package reads them, which does not tell.
+
+    Raises:
+        DescriptionError: As for `load`.
+    """
     file = Path(path)
     reading = _waived(_read(file, floating_base, snap_tol, mimic, arguments or {}), waive)
     problems = find_problems(reading.system, reading.broken) if reading.system is not None else []
@@ -58,7 +75,7 @@ def load(
         raise DescriptionError(in_order([*reading.problems, *problems]))
     system = reading.system
     units = [f"{problem.what}: {problem.found}; {problem.rule}" for problem in unit_problems(system)]
-    return replace(system, notes=(*system.notes, *units)) if units else system
+    return replace(system, notes=(*system.notes, *units)) if units else system, reading.sources
 
 
 def _waived(reading: Reading, waive: Collection[str]) -> Reading:

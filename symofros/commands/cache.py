@@ -9,7 +9,8 @@ from typing import Annotated
 import typer
 
 import symofros as sf
-from symofros.commands.shared import AsJson, out, refuse
+from symofros.commands.shared import AsJson, refuse
+from symofros.commands.terminal import out
 from symofros.runtime.build.cache import cache_folder
 from symofros.runtime.build.cache_size import LIMIT_VARIABLE, Entry, entries, limit, prune
 

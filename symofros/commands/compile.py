@@ -9,14 +9,11 @@ from typing import Annotated, Any
 
 import typer
 
-import symofros as sf
-from symofros.base.atomic import write_atomically
 from symofros.base.functions import DEFAULT_FUNCTIONS
-from symofros.commands.shared import AsJson, Floating, ModelPath, load, out, refuse
-from symofros.compiler import Compilation
-from symofros.generator.codegen.names import identifier
-from symofros.generator.passes.count import count_program
-from symofros.native import native_text
+from symofros.commands.shared import AsJson, Floating, ModelPath
+from symofros.errors import SymofrosError
+from symofros.runtime.build.prepared import recall_prepared
+from symofros.runtime.build.toolchain import find_toolchain
 
 
 def compile_command(
@@ -36,38 +33,35 @@ def compile_command(
     as_json: AsJson = False,
 ) -> None:
     """Generate and compile a model; it is then in the cache."""
-    system = load(model, floating_base)
     names = tuple(functions.split(",")) if functions else DEFAULT_FUNCTIONS
-    compilation = Compilation(system, sf.Options(names, tuple(frames.split(",")) if frames else None))
+    request = repr((floating_base, functions, frames))
     start = time.perf_counter()
-    try:
-        if functions or frames:
-            compilation.model()
-        else:
-            sf.compile(system).prepare(*names)
-        done = time.perf_counter()
-        text = compilation.source() if output is not None else ""
-    except sf.SymofrosError as error:
-        raise refuse(error) from None
-    result: dict[str, Any] = {"name": system.name, "functions": names, "seconds": done - start}
-    if output is not None:
-        output.mkdir(parents=True, exist_ok=True)
-        name = identifier(system.name)
-        write_atomically(output / f"{name}.c", text)
-        write_atomically(output / "symofros_model.h", native_text("model/symofros_model.h"))
-        counts = count_program(compilation.program)
-        result["operations"] = sum(count.total for key, count in counts.items() if key[0] != "init")
-        result["bytes"] = len(text)
-        result["files"] = [str(output / f"{name}.c"), str(output / "symofros_model.h")]
+    name = _known_name(model, request) if output is None else None
+    result: dict[str, Any] = {"name": name, "functions": names, "seconds": time.perf_counter() - start}
+    if name is None:
+        # The generator is loaded where there is something to generate: that takes longer than all above.
+        from symofros.commands.compilation import compile_description
+
+        chosen = names if functions or frames else None
+        result |= compile_description(model, floating_base, chosen, frames, request, output)
     if as_json:
         print(json.dumps(result, indent=1))
         return
-    out.print(
-        f"{system.name}: {len(names)} function{'s' * (len(names) != 1)} generated and compiled, or found in the cache,"
-        f" in {result['seconds']:.2f} s",
-        markup=False,
+    typer.echo(
+        f"{result['name']}: {len(names)} function{'s' * (len(names) != 1)} generated and compiled, or found in the"
+        f" cache, in {result['seconds']:.2f} s"
     )
     if output is not None:
-        out.print(f"{result['operations']} operations, {len(text) / 1024:.0f} KiB of C", markup=False)
+        typer.echo(f"{result['operations']} operations, {result['bytes'] / 1024:.0f} KiB of C")
     for file in result.get("files", ()):
-        out.print(f"wrote {file}", markup=False)
+        typer.echo(f"wrote {file}")
+
+
+def _known_name(model: Path, request: str) -> str | None:
+    """Name of the system of a description whose libraries are all in the cache; None where that is not known."""
+    try:
+        toolchain = find_toolchain()
+        known = recall_prepared(model, request, toolchain) if toolchain is not None else None
+    except SymofrosError:  # It is reported where the compiler is needed, after what is wrong with the description.
+        return None
+    return None if known is None else known.name

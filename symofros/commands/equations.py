@@ -7,7 +7,8 @@ from typing import Annotated
 import typer
 
 import symofros as sf
-from symofros.commands.shared import Floating, ModelPath, err, load, refuse
+from symofros.commands.shared import Floating, ModelPath, load, refuse
+from symofros.commands.terminal import err
 
 
 def equations(

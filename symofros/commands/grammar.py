@@ -6,6 +6,7 @@ import difflib
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 import typer
@@ -17,6 +18,8 @@ from symofros.errors import Problem, SymofrosError
 _UsageError: Any = typer.BadParameter.__base__
 _GIVEN = "symofros.arguments"
 BAD_INPUT = 2
+# What Typer lets a parameter state of the value beside its type.
+_RULES_OF_VALUES = ("parser", "envvar", "exists", "writable", "resolve_path", "allow_dash", "path_type")
 # Characters of a command's first sentence in a list, which is wrapped; Click cuts it to what a line holds.
 _SUMMARY = 300
 
@@ -27,8 +30,15 @@ class Group(TyperGroup):
     def parse_args(self, ctx: Any, args: list[str]) -> Any:
         """Options before the command."""
         ctx.meta.setdefault(_GIVEN, tuple(args))  # Shared with the contexts below.
+        _take_as_written(self, ctx)
         with _refusing():
             return super().parse_args(ctx, args)
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """The command that arguments begin with."""
+        name, command, rest = super().resolve_command(ctx, args)
+        _take_as_written(command, ctx)
+        return name, command, rest
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
         """The list of all commands in the help, each with its whole first sentence."""
@@ -51,6 +61,31 @@ class Group(TyperGroup):
 def program(cls: type[Group] = Group, **settings: Any) -> typer.Typer:
     """A program whose help is plain text: markup would read units, "[s]", as styles, and state "<bool>" of flags."""
     return typer.Typer(cls=cls, rich_markup_mode=None, **settings)
+
+
+class _AsWritten:
+    """What Typer asks to convert a parameter's value: flags and texts stay as they are, paths are made of texts."""
+
+    def __init__(self, kind: type) -> None:
+        self._kind = kind
+
+    def coerce(self, value: Any, param: Any, ctx: Any) -> Any:
+        """The value; None where there is none."""
+        return None if value is None else self._kind(value)
+
+
+def _take_as_written(command: Any, context: Any) -> None:
+    """Let a command's flags, texts and paths be taken as they are written.
+
+    Typer would convert them by pydantic, whose import takes longer than all else that `symofros compile` does where a
+    model is in the cache. It still converts parameters of other types, those that state more of their values, and all
+    where a version of it keeps its converters elsewhere.
+    """
+    for param in command.get_params(context):
+        descriptor = getattr(param, "type_descriptor", None)
+        kind, stated = getattr(descriptor, "annotation", None), getattr(descriptor, "parameter_info", None)
+        if kind in (bool, str, Path) and not any(getattr(stated, rule, None) for rule in _RULES_OF_VALUES):
+            param._runtime_param = _AsWritten(kind)
 
 
 @contextmanager

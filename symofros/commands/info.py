@@ -12,7 +12,8 @@ from rich.tree import Tree
 import symofros as sf
 from symofros.base.functions import DEFAULT_FRAME_FUNCTIONS, DEFAULT_FUNCTIONS
 from symofros.commands.details import details, frames_line, tables
-from symofros.commands.shared import AsJson, FilePath, Floating, Network, load, out, refuse
+from symofros.commands.shared import AsJson, FilePath, Floating, Network, load, refuse
+from symofros.commands.terminal import out
 from symofros.diagrams.files.kind import is_diagram
 from symofros.mechanics.topology.tree import BASE, SpanningTree, build_tree
 

@@ -11,7 +11,8 @@ from rich.table import Table
 
 import symofros as sf
 from symofros.base.functions import FUNCTIONS
-from symofros.commands.shared import AsJson, Floating, ModelPath, load, names_of, out, refuse
+from symofros.commands.shared import AsJson, Floating, ModelPath, load, names_of, refuse
+from symofros.commands.terminal import out
 from symofros.runtime.cuda.figures import KernelFigures, figures_of, present
 
 _CAPTION = (

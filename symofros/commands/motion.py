@@ -18,15 +18,14 @@ from symofros.commands.shared import (
     Floating,
     Network,
     assignments,
-    err,
     load,
     names_of,
     numbers,
-    out,
     refuse,
     shown,
-    stated_state,
 )
+from symofros.commands.states import stated_state
+from symofros.commands.terminal import err, out
 from symofros.compiler import compile_system
 from symofros.description.system import System
 from symofros.diagrams.files import command as diagrams

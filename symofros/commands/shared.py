@@ -1,22 +1,21 @@
-"""What all commands share: where they write, how they read and refuse their input."""
+"""What all commands share: how they read and refuse their input.
+
+A command that finds all it was asked for in the cache imports this: NumPy and Rich are loaded by those that need them.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
-import numpy as np
 import typer
-from rich.console import Console
 
 import symofros as sf
-from symofros.description.system import System
-from symofros.errors import did_you_mean
-from symofros.runtime.calls.kernel import Array
 
-out = Console()
-err = Console(stderr=True)
+if TYPE_CHECKING:
+    from symofros.description.system import System
 
 ModelPath = Annotated[Path, typer.Argument(help="A model: .yaml, .urdf, .sdf, .xml (MJCF) or .usd", show_default=False)]
 FilePath = Annotated[Path, typer.Argument(help="A model, or a diagram's .yaml.", show_default=False)]
@@ -28,12 +27,18 @@ BAD_INPUT = 2
 
 def load(path: Path, floating_base: bool) -> System:
     """Read a model; problems are reported, all at once, and end the command."""
-    try:
+    with refusing_descriptions(path):
         return sf.load(path, floating_base=floating_base)
+
+
+@contextmanager
+def refusing_descriptions(path: Path) -> Iterator[None]:
+    """Problems of a description that is read here are reported, all at once, and end the command."""
+    try:
+        yield
     except sf.DescriptionError as error:
         count = len(error.problems)
-        err.print(str(error), markup=False, highlight=False, soft_wrap=True)
-        err.print(f"{path.name}: {count} problem{'s' * (count > 1)}", markup=False, highlight=False, soft_wrap=True)
+        _complain(str(error), f"{path.name}: {count} problem{'s' * (count > 1)}")
         raise typer.Exit(BAD_INPUT) from None
 
 
@@ -42,8 +47,15 @@ def refuse(error: Exception) -> typer.Exit:
     if isinstance(error, OSError) and error.filename is not None:
         what, rule = f"'{error.filename}' can't be used", "files and folders are there, and open to whoever runs this"
         error = sf.SymofrosError(sf.Problem(what, error.strerror or str(error), rule, "check the path, and its rights"))
-    err.print(str(error), markup=False, highlight=False, soft_wrap=True)
+    _complain(str(error))
     return typer.Exit(BAD_INPUT)
+
+
+def _complain(*lines: str) -> None:
+    from symofros.commands.terminal import err  # Rich takes as long as a warm start: only what needs it loads it.
+
+    for line in lines:
+        err.print(line, markup=False, highlight=False, soft_wrap=True)
 
 
 def assignments(given: list[str], what: str) -> dict[str, str]:
@@ -71,32 +83,6 @@ def numbers(name: str, text: str) -> float | list[float]:
     """One number, or some between commas."""
     parts = text.strip("[]").split(",")
     return number(name, parts[0]) if len(parts) == 1 else [number(name, part) for part in parts]
-
-
-def stated_state(model: sf.Model, given: Mapping[str, str]) -> tuple[sf.Model, Array, Array]:
-    """The model at its stated run-time parameters, and the neutral state (nq), (nv) with what is stated of it.
-
-    A name of a coordinate or a speed comes before that of a parameter; another one is reported, and ends the command.
-    """
-    stated = {name: number(name, text) for name, text in given.items()}
-    states = (*model.names.q, *model.names.v)
-    parameters = {name: value for name, value in stated.items() if name in model.names.par and name not in states}
-    model = model.with_parameters(**parameters)
-    q, v = model.neutral(), np.zeros(model.nv)
-    for name in stated.keys() - parameters.keys():
-        if name in model.names.q:
-            q[model.names.q.index(name)] = stated[name]
-        elif name.removeprefix("d") in model.names.v:
-            v[model.names.v.index(name.removeprefix("d"))] = stated[name]
-        elif name in model.names.v:
-            v[model.names.v.index(name)] = stated[name]
-        else:
-            known = (*model.names.q, *(f"d{speed}" for speed in model.names.v), *model.names.par)
-            missing = f"--set: no coordinate, speed or run-time parameter '{name}'"
-            listed = ", ".join(known[:12]) + (", …" if len(known) > 12 else "")
-            rule = "--set gives first coordinates, speeds (dNAME) and run-time parameters"
-            raise refuse(sf.UnknownNameError(sf.Problem(missing, listed, rule, did_you_mean(name, known))))
-    return model, q, v
 
 
 def shown(value: float) -> str:

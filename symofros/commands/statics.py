@@ -9,19 +9,9 @@ import typer
 from rich.table import Table
 
 import symofros as sf
-from symofros.commands.shared import (
-    AsJson,
-    Floating,
-    ModelPath,
-    assignments,
-    err,
-    load,
-    number,
-    out,
-    refuse,
-    shown,
-    stated_state,
-)
+from symofros.commands.shared import AsJson, Floating, ModelPath, assignments, load, number, refuse, shown
+from symofros.commands.states import stated_state
+from symofros.commands.terminal import err, out
 from symofros.compiler import compile_system
 from symofros.runtime.beams import BEAM_LIMIT
 from symofros.simulation.analysis.equilibrium import Equilibrium

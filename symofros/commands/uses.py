@@ -9,18 +9,8 @@ from typing import Annotated, Any, cast
 import typer
 
 import symofros as sf
-from symofros.commands.shared import (
-    AsJson,
-    FilePath,
-    Floating,
-    ModelPath,
-    assignments,
-    load,
-    names_of,
-    number,
-    out,
-    refuse,
-)
+from symofros.commands.shared import AsJson, FilePath, Floating, ModelPath, assignments, load, names_of, number, refuse
+from symofros.commands.terminal import out
 from symofros.diagrams.files.kind import is_diagram
 from symofros.exports.exporting import TARGETS
 from symofros.studio.advice.report import table_of

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
+from symofros.base.sources import Source
 from symofros.description.system import System
 from symofros.errors import ArgumentError, DescriptionError, Problem
 
@@ -25,11 +26,13 @@ class Reading:
         system: System as read, faulty parts left out; None if there is nothing to go on with.
         problems: Every fault of the file.
         broken: Names that the file states but that could not be read; later checks don't report references to them.
+        sources: All files that the system was made of; empty where a package reads them, which does not tell.
     """
 
     system: System | None
     problems: tuple[Problem, ...] = ()
     broken: frozenset[str] = frozenset()
+    sources: tuple[Source, ...] = ()
 
 
 def in_order(problems: Iterable[Problem]) -> tuple[Problem, ...]:

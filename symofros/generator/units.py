@@ -10,6 +10,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from symofros.base.options import Options
 from symofros.description.values import as_value
 from symofros.errors import CompileError
@@ -51,15 +53,20 @@ class UnitCompiler:
     ) -> None:
         self._programs, self._record, self._options, self._toolchain = programs, record, options, toolchain
         # Dataclasses print every field, so that this states all that a text depends on besides the request.
-        self._recipe = repr((programs.tree.system, options))
+        self._recipe = repr((programs.tree.system, options, np.__version__))
         # Units may be asked for by several threads: C compilers run beside each other, graphs are formed in turn.
         self._generating = threading.Lock()
 
-    def functions(self, keys: Sequence[Key]) -> Unit:
-        """A unit of the model's functions."""
+    def functions(self, keys: Sequence[Key], meanwhile: Callable[[], None] | None = None) -> Unit:
+        """A unit of the model's functions.
+
+        Args:
+            keys: The functions.
+            meanwhile: Called as a C compiler starts to work: begins what else has to be done before the first call.
+        """
         requests = tuple(Request(*key) for key in keys)
         names = ", ".join(f"{name}({frame})" if frame else name for name, frame in keys)
-        return self._unit(requests, names, lambda: self._programs.program(requests))
+        return self._unit(requests, names, lambda: self._programs.program(requests), meanwhile)
 
     def by_vectors(self, keys: Sequence[Key], functions: Collection[str]) -> Unit:
         """A unit of some functions of a program that evaluates several states at a time.
@@ -120,14 +127,16 @@ class UnitCompiler:
         """C that chooses among kinds of processors, where a library is for several."""
         return dispatch_source(self.symbol) if self._options.processors == "any" else ""
 
-    def _unit(self, request: object, names: str, form: Callable[[], Program]) -> Unit:
+    def _unit(
+        self, request: object, names: str, form: Callable[[], Program], meanwhile: Callable[[], None] | None = None
+    ) -> Unit:
         """The unit of a request, of functions of some names; its program is formed only where no library is known."""
         program = cache(form)
         if self._toolchain is None:
             with self._generating:
                 return InterpretedUnit(program())
         in_lanes = self._in_lanes(request, program) if self._options.batch == "vector" else None
-        return self._compile((request, "one by one"), names, program, self._toolchain, None, in_lanes)
+        return self._compile((request, "one by one"), names, program, self._toolchain, None, in_lanes, meanwhile)
 
     def _compile(
         self,
@@ -137,6 +146,7 @@ class UnitCompiler:
         toolchain: Toolchain,
         lanes: LaneOptions | None,
         in_lanes: Callable[[Key, LaneOptions], CompiledKernel | None] | None = None,
+        meanwhile: Callable[[], None] | None = None,
     ) -> CompiledUnit:
         progress = Progress(self._record.name, names)
 
@@ -147,6 +157,8 @@ class UnitCompiler:
                 packs = self._packs(build) if lanes is None else "none"
                 text = model_source(program(), self._record, GENERATOR, lanes, packs=packs)
             progress.begin("compiling")
+            if meanwhile is not None:
+                meanwhile()
             return text
 
         def recall_one(build: Build) -> Path:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any, Self
 
 import numpy as np
@@ -14,8 +15,10 @@ from symofros.runtime.arguments import Arguments
 from symofros.runtime.arguments import ArrayLike as ArrayLike
 from symofros.runtime.beams import ElasticBeam
 from symofros.runtime.calls.bound import into, receivers
+from symofros.runtime.calls.extension import begin
 from symofros.runtime.calls.kernel import Array, BatchOptions, Kernel, Numbers, Precision, Unit
 from symofros.runtime.calls.layout import by_columns, flat, states
+from symofros.runtime.calls.library import CompiledKernel
 from symofros.runtime.calls.single import SingleCall, SingleCalls, single_call
 from symofros.runtime.cuda.device_code import DeviceCode
 from symofros.runtime.record import ModelRecord
@@ -44,7 +47,8 @@ class Functions(Arguments):
 
     Args:
         record: Sizes, names, defaults.
-        build: Generates and compiles functions by key; None where all there is has been built.
+        build: Generates and compiles functions by key, and calls what it is given as a C compiler starts to work; None
+            where all there is has been built.
         units: Functions built already.
         par: Values of the run-time parameters; None for the defaults.
         formulas: Generates and compiles a user's formulas.
@@ -59,7 +63,7 @@ class Functions(Arguments):
     def __init__(
         self,
         record: ModelRecord,
-        build: Callable[[tuple[Key, ...]], Unit] | None,
+        build: Callable[[tuple[Key, ...], Callable[[], None] | None], Unit] | None,
         units: tuple[Unit, ...] = (),
         par: Array | None = None,
         formulas: Callable[[tuple[Any, ...], bool], Unit] | None = None,
@@ -157,6 +161,11 @@ class Functions(Arguments):
         """Whether a function of the whole model can be called: `Options.functions` may have left it out."""
         return self._build is not None or (name, "") in self._kernels
 
+    @property
+    def libraries(self) -> frozenset[Path]:
+        """The shared libraries of the functions made so far; none of those that are interpreted."""
+        return frozenset(kernel.library for kernel in self._kernels.values() if isinstance(kernel, CompiledKernel))
+
     def _kernel(self, name: str, frame: str, rule: str) -> Kernel:
         """A function whose name a user gave, of a frame that exists."""
         known = FRAME_FUNCTIONS if frame else MODEL_FUNCTIONS
@@ -246,7 +255,7 @@ class Functions(Arguments):
         key = (name, frame) if frame else name
         calls = self._single_calls  # As they are before: a better call may be there before this one is made.
         if key not in calls.prepared:
-            kernel = self._kernels.get((name, frame)) or self._make(name, frame)
+            kernel = self._kernels.get((name, frame)) or self._make(name, frame, begin)
             default = np.array(self.record.u_default)
             calls.prepared[key] = single_call(kernel, self._par, default, self._forget_single_calls)
         return calls.prepared[key]
@@ -313,7 +322,7 @@ class Functions(Arguments):
             self._prepared[key] = kernel.prepare(self._par.reshape(1, -1))
         return self._prepared[key]
 
-    def _make(self, name: str, frame: str) -> Kernel:
+    def _make(self, name: str, frame: str, meanwhile: Callable[[], None] | None = None) -> Kernel:
         if self._build is None:
             what = f"{name} of frame '{frame}'" if frame else name
             raise SymofrosError(
@@ -325,5 +334,5 @@ class Functions(Arguments):
                 )
             )
         together = ((name, frame),) if frame else tuple((other, "") for other in generated_with(name, self.nc > 0))
-        self._kernels.update(self._build(together).kernels)
+        self._kernels.update(self._build(together, meanwhile).kernels)
         return self._kernels[name, frame]

@@ -21,9 +21,9 @@ def made(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[tuple[Sequence
     units: list[tuple[Sequence[Any], str]] = []
     original = UnitCompiler.functions
 
-    def noted(self: UnitCompiler, keys: Sequence[Any]) -> Any:
+    def noted(self: UnitCompiler, keys: Sequence[Any], *meanwhile: Any) -> Any:
         units.append((keys, threading.current_thread().name))
-        return original(self, keys)
+        return original(self, keys, *meanwhile)
 
     monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path))
     monkeypatch.setattr(UnitCompiler, "functions", noted)

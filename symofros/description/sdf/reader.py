@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
+from symofros.base.sources import Source
 from symofros.description.constraints import Closure
 from symofros.description.forces import Load
 from symofros.description.frames import Frame
@@ -60,14 +61,16 @@ def read_sdf(path: str | os.PathLike[str], *, snap_tol: float) -> Reading:
     file = os.fspath(path)
     values = SdfValues(file, snap_tol)
     try:
-        root = parse_xml(read_bytes(Path(path), MAX_BYTES), file)
+        content = read_bytes(Path(path), MAX_BYTES)
+        root = parse_xml(content, file)
         world = _world(root, values)
         system = _Importer(Path(path), values, world).system() if world is not None else None
     except XmlFault as error:
         return Reading(None, (error.problem,))
     except DescriptionError as error:
         return Reading(None, error.problems)
-    return Reading(None if values.problems else system, in_order(values.problems))
+    sources = (Source.of(Path(path), content),)
+    return Reading(None if values.problems else system, in_order(values.problems), sources=sources)
 
 
 def _world(root: Element, values: SdfValues) -> Element | None:

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from symofros.base.sources import Source
 from symofros.description.constraints import Coupling, mimicry
 from symofros.description.joints.joint import WORLD, Joint
 from symofros.description.joints.joint_kinds import KINDS
@@ -60,7 +61,8 @@ def read_urdf(
     check_snap_tol(snap_tol)
     file = os.fspath(path) if text is None else f"{os.fspath(path)} (expanded)"
     try:
-        root = parse_xml(read_bytes(Path(path), MAX_BYTES) if text is None else text, file)
+        content = read_bytes(Path(path), MAX_BYTES) if text is None else text
+        root = parse_xml(content, file)
     except XmlFault as error:
         return Reading(None, (error.problem,))
     except DescriptionError as error:
@@ -75,9 +77,10 @@ def read_urdf(
         )
         return Reading(None, (problem,))
     try:
-        return _Importer(Path(path), Values(file, snap_tol), root, floating_base, mimic).reading()
+        reading = _Importer(Path(path), Values(file, snap_tol), root, floating_base, mimic).reading()
     except DescriptionError as error:
         return Reading(None, error.problems)
+    return replace(reading, sources=(Source.of(Path(path), content),)) if text is None else reading
 
 
 @dataclass

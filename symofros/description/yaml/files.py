@@ -10,6 +10,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from symofros.base.sources import Source
 from symofros.description.constraints import Constraint, Coupling
 from symofros.description.forces import Connection, Potential, VirtualPower
 from symofros.description.reading import YAML_SUFFIXES, in_order, kind_of, read_bytes, refuse_size, resolved
@@ -86,6 +87,8 @@ class _Merger:
     bytes_left: int = field(default_factory=lambda: MAX_BYTES)
     unwritten: dict[Path, bytes] = field(default_factory=dict)
     composed: tuple[Node, list[Problem]] | None = None
+    sources: list[Source] = field(default_factory=list)
+    paths: dict[Path, Path] = field(default_factory=dict)
 
     def reading(self, default_name: str) -> Reading:
         problems, broken = tuple(self.problems), frozenset(self.broken)
@@ -104,7 +107,14 @@ class _Merger:
             tuple(self.constraints),
             origin=self.origin,
         )
-        return Reading(system, problems, broken)
+        return Reading(system, problems, broken, self.all_sources())
+
+    def all_sources(self) -> tuple[Source, ...]:
+        """The files, by each path that includes state: links among them may lead elsewhere another time."""
+        if self.unwritten:
+            return ()
+        by_file = {source.file: source for source in self.sources}
+        return (self.sources[0], *(by_file[str(to)]._replace(path=str(path)) for path, to in self.paths.items()))
 
     def add(self, path: Path, shown: str, including: tuple[Path, ...]) -> None:
         """Read one file, after the files it includes."""
@@ -141,6 +151,7 @@ class _Merger:
         data = self.unwritten.get(resolved(path))
         if data is None:
             data = read_bytes(path, self.bytes_left)
+            self.sources.append(Source.of(path, data))
         refuse_size(path, data, self.bytes_left)
         self.bytes_left -= len(data)
         return data
@@ -148,7 +159,8 @@ class _Merger:
     def include(self, text: str, path: Path, shown: str, here: tuple[Path, ...], where: str) -> None:
         """Follow one include, if it is allowed; a file that is included twice counts once."""
         try:
-            target = resolved(resolved(path).parent / text)
+            stated = resolved(path).parent / text
+            target = resolved(stated)
             problem = self.refusal(text, target, here)
         except (OSError, ValueError) as error:  # A NUL character, or a loop of links.
             problem = Problem(
@@ -157,7 +169,9 @@ class _Merger:
         if problem:
             self.problems.append(Problem(problem.what, problem.found, problem.rule, problem.remedy, where))
             self.incomplete = True
-        elif target not in self.seen:
+            return
+        self.paths[stated] = target
+        if target not in self.seen:
             self.add(target, os.path.normpath(Path(shown).parent / text), here)
 
     def refusal(self, text: str, target: Path, here: tuple[Path, ...]) -> Problem | None:

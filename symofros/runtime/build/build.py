@@ -16,8 +16,6 @@ import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
-import numpy as np
-
 from symofros.base.atomic import write_atomically
 from symofros.runtime.build.cache import cache_folder, create_cache_folder, install, is_intact, unusable
 from symofros.runtime.build.identity import CODE_IDENTITY
@@ -60,7 +58,7 @@ def recall_library(
         CompileError: As for `build_library`.
     """
     folder = cache_folder()
-    known = folder / f"{_key(toolchain, flags, dispatch, recipe, CODE_IDENTITY, np.__version__, header)}.known"
+    known = folder / f"{cache_key(toolchain, flags, dispatch, recipe, CODE_IDENTITY, header)}.known"
     try:
         library = folder / Path(known.read_text(encoding="utf-8")).name
         if is_intact(library):
@@ -72,7 +70,15 @@ def recall_library(
     return library
 
 
-def _key(toolchain: Toolchain, flags: Sequence[str] | None, dispatch: str, *parts: str) -> str:
+def cache_key(toolchain: Toolchain, flags: Sequence[str] | None, dispatch: str, *parts: str) -> str:
+    """Name, without its suffix, of what some texts lead to with a compiler, its flags and this processor.
+
+    Args:
+        toolchain: The compiler.
+        flags: Flags in place of the default ones.
+        dispatch: C text that chooses among kinds of processors; none: for this machine's alone.
+        parts: The texts.
+    """
     suited = platform.machine() if dispatch else cpu_identity()
     stated = [*parts, dispatch, *_chosen(toolchain, flags, dispatch), *SHARED_FLAGS, toolchain.identity, suited]
     return hashlib.sha256("\0".join(stated).encode()).hexdigest()[:32]
@@ -107,7 +113,7 @@ def build_library(
     Raises:
         CompileError: The compiler failed, with its command and messages; or the cache folder can't be used.
     """
-    key, chosen = _key(toolchain, flags, dispatch, source, header), _chosen(toolchain, flags, dispatch)
+    key, chosen = cache_key(toolchain, flags, dispatch, source, header), _chosen(toolchain, flags, dispatch)
     folder = cache_folder()
     library = folder / f"{key}{_SUFFIX}"
     if is_intact(library):

@@ -8,6 +8,7 @@ from __future__ import annotations
 import hashlib
 import re
 import tempfile
+import threading
 from collections.abc import Mapping
 from contextlib import suppress
 from functools import cache
@@ -22,15 +23,22 @@ from symofros.native import HEADERS, native_number, native_text
 from symofros.runtime.build.cache import cache_folder, create_cache_folder, install, is_intact
 
 _CDEF = re.compile(r"/\* cdef begin.*?\*/(?P<declarations>.*?)/\* cdef end \*/", re.DOTALL)
+# A second interface, of a thread that asks at the same time, would have types of its own.
+_ONE = threading.Lock()
 _ENUMS = ("sym_status", "sym_method", "sym_segment_kind")
 
 
-@cache
 def interface() -> Any:
     """The cffi interface of all headers, shared by models and the integrator so that their types are the same.
 
     Headers are parsed once a machine: what cffi makes of them is kept in the folder of compiled models.
     """
+    with _ONE:
+        return _interface()
+
+
+@cache
+def _interface() -> Any:
     declared = []
     for name in HEADERS:
         match = _CDEF.search(native_text(name))

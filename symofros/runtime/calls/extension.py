@@ -25,6 +25,7 @@ from symofros.errors import CompileError
 from symofros.native import native_text
 from symofros.runtime.build.build import build_library
 from symofros.runtime.build.toolchain import DEFAULT_FLAGS, find_toolchain
+from symofros.runtime.calls.declarations import interface
 
 LOGGER = logging.getLogger("symofros")
 _NAME = "symofros_call"
@@ -44,12 +45,18 @@ def call_type(when_there: Callable[[], None]) -> Any:
     if _over.is_set():
         return load()
     _waiting.append(weakref.WeakMethod(when_there))
-    if next(_begun) == 0:
-        # The process waits for it at its end: a script that is over sooner would never have it.
-        threading.Thread(target=_load_behind, name=_NAME).start()
-    elif _over.is_set():
+    begin()
+    if _over.is_set():
         _tell()
     return None
+
+
+def begin() -> None:
+    """Begin what plain calls need, by other threads, unless that has begun: the type, and the declarations of C."""
+    if next(_begun) == 0:
+        threading.Thread(target=interface).start()
+        # The process waits for it at its end: a script that is over sooner would never have it.
+        threading.Thread(target=_load_behind, name=_NAME).start()
 
 
 def _load_behind() -> None:

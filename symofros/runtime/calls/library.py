@@ -56,6 +56,7 @@ class CompiledUnit:
         in_lanes: Callable[[tuple[str, str], LaneOptions], CompiledKernel | None] | None = None,
     ) -> None:
         self.in_lanes = in_lanes
+        self.path = path
         self.ffi = interface()
         self.nowhere = self.ffi.cast("char *", 0)
         try:
@@ -144,6 +145,11 @@ class CompiledKernel:
     def function(self) -> Any:
         """Pointer to the sym_function, for calls from C. The library stays loaded as long as this object lives."""
         return self._unit.ffi.addressof(self._function)
+
+    @property
+    def library(self) -> Path:
+        """The shared library that it lies in."""
+        return self._unit.path
 
     @property
     def address(self) -> int:

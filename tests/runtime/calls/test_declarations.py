@@ -3,14 +3,19 @@
 import re
 import subprocess
 import sys
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
+from functools import cache
 from pathlib import Path
 
 import pytest
 
 from symofros.native import native_text
+from symofros.runtime.calls import declarations
 from symofros.runtime.calls.declarations import constants, interface
 
-interface_anew = interface.__wrapped__
+interface_anew = declarations._interface.__wrapped__
 STRUCTS = ("sym_model", "sym_function", "sym_lanes", "sym_strided")
 
 
@@ -48,6 +53,24 @@ def test_constants_are_those_of_the_headers() -> None:
     stated = re.findall(r"\b(SYM_\w+) *= *(-?\d+)", "".join(enums))
     assert len(stated) > 2
     assert {name: constants()[name] for name, _ in stated} == {name: int(value) for name, value in stated}
+
+
+def test_threads_that_ask_at_the_same_time_have_one_interface(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two would have types of their own, and pointers of one are refused by the other."""
+    started = threading.Event()
+    made: list[object] = []
+
+    def slowly() -> object:
+        started.set()
+        time.sleep(0.05)
+        made.append(object())
+        return made[-1]
+
+    monkeypatch.setattr(declarations, "_interface", cache(slowly))
+    with ThreadPoolExecutor(2) as pool:
+        first = pool.submit(interface)
+        assert started.wait(60.0)
+        assert interface() is first.result() and len(made) == 1
 
 
 WARM = """

@@ -18,10 +18,11 @@ import pytest
 import symofros as sf
 from symofros.base.functions import FUNCTIONS
 from symofros.native import native_number
+from symofros.runtime.build import build
 from symofros.runtime.calls import extension
 from symofros.runtime.calls.binding import callable_from_c
 from symofros.runtime.calls.single import SingleCall, single_call
-from tests.models import model
+from tests.models import MODELS, model
 
 Array = np.ndarray
 
@@ -147,6 +148,28 @@ def test_numbers_may_lie_anywhere(forward: SingleCall, m: sf.Model) -> None:
         found = forward(given | {"q": q})
         assert found is not None
         assert all(np.array_equal(x, y) for x, y in zip(found, expected, strict=True))
+
+
+def test_what_plain_calls_need_is_begun_as_the_c_compiler_starts(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Not of models that are interpreted, compiled ahead of their calls, or known."""
+    events: list[str] = []
+
+    def call_compiler(*arguments: Any) -> None:
+        events.append("compiler")
+        original(*arguments)
+
+    original = build.call_compiler
+    monkeypatch.setattr(build, "call_compiler", call_compiler)
+    monkeypatch.setattr("symofros.runtime.functions.begin", lambda: events.append("begun"))
+    monkeypatch.setattr("symofros.runtime.calls.single.call_type", lambda _: None)
+    monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path))
+    for options in (sf.Options(), sf.Options(backend="interpreter"), sf.Options()):
+        pendulum = sf.compile(MODELS["pendulum"], options)
+        pendulum.prepare("potential_energy")
+        pendulum.mass_matrix(pendulum.neutral())
+    assert events == ["compiler", "begun", "compiler"]
 
 
 def test_its_arguments_are_checked(call_type: Any, m: sf.Model) -> None:

@@ -1,0 +1,38 @@
+"""The state that a command starts from: neutral, but for what its options state by name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+import symofros as sf
+from symofros.commands.shared import number, refuse
+from symofros.errors import did_you_mean
+from symofros.runtime.calls.kernel import Array
+
+
+def stated_state(model: sf.Model, given: Mapping[str, str]) -> tuple[sf.Model, Array, Array]:
+    """The model at its stated run-time parameters, and the neutral state (nq), (nv) with what is stated of it.
+
+    A name of a coordinate or a speed comes before that of a parameter; another one is reported, and ends the command.
+    """
+    stated = {name: number(name, text) for name, text in given.items()}
+    states = (*model.names.q, *model.names.v)
+    parameters = {name: value for name, value in stated.items() if name in model.names.par and name not in states}
+    model = model.with_parameters(**parameters)
+    q, v = model.neutral(), np.zeros(model.nv)
+    for name in stated.keys() - parameters.keys():
+        if name in model.names.q:
+            q[model.names.q.index(name)] = stated[name]
+        elif name.removeprefix("d") in model.names.v:
+            v[model.names.v.index(name.removeprefix("d"))] = stated[name]
+        elif name in model.names.v:
+            v[model.names.v.index(name)] = stated[name]
+        else:
+            known = (*model.names.q, *(f"d{speed}" for speed in model.names.v), *model.names.par)
+            missing = f"--set: no coordinate, speed or run-time parameter '{name}'"
+            listed = ", ".join(known[:12]) + (", …" if len(known) > 12 else "")
+            rule = "--set gives first coordinates, speeds (dNAME) and run-time parameters"
+            raise refuse(sf.UnknownNameError(sf.Problem(missing, listed, rule, did_you_mean(name, known))))
+    return model, q, v
