@@ -130,13 +130,12 @@ def _same(row: KernelRow | RolloutRow, peer: PeerRow) -> bool:
 
 
 def _sections(record: Record) -> Iterable[Section]:
-    kernels = (_NONE,) if not record.device else ()
-    figures = (_figure(record),) if record.device else ()
-    yield Section("Kernels", (*kernels, _kernel_table(record), *figures), "kernels")
-    if record.rollouts:
-        yield Section("Rollouts", (_ROLLOUTS, _rollout_table(record.rollouts)), "rollouts")
     beside = (_PEER, _peer_table(record)) if record.peers else (Text(record.absent or _NONE, "soft"),)
     yield Section(f"Beside {PEER}", beside, "warp")
+    if record.rollouts:
+        yield Section("Rollouts", (_ROLLOUTS, _rollout_table(record.rollouts)), "rollouts")
+    first = _figure(record) if record.device else _NONE
+    yield Section("Kernels", (first, _kernel_table(record)), "kernels")
 
 
 def _share(row: KernelRow, copied: float) -> str:
