@@ -121,8 +121,8 @@ def _shapes(writer: StatementWriter, statements: Sequence[Statement]) -> tuple[l
     """A number for the text of each statement without its leaves, and the leaves; equal texts have equal numbers."""
     known: dict[object, int] = {}
     shapes, leaves = [], []
+    marked, mentioned = writer.marked()
     for statement in statements:
-        marked, mentioned = writer.marked()
         shape: object
         if statement.vector is not None or any(key < 0 for key in statement.reads):
             shape = statement  # Vectors stay out of loops.
@@ -134,7 +134,8 @@ def _shapes(writer: StatementWriter, statements: Sequence[Statement]) -> tuple[l
             shape = tuple(map(marked.operation, statement.nodes))
         stores = tuple(map(marked.store, statement.stores)) if statement.vector is None else ()
         shapes.append(known.setdefault((shape, stores), len(known)))
-        leaves.append(mentioned)
+        leaves.append(mentioned.copy())
+        mentioned.clear()
     return shapes, leaves
 
 
