@@ -1,8 +1,8 @@
 """Statements that repeat -> loops: what a function does to one member of a row of equal members, it does to each.
 
-The statements of equal parts of a mechanism follow each other with equal texts, but for what they read and write: entries
-of arrays, variables, numbers. A run of them is written once, in a loop over the parts; their order stays, so every
-value is computed by the same operations from the same operands (docs/theory/code.md, section 9).
+The statements of equal parts of a mechanism follow each other with equal texts, but for what they read and write:
+entries of arrays, variables, numbers. A run of them is written once, in a loop over the parts; their order stays, so
+every value is computed by the same operations from the same operands (docs/theory/code.md, section 9).
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ FEWEST, LEAST_SPARED = 6, 24
 # All loops of a function spare so many, and at least this share of all: where little repeats, loops only cut straight
 # code in pieces (M of a chain of 52 joints, of which a tenth was spared, took 15 % longer).
 LEAST_IN_ALL, LEAST_SHARE = 200, 0.5
-# Statements of a loop's body at most, those that a repetition is recognised by, and the places where it is looked for.
+# Statements of a body at most, statements that a repetition is recognised by, places where it is looked for.
 _LONGEST, SEED, _PLACES = 400, 4, 16
 _MARK = re.compile("@(\\w+)")
 
@@ -259,7 +259,11 @@ class _Tables:
             count: Number of iterations.
         """
         lines = []
-        for name, kind, rows in (("at", "int", [*self._indices]), ("number", "double", [*self._numbers])):
+        tables: tuple[tuple[str, str, Sequence[tuple[float, ...]]], ...] = (
+            ("at", "int", [*self._indices]),
+            ("number", "double", [*self._numbers]),
+        )
+        for name, kind, rows in tables:
             if rows:
                 values = ", ".join(f"{{{', '.join(map(repr, row))}}}" for row in rows)
                 lines.append(f"    static const {kind} {name}[{len(rows)}][{count}] = {{{values}}};")

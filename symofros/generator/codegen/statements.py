@@ -25,7 +25,7 @@ _MAX_INLINE = 8
 # Angles evaluated at once: the doubles of the widest vectors.
 WIDEST = 8
 _TRIGONOMETRIC = frozenset(("sin", "cos"))
-# What a text mentions: a number, (NUMBER, value); a variable, (VARIABLE, node); or an entry of an array, (array, index).
+# What a text mentions: a number, (NUMBER, value); a variable, (VARIABLE, node); an entry of an array, (array, index).
 NUMBER, VARIABLE = "number", "variable"
 Leaf = tuple[str, float]
 
