@@ -216,8 +216,8 @@ def loop_lines(
         body += _filled(defining(statement, marked), remaining)
         for key in statement.keys:
             if key in slots:
-                place = loop.keys[0].index(key)
-                body.append(f"work[{tables.index([slots[keys[place]] for keys in loop.keys])}] = {writer.name(key)};")
+                own = loop.keys[0].index(key)
+                body.append(f"work[{tables.index([slots[keys[own]] for keys in loop.keys])}] = {writer.name(key)};")
         body += _filled(storing(statement, marked), remaining)
     count = len(loop.iterations)
     lines = ["{", *tables.lines(count), "    int i;", f"    for (i = 0; i < {count}; ++i) {{"]

@@ -112,7 +112,8 @@ class StatementWriter:
     def marked(self) -> tuple[StatementWriter, list[Leaf]]:
         """A writer whose texts have "@KIND" for each leaf, and the list that receives the leaves in the same order."""
         writer = copy(self)
-        writer._mentions = mentions = []
+        mentions: list[Leaf] = []
+        writer._mentions = mentions
         return writer, mentions
 
     def _choose_inlined(self, nodes: Sequence[int], stores: Sequence[Store]) -> set[int]:
