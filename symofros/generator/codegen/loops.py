@@ -19,7 +19,7 @@ from symofros.generator.codegen.statements import NUMBER, VARIABLE, Leaf, Statem
 # A loop has this many iterations at least, and spares so many variables.
 FEWEST, LEAST_SPARED = 6, 24
 # All loops of a function spare so many, and at least this share of all: where little repeats, loops only cut straight
-# code in pieces (M of a chain of 52 joints, of which a tenth was spared, took 15 % longer).
+# code in pieces (M of a chain of 52 joints, of which 2 % was spared, took 15 % longer).
 LEAST_IN_ALL, LEAST_SHARE = 200, 0.5
 # Statements of a body at most, statements that a repetition is recognised by, places where it is looked for.
 _LONGEST, SEED, _PLACES = 400, 4, 16
