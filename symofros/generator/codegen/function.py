@@ -8,10 +8,12 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import accumulate, groupby
 
 from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.packs.pack import WIDTH
 from symofros.expr.program import Output, Program
+from symofros.generator.codegen.loops import Item, Loop, loop_lines, with_loops
 from symofros.generator.codegen.packs import Store, runs_of_lanes, vector_lines, vector_name
 from symofros.generator.codegen.statements import Statement, StatementWriter
 from symofros.generator.codegen.trigonometry import block_lines
@@ -44,20 +46,20 @@ class FunctionText:
 
 @dataclass(frozen=True)
 class _Chunks:
-    """Statements in chunks.
+    """Statements and loops in chunks.
 
     Attributes:
-        chunks: Statements of each chunk.
-        slots: Index in `work` of each variable that crosses from one chunk into another.
+        chunks: Statements and loops of each chunk.
+        slots: Index in `work` of each variable that crosses from one chunk into another, or the border of a loop.
         work: Doubles of scratch that the slots take.
     """
 
-    chunks: list[list[Statement]]
+    chunks: list[list[Item]]
     slots: dict[int, int]
     work: int
 
     @staticmethod
-    def of(chunks: list[list[Statement]]) -> _Chunks:
+    def of(chunks: list[list[Item]]) -> _Chunks:
         """The chunks, with slots for what crosses between them."""
         slots = _allocate(chunks)
         return _Chunks(chunks, slots, max((slot + _doubles(key) for key, slot in slots.items()), default=0))
@@ -96,18 +98,18 @@ class FunctionWriter:
         self.writer = StatementWriter(program.graph, needed_nodes(program.graph, edges, pre), pre, stores, packs)
         self.pack_gain = self.writer.pack_gain
         self.statements = self.writer.statements()
-        self.chunked = _Chunks.of(_chunks(self.statements) or [[]])
 
     def text(self) -> FunctionText:
         """The C text for one state: chunk functions, then the function that unpacks pointers and calls them."""
-        parts = [self._chunk(i) for i in range(len(self.chunked.chunks))]
+        chunked = _Chunks.of(_chunks(with_loops(self.writer, self.statements)) or [[]])
+        parts = [self._chunk(i, chunked) for i in range(len(chunked.chunks))]
         body = [f"    const double *restrict {name} = in[{i}];" for i, name in enumerate(self.inputs)]
         body += [f"    double *restrict {output.name} = out[{i}];" for i, output in enumerate(self.outputs)]
         body += [line for output in self.outputs for line in self._clear(output)]
         arguments = ", ".join([*self.inputs, *(output.name for output in self.outputs), "work"])
-        body += [f"    {self.c_name}_{i}({arguments});" for i in range(len(self.chunked.chunks))]
+        body += [f"    {self.c_name}_{i}({arguments});" for i in range(len(parts))]
         head = f"static void {self.c_name}(const double *const *in, double *const *out, double *restrict work) {{"
-        return FunctionText("\n".join([*parts, head, *body, "}"]), self.chunked.work)
+        return FunctionText("\n".join([*parts, head, *body, "}"]), chunked.work)
 
     def text_on_vectors(self, lanes: LaneOptions) -> FunctionText:
         """The C text for several states, one in each lane of a vector; of a writer without packs.
@@ -135,8 +137,9 @@ class FunctionWriter:
         That function takes `pre`, then an address and a step of each array; of a writer without packs.
         """
         writer = self.writer.in_lanes(precision == "single")
-        parts = [self._chunk_in_lanes(i, self.chunked, writer) for i in range(len(self.chunked.chunks))]
-        work = self.chunked.work
+        chunked = _Chunks.of(_chunks(self.statements) or [[]])
+        parts = [self._chunk_in_lanes(i, chunked, writer) for i in range(len(chunked.chunks))]
+        work = chunked.work
         pre, *inputs = self.inputs
         names = [*inputs, *(output.name for output in self.outputs)]
         arguments = [pre, *(f"{name}_at, {name}_step" for name in names), "work" if work else "NULL"]
@@ -166,14 +169,14 @@ class FunctionWriter:
             return [f"    memset({output.name}, 0, {len(output.edges)} * sizeof *{output.name});"]
         return [f"    {output.name}[{i}] = 0.0;" for i in zeros]
 
-    def _chunk(self, index: int) -> str:
-        lines, used = self._body(index, self.chunked, self.writer, "double")
+    def _chunk(self, index: int, chunked: _Chunks) -> str:
+        lines, used = self._body(index, chunked, self.writer, "double")
         names = [*self.inputs, *(output.name for output in self.outputs), "work"]
         lines = [f"    (void){name};" for name in names if name not in used] + lines
         arguments = [f"const double *restrict {name}" for name in self.inputs]
         arguments += [f"double *restrict {output.name}" for output in self.outputs] + ["double *restrict work"]
         # A single chunk may be inlined into its caller; several must stay apart.
-        kind = "static SYM_NOINLINE" if len(self.chunked.chunks) > 1 else "static"
+        kind = "static SYM_NOINLINE" if len(chunked.chunks) > 1 else "static"
         return "\n".join([f"{kind} void {self.c_name}_{index}({', '.join(arguments)}) {{", *lines, "}"])
 
     def _chunk_in_lanes(self, index: int, chunked: _Chunks, writer: StatementWriter, more: Sequence[str] = ()) -> str:
@@ -193,12 +196,19 @@ class FunctionWriter:
         self, index: int, chunked: _Chunks, writer: StatementWriter, real: str, more: Sequence[str] = ()
     ) -> tuple[list[str], set[str]]:
         """Lines of a chunk, and of `more` behind them, and the arrays that they mention."""
-        statements = chunked.chunks[index]
-        local = {key for statement in statements for key in statement.keys}
-        crossing = dict.fromkeys(n for statement in statements for n in statement.reads if n not in local)
+        items = chunked.chunks[index]
+        looped = {key for item in items if isinstance(item, Loop) for keys in item.keys for key in keys}
+        local = looped.union(key for item in items if isinstance(item, Statement) for key in item.keys)
+        crossing = dict.fromkeys(key for item in items for key in item.reads if key not in local)
         lines = [self._load(key, chunked.slots[key], writer, real) for key in crossing]
-        for statement in statements:
-            lines += self._lines(statement, chunked.slots, writer, real)
+        for item in items:
+            # What a loop has computed is read back where it is first needed.
+            lines += [self._load(key, chunked.slots[key], writer, real) for key in item.reads if key in looped]
+            looped.difference_update(item.reads)
+            if isinstance(item, Loop):
+                lines += loop_lines(item, writer, chunked.slots, self._defining, self._storing)
+            else:
+                lines += self._lines(item, chunked.slots, writer, real)
         lines += more
         used = {a or b for line in lines for a, b in _ARRAY.findall(line)}
         return lines, used
@@ -209,33 +219,42 @@ class FunctionWriter:
         return f"    const {real} {writer.name(key)} = work[{slot}];"
 
     def _lines(self, statement: Statement, slots: Mapping[int, int], writer: StatementWriter, real: str) -> list[str]:
-        if statement.angles:
-            lines = block_lines(writer, statement)
-        elif statement.vector is not None:
-            lines = vector_lines(statement.vector, writer.text)
-        else:
-            lines = [f"    const {real} {writer.name(node)} = {writer.operation(node)};" for node in statement.nodes]
+        lines = self._defining(statement, writer, real)
         for key in statement.keys:
             if key in slots and key < 0:
                 lines.append(f"    sym_pack_store(work + {slots[key]}, {vector_name(key)});")
             elif key in slots:
                 lines.append(f"    work[{slots[key]}] = {writer.name(key)};")
+        return lines + self._storing(statement, writer)
+
+    def _defining(self, statement: Statement, writer: StatementWriter, real: str = "double") -> list[str]:
+        """The lines that define the variables of a statement."""
+        if statement.angles:
+            return block_lines(writer, statement)
+        if statement.vector is not None:
+            return vector_lines(statement.vector, writer.text)
+        return [f"    const {real} {writer.name(node)} = {writer.operation(node)};" for node in statement.nodes]
+
+    def _storing(self, statement: Statement, writer: StatementWriter) -> list[str]:
+        """The lines that fill entries of outputs."""
+        lines: list[str] = []
         stores: Sequence[Store] = statement.stores
         if statement.vector is not None:
-            runs, stores = runs_of_lanes(statement.vector, stores)
-            lines += runs
+            lines, stores = runs_of_lanes(statement.vector, stores)
         return lines + [f"    {writer.store(store)}" for store in stores]
 
 
-def _chunks(statements: list[Statement]) -> list[list[Statement]]:
-    """Statements in chunks of much the same length; no chunk without statements."""
-    longest = MAX_STATEMENTS if len(statements) <= _LONG else _LONG_CHUNK
-    count = max(1, -(-len(statements) // longest))
-    size = -(-len(statements) // count) if statements else 1
-    return [statements[i : i + size] for i in range(0, len(statements), size)]
+def _chunks(items: Sequence[Item]) -> list[list[Item]]:
+    """Statements and loops in chunks of much the same length of text; no chunk without statements."""
+    ends = list(accumulate(map(len, items)))
+    total = ends[-1] if ends else 0
+    longest = MAX_STATEMENTS if total <= _LONG else _LONG_CHUNK
+    size = -(-total // max(1, -(-total // longest)))
+    by_chunk = groupby(zip(items, ends, strict=True), key=lambda item: (item[1] - len(item[0])) // size)
+    return [[item for item, _ in group] for _, group in by_chunk]
 
 
-def _chunks_in_lanes(statements: list[Statement]) -> list[list[Statement]]:
+def _chunks_in_lanes(statements: list[Statement]) -> list[list[Item]]:
     """Statements on vectors in chunks: a few sines and cosines that need no others come first, in a chunk of their own.
 
     They are one long wait, operation after operation; those of the next vector of states fill it.
@@ -254,17 +273,23 @@ def _chunks_in_lanes(statements: list[Statement]) -> list[list[Statement]]:
                 waiting += {made[key] for key in statements[at].reads} - early
     if sum(len(statements[i].angles) for i in early) > _FEW_ANGLES:
         return _chunks(statements)
-    first = [statement for i, statement in enumerate(statements) if i in early]
+    first: list[Item] = [statement for i, statement in enumerate(statements) if i in early]
     return [first] * bool(first) + _chunks([statement for i, statement in enumerate(statements) if i not in early])
 
 
-def _allocate(chunks: list[list[Statement]]) -> dict[int, int]:
-    """Work slots for values that cross from one chunk into another; slots are reused once their value is dead."""
+def _allocate(chunks: list[list[Item]]) -> dict[int, int]:
+    """Work slots for values that cross from one chunk into another, or are read by other iterations of loops.
+
+    Slots of single values are reused once these are dead.
+    """
     last: dict[int, int] = {}
+    fetched: set[int] = set()
     for i, chunk in enumerate(chunks):
-        for statement in chunk:
-            for node in statement.reads:
-                last[node] = i
+        for item in chunk:
+            if isinstance(item, Loop):
+                fetched |= item.fetched
+                last.update(dict.fromkeys(item.fetched, i))
+            last.update(dict.fromkeys(item.reads, i))
     slots: dict[int, int] = {}
     free: dict[int, list[int]] = {1: [], WIDTH: []}
     ends: dict[int, list[int]] = {}
@@ -273,14 +298,20 @@ def _allocate(chunks: list[list[Statement]]) -> dict[int, int]:
         # A slot is free in the chunk after its value's last use, since that chunk loads before it stores.
         for key in ends.pop(i - 1, []):
             free[_doubles(key)].append(slots[key])
-        for key in (key for statement in chunk for key in statement.keys):
-            if last.get(key, i) > i:
+        for key in (key for item in chunk if isinstance(item, Statement) for key in item.keys):
+            if last.get(key, i) > i or key in fetched:
                 unused = free[_doubles(key)]
                 if not unused:
                     unused.append(count)
                     count += _doubles(key)
                 slots[key] = unused.pop()
                 ends.setdefault(last[key], []).append(key)
+    for loop in (item for chunk in chunks for item in chunk if isinstance(item, Loop)):
+        # Side by side, so that loops find them by steps of one length.
+        kept = [place for place, keys in enumerate(zip(*loop.keys, strict=True)) if not last.keys().isdisjoint(keys)]
+        for keys in loop.keys:
+            slots.update({keys[place]: count + n for n, place in enumerate(kept)})
+            count += len(kept)
     return slots
 
 

@@ -25,6 +25,9 @@ _MAX_INLINE = 8
 # Angles evaluated at once: the doubles of the widest vectors.
 WIDEST = 8
 _TRIGONOMETRIC = frozenset(("sin", "cos"))
+# What a text mentions: a number, (NUMBER, value); a variable, (VARIABLE, node); an entry of an array, (array, index).
+NUMBER, VARIABLE = "number", "variable"
+Leaf = tuple[str, float]
 
 
 @dataclass(frozen=True)
@@ -44,6 +47,10 @@ class Statement:
     reads: tuple[int, ...]
     angles: tuple[Edge, ...] = ()
     vector: Vector | None = None
+
+    def __len__(self) -> int:
+        """Statements of the text."""
+        return 1
 
     @property
     def keys(self) -> tuple[int, ...]:
@@ -90,6 +97,7 @@ class StatementWriter:
         # Names of nodes without a label that are stored as they are: by their first entry, M_8_ of M[8].
         self._entries = {store.edge: f"{store.array}_{store.index}_" for store in reversed(stores)}
         self.lanes, self._suffix = False, ""
+        self._mentions: list[Leaf] | None = None
 
     def in_lanes(self, single: bool = False) -> StatementWriter:
         """A writer of the same statements on vectors, one state a lane; numbers are one for all lanes.
@@ -100,6 +108,13 @@ class StatementWriter:
         writer = copy(self)
         writer.lanes, writer._suffix = True, "f" if single else ""
         return writer
+
+    def marked(self) -> tuple[StatementWriter, list[Leaf]]:
+        """A writer whose texts have "@KIND" for each leaf, and the list that receives the leaves in the same order."""
+        writer = copy(self)
+        mentions: list[Leaf] = []
+        writer._mentions = mentions
+        return writer, mentions
 
     def _choose_inlined(self, nodes: Sequence[int], stores: Sequence[Store]) -> set[int]:
         graph, vector_of_node = self.graph, self._vector_of_node
@@ -255,7 +270,7 @@ class StatementWriter:
         """The statement that fills an output's entry."""
         if self.lanes:
             return f"SYM_PUT({store.array}, {store.index}, {self.whole(store.edge)});"
-        return f"{store.array}[{store.index}] = {self.whole(store.edge)};"
+        return f"{self.leaf(store.array, store.index)} = {self.whole(store.edge)};"
 
     def _operand(self, node: int, is_factor: bool = False, is_right: bool = False) -> str:
         """An operand's text, in parentheses where C would otherwise group or associate differently."""
@@ -270,12 +285,21 @@ class StatementWriter:
         node, is_negative = abs(edge), edge < 0
         number = self.graph.number(edge)
         if number is not None:
-            return f"{number!r}{self._suffix}"
+            return self.leaf(NUMBER, number)
         slot = self.given.get(node) or self.graph.slot.get(node)
         if slot is not None:
             in_columns = self.lanes and node not in self.given
-            text = f"SYM_AT({slot.group}, {slot.index})" if in_columns else f"{slot.group}[{slot.index}]"
+            text = f"SYM_AT({slot.group}, {slot.index})" if in_columns else self.leaf(slot.group, slot.index)
         else:
-            text = f"({self.operation(node)})" if node in self._inlined else self.name(node)
+            text = f"({self.operation(node)})" if node in self._inlined else self.leaf(VARIABLE, node)
             is_negative ^= node in self._vector_of_node and self._vector_of_node[node].nodes[node][1]
         return f"-{text}" if is_negative else text
+
+    def leaf(self, kind: str, which: float) -> str:
+        """The text of what a statement mentions, or its mark."""
+        if self._mentions is not None:
+            self._mentions.append((kind, which))
+            return f"@{kind}"
+        if kind == NUMBER:
+            return f"{which!r}{self._suffix}"
+        return self.name(int(which)) if kind == VARIABLE else f"{kind}[{which}]"

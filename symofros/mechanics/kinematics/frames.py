@@ -37,6 +37,7 @@ class FrameKinematics:
         self.kinematics = kinematics
         self.g = kinematics.g
         self._poses: dict[int, Pose] = {BASE: Pose(Vec3(self.g), Mat3.identity(self.g))}
+        self._placements: dict[str, tuple[Mat3, Vec3]] = {}
 
     def link_pose(self, index: int) -> Pose:
         """Pose of a link."""
@@ -55,7 +56,10 @@ class FrameKinematics:
         return Pose(link.p_WF + link.R_WF.times(p_LF), link.R_WF @ R_LF)
 
     def _in_link(self, frame: NamedFrame) -> tuple[Mat3, Vec3]:
-        return self.kinematics.lowering.placement(frame.placement, self.kinematics.in_link(frame.link))
+        if frame.qualified not in self._placements:
+            placed = self.kinematics.lowering.placement(frame.placement, self.kinematics.in_link(frame.link))
+            self._placements[frame.qualified] = placed
+        return self._placements[frame.qualified]
 
     def _partials(self, index: int) -> list[PartialVelocity]:
         """Partial velocities of a link's own joint in world axes; their rates are those seen in the link."""
