@@ -58,6 +58,8 @@ ROBOTS = (
         True,
         {INFO: 0.5, FIRST: 1.0, COMPILE: 8.0, COMPILE_AGAIN: 0.3, CALL: 3.0e-6},
     ),
+    # As `symofros compile go2.urdf` has it.
+    Robot("go2, base fixed", "go2_description/urdf/go2.urdf", False, {COMPILE: 8.0, COMPILE_AGAIN: 0.3}),
 )
 # A plain batched call takes at most so many times what its C takes.
 BATCH_OVERHEAD = 1.4
