@@ -83,14 +83,22 @@ class Equations(EquationsOfMotion):
     @cached_property
     def _held_acceleration(self) -> list[Edge]:
         """The acceleration, which derivatives take for a constant (nv)."""
-        return [self.g.call(STOP_GRADIENT, edge) for edge in self.acceleration]
+        return self._held(self.acceleration)
+
+    def _held(self, edges: Sequence[Edge]) -> list[Edge]:
+        """Edges that derivatives take for constants."""
+        return [self.g.call(STOP_GRADIENT, edge) for edge in edges]
 
     def slopes_in_motion(self, name: str) -> Matrix:
         """Derivative "by_q", "by_v", "by_u" or "by_par" of M a + h - Q at the acceleration that the forces make."""
         if name in ("by_q", "by_v"):
             return self._slopes_in_motion[name == "by_v"]
-        edges = self._less_applied(self.inertia_forces(self._held_acceleration))
+        edges = self.balance(self.acceleration)
         return self.by_u(edges) if name == "by_u" else self.by_par(edges)
+
+    def balance(self, a: Sequence[Edge]) -> list[Edge]:
+        """Balance M a + h - Q, whose derivatives take a for a constant (nv)."""
+        return self._less_applied(self.inertia_forces(self._held(a)))
 
     @cached_property
     def residual_by_u(self) -> Matrix:

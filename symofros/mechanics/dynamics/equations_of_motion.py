@@ -20,7 +20,7 @@ from symofros.mechanics.dynamics.bodies.inertia import LinkInertia, link_inertia
 from symofros.mechanics.dynamics.bodies.rotors import MovingRotor, rotors_of
 from symofros.mechanics.dynamics.constraints.rows import Constraints, Row
 from symofros.mechanics.dynamics.constraints.wrenches import closure_wrenches, wrenches_on_links
-from symofros.mechanics.dynamics.forward.articulated import articulated_acceleration, is_local
+from symofros.mechanics.dynamics.forward.articulated import articulated_acceleration, articulated_solution, is_local
 from symofros.mechanics.dynamics.forward.factors import Factors, SingularMassMatrixError
 from symofros.mechanics.dynamics.jourdain import inertia_forces
 from symofros.mechanics.dynamics.mass_matrix import MassMatrix, Matrix, mass_matrix
@@ -135,8 +135,16 @@ class EquationsOfMotion:
                 )
             )
         with self._refusing_singular():
-            inertias, _ = link_inertias(self.kinematics, regrouped=False)
-            return articulated_acceleration(self.kinematics, inertias, self.rotors, self.gravity, self.Q)
+            return articulated_acceleration(self.kinematics, self._bare_inertias, self.rotors, self.gravity, self.Q)
+
+    def articulated_solution(self, right: Sequence[Edge]) -> list[Edge]:
+        """Solution x of M x = right by articulated bodies, where `articulated` is one (nv)."""
+        return articulated_solution(self.kinematics, self._bare_inertias, self.rotors, right)
+
+    @cached_property
+    def _bare_inertias(self) -> list[LinkInertia]:
+        """Inertia of each link, without that of what it carries."""
+        return link_inertias(self.kinematics, regrouped=False)[0]
 
     @cached_property
     def factors(self) -> Factors:

@@ -101,7 +101,7 @@ def _function(e: Equations, request: Request, methods: Methods, known: Mapping[s
     """One function's inputs and outputs."""
     row = FUNCTIONS[request.name]
     if row.transposes:
-        return _transposed(e, row, _function(e, Request(row.transposes, request.frame), methods, known), known)
+        return _transposed(e, row, _function(e, Request(row.transposes, request.frame), methods, known), methods, known)
     if row.by_solver:
         return _BUILDERS[row.name](e, row, methods, known)
     # Properties are looked up by the names that the table states.
@@ -111,7 +111,7 @@ def _function(e: Equations, request: Request, methods: Methods, known: Mapping[s
     return Function(row.name, request.frame, (*row.inputs, *implicit), outputs)
 
 
-def _transposed(e: Equations, row: ModelFunction, of: Function, known: Mapping[str, int]) -> Function:
+def _transposed(e: Equations, row: ModelFunction, of: Function, methods: Methods, known: Mapping[str, int]) -> Function:
     """Vector-Jacobian products of a function; of one that the routine for constraints finishes, by its equations."""
     by = [array.source.removeprefix("by_") for array in row.outputs]
     implicit = tuple(name for name in e.implicit_inputs if name not in row.inputs)
@@ -126,9 +126,23 @@ def _transposed(e: Equations, row: ModelFunction, of: Function, known: Mapping[s
     groups = {array.name: group for group, array in cotangents(FUNCTIONS[row.transposes]).items()}
     weighted = [(output, groups[output.name]) for output in of.outputs]
     weights = [e.g.input(group, k) for output, group in weighted for k in range(len(output.edges))]
-    gradient = weighted_derivatives(e.kinematics, of.edges(), weights, by)
+    if of.name == "forward_dynamics":
+        gradient = _forward_gradient(e, methods, weights, by)
+    else:
+        gradient = weighted_derivatives(e.kinematics, of.edges(), weights, by)
     outputs = tuple(_output(array, gradient[group], known) for array, group in zip(row.outputs, by, strict=True))
     return Function(row.name, of.frame, inputs, outputs)
+
+
+def _forward_gradient(
+    e: Equations, methods: Methods, weights: Sequence[Edge], by: Sequence[str]
+) -> dict[str, list[Edge]]:
+    """Gradient of w . a of a tree, a = M^-1 (Q - h), as -mu . dR/dx of the balance R = M a + h - Q (eq. 10)."""
+    if methods.trees == "articulated":
+        a, mu = e.articulated, e.articulated_solution(weights)
+    else:
+        a, mu = e.acceleration, e.factors.solve(weights)
+    return weighted_derivatives(e.kinematics, e.balance(a), [-edge for edge in mu], by)
 
 
 def _output(array: OutputArray, value: Any, known: Mapping[str, int]) -> Output:

@@ -56,14 +56,60 @@ def articulated_acceleration(
     motions, biases = velocities(kinematics)
     wrenches, direct = link_wrenches(kinematics, inertias, rotors, motions, [ZERO] * kinematics.nv)
     forces = [kinematics.g.sub(inertial, applied) for inertial, applied in zip(direct, Q, strict=True)]
-    links = [*map(_ArticulatedBody, _inertias(kinematics, inertias), wrenches)]
-    joints = _tip_to_base(kinematics, links, rotors, biases, forces)
-    v_rate = [ZERO] * kinematics.nv
     base = Acceleration(Vec3(kinematics.g), -gravity)
+    return _rates(kinematics, inertias, rotors, _Driven(wrenches, biases, forces, base))
+
+
+def articulated_solution(
+    kinematics: TreeKinematics, inertias: list[LinkInertia], rotors: list[MovingRotor], right: Sequence[Edge]
+) -> list[Edge]:
+    """Solution x of M x = right: rates from rest without gravity; what is eliminated is that of the acceleration.
+
+    Args:
+        kinematics: Kinematics of the tree.
+        inertias: Inertia of each link, as of `articulated_acceleration`, like the rotors.
+        rotors: Rotors that spin in links.
+        right: Right-hand side (nv).
+
+    Returns:
+        x (nv).
+
+    Raises:
+        SingularMassMatrixError: A pivot is the number zero.
+    """
+    g, zero = kinematics.g, Vec3(kinematics.g)
+    still = [Acceleration(zero, zero) for _ in kinematics.links]
+    wrenches = [no_wrench(g) for _ in kinematics.links]
+    return _rates(kinematics, inertias, rotors, _Driven(wrenches, still, [-edge for edge in right], still[0]))
+
+
+class _Driven(NamedTuple):
+    """What moves the bodies.
+
+    Attributes:
+        wrenches: Wrench on each link by itself at v' = 0.
+        biases: Bias acceleration of each joint: what it adds to that of its parent at v' = 0.
+        forces: Inertia forces that act on speeds directly, less generalized forces (nv).
+        base: Acceleration of the base.
+    """
+
+    wrenches: Sequence[Wrench]
+    biases: Sequence[Acceleration]
+    forces: Sequence[Edge]
+    base: Acceleration
+
+
+def _rates(
+    kinematics: TreeKinematics, inertias: list[LinkInertia], rotors: list[MovingRotor], driven: _Driven
+) -> list[Edge]:
+    """Rates v' of all speeds (nv): from the tips to the base, and back (eqs. 39-46)."""
+    links = [*map(_ArticulatedBody, _inertias(kinematics, inertias), driven.wrenches)]
+    joints = _tip_to_base(kinematics, links, rotors, driven)
+    v_rate = [ZERO] * kinematics.nv
     accelerations: list[Acceleration] = []
     for i, (link, joint) in enumerate(zip(kinematics.links, joints, strict=True)):
-        parent = base if link.parent == BASE else accelerations[link.parent]
-        x = acceleration_from_parent(link, parent) + biases[i]
+        parent = driven.base if link.parent == BASE else accelerations[link.parent]
+        x = acceleration_from_parent(link, parent) + driven.biases[i]
         if joint is None:  # A section of a beam: the rates are those of the tip, which comes before it.
             rates = list(link.speed_rates(v_rate))
         else:
@@ -109,8 +155,7 @@ def _tip_to_base(
     kinematics: TreeKinematics,
     links: list[_ArticulatedBody],
     rotors: list[MovingRotor],
-    biases: Sequence[Acceleration],
-    forces: Sequence[Edge],
+    driven: _Driven,
 ) -> list[_FreeJoint | None]:
     """Each joint with everything beyond it articulated, base to tip; none of a section before a beam's tip.
 
@@ -118,10 +163,9 @@ def _tip_to_base(
         kinematics: Kinematics of the tree.
         links: Links by themselves, with their wrenches at v' = 0.
         rotors: Rotors that spin in links.
-        biases: Bias acceleration of each joint: what it adds to that of its parent at v' = 0.
-        forces: Inertia forces that act on speeds directly, less generalized forces (nv).
+        driven: What moves them.
     """
-    g = kinematics.g
+    g, biases, forces = kinematics.g, driven.biases, driven.forces
     bodies = dict(enumerate(links)) | {BASE: _ArticulatedBody(ArticulatedInertia.none(g), no_wrench(g))}
     joints: list[_FreeJoint | None] = []
     # What is carried by sections of a beam before its tip acts on the speeds of the tip, which comes after them.
