@@ -29,6 +29,8 @@ _RULES: dict[str, Callable[..., Extended]] = {
     DIV: lambda x, y: x / y,
     "min": min,
     "max": max,
+    "step": lambda x: int(x >= 0),
+    STOP_GRADIENT: lambda x: x,
 }
 # Names of the op table that mpmath spells otherwise; the rest have the same name there.
 _SPELLINGS = {"pow": "power", "abs": "fabs"}

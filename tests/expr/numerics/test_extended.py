@@ -11,8 +11,8 @@ import pytest
 from symofros.description.parser import parse
 from symofros.expr.expression import evaluate_extended
 from symofros.expr.graph import Graph
-from symofros.expr.numerics.extended import extended_context, nearest
-from symofros.expr.ops import FUNCTIONS
+from symofros.expr.numerics.extended import extended_context, extended_rule, nearest
+from symofros.expr.ops import FUNCTIONS, OPS
 
 # Where sines, exponentials and powers of glibc 2.36 differ between processors with and without fused multiply-adds.
 OPERANDS = np.random.default_rng(7).uniform(0.05, 0.95, 200).tolist()
@@ -34,6 +34,14 @@ def test_powers_and_angles_are_the_nearest_doubles() -> None:
         for x, y in zip(OPERANDS, OPERANDS[1:], strict=False):
             assert nearest("pow", x, y) == float(mpmath.mpf(x) ** mpmath.mpf(y))
             assert nearest("atan2", -x, y) == float(mpmath.atan2(-x, y))
+
+
+@pytest.mark.parametrize("name", OPS)
+def test_every_operation_has_a_rule_that_agrees_with_that_of_doubles(name: str) -> None:
+    for x in OPERANDS[:20]:
+        operands = [x, *OPERANDS[20 : 19 + OPS[name].arity]]
+        exact = extended_rule(name)(*map(extended_context().mpf, operands))
+        assert float(exact) == pytest.approx(float(OPS[name].rule(*operands)), rel=1e-14)
 
 
 def test_limits_of_functions_are_those_of_the_c_library() -> None:
