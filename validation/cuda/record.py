@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from math import isnan
 
 from validation.reporting.plain import Number
 from validation.timing.models import Labelled
@@ -12,8 +13,21 @@ TOLERANCES = {"double": 1e-9, "single": 1e-2}
 PEER = "MuJoCo Warp"
 
 
+class Compared(Labelled):
+    """What is compared with C where a graphics processor ran it, with its precision, its rate and its error."""
+
+    precision: str
+    rate: Number
+    error: Number
+
+    @property
+    def right(self) -> bool:
+        """Whether the numbers are C's, as far as they were computed; NaN for a number of C's is none of them."""
+        return isnan(self.rate) or self.error <= TOLERANCES[self.precision]
+
+
 @dataclass(frozen=True)
-class KernelRow(Labelled):
+class KernelRow(Compared):
     """One function as a kernel.
 
     Attributes:
@@ -39,11 +53,6 @@ class KernelRow(Labelled):
     moved: int
     rate: Number
     error: Number
-
-    @property
-    def right(self) -> bool:
-        """Whether the numbers are C's, as far as they were computed."""
-        return not self.error > TOLERANCES[self.precision]
 
 
 @dataclass(frozen=True)
@@ -71,7 +80,7 @@ class PeerRow(Labelled):
 
 
 @dataclass(frozen=True)
-class RolloutRow(Labelled):
+class RolloutRow(Compared):
     """Motions by steps of constant length.
 
     Attributes:
@@ -89,11 +98,6 @@ class RolloutRow(Labelled):
     precision: str
     rate: Number
     error: Number
-
-    @property
-    def right(self) -> bool:
-        """Whether the motions are those of C."""
-        return not self.error > TOLERANCES[self.precision]
 
 
 @dataclass
@@ -123,7 +127,7 @@ class Record:
     @property
     def wrong(self) -> int:
         """Number of rows whose numbers are further from C than is asked for."""
-        return sum(not row.right for row in self.kernels) + sum(not row.right for row in self.rollouts)
+        return sum(not row.right for rows in (self.kernels, self.rollouts) for row in rows)
 
     @property
     def ok(self) -> bool:

@@ -16,12 +16,13 @@ from validation.reporting.numbers import counted, digits, times
 from validation.reporting.plain import restored
 from validation.reporting.questions import failure_texts
 from validation.reporting.record import Data, Fact, Report, Section, Table, Text, Topic, verdict
+from validation.timing.models import Labelled
 
 _METHODS = {"semi_implicit_euler": "semi-implicit Euler", "rk4": "RK4"}
 
 
 @dataclass(frozen=True)
-class Goal:
+class Goal(Labelled):
     """A rate that is to be reached with all arrays on the device.
 
     Attributes:
@@ -104,9 +105,8 @@ def _goals(record: Record) -> Table:
     lines = []
     for goal in GOALS:
         rate, reached = _rate(record, goal), _reached(record, goal)
-        named = KernelRow(goal.model, goal.function, goal.precision, False, 0, 0, 0, 0, 0.0, 0.0)
         shown = "not measured" if rate is None else verdict(f"{rate:.2e}", reached)
-        lines.append((named.title, named.task, goal.precision, f"{goal.rate:.1e}", shown))
+        lines.append((goal.title, goal.task, goal.precision, f"{goal.rate:.1e}", shown))
     return Table(("model", "function", "precision", "asked [states/s]", "reached [states/s]"), tuple(lines))
 
 

@@ -96,9 +96,14 @@ def test_numbers_that_are_not_those_of_c_are_told(device: Driver, monkeypatch: p
     assert not Record(kernels=[row]).ok
 
 
-@pytest.mark.parametrize("error", [math.nan, 0.0, record.TOLERANCES["double"]])
-def test_rows_are_right_within_the_tolerance_and_where_nothing_was_run(error: float) -> None:
-    assert KernelRow("panda", "bias", "double", False, 1, 0, 0, 8, 1e9, error).right
+@pytest.mark.parametrize("rate, error", [(math.nan, math.nan), (1e9, 0.0), (1e9, record.TOLERANCES["double"])])
+def test_rows_are_right_within_the_tolerance_and_where_nothing_was_run(rate: float, error: float) -> None:
+    assert KernelRow("panda", "bias", "double", False, 1, 0, 0, 8, rate, error).right
+
+
+def test_what_was_run_and_is_no_number_is_wrong() -> None:
+    assert not KernelRow("panda", "bias", "double", False, 1, 0, 0, 8, 1e9, math.nan).right
+    assert not RolloutRow("panda", "step", "rk4", "single", 1e9, math.nan).right
 
 
 def shown(data: Mapping[str, object]) -> str:
