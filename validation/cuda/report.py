@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -160,7 +160,7 @@ def _kernel_table(record: Record) -> Table:
         for row in record.kernels
     ]
     heads = ("model", "function", "precision", "fused", "registers", "spills [B]", "arrays [B]", "states/s", "share")
-    return Table((*heads, "difference from C"), _grouped(lines), grouped=True)
+    return Table.by_group((*heads, "difference from C"), lines)
 
 
 def _rollout_table(rows: list[RolloutRow]) -> Table:
@@ -168,7 +168,7 @@ def _rollout_table(rows: list[RolloutRow]) -> Table:
         (row.title, _METHODS[row.method], row.precision, f"{row.rate:.2e}", verdict(digits(row.error), row.right))
         for row in rows
     ]
-    return Table(("model", "method", "precision", "steps/s", "difference from C"), _grouped(lines), grouped=True)
+    return Table.by_group(("model", "method", "precision", "steps/s", "difference from C"), lines)
 
 
 def _peer_table(record: Record) -> Table:
@@ -185,12 +185,7 @@ def _peer_table(record: Record) -> Table:
         for row in record.peers
     ]
     heads = ("model", "function", "ours [1/s]", f"{PEER} [1/s]", "ours over it", "its states a call", "its difference")
-    return Table(heads, _grouped(lines), grouped=True)
-
-
-def _grouped(lines: Sequence[tuple[str, ...]]) -> tuple[tuple[str, ...], ...]:
-    """Rows with the model's name above its first alone."""
-    return tuple(("" if k and line[0] == lines[k - 1][0] else line[0], *line[1:]) for k, line in enumerate(lines))
+    return Table.by_group(heads, lines)
 
 
 def _figure(record: Record) -> Figure:

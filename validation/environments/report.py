@@ -98,14 +98,12 @@ def _section(name: str, rows: list[Row]) -> Section:
 def _by_race(rows: list[Row], sides: list[str], shown: Any) -> Table:
     """A row a race, a column a side; models above their functions."""
     lines: list[tuple[str, ...]] = []
-    model = ""
     for race in races_of(rows).values():
         first = next(iter(race.values()))
         cells = (shown(race[who]) if who in race else "-" for who in sides)
-        lines.append((first.title if first.model != model else "", first.task, str(first.states), *cells))
-        model = first.model
+        lines.append((first.title, first.task, str(first.states), *cells))
     heads = ("model", "function", "states", *("ours" if who == OURS else who for who in sides))
-    return Table(heads, tuple(lines), grouped=True)
+    return Table.by_group(heads, lines)
 
 
 def _time(row: Row) -> str:

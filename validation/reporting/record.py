@@ -77,6 +77,16 @@ class Table:
         cells = (_BAR.split(row) if isinstance(row, str) else row for row in rows)
         return cls(tuple(_BAR.split(head)), tuple(map(tuple, cells)), grouped)
 
+    @classmethod
+    def by_group(cls, head: tuple[str, ...], rows: Iterable[tuple[str | Cell, ...]]) -> Table:
+        """A grouped table of rows that all state their group in the first cell: it stays in the first row of each."""
+        lines: list[tuple[str | Cell, ...]] = []
+        group: str | Cell | None = None
+        for first, *others in rows:
+            lines.append(("" if first == group else first, *others))
+            group = first
+        return cls(head, tuple(lines), grouped=True)
+
     def without_empty(self) -> Table:
         """The table without the columns in which nothing is stated."""
         kept = [k for k in range(len(self.head)) if any(row[k] not in ("", "-") for row in self.rows)]
