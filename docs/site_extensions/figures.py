@@ -1,4 +1,6 @@
-"""Figures of the reports, taken from reports/*.html by their number: `{report-figure} accuracy 2.1`.
+"""Figures of the reports, taken from reports/*.html: `{report-figure} accuracy spinning 2`, the second of a section.
+
+A section is named by its anchor, which stays when sections are added before it, as its number does not.
 
 The reports themselves are copied beside the site's pages, so that a figure leads to the page it is from.
 """
@@ -15,20 +17,27 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
+_SECTION = re.compile(r"(?=<h2)")
 _FIGURE = re.compile(r"<figure>.*?</figure>", re.DOTALL)
 _COLORS = re.compile(r":root \{ (--ink[^}]*) \}")
 
 
-def figure(page: str, number: str) -> str:
+def figure(page: str, anchor: str, position: int) -> str:
     """A figure of a report's page, as HTML.
 
+    Args:
+        page: The page's HTML.
+        anchor: Anchor of the section.
+        position: Position among the section's figures, from 1.
+
     Raises:
-        KeyError: The page has no figure of that number.
+        LookupError: The page has no such section, or the section no such figure.
     """
-    for found in _FIGURE.findall(page):
-        if f"<b>Figure {number}.</b>" in found:
-            return str(found)
-    raise KeyError(number)
+    sections = [text for text in _SECTION.split(page) if text.startswith(f'<h2 id="{anchor}">')]
+    figures = _FIGURE.findall(sections[0]) if sections else []
+    if not 1 <= position <= len(figures):
+        raise LookupError(f"{anchor} {position}")
+    return str(figures[position - 1])
 
 
 def colors(page: str) -> str:
@@ -41,20 +50,20 @@ def colors(page: str) -> str:
 
 
 class ReportFigure(SphinxDirective):
-    """A figure of a report, by the report's name and the figure's number."""
+    """A figure of a report, by the report's name, the section's anchor and the position within the section."""
 
-    required_arguments = 2
+    required_arguments = 3
 
     def run(self) -> list[nodes.Node]:
         """The figure, with a link to its report."""
-        report, number = self.arguments
+        report, anchor, position = self.arguments
         path = Path(self.env.srcdir).parent / "reports" / f"{report}.html"
         self.env.note_dependency(str(path))
         page = path.read_text(encoding="utf-8")
         try:
-            picture = figure(page, number)
-        except KeyError:
-            raise self.error(f"reports/{report}.html has no figure {number}") from None
+            picture = figure(page, anchor, int(position))
+        except LookupError:
+            raise self.error(f"reports/{report}.html has no figure {position} in a section '{anchor}'") from None
         address = "../" * self.env.docname.count("/") + f"reports/{report}.html"
         shown = f'<div class="report-figure">{picture}<p><a href="{address}">The whole report: {report}</a></p></div>'
         if not self.env.temp_data.get("report_colors"):

@@ -50,11 +50,23 @@ def test_every_equation_of_the_theory_has_a_number_of_its_own() -> None:
         assert len(numbers) == len(set(numbers)), page.name
 
 
-def test_a_figure_is_found_by_its_number(extension: Any) -> None:
-    page = "<figure><b>Figure 1.1.</b> one</figure> <figure><b>Figure 1.2.</b> two</figure>"
-    assert extension("figures").figure(page, "1.2") == "<figure><b>Figure 1.2.</b> two</figure>"
-    with pytest.raises(KeyError):
-        extension("figures").figure(page, "2.1")
+def test_a_figure_is_found_by_its_section_and_position(extension: Any) -> None:
+    figure = extension("figures").figure
+    one, two, other = (f"<figure>{name}</figure>" for name in ("one", "two", "other"))
+    page = f'<h2>Unnamed</h2>{other}<h2 id="cost">Cost</h2>{one} {two}<h2 id="rest">Rest</h2>{other}'
+    assert figure(page, "cost", 2) == two
+    for anchor, position in (("cost", 3), ("cost", 0), ("costs", 1), ("", 1)):
+        with pytest.raises(LookupError):
+            figure(page, anchor, position)
+
+
+def test_the_gallery_names_figures_that_reports_have(extension: Any) -> None:
+    """The site's build says so too, but only after minutes."""
+    named = re.findall(r"^```\{report-figure\} (\w+) (\w+) (\d)$", (ROOT / "docs/gallery.md").read_text("utf-8"), re.M)
+    assert len(named) > 10
+    for report, anchor, position in named:
+        page = (ROOT / f"reports/{report}.html").read_text(encoding="utf-8")
+        assert extension("figures").figure(page, anchor, int(position)).count("<svg"), (report, anchor)
 
 
 def test_figures_have_colours_for_light_and_dark(extension: Any) -> None:

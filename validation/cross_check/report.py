@@ -143,7 +143,7 @@ def _closeness(record: Record, engines: list[str]) -> tuple[Section, ...]:
     alone = (Section(f"Against {name} alone", (tables.by_engine(record, name),), page_only=True) for name in engines)
     condition = Figure(_CONDITION, error_against_condition(record))
     return (
-        Section("How close", (Figure(_CLOSE, error_distributions(record.distributions)),), page_only=True),
+        Section("How close", (Figure(_CLOSE, error_distributions(record.distributions)),), "close", page_only=True),
         Section("Model by model", (_BY_MODEL, tables.by_model(record), *alone)),
         Section("Forward dynamics and the condition of M", (condition,), page_only=True),
     )

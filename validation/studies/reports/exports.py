@@ -46,6 +46,7 @@ def compose(data: Data) -> Report:
                     Figure(_SEE, (chart,)),
                     Table.of(" | ".join(["below [ns]", *counts]), map(tuple, bins)),
                 ),
+                "worst_case",
             ),
             Section(
                 "Size of the C package",
