@@ -9,6 +9,10 @@ from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph, Slot
 
 
+# Inputs that a part of a mechanism reads, in an order that equal parts share.
+Limb = tuple[Slot, ...]
+
+
 @dataclass(frozen=True)
 class Output:
     """A named array of edges, row by row."""
@@ -86,6 +90,7 @@ class Program:
         functions: Functions that the program computes.
         init: Edges of the values that parameters alone determine, computed once per parameter set; after staging.
         pre: Entry of the group "pre" that holds such a value, keyed by node; after staging.
+        limbs: Groups of equal limbs, whose equations are much the same.
     """
 
     name: str
@@ -94,3 +99,4 @@ class Program:
     functions: tuple[Function, ...]
     init: tuple[Edge, ...] = ()
     pre: dict[int, Slot] = field(default_factory=dict)
+    limbs: tuple[tuple[Limb, ...], ...] = ()

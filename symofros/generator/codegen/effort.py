@@ -7,6 +7,7 @@ from typing import Literal
 
 from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.program import Function, Program
+from symofros.generator.codegen.limbs import LimbPlan
 from symofros.generator.codegen.packs import PackPlan, Store, runs_of_lanes
 
 # Whether a function is faster with its packs: on every processor; on some (up to 256-bit vectors); on none.
@@ -22,14 +23,16 @@ SHORT, MOST_STORED, LEAST_DOUBT = 1500, 1.03, 0.9
 
 
 def effort(program: Program, function: Function) -> float:
-    """Operations that one state takes, those on packs by their weight.
+    """Operations that one state takes: those on packs by their weight, those on equal limbs once.
 
     Args:
         program: Staged program.
         function: Function of the program.
     """
     graph, edges, given = program.graph, function.edges(), program.pre
-    return _effort(PackPlan(graph, needed_nodes(graph, edges, given), given, edges))
+    packs = PackPlan(graph, needed_nodes(graph, edges, given), given, edges)
+    limbs = LimbPlan(graph, packs.nodes, given, edges, program.limbs, packs)
+    return _effort(packs) - limbs.spared
 
 
 def _effort(plan: PackPlan) -> float:

@@ -6,15 +6,15 @@ Compilers are superlinear in the length of a function; a chunk is compiled by it
 from __future__ import annotations
 
 import re
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import accumulate, groupby
 
 from symofros.expr.numerics.evaluate import needed_nodes
-from symofros.expr.packs.pack import WIDTH
 from symofros.expr.program import Output, Program
 from symofros.generator.codegen.loops import Item, Loop, loop_lines, with_loops
-from symofros.generator.codegen.packs import Store, runs_of_lanes, vector_lines, vector_name
+from symofros.generator.codegen.packs import Store
 from symofros.generator.codegen.statements import Statement, StatementWriter
 from symofros.generator.codegen.trigonometry import block_lines
 from symofros.runtime.calls.kernel import LaneOptions, Precision
@@ -61,8 +61,10 @@ class _Chunks:
     @staticmethod
     def of(chunks: list[list[Item]]) -> _Chunks:
         """The chunks, with slots for what crosses between them."""
-        slots = _allocate(chunks)
-        return _Chunks(chunks, slots, max((slot + _doubles(key) for key, slot in slots.items()), default=0))
+        statements = (item for chunk in chunks for item in chunk if isinstance(item, Statement))
+        widths = {s.vector.key: s.vector.width for s in statements if s.vector is not None}
+        slots = _allocate(chunks, widths)
+        return _Chunks(chunks, slots, max((slot + widths.get(key, 1) for key, slot in slots.items()), default=0))
 
 
 class FunctionWriter:
@@ -74,7 +76,7 @@ class FunctionWriter:
         inputs: Names of the input arrays, in order.
         outputs: Outputs to be stored, in order.
         given: Whether parameter-only values are read from `pre` (false for the init function itself).
-        packs: Whether values formed by the same operations share vectors.
+        packs: Whether values formed by the same operations share vectors, those of equal limbs among them.
 
     Attributes:
         pack_gain: Whether the function is faster with its packs than without.
@@ -95,13 +97,22 @@ class FunctionWriter:
         edges = [edge for output in outputs for edge in output.edges]
         pre = program.pre if given else {}
         stores = [Store(o.name, i, edge) for o in outputs for i, edge in enumerate(o.edges) if edge != 0]
-        self.writer = StatementWriter(program.graph, needed_nodes(program.graph, edges, pre), pre, stores, packs)
+        nodes = needed_nodes(program.graph, edges, pre)
+        self.writer = StatementWriter(program.graph, nodes, pre, stores, packs, program.limbs if packs else ())
         self.pack_gain = self.writer.pack_gain
         self.statements = self.writer.statements()
+        self._items = with_loops(self.writer, self.statements)
+        if self.writer.has_limbs:
+            # Loops leave less to be compiled, and vectors stay out of them.
+            plain = StatementWriter(program.graph, nodes, pre, stores, packs)
+            statements = plain.statements()
+            items = with_loops(plain, statements)
+            if any(isinstance(item, Loop) for item in items):
+                self.writer, self.statements, self._items = plain, statements, items
 
     def text(self) -> FunctionText:
         """The C text for one state: chunk functions, then the function that unpacks pointers and calls them."""
-        chunked = _Chunks.of(_chunks(with_loops(self.writer, self.statements)) or [[]])
+        chunked = _Chunks.of(_chunks(self._items) or [[]])
         parts = [self._chunk(i, chunked) for i in range(len(chunked.chunks))]
         body = [f"    const double *restrict {name} = in[{i}];" for i, name in enumerate(self.inputs)]
         body += [f"    double *restrict {output.name} = out[{i}];" for i, output in enumerate(self.outputs)]
@@ -215,14 +226,14 @@ class FunctionWriter:
 
     def _load(self, key: int, slot: int, writer: StatementWriter, real: str) -> str:
         if key < 0:
-            return f"    const sym_pack {vector_name(key)} = sym_pack_load(work + {slot});"
+            return writer.vectors[key].load_line("work", slot)
         return f"    const {real} {writer.name(key)} = work[{slot}];"
 
     def _lines(self, statement: Statement, slots: Mapping[int, int], writer: StatementWriter, real: str) -> list[str]:
         lines = self._defining(statement, writer, real)
         for key in statement.keys:
             if key in slots and key < 0:
-                lines.append(f"    sym_pack_store(work + {slots[key]}, {vector_name(key)});")
+                lines.append(writer.vectors[key].store_line("work", slots[key]))
             elif key in slots:
                 lines.append(f"    work[{slots[key]}] = {writer.name(key)};")
         return lines + self._storing(statement, writer)
@@ -232,7 +243,7 @@ class FunctionWriter:
         if statement.angles:
             return block_lines(writer, statement)
         if statement.vector is not None:
-            return vector_lines(statement.vector, writer.text)
+            return statement.vector.lines(writer.text)
         return [f"    const {real} {writer.name(node)} = {writer.operation(node)};" for node in statement.nodes]
 
     def _storing(self, statement: Statement, writer: StatementWriter) -> list[str]:
@@ -240,7 +251,7 @@ class FunctionWriter:
         lines: list[str] = []
         stores: Sequence[Store] = statement.stores
         if statement.vector is not None:
-            lines, stores = runs_of_lanes(statement.vector, stores)
+            lines, stores = statement.vector.stores_of_runs(stores)
         return lines + [f"    {writer.store(store)}" for store in stores]
 
 
@@ -277,10 +288,14 @@ def _chunks_in_lanes(statements: list[Statement]) -> list[list[Item]]:
     return [first] * bool(first) + _chunks([statement for i, statement in enumerate(statements) if i not in early])
 
 
-def _allocate(chunks: list[list[Item]]) -> dict[int, int]:
+def _allocate(chunks: list[list[Item]], widths: Mapping[int, int]) -> dict[int, int]:
     """Work slots for values that cross from one chunk into another, or are read by other iterations of loops.
 
-    Slots of single values are reused once these are dead.
+    Slots of values are reused once these are dead, but for those of loops.
+
+    Args:
+        chunks: Statements and loops of each chunk.
+        widths: Doubles of each vector, by its key.
     """
     last: dict[int, int] = {}
     fetched: set[int] = set()
@@ -291,19 +306,19 @@ def _allocate(chunks: list[list[Item]]) -> dict[int, int]:
                 last.update(dict.fromkeys(item.fetched, i))
             last.update(dict.fromkeys(item.reads, i))
     slots: dict[int, int] = {}
-    free: dict[int, list[int]] = {1: [], WIDTH: []}
+    free: dict[int, list[int]] = defaultdict(list)
     ends: dict[int, list[int]] = {}
     count = 0
     for i, chunk in enumerate(chunks):
         # A slot is free in the chunk after its value's last use, since that chunk loads before it stores.
         for key in ends.pop(i - 1, []):
-            free[_doubles(key)].append(slots[key])
+            free[widths.get(key, 1)].append(slots[key])
         for key in (key for item in chunk if isinstance(item, Statement) for key in item.keys):
             if last.get(key, i) > i or key in fetched:
-                unused = free[_doubles(key)]
+                unused = free[widths.get(key, 1)]
                 if not unused:
                     unused.append(count)
-                    count += _doubles(key)
+                    count += widths.get(key, 1)
                 slots[key] = unused.pop()
                 ends.setdefault(last[key], []).append(key)
     for loop in (item for chunk in chunks for item in chunk if isinstance(item, Loop)):
@@ -314,7 +329,3 @@ def _allocate(chunks: list[list[Item]]) -> dict[int, int]:
             count += len(kept)
     return slots
 
-
-def _doubles(key: int) -> int:
-    """Doubles of a variable: vectors have negative keys."""
-    return 1 if key > 0 else WIDTH

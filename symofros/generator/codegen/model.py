@@ -14,6 +14,7 @@ from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.program import Function, Output, Program
 from symofros.generator.codegen import lanes, trigonometry
 from symofros.generator.codegen.function import FunctionText, FunctionWriter
+from symofros.generator.codegen.limbs import TYPES
 from symofros.generator.codegen.names import c_string, identifier
 from symofros.generator.codegen.solvers import routines, sparse_systems, with_solver
 from symofros.generator.codegen.sparse import SparseSystem
@@ -82,6 +83,7 @@ def model_source(
                 *trigonometry.routines(texts, vectors is not None),
                 *([lanes.routines(vectors)] if vectors is not None else []),
                 *([native_text("model/pack.c.in")] if any("sym_pack " in text for text in texts) else []),
+                *([native_text("model/limbs.c.in")] if any(f"{t} " in text for t in TYPES.values() for text in texts) else []),
                 *routines(program, bool(sparse)),
                 *texts,
             ]

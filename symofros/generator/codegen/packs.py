@@ -46,6 +46,16 @@ class Vector:
     nodes: dict[int, tuple[int, bool]] = field(default_factory=dict)
 
     @property
+    def width(self) -> int:
+        """Doubles of the variable."""
+        return WIDTH
+
+    @property
+    def is_computed(self) -> bool:
+        """Whether it is a linear combination."""
+        return bool(self.terms)
+
+    @property
     def operands(self) -> list[Vector]:
         """Vectors that its text mentions."""
         return [vector for _, vector in self.terms] + ([self.source] if self.source else [])
@@ -54,6 +64,41 @@ class Vector:
     def edges(self) -> list[Edge]:
         """Scalars that its text mentions."""
         return [factor for factor, _ in self.terms] + list(self.put.values())
+
+    def lane_text(self, lane: int) -> str:
+        """Where a lane is read."""
+        return f"sym_lane({vector_name(self.key)}, {lane})"
+
+    def lines(self, text: Callable[[Edge], str]) -> list[str]:
+        """The lines that define it.
+
+        Args:
+            text: Text of a scalar edge.
+        """
+        name = vector_name(self.key)
+        if self.terms:
+            start = _sum(self.terms, text)
+        elif self.source is not None:
+            start = vector_name(self.source.key)
+        else:
+            lanes = ", ".join(text(self.put.get(lane, ZERO)) for lane in range(WIDTH))
+            return [f"    const sym_pack {name} = SYM_PACK({lanes});"]
+        if not self.put:
+            return [f"    const sym_pack {name} = {start};"]
+        puts = [f"    {name} = sym_with({name}, {lane}, {text(edge)});" for lane, edge in sorted(self.put.items())]
+        return [f"    sym_pack {name} = {start};", *puts]
+
+    def load_line(self, array: str, index: int) -> str:
+        """The line that reads it from an array."""
+        return f"    const sym_pack {vector_name(self.key)} = sym_pack_load({array} + {index});"
+
+    def store_line(self, array: str, index: int) -> str:
+        """The line that leaves it in an array."""
+        return f"    sym_pack_store({array} + {index}, {vector_name(self.key)});"
+
+    def stores_of_runs(self, stores: Sequence[Store]) -> tuple[list[str], Sequence[Store]]:
+        """Lines that fill neighbouring entries of outputs from neighbouring lanes, and the stores that remain."""
+        return runs_of_lanes(self, stores)
 
 
 @dataclass(frozen=True)
@@ -194,32 +239,6 @@ class PackPlan:
 def vector_name(key: int) -> str:
     """The variable of a vector, by its key."""
     return f"p{-key}"
-
-
-def lane_text(key: int, lane: int) -> str:
-    """Where a lane of a vector is read."""
-    return f"sym_lane({vector_name(key)}, {lane})"
-
-
-def vector_lines(vector: Vector, text: Callable[[Edge], str]) -> list[str]:
-    """The lines that define a vector.
-
-    Args:
-        vector: The vector.
-        text: Text of a scalar edge.
-    """
-    name = vector_name(vector.key)
-    if vector.terms:
-        start = _sum(vector.terms, text)
-    elif vector.source is not None:
-        start = vector_name(vector.source.key)
-    else:
-        lanes = ", ".join(text(vector.put.get(lane, ZERO)) for lane in range(WIDTH))
-        return [f"    const sym_pack {name} = SYM_PACK({lanes});"]
-    if not vector.put:
-        return [f"    const sym_pack {name} = {start};"]
-    puts = [f"    {name} = sym_with({name}, {lane}, {text(edge)});" for lane, edge in sorted(vector.put.items())]
-    return [f"    sym_pack {name} = {start};", *puts]
 
 
 def _sum(terms: Sequence[tuple[Edge, Vector]], text: Callable[[Edge], str]) -> str:

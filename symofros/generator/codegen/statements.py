@@ -16,9 +16,11 @@ from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph, Slot
 from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.ops import ADD, DIV, MUL, OPS, STOP_GRADIENT
+from symofros.expr.program import Limb
 from symofros.generator.codegen.effort import PackGain, pack_gain
 from symofros.generator.codegen.names import local_name
-from symofros.generator.codegen.packs import PackPlan, Store, Vector, lane_text
+from symofros.generator.codegen.limbs import LimbPlan, LimbVector
+from symofros.generator.codegen.packs import PackPlan, Store, Vector
 
 # Operations per statement at most: long lines help neither people nor compilers.
 _MAX_INLINE = 8
@@ -46,7 +48,7 @@ class Statement:
     stores: tuple[Store, ...]
     reads: tuple[int, ...]
     angles: tuple[Edge, ...] = ()
-    vector: Vector | None = None
+    vector: Vector | LimbVector | None = None
 
     def __len__(self) -> int:
         """Statements of the text."""
@@ -67,9 +69,12 @@ class StatementWriter:
         given: Nodes that are read from an input array.
         stores: Outputs of the function.
         packs: Whether values formed by the same operations share vectors.
+        limbs: Groups of equal limbs whose values share vectors.
 
     Attributes:
         pack_gain: Whether the function is faster with its packs than without.
+        has_limbs: Whether values of limbs share vectors.
+        vectors: Vectors by their keys.
     """
 
     def __init__(
@@ -79,17 +84,28 @@ class StatementWriter:
         given: Mapping[int, Slot],
         stores: Sequence[Store],
         packs: bool = False,
+        limbs: Sequence[Sequence[Limb]] = (),
     ) -> None:
         self.graph = graph
         self.given = given
         self.stores = stores
-        self._vector_of_node: dict[int, Vector] = {}
-        self._vectors: list[Vector] = []
+        self._vector_of_node: dict[int, Vector | LimbVector] = {}
+        vectors: list[Vector | LimbVector] = []
         self.pack_gain: PackGain = "clear"
+        edges, plan = [store.edge for store in stores], None
         if packs and graph.packs:
-            plan = PackPlan(graph, nodes, given, [store.edge for store in stores])
+            plan = PackPlan(graph, nodes, given, edges)
             self.pack_gain = pack_gain(plan, len(nodes), stores)
-            nodes, self._vector_of_node, self._vectors = plan.nodes, plan.vector_of_node, plan.vectors
+            nodes = plan.nodes
+            self._vector_of_node |= plan.vector_of_node
+            vectors += plan.vectors
+        of_limbs = LimbPlan(graph, nodes, given, edges, limbs, plan) if limbs else None
+        self.has_limbs = of_limbs is not None and of_limbs.spared > 0
+        if of_limbs is not None and of_limbs.spared:
+            nodes = [node for node in nodes if node not in of_limbs.hidden]
+            self._vector_of_node |= of_limbs.vector_of_node
+            vectors += of_limbs.vectors
+        self.vectors = {vector.key: vector for vector in vectors}
         self._inlined = self._choose_inlined(nodes, stores)
         self._nodes = nodes
         self._variables = [node for node in nodes if node not in self._inlined]
@@ -123,7 +139,7 @@ class StatementWriter:
             for arg in graph.args[node] if node not in vector_of_node else ():
                 uses[abs(arg)] = uses.get(abs(arg), 0) + 1
         # Vectors read variables: what a vector needs may be needed by several lanes.
-        stored = {abs(store.edge) for store in stores} | {abs(e) for vector in self._vectors for e in vector.edges}
+        stored = {abs(store.edge) for store in stores} | {abs(e) for vector in self.vectors.values() for e in vector.edges}
         size: dict[int, int] = {}
         inlined: set[int] = set()
         for node in nodes:
@@ -165,41 +181,39 @@ class StatementWriter:
             result.append(Statement(nodes, stores, tuple(reads), angles, vector))
         return result
 
-    def _ordered(self) -> Iterator[tuple[tuple[int, ...], tuple[Edge, ...], Vector | None]]:
+    def _ordered(self) -> Iterator[tuple[tuple[int, ...], tuple[Edge, ...], Vector | LimbVector | None]]:
         """(nodes, angles, vector) of each statement: nodes one by one, sines and cosines by blocks, vectors whole."""
-        blocks, variables, done = self._blocks(), set(self._variables), set[int]()
+        blocks, done = self._blocks(), set[int]()
 
-        def prepare(edges: Iterable[Edge]) -> Iterator[tuple[tuple[int, ...], tuple[Edge, ...], Vector | None]]:
-            missing = [edge for edge in edges if abs(edge) not in done and not self._is_at_hand(abs(edge))]
-            for before in needed_nodes(self.graph, missing, self.given) if missing else ():
-                if before in variables:
-                    yield from emit(before)
+        def needs(key: int) -> list[int]:
+            """Keys of the variables that a statement reads, in the order in which they are formed if nothing else is."""
+            if key > 0:
+                return sorted(self._mentioned(blocks[key][0] if key in blocks else self.graph.args[key]))
+            vector = self.vectors[key]
+            return [*(operand.key for operand in vector.operands), *sorted(self._mentioned(vector.edges))]
 
-        def form(vector: Vector) -> Iterator[tuple[tuple[int, ...], tuple[Edge, ...], Vector | None]]:
-            if vector.key in done:
-                return
-            for operand in vector.operands:
-                yield from form(operand)
-            yield from prepare(vector.edges)
-            done.update((vector.key, *vector.nodes))
-            yield tuple(vector.nodes), (), vector
-
-        def emit(node: int) -> Iterator[tuple[tuple[int, ...], tuple[Edge, ...], Vector | None]]:
-            if node in done:
-                return
-            if node in self._vector_of_node:
-                yield from form(self._vector_of_node[node])
-                return
-            angles, nodes = blocks.get(node, ((), (node,)))
-            yield from prepare(angles)
-            done.update(nodes)
-            yield nodes, angles, None
-
-        # Vectors that are no sums are formed where they are read.
-        sums = ((vector.first_node, form(vector)) for vector in self._vectors if vector.terms)
-        scalars = ((node, emit(node)) for node in self._variables)
-        for _, drafts in merge(sums, scalars, key=lambda item: item[0]):
-            yield from drafts
+        # Vectors that are only put together are formed where they are read.
+        computed = sorted((vector.first_node, vector.key) for vector in self.vectors.values() if vector.is_computed)
+        scalars = ((node, node) for node in self._variables if node not in self._vector_of_node)
+        for _, last in merge(computed, scalars):
+            waiting = [last]
+            while waiting:
+                key = waiting[-1]
+                missing = [before for before in needs(key) if before not in done] if key not in done else []
+                if missing:
+                    waiting += reversed(missing)
+                    continue
+                waiting.pop()
+                if key in done:
+                    continue
+                vector = self.vectors.get(key)
+                if vector is not None:
+                    done.add(key)
+                    yield tuple(vector.nodes), (), vector
+                else:
+                    angles, nodes = blocks.get(key, ((), (key,)))
+                    done.update(nodes)
+                    yield nodes, angles, None
 
     def _blocks(self) -> dict[int, tuple[tuple[Edge, ...], tuple[int, ...]]]:
         """Sine or cosine -> (angles, sines and cosines) of its block: angles that as many others lie under."""
@@ -237,7 +251,7 @@ class StatementWriter:
         """Where a node's value is read: its variable, or its lane of a vector."""
         if node in self._vector_of_node:
             vector = self._vector_of_node[node]
-            return lane_text(vector.key, vector.nodes[node][0])
+            return vector.lane_text(vector.nodes[node][0])
         if node not in self._names:
             label = self.graph.label.get(node)
             self._names[node] = local_name(label, node) if label else f"{self._entries.get(node, 't')}{node}"

@@ -22,6 +22,7 @@ from symofros.mechanics.dynamics.derivatives.hessians import hessian, stacked
 from symofros.mechanics.dynamics.derivatives.second_derivatives import hessian_vector_product, second_derivatives
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.dynamics.frame_equations import FrameEquations
+from symofros.mechanics.topology.limbs import equal_limbs
 from symofros.mechanics.topology.tree import prescribed_speeds, section_names
 
 
@@ -69,7 +70,7 @@ def form_program(equations: Equations, requests: Sequence[Request], methods: Met
         for request in requests
     )
     groups = {group: size_of(size, known) for group, (size, _) in INPUTS.items()}
-    return Program(equations.tree.system.name, equations.g, groups, functions)
+    return Program(equations.tree.system.name, equations.g, groups, functions, limbs=equal_limbs(equations.tree))
 
 
 def forward_methods(equations: Equations) -> tuple[str, ...]:

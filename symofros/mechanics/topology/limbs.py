@@ -1,0 +1,83 @@
+"""Equal limbs of a tree: subtrees on one link whose joints are of the same kinds in the same order.
+
+Legs, arms, fingers: what generated code computes for one of them it computes for the others, with other numbers
+(docs/theory/code.md, section 10).
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Sequence
+
+from symofros.expr.graph import Slot
+from symofros.expr.program import Limb
+from symofros.mechanics.topology.tree import BASE, Link, SpanningTree
+
+
+def equal_limbs(tree: SpanningTree) -> tuple[tuple[Limb, ...], ...]:
+    """Groups of equal limbs: of each limb the entries of q, v and a, in an order that they share; outermost limbs alone.
+
+    Limbs that differ in numbers only, zeros in the same places, are equal before those that differ in more.
+    """
+    children: dict[int, list[int]] = defaultdict(list)
+    for index, link in enumerate(tree.links):
+        children[link.parent].append(index)
+
+    def members(index: int) -> list[int]:
+        """A link and all that it carries, depth first."""
+        return [index, *(member for child in children[index] for member in members(child))]
+
+    def signature(index: int, of_link: Callable[[Link], object]) -> object:
+        """What a limb has in common with its equals."""
+        return of_link(tree.links[index]), tuple(signature(child, of_link) for child in children[index])
+
+    groups: list[tuple[Limb, ...]] = []
+    waiting = [BASE]
+    while waiting:
+        remaining = children[waiting.pop()]
+        for of_link in (_pattern, _kinds):
+            by_signature: dict[object, list[int]] = defaultdict(list)
+            for root in remaining:
+                by_signature[signature(root, of_link)].append(root)
+            groups += [
+                tuple(_entries(tree.links[member] for member in members(root)) for root in roots)
+                for roots in by_signature.values()
+                if len(roots) > 1
+            ]
+            remaining = [roots[0] for roots in by_signature.values() if len(roots) == 1]
+        waiting += remaining
+    return tuple(group for group in groups if group[0])
+
+
+def _entries(links: Iterable[Link]) -> Limb:
+    return tuple(
+        Slot(group, start + i)
+        for link in links
+        for group, (start, size) in (("q", link.q), ("v", link.v), ("a", link.v))
+        for i in range(size)
+    )
+
+
+def _kinds(link: Link) -> object:
+    """What decides which operations a link takes at all."""
+    return link.joint.kind, link.q[1], link.v[1], len(link.inertias), link.beam is None, link.is_section
+
+
+def _pattern(link: Link) -> object:
+    """What decides which operations are left where zeros fold away."""
+    steps = [*link.placement, *(step for placement, _ in link.inertias for step in placement)]
+    return (
+        _kinds(link),
+        _zeros(link.joint.axis),
+        tuple((_zeros(step.position), step.rotation.kind, _sizes(step.rotation.values)) for step in steps),
+        tuple((_zeros((i.mass, *i.center_of_mass)), _zeros(i.moments), _sizes(i.rotation.values)) for _, i in link.inertias),
+    )
+
+
+def _zeros(values: Sequence[object]) -> tuple[bool, ...]:
+    return tuple(value == 0 for value in values)
+
+
+def _sizes(values: Sequence[object]) -> tuple[object, ...]:
+    """Angles and entries of rotations without their signs: a quarter turn folds as another does, and a half turn not."""
+    return tuple(abs(value) if isinstance(value, float | int) else value for value in values)
