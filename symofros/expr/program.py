@@ -8,7 +8,6 @@ from math import prod
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph, Slot
 
-
 # Inputs that a part of a mechanism reads, in an order that equal parts share.
 Limb = tuple[Slot, ...]
 

@@ -7,7 +7,7 @@ from typing import Literal
 
 from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.program import Function, Program
-from symofros.generator.codegen.limbs import LimbPlan
+from symofros.generator.codegen.limbs.plan import LimbPlan
 from symofros.generator.codegen.packs import PackPlan, Store, runs_of_lanes
 
 # Whether a function is faster with its packs: on every processor; on some (up to 256-bit vectors); on none.
@@ -31,8 +31,8 @@ def effort(program: Program, function: Function) -> float:
     """
     graph, edges, given = program.graph, function.edges(), program.pre
     packs = PackPlan(graph, needed_nodes(graph, edges, given), given, edges)
-    limbs = LimbPlan(graph, packs.nodes, given, edges, program.limbs, packs)
-    return _effort(packs) - limbs.spared
+    spared = LimbPlan(graph, packs.nodes, given, edges, program.limbs, packs).spared if program.limbs else 0
+    return _effort(packs) - spared
 
 
 def _effort(plan: PackPlan) -> float:

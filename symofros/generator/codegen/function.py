@@ -76,7 +76,8 @@ class FunctionWriter:
         inputs: Names of the input arrays, in order.
         outputs: Outputs to be stored, in order.
         given: Whether parameter-only values are read from `pre` (false for the init function itself).
-        packs: Whether values formed by the same operations share vectors, those of equal limbs among them.
+        packs: Whether values formed by the same operations share vectors.
+        limbs: Whether values of equal limbs do.
 
     Attributes:
         pack_gain: Whether the function is faster with its packs than without.
@@ -90,6 +91,7 @@ class FunctionWriter:
         outputs: Sequence[Output],
         given: bool = True,
         packs: bool = False,
+        limbs: bool = False,
     ) -> None:
         self.c_name = c_name
         self.inputs = tuple(inputs)
@@ -98,7 +100,7 @@ class FunctionWriter:
         pre = program.pre if given else {}
         stores = [Store(o.name, i, edge) for o in outputs for i, edge in enumerate(o.edges) if edge != 0]
         nodes = needed_nodes(program.graph, edges, pre)
-        self.writer = StatementWriter(program.graph, nodes, pre, stores, packs, program.limbs if packs else ())
+        self.writer = StatementWriter(program.graph, nodes, pre, stores, packs, program.limbs if limbs else ())
         self.pack_gain = self.writer.pack_gain
         self.statements = self.writer.statements()
         self._items = with_loops(self.writer, self.statements)
@@ -328,4 +330,3 @@ def _allocate(chunks: list[list[Item]], widths: Mapping[int, int]) -> dict[int, 
             slots.update({keys[place]: count + n for n, place in enumerate(kept)})
             count += len(kept)
     return slots
-

@@ -14,7 +14,7 @@ from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.program import Function, Output, Program
 from symofros.generator.codegen import lanes, trigonometry
 from symofros.generator.codegen.function import FunctionText, FunctionWriter
-from symofros.generator.codegen.limbs import TYPES
+from symofros.generator.codegen.limbs.vector import TYPES
 from symofros.generator.codegen.names import c_string, identifier
 from symofros.generator.codegen.solvers import routines, sparse_systems, with_solver
 from symofros.generator.codegen.sparse import SparseSystem
@@ -83,7 +83,11 @@ def model_source(
                 *trigonometry.routines(texts, vectors is not None),
                 *([lanes.routines(vectors)] if vectors is not None else []),
                 *([native_text("model/pack.c.in")] if any("sym_pack " in text for text in texts) else []),
-                *([native_text("model/limbs.c.in")] if any(f"{t} " in text for t in TYPES.values() for text in texts) else []),
+                *(
+                    [native_text("model/limbs.c.in")]
+                    if any(f"{t} " in text for t in TYPES.values() for text in texts)
+                    else []
+                ),
                 *routines(program, bool(sparse)),
                 *texts,
             ]
@@ -235,12 +239,17 @@ def _one_function(
         in_lanes = None
         text = with_solver(program, c_name, function, function.solver, packs != "none", sparse)
     else:
-        writer = FunctionWriter(program, c_name, inputs, function.outputs, packs=packs != "none")
-        in_doubt = packs == "where they pay" and writer.pack_gain != "clear"
-        needs_scalars = in_doubt or (packs != "none" and in_lanes is not None)
-        scalars = FunctionWriter(program, c_name, inputs, function.outputs) if needs_scalars else writer
-        text = _text_of_one_state(writer, scalars) if in_doubt else writer.text()
+        vectors_of_state = packs != "none"
+        writer = FunctionWriter(
+            program, c_name, inputs, function.outputs, packs=vectors_of_state, limbs=vectors_of_state
+        )
+        if packs == "where they pay" and writer.pack_gain != "clear":
+            without = FunctionWriter(program, c_name, inputs, function.outputs, limbs=True)
+            text = _text_of_one_state(writer, without)
+        else:
+            text = writer.text()
         if in_lanes is not None:
+            scalars = FunctionWriter(program, c_name, inputs, function.outputs) if vectors_of_state else writer
             on_vectors = scalars.text_on_vectors(in_lanes)
             strided = lanes.strided(c_name, program, function, on_vectors.work, in_lanes)
             vectors = ["#if SYM_LANES > 1", on_vectors.code, strided, "#endif"]
@@ -261,14 +270,14 @@ def _one_function(
     return code, _Row(tables, _row(function, c_name, len(inputs), work), of_lanes)
 
 
-def _text_of_one_state(packed: FunctionWriter, scalars: FunctionWriter) -> FunctionText:
+def _text_of_one_state(packed: FunctionWriter, without: FunctionWriter) -> FunctionText:
     """A function whose packs hardly pay: without them, or with them where the processor's vectors have up to 256 bits.
 
     Args:
         packed: Writer of the function with packs.
-        scalars: Writer of the function without packs.
+        without: Writer of the function without packs.
     """
-    plain = scalars.text()
+    plain = without.text()
     if packed.pack_gain == "none":
         return plain
     text = packed.text()

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache, partial
 
-from symofros.expr.program import Function, Program, Solver
+from symofros.expr.program import Function, Output, Program, Solver
 from symofros.generator.codegen.function import FunctionText, FunctionWriter
 from symofros.generator.codegen.sparse import SparseSystem
 from symofros.native import native_text
@@ -60,7 +60,7 @@ def with_solver(
     c_name: str,
     function: Function,
     solver: Solver,
-    packs: bool = False,
+    vectors: bool = False,
     sparse: SparseSystem | None = None,
 ) -> FunctionText:
     """The C text of a function and of its parts, and the call of the routine that finishes it.
@@ -70,15 +70,16 @@ def with_solver(
         c_name: Name of the C function.
         function: Function whose outputs generated code computes.
         solver: Routine that finishes it.
-        packs: Whether values formed by the same operations share vectors.
+        vectors: Whether values formed by the same operations, and those of equal limbs, share vectors.
         sparse: Patterns of M and G, where these are packed.
     """
-    outputs = function.outputs if sparse is None else sparse.packed(function.outputs)
-    terms = FunctionWriter(program, f"{c_name}_terms", ["pre", *function.inputs], outputs, packs=packs).text()
-    parts = [
-        FunctionWriter(program, f"{c_name}_{part.name}", ["pre", *part.inputs], part.outputs, packs=packs).text()
-        for part in solver.parts
-    ]
+
+    def text(name: str, inputs: tuple[str, ...], outputs: Sequence[Output]) -> FunctionText:
+        writer = FunctionWriter(program, f"{c_name}_{name}", ["pre", *inputs], outputs, packs=vectors, limbs=vectors)
+        return writer.text()
+
+    terms = text("terms", function.inputs, function.outputs if sparse is None else sparse.packed(function.outputs))
+    parts = [text(part.name, part.inputs, part.outputs) for part in solver.parts]
     needs = max(text.work for text in (terms, *parts))
     head = f"static void {c_name}(const double *const *in, double *const *out, double *restrict work) {{"
     body, work = _CALLS[solver.routine](c_name, function, needs, sparse)

@@ -14,12 +14,12 @@ from heapq import merge
 
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph, Slot
-from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.ops import ADD, DIV, MUL, OPS, STOP_GRADIENT
 from symofros.expr.program import Limb
 from symofros.generator.codegen.effort import PackGain, pack_gain
+from symofros.generator.codegen.limbs.plan import LimbPlan
+from symofros.generator.codegen.limbs.vector import LimbVector
 from symofros.generator.codegen.names import local_name
-from symofros.generator.codegen.limbs import LimbPlan, LimbVector
 from symofros.generator.codegen.packs import PackPlan, Store, Vector
 
 # Operations per statement at most: long lines help neither people nor compilers.
@@ -139,7 +139,9 @@ class StatementWriter:
             for arg in graph.args[node] if node not in vector_of_node else ():
                 uses[abs(arg)] = uses.get(abs(arg), 0) + 1
         # Vectors read variables: what a vector needs may be needed by several lanes.
-        stored = {abs(store.edge) for store in stores} | {abs(e) for vector in self.vectors.values() for e in vector.edges}
+        stored = {abs(store.edge) for store in stores} | {
+            abs(e) for vector in self.vectors.values() for e in vector.edges
+        }
         size: dict[int, int] = {}
         inlined: set[int] = set()
         for node in nodes:
@@ -186,7 +188,7 @@ class StatementWriter:
         blocks, done = self._blocks(), set[int]()
 
         def needs(key: int) -> list[int]:
-            """Keys of the variables that a statement reads, in the order in which they are formed if nothing else is."""
+            """Keys of the variables that a statement reads, in the order in which they are formed."""
             if key > 0:
                 return sorted(self._mentioned(blocks[key][0] if key in blocks else self.graph.args[key]))
             vector = self.vectors[key]

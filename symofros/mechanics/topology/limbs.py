@@ -15,9 +15,10 @@ from symofros.mechanics.topology.tree import BASE, Link, SpanningTree
 
 
 def equal_limbs(tree: SpanningTree) -> tuple[tuple[Limb, ...], ...]:
-    """Groups of equal limbs: of each limb the entries of q, v and a, in an order that they share; outermost limbs alone.
+    """Groups of equal limbs: of each limb the entries of q, v and a, in an order that they share.
 
-    Limbs that differ in numbers only, zeros in the same places, are equal before those that differ in more.
+    Limbs that differ in numbers alone, with zeros in the same places, are grouped before those that differ in more.
+    What is within a limb of a group is not grouped again.
     """
     children: dict[int, list[int]] = defaultdict(list)
     for index, link in enumerate(tree.links):
@@ -70,7 +71,10 @@ def _pattern(link: Link) -> object:
         _kinds(link),
         _zeros(link.joint.axis),
         tuple((_zeros(step.position), step.rotation.kind, _sizes(step.rotation.values)) for step in steps),
-        tuple((_zeros((i.mass, *i.center_of_mass)), _zeros(i.moments), _sizes(i.rotation.values)) for _, i in link.inertias),
+        tuple(
+            (_zeros((i.mass, *i.center_of_mass)), _zeros(i.moments), _sizes(i.rotation.values))
+            for _, i in link.inertias
+        ),
     )
 
 
@@ -79,5 +83,5 @@ def _zeros(values: Sequence[object]) -> tuple[bool, ...]:
 
 
 def _sizes(values: Sequence[object]) -> tuple[object, ...]:
-    """Angles and entries of rotations without their signs: a quarter turn folds as another does, and a half turn not."""
+    """Angles and entries of rotations without their signs: opposite quarter turns leave the same zeros."""
     return tuple(abs(value) if isinstance(value, float | int) else value for value in values)

@@ -1,0 +1,201 @@
+"""Nodes of equal limbs that correspond: the same operation forms them from operands that correspond, up to signs.
+
+Operands correspond, too, if they are numbers, or the same node for all limbs. They are found from the joints on.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Collection, Iterable, Sequence
+from dataclasses import dataclass, field
+from functools import reduce
+from operator import or_
+
+from symofros.expr.edges import Edge
+from symofros.expr.graph import Graph
+from symofros.expr.ops import ADD, DIV, MUL, STOP_GRADIENT
+from symofros.expr.program import Limb
+
+_ARITHMETIC = (ADD, MUL, DIV, STOP_GRADIENT)
+TRIGONOMETRIC = ("sin", "cos")
+# Operations between a node and operands that are known to correspond.
+_DEEPEST = 6
+# Groups of inputs whose entries belong to joints.
+_OF_JOINTS = ("q", "v", "a")
+# Counterparts of nodes of the first limb, keyed by these, each with its operands in the order of the node's.
+_Trial = dict[int, tuple[int, tuple[Edge, ...]]]
+
+
+@dataclass(frozen=True)
+class Row:
+    """Nodes that correspond, a lane each.
+
+    Attributes:
+        nodes: The nodes, that of the first limb first.
+        operands: For each operand, its edge in each lane.
+    """
+
+    nodes: tuple[int, ...]
+    operands: tuple[tuple[Edge, ...], ...]
+
+
+@dataclass
+class Rows:
+    """Rows that have no node in common.
+
+    Attributes:
+        by_leader: Rows, keyed by the node of the first limb.
+        leader_of: That node, for every node of a row.
+    """
+
+    by_leader: dict[int, Row] = field(default_factory=dict)
+    leader_of: dict[int, int] = field(default_factory=dict)
+
+    def add(self, row: Row) -> None:
+        """Add a row."""
+        self.by_leader[row.nodes[0]] = row
+        self.leader_of.update(dict.fromkeys(row.nodes, row.nodes[0]))
+
+    def remove(self, leaders: Iterable[int]) -> None:
+        """Take rows out, by their first nodes."""
+        for leader in leaders:
+            for node in self.by_leader.pop(leader).nodes:
+                del self.leader_of[node]
+
+    def has(self, edges: Sequence[Edge]) -> bool:
+        """Whether edges are the nodes of a row in their order, up to signs."""
+        leader = self.leader_of.get(abs(edges[0]))
+        return leader is not None and self.by_leader[leader].nodes == tuple(map(abs, edges))
+
+
+class Counterparts:
+    """Finds rows.
+
+    Args:
+        graph: Graph of the program.
+        nodes: Nodes that the function computes, operands first.
+        given: Nodes that the function reads from an input array.
+        free: Nodes that may be in a row, if they are arithmetic.
+
+    Attributes:
+        rows: What was found.
+    """
+
+    def __init__(self, graph: Graph, nodes: Sequence[int], given: Collection[int], free: Collection[int]) -> None:
+        self.rows = Rows()
+        self._graph, self._nodes, self._given = graph, nodes, given
+        self._free = {node for node in free if graph.op[node] in _ARITHMETIC}
+        self._users: dict[int, list[int]] = defaultdict(list)
+        for node in nodes:
+            for arg in dict.fromkeys(map(abs, graph.args[node])):
+                self._users[arg].append(node)
+        self._node_of = {slot: node for node, slot in graph.slot.items()}
+        self._taken: set[int] = set()
+        self._partners: dict[int, tuple[int, ...]] = {}  # Of nodes of the first limb.
+        self._limbs: dict[int, int] = {}  # Limbs whose joints a node depends on, as bits.
+
+    def find(self, limbs: Sequence[Limb]) -> None:
+        """Find the rows of some equal limbs."""
+        graph = self._graph
+        self._partners, self._limbs = {}, {}
+        for slots in zip(*limbs, strict=True):
+            nodes = [self._node_of[slot] for slot in slots if slot in self._node_of]
+            self._limbs.update((node, 1 << k) for k, node in enumerate(nodes))
+            if len(nodes) == len(limbs):
+                self._join(nodes)
+        for node in self._nodes:
+            self._limbs[node] = reduce(or_, (self._limbs.get(abs(arg), 0) for arg in graph.args[node]))
+        for node in self._nodes:
+            known = [arg for arg in map(abs, graph.args[node]) if arg in self._partners and node not in self._taken]
+            ways: tuple[Callable[[int, int], bool], ...] = (self._match, self._match_in_part)
+            any(way(node, arg) for way in ways for arg in known)
+
+    def _join(self, nodes: Sequence[int]) -> None:
+        self._partners[nodes[0]] = tuple(nodes[1:])
+        self._taken.update(nodes)
+
+    def _match(self, node: int, operand: int) -> bool:
+        """Find the counterparts of a node among the users of those of an operand; whether there are some."""
+        found: list[_Trial] = []
+        for lane, partner in enumerate(self._partners[operand]):
+            trial: _Trial = {}
+            if not any(self._agree(node, other, lane, trial) for other in self._users[partner]):
+                return False
+            found.append(trial)
+        leaders = sorted(found[0])
+        rows = [(leader, *(trial[leader][0] for trial in found if leader in trial)) for leader in leaders]
+        lanes = 1 + len(found)
+        if any(sorted(trial) != leaders for trial in found) or len(set().union(*rows)) < lanes * len(rows):
+            return False
+        for nodes in rows:
+            self._join(nodes)
+            if self._graph.op[nodes[0]] not in TRIGONOMETRIC:
+                operands = (self._graph.args[nodes[0]], *(trial[nodes[0]][1] for trial in found))
+                self.rows.add(Row(nodes, tuple(zip(*operands, strict=True))))
+        return True
+
+    def _match_in_part(self, node: int, operand: int) -> bool:
+        """Find the counterparts of a sum or product whose other operands do not correspond, by place among the users.
+
+        Limbs may differ at their ends; what is added to that is alike again.
+        """
+        graph, op = self._graph, self._graph.op[node]
+        if op not in (ADD, MUL):
+            return False
+        alike = [[user for user in self._users[x] if graph.op[user] == op] for x in (operand, *self._partners[operand])]
+        if len(set(map(len, alike))) > 1:
+            return False
+        nodes = tuple(users[alike[0].index(node)] for users in alike)
+        at = 0 if abs(graph.args[node][0]) == operand else 1
+        operands = [graph.args[node]]
+        for other, partner in zip(nodes[1:], self._partners[operand], strict=True):
+            args = graph.args[other]
+            operands.append(args if abs(args[at]) == partner else args[::-1])
+        others = [abs(args[1 - at]) for args in operands]
+        is_free = self._free.issuperset(nodes) and self._taken.isdisjoint(nodes) and len(set(nodes)) == len(nodes)
+        # What depends on several limbs may wait for one of these nodes.
+        is_own = all(self._limbs.get(other, 0) in (0, 1 << k) for k, other in enumerate(others))
+        # Of joints alone and what is at hand nothing follows: it is the end where limbs differ.
+        is_inner = operand in self.rows.leader_of or all(graph.args[other] for other in others)
+        if not (is_free and is_own and is_inner and self.rows.leader_of.keys().isdisjoint(others)):
+            return False
+        self._join(nodes)
+        self.rows.add(Row(nodes, tuple(zip(*operands, strict=True))))
+        return True
+
+    def _agree(self, edge: Edge, other: Edge, lane: int, trial: _Trial, depth: int = 0) -> bool:
+        """Whether two edges correspond, up to signs.
+
+        Args:
+            edge: Edge of the first limb.
+            other: Edge of another limb.
+            lane: That limb, from 0.
+            trial: Nodes that correspond if all does; what is found is added.
+            depth: Operations between the edge and the node that is asked for.
+        """
+        graph, a, b = self._graph, abs(edge), abs(other)
+        for known in (graph.value, self._given):
+            if a in known or b in known:
+                return a in known and b in known
+        if a in self._partners:
+            return self._partners[a][lane] == b
+        if a in trial:
+            return trial[a][0] == b
+        used = {a, b} & self._taken or any(node in (a, b) for node, _ in trial.values()) or b in trial
+        if a == b or used:
+            return a == b and not used
+        if a in graph.slot or b in graph.slot:
+            slots = [graph.slot[node].group for node in (a, b) if node in graph.slot]
+            return len(slots) == 2 and slots[0] == slots[1] and slots[0] not in _OF_JOINTS
+        op = graph.op[a]
+        is_allowed = self._free.issuperset((a, b)) or op in TRIGONOMETRIC
+        if not is_allowed or graph.op[b] != op or depth > _DEEPEST:
+            return False
+        before, args = dict(trial), graph.args[b]
+        for order in (args, args[::-1]) if op in (ADD, MUL) else (args,):
+            trial[a] = b, order
+            if all(self._agree(x, y, lane, trial, depth + 1) for x, y in zip(graph.args[a], order, strict=True)):
+                return True
+            trial.clear()
+            trial.update(before)
+        return False

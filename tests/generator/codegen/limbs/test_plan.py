@@ -1,0 +1,121 @@
+"""Vectors are formed where limbs are alike, and only there."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from reference_models.closed.four_bars import n_four_bar
+from symofros.compiler import Compilation
+from symofros.expr.edges import Edge
+from symofros.expr.graph import Graph
+from symofros.expr.numerics.evaluate import needed_nodes
+from symofros.generator.codegen.effort import effort
+from symofros.generator.codegen.limbs.plan import LimbPlan
+from symofros.generator.codegen.model import Packs, model_source
+from symofros.generator.programs import ProgramBuilder
+from symofros.mechanics.topology.tree import build_tree
+from tests.generator.codegen.limbs.graphs import of_limbs, plan
+
+Joint = Callable[[int], Edge]
+VECTOR = re.compile(r"\bsym_(?:pair|quad) p\d+ =")
+
+
+def quadruped(mirrored: bool = True) -> sf.System:
+    """A trunk on four legs of three joints, the right ones mirror images of the left ones."""
+    trunk = sf.RigidBody("trunk", sf.Joint("trunk", "free"), sf.Inertia(8.0, (0.01, 0, 0), (0.1, 0.2, 0.3)))
+    bodies = [trunk]
+    for name, x, y in (("fl", 0.2, 0.1), ("fr", 0.2, -0.1), ("hl", -0.2, 0.1), ("hr", -0.2, -0.1)):
+        side = y / 0.1 if mirrored else 1.0
+        parent = "trunk"
+        for part, axis, position in (
+            ("hip", (1, 0, 0), (x, y, 0)),
+            ("thigh", (0, 1, 0), (0, 0.08 * side, 0)),
+            ("shank", (0, 1, 0), (0, 0, -0.2)),
+        ):
+            inertia = sf.Inertia(0.8, (0.01, 0.02 * side, -0.1), (2e-3, 3e-3, 2e-3, 1e-4 * side, 2e-4, 3e-4 * side))
+            joint = sf.Joint(f"{name}_{part}_q", "revolute", parent, axis=axis, position=position, actuated=True)
+            parent = f"{name}_{part}"
+            bodies.append(sf.RigidBody(parent, joint, inertia))
+    return sf.System("quadruped", bodies)
+
+
+def text(system: sf.System, function: str, packs: Packs = "where they pay") -> str:
+    stated = Compilation(system, sf.Options(functions=(function,)))
+    return model_source(stated.program, stated.record, "test", packs=packs)
+
+
+@pytest.mark.parametrize("function", ["dynamics", "forward_dynamics", "inverse_dynamics_derivatives"])
+def test_legs_share_vectors(function: str) -> None:
+    system = quadruped()
+    assert len(VECTOR.findall(text(system, function))) > 50
+    assert not VECTOR.findall(text(system, function, "none"))
+    program = Compilation(system, sf.Options(functions=(function,))).program
+    stated, nodes = program.functions[0], needed_nodes(program.graph, program.functions[0].edges())
+    made = LimbPlan(program.graph, nodes, {}, stated.edges(), program.limbs)
+    assert made.spared > 0.4 * len(nodes)
+    # All four legs are one row each: lanes are told apart by their last numbers alone.
+    assert {vector.width for vector in made.vectors} == {4}
+
+
+def test_mirrored_legs_cost_no_more_than_equal_ones() -> None:
+    efforts = []
+    for mirrored in (True, False):
+        program = Compilation(quadruped(mirrored), sf.Options(functions=("forward_dynamics",))).program
+        efforts.append(effort(program, program.functions[0]))
+    assert efforts[0] == efforts[1]
+
+
+def test_the_cheaper_forward_dynamics_is_chosen_with_limbs_in_mind() -> None:
+    """Factors of M take fewer operations; of those of articulated bodies, legs share more."""
+    counts = {}
+    for method in ("articulated", "factors"):
+        program = Compilation(quadruped(), sf.Options(functions=("forward_dynamics",), forward_dynamics=method)).program
+        counts[method] = effort(program, program.functions[0])
+    assert counts["articulated"] < counts["factors"]
+    assert ProgramBuilder(build_tree(quadruped()), sf.Options()).forward_method == "articulated"
+
+
+@pytest.mark.parametrize("name", ["chain22", "puma560", "four_bar"])
+def test_what_has_no_equal_limbs_has_no_vectors_of_them(name: str) -> None:
+    assert not VECTOR.findall(text(MODELS[name], "forward_dynamics"))
+
+
+def test_rows_of_equal_parts_are_loops() -> None:
+    """Loops leave less to be compiled; vectors would stay out of them."""
+    stated = text(n_four_bar(20), "forward_dynamics")
+    assert "for (i = 0; i < " in stated and not VECTOR.findall(stated)
+
+
+def test_five_limbs_are_three_and_two() -> None:
+    graph, edges = of_limbs(5, lambda g, q, k: g.add(g.mul(g.mul(q(0), q(1)), q(2)), g.mul(q(0), g.constant(1.5 + k))))
+    made = plan(graph, 5, edges)
+    computed = {id(vector): vector for vector in made.vector_of_node.values()}.values()
+    assert {len(vector.nodes) for vector in computed} == {2, 3}
+    assert made.vector_of_node.keys() == {*needed_nodes(graph, edges)}
+
+
+def test_vectors_do_not_wait_for_themselves() -> None:
+    """The second limb starts from where the first one ends."""
+
+    def limb(g: Graph, q: Joint, k: int) -> Edge:
+        moved = g.mul(q(0), q(1))
+        if k:
+            first = g.mul(g.add(g.mul(g.input("q", 0), g.input("q", 1)), g.input("q", 2)), g.input("q", 0))
+            moved = g.mul(moved, first)
+        return g.mul(g.add(moved, q(2)), q(0))
+
+    graph, edges = of_limbs(2, limb)
+    made = plan(graph, 2, edges)
+    assert not {abs(edge) for edge in edges} & made.vector_of_node.keys()
+
+
+def test_few_operations_are_left_alone() -> None:
+    """Six lanes are put in and six read, for three vectors."""
+    graph, edges = of_limbs(2, lambda g, q, k: g.mul(q(0), q(1)))
+    outer = [graph.apply("exp", edge) for edge in edges]
+    assert plan(graph, 2, outer).spared == 0

@@ -1,0 +1,169 @@
+"""Vectors of limbs: the bits of the graph, whatever the limbs compute, read and share."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, example, given, settings
+from hypothesis import strategies as st
+
+from symofros.expr.edges import Edge
+from symofros.expr.graph import Graph
+from symofros.expr.numerics.evaluate import evaluate_edges
+from symofros.expr.ops import STOP_GRADIENT
+from symofros.expr.program import Output, Program
+from symofros.generator.codegen import function
+from symofros.generator.codegen.function import FunctionWriter
+from symofros.generator.codegen.limbs import plan as plans
+from symofros.native import native_text
+from tests.generator.codegen.limbs.graphs import JOINTS, of_limbs, program
+from tests.generator.codegen.test_loops import compiled
+
+# (operation, two operands, whether it is stored); an operand is (kind, number), see `_operand`.
+Step = tuple[str, tuple[tuple[str, int], tuple[str, int]], bool]
+_OPERANDS = st.tuples(
+    st.sampled_from(
+        ["own", "own", "joint", "common", "total", "neighbour", "number", "same number", "mirrored", "one's own"]
+    ),
+    st.integers(0, 11),
+)
+_STEPS = st.tuples(
+    st.sampled_from(["add", "sub", "mul", "mul", "div", "stop"]), st.tuples(_OPERANDS, _OPERANDS), st.booleans()
+)
+# Limbs that differ at their ends alone; mirror images; signs that contradict each other.
+_ENDS: list[Step] = [
+    ("mul", (("joint", 0), ("one's own", 0)), False),
+    ("mul", (("joint", 1), ("joint", 2)), False),
+    ("add", (("own", 1), ("own", 0)), False),
+    ("mul", (("own", 2), ("joint", 0)), True),
+    ("sub", (("own", 3), ("common", 0)), True),
+]
+_MIRRORED: list[Step] = [
+    ("mul", (("joint", 0), ("mirrored", 1)), False),
+    ("mul", (("joint", 1), ("number", 0)), False),
+    ("add", (("own", 0), ("own", 1)), False),
+    ("mul", (("own", 2), ("own", 0)), True),
+]
+_CONTRADICTING: list[Step] = [
+    ("add", (("joint", 0), ("joint", 1)), False),
+    ("mul", (("own", 0), ("mirrored", 0)), False),
+    ("mul", (("own", 0), ("own", 1)), False),
+    ("mul", (("own", 2), ("joint", 2)), False),
+    ("add", (("own", 3), ("own", 0)), True),
+    ("add", (("own", 1), ("own", 0)), True),
+    ("sub", (("own", 4), ("common", 1)), True),
+]
+
+
+def limbs(steps: list[Step], count: int) -> tuple[Program, tuple[Output, ...]]:
+    """A function that does the steps in turn for each of several limbs, then again from what these add up to."""
+    graph = Graph()
+    joints = [[graph.input("q", JOINTS * k + j) for j in range(JOINTS)] for k in range(count)]
+    common = [graph.input("q", JOINTS * count + i) for i in range(3)]
+    common = [graph.add(common[0], common[1]), graph.mul(common[1], common[2]), common[2]]
+    total, stored = common[0], list[Edge]()
+    for _ in range(2):
+        parts: list[list[Edge]] = []
+        for k in range(count):
+            own: list[Edge] = []
+            for operation, operands, is_stored in steps:
+                a, b = (_operand(graph, operand, k, own, parts, joints, common, total) for operand in operands)
+                if operation == "stop":
+                    edge = graph.mul(graph.apply(STOP_GRADIENT, a), b)
+                else:
+                    edge = getattr(graph, operation)(a, b)
+                own.append(edge if edge != 0 and abs(edge) not in graph.value else joints[k][0])
+                stored += [own[-1]] * is_stored
+            parts.append(own)
+        for own in parts:
+            total = graph.add(total, own[-1])
+    return program(graph, count, [*stored, total])
+
+
+def _operand(
+    graph: Graph,
+    operand: tuple[str, int],
+    limb: int,
+    own: list[Edge],
+    parts: list[list[Edge]],
+    joints: list[list[Edge]],
+    common: list[Edge],
+    total: Edge,
+) -> Edge:
+    kind, number = operand
+    if kind == "own" and own:
+        return own[number % len(own)]
+    if kind == "neighbour" and parts:
+        return parts[-1][number % len(parts[-1])]
+    if kind == "common":
+        return common[number % len(common)]
+    if kind == "total":
+        return total
+    if kind == "number":
+        return graph.constant(0.7 + 0.1 * number + 0.3 * limb)
+    if kind == "same number":
+        return graph.constant(0.25 + number)
+    if kind == "mirrored":
+        return graph.constant((-1.0) ** limb * (0.25 + number))
+    if kind == "one's own":
+        # Of another form in each limb.
+        edge = joints[limb][1]
+        for _ in range(limb + 1):
+            edge = graph.add(graph.mul(edge, joints[limb][2]), graph.constant(0.1))
+        return edge
+    return joints[limb][number % JOINTS]
+
+
+def assert_exact(made: tuple[Program, tuple[Output, ...]], folder: Path, seed: int = 0) -> str:
+    """Vectors wherever there may be some compute what the graph states, to the bit; returns the text."""
+    stated, (output,) = made
+    q = np.random.default_rng(seed).uniform(0.5, 1.5, stated.sizes["q"])
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(plans, "LEAST_SHARE", -9.0)
+        patch.setattr(function, "MAX_STATEMENTS", 10)
+        text = FunctionWriter(stated, "f", ["q"], [output], limbs=True).text()
+    run = compiled(native_text("model/limbs.c.in") + text.code, text.work, folder)
+    expected = [float(np.ravel(x)[0]) for x in evaluate_edges(stated, output.edges, {"q": q[None]}, {})]
+    np.testing.assert_array_equal(run(q, len(expected))[0], expected)
+    return text.code
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(st.lists(_STEPS, min_size=1, max_size=14), st.integers(2, 6), st.integers(0, 3))
+@example(_ENDS, 2, 0)
+@example(_ENDS, 3, 0)
+@example(_MIRRORED, 4, 0)
+@example(_CONTRADICTING, 2, 0)
+@example(_CONTRADICTING, 5, 0)
+def test_vectors_compute_the_bits_of_the_graph(
+    tmp_path_factory: pytest.TempPathFactory, steps: list[Step], count: int, seed: int
+) -> None:
+    assert_exact(limbs(steps, count), tmp_path_factory.mktemp("limbs"), seed)
+
+
+def test_a_sum_whose_gradient_is_stopped_is_one_factor(tmp_path: Path) -> None:
+    def limb(graph: Graph, joint: object, k: int) -> Edge:
+        assert callable(joint)
+        total = graph.add(graph.mul(joint(0), joint(1)), graph.mul(joint(1), joint(2)))
+        return graph.mul(graph.apply(STOP_GRADIENT, total), joint(2))
+
+    graph, edges = of_limbs(2, limb)
+    text = assert_exact(program(graph, 2, edges), tmp_path)
+    assert "sym_pair" in text
+
+
+@pytest.mark.parametrize(("count", "types"), [(2, {"sym_pair"}), (3, {"sym_quad"}), (4, {"sym_quad"})])
+def test_lanes_without_a_limb_are_as_harmless_as_the_first(count: int, types: set[str], tmp_path: Path) -> None:
+    """A zero there would be divided by, which programs that trap floating-point exceptions stop at."""
+
+    def limb(graph: Graph, joint: object, k: int) -> Edge:
+        assert callable(joint)
+        moved = graph.add(graph.mul(joint(0), graph.constant(0.5 + k)), joint(1))
+        return graph.div(graph.mul(moved, joint(2)), graph.add(moved, graph.mul(joint(1), joint(2))))
+
+    graph, edges = of_limbs(count, limb)
+    text = assert_exact(program(graph, count, edges), tmp_path)
+    assert {kind for kind in ("sym_pair", "sym_quad") if kind in text} == types
+    assert "0.0" not in text.replace("double", "")
