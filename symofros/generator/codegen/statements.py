@@ -101,7 +101,7 @@ class StatementWriter:
             vectors += plan.vectors
         of_limbs = LimbPlan(graph, nodes, given, edges, limbs, plan) if limbs else None
         self.has_limbs = of_limbs is not None and of_limbs.spared > 0
-        if of_limbs is not None and of_limbs.spared:
+        if of_limbs is not None and self.has_limbs:
             nodes = [node for node in nodes if node not in of_limbs.hidden]
             self._vector_of_node |= of_limbs.vector_of_node
             vectors += of_limbs.vectors

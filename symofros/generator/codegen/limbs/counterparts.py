@@ -17,11 +17,8 @@ from symofros.expr.ops import ADD, DIV, MUL, STOP_GRADIENT
 from symofros.expr.program import Limb
 
 _ARITHMETIC = (ADD, MUL, DIV, STOP_GRADIENT)
-TRIGONOMETRIC = ("sin", "cos")
 # Operations between a node and operands that are known to correspond.
 _DEEPEST = 6
-# Groups of inputs whose entries belong to joints.
-_OF_JOINTS = ("q", "v", "a")
 # Counterparts of nodes of the first limb, keyed by these, each with its operands in the order of the node's.
 _Trial = dict[int, tuple[int, tuple[Edge, ...]]]
 
@@ -75,16 +72,16 @@ class Counterparts:
         graph: Graph of the program.
         nodes: Nodes that the function computes, operands first.
         given: Nodes that the function reads from an input array.
-        free: Nodes that may be in a row, if they are arithmetic.
+        scalars: Nodes that are in no row, whatever they correspond to; others are if they are arithmetic.
 
     Attributes:
         rows: What was found.
     """
 
-    def __init__(self, graph: Graph, nodes: Sequence[int], given: Collection[int], free: Collection[int]) -> None:
+    def __init__(self, graph: Graph, nodes: Sequence[int], given: Collection[int], scalars: Collection[int]) -> None:
         self.rows = Rows()
-        self._graph, self._nodes, self._given = graph, nodes, given
-        self._free = {node for node in free if graph.op[node] in _ARITHMETIC}
+        self._graph, self._nodes, self._given, self._scalars = graph, nodes, given, scalars
+        self._free = {node for node in nodes if graph.op[node] in _ARITHMETIC}.difference(scalars)
         self._users: dict[int, list[int]] = defaultdict(list)
         for node in nodes:
             for arg in dict.fromkeys(map(abs, graph.args[node])):
@@ -124,12 +121,12 @@ class Counterparts:
             found.append(trial)
         leaders = sorted(found[0])
         rows = [(leader, *(trial[leader][0] for trial in found if leader in trial)) for leader in leaders]
-        lanes = 1 + len(found)
-        if any(sorted(trial) != leaders for trial in found) or len(set().union(*rows)) < lanes * len(rows):
+        is_whole = all(sorted(trial) == leaders for trial in found)
+        if not is_whole or len(set().union(*rows)) < sum(map(len, rows)):  # No node is two nodes' counterpart.
             return False
         for nodes in rows:
             self._join(nodes)
-            if self._graph.op[nodes[0]] not in TRIGONOMETRIC:
+            if nodes[0] in self._free:
                 operands = (self._graph.args[nodes[0]], *(trial[nodes[0]][1] for trial in found))
                 self.rows.add(Row(nodes, tuple(zip(*operands, strict=True))))
         return True
@@ -181,15 +178,13 @@ class Counterparts:
             return self._partners[a][lane] == b
         if a in trial:
             return trial[a][0] == b
-        used = {a, b} & self._taken or any(node in (a, b) for node, _ in trial.values()) or b in trial
-        if a == b or used:
-            return a == b and not used
+        if a == b or {a, b} & self._taken:
+            return a == b and a not in self._taken
         if a in graph.slot or b in graph.slot:
-            slots = [graph.slot[node].group for node in (a, b) if node in graph.slot]
-            return len(slots) == 2 and slots[0] == slots[1] and slots[0] not in _OF_JOINTS
+            return a in graph.slot and b in graph.slot and graph.slot[a].group == graph.slot[b].group
         op = graph.op[a]
-        is_allowed = self._free.issuperset((a, b)) or op in TRIGONOMETRIC
-        if not is_allowed or graph.op[b] != op or depth > _DEEPEST:
+        is_alike = graph.op[b] == op and (a in self._free) == (b in self._free)
+        if not is_alike or (a not in self._free and a not in self._scalars) or depth > _DEEPEST:
             return False
         before, args = dict(trial), graph.args[b]
         for order in (args, args[::-1]) if op in (ADD, MUL) else (args,):

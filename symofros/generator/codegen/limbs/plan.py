@@ -11,11 +11,12 @@ from symofros.expr.graph import Graph
 from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.ops import ADD, STOP_GRADIENT
 from symofros.expr.program import Limb
-from symofros.generator.codegen.limbs.counterparts import TRIGONOMETRIC, Counterparts
+from symofros.generator.codegen.limbs.counterparts import Counterparts
 from symofros.generator.codegen.limbs.signs import Signs, are_numbers, choose_signs, products
 from symofros.generator.codegen.limbs.vector import TYPES, LimbVector, Operand
 from symofros.generator.codegen.packs import PackPlan
 
+_TRIGONOMETRIC = frozenset(("sin", "cos"))
 # Operations in one statement at most.
 _MAX_INLINE = 8
 # Vectors are formed where they spare this share of a function's operations.
@@ -57,8 +58,8 @@ class LimbPlan:
         self._formed: dict[int, LimbVector] = {}
         self._put: dict[tuple[int, ...], LimbVector] = {}
         # Sines and cosines are evaluated in blocks, from scalars.
-        angles = needed_nodes(graph, [graph.args[n][0] for n in nodes if graph.op[n] in TRIGONOMETRIC], given)
-        search = Counterparts(graph, nodes, given, set(nodes).difference(self._pack_of_node, angles))
+        sines = [node for node in nodes if graph.op[node] in _TRIGONOMETRIC]
+        search = Counterparts(graph, nodes, given, {*needed_nodes(graph, sines, given), *self._pack_of_node})
         for group in limbs:
             turns = -(-len(group) // max(TYPES))  # More limbs than the widest vector has lanes are taken in turns.
             for start in range(turns):
@@ -75,7 +76,7 @@ class LimbPlan:
         read.update(abs(e) for vector in self._packs for e in vector.edges)
         read.update(abs(e) for vector in self._vectors for term in vector.terms for e in term.edges)
         spared = self._count(read)
-        self.spared = spared if spared >= LEAST_SHARE * len(nodes) else 0
+        self.spared = spared if spared > LEAST_SHARE * len(nodes) else 0
         self._inline(read.union(map(abs, edges)))
         self.vector_of_node = {node: self._formed[leader] for node, leader in self._rows.leader_of.items()}
         self.vectors = sorted((v for v in self._vectors if not v.is_inlined), key=lambda vector: vector.first_node)
@@ -106,15 +107,17 @@ class LimbPlan:
             self._rows.remove(rows)
 
     def _remove_single(self) -> None:
-        """Leave out vectors that go into no others and come from none, or from scalars of each limb, too."""
+        """Leave out vectors that go into no others and come from none, or from what is put together for them alone."""
         while True:
+            rows = self._rows.by_leader
+            put = Counter(edges for row in rows.values() for edges in row.operands if self._is_put_together(edges))
             read, linked = set[int](), set[int]()
-            for leader, row in self._rows.by_leader.items():
+            for leader, row in rows.items():
                 sources = {self._rows.leader_of[abs(edges[0])] for edges in row.operands if self._rows.has(edges)}
                 read |= sources
-                if sources and not any(map(self._is_put_together, row.operands)):
+                if sources and all(put[edges] != 1 for edges in row.operands):
                     linked.add(leader)
-            alone = self._rows.by_leader.keys() - linked - read
+            alone = rows.keys() - linked - read
             if not alone:
                 return
             self._rows.remove(alone)

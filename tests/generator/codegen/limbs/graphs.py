@@ -36,6 +36,11 @@ def of_limbs(count: int, limb: Callable[[Graph, Callable[[int], Edge], int], Edg
     return graph, edges
 
 
+def cubed(graph: Graph, edge: Edge) -> Edge:
+    """More operations on an edge, so that vectors pay."""
+    return graph.mul(graph.add(graph.mul(edge, edge), edge), edge)
+
+
 def plan(graph: Graph, count: int, edges: Sequence[Edge]) -> LimbPlan:
     """The vectors of a function with these outputs."""
     nodes = needed_nodes(graph, [edge for edge in edges if edge != ZERO])

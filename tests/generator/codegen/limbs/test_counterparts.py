@@ -13,10 +13,10 @@ from tests.generator.codegen.limbs.graphs import limbs_of, of_limbs
 Joint = Callable[[int], Edge]
 
 
-def rows(graph: Graph, edges: list[Edge], count: int, taken: tuple[int, ...] = ()) -> Rows:
-    """The rows that are found for some outputs."""
+def rows(graph: Graph, edges: list[Edge], count: int, scalars: tuple[int, ...] = ()) -> Rows:
+    """The rows that are found for some outputs; sines and cosines are scalars besides."""
     nodes = needed_nodes(graph, edges)
-    search = Counterparts(graph, nodes, {}, set(nodes).difference(taken))
+    search = Counterparts(graph, nodes, {}, {*scalars, *(node for node in nodes if graph.op[node] == "sin")})
     search.find(limbs_of(count)[0])
     return search.rows
 
@@ -93,9 +93,43 @@ def test_sums_over_limbs_are_not_counterparts_of_each_other() -> None:
     assert found.has(edges) and not {abs(first), abs(second)} & found.leader_of.keys()
 
 
-def test_nodes_that_are_taken_stay_apart() -> None:
-    graph, edges = of_limbs(2, lambda g, q, k: g.mul(g.mul(q(0), q(1)), q(2)))
-    assert not rows(graph, edges, 2, tuple(map(abs, edges))).has(edges)
+def test_no_node_is_the_counterpart_of_two() -> None:
+    """One limb has a factor twice where the other has two."""
+
+    def limb(g: Graph, q: Joint, k: int) -> Edge:
+        a, b, c = (g.mul(g.input("q", 8), g.constant(x)) for x in (0.1, 0.2, 0.3))
+        return g.mul(q(0), g.mul(c, c) if k else g.mul(a, b))
+
+    graph, edges = of_limbs(2, limb)
+    found = rows(graph, edges, 2)  # By place alone: the factors are put together.
+    assert len(found.by_leader) == 1 and not found.has(found.by_leader[abs(edges[0])].operands[1])
+    three, edges = of_limbs(3, lambda g, q, k: g.mul(q(0), g.mul(g.input("q", 9), g.constant(1.0 + k % 2))))
+    found = rows(three, edges, 3)  # The second factor of the first limb is that of the third.
+    assert not any(len(set(row.nodes)) < 3 for row in found.by_leader.values())
+
+
+def test_operands_that_are_put_together_keep_their_places() -> None:
+    """The end of one limb is older than what it is added to, that of the other is not."""
+
+    def limb(g: Graph, q: Joint, k: int) -> Edge:
+        end = g.mul(q(2), q(2)) if k else None
+        moved = g.mul(q(0), q(1))
+        return g.add(moved, end or g.add(g.mul(q(2), g.constant(0.1)), q(2)))
+
+    graph, edges = of_limbs(2, limb)
+    row = rows(graph, edges, 2).by_leader[abs(edges[0])]
+    assert {abs(edge) for edge in row.operands[0]} == {
+        abs(graph.args[abs(edges[0])][0]),
+        abs(graph.args[abs(edges[1])][1]),
+    }
+
+
+def test_scalars_correspond_and_are_in_no_row() -> None:
+    graph, edges = of_limbs(2, lambda g, q, k: g.mul(g.mul(q(0), q(1)), g.constant(0.3 + k)))
+    inner = [graph.args[abs(edge)][0] for edge in edges]
+    found = rows(graph, edges, 2, tuple(map(abs, inner)))
+    assert found.has(edges) and not found.has(inner)
+    assert not rows(graph, edges, 2, (abs(inner[0]),)).by_leader
 
 
 def test_rows_forget_what_is_removed() -> None:

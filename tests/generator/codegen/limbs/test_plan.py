@@ -11,15 +11,18 @@ import symofros as sf
 from reference_models import MODELS
 from reference_models.closed.four_bars import n_four_bar
 from symofros.compiler import Compilation
-from symofros.expr.edges import Edge
+from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.graph import Graph
 from symofros.expr.numerics.evaluate import needed_nodes
+from symofros.expr.packs.combine import linear_combination
+from symofros.expr.packs.pack import WIDTH, Pack
 from symofros.generator.codegen.effort import effort
 from symofros.generator.codegen.limbs.plan import LimbPlan
 from symofros.generator.codegen.model import Packs, model_source
+from symofros.generator.codegen.packs import PackPlan
 from symofros.generator.programs import ProgramBuilder
 from symofros.mechanics.topology.tree import build_tree
-from tests.generator.codegen.limbs.graphs import of_limbs, plan
+from tests.generator.codegen.limbs.graphs import JOINTS, cubed, limbs_of, of_limbs, plan
 
 Joint = Callable[[int], Edge]
 VECTOR = re.compile(r"\bsym_(?:pair|quad) p\d+ =")
@@ -100,18 +103,47 @@ def test_five_limbs_are_three_and_two() -> None:
 
 
 def test_vectors_do_not_wait_for_themselves() -> None:
-    """The second limb starts from where the first one ends."""
+    """A vector of the second limb's end and the first one's would wait for a pack, whose other lane waits for it."""
+    g = Graph()
+    q = [g.input("q", i) for i in range(2 * JOINTS)]
+    first = g.mul(g.mul(q[0], q[1]), g.mul(q[2], q[2]))
+    other = g.mul(g.mul(q[3], q[4]), g.mul(q[4], q[5]))
+    outer = g.mul(first, q[0])
+    lanes = (g.input("v", 0), outer, g.input("v", 1), g.input("v", 2), *[ZERO] * (WIDTH - 4))
+    _, pack = linear_combination(g, [(q[5], (ONE, Pack(lanes))), (q[4], (ONE, Pack(lanes)))])
+    second = g.mul(other, pack.lanes[0])
+    edges = [second, cubed(g, second), cubed(g, outer), *pack.lanes[1:4]]
+    nodes = needed_nodes(g, edges)
+    packs = PackPlan(g, nodes, {}, edges)
+    made = LimbPlan(g, packs.nodes, {}, edges, limbs_of(2), packs)
+    assert packs.vectors and not {abs(outer), abs(second)} & made.vector_of_node.keys()
 
+
+def test_what_packs_and_sines_need_is_left_to_them() -> None:
     def limb(g: Graph, q: Joint, k: int) -> Edge:
-        moved = g.mul(q(0), q(1))
-        if k:
-            first = g.mul(g.add(g.mul(g.input("q", 0), g.input("q", 1)), g.input("q", 2)), g.input("q", 0))
-            moved = g.mul(moved, first)
-        return g.mul(g.add(moved, q(2)), q(0))
+        return cubed(g, g.apply("sin", g.mul(g.add(g.mul(q(0), q(1)), q(2)), q(1))))
 
     graph, edges = of_limbs(2, limb)
     made = plan(graph, 2, edges)
-    assert not {abs(edge) for edge in edges} & made.vector_of_node.keys()
+    sines = [node for node, op in enumerate(graph.op) if op == "sin"]
+    angles = needed_nodes(graph, [graph.args[node][0] for node in sines])
+    assert made.vector_of_node and not {*sines, *angles} & made.vector_of_node.keys()
+    program = Compilation(quadruped(), sf.Options(functions=("forward_dynamics_derivatives",))).program
+    edges = program.functions[0].edges()
+    packs = PackPlan(program.graph, needed_nodes(program.graph, edges), {}, edges)
+    made = LimbPlan(program.graph, packs.nodes, {}, edges, program.limbs, packs)
+    assert packs.vector_of_node and not packs.vector_of_node.keys() & made.vector_of_node.keys()
+
+
+def test_a_result_is_no_vector_if_that_takes_scalars_of_each_limb() -> None:
+    """What a vector spares in the last operation, putting its operand together costs."""
+
+    def limb(g: Graph, q: Joint, k: int) -> Edge:
+        return g.mul(cubed(g, g.mul(q(0), q(1))), g.apply("exp", q(2)))
+
+    graph, edges = of_limbs(2, limb)
+    made = plan(graph, 2, edges)
+    assert made.vector_of_node and not {abs(edge) for edge in edges} & made.vector_of_node.keys()
 
 
 def test_few_operations_are_left_alone() -> None:

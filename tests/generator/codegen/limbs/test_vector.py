@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -18,9 +19,10 @@ from symofros.generator.codegen import function
 from symofros.generator.codegen.function import FunctionWriter
 from symofros.generator.codegen.limbs import plan as plans
 from symofros.native import native_text
-from tests.generator.codegen.limbs.graphs import JOINTS, of_limbs, program
+from tests.generator.codegen.limbs.graphs import JOINTS, cubed, of_limbs, program
 from tests.generator.codegen.test_loops import compiled
 
+Joint = Callable[[int], Edge]
 # (operation, two operands, whether it is stored); an operand is (kind, number), see `_operand`.
 Step = tuple[str, tuple[tuple[str, int], tuple[str, int]], bool]
 _OPERANDS = st.tuples(
@@ -121,7 +123,7 @@ def assert_exact(made: tuple[Program, tuple[Output, ...]], folder: Path, seed: i
     stated, (output,) = made
     q = np.random.default_rng(seed).uniform(0.5, 1.5, stated.sizes["q"])
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(plans, "LEAST_SHARE", -9.0)
+        patch.setattr(plans, "LEAST_SHARE", 0.0)
         patch.setattr(function, "MAX_STATEMENTS", 10)
         text = FunctionWriter(stated, "f", ["q"], [output], limbs=True).text()
     run = compiled(native_text("model/limbs.c.in") + text.code, text.work, folder)
@@ -143,25 +145,38 @@ def test_vectors_compute_the_bits_of_the_graph(
     assert_exact(limbs(steps, count), tmp_path_factory.mktemp("limbs"), seed)
 
 
-def test_a_sum_whose_gradient_is_stopped_is_one_factor(tmp_path: Path) -> None:
-    def limb(graph: Graph, joint: object, k: int) -> Edge:
-        assert callable(joint)
-        total = graph.add(graph.mul(joint(0), joint(1)), graph.mul(joint(1), joint(2)))
-        return graph.mul(graph.apply(STOP_GRADIENT, total), joint(2))
+def stopped(g: Graph, q: Joint, k: int) -> Edge:
+    """A sum whose gradient is stopped, as the first factor of a product: its brackets must not go with it."""
+    total = g.apply(STOP_GRADIENT, g.add(g.mul(q(0), q(1)), g.mul(q(1), q(2))))
+    return g.mul(total, g.mul(q(2), q(2)))
 
+
+def turned(g: Graph, q: Joint, k: int) -> Edge:
+    """A sum that is added here and subtracted there, and has no number that could tell the limbs apart."""
+    first, second = g.mul(q(0), q(1)), g.add(g.mul(q(1), q(2)), g.mul(q(2), q(0)))
+    return cubed(g, g.add(first, second) if k else g.sub(first, second))
+
+
+def number_of_one_limb(g: Graph, q: Joint, k: int) -> Edge:
+    """A product with a number in one limb and not in the other, that is added here and subtracted there."""
+    first, moved = g.mul(q(0), q(1)), g.mul(g.mul(q(1), q(2)), q(0))
+    scaled = g.mul(moved, g.mul(q(2), q(2)) if k else g.constant(0.3))
+    return cubed(g, g.add(first, scaled) if k else g.sub(first, scaled))
+
+
+@pytest.mark.parametrize("limb", [stopped, turned, number_of_one_limb])
+def test_brackets_and_signs_are_those_of_the_graph(limb: Callable[[Graph, Joint, int], Edge], tmp_path: Path) -> None:
     graph, edges = of_limbs(2, limb)
-    text = assert_exact(program(graph, 2, edges), tmp_path)
-    assert "sym_pair" in text
+    assert "sym_pair p" in assert_exact(program(graph, 2, edges), tmp_path)
 
 
 @pytest.mark.parametrize(("count", "types"), [(2, {"sym_pair"}), (3, {"sym_quad"}), (4, {"sym_quad"})])
 def test_lanes_without_a_limb_are_as_harmless_as_the_first(count: int, types: set[str], tmp_path: Path) -> None:
     """A zero there would be divided by, which programs that trap floating-point exceptions stop at."""
 
-    def limb(graph: Graph, joint: object, k: int) -> Edge:
-        assert callable(joint)
-        moved = graph.add(graph.mul(joint(0), graph.constant(0.5 + k)), joint(1))
-        return graph.div(graph.mul(moved, joint(2)), graph.add(moved, graph.mul(joint(1), joint(2))))
+    def limb(g: Graph, q: Joint, k: int) -> Edge:
+        moved = g.add(g.mul(q(0), g.constant(0.5 + k)), q(1))
+        return g.div(g.mul(moved, q(2)), g.add(moved, g.mul(q(1), q(2))))
 
     graph, edges = of_limbs(count, limb)
     text = assert_exact(program(graph, count, edges), tmp_path)
