@@ -100,17 +100,15 @@ class FunctionWriter:
         pre = program.pre if given else {}
         stores = [Store(o.name, i, edge) for o in outputs for i, edge in enumerate(o.edges) if edge != 0]
         nodes = needed_nodes(program.graph, edges, pre)
-        self.writer = StatementWriter(program.graph, nodes, pre, stores, packs, program.limbs if limbs else ())
+        self.writer = StatementWriter(program.graph, nodes, pre, stores, packs)
         self.pack_gain = self.writer.pack_gain
         self.statements = self.writer.statements()
         self._items = with_loops(self.writer, self.statements)
-        if self.writer.has_limbs:
-            # Loops leave less to be compiled, and vectors stay out of them.
-            plain = StatementWriter(program.graph, nodes, pre, stores, packs)
-            statements = plain.statements()
-            items = with_loops(plain, statements)
-            if any(isinstance(item, Loop) for item in items):
-                self.writer, self.statements, self._items = plain, statements, items
+        # Loops leave less to be compiled than vectors, which stay out of them.
+        if limbs and program.limbs and not any(isinstance(item, Loop) for item in self._items):
+            self.writer = StatementWriter(program.graph, nodes, pre, stores, packs, program.limbs)
+            self.statements = self.writer.statements()
+            self._items = list(self.statements)
 
     def text(self) -> FunctionText:
         """The C text for one state: chunk functions, then the function that unpacks pointers and calls them."""

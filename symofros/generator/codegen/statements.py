@@ -73,7 +73,6 @@ class StatementWriter:
 
     Attributes:
         pack_gain: Whether the function is faster with its packs than without.
-        has_limbs: Whether values of limbs share vectors.
         vectors: Vectors by their keys.
     """
 
@@ -100,9 +99,7 @@ class StatementWriter:
             self._vector_of_node |= plan.vector_of_node
             vectors += plan.vectors
         of_limbs = LimbPlan(graph, nodes, given, edges, limbs, plan) if limbs else None
-        self.has_limbs = of_limbs is not None and of_limbs.spared > 0
-        if of_limbs is not None and self.has_limbs:
-            nodes = [node for node in nodes if node not in of_limbs.hidden]
+        if of_limbs is not None and of_limbs.spared > 0:
             self._vector_of_node |= of_limbs.vector_of_node
             vectors += of_limbs.vectors
         self.vectors = {vector.key: vector for vector in vectors}

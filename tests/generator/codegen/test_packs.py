@@ -110,7 +110,7 @@ def test_small_models_stay_scalar() -> None:
 @pytest.mark.parametrize(
     ("name", "function", "with_packs", "without"),
     [
-        ("spdm", "mass_matrix", False, True),  # More is put into lanes than is saved.
+        ("puma560", "mass_matrix", False, True),  # More is put into lanes than is saved.
         ("planar_robot", "dynamics", True, True),  # Which is faster is decided by the width of vectors.
         ("puma560", "inverse_dynamics_derivatives", True, False),
     ],

@@ -9,6 +9,7 @@ from collections import defaultdict
 from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import reduce
+from heapq import heappop, heappush
 from operator import or_
 
 from symofros.expr.edges import Edge
@@ -90,26 +91,47 @@ class Counterparts:
         self._taken: set[int] = set()
         self._partners: dict[int, tuple[int, ...]] = {}  # Of nodes of the first limb.
         self._limbs: dict[int, int] = {}  # Limbs whose joints a node depends on, as bits.
+        self._waiting: list[int] = []
 
-    def find(self, limbs: Sequence[Limb]) -> None:
-        """Find the rows of some equal limbs."""
-        graph = self._graph
-        self._partners, self._limbs = {}, {}
+    def find(self, limbs: Sequence[Limb], widest: int) -> None:
+        """Find the rows of some equal limbs.
+
+        Args:
+            limbs: The limbs; more than the widest row has lanes are taken in turns.
+            widest: Lanes of the widest row.
+        """
+        self._limbs = {}
+        for k, limb in enumerate(limbs):
+            self._limbs.update((self._node_of[slot], 1 << k) for slot in limb if slot in self._node_of)
+        for node in self._nodes:
+            self._limbs[node] = reduce(or_, (self._limbs.get(abs(arg), 0) for arg in self._graph.args[node]))
+        turns = -(-len(limbs) // widest)
+        for start in range(turns):
+            if len(limbs[start::turns]) > 1:
+                self._find_rows(limbs[start::turns])
+
+    def _find_rows(self, limbs: Sequence[Limb]) -> None:
+        """Go from the joints of the first limb to all that they are read by, in order."""
+        self._partners, self._waiting = {}, []
         for slots in zip(*limbs, strict=True):
             nodes = [self._node_of[slot] for slot in slots if slot in self._node_of]
-            self._limbs.update((node, 1 << k) for k, node in enumerate(nodes))
             if len(nodes) == len(limbs):
                 self._join(nodes)
-        for node in self._nodes:
-            self._limbs[node] = reduce(or_, (self._limbs.get(abs(arg), 0) for arg in graph.args[node]))
-        for node in self._nodes:
-            known = [arg for arg in map(abs, graph.args[node]) if arg in self._partners and node not in self._taken]
+        last = 0
+        while self._waiting:
+            node = heappop(self._waiting)
+            if node == last or node in self._taken:
+                continue
+            last = node
+            known = [arg for arg in map(abs, self._graph.args[node]) if arg in self._partners]
             ways: tuple[Callable[[int, int], bool], ...] = (self._match, self._match_in_part)
             any(way(node, arg) for way in ways for arg in known)
 
     def _join(self, nodes: Sequence[int]) -> None:
         self._partners[nodes[0]] = tuple(nodes[1:])
         self._taken.update(nodes)
+        for user in self._users[nodes[0]]:
+            heappush(self._waiting, user)
 
     def _match(self, node: int, operand: int) -> bool:
         """Find the counterparts of a node among the users of those of an operand; whether there are some."""
@@ -151,7 +173,9 @@ class Counterparts:
         others = [abs(args[1 - at]) for args in operands]
         is_free = self._free.issuperset(nodes) and self._taken.isdisjoint(nodes) and len(set(nodes)) == len(nodes)
         # What depends on several limbs may wait for one of these nodes.
-        is_own = all(self._limbs.get(other, 0) in (0, 1 << k) for k, other in enumerate(others))
+        is_own = all(
+            self._limbs.get(x, 0) & ~self._limbs[abs(args[at])] == 0 for x, args in zip(others, operands, strict=True)
+        )
         # Of joints alone and what is at hand nothing follows: it is the end where limbs differ.
         is_inner = operand in self.rows.leader_of or all(graph.args[other] for other in others)
         if not (is_free and is_own and is_inner and self.rows.leader_of.keys().isdisjoint(others)):

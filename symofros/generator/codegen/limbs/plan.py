@@ -36,8 +36,7 @@ class LimbPlan:
 
     Attributes:
         vectors: All vectors that are variables.
-        vector_of_node: Vector from which a node is read, or in whose text it is hidden.
-        hidden: Nodes that are parts of a text and read by nobody else.
+        vector_of_node: Vector from which a node is read; nobody else reads a node of a vector that is no variable.
         spared: Operations that the vectors spare, less those that put lanes in, turn their signs and read them one by
             one; 0 where they are too few to form vectors.
     """
@@ -61,10 +60,7 @@ class LimbPlan:
         sines = [node for node in nodes if graph.op[node] in _TRIGONOMETRIC]
         search = Counterparts(graph, nodes, given, {*needed_nodes(graph, sines, given), *self._pack_of_node})
         for group in limbs:
-            turns = -(-len(group) // max(TYPES))  # More limbs than the widest vector has lanes are taken in turns.
-            for start in range(turns):
-                if len(group[start::turns]) > 1:
-                    search.find(group[start::turns])
+            search.find(group, max(TYPES))
         self._rows = search.rows
         self._remove_cycles(nodes)
         self._remove_single()
@@ -80,7 +76,6 @@ class LimbPlan:
         self._inline(read.union(map(abs, edges)))
         self.vector_of_node = {node: self._formed[leader] for node, leader in self._rows.leader_of.items()}
         self.vectors = sorted((v for v in self._vectors if not v.is_inlined), key=lambda vector: vector.first_node)
-        self.hidden = {node for node, vector in self.vector_of_node.items() if vector.is_inlined}
 
     def _remove_cycles(self, nodes: Sequence[int]) -> None:
         """Leave out vectors that would wait for themselves, through others or through scalars."""

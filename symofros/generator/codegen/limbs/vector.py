@@ -145,7 +145,7 @@ class LimbVector:
             shown = text(term.edges[0])
         elif term.vector.is_inlined and term.vector.op:
             is_sum = term.vector.op in (ADD, STOP_GRADIENT)
-            needs = mixed or is_sum and (is_factor or is_right) or (is_factor and is_right)
+            needs = is_sum and (is_factor or is_right) or (is_factor and is_right)
             shown = f"({term.vector._operation(text)})" if needs else term.vector._operation(text)
         else:
             shown = term.vector._operation(text) if term.vector.is_inlined else vector_name(term.vector.key)

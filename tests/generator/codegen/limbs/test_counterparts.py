@@ -17,7 +17,7 @@ def rows(graph: Graph, edges: list[Edge], count: int, scalars: tuple[int, ...] =
     """The rows that are found for some outputs; sines and cosines are scalars besides."""
     nodes = needed_nodes(graph, edges)
     search = Counterparts(graph, nodes, {}, {*scalars, *(node for node in nodes if graph.op[node] == "sin")})
-    search.find(limbs_of(count)[0])
+    search.find(limbs_of(count)[0], count)
     return search.rows
 
 
