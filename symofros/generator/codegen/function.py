@@ -13,8 +13,10 @@ from itertools import accumulate, groupby
 
 from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.program import Output, Program
+from symofros.generator.codegen.effort import PackGain, pack_gain
+from symofros.generator.codegen.limbs.plan import LimbPlan
 from symofros.generator.codegen.loops import Item, Loop, loop_lines, with_loops
-from symofros.generator.codegen.packs import Store
+from symofros.generator.codegen.packs import PackPlan, Store
 from symofros.generator.codegen.statements import Statement, StatementWriter
 from symofros.generator.codegen.trigonometry import block_lines
 from symofros.runtime.calls.kernel import LaneOptions, Precision
@@ -99,16 +101,20 @@ class FunctionWriter:
         edges = [edge for output in outputs for edge in output.edges]
         pre = program.pre if given else {}
         stores = [Store(o.name, i, edge) for o in outputs for i, edge in enumerate(o.edges) if edge != 0]
-        nodes = needed_nodes(program.graph, edges, pre)
-        self.writer = StatementWriter(program.graph, nodes, pre, stores, packs)
-        self.pack_gain = self.writer.pack_gain
+        graph, nodes = program.graph, needed_nodes(program.graph, edges, pre)
+        plan = PackPlan(graph, nodes, pre, edges) if packs and graph.packs else None
+        self.pack_gain: PackGain = "clear" if plan is None else pack_gain(plan, len(nodes), stores)
+        nodes, plans = (nodes, []) if plan is None else (plan.nodes, [plan])
+        self.writer = StatementWriter(graph, nodes, pre, stores, plans)
         self.statements = self.writer.statements()
         self._items = with_loops(self.writer, self.statements)
         # Loops leave less to be compiled than vectors, which stay out of them.
         if limbs and program.limbs and not any(isinstance(item, Loop) for item in self._items):
-            self.writer = StatementWriter(program.graph, nodes, pre, stores, packs, program.limbs)
-            self.statements = self.writer.statements()
-            self._items = list(self.statements)
+            of_limbs = LimbPlan(graph, nodes, pre, edges, program.limbs, plan)
+            if of_limbs.spared:
+                self.writer = StatementWriter(graph, nodes, pre, stores, [*plans, of_limbs])
+                self.statements = self.writer.statements()
+                self._items = list(self.statements)
 
     def text(self) -> FunctionText:
         """The C text for one state: chunk functions, then the function that unpacks pointers and calls them."""

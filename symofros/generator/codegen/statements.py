@@ -15,8 +15,6 @@ from heapq import merge
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph, Slot
 from symofros.expr.ops import ADD, DIV, MUL, OPS, STOP_GRADIENT
-from symofros.expr.program import Limb
-from symofros.generator.codegen.effort import PackGain, pack_gain
 from symofros.generator.codegen.limbs.plan import LimbPlan
 from symofros.generator.codegen.limbs.vector import LimbVector
 from symofros.generator.codegen.names import local_name
@@ -68,11 +66,9 @@ class StatementWriter:
         nodes: Nodes that the function computes, operands first.
         given: Nodes that are read from an input array.
         stores: Outputs of the function.
-        packs: Whether values formed by the same operations share vectors.
-        limbs: Groups of equal limbs whose values share vectors.
+        plans: Vectors from which nodes are read.
 
     Attributes:
-        pack_gain: Whether the function is faster with its packs than without.
         vectors: Vectors by their keys.
     """
 
@@ -82,27 +78,16 @@ class StatementWriter:
         nodes: Sequence[int],
         given: Mapping[int, Slot],
         stores: Sequence[Store],
-        packs: bool = False,
-        limbs: Sequence[Sequence[Limb]] = (),
+        plans: Sequence[PackPlan | LimbPlan] = (),
     ) -> None:
         self.graph = graph
         self.given = given
         self.stores = stores
         self._vector_of_node: dict[int, Vector | LimbVector] = {}
-        vectors: list[Vector | LimbVector] = []
-        self.pack_gain: PackGain = "clear"
-        edges, plan = [store.edge for store in stores], None
-        if packs and graph.packs:
-            plan = PackPlan(graph, nodes, given, edges)
-            self.pack_gain = pack_gain(plan, len(nodes), stores)
-            nodes = plan.nodes
-            self._vector_of_node |= plan.vector_of_node
-            vectors += plan.vectors
-        of_limbs = LimbPlan(graph, nodes, given, edges, limbs, plan) if limbs else None
-        if of_limbs is not None and of_limbs.spared > 0:
-            self._vector_of_node |= of_limbs.vector_of_node
-            vectors += of_limbs.vectors
-        self.vectors = {vector.key: vector for vector in vectors}
+        self.vectors: dict[int, Vector | LimbVector] = {}
+        for plan in plans:
+            self._vector_of_node.update(plan.vector_of_node)
+            self.vectors.update((vector.key, vector) for vector in plan.vectors)
         self._inlined = self._choose_inlined(nodes, stores)
         self._nodes = nodes
         self._variables = [node for node in nodes if node not in self._inlined]

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Collection, Hashable, Iterable, Sequence
-from graphlib import CycleError, TopologicalSorter
+from collections.abc import Collection, Iterable, Sequence
 
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
@@ -12,9 +11,10 @@ from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.ops import ADD, STOP_GRADIENT
 from symofros.expr.program import Limb
 from symofros.generator.codegen.limbs.counterparts import Counterparts
+from symofros.generator.codegen.limbs.cycles import strongly_connected
 from symofros.generator.codegen.limbs.signs import Signs, are_numbers, choose_signs, products
 from symofros.generator.codegen.limbs.vector import TYPES, LimbVector, Operand
-from symofros.generator.codegen.packs import PackPlan
+from symofros.generator.codegen.packs import PackPlan, Vector
 
 _TRIGONOMETRIC = frozenset(("sin", "cos"))
 # Operations in one statement at most.
@@ -81,25 +81,19 @@ class LimbPlan:
         """Leave out vectors that would wait for themselves, through others or through scalars."""
         leader_of, pack_of_node = self._rows.leader_of, self._pack_of_node
 
-        def source(edge: Edge) -> Hashable:
-            """What computes an edge: the vector of its row, its pack, or the node itself."""
+        def source(edge: Edge) -> int | Vector:
+            """What computes an edge: a row, as the negative of its first node; a pack; or the node itself."""
             node = abs(edge)
-            return ("row", leader_of[node]) if node in leader_of else pack_of_node.get(node, node)
+            return -leader_of[node] if node in leader_of else pack_of_node.get(node, node)
 
-        while True:
-            needs: dict[Hashable, set[Hashable]] = defaultdict(set)
-            for node in nodes:
-                if node not in pack_of_node:
-                    needs[source(node)].update(map(source, self._graph.args[node]))
-            for vector in self._packs:
-                needs[vector].update((*map(source, vector.edges), *vector.operands))
-            try:
-                TopologicalSorter(needs).prepare()
-                return
-            except CycleError as error:
-                rows = {vertex[1] for vertex in error.args[1] if isinstance(vertex, tuple)}
-            assert rows, "packs and scalars wait for each other"
-            self._rows.remove(rows)
+        needs: dict[int | Vector, set[int | Vector]] = defaultdict(set)
+        for node in nodes:
+            if node not in pack_of_node:
+                needs[source(node)].update(map(source, self._graph.args[node]))
+        for vector in self._packs:
+            needs[vector].update((*map(source, vector.edges), *vector.operands))
+        for group in strongly_connected(needs):
+            self._rows.remove(-x for x in group if isinstance(x, int) and x < 0)
 
     def _remove_single(self) -> None:
         """Leave out vectors that go into no others and come from none, or from what is put together for them alone."""
