@@ -28,7 +28,8 @@ class Options(metaclass=CheckedCalls):
             (docs/theory/rigid.md, section 7).
         batch: How large batches are evaluated: "vector", several states at once, by code that is compiled for each
             function when its first batch of 512 states or more arrives (docs/theory/code.md); or "loop", one by one.
-        packs: Whether values of one state formed by the same operations, such as entries of a row of M, share vectors.
+        packs: Whether values of one state formed by the same operations share vectors: entries of a row of M, say, or
+            what is computed for each of several equal legs.
         tune: Whether to try compilers, flags and packs on each unit, and keep what is fastest on this machine: some six
             compilations instead of one, the first time; the choice is kept in the cache. Results are those of the
             chosen build, and of another within rounding.
