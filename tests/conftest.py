@@ -13,10 +13,15 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+import hypothesis
 import numpy as np
 import pytest
 
 from tests.progress import Progress
+
+# Tests assert no time; Hypothesis would, of each example, and a machine that does other work exceeds it.
+hypothesis.settings.register_profile("untimed", deadline=None, suppress_health_check=[hypothesis.HealthCheck.too_slow])
+hypothesis.settings.load_profile("untimed")
 
 # Compiled models are kept between runs and shared by parallel workers, apart from the user's own cache.
 _CACHE = Path(__file__).parent.parent / ".pytest_cache"

@@ -89,7 +89,7 @@ def archive_of(compression: int) -> bytes:
 ARCHIVES = [archive_of(way) for way in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED, zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA)]
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(
     archive=st.sampled_from(ARCHIVES),
     at=st.floats(0.0, 1.0),

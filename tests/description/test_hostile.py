@@ -195,7 +195,7 @@ def test_refused_in_bounded_time_and_memory(name: str, readers: Any, tmp_path: P
 SOUND = EVERYTHING.read_text()
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(
     at=st.integers(0, len(SOUND)),
     length=st.integers(0, 40),

@@ -106,7 +106,7 @@ def values(g: Graph, edges: list[Edge], **inputs: Array) -> Array:
 
 
 @given(SEEDS, ANGLES, ANGLES)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_a_chart_leads_where_the_graph_leads(seed: int, first: float, second: float) -> None:
     rng = np.random.default_rng(seed)
     q0, theta = configuration(rng), step(rng, (first, second))
@@ -116,7 +116,7 @@ def test_a_chart_leads_where_the_graph_leads(seed: int, first: float, second: fl
 
 
 @given(SEEDS, ANGLES, ANGLES)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_the_rate_of_a_chart_makes_the_rates_of_the_coordinates(seed: int, first: float, second: float) -> None:
     """The derivative of the graph's retraction along theta' equals N(q) v at the retracted configuration."""
     rng = np.random.default_rng(seed)
@@ -132,7 +132,7 @@ def test_the_rate_of_a_chart_makes_the_rates_of_the_coordinates(seed: int, first
 
 
 @given(SEEDS, ANGLES, ANGLES)
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 def test_difference_undoes_integrate_at_any_angle(seed: int, first: float, second: float) -> None:
     rng = np.random.default_rng(seed)
     q0, dq = configuration(rng), step(rng, (first, second))
@@ -141,7 +141,7 @@ def test_difference_undoes_integrate_at_any_angle(seed: int, first: float, secon
 
 
 @given(SEEDS, SEEDS)
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_integrate_leads_to_what_the_difference_was_taken_of(first: int, second: int) -> None:
     q0, q1 = (configuration(np.random.default_rng(seed)) for seed in (first, second))
     reached = integrate(SEGMENTS, q0, difference(SEGMENTS, q0, q1))
@@ -151,7 +151,7 @@ def test_integrate_leads_to_what_the_difference_was_taken_of(first: int, second:
 
 
 @given(SEEDS, ANGLES)
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_quaternions_stay_of_unit_length(seed: int, angle: float) -> None:
     rng = np.random.default_rng(seed)
     q = configuration(rng)
@@ -162,7 +162,7 @@ def test_quaternions_stay_of_unit_length(seed: int, angle: float) -> None:
 
 
 @given(SEEDS, ANGLES)
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_a_constant_twist_may_be_followed_in_parts(seed: int, angle: float) -> None:
     """A screw motion for unit time is two for half the time, whatever the angle."""
     rng = np.random.default_rng(seed)
@@ -172,7 +172,7 @@ def test_a_constant_twist_may_be_followed_in_parts(seed: int, angle: float) -> N
 
 
 @given(SEEDS, ANGLES)
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_the_logarithm_on_the_graph_is_the_difference(seed: int, angle: float) -> None:
     rng = np.random.default_rng(seed)
     q0, dq = configuration(rng), step(rng, (angle, angle))

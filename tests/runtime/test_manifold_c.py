@@ -91,7 +91,7 @@ def call(name: str, *arrays: np.ndarray) -> None:
 
 
 @given(SEEDS, ANGLES, ANGLES)
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 def test_the_loop_retracts_as_numpy_does(seed: int, first: float, second: float) -> None:
     rng = np.random.default_rng(seed)
     q0, theta, q = configuration(rng), step(rng, (first, second)), np.empty(NQ)
@@ -100,7 +100,7 @@ def test_the_loop_retracts_as_numpy_does(seed: int, first: float, second: float)
 
 
 @given(SEEDS, ANGLES, ANGLES)
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 def test_the_loop_has_the_rates_of_charts_that_numpy_has(seed: int, first: float, second: float) -> None:
     rng = np.random.default_rng(seed)
     theta, v, rate = step(rng, (first, second)), rng.uniform(-1.0, 1.0, NV), np.empty(NV)
@@ -109,7 +109,7 @@ def test_the_loop_has_the_rates_of_charts_that_numpy_has(seed: int, first: float
 
 
 @given(SEEDS)
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_the_rates_of_coordinates_are_those_of_the_graph(seed: int) -> None:
     rng = np.random.default_rng(seed)
     q, v, rate = configuration(rng), rng.uniform(-1.0, 1.0, NV), np.empty(NQ)
@@ -120,7 +120,7 @@ def test_the_rates_of_coordinates_are_those_of_the_graph(seed: int) -> None:
 
 
 @given(SEEDS, ANGLES, ANGLES)
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 def test_constant_twists_lead_the_loop_where_they_lead_numpy(seed: int, first: float, second: float) -> None:
     rng = np.random.default_rng(seed)
     q0, theta, q = configuration(rng), step(rng, (first, second)), np.empty(NQ)
@@ -131,7 +131,7 @@ def test_constant_twists_lead_the_loop_where_they_lead_numpy(seed: int, first: f
 
 
 @given(SEEDS, st.integers(1, 2000))
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 def test_quaternions_stay_of_unit_length_over_many_steps(seed: int, count: int) -> None:
     rng = np.random.default_rng(seed)
     q, q1 = configuration(rng), np.empty(NQ)

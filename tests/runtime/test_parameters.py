@@ -64,7 +64,7 @@ VALUES = st.one_of(
 )
 
 
-@settings(max_examples=120, deadline=None)
+@settings(max_examples=120)
 @given(st.sampled_from(NAMES), VALUES, st.sampled_from(NAMES), VALUES)
 def test_run_time_parameters_are_refused_exactly_where_a_description_is(one: str, x: float, two: str, y: float) -> None:
     """Any two parameters of a scene, at any values: the same verdict, about the same objects."""
@@ -182,7 +182,7 @@ def test_a_description_that_waives_a_check_waives_it_at_run_time() -> None:
     assert m.with_parameters(m=-2.0).parameters["m"] == -2.0
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(st.lists(st.floats(-1.0, 1.0), min_size=9, max_size=9), st.floats(-1.5, 1.5), st.floats(-9, 9))
 def test_inertias_of_any_size_are_judged_by_their_principal_moments(
     entries: list[float], excess: float, decade: float

@@ -56,7 +56,7 @@ def test_a_disc_that_falls_flat_in_a_batch_is_no_good_run() -> None:
     assert not runs.ok.any() and "singular" in runs.outcome(0).reason
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 @example(tilt=0.5, spin=0.01, turn=0.0, way=0)
 @example(tilt=1.2, spin=0.1, turn=0.0, way=3)
 @example(tilt=0.5, spin=0.0, turn=1.0, way=0)
@@ -98,7 +98,7 @@ def equal_cranks() -> sf.Model:
 
 
 @pytest.mark.slow
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 @given(speed=st.floats(0.5, 8.0), start=st.floats(0.1, 1.5), way=st.sampled_from([0, 3, 4]))
 def test_a_slider_crank_through_its_change_point_keeps_its_energy_or_says_why_not(
     speed: float, start: float, way: int

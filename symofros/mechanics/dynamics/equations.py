@@ -130,6 +130,11 @@ class Equations(EquationsOfMotion):
         return self._inverse_slopes[1]
 
     @cached_property
+    def passive_slopes(self) -> Matrix:
+        """Derivative of -Q(q, v, 0), what inverse dynamics adds to the inertia forces, by v (nv x nv)."""
+        return self.by_v(self._less_passive([ZERO] * self.nv))
+
+    @cached_property
     def inverse_dynamics_by_par(self) -> Matrix:
         """Derivative of the inverse dynamics by the run-time parameters (nv x npar)."""
         return self.by_par(self.inverse_dynamics)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, example, given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import symofros as sf
@@ -119,7 +119,7 @@ def compiled(text: str, work: int, folder: Path) -> Callable[..., list[np.ndarra
     return run
 
 
-@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=40)
 @given(st.lists(_ROWS, min_size=1, max_size=12), st.integers(2, 9), st.integers(0, 3))
 @example(_OF_PART_0, 9, 0)
 @example(_OF_PART_BEFORE, 9, 0)

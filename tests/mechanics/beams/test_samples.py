@@ -46,7 +46,7 @@ def at(phi: Piecewise, order: int) -> Array:
     return np.array([float(phi(x)) for x in STATIONS])
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     st.sampled_from(DIRECTIONS),
     st.tuples(*[st.floats(-10.0, 10.0)] * 3),

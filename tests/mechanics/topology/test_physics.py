@@ -13,7 +13,7 @@ NAMES = ("x", "y", "z")
 Triple = tuple[int, int, int]
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.tuples(*[st.integers(-2, 2)] * 3), st.tuples(*[st.integers(-2, 2)] * 3), st.booleans())
 def test_a_point_mass_turns_about_axes_that_miss_it_only(axis: Triple, center: Triple, on_axis: bool) -> None:
     """Whatever the axis, a mass without moments has one about it, unless the axis passes through the mass."""

@@ -44,7 +44,7 @@ def test_the_error_under_a_force_at_the_tip_is_that_against_the_elastica(load: f
     assert rest.bendings[0].error == pytest.approx(error, rel=0.1)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.floats(-6, 6), st.floats(-9, 9), st.floats(0.01, 3.0))
 def test_the_estimate_does_not_change_with_length_and_stiffness(length: float, stiffness: float, load: float) -> None:
     L, EI = 10.0**length, 10.0**stiffness

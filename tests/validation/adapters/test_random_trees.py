@@ -75,7 +75,7 @@ def trees(draw: st.DrawFn) -> sf.System:
 
 
 @pytest.mark.parametrize("engine", sampled((pinocchio, mujoco), [pinocchio]), ids=["pinocchio", "mujoco"])
-@settings(max_examples=12, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
+@settings(max_examples=12, suppress_health_check=list(HealthCheck), derandomize=True)
 @given(trees())
 def test_random_trees_agree(engine: object, system: sf.System) -> None:
     assembly = assemble(system)
@@ -94,7 +94,7 @@ def test_random_trees_agree(engine: object, system: sf.System) -> None:
 
 
 @pytest.mark.parametrize("way", ["articulated", "factors"])
-@settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
+@settings(max_examples=25, suppress_health_check=list(HealthCheck), derandomize=True)
 @given(system=trees())
 def test_either_way_of_forward_dynamics(way: Literal["articulated", "factors"], system: sf.System) -> None:
     """Pinocchio's own articulated bodies."""
@@ -111,7 +111,7 @@ def test_either_way_of_forward_dynamics(way: Literal["articulated", "factors"], 
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-10 * scale)
 
 
-@settings(max_examples=15, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
+@settings(max_examples=15, suppress_health_check=list(HealthCheck), derandomize=True)
 @given(system=trees(), which=st.integers(0, 5))
 def test_the_drive_of_a_prescribed_joint_supplies_what_inverse_dynamics_asks(system: sf.System, which: int) -> None:
     """The same motion, one joint of it prescribed: its effort and those of the other joints are as before."""

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import product
 
 from symofros.expr.derivative import along, directional
 from symofros.expr.edges import ONE, ZERO, Edge
+from symofros.expr.graph import Graph
 from symofros.mechanics.dynamics.applied.forces import rates_per_speed
 from symofros.mechanics.dynamics.derivatives.adjoints import weighted_derivatives
+from symofros.mechanics.dynamics.derivatives.differentiation import by_inputs
 from symofros.mechanics.dynamics.derivatives.hessians import commuting
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.dynamics.mass_matrix import Matrix
+from symofros.mechanics.dynamics.momentum import coadjoint
 from symofros.mechanics.kinematics.links import TreeKinematics
 
 Tensor = list[list[list[Edge]]]
@@ -18,12 +22,16 @@ Tensor = list[list[list[Edge]]]
 
 def second_derivatives(e: Equations) -> tuple[Tensor, ...]:
     """Second derivatives of the inverse dynamics by (q, q), (v, v), (q, v) and (a, q) (nv x nv x nv each, eq. 11)."""
-    by_q, by_v = e.inverse_dynamics_by_q, e.inverse_dynamics_by_v
+    kinematics, by_v, by_mass = e.kinematics, e.inverse_dynamics_by_v, of_mass_matrix(e.kinematics, e.M)
+    if any(beam.tip is not None for beam in kinematics.beams):  # Their M and h agree to the order of their theory.
+        by_speeds = by_two_speeds(kinematics, by_v)
+    else:
+        by_speeds = _sum(e.g, of_bias(kinematics, e.M, by_mass), by_two_speeds(kinematics, e.passive_slopes))
     return (
-        by_two_coordinates(e.kinematics, by_q),
-        by_two_speeds(e.kinematics, by_v),
-        by_coordinates_and_speeds(e.kinematics, by_v),
-        of_mass_matrix(e.kinematics, e.M),
+        by_two_coordinates(kinematics, e.inverse_dynamics_by_q),
+        by_speeds,
+        by_coordinates_and_speeds(kinematics, by_v),
+        by_mass,
     )
 
 
@@ -43,6 +51,25 @@ def by_two_speeds(kinematics: TreeKinematics, slopes: Matrix) -> Tensor:
     """
     speeds = [{kinematics.g.input("v", k): ONE} for k in range(kinematics.nv)]
     return _symmetric(kinematics, slopes, speeds, range(kinematics.nv))
+
+
+def of_bias(kinematics: TreeKinematics, M: Matrix, by_mass: Tensor) -> Tensor:
+    """Derivatives of h by two speeds, which M determines (nv x nv x nv, eq. 11a).
+
+    Args:
+        kinematics: Kinematics of the tree.
+        M: Mass matrix.
+        by_mass: Its derivatives, `of_mass_matrix`.
+    """
+    g, nv = kinematics.g, kinematics.nv
+    turning = [by_inputs(kinematics, coadjoint(kinematics, row), "v", nv) for row in M]
+    tensor = [[[ZERO] * nv for _ in range(nv)] for _ in range(nv)]
+    for i, j in product(range(nv), repeat=2):
+        for k in range(j, nv):
+            christoffel = g.sub(g.add(by_mass[i][j][k], by_mass[i][k][j]), by_mass[j][k][i])
+            edge = g.sub(christoffel, g.add(turning[k][i][j], turning[j][i][k]))
+            tensor[i][j][k] = tensor[i][k][j] = edge
+    return tensor
 
 
 def by_two_coordinates(kinematics: TreeKinematics, slopes: Matrix) -> Tensor:
@@ -81,6 +108,14 @@ def along_direction(kinematics: TreeKinematics, edges: Sequence[Edge]) -> list[E
         for edge, rate in column.items():
             seeds[edge] = g.add(seeds.get(edge, ZERO), g.mul(rate, g.input("dq", k)))
     return directional(g, edges, seeds)
+
+
+def _sum(g: Graph, one: Tensor, other: Tensor) -> Tensor:
+    """The entries of two tensors added."""
+    return [
+        [[g.add(x, y) for x, y in zip(*lines, strict=True)] for lines in zip(*matrices, strict=True)]
+        for matrices in zip(one, other, strict=True)
+    ]
 
 
 def _symmetric(

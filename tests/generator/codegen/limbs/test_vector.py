@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, example, given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from symofros.expr.edges import Edge
@@ -132,7 +132,7 @@ def assert_exact(made: tuple[Program, tuple[Output, ...]], folder: Path, seed: i
     return text.code
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=60)
 @given(st.lists(_STEPS, min_size=1, max_size=14), st.integers(2, 6), st.integers(0, 3))
 @example(_ENDS, 2, 0)
 @example(_ENDS, 3, 0)

@@ -96,7 +96,7 @@ ONES = dict.fromkeys(NAMES, 0.0)
 
 @pytest.mark.parametrize("repeated", [False, True], ids=["independent", "repeated"])
 @pytest.mark.parametrize("form", FORMS)
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 @example(exponents=ONES)
 @example(exponents=ONES | {"mass": 4.0, "turning": -9.1, "disc": -9.1})  # Rows of 1e-2 beside rows of 3e4.
 @example(exponents=ONES | {"plate": 9.0, "disc": -9.0})  # Rows that are parallel in the metric of M, but not in G.

@@ -2,13 +2,30 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import symofros as sf
+from reference_models.rigid.random_tree import random_tree
+from symofros.expr.numerics.evaluate import interpret
+from symofros.expr.program import Function, Output, Program
+from symofros.mechanics.dynamics.derivatives.second_derivatives import Tensor, by_two_speeds, of_bias, of_mass_matrix
+from symofros.mechanics.dynamics.equations import Equations
+from symofros.mechanics.topology.tree import build_tree
 from tests.models import system
 
-CASES = ("double_pendulum", "heavy_top", "friction_arm", "gyroscope")
+CASES = (
+    "double_pendulum",
+    "heavy_top",
+    "friction_arm",
+    "gyroscope",
+    "space_arm",
+    "joint_zoo",
+    "joints2",  # Universal, screw, cylindrical in branches.
+    "flexible_pendulum",
+)
 NAMES = ("inverse_dynamics_second_derivatives", "inverse_dynamics_hvp", "inverse_dynamics_derivatives", "mass_matrix")
 STEP = 1e-3
 
@@ -65,3 +82,29 @@ def test_turns_of_one_ball_commute_up_to_their_bracket(rng: np.random.Generator)
     by_q, _ = m.inverse_dynamics_derivatives(q, v, a)
     for j, k, n in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
         np.testing.assert_allclose(T[:, k, j] - T[:, j, k], by_q[:, n], rtol=0, atol=1e-12 * np.abs(T).max())
+
+
+@pytest.mark.parametrize("seed", [4, 5, 6])
+@pytest.mark.parametrize("prescribed", [False, True])
+def test_the_mass_matrix_determines_the_bias_by_two_speeds(
+    prescribed: bool, seed: int, rng: np.random.Generator
+) -> None:
+    """(11a) against h differentiated twice on the graph, whether or not a joint of the tree is driven."""
+    stated = random_tree(seed, kinds=("revolute", "universal", "ball", "free"))
+    body = next(b for b in stated.bodies[1:] if b.joint is not None and b.joint.kind in ("revolute", "universal"))
+    assert body.joint is not None
+    if prescribed:
+        stated = stated.with_bodies(replace(body, joint=replace(body.joint, prescribed=True, actuated=False)))
+    e, m = Equations(build_tree(stated)), sf.compile(stated, sf.Options(("mass_matrix",), backend="interpreter"))
+    q, v = m.random_state(rng)
+    inputs = {"q": q[None], "v": v[None], "u": rng.normal(size=(1, m.nu))}
+    of_mass = of_bias(e.kinematics, e.M, of_mass_matrix(e.kinematics, e.M))
+    of_graph = by_two_speeds(e.kinematics, e.by_v(e.h))
+    one, other = (values(e, tensor, inputs) for tensor in (of_mass, of_graph))
+    np.testing.assert_allclose(one, other, rtol=0, atol=1e-12 * np.abs(other).max())
+
+
+def values(e: Equations, tensor: Tensor, inputs: dict[str, np.ndarray]) -> np.ndarray:
+    edges = tuple(edge for matrix in tensor for row in matrix for edge in row)
+    function = Function("tensor", "", tuple(inputs), (Output("T", (e.nv, e.nv, e.nv), edges),))
+    return interpret(Program("tensor", e.g, {}, (function,)), function, inputs, 1)[0]

@@ -9,7 +9,7 @@ from typing import Literal
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import symofros as sf
@@ -61,7 +61,7 @@ def test_articulated_bodies_accelerate_reference_models_as_factors_do(name: str)
     assert difference(MODELS[name]) < TOLERANCE
 
 
-@settings(max_examples=12, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=12)
 @given(seed=st.integers(0, 10**6), n=st.integers(1, 8))
 def test_articulated_bodies_accelerate_random_trees_as_factors_do(seed: int, n: int) -> None:
     """Joints of every kind, the user's own among them."""

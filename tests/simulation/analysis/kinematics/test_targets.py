@@ -36,7 +36,7 @@ def test_rotation_vectors(angle: float) -> None:
     assert min(np.abs(vector - angle * axis).max(), np.abs(vector + angle * axis).max()) < 1e-7
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.integers(0, 1000), st.floats(-12, 1), st.integers(0, 8), st.sampled_from([-1.0, 1.0]))
 def test_a_matrix_is_taken_exactly_if_it_is_a_rotation_to_seven_digits(
     seed: int, magnitude: float, entry: int, sign: float

@@ -60,7 +60,7 @@ def lines_around(text: str, edit: Edit) -> tuple[str, str]:
     return "", ""
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(cases())
 def test_an_edit_of_text_is_the_edit_of_its_data_and_of_nothing_else(case: tuple[str, Edit]) -> None:
     text, edit = case
@@ -73,7 +73,7 @@ def test_an_edit_of_text_is_the_edit_of_its_data_and_of_nothing_else(case: tuple
     assert done.startswith(before.rstrip()) and done.rstrip().endswith(after.strip())
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.sampled_from(sorted(TEXTS)), values, st.data())
 def test_comments_elsewhere_survive_any_new_value(name: str, value: Any, data: st.DataObject) -> None:
     text = TEXTS[name]

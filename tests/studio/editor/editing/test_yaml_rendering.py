@@ -16,7 +16,7 @@ from tests.studio.editor.texts import KEYS, TROUBLE, values
 keys = st.sampled_from([*KEYS, *(text for text in TROUBLE if text != "<<")]) | st.text(min_size=1, max_size=8)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(values)
 def test_a_value_on_one_line_is_read_back(value: Any) -> None:
     for text in (f"a: {inline(value, flow=False)}\n", f"a: [1, {inline(value)}, 2]\n", f"a: {{b: {inline(value)}}}\n"):
@@ -33,7 +33,7 @@ def test_a_value_on_one_line_is_read_back(value: Any) -> None:
 
 
 @pytest.mark.slow
-@settings(max_examples=75, deadline=None)
+@settings(max_examples=75)
 @given(st.dictionaries(keys, values, min_size=1, max_size=5))
 def test_a_mapping_on_lines_is_read_back(value: dict[str, Any]) -> None:
     try:
