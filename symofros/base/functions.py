@@ -386,11 +386,15 @@ def generated_with(name: str, constrained: bool) -> tuple[str, ...]:
 
     Args:
         name: A function's name.
-        constrained: Whether the model has constraints; of a tree, functions that only constraints need are left out.
+        constrained: Whether the model has constraints; of a tree, functions that only constraints need are apart: those
+            that say nothing of it are together.
     """
-    unit = FUNCTIONS[name].unit
-    shared = [row for row in _ROWS if unit and row.unit == unit and (constrained or not row.constrained_only)]
-    return (name,) if name not in [row.name for row in shared] else tuple(row.name for row in shared)
+    row = FUNCTIONS[name]
+    if row.constrained_only and not constrained:
+        silent = tuple(other.name for other in _ROWS if other.constrained_only and not other.by_solver)
+        return silent if name in silent else (name,)
+    shared = [other for other in _ROWS if row.unit and other.unit == row.unit]
+    return tuple(other.name for other in shared if constrained or not other.constrained_only) or (name,)
 
 
 def exported(constrained: bool, groups: Collection[Group] = get_args(Group)) -> tuple[str, ...]:

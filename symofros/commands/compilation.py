@@ -9,6 +9,7 @@ from typing import Any
 
 from symofros.base.atomic import write_atomically
 from symofros.base.functions import DEFAULT_FUNCTIONS
+from symofros.base.garbage import collect_rarely
 from symofros.base.options import Options
 from symofros.base.sources import Source
 from symofros.commands.shared import refuse, refusing_descriptions
@@ -48,6 +49,7 @@ def compile_description(
     """
     with refusing_descriptions(model):
         system, sources = load_with_sources(model, floating_base)
+    collect_rarely()
     options = Options(functions or DEFAULT_FUNCTIONS, tuple(frames.split(",")) if frames else None)
     start = time.perf_counter()
     try:

@@ -112,6 +112,15 @@ def test_what_is_generated_together() -> None:
     assert generated_with("forward_dynamics", False) == ("forward_dynamics",)
     assert generated_with("project", False) == ("project",)
     assert generated_with("kinetic_energy", False) == ("kinetic_energy", "potential_energy")
+    assert generated_with("constraint", True) == ("constraint", "constraint_rate", "constraint_jacobian")
+
+
+def test_what_says_nothing_of_a_tree_is_generated_together() -> None:
+    """A compiler starts once for all of it."""
+    empty = generated_with("constraint", False)
+    stated = {name for name, row in FUNCTIONS.items() if row.constrained_only and not row.transposes}
+    assert set(empty) == stated - {"project"}
+    assert all(generated_with(name, False) == empty for name in empty)
 
 
 def test_exports_of_a_tree_lack_what_constraints_need() -> None:

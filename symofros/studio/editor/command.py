@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gc
 import secrets
 import socket
 import webbrowser
@@ -14,6 +13,7 @@ from typing import Literal
 import uvicorn
 
 import symofros
+from symofros.base.garbage import collect_rarely
 from symofros.description.reading import YAML_SUFFIXES, resolved
 from symofros.description.yaml.files import write_yaml
 from symofros.errors import Problem
@@ -57,16 +57,9 @@ def serve(file: Path | None, port: int, token: str | None, browser: bool, tell: 
             ws=SOCKETS,
             ws_per_message_deflate=False,
         )
-        _spare_what_stays()
+        collect_rarely()
         server = _Server(config, lambda: _ready(f"http://{HOST}:{port}/?token={token}", browser, tell))
         server.run(sockets=[listener])
-
-
-def _spare_what_stays() -> None:
-    """Keep modules and other long-lived objects out of garbage collection, which took half the time of an edit."""
-    gc.collect()
-    gc.freeze()
-    gc.set_threshold(50_000, 20, 20)
 
 
 def _opened(file: Path | None) -> Session:

@@ -61,7 +61,9 @@ class LimbPlan:
         search = Counterparts(graph, nodes, given, {*needed_nodes(graph, sines, given), *self._pack_of_node})
         for group in limbs:
             search.find(group, max(TYPES))
-        self._rows = search.rows
+        self._rows, least = search.rows, LEAST_SHARE * len(nodes)
+        if sum(len(row.nodes) - 1 for row in self._rows.by_leader.values()) <= least:
+            self._rows.remove(tuple(self._rows.by_leader))
         self._remove_cycles(nodes)
         self._remove_single()
         self._signs = choose_signs(graph, self._rows)
@@ -72,7 +74,7 @@ class LimbPlan:
         read.update(abs(e) for vector in self._packs for e in vector.edges)
         read.update(abs(e) for vector in self._vectors for term in vector.terms for e in term.edges)
         spared = self._count(read)
-        self.spared = spared if spared > LEAST_SHARE * len(nodes) else 0
+        self.spared = spared if spared > least else 0
         self._inline(read.union(map(abs, edges)))
         self.vector_of_node = {node: self._formed[leader] for node, leader in self._rows.leader_of.items()}
         self.vectors = sorted((v for v in self._vectors if not v.is_inlined), key=lambda vector: vector.first_node)
