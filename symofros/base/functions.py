@@ -387,12 +387,12 @@ def generated_with(name: str, constrained: bool) -> tuple[str, ...]:
     Args:
         name: A function's name.
         constrained: Whether the model has constraints; of a tree, functions that only constraints need are apart: those
-            that say nothing of it are together.
+            are in a unit of their own.
     """
     row = FUNCTIONS[name]
     if row.constrained_only and not constrained:
-        silent = tuple(other.name for other in _ROWS if other.constrained_only and not other.by_solver)
-        return silent if name in silent else (name,)
+        empty = tuple(other.name for other in _ROWS if other.constrained_only and not other.by_solver)
+        return empty if name in empty else (name,)
     shared = [other for other in _ROWS if row.unit and other.unit == row.unit]
     return tuple(other.name for other in shared if constrained or not other.constrained_only) or (name,)
 

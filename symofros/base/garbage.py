@@ -6,10 +6,10 @@ import gc
 
 
 def collect_rarely() -> None:
-    """Look at modules and other long-lived objects never again, and at new ones fifty times less often.
+    """Leave modules and other long-lived objects out of garbage collection, and look at new ones less often.
 
-    Graphs and documents are large and hardly have cycles: looking for these took half the time of an edit, and a
-    tenth of the generator's.
+    Graphs and documents are large, and hardly have cycles: to look for these took half the time of an edit and a tenth
+    of the generator's.
     """
     gc.collect()
     gc.freeze()

@@ -28,7 +28,8 @@ _INIT = "init_par"
 _WIDTH, _SPACE = 112, "\x00"
 # Names of parameters that a value without a name is described by.
 _MOST_NAMES = 4
-# Which packs a text has: those of functions that are faster with them by count, or all, for builds that are timed.
+# Which packs a text has: those of functions that are faster with them by count, or all, for builds that are timed; where
+# there are any, equal limbs share vectors, too.
 Packs = Literal["none", "where they pay", "all"]
 
 
@@ -49,8 +50,8 @@ def model_source(
         in_lanes: Options of the code that takes several states of a batch at once; None for none.
             Functions with a solver have none: the solver takes the time, and it pivots (docs/theory/code.md).
         c_name: Prefix of symbols; made of the record's name by default.
-        packs: Where values of one state formed by the same operations share vectors, which takes GNU C; not in
-            lanes, where every value is a vector already.
+        packs: Where values of one state formed by the same operations, or for equal limbs, share vectors, which takes
+            GNU C; not in lanes, where every value is a vector already.
     """
     name = c_name or identifier(record.name)
     vectors = in_lanes if any(function.solver is None for function in program.functions) else None

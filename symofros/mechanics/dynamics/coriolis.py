@@ -6,10 +6,10 @@ from symofros.expr.edges import ZERO
 from symofros.expr.substitute import substitute
 from symofros.expr.vector import Vec3
 from symofros.mechanics.dynamics.bodies.inertia import LinkInertia
-from symofros.mechanics.dynamics.bodies.rotors import MovingRotor
+from symofros.mechanics.dynamics.bodies.rotors import MovingRotor, is_on_turning_axes
 from symofros.mechanics.dynamics.derivatives.differentiation import by_inputs
 from symofros.mechanics.dynamics.jourdain import inertia_forces
-from symofros.mechanics.dynamics.mass_matrix import Matrix
+from symofros.mechanics.dynamics.mass_matrix import Matrix, mass_matrix
 from symofros.mechanics.dynamics.momentum import coadjoint
 from symofros.mechanics.kinematics.links import TreeKinematics
 
@@ -29,6 +29,9 @@ def coriolis_matrix(
     h = inertia_forces(kinematics, inertias, rotors, [ZERO] * nv, Vec3(g))
     prescribed = [link for link in kinematics.links if link.rates is not None]
     at_rest = {edge: ZERO for link in prescribed for edge in (*link.speeds, *(link.rates or ()))}
+    others = [rotor for rotor in rotors if not is_on_turning_axes(kinematics, rotor)]
+    if len(others) < len(rotors):  # What h does not turn has no part in the bracket.
+        M = mass_matrix(kinematics, inertias, others).entries
     slopes = by_inputs(kinematics, substitute(g, h, at_rest), "v", nv)
     half = g.constant(0.5)
     return [

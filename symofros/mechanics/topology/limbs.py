@@ -7,7 +7,7 @@ Legs, arms, fingers: what generated code computes for one of them it computes fo
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from symofros.expr.graph import Slot
 from symofros.expr.program import Limb
@@ -23,31 +23,44 @@ def equal_limbs(tree: SpanningTree) -> tuple[tuple[Limb, ...], ...]:
     children: dict[int, list[int]] = defaultdict(list)
     for index, link in enumerate(tree.links):
         children[link.parent].append(index)
-
-    def members(index: int) -> list[int]:
-        """A link and all that it carries, depth first."""
-        return [index, *(member for child in children[index] for member in members(child))]
-
-    def signature(index: int, of_link: Callable[[Link], object]) -> object:
-        """What a limb has in common with its equals."""
-        return of_link(tree.links[index]), tuple(signature(child, of_link) for child in children[index])
-
+    signatures = [_signatures(tree, children, of_link) for of_link in (_pattern, _kinds)]
     groups: list[tuple[Limb, ...]] = []
     waiting = [BASE]
     while waiting:
         remaining = children[waiting.pop()]
-        for of_link in (_pattern, _kinds):
-            by_signature: dict[object, list[int]] = defaultdict(list)
+        for signature in signatures:
+            by_signature: dict[int, list[int]] = defaultdict(list)
             for root in remaining:
-                by_signature[signature(root, of_link)].append(root)
+                by_signature[signature[root]].append(root)
             groups += [
-                tuple(_entries(tree.links[member] for member in members(root)) for root in roots)
+                tuple(_entries(tree.links[member] for member in _members(root, children)) for root in roots)
                 for roots in by_signature.values()
                 if len(roots) > 1
             ]
             remaining = [roots[0] for roots in by_signature.values() if len(roots) == 1]
         waiting += remaining
     return tuple(group for group in groups if group[0])
+
+
+def _signatures(
+    tree: SpanningTree, children: Mapping[int, Sequence[int]], of_link: Callable[[Link], object]
+) -> list[int]:
+    """A number for each link, the same for those that carry equal limbs, themselves among them."""
+    known: dict[object, int] = {}
+    numbers = [0] * len(tree.links)
+    for index in reversed(range(len(tree.links))):
+        limb = of_link(tree.links[index]), tuple(numbers[child] for child in children.get(index, ()))
+        numbers[index] = known.setdefault(limb, len(known))
+    return numbers
+
+
+def _members(root: int, children: Mapping[int, Sequence[int]]) -> Iterator[int]:
+    """A link and all that it carries, depth first."""
+    waiting = [root]
+    while waiting:
+        index = waiting.pop()
+        yield index
+        waiting += reversed(children.get(index, ()))
 
 
 def _entries(links: Iterable[Link]) -> Limb:

@@ -78,6 +78,13 @@ def test_bits_of_derivatives_are_those_of_scalars(name: str) -> None:
             np.testing.assert_array_equal(ours, theirs)
 
 
+def test_equal_limbs_share_vectors_in_what_a_solver_finishes() -> None:
+    """Six legs of a Stewart platform, three in a vector."""
+    functions = ("forward_dynamics",)
+    assert "sym_quad p" in source(MODELS["stewart"], functions)
+    assert "sym_quad p" not in source(MODELS["stewart"], functions, "none")
+
+
 def test_a_long_chain_is_carried_in_vectors() -> None:
     """With packs, a chain's mass matrix is a third fewer statements, stores included, which are as many as before."""
     packed, single = source(MODELS["chain22"], ("mass_matrix",)), source(MODELS["chain22"], ("mass_matrix",), "none")

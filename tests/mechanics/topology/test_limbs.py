@@ -64,3 +64,8 @@ def test_fingers_of_equal_hands_go_with_their_hands() -> None:
 def test_limbs_without_coordinates_are_no_group() -> None:
     stated = [sf.RigidBody(name, sf.Joint(f"q_{name}", "revolute", prescribed=True), SOLID) for name in ("a", "b")]
     assert joints(sf.System("s", stated)) == []
+
+
+def test_deep_limbs_are_no_recursion() -> None:
+    chains = [body(f"{side}{i}", f"{side}{i - 1}" if i else "world") for side in "lr" for i in range(1500)]
+    assert [len(limb) for limb in joints(sf.System("deep", chains))[0]] == [1500, 1500]

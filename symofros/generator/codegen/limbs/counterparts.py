@@ -14,6 +14,7 @@ from operator import or_
 
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
+from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.ops import ADD, DIV, MUL, STOP_GRADIENT
 from symofros.expr.program import Limb
 
@@ -81,7 +82,8 @@ class Counterparts:
 
     def __init__(self, graph: Graph, nodes: Sequence[int], given: Collection[int], scalars: Collection[int]) -> None:
         self.rows = Rows()
-        self._graph, self._nodes, self._given, self._scalars = graph, nodes, given, scalars
+        self._graph, self._given, self._scalars = graph, given, scalars
+        self._all = needed_nodes(graph, nodes, given)  # Those within packs, too.
         self._free = {node for node in nodes if graph.op[node] in _ARITHMETIC}.difference(scalars)
         self._users: dict[int, list[int]] = defaultdict(list)
         for node in nodes:
@@ -103,7 +105,7 @@ class Counterparts:
         self._limbs = {}
         for k, limb in enumerate(limbs):
             self._limbs.update((self._node_of[slot], 1 << k) for slot in limb if slot in self._node_of)
-        for node in self._nodes:
+        for node in self._all:
             self._limbs[node] = reduce(or_, (self._limbs.get(abs(arg), 0) for arg in self._graph.args[node]))
         turns = -(-len(limbs) // widest)
         for start in range(turns):
@@ -138,7 +140,8 @@ class Counterparts:
         found: list[_Trial] = []
         for lane, partner in enumerate(self._partners[operand]):
             trial: _Trial = {}
-            if not any(self._agree(node, other, lane, trial) for other in self._users[partner]):
+            others = (other for other in self._users[partner] if other not in self._taken)
+            if not any(self._agree(node, other, lane, trial) for other in others):
                 return False
             found.append(trial)
         leaders = sorted(found[0])
@@ -172,11 +175,12 @@ class Counterparts:
             operands.append(args if abs(args[at]) == partner else args[::-1])
         others = [abs(args[1 - at]) for args in operands]
         is_free = self._free.issuperset(nodes) and self._taken.isdisjoint(nodes) and len(set(nodes)) == len(nodes)
+        is_free = is_free and set(nodes).isdisjoint(others)
         # What depends on several limbs may wait for one of these nodes.
         is_own = all(
             self._limbs.get(x, 0) & ~self._limbs[abs(args[at])] == 0 for x, args in zip(others, operands, strict=True)
         )
-        # Of joints alone and what is at hand nothing follows: it is the end where limbs differ.
+        # Operands that are inputs or numbers are no evidence that limbs correspond.
         is_inner = operand in self.rows.leader_of or all(graph.args[other] for other in others)
         if not (is_free and is_own and is_inner and self.rows.leader_of.keys().isdisjoint(others)):
             return False

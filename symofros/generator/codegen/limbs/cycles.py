@@ -9,7 +9,7 @@ Vertex = TypeVar("Vertex", bound=Hashable)
 
 
 def strongly_connected(needs: Mapping[Vertex, Collection[Vertex]]) -> Iterator[list[Vertex]]:
-    """The groups of several vertices of which each depends on each other one (Tarjan, 1972).
+    """The groups of vertices of which each depends on each (Tarjan, 1972), of several or of one that needs itself.
 
     Args:
         needs: What each vertex depends on; those that depend on nothing may be missing.
@@ -38,5 +38,5 @@ def strongly_connected(needs: Mapping[Vertex, Collection[Vertex]]) -> Iterator[l
                 while group[-1] != vertex:
                     group.append(open_ones.pop())
                 done.update(group)
-                if len(group) > 1:
+                if len(group) > 1 or vertex in needs[vertex]:
                     yield group

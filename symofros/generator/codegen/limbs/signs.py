@@ -77,6 +77,7 @@ class _Parities:
         self.of: dict[int, int] = {}
         self._unknowns = 0
         self._known: dict[int, int] = {}  # Sum of earlier unknowns that an unknown equals, keyed by its bit.
+        self._all_known = 0  # Their bits.
 
     def unknown(self) -> int:
         """A new unknown."""
@@ -89,6 +90,7 @@ class _Parities:
         if rest > 1:
             last = rest.bit_length() - 1
             self._known[last] = rest ^ (1 << last)
+            self._all_known |= 1 << last
 
     def value(self, row: int) -> int:
         """The sum of a row, 0 or 1; unknowns of which nothing is stated are 0."""
@@ -96,7 +98,7 @@ class _Parities:
 
     def _reduced(self, total: int) -> int:
         """A sum without the unknowns that others give."""
-        for bit in range(total.bit_length() - 1, 0, -1):
-            if total >> bit & 1 and bit in self._known:
-                total ^= 1 << bit | self._known[bit]
+        while known := total & self._all_known:
+            last = known.bit_length() - 1
+            total ^= 1 << last | self._known[last]
         return total

@@ -47,6 +47,15 @@ class MovingRotor:
         return kinematics.links[self.link].speed_rates(v_rate)[self.coordinate]
 
 
+def is_on_turning_axes(kinematics: TreeKinematics, rotor: MovingRotor) -> bool:
+    """Whether a ball or free joint drives a rotor, along axes that turn with its link.
+
+    Its spin is that speed, as it is of a rotor on an axis of its own: it counts in M, and h has no term of it that
+    turns with the axes.
+    """
+    return rotor.k is not None and kinematics.tree.links[rotor.link].joint.traits.quasi_velocities
+
+
 def rotors_of(kinematics: TreeKinematics) -> list[MovingRotor]:
     """The rotors and armatures of a tree; an armature is a rotor whose carrier is taken to rest."""
     rotors = []

@@ -9,6 +9,7 @@ from symofros.expr.derivative import along, directional
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.graph import Graph
 from symofros.mechanics.dynamics.applied.forces import rates_per_speed
+from symofros.mechanics.dynamics.bodies.rotors import is_on_turning_axes
 from symofros.mechanics.dynamics.derivatives.adjoints import weighted_derivatives
 from symofros.mechanics.dynamics.derivatives.differentiation import by_inputs
 from symofros.mechanics.dynamics.derivatives.hessians import commuting
@@ -23,10 +24,10 @@ Tensor = list[list[list[Edge]]]
 def second_derivatives(e: Equations) -> tuple[Tensor, ...]:
     """Second derivatives of the inverse dynamics by (q, q), (v, v), (q, v) and (a, q) (nv x nv x nv each, eq. 11)."""
     kinematics, by_v, by_mass = e.kinematics, e.inverse_dynamics_by_v, of_mass_matrix(e.kinematics, e.M)
-    if any(beam.tip is not None for beam in kinematics.beams):  # Their M and h agree to the order of their theory.
-        by_speeds = by_two_speeds(kinematics, by_v)
-    else:
+    if _is_kinetic(e):
         by_speeds = _sum(e.g, of_bias(kinematics, e.M, by_mass), by_two_speeds(kinematics, e.passive_slopes))
+    else:
+        by_speeds = by_two_speeds(kinematics, by_v)
     return (
         by_two_coordinates(kinematics, e.inverse_dynamics_by_q),
         by_speeds,
@@ -108,6 +109,12 @@ def along_direction(kinematics: TreeKinematics, edges: Sequence[Edge]) -> list[E
         for edge, rate in column.items():
             seeds[edge] = g.add(seeds.get(edge, ZERO), g.mul(rate, g.input("dq", k)))
     return directional(g, edges, seeds)
+
+
+def _is_kinetic(e: Equations) -> bool:
+    """Whether h follows from v.M v/2, as (11a) has it; M and h of beams agree to the order of their theory."""
+    turning = any(is_on_turning_axes(e.kinematics, rotor) for rotor in e.rotors)
+    return all(beam.tip is None for beam in e.kinematics.beams) and not turning
 
 
 def _sum(g: Graph, one: Tensor, other: Tensor) -> Tensor:

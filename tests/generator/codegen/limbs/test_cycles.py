@@ -18,6 +18,10 @@ def test_two_loops_that_meet_are_one_group() -> None:
     assert sorted(map(sorted, strongly_connected(needs))) == [[1, 2, 3, 4], [6, 7]]
 
 
+def test_what_needs_itself_is_a_group_of_one() -> None:
+    assert list(strongly_connected({1: {2}, 2: {2, 3}, 3: set()})) == [[2]]
+
+
 @given(st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9)), max_size=25))
 def test_groups_are_what_reaches_each_other(pairs: list[tuple[int, int]]) -> None:
     needs: dict[int, set[int]] = {}
@@ -28,4 +32,5 @@ def test_groups_are_what_reaches_each_other(pairs: list[tuple[int, int]]) -> Non
         for a, others in needs.items():
             reached[a] |= {c for b in others for c in reached[b]}
     groups = {frozenset(b for b in reached[a] if a in reached[b]) for a in range(10)}
-    assert {frozenset(group) for group in strongly_connected(needs)} == {g for g in groups if len(g) > 1}
+    groups = {group for group in groups if len(group) > 1 or any(a in needs.get(a, ()) for a in group)}
+    assert {frozenset(group) for group in strongly_connected(needs)} == groups

@@ -57,6 +57,14 @@ _CONTRADICTING: list[Step] = [
     ("add", (("own", 1), ("own", 0)), True),
     ("sub", (("own", 4), ("common", 1)), True),
 ]
+# In the second round a sum is an operand of the sum that stands in its place of the other limb.
+_WAITING: list[Step] = [
+    ("mul", (("joint", 0), ("total", 0)), False),
+    ("add", (("own", 0), ("neighbour", 1)), False),
+    ("mul", (("own", 1), ("own", 1)), False),
+    ("mul", (("own", 2), ("own", 2)), False),
+    ("mul", (("own", 3), ("own", 3)), True),
+]
 
 
 def limbs(steps: list[Step], count: int) -> tuple[Program, tuple[Output, ...]]:
@@ -139,6 +147,8 @@ def assert_exact(made: tuple[Program, tuple[Output, ...]], folder: Path, seed: i
 @example(_MIRRORED, 4, 0)
 @example(_CONTRADICTING, 2, 0)
 @example(_CONTRADICTING, 5, 0)
+@example(_WAITING, 2, 0)
+@example(_WAITING, 4, 0)
 def test_vectors_compute_the_bits_of_the_graph(
     tmp_path_factory: pytest.TempPathFactory, steps: list[Step], count: int, seed: int
 ) -> None:
