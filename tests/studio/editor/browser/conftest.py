@@ -94,8 +94,8 @@ def page(chromium: Browser) -> Iterator[Page]:
 def _is_ours(kind: str, text: str) -> bool:
     """Whether a message of the console is a fault of the page; refusals and a dead server are part of some tests.
 
-    Viser's client reports a change that reaches it before its control does, or after it is gone, seen once in a hundred
-    runs as a panel was replaced. What a test needs of a control it waits for.
+    Viser's client reports a change that reaches it before its control does, or after it is gone; seen once, as a panel
+    was replaced. What a test needs of a control it waits for.
     """
     crossed = text.startswith("Tried to update non-existent component")
     return kind == "error" and "Failed to load resource" not in text and "ERR_" not in text and not crossed
