@@ -386,8 +386,8 @@ def generated_with(name: str, constrained: bool) -> tuple[str, ...]:
 
     Args:
         name: A function's name.
-        constrained: Whether the model has constraints; of a tree, functions that only constraints need are apart: those
-            are in a unit of their own.
+        constrained: Whether the model has constraints; of a tree, functions that only constraints need are in a
+            unit of their own.
     """
     row = FUNCTIONS[name]
     if row.constrained_only and not constrained:

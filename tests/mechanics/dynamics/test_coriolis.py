@@ -9,7 +9,7 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from tests.models import SAMPLE, model
+from tests.models import MOTORS, SAMPLE, model
 
 
 @pytest.mark.parametrize("name", SAMPLE)
@@ -30,25 +30,9 @@ def test_it_gives_the_bias_without_weight(name: str, rng: np.random.Generator) -
     np.testing.assert_allclose(m.coriolis_matrix(q, v) @ v, h, rtol=0, atol=1e-12 * max(1.0, np.abs(h).max()))
 
 
-# Motors that turn with a ball or a free body; the last spins in a link that moves.
-DRIVEN = {
-    "free armature": sf.Joint("base", "free", armature=0.5),
-    "ball rotor": sf.Joint("base", "ball", rotors=(sf.Rotor(0.4, 3.0, (1.0, 0.0, 0.0)),)),
-    "rotor in a link": sf.Joint(
-        "wrist", "ball", "arm", position=(0.3, 0.1, 0.2), rotors=(sf.Rotor(0.4, 3.0, (0.6, 0.0, 0.8), "arm"),)
-    ),
-}
-
-
-@pytest.mark.parametrize("joint", DRIVEN)
-def test_motors_on_turning_axes_keep_both_identities(joint: str, rng: np.random.Generator) -> None:
-    solid = sf.Inertia(1.3, (0.1, -0.2, 0.3), (0.5, 0.6, 0.7, 0.01, -0.02, 0.03))
-    arm = sf.RigidBody("arm", sf.Joint("shoulder", "revolute", axis=(0, 1, 0)), solid)
-    last = sf.RigidBody(
-        "last", sf.Joint("hinge", "revolute", "driven", position=(0.2, 0.1, 0.3), axis=(0, 0, 1)), solid
-    )
-    bodies = (arm, sf.RigidBody("driven", DRIVEN[joint], solid), last)
-    m = sf.compile(sf.System("driven", bodies, gravity=(0, 0, 0)), sf.Options(backend="interpreter"))
+@pytest.mark.parametrize("name", MOTORS)
+def test_motors_on_turning_axes_keep_both_identities(name: str, rng: np.random.Generator) -> None:
+    m = sf.compile(replace(MOTORS[name], gravity=(0.0, 0.0, 0.0)), sf.Options(backend="interpreter"))
     q, v = m.random_state(rng)
     C, step = m.coriolis_matrix(q, v), 1e-5
     rate = (m.mass_matrix(m.integrate(q, step * v)) - m.mass_matrix(m.integrate(q, -step * v))) / (2 * step)

@@ -175,14 +175,15 @@ class Counterparts:
             operands.append(args if abs(args[at]) == partner else args[::-1])
         others = [abs(args[1 - at]) for args in operands]
         is_free = self._free.issuperset(nodes) and self._taken.isdisjoint(nodes) and len(set(nodes)) == len(nodes)
-        is_free = is_free and set(nodes).isdisjoint(others)
         # What depends on several limbs may wait for one of these nodes.
         is_own = all(
             self._limbs.get(x, 0) & ~self._limbs[abs(args[at])] == 0 for x, args in zip(others, operands, strict=True)
         )
         # Operands that are inputs or numbers are no evidence that limbs correspond.
         is_inner = operand in self.rows.leader_of or all(graph.args[other] for other in others)
-        if not (is_free and is_own and is_inner and self.rows.leader_of.keys().isdisjoint(others)):
+        # Neither part of another row nor of this one.
+        is_apart = self.rows.leader_of.keys().isdisjoint(others) and set(nodes).isdisjoint(others)
+        if not (is_free and is_own and is_inner and is_apart):
             return False
         self._join(nodes)
         self.rows.add(Row(nodes, tuple(zip(*operands, strict=True))))

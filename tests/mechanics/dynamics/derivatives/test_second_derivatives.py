@@ -14,7 +14,7 @@ from symofros.expr.program import Function, Output, Program
 from symofros.mechanics.dynamics.derivatives.second_derivatives import Tensor, by_two_speeds, of_bias, of_mass_matrix
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.topology.tree import build_tree
-from tests.models import system
+from tests.models import MOTORS, system
 
 CASES = (
     "double_pendulum",
@@ -30,23 +30,9 @@ NAMES = ("inverse_dynamics_second_derivatives", "inverse_dynamics_hvp", "inverse
 STEP = 1e-3
 
 
-def driven(joint: sf.Joint) -> sf.System:
-    """A body on a joint with motors, and another on it."""
-    solid = sf.Inertia(1.3, (0.1, -0.2, 0.3), (0.5, 0.6, 0.7, 0.01, -0.02, 0.03))
-    hinge = sf.Joint("hinge", "revolute", "first", position=(0.2, 0.1, 0.3), axis=(0, 1, 0))
-    return sf.System("driven", (sf.RigidBody("first", joint, solid), sf.RigidBody("second", hinge, solid)))
-
-
-# M has the spin of motors that h does not turn with the axes.
-DRIVEN = {
-    "free armature": driven(sf.Joint("base", "free", armature=0.5)),
-    "ball rotor": driven(sf.Joint("base", "ball", rotors=(sf.Rotor(0.4, 3.0, (1.0, 0.0, 0.0)),))),
-}
-
-
-@pytest.fixture(params=[*CASES, *DRIVEN])
+@pytest.fixture(params=[*CASES, *MOTORS])
 def m(request: pytest.FixtureRequest) -> sf.Model:
-    stated = DRIVEN.get(request.param) or system(request.param)
+    stated = MOTORS.get(request.param) or system(request.param)
     return sf.compile(stated, sf.Options(NAMES, backend="interpreter"))
 
 
