@@ -11,12 +11,13 @@ from importlib import import_module
 
 import reference_models
 import symofros as sf
-from validation.adapters import ROUTES, compiled, has_beams
-from validation.comparison.elements import judge_elements
-from validation.comparison.errors import NOBODY, Comparison, Scales, compute, judge, scaled_errors, typical_scales
-from validation.comparison.loops import of_unique_multipliers
-from validation.comparison.motion import MOTIONS, FreeMotion, fall, judge_drift, smoothness_obstacle
-from validation.comparison.participants import (
+
+from .adapters import ROUTES, compiled, has_beams
+from .comparison.elements import judge_elements
+from .comparison.errors import NOBODY, Comparison, Scales, compute, judge, scaled_errors, typical_scales
+from .comparison.loops import of_unique_multipliers
+from .comparison.motion import MOTIONS, FreeMotion, fall, judge_drift, smoothness_obstacle
+from .comparison.participants import (
     EPS,
     Factories,
     Participant,
@@ -24,22 +25,22 @@ from validation.comparison.participants import (
     sum_of_energies,
     worst_condition,
 )
-from validation.comparison.regular import (
+from .comparison.regular import (
     JACOBIAN,
     RegularStates,
     judge_omissions,
     judge_undefined,
     regular_states,
 )
-from validation.comparison.retained import judge_order, omitted_orders
-from validation.comparison.variants import ModelVariants
-from validation.contract.interface import States, Subject
-from validation.contract.quantities import CONSTRAINED, FRAME_QUANTITIES, LOOPS, MOTION_ENERGY, QUANTITIES, Quantity
-from validation.inputs.frames import chosen_frames
-from validation.inputs.sampling import DEFAULT_STATES, sample, special_states
-from validation.mechanics.assembly import Assembly, assemble
-from validation.mechanics.geometry import Array
-from validation.mechanics.parts import has_quaternion
+from .comparison.retained import judge_order, omitted_orders
+from .comparison.variants import ModelVariants
+from .contract.interface import States, Subject
+from .contract.quantities import CONSTRAINED, FRAME_QUANTITIES, LOOPS, MOTION_ENERGY, QUANTITIES, Quantity
+from .inputs.frames import chosen_frames
+from .inputs.sampling import DEFAULT_STATES, sample, special_states
+from .mechanics.assembly import Assembly, assemble
+from .mechanics.geometry import Array
+from .mechanics.parts import has_quaternion
 
 FORWARD = "forward_dynamics"
 # Quantities that come from solving a linear system, so that its condition limits their agreement.

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from symofros.commands.grammar import program
-from validation.campaigns import command as campaign
-from validation.dashboard import command as dashboard
-from validation.dashboard.catalogue import TOPICS
-from validation.reporting.command import add_command
-from validation.truth_data import command as truth
+
+from .campaigns import command as campaign
+from .dashboard import command as dashboard
+from .dashboard.catalogue import TOPICS
+from .reporting.command import add_command
+from .truth_data import command as truth
 
 app = program()
 for topic in TOPICS.values():

@@ -14,9 +14,10 @@ from pathlib import Path
 from typing import Any
 
 import symofros as sf
-from validation.adapters import ROUTES
-from validation.check import ModelResult, Settings, check, failed
-from validation.inputs.cases import Case
+
+from .adapters import ROUTES
+from .check import ModelResult, Settings, check, failed
+from .inputs.cases import Case
 
 Report = Callable[[ModelResult], None]
 

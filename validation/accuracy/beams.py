@@ -10,7 +10,8 @@ import scipy.linalg
 from scipy.integrate import solve_ivp
 
 import symofros as sf
-from validation.mechanics.geometry import Array
+
+from ..mechanics.geometry import Array
 
 # First frequency of a uniform cantilever, in units of sqrt(EI/(rhoA L^4)).
 FIRST = 3.5160152685001513

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from validation.accuracy.frequencies import conditioning, convergence, modes_needed, outboard, spinning
-from validation.accuracy.motion import damping, energy, pendulum, spinup
-from validation.accuracy.motion import rods as rods_in_motion
-from validation.accuracy.statics import buckling, elastica, estimate, princeton, rods
-from validation.reporting.findings import Question
-from validation.reporting.questions import composing, measuring
-from validation.reporting.record import Topic
+from ..reporting.findings import Question
+from ..reporting.questions import composing, measuring
+from ..reporting.record import Topic
+from .frequencies import conditioning, convergence, modes_needed, outboard, spinning
+from .motion import damping, energy, pendulum, spinup
+from .motion import rods as rods_in_motion
+from .statics import buckling, elastica, estimate, princeton, rods
 
 STUDIES: dict[str, Question] = {
     "spinning": spinning.study,

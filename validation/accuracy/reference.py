@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from validation.reporting.references import References
+from ..reporting.references import References
 
 BEAMS = References(Path(__file__).parent / "data")
 data, source = BEAMS.data, BEAMS.source

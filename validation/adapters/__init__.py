@@ -13,8 +13,9 @@ from importlib import import_module
 from typing import Literal
 
 import symofros as sf
-from validation.contract.conventions import Difference
-from validation.contract.interface import EngineFactory, Format, Subject
+
+from ..contract.conventions import Difference
+from ..contract.interface import EngineFactory, Format, Subject
 
 # Which of our models of a description an engine is compared with; see `comparison.variants`.
 Variant = Literal["as_described", "verbatim", "untruncated", "without_rotary"]

@@ -13,13 +13,14 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from validation.adapters.description import evaluate
-from validation.contract.interface import States, Subject, TreeEngine
-from validation.contract.memory import LatestResults
-from validation.contract.quantities import CONSTRAINED
-from validation.mechanics.assembly import Assembly, anchor_name, assemble
-from validation.mechanics.geometry import Array
-from validation.mechanics.parts import coordinate_symbols, speed_symbols
+
+from ..contract.interface import States, Subject, TreeEngine
+from ..contract.memory import LatestResults
+from ..contract.quantities import CONSTRAINED
+from ..mechanics.assembly import Assembly, anchor_name, assemble
+from ..mechanics.geometry import Array
+from ..mechanics.parts import coordinate_symbols, speed_symbols
+from .description import evaluate
 
 AXES = "xyz"
 # As in our solver: what is smaller, relative to the largest, repeats other conditions.

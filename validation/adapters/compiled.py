@@ -10,11 +10,12 @@ import numpy as np
 
 import symofros as sf
 from symofros.tools import DEFAULT_FLAGS, Evaluators
-from validation.adapters.reach import stores_energy
-from validation.contract.conventions import times
-from validation.contract.interface import States, Subject
-from validation.contract.quantities import CONSTRAINED, FRAME_QUANTITIES, LOOPS, MJCF_ROUTE, QUANTITIES, SECOND_ROUTE
-from validation.mechanics.geometry import Array
+
+from ..contract.conventions import times
+from ..contract.interface import States, Subject
+from ..contract.quantities import CONSTRAINED, FRAME_QUANTITIES, LOOPS, MJCF_ROUTE, QUANTITIES, SECOND_ROUTE
+from ..mechanics.geometry import Array
+from .reach import stores_energy
 
 NAME = "symofros"
 

@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from validation.contract.interface import States, Subject, Unsupported
-from validation.contract.quantities import FORCES_STATED
-from validation.mechanics.assembly import Assembly, assemble
-from validation.mechanics.geometry import Array
-from validation.mechanics.parts import coordinate_symbols, rate_symbols, speed_symbols
+
+from ..contract.interface import States, Subject, Unsupported
+from ..contract.quantities import FORCES_STATED
+from ..mechanics.assembly import Assembly, assemble
+from ..mechanics.geometry import Array
+from ..mechanics.parts import coordinate_symbols, rate_symbols, speed_symbols
 
 NAME = "description"
 

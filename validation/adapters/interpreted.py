@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from validation.adapters.compiled import SymofrosEngine, evaluators
-from validation.contract.interface import States, Subject
-from validation.contract.memory import LatestResults
-from validation.mechanics.geometry import Array
+from ..contract.interface import States, Subject
+from ..contract.memory import LatestResults
+from ..mechanics.geometry import Array
+from .compiled import SymofrosEngine, evaluators
 
 NAME = "interpreted"
 

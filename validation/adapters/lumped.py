@@ -8,11 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 import symofros as sf
-from validation.adapters.segments import segmented
-from validation.contract.interface import States, Subject, TreeEngine, Unsupported
-from validation.mechanics.assembly import assemble
-from validation.mechanics.geometry import Array
-from validation.mechanics.parts import coordinate_symbols
+
+from ..contract.interface import States, Subject, TreeEngine, Unsupported
+from ..mechanics.assembly import assemble
+from ..mechanics.geometry import Array
+from ..mechanics.parts import coordinate_symbols
+from .segments import segmented
 
 # Of central differences [rad]: their error is its square, and rounding over it.
 _STEP = 1e-5

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Collection
 
 import symofros as sf
-from validation.contract.interface import Unsupported
-from validation.contract.quantities import offered_by
-from validation.mechanics.assembly import Assembly, Mover
-from validation.mechanics.joint_kinds import PartKind
+
+from ..contract.interface import Unsupported
+from ..contract.quantities import offered_by
+from ..mechanics.assembly import Assembly, Mover
+from ..mechanics.joint_kinds import PartKind
 
 
 def unrepresented(system: sf.System, assembly: Assembly, joints: Collection[PartKind]) -> Unsupported | None:

@@ -17,10 +17,11 @@ from typing import cast
 import numpy as np
 
 import symofros as sf
-from validation.contract.interface import Engine, EngineFactory, States, Subject, TreeEngine, Unsupported
-from validation.contract.quantities import FORCES_STATED, TREE_QUANTITIES
-from validation.mechanics.assembly import assemble
-from validation.mechanics.geometry import Array
+
+from ..contract.interface import Engine, EngineFactory, States, Subject, TreeEngine, Unsupported
+from ..contract.quantities import FORCES_STATED, TREE_QUANTITIES
+from ..mechanics.assembly import assemble
+from ..mechanics.geometry import Array
 
 
 @dataclass(frozen=True)

@@ -23,8 +23,9 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from validation.contract.interface import Unsupported
-from validation.mechanics.quadrature import STATION, gauss_stations
+
+from ..contract.interface import Unsupported
+from ..mechanics.quadrature import STATION, gauss_stations
 
 # Gauss nodes a link.
 _POINTS = 16

@@ -5,8 +5,8 @@ Both come from one program, and tests hold them to the same bits; a few function
 
 from __future__ import annotations
 
-from validation.adapters.compiled import SymofrosEngine, evaluators
-from validation.contract.interface import Subject
+from ..contract.interface import Subject
+from .compiled import SymofrosEngine, evaluators
 
 NAME = "vectors"
 FUNCTIONS = ("mass_matrix", "bias", "inverse_dynamics")

@@ -12,7 +12,8 @@ import numpy as np
 from hypothesis import strategies as st
 
 import symofros as sf
-from validation.mechanics.geometry import Array
+
+from ..mechanics.geometry import Array
 
 Value = float | sf.Expression
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from validation.adversary.attack import Attack
-from validation.adversary.attacks import (
+from .attack import Attack
+from .attacks import (
     beam_runs,
     beam_statics,
     closed_dynamics,

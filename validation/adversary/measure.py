@@ -11,12 +11,13 @@ from typing import Annotated, Any
 import typer
 
 from symofros.tools import write_atomically
-from validation.adversary.catalogue import ATTACKS
-from validation.adversary.search import Budget, Find, Tally, hunt
-from validation.adversary.writing import write_find
-from validation.reporting.command import Run, known
-from validation.reporting.numbers import counted
-from validation.reporting.record import Data
+
+from ..reporting.command import Run, known
+from ..reporting.numbers import counted
+from ..reporting.record import Data
+from .catalogue import ATTACKS
+from .search import Budget, Find, Tally, hunt
+from .writing import write_find
 
 
 def measure(

@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from validation.adversary.attack import Verdict, compared, refused, undecided, worst
-from validation.mechanics.geometry import Array
+
+from ..mechanics.geometry import Array
+from .attack import Verdict, compared, refused, undecided, worst
 
 # Notes on fixed steps begin where modes err by a tenth of the speed in sum, estimated at a few states (section 8 of
 # docs/theory/simulation.md), which is right within a factor of three.

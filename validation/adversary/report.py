@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import json
 
-from validation.adversary.catalogue import ATTACKS
-from validation.adversary.measure import measure
-from validation.reporting.numbers import counted
-from validation.reporting.record import Bullets, Data, Fact, Report, Section, Table, Topic, verdict
+from ..reporting.numbers import counted
+from ..reporting.record import Bullets, Data, Fact, Report, Section, Table, Topic, verdict
+from .catalogue import ATTACKS
+from .measure import measure
 
 _TEXT = (
     "Each attack draws scenes over many decades of size, mass, stiffness and step, and compares what we claim of our "

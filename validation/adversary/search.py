@@ -12,7 +12,7 @@ from hypothesis import HealthCheck, Phase, Verbosity, given, seed, settings
 from hypothesis.database import DirectoryBasedExampleDatabase
 from hypothesis.errors import Flaky
 
-from validation.adversary.attack import Attack, Scene, Verdict
+from .attack import Attack, Scene, Verdict
 
 # Scenes a round: after each, the search begins anew with the next seed, and what was found is written.
 ROUND = 200

@@ -8,8 +8,9 @@ from pprint import pformat
 
 import symofros as sf
 from symofros.tools import write_atomically
-from validation.adversary.attack import Attack
-from validation.adversary.search import Find
+
+from .attack import Attack
+from .search import Find
 
 _TEST = '''"""Found by `python -m validation adversary --attack {attack}`, and shrunk.
 
@@ -18,7 +19,7 @@ Route: {route}.
 Then: {said}.
 """
 
-from validation.adversary.catalogue import ATTACKS
+from .catalogue import ATTACKS
 
 SCENE = {scene}
 

@@ -11,12 +11,13 @@ from typing import Annotated, Any
 import typer
 
 from symofros.commands.grammar import program
-from validation.campaigns.errors import PlanError, Unfinished
-from validation.campaigns.plan import make, read
-from validation.campaigns.report import TOPIC
-from validation.inputs.cases import standard_set
-from validation.reporting.command import AsJson, Exit, code, write
-from validation.reporting.terminal import show as show_report
+
+from ..inputs.cases import standard_set
+from ..reporting.command import AsJson, Exit, code, write
+from ..reporting.terminal import show as show_report
+from .errors import PlanError, Unfinished
+from .plan import make, read
+from .report import TOPIC
 
 STATES = 100_000
 
@@ -62,8 +63,8 @@ def run_command(
             names = [case.label for case in standard_set()] if models == "all" else (models or "").split(",")
             given = {"kind": "check", "models": names, "states": states, "batch": batch, "seed": seed}
             asked = make(given | ({"engines": engines.split(",")} if engines else {}), "the command line")
-        from validation.campaigns.runner import Pool
-        from validation.campaigns.session import begin
+        from .runner import Pool
+        from .session import begin
 
         _tell(begin(asked, output, Pool(workers, scheduler, dashboard)), output, report, as_json)
 
@@ -79,8 +80,8 @@ def resume(
 ) -> None:
     """Go on with a campaign: only the batches that are not finished are done."""
     with _refusing():
-        from validation.campaigns.runner import Pool
-        from validation.campaigns.session import go_on
+        from .runner import Pool
+        from .session import go_on
 
         _tell(go_on(folder, Pool(workers, scheduler, dashboard)), folder, report, as_json)
 
@@ -89,7 +90,7 @@ def resume(
 def show(folder: Annotated[Path, typer.Argument(help="Of the campaign.")], as_json: AsJson = False) -> None:
     """Say what a campaign found, or how far it is."""
     with _refusing():
-        from validation.campaigns.session import standing
+        from .session import standing
 
         data = standing(folder)
         if "finished" not in data:

@@ -9,7 +9,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from validation.mechanics.geometry import Array
+from ..mechanics.geometry import Array
 
 Design = Literal["grid", "latin_hypercube", "sobol"]
 

@@ -12,11 +12,12 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError, model_validator
 
 import reference_models
-from validation.adapters import ROUTES
-from validation.campaigns.design import Design, Range, points_of
-from validation.campaigns.errors import PlanError
-from validation.check import description_hash
-from validation.inputs.cases import Case, named
+
+from ..adapters import ROUTES
+from ..check import description_hash
+from ..inputs.cases import Case, named
+from .design import Design, Range, points_of
+from .errors import PlanError
 
 # A plan is a page; whoever sends more wants something else.
 MOST_BYTES = 1 << 20

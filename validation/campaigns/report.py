@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from validation.reporting.numbers import counted, digits, formatted, short
-from validation.reporting.record import Bullets, Data, Fact, Report, Section, Table, Topic, verdict
+from ..reporting.numbers import counted, digits, formatted, short
+from ..reporting.record import Bullets, Data, Fact, Report, Section, Table, Topic, verdict
 
 _SHOWN = 20
 _HEAD = "quantity | comparisons | largest error | tolerance | of | against | batch, state"

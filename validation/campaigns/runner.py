@@ -24,9 +24,10 @@ import dask
 import distributed
 
 from symofros.tools import CODE_IDENTITY, source_digest
-from validation.campaigns.errors import ClusterError
-from validation.campaigns.store import Store
-from validation.campaigns.tasks import Task
+
+from .errors import ClusterError
+from .store import Store
+from .tasks import Task
 
 # Batches handed out ahead of each worker: enough that none waits, few enough that little is queued.
 AHEAD = 2

@@ -12,14 +12,15 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 import symofros as sf
-from validation.campaigns.errors import PlanError, StoreError, Unfinished
-from validation.campaigns.plan import Plan, SweepPlan, as_text, cases, identities, make, plan_hash
-from validation.campaigns.runner import Pool, run, sources
-from validation.campaigns.store import RESULTS, Store, manifest_of, provenance_of
-from validation.campaigns.summary import effort, summarised
-from validation.campaigns.sweep import Sweeper
-from validation.campaigns.tasks import Task, tasks
-from validation.reporting import provenance
+
+from ..reporting import provenance
+from .errors import PlanError, StoreError, Unfinished
+from .plan import Plan, SweepPlan, as_text, cases, identities, make, plan_hash
+from .runner import Pool, run, sources
+from .store import RESULTS, Store, manifest_of, provenance_of
+from .summary import effort, summarised
+from .sweep import Sweeper
+from .tasks import Task, tasks
 
 
 def begin(plan: Plan, folder: Path, pool: Pool) -> dict[str, Any]:

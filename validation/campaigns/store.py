@@ -23,7 +23,8 @@ import pyarrow as pa
 import pyarrow.parquet as parquet
 
 from symofros.tools import write_atomically
-from validation.campaigns.errors import StoreError
+
+from .errors import StoreError
 
 RESULTS = "results.parquet"
 KEY = b"symofros.campaign"

@@ -10,7 +10,7 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from validation.campaigns.sweep import DONE
+from .sweep import DONE
 
 _GROUP = ["model", "engine", "quantity"]
 # Of the batch with the largest error.

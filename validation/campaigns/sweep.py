@@ -8,10 +8,11 @@ import numpy as np
 import pyarrow as pa
 
 import symofros as sf
-from validation.campaigns.design import points_of
-from validation.campaigns.plan import SweepPlan
-from validation.inputs.cases import Case
-from validation.mechanics.geometry import Array
+
+from ..inputs.cases import Case
+from ..mechanics.geometry import Array
+from .design import points_of
+from .plan import SweepPlan
 
 DONE = "done"
 

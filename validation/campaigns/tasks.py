@@ -8,11 +8,11 @@ from typing import Any, Protocol
 
 import pyarrow as pa
 
-from validation.campaigns.plan import CheckPlan, Plan, SweepPlan, cases
-from validation.campaigns.sweep import Sweeper
-from validation.check import ModelResult, Settings
-from validation.inputs.cases import Case
-from validation.worker_pool import run_case
+from ..check import ModelResult, Settings
+from ..inputs.cases import Case
+from ..worker_pool import run_case
+from .plan import CheckPlan, Plan, SweepPlan, cases
+from .sweep import Sweeper
 
 # One row a batch, engine and quantity. `worst_state` counts the states that were compared: with constraints,
 # those in reach; `scale` is what the error of that state is relative to, in the unit of the quantity.

@@ -9,13 +9,13 @@ from typing import Any
 
 import pytest
 
-from validation.ci.cells import CellFailure, CellItem
-from validation.engines.matrix import SEED, Truths, judged, suited
-from validation.engines.models.kinds import KINDS, tree_of
-from validation.engines.study import RED
-from validation.engines.verdicts import Cell
-from validation.engines.workers import Job, Worker, registry
-from validation.reporting.numbers import digits
+from ..engines.matrix import SEED, Truths, judged, suited
+from ..engines.models.kinds import KINDS, tree_of
+from ..engines.study import RED
+from ..engines.verdicts import Cell
+from ..engines.workers import Job, Worker, registry
+from ..reporting.numbers import digits
+from .cells import CellFailure, CellItem
 
 # Functions of the smoke tier: what everything else of an engine rests on.
 SMOKE = ("mass_matrix", "bias", "gravity", "inverse_dynamics", "forward_dynamics", "kinetic_energy", "link_poses")

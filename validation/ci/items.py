@@ -10,19 +10,19 @@ from typing import Any
 
 import pytest
 
-from validation.adapters import ROUTES
-from validation.check import ModelResult, Settings
-from validation.ci.cells import CellFailure, CellItem
-from validation.ci.engines import engine_checks
-from validation.comparison.errors import Comparison
-from validation.cross_check.baseline import Baseline, BaselineError, Regression, machine_of
-from validation.cross_check.record import Record, as_data
-from validation.cross_check.speed import Speed, measure
-from validation.cross_check.tables import failure
-from validation.engines.workers import registry
-from validation.inputs.cases import Case, named, standard_set
-from validation.reporting.numbers import digits
-from validation.worker_pool import run_case
+from ..adapters import ROUTES
+from ..check import ModelResult, Settings
+from ..comparison.errors import Comparison
+from ..cross_check.baseline import Baseline, BaselineError, Regression, machine_of
+from ..cross_check.record import Record, as_data
+from ..cross_check.speed import Speed, measure
+from ..cross_check.tables import failure
+from ..engines.workers import registry
+from ..inputs.cases import Case, named, standard_set
+from ..reporting.numbers import digits
+from ..worker_pool import run_case
+from .cells import CellFailure, CellItem
+from .engines import engine_checks
 
 # Models of the smoke tier, where none is named: each kind of mechanism once, all of them small.
 SMOKE = ("double_pendulum", "heavy_top", "cart_pole", "four_bar", "rolling_disc", "flexible_pendulum")

@@ -50,7 +50,7 @@ def pytest_configure(config: Any) -> None:
 def pytest_collection_modifyitems(session: Any, config: Any, items: list[Any]) -> None:
     """Add the cross-checks that are asked for; -k and -m choose among them as among other tests."""
     if config.getoption("--symofros-model") or config.getoption("--symofros-engine"):
-        from validation.ci.items import cross_checks
+        from .items import cross_checks
 
         items += cross_checks(session, config)
 
@@ -58,6 +58,6 @@ def pytest_collection_modifyitems(session: Any, config: Any, items: list[Any]) -
 def pytest_unconfigure(config: Any) -> None:
     """End the processes that engines ran in."""
     if config.getoption("--symofros-engine", None):
-        from validation.ci.engines import finish
+        from .engines import finish
 
         finish()

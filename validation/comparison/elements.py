@@ -18,15 +18,16 @@ from typing import Any, Protocol
 import numpy as np
 
 import symofros as sf
-from validation.adapters.compiled import SymofrosEngine
-from validation.comparison.errors import Comparison, Status
-from validation.comparison.participants import Participant
-from validation.comparison.retained import MARGIN, scaled
-from validation.comparison.variants import ModelVariants
-from validation.contract.interface import States, TreeEngine
-from validation.mechanics.assembly import Assembly
-from validation.mechanics.extrapolation import Refined
-from validation.mechanics.geometry import Array
+
+from ..adapters.compiled import SymofrosEngine
+from ..contract.interface import States, TreeEngine
+from ..mechanics.assembly import Assembly
+from ..mechanics.extrapolation import Refined
+from ..mechanics.geometry import Array
+from .errors import Comparison, Status
+from .participants import Participant
+from .retained import MARGIN, scaled
+from .variants import ModelVariants
 
 RATE, STRAIN, DAMPING, ROTARY = "mesh_rate", "strain_order", "strain_damping", "rotary_order"
 EXACT = "strain_forces"

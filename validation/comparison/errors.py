@@ -7,9 +7,9 @@ from typing import Literal
 
 import numpy as np
 
-from validation.contract.interface import Engine, States
-from validation.contract.quantities import QUANTITIES, SMALL, Quantity
-from validation.mechanics.geometry import Array
+from ..contract.interface import Engine, States
+from ..contract.quantities import QUANTITIES, SMALL, Quantity
+from ..mechanics.geometry import Array
 
 Status = Literal["agree", "disagree", "unsupported", "failed"]
 

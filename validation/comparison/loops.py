@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from validation.adapters.closed import RANK, condition, of_clear_rank
-from validation.adapters.compiled import SymofrosEngine
-from validation.contract.conventions import times
-from validation.contract.interface import States
-from validation.mechanics.geometry import Array
+
+from ..adapters.closed import RANK, condition, of_clear_rank
+from ..adapters.compiled import SymofrosEngine
+from ..contract.conventions import times
+from ..contract.interface import States
+from ..mechanics.geometry import Array
 
 # Assembly is a search in Python, and some engines rebuild their model for each state.
 MOST = 40

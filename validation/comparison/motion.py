@@ -15,9 +15,10 @@ from dataclasses import dataclass
 import numpy as np
 
 import symofros as sf
-from validation.comparison.errors import Comparison
-from validation.contract.interface import States
-from validation.mechanics.geometry import Array
+
+from ..contract.interface import States
+from ..mechanics.geometry import Array
+from .errors import Comparison
 
 MOTIONS = 4
 DURATION = 0.1  # [s]

@@ -10,15 +10,15 @@ from typing import cast
 
 import numpy as np
 
-from validation.adapters import ROUTES, Missing, Route, factory_of, rotors
-from validation.adapters.closed import ConstrainedEngine, condition, joined_frames
-from validation.adapters.compiled import SymofrosEngine
-from validation.comparison.errors import Comparison, compute
-from validation.comparison.variants import ModelVariants
-from validation.contract.interface import Engine, EngineFactory, States, Subject, TreeEngine, Unsupported
-from validation.contract.quantities import MOTION_ENERGY, QUANTITIES, Quantity
-from validation.mechanics.assembly import Assembly
-from validation.mechanics.geometry import Array
+from ..adapters import ROUTES, Missing, Route, factory_of, rotors
+from ..adapters.closed import ConstrainedEngine, condition, joined_frames
+from ..adapters.compiled import SymofrosEngine
+from ..contract.interface import Engine, EngineFactory, States, Subject, TreeEngine, Unsupported
+from ..contract.quantities import MOTION_ENERGY, QUANTITIES, Quantity
+from ..mechanics.assembly import Assembly
+from ..mechanics.geometry import Array
+from .errors import Comparison, compute
+from .variants import ModelVariants
 
 # What constraints are made of, for engines that know trees.
 ANCHORED = frozenset({"frame_pose", "frame_velocity", "frame_acceleration", "frame_jacobian"})

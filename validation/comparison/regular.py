@@ -12,11 +12,11 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from validation.adapters.closed import of_clear_rank
-from validation.adapters.compiled import SymofrosEngine
-from validation.comparison.errors import Comparison, compute
-from validation.contract.interface import Engine, States
-from validation.contract.quantities import QUANTITIES
+from ..adapters.closed import of_clear_rank
+from ..adapters.compiled import SymofrosEngine
+from ..contract.interface import Engine, States
+from ..contract.quantities import QUANTITIES
+from .errors import Comparison, compute
 
 JACOBIAN = QUANTITIES["constraint_jacobian"]
 

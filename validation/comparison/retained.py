@@ -13,11 +13,12 @@ from dataclasses import replace
 import numpy as np
 
 import symofros as sf
-from validation.adapters.compiled import SymofrosEngine
-from validation.comparison.errors import Comparison
-from validation.contract.interface import States
-from validation.mechanics.assembly import Assembly
-from validation.mechanics.geometry import Array
+
+from ..adapters.compiled import SymofrosEngine
+from ..contract.interface import States
+from ..mechanics.assembly import Assembly
+from ..mechanics.geometry import Array
+from .errors import Comparison
 
 NAME = "retained_order"
 

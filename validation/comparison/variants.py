@@ -8,11 +8,12 @@ from functools import cached_property
 import numpy as np
 
 import symofros as sf
-from validation.adapters import Route, compiled, interpreted
-from validation.adapters.compiled import SymofrosEngine
-from validation.comparison.loops import assembled_states
-from validation.contract.interface import States, Subject
-from validation.mechanics.assembly import Assembly
+
+from ..adapters import Route, compiled, interpreted
+from ..adapters.compiled import SymofrosEngine
+from ..contract.interface import States, Subject
+from ..mechanics.assembly import Assembly
+from .loops import assembled_states
 
 
 class ModelVariants:

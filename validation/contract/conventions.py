@@ -15,8 +15,8 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from validation.mechanics.assembly import Assembly, Mover
-from validation.mechanics.geometry import (
+from ..mechanics.assembly import Assembly, Mover
+from ..mechanics.geometry import (
     Array,
     Placement,
     matrix_quaternion,

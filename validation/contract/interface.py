@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Literal, Protocol
 
 import symofros as sf
-from validation.mechanics.geometry import Array
+
+from ..mechanics.geometry import Array
 
 # Of files that engines read themselves; "" for none.
 Format = Literal["", "urdf", "mjcf"]

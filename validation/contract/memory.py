@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Generic, TypeVar
 
-from validation.mechanics.geometry import Array
+from ..mechanics.geometry import Array
 
 T = TypeVar("T")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from validation.contract.interface import TreeEngine
+from .interface import TreeEngine
 
 # Sums of some hundred products of doubles (eps = 2.2e-16), done in another order, differ by some 1e-14 of the largest
 # entry; two engines that share nothing with us differ from each other by up to 1.1e-14 on humanoids. The rest is

@@ -13,12 +13,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from validation.comparison.errors import Comparison
-from validation.cross_check.record import SCHEMA, Record
-from validation.cross_check.speed import Speed
-from validation.procedures import ENGINE as FORMULAS
-from validation.reporting.numbers import digits
-from validation.reporting.record import Data
+from ..comparison.errors import Comparison
+from ..procedures import ENGINE as FORMULAS
+from ..reporting.numbers import digits
+from ..reporting.record import Data
+from .record import SCHEMA, Record
+from .speed import Speed
 
 # Errors that rounding alone may reach from nothing: some sums of some hundred terms.
 ROUNDING_ERROR = 256 * 2.0**-53

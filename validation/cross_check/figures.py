@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from validation.adapters import ROUTES
-from validation.comparison.errors import BIN_EDGES, HIGHEST_DECADE, LOWEST_DECADE
-from validation.contract.quantities import MOTION_ENERGY, QUANTITIES, SOLVE
-from validation.cross_check.record import Distributions, Record
-from validation.reporting.charts import BAD, SERIES, power
-from validation.reporting.figures import Chart, Curve, Drawing, Mark
+from ..adapters import ROUTES
+from ..comparison.errors import BIN_EDGES, HIGHEST_DECADE, LOWEST_DECADE
+from ..contract.quantities import MOTION_ENERGY, QUANTITIES, SOLVE
+from ..reporting.charts import BAD, SERIES, power
+from ..reporting.figures import Chart, Curve, Drawing, Mark
+from .record import Distributions, Record
 
 TITLE = "Distribution of relative errors for each quantity and engine"
 EPS = 2.0**-52

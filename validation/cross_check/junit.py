@@ -6,9 +6,9 @@ import re
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Sequence
 
-from validation.check import ModelResult
-from validation.comparison.errors import Comparison
-from validation.cross_check.baseline import Regression
+from ..check import ModelResult
+from ..comparison.errors import Comparison
+from .baseline import Regression
 
 # What XML 1.0 has no way to write; messages may quote anything.
 _ILLEGAL = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")

@@ -13,20 +13,21 @@ import typer
 
 import symofros as sf
 from symofros.tools import write_atomically
-from validation.adapters import ROUTES
-from validation.check import ModelResult, Settings
-from validation.cross_check.baseline import Baseline, BaselineError, Regression, machine_of, slowest
-from validation.cross_check.junit import to_junit
-from validation.cross_check.record import Record, as_data
-from validation.cross_check.speed import Speed, YardstickError
-from validation.cross_check.speed import measure as measure_speed
-from validation.inputs.cases import Case, named, standard_set
-from validation.inputs.sampling import DEFAULT_STATES
-from validation.reporting.command import Exit, Run, known
-from validation.reporting.record import (
+
+from ..adapters import ROUTES
+from ..check import ModelResult, Settings
+from ..inputs.cases import Case, named, standard_set
+from ..inputs.sampling import DEFAULT_STATES
+from ..reporting.command import Exit, Run, known
+from ..reporting.record import (
     Data,
 )
-from validation.worker_pool import run as run_cases
+from ..worker_pool import run as run_cases
+from .baseline import Baseline, BaselineError, Regression, machine_of, slowest
+from .junit import to_junit
+from .record import Record, as_data
+from .speed import Speed, YardstickError
+from .speed import measure as measure_speed
 
 # Times that speeds are taken again where they seem lower than in a stored run.
 _AGAIN = 2

@@ -7,13 +7,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from validation.adapters import ROUTES
-from validation.check import ModelResult, Settings
-from validation.comparison.errors import Comparison, Status
-from validation.cross_check.speed import Speed
-from validation.reporting.numbers import finite
-from validation.reporting.provenance import stamp
-from validation.reporting.record import Data
+from ..adapters import ROUTES
+from ..check import ModelResult, Settings
+from ..comparison.errors import Comparison, Status
+from ..reporting.numbers import finite
+from ..reporting.provenance import stamp
+from ..reporting.record import Data
+from .speed import Speed
 
 SCHEMA = 1
 # Where a model was refused before anything was compared.

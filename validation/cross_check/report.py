@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import re
 
-from validation.adapters import ROUTES, differences
-from validation.check import ModelResult
-from validation.comparison.elements import ROWS as ELEMENT_ROWS
-from validation.comparison.errors import NOBODY
-from validation.contract.quantities import ROUNDING, SMALL, SOLVE
-from validation.cross_check import tables
-from validation.cross_check.figures import error_against_condition, error_distributions
-from validation.cross_check.measure import measure
-from validation.cross_check.record import Record
-from validation.procedures import ENGINE as FORMULAS
-from validation.reporting.figures import Figure
-from validation.reporting.numbers import counted, digits
-from validation.reporting.record import MISSED, Block, Bullets, Data, Fact, Report, Section, Table, Text, Topic, verdict
+from ..adapters import ROUTES, differences
+from ..check import ModelResult
+from ..comparison.elements import ROWS as ELEMENT_ROWS
+from ..comparison.errors import NOBODY
+from ..contract.quantities import ROUNDING, SMALL, SOLVE
+from ..procedures import ENGINE as FORMULAS
+from ..reporting.figures import Figure
+from ..reporting.numbers import counted, digits
+from ..reporting.record import MISSED, Block, Bullets, Data, Fact, Report, Section, Table, Text, Topic, verdict
+from . import tables
+from .figures import error_against_condition, error_distributions
+from .measure import measure
+from .record import Record
 
 # Beginnings of the parts of a problem, which is written on one line.
 _PARTS = re.compile("; (?=found: |rule: |remedy: )")

@@ -21,11 +21,12 @@ from pathlib import Path
 import numpy as np
 
 from symofros.tools import DEFAULT_FLAGS, find_toolchain
-from validation.adapters import compiled
-from validation.contract.interface import Subject
-from validation.inputs.frames import chosen_frames
-from validation.inputs.sampling import sample
-from validation.mechanics.assembly import assemble
+
+from ..adapters import compiled
+from ..contract.interface import Subject
+from ..inputs.frames import chosen_frames
+from ..inputs.sampling import sample
+from ..mechanics.assembly import assemble
 
 # Functions that are timed, by the harness's names of quantities.
 TIMED = ("mass_matrix", "bias", "inverse_dynamics", "forward_dynamics")

@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 
-from validation.adapters import ROUTES
-from validation.check import ModelResult
-from validation.comparison.errors import NOBODY, Comparison
-from validation.contract.quantities import MOTION_ENERGY, QUANTITIES
-from validation.cross_check.record import Record
-from validation.procedures import ENGINE as FORMULAS
-from validation.reporting.numbers import counted, digits
-from validation.reporting.record import Cell, Table, verdict
+from ..adapters import ROUTES
+from ..check import ModelResult
+from ..comparison.errors import NOBODY, Comparison
+from ..contract.quantities import MOTION_ENERGY, QUANTITIES
+from ..procedures import ENGINE as FORMULAS
+from ..reporting.numbers import counted, digits
+from ..reporting.record import Cell, Table, verdict
+from .record import Record
 
 COMPARED = (*QUANTITIES.values(), MOTION_ENERGY)
 # Titles of columns -> quantities that share one, in their order, and the drift of our own free motion.

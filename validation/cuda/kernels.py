@@ -19,11 +19,12 @@ from symofros.tools import (
     compile_cuda,
     states_per_second,
 )
-from validation.cuda.record import KernelRow, RolloutRow
-from validation.cuda.states import STEP, STEPS, Subject
-from validation.mechanics.geometry import Array
-from validation.timing.race import error
-from validation.timing.task import flat
+
+from ..mechanics.geometry import Array
+from ..timing.race import error
+from ..timing.task import flat
+from .record import KernelRow, RolloutRow
+from .states import STEP, STEPS, Subject
 
 # Motions of a timed rollout, and repetitions of which the fastest counts.
 MOTIONS, _REPEATS = 1 << 18, 3

@@ -10,13 +10,14 @@ import typer
 
 import symofros as sf
 from symofros.tools import present
-from validation.cuda import warp
-from validation.cuda.kernels import copied, kernels_of, rollout_rows, row, usages
-from validation.cuda.record import PEER, Record
-from validation.cuda.states import Subject
-from validation.reporting.command import Quick, Run, known
-from validation.reporting.plain import plain
-from validation.reporting.record import Data
+
+from ..reporting.command import Quick, Run, known
+from ..reporting.plain import plain
+from ..reporting.record import Data
+from . import warp
+from .kernels import copied, kernels_of, rollout_rows, row, usages
+from .record import PEER, Record
+from .states import Subject
 
 MODELS = ("panda", "ur5", "talos")
 FUNCTIONS = (

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from math import isnan
 
-from validation.reporting.plain import Number
-from validation.timing.models import Labelled
+from ..reporting.plain import Number
+from ..timing.models import Labelled
 
 # Largest differences from C, relative to a state's largest entry. Rounding is amplified by the condition of M.
 TOLERANCES = {"double": 1e-9, "single": 1e-2}

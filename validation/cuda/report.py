@@ -7,16 +7,16 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from validation.cuda.measure import measure
-from validation.cuda.record import PEER, TOLERANCES, KernelRow, PeerRow, Record, RolloutRow
-from validation.cuda.states import STEP, STEPS
-from validation.reporting.charts import logarithmic, style
-from validation.reporting.figures import Curve, Drawing, Figure
-from validation.reporting.numbers import counted, digits, times
-from validation.reporting.plain import restored
-from validation.reporting.questions import failure_texts
-from validation.reporting.record import Data, Fact, Report, Section, Table, Text, Topic, verdict
-from validation.timing.models import Labelled
+from ..reporting.charts import logarithmic, style
+from ..reporting.figures import Curve, Drawing, Figure
+from ..reporting.numbers import counted, digits, times
+from ..reporting.plain import restored
+from ..reporting.questions import failure_texts
+from ..reporting.record import Data, Fact, Report, Section, Table, Text, Topic, verdict
+from ..timing.models import Labelled
+from .measure import measure
+from .record import PEER, TOLERANCES, KernelRow, PeerRow, Record, RolloutRow
+from .states import STEP, STEPS
 
 _METHODS = {"semi_implicit_euler": "semi-implicit Euler", "rk4": "RK4"}
 

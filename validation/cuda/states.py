@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from validation.mechanics.assembly import assemble
-from validation.mechanics.geometry import Array
-from validation.procedures.scene import Manifold
-from validation.timing.models import TIMED_MODELS
-from validation.timing.task import flat
+
+from ..mechanics.assembly import assemble
+from ..mechanics.geometry import Array
+from ..procedures.scene import Manifold
+from ..timing.models import TIMED_MODELS
+from ..timing.task import flat
 
 # Of rollouts, and of what is stepped to be timed.
 STEP, STEPS = 1e-3, 100

@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-import validation.contract.interface as contract
-from validation.adapters.mujoco import tree
-from validation.cuda.record import PEER, PeerRow
-from validation.cuda.states import STEP, STEPS, Subject
-from validation.mechanics.geometry import Array
-from validation.timing.race import error
+from ..adapters.mujoco import tree
+from ..contract import interface as contract
+from ..mechanics.geometry import Array
+from ..timing.race import error
+from .record import PEER, PeerRow
+from .states import STEP, STEPS, Subject
 
 # States in a call: the fastest of these counts.
 WORLDS = (8192, 32768, 131072)

@@ -12,13 +12,13 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from validation.dashboard.catalogue import TOPICS
-from validation.dashboard.gather import Entry, gather
-from validation.dashboard.index import QuoteError, headline, quote, write_index
-from validation.reporting import provenance
-from validation.reporting.command import REPORTS, Exit, Output, known, progress_bar
-from validation.reporting.command import render as render_report
-from validation.reporting.record import Topic
+from ..reporting import provenance
+from ..reporting.command import REPORTS, Exit, Output, known, progress_bar
+from ..reporting.command import render as render_report
+from ..reporting.record import Topic
+from .catalogue import TOPICS
+from .gather import Entry, gather
+from .index import QuoteError, headline, quote, write_index
 
 Readme = Annotated[Path, typer.Option(help="Gets the summary between its marks, if it is there.")]
 

@@ -8,9 +8,9 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from validation.dashboard.catalogue import TOPICS
-from validation.reporting.provenance import Provenance
-from validation.reporting.record import Data, Report, Topic
+from ..reporting.provenance import Provenance
+from ..reporting.record import Data, Report, Topic
+from .catalogue import TOPICS
 
 # Older reports are still true of what they name; they are marked, so that nobody takes them for news.
 STALE_DAYS = 30

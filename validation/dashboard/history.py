@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
-from validation.reporting.record import Table, verdict
+from ..reporting.record import Table, verdict
 
 # Commits of the summary that are read, the latest ones; changes that are listed.
 COMMITS, MOST = 40, 15

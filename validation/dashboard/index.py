@@ -7,12 +7,13 @@ from dataclasses import replace
 from pathlib import Path
 
 from symofros.tools import write_atomically
-from validation.dashboard.gather import Entry
-from validation.dashboard.history import history, stored
-from validation.dashboard.trends import trends
-from validation.reporting import html, markdown
-from validation.reporting.figures import Figure
-from validation.reporting.record import Block, Bullets, Report, Section, Table, Text, verdict
+
+from ..reporting import html, markdown
+from ..reporting.figures import Figure
+from ..reporting.record import Block, Bullets, Report, Section, Table, Text, verdict
+from .gather import Entry
+from .history import history, stored
+from .trends import trends
 
 BEGIN, END = "<!-- reports/summary.md begins -->", "<!-- reports/summary.md ends -->"
 

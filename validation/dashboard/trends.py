@@ -6,9 +6,9 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from validation.dashboard.history import Stored
-from validation.reporting.figures import Chart, Curve, Figure
-from validation.reporting.numbers import short
+from ..reporting.figures import Chart, Curve, Figure
+from ..reporting.numbers import short
+from .history import Stored
 
 _DAY = 86400.0
 _AXIS = "time, the newest summary at 0  [days]"

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from validation.diagrams import square, threads, two_arms
-from validation.reporting.findings import Question
-from validation.reporting.questions import composing, measuring
-from validation.reporting.record import Topic
+from ..reporting.findings import Question
+from ..reporting.questions import composing, measuring
+from ..reporting.record import Topic
+from . import square, threads, two_arms
 
 STUDIES: dict[str, Question] = {"square": square.study, "two_arms": two_arms.study, "threads": threads.study}
 

@@ -10,9 +10,10 @@ import numpy as np
 import symofros as sf
 from reference_models import MODELS
 from reference_models.diagrams.square import square
-from validation.mechanics.geometry import Array
-from validation.reporting.figures import Chart, Curve, Figure, Mark
-from validation.reporting.findings import Finding, Study
+
+from ..mechanics.geometry import Array
+from ..reporting.figures import Chart, Curve, Figure, Mark
+from ..reporting.findings import Finding, Study
 
 DT, RECORD, T_END = 2.5e-4, 0.005, 12.0
 APPROACH, ALONG, CORNER, SIDE = 3.0, 2.0, (0.3, 0.3), 0.6  # As the diagram's file has them.

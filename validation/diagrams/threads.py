@@ -7,8 +7,9 @@ import numpy as np
 import symofros as sf
 from reference_models import MODELS
 from symofros import blocks
-from validation.reporting.figures import Chart, Curve, Figure
-from validation.reporting.findings import Finding, Study
+
+from ..reporting.figures import Chart, Curve, Figure
+from ..reporting.findings import Finding, Study
 
 DT, PERIODS = 1e-3, (1e-3, 2e-3, 5e-3, 1e-2)
 

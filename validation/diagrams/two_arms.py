@@ -7,9 +7,10 @@ import numpy as np
 import symofros as sf
 from reference_models.closed.two_arms import HOLD, hand
 from reference_models.diagrams.two_arms import GRIPPED, PLACED, T_END, working
-from validation.mechanics.geometry import Array
-from validation.reporting.figures import Chart, Curve, Figure, Mark
-from validation.reporting.findings import Finding, Study
+
+from ..mechanics.geometry import Array
+from ..reporting.figures import Chart, Curve, Figure, Mark
+from ..reporting.findings import Finding, Study
 
 DT, RECORD = 1e-3, 0.02
 _SPRINGS = tuple(f"{kind}_{axis}" for kind in ("give", "sway") for axis in "xyz")

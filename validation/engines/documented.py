@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from validation.engines.interface import EnginePlugin
-from validation.engines.plugins import OWN
+from .interface import EnginePlugin
+from .plugins import OWN
 
 PAGE = Path(__file__).parents[2] / "docs" / "engines.md"
 BEGIN, END = "<!-- engines: begin -->", "<!-- engines: end -->"

@@ -8,10 +8,10 @@ from decimal import Decimal
 
 import numpy as np
 
-from validation.engines.truth import constraints, derived
-from validation.engines.truth.arithmetic import Exact
-from validation.engines.truth.derived import FRAMES, Frame, TruthOf
-from validation.engines.truth.dynamics import Point, Truth
+from .truth import constraints, derived
+from .truth.arithmetic import Exact
+from .truth.derived import FRAMES, Frame, TruthOf
+from .truth.dynamics import Point, Truth
 
 
 @dataclass(frozen=True)

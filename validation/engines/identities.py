@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from validation.engines.interface import Array, State
-from validation.engines.matrix import Judged
+from .interface import Array, State
+from .matrix import Judged
 
 # Products of several answers lose some digits more than each.
 TOLERANCE = 1e-9

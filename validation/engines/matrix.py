@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from validation.engines.functions import CONSTRAINED, FUNCTIONS
-from validation.engines.interface import EnginePlugin, State, Steps, Tree, Unsupported, vector
-from validation.engines.verdicts import Cell, Expected, Verdict, expected, judge
-from validation.engines.workers import Answer, Crashed, Job, Worker, answered
+from .functions import CONSTRAINED, FUNCTIONS
+from .interface import EnginePlugin, State, Steps, Tree, Unsupported, vector
+from .verdicts import Cell, Expected, Verdict, expected, judge
+from .workers import Answer, Crashed, Job, Worker, answered
 
 SEED = 20
 # What is asked of a tree with constraints besides, for identities.

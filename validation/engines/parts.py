@@ -12,7 +12,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from validation.reporting.record import Data
+from ..reporting.record import Data
 
 Row = dict[str, Any]
 # What rows of a stored table are found by, in its nesting, and what is kept of each.

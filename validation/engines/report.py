@@ -6,10 +6,10 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from validation.engines import parts
-from validation.engines.study import RED, measure
-from validation.reporting.numbers import counted
-from validation.reporting.record import Bullets, Cell, Code, Data, Fact, Report, Section, Table, Text, Topic, verdict
+from ..reporting.numbers import counted
+from ..reporting.record import Bullets, Cell, Code, Data, Fact, Report, Section, Table, Text, Topic, verdict
+from . import parts
+from .study import RED, measure
 
 _TEXT = """Each engine builds the same small trees by its own API and answers in its own conventions: coordinates,
 speeds, frames. What is right is worked out in 130 digits from nothing but what the engine's coordinates and speeds mean

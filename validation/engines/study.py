@@ -9,19 +9,19 @@ from typing import Annotated
 
 import typer
 
-from validation.engines import parts
-from validation.engines.functions import FUNCTIONS
-from validation.engines.identities import held
-from validation.engines.interface import EnginePlugin, Tree
-from validation.engines.matrix import SEED, Judged, Truths, asked, judged, names, suited
-from validation.engines.models import hostile, kinds, loops, transformed
-from validation.engines.models.formats import formats
-from validation.engines.models.readers import Reading, readings
-from validation.engines.proving.scripts import Proof, Shown, prove
-from validation.engines.proving.shrink import TRIES
-from validation.engines.workers import Job, Worker, registry
-from validation.reporting.command import Run, known
-from validation.reporting.record import Data
+from ..reporting.command import Run, known
+from ..reporting.record import Data
+from . import parts
+from .functions import FUNCTIONS
+from .identities import held
+from .interface import EnginePlugin, Tree
+from .matrix import SEED, Judged, Truths, asked, judged, names, suited
+from .models import hostile, kinds, loops, transformed
+from .models.formats import formats
+from .models.readers import Reading, readings
+from .proving.scripts import Proof, Shown, prove
+from .proving.shrink import TRIES
+from .workers import Job, Worker, registry
 
 # Part of the functions that are red on either of two trees that must be red on both.
 _SIMILAR = 0.5

@@ -8,11 +8,11 @@ from typing import Literal
 
 import numpy as np
 
-from validation.engines.functions import FUNCTIONS
-from validation.engines.interface import Array, HasLayout, Link, State, Steps, Tree, Unsupported, Vector, rows, vector
-from validation.engines.proving.pieces import Layout
-from validation.engines.truth.arithmetic import Exact
-from validation.engines.truth.dynamics import ROUNDING, Point, Truth, digits
+from .functions import FUNCTIONS
+from .interface import Array, HasLayout, Link, State, Steps, Tree, Unsupported, Vector, rows, vector
+from .proving.pieces import Layout
+from .truth.arithmetic import Exact
+from .truth.dynamics import ROUNDING, Point, Truth, digits
 
 Verdict = Literal["right", "imprecise", "wrong", "refuses", "crashes", "not offered"]
 

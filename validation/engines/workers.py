@@ -11,11 +11,11 @@ from functools import cache
 from multiprocessing.connection import Connection
 from typing import Any
 
-from validation.engines.interface import Array, EngineModel, Registry, State, Tree, Unsupported, installed
-from validation.engines.plugins import OWN
-from validation.engines.proving.pieces import Layout, Pieces, assembled
-from validation.engines.truth.constraints import closed
-from validation.engines.truth.dynamics import random_state
+from .interface import Array, EngineModel, Registry, State, Tree, Unsupported, installed
+from .plugins import OWN
+from .proving.pieces import Layout, Pieces, assembled
+from .truth.constraints import closed
+from .truth.dynamics import random_state
 
 # Time for one answer; the first includes the import of the engine, and Warp and JAX compile then: minutes on a busy
 # machine.

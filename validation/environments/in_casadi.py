@@ -11,12 +11,13 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from validation.environments.record import OURS
-from validation.environments.sides import Environment, Offer, Peer, Side, Subject, plain
-from validation.mechanics.geometry import Array
-from validation.timing.contestants.arrays import first_compiler
-from validation.timing.contestants.programs import build
-from validation.timing.task import flat
+
+from ..mechanics.geometry import Array
+from ..timing.contestants.arrays import first_compiler
+from ..timing.contestants.programs import build
+from ..timing.task import flat
+from .record import OURS
+from .sides import Environment, Offer, Peer, Side, Subject, plain
 
 _FLAGS = ("-O3", "-march=native", "-std=gnu99", '-DCASADI_SYMBOL_EXPORT=__attribute__((visibility("default")))')
 

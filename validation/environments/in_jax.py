@@ -12,10 +12,11 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from validation.environments.record import OURS
-from validation.environments.sides import Environment, Offer, Peer, Side, Subject, plain
-from validation.mechanics.geometry import Array
-from validation.timing.task import flat
+
+from ..mechanics.geometry import Array
+from ..timing.task import flat
+from .record import OURS
+from .sides import Environment, Offer, Peer, Side, Subject, plain
 
 # Of one state: q, v, and u or a -> what is computed.
 Function = Callable[[Any, Any, Any], Any]

@@ -16,9 +16,10 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from validation.environments.race import Fail, checked, raced
-from validation.environments.record import NATIVE, OURS, Absent, Row
-from validation.environments.sides import Subject, native
+
+from .race import Fail, checked, raced
+from .record import NATIVE, OURS, Absent, Row
+from .sides import Subject, native
 
 NAME, TITLE = "wasm", "WebAssembly"
 PEER = "@mujoco/mujoco"

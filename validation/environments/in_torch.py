@@ -8,10 +8,11 @@ from importlib import import_module
 from typing import Any
 
 import symofros as sf
-from validation.environments.record import OURS
-from validation.environments.sides import Environment, Offer, Peer, Side, Subject, plain
-from validation.mechanics.geometry import Array
-from validation.timing.task import flat
+
+from ..mechanics.geometry import Array
+from ..timing.task import flat
+from .record import OURS
+from .sides import Environment, Offer, Peer, Side, Subject, plain
 
 # Of tensors (n, nv): q, v, and u or a.
 Function = Callable[[Any, Any, Any], Any]

@@ -10,17 +10,17 @@ from typing import Annotated, Any
 
 import typer
 
-from validation.environments import in_node
-from validation.environments.in_casadi import CASADI
-from validation.environments.in_jax import JAX
-from validation.environments.in_torch import TORCH
-from validation.environments.race import TURNS
-from validation.environments.record import Absent, Record, Row
-from validation.reporting.command import Quick, Run, known
-from validation.reporting.plain import plain, restored
-from validation.reporting.provenance import stamp
-from validation.reporting.record import Data
-from validation.timing.processes import WorkerError, follow, message
+from ..reporting.command import Quick, Run, known
+from ..reporting.plain import plain, restored
+from ..reporting.provenance import stamp
+from ..reporting.record import Data
+from ..timing.processes import WorkerError, follow, message
+from . import in_node
+from .in_casadi import CASADI
+from .in_jax import JAX
+from .in_torch import TORCH
+from .race import TURNS
+from .record import Absent, Record, Row
 
 SETTINGS: Mapping[str, Mapping[str, str]] = {
     in_node.NAME: {},

@@ -7,10 +7,10 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from time import perf_counter_ns
 
-from validation.environments.record import NATIVE, OURS, TOLERANCE, Row
-from validation.environments.sides import Offer, Side, Subject, native
-from validation.mechanics.geometry import Array
-from validation.timing.race import error, on_one_cpu
+from ..mechanics.geometry import Array
+from ..timing.race import error, on_one_cpu
+from .record import NATIVE, OURS, TOLERANCE, Row
+from .sides import Offer, Side, Subject, native
 
 TURNS = 11
 # What a turn takes at least [ns]; a call that takes longer is a turn.

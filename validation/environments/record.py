@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from math import nan
 from statistics import median
 
-from validation.contract.quantities import SOLVE
-from validation.reporting.plain import Number
-from validation.timing.models import Labelled
+from ..contract.quantities import SOLVE
+from ..reporting.plain import Number
+from ..timing.models import Labelled
 
 OURS = "symofros"
 NATIVE = "C"

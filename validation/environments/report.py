@@ -8,18 +8,18 @@ from functools import partial
 from statistics import median
 from typing import Any
 
-from validation.environments import in_node
-from validation.environments.in_casadi import CASADI
-from validation.environments.in_jax import JAX
-from validation.environments.in_torch import TORCH
-from validation.environments.measure import measure
-from validation.environments.record import NATIVE, OURS, TOLERANCE, Absent, Record, Row
-from validation.reporting.charts import logarithmic, style
-from validation.reporting.figures import Curve, Drawing, Figure
-from validation.reporting.numbers import counted, digits, duration, times
-from validation.reporting.plain import restored
-from validation.reporting.questions import failure_texts
-from validation.reporting.record import Bullets, Data, Fact, Report, Section, Table, Text, Topic
+from ..reporting.charts import logarithmic, style
+from ..reporting.figures import Curve, Drawing, Figure
+from ..reporting.numbers import counted, digits, duration, times
+from ..reporting.plain import restored
+from ..reporting.questions import failure_texts
+from ..reporting.record import Bullets, Data, Fact, Report, Section, Table, Text, Topic
+from . import in_node
+from .in_casadi import CASADI
+from .in_jax import JAX
+from .in_torch import TORCH
+from .measure import measure
+from .record import NATIVE, OURS, TOLERANCE, Absent, Record, Row
 
 _TITLES = {in_node.NAME: in_node.TITLE} | {one.name: one.title for one in (JAX, TORCH, CASADI)}
 _LIMITS = {in_node.NAME: in_node.LIMITS} | {one.name: one.limits for one in (JAX, TORCH, CASADI)}

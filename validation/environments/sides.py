@@ -12,10 +12,11 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from validation.environments.record import NATIVE
-from validation.mechanics.geometry import Array
-from validation.timing.models import TIMED_MODELS
-from validation.timing.task import flat
+
+from ..mechanics.geometry import Array
+from ..timing.models import TIMED_MODELS
+from ..timing.task import flat
+from .record import NATIVE
 
 # Readers of URDF that want an inertia of every link: any of the base, which stands still, none of others without mass.
 _INERTIAL = (

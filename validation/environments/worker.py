@@ -14,14 +14,14 @@ from functools import partial
 from importlib import import_module, metadata
 from typing import Any
 
-from validation.environments import in_node
-from validation.environments.in_casadi import CASADI
-from validation.environments.in_jax import JAX
-from validation.environments.in_torch import TORCH
-from validation.environments.race import rows
-from validation.environments.record import OURS, Absent
-from validation.environments.sides import Environment, Offer, Peer, Subject
-from validation.reporting.numbers import counted
+from ..reporting.numbers import counted
+from . import in_node
+from .in_casadi import CASADI
+from .in_jax import JAX
+from .in_torch import TORCH
+from .race import rows
+from .record import OURS, Absent
+from .sides import Environment, Offer, Peer, Subject
 
 ENVIRONMENTS = {one.name: one for one in (JAX, TORCH, CASADI)}
 Say = Callable[[str, Any], object]

@@ -9,7 +9,8 @@ from pathlib import Path
 
 import reference_models
 import symofros as sf
-from validation.contract.interface import MjcfSource, Subject, UrdfSource
+
+from ..contract.interface import MjcfSource, Subject, UrdfSource
 
 ROBOT_PACKAGE = "example-robot-data"
 # Work of a body, in bytes of a robot's file; of what a beam and a loop add, in bodies.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from validation.mechanics.assembly import BASE, Assembly
+from ..mechanics.assembly import BASE, Assembly
 
 # Each frame is five generated functions; a handful at the tips of all branches exercises every joint.
 MOST_FRAMES = 8

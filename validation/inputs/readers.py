@@ -5,7 +5,7 @@ They are imported when they are first used, which in a worker of one model is on
 
 from __future__ import annotations
 
-from validation.inputs.cases import FILES, file_case
+from .cases import FILES, file_case
 
 for _label, _name in FILES.items():
     if not _name.endswith(".xml"):  # That reader imports an engine, which may not be asked.

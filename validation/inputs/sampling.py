@@ -7,10 +7,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from validation.contract.interface import States
-from validation.mechanics.assembly import Assembly, Mover
-from validation.mechanics.geometry import Array
-from validation.mechanics.joint_kinds import SIMPLE_JOINTS
+from ..contract.interface import States
+from ..mechanics.assembly import Assembly, Mover
+from ..mechanics.geometry import Array
+from ..mechanics.joint_kinds import SIMPLE_JOINTS
 
 DEFAULT_STATES = 1000
 

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from validation.mechanics.assembly import BASE, Assembly, Mover
-from validation.mechanics.geometry import Array, Placement, about_axis, quaternion_matrix
+from .assembly import BASE, Assembly, Mover
+from .geometry import Array, Placement, about_axis, quaternion_matrix
 
 
 @dataclass(frozen=True)

@@ -14,9 +14,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 import symofros as sf
-from validation.mechanics.geometry import Array, Placement, rotation_matrix, skew
-from validation.mechanics.joint_kinds import PartKind
-from validation.mechanics.parts import Part, coordinate_symbols, has_quaternion, series
+
+from .geometry import Array, Placement, rotation_matrix, skew
+from .joint_kinds import PartKind
+from .parts import Part, coordinate_symbols, has_quaternion, series
 
 BASE = -1
 WORLD = "world"

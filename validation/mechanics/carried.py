@@ -12,12 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from validation.mechanics.assembly import BASE, Assembly, Mover
-from validation.mechanics.elastic import Curve, ElasticBeam, Turn
-from validation.mechanics.geometry import Array, Placement, quaternion_matrix, skew
-from validation.mechanics.joint_kinds import PartKind
-from validation.mechanics.parts import coordinate_symbols, speed_symbols
-from validation.mechanics.rod import StrainRod
+from .assembly import BASE, Assembly, Mover
+from .elastic import Curve, ElasticBeam, Turn
+from .geometry import Array, Placement, quaternion_matrix, skew
+from .joint_kinds import PartKind
+from .parts import coordinate_symbols, speed_symbols
+from .rod import StrainRod
 
 # Kinds of simple joints whose motion is stated here.
 KINDS: frozenset[PartKind] = frozenset({"revolute", "prismatic", "screw", "ball", "free", "elastic"})

@@ -15,9 +15,10 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from validation.mechanics.geometry import Array
-from validation.mechanics.quadrature import STATION, gauss_stations
-from validation.mechanics.shape_functions import Shape, of_family, stretched, through
+
+from .geometry import Array
+from .quadrature import STATION, gauss_stations
+from .shape_functions import Shape, of_family, stretched, through
 
 # Gauss nodes between two stations: the product of two slopes of degree 15 is integrated exactly.
 POINTS = 16

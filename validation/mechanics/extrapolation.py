@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from validation.mechanics.geometry import Array
+from .geometry import Array
 
 # Steps below this share of the largest value may be rounding, and tell nothing of a rate.
 RESOLVED = 1e-11

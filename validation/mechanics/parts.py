@@ -8,7 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import symofros as sf
-from validation.mechanics.joint_kinds import SIMPLE_JOINTS, STATED_JOINTS, PartKind
+
+from .joint_kinds import SIMPLE_JOINTS, STATED_JOINTS, PartKind
 
 Axis = tuple[float | sf.Expression, float | sf.Expression, float | sf.Expression]
 

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from validation.mechanics.geometry import Array
+from .geometry import Array
 
 # Name of the station [m] in formulas of a beam's section.
 STATION = "x"

@@ -16,9 +16,10 @@ from typing import NamedTuple
 import numpy as np
 
 import symofros as sf
-from validation.mechanics.elastic import XI, BeamSection, Curve, Turn
-from validation.mechanics.geometry import Array, skew
-from validation.mechanics.shape_functions import strain_family
+
+from .elastic import XI, BeamSection, Curve, Turn
+from .geometry import Array, skew
+from .shape_functions import strain_family
 
 # Strain that a rod's coordinates of a direction are of (0 to 2 turn sections, 3 to 5 stretch, shear), and their sign.
 STRAINS: dict[str, tuple[int, float]] = {

@@ -14,7 +14,7 @@ import scipy.interpolate
 import scipy.optimize
 import scipy.special
 
-from validation.mechanics.geometry import Array
+from .geometry import Array
 
 # Arrays in, arrays out; polynomials and splines of NumPy and SciPy are not typed more narrowly.
 Curve = Callable[[Any], Any]

@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from validation.mutation.fault import COMPARISON, CONSTANT, DROPPED, INDEX, OPERATOR, SIGN, SWAPPED, SourceFault
+from .fault import COMPARISON, CONSTANT, DROPPED, INDEX, OPERATOR, SIGN, SWAPPED, SourceFault
 
 _TOKEN = re.compile(
     r"""(?P<skip>^\#if[^\n]*_WIN32.*?^\#(?:else|endif)[^\n]*|\s+|/\*.*?\*/|//[^\n]*

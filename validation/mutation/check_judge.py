@@ -7,13 +7,14 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 import symofros as sf
-from validation.adapters import ROUTES, compiled, interpreted
-from validation.check import Settings, check
-from validation.comparison.errors import Comparison
-from validation.contract.interface import Subject
-from validation.inputs.cases import named
-from validation.mechanics.assembly import assemble
-from validation.procedures.catalogue import PROCEDURES, judge_procedures
+
+from ..adapters import ROUTES, compiled, interpreted
+from ..check import Settings, check
+from ..comparison.errors import Comparison
+from ..contract.interface import Subject
+from ..inputs.cases import named
+from ..mechanics.assembly import assemble
+from ..procedures.catalogue import PROCEDURES, judge_procedures
 
 STATES = 8
 # Compared by interpreted programs, which needs no compiler; in the order of cost: most faults show in the first ones.

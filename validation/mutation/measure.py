@@ -10,7 +10,9 @@ from typing import Annotated, Any
 
 import typer
 
-from validation.mutation.study import (
+from ..reporting.command import Run
+from ..reporting.record import Data
+from .study import (
     CAUGHT,
     CHECK,
     OPEN,
@@ -20,8 +22,6 @@ from validation.mutation.study import (
     Study,
     seen,
 )
-from validation.reporting.command import Run
-from validation.reporting.record import Data
 
 _ROOT = Path(__file__).parents[2]
 BOTH, CHECK_ALONE = 0.98, 0.85  # Asked-for shares of the faults that change a result.

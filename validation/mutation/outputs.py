@@ -15,8 +15,9 @@ import symofros as sf
 from reference_models import MODELS
 from symofros.blocks import ForwardDynamics, PythonBlock
 from symofros.tools import METHODS
-from validation.mechanics.geometry import Array
-from validation.mutation.check_judge import BEAMS, GENERAL, READ, subject
+
+from ..mechanics.geometry import Array
+from .check_judge import BEAMS, GENERAL, READ, subject
 
 ROUNDING = 1e-11  # Of the largest entry; other orders of the same operations differ by less.
 MOTION_ROUNDING = 1e-8  # Of runs, in which rounding grows.

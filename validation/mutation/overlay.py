@@ -12,8 +12,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from validation.mutation.fault import SourceFault
-from validation.reporting.provenance import revision
+from ..reporting.provenance import revision
+from .fault import SourceFault
 
 # What tests read, beside the packages.
 COPIED = ("symofros", "validation", "reference_models", "tests", "docs", "reports", "README.md", "pyproject.toml")

@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator
 from itertools import accumulate
 
-from validation.mutation.fault import (
+from .fault import (
     COMPARISON,
     CONSTANT,
     DROPPED,

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 
-from validation.mutation.fault import KINDS
-from validation.mutation.measure import BOTH, CHECK_ALONE, measure
-from validation.mutation.study import ARGUED, CAUGHT, HALTED, OPEN, STILLBORN, SURVIVED, UNCHANGED
-from validation.reporting.numbers import counted
-from validation.reporting.record import Bullets, Data, Fact, Report, Section, Table, Topic, verdict
+from ..reporting.numbers import counted
+from ..reporting.record import Bullets, Data, Fact, Report, Section, Table, Topic, verdict
+from .fault import KINDS
+from .measure import BOTH, CHECK_ALONE, measure
+from .study import ARGUED, CAUGHT, HALTED, OPEN, STILLBORN, SURVIVED, UNCHANGED
 
 _TEXT = """A fault is one change of a source file, in Python by the syntax tree, in C by tokens: an operator, a sign, an
 index, a frame or a transpose, a dropped term, the edge of a comparison, a constant, swapped arguments. The package with

@@ -6,9 +6,9 @@ import random
 from collections.abc import Iterator
 from pathlib import Path
 
-from validation.mutation.c_faults import c_faults
-from validation.mutation.fault import SourceFault
-from validation.mutation.python_faults import python_faults
+from .c_faults import c_faults
+from .fault import SourceFault
+from .python_faults import python_faults
 
 # What forms equations, programs, C and motions; files that only speak, draw or store are left out.
 SCOPE = (

@@ -11,11 +11,11 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from validation.mutation.fault import SourceFault
-from validation.mutation.overlay import Overlay
-from validation.mutation.sampling import drawn
-from validation.mutation.store import Store
-from validation.mutation.tests_judge import HUNG, chosen
+from .fault import SourceFault
+from .overlay import Overlay
+from .sampling import drawn
+from .store import Store
+from .tests_judge import HUNG, chosen
 
 CHECK, OUTPUTS, TESTS, LONGER, SOUND = "check", "outputs", "tests", "tests with more time", "sound"
 # Fates of a fault. "stillborn": the C compiler refuses it, so that nobody could use it; "halted": check, or a test,

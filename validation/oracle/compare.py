@@ -12,9 +12,10 @@ import sympy
 
 import symofros as sf
 from symofros.tools import evaluate_precisely
-from validation.oracle import kane, lagrange
-from validation.oracle.models import MODELS
-from validation.oracle.scope import Derived
+
+from . import kane, lagrange
+from .models import MODELS
+from .scope import Derived
 
 Derivation = Callable[[sf.System], Derived]
 DERIVATIONS: Mapping[str, Derivation] = {"lagrange": lagrange.derive, "kane": kane.derive}

@@ -8,8 +8,9 @@ from typing import Any
 import sympy
 
 import symofros as sf
-from validation.mechanics.parts import coordinate_symbols, speed_symbols
-from validation.oracle.scope import Scope
+
+from ..mechanics.parts import coordinate_symbols, speed_symbols
+from .scope import Scope
 
 
 def stated_forces(scope: Scope) -> dict[str, Any]:

@@ -12,9 +12,10 @@ import sympy
 from sympy.physics.mechanics import KanesMethod, Point, ReferenceFrame, RigidBody, inertia, outer
 
 import symofros as sf
-from validation.mechanics.parts import coordinate_symbols, has_quaternion, series, speed_symbols
-from validation.oracle.elements import stated_forces, stored_energy
-from validation.oracle.scope import TIME, Derived, Scope, turns
+
+from ..mechanics.parts import coordinate_symbols, has_quaternion, series, speed_symbols
+from .elements import stated_forces, stored_energy
+from .scope import TIME, Derived, Scope, turns
 
 Placed = tuple[Any, Any]
 

@@ -8,9 +8,10 @@ import sympy
 from sympy.physics.mechanics import LagrangesMethod
 
 import symofros as sf
-from validation.mechanics.parts import coordinate_symbols, has_quaternion, series, speed_symbols
-from validation.oracle.elements import stated_forces, stored_energy
-from validation.oracle.scope import TIME, Derived, NotDerivable, Scope, turn
+
+from ..mechanics.parts import coordinate_symbols, has_quaternion, series, speed_symbols
+from .elements import stated_forces, stored_energy
+from .scope import TIME, Derived, NotDerivable, Scope, turn
 
 Pose = tuple[Any, Any]
 _STILL = sympy.zeros(3, 1)

@@ -10,7 +10,8 @@ import sympy
 from sympy.physics.mechanics import dynamicsymbols
 
 import symofros as sf
-from validation.mechanics.parts import coordinate_symbols, has_quaternion, speed_symbols
+
+from ..mechanics.parts import coordinate_symbols, has_quaternion, speed_symbols
 
 TIME = dynamicsymbols._t
 # Functions that SymPy spells otherwise.

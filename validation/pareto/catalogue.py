@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from validation.pareto.problem import BenchmarkProblem
-from validation.pareto.problems import andrews, arm, four_bar, pendulum, robot, soft_pendulum, spin_up
+from .problem import BenchmarkProblem
+from .problems import andrews, arm, four_bar, pendulum, robot, soft_pendulum, spin_up
 
 PROBLEMS: dict[str, BenchmarkProblem] = {
     "spin_up": spin_up.PROBLEM,

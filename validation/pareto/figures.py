@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from validation.pareto.front import charted, front, seconds_at
-from validation.pareto.problem import OURS, BenchmarkProblem, Point
-from validation.pareto.race import Result
-from validation.reporting.charts import BAD, INK, LINE, SERIES, SOFT, logarithmic, style
-from validation.reporting.figures import Curve, Drawing, Figure
+from ..reporting.charts import BAD, INK, LINE, SERIES, SOFT, logarithmic, style
+from ..reporting.figures import Curve, Drawing, Figure
+from .front import charted, front, seconds_at
+from .problem import OURS, BenchmarkProblem, Point
+from .race import Result
 
 TIME = "time of the processor  [s]"
 SIZE = (310.0, 330.0)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
 
-from validation.pareto.problem import BenchmarkProblem, Point
+from .problem import BenchmarkProblem, Point
 
 
 def usable(points: Iterable[Point]) -> list[Point]:

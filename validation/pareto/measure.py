@@ -8,14 +8,14 @@ from typing import Annotated, Any
 
 import typer
 
-from validation.pareto import verdicts
-from validation.pareto.catalogue import PROBLEMS
-from validation.pareto.problem import BenchmarkProblem
-from validation.pareto.race import Result, race
-from validation.reporting.command import Done, Quick, Run, known
-from validation.reporting.plain import plain
-from validation.reporting.provenance import machine, now
-from validation.reporting.record import Data
+from ..reporting.command import Done, Quick, Run, known
+from ..reporting.plain import plain
+from ..reporting.provenance import machine, now
+from ..reporting.record import Data
+from . import verdicts
+from .catalogue import PROBLEMS
+from .problem import BenchmarkProblem
+from .race import Result, race
 
 
 def measure(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
-from validation.reporting.plain import Number
+from ..reporting.plain import Number
 
 OURS = "symofros"
 

@@ -7,8 +7,8 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from validation.pareto.problem import OURS, BenchmarkProblem, Contestant, Point, Prepared
-from validation.reporting.plain import Number
+from ..reporting.plain import Number
+from .problem import OURS, BenchmarkProblem, Contestant, Point, Prepared
 
 # A run is repeated until it was done so often, or has taken so much time in all; always twice where it is short.
 REPEATS, ENOUGH = 9, 0.4

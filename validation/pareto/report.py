@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import math
 
-from validation.pareto.catalogue import PROBLEMS
-from validation.pareto.figures import figure, grouped
-from validation.pareto.front import charted, front, seconds_at, usable
-from validation.pareto.measure import measure
-from validation.pareto.problem import BenchmarkProblem, Point
-from validation.pareto.race import Result
-from validation.pareto.verdicts import choices, refused, verdicts
-from validation.reporting.numbers import counted, duration, short, times
-from validation.reporting.plain import restored
-from validation.reporting.questions import failure_texts
-from validation.reporting.record import Bullets, Data, Fact, Report, Section, Table, Text, Topic, verdict
+from ..reporting.numbers import counted, duration, short, times
+from ..reporting.plain import restored
+from ..reporting.questions import failure_texts
+from ..reporting.record import Bullets, Data, Fact, Report, Section, Table, Text, Topic, verdict
+from .catalogue import PROBLEMS
+from .figures import figure, grouped
+from .front import charted, front, seconds_at, usable
+from .measure import measure
+from .problem import BenchmarkProblem, Point
+from .race import Result
+from .verdicts import choices, refused, verdicts
 
 INTRO = (
     """Error against time, both logarithmic. One thread; times are those of the processor, of the stepping alone, least

@@ -6,9 +6,9 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from validation.pareto.front import ratio, seconds_at, usable
-from validation.pareto.problem import OURS, BenchmarkProblem, Point, Target
-from validation.pareto.race import Result
+from .front import ratio, seconds_at, usable
+from .problem import OURS, BenchmarkProblem, Point, Target
+from .race import Result
 
 
 @dataclass(frozen=True)

@@ -19,13 +19,14 @@ import typer
 import reference_models
 import symofros as sf
 from symofros.tools import ABLATIONS, count_program
-from validation.mechanics.geometry import Array
-from validation.reporting.command import Run, known
-from validation.reporting.record import Data
-from validation.timing.contestants.arrays import Arrays, loops
-from validation.timing.models import TIMED_MODELS
-from validation.timing.race import error, race
-from validation.timing.task import Loop
+
+from ..mechanics.geometry import Array
+from ..reporting.command import Run, known
+from ..reporting.record import Data
+from ..timing.contestants.arrays import Arrays, loops
+from ..timing.models import TIMED_MODELS
+from ..timing.race import error, race
+from ..timing.task import Loop
 
 STATES = 256
 ALL, AGAIN, APART = "all passes", "nothing (a copy)", "functions apart"

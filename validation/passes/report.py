@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from symofros.tools import ABLATIONS
-from validation.passes.measure import ALL, APART, measure
-from validation.reporting.numbers import counted, formatted, times
-from validation.reporting.record import Data, Fact, Report, Section, Table, Topic
+
+from ..reporting.numbers import counted, formatted, times
+from ..reporting.record import Data, Fact, Report, Section, Table, Topic
+from .measure import ALL, APART, measure
 
 _APART = "M, h and Q are one function with one set of kinematics; without: three functions."
 _INTRO = """M, h and Q in one generated function, with all passes, and with each left out in turn. "More" is what

@@ -10,9 +10,10 @@ import numpy as np
 
 import symofros as sf
 from symofros.tools import METHODS
-from validation.mechanics.geometry import Array
-from validation.procedures.scene import Cell, Scene, off
-from validation.procedures.steps import EXPLICIT
+
+from ..mechanics.geometry import Array
+from .scene import Cell, Scene, off
+from .steps import EXPLICIT
 
 # Trajectories: more than are stepped at once, and no multiple of a vector's lanes.
 COUNT = 67

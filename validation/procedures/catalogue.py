@@ -9,11 +9,12 @@ import numpy as np
 
 import reference_models
 import symofros as sf
-from validation.comparison.errors import Comparison
-from validation.mechanics.assembly import Assembly
-from validation.mechanics.geometry import Array
-from validation.procedures import ENGINE, analyses, batches, beams, diagrams, forces, identities, reactions, runs
-from validation.procedures.scene import Cell, Manifold, Scene
+
+from ..comparison.errors import Comparison
+from ..mechanics.assembly import Assembly
+from ..mechanics.geometry import Array
+from . import ENGINE, analyses, batches, beams, diagrams, forces, identities, reactions, runs
+from .scene import Cell, Manifold, Scene
 
 Procedure = Callable[[Scene], Iterator[Cell]]
 SEED = 3

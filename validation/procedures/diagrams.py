@@ -9,7 +9,8 @@ import numpy as np
 
 import symofros as sf
 from symofros import blocks
-from validation.procedures.scene import Cell, off
+
+from .scene import Cell, off
 
 ROUNDING = 1e-10
 

@@ -8,9 +8,10 @@ from dataclasses import replace
 import numpy as np
 
 import symofros as sf
-from validation.mechanics.assembly import assemble
-from validation.mechanics.geometry import Array
-from validation.procedures.scene import Cell, Manifold, Scene, derivative, off
+
+from ..mechanics.assembly import assemble
+from ..mechanics.geometry import Array
+from .scene import Cell, Manifold, Scene, derivative, off
 
 ROUNDING, DIFFERENCED = 1e-11, 1e-7
 # Formula of a coordinate q and the next one p -> the same by NumPy.

@@ -11,11 +11,12 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from validation.contract.quantities import ROUNDING
-from validation.mechanics.assembly import Mover, assemble
-from validation.mechanics.geometry import Array
-from validation.procedures.analyses import DIFFERENCED, SEED
-from validation.procedures.scene import DIFFERENCE, Cell, Scene, off
+
+from ..contract.quantities import ROUNDING
+from ..mechanics.assembly import Mover, assemble
+from ..mechanics.geometry import Array
+from .analyses import DIFFERENCED, SEED
+from .scene import DIFFERENCE, Cell, Scene, off
 
 # Function that has vector-Jacobian products -> its inputs, and its outputs.
 TRANSPOSED: Mapping[str, tuple[str, str]] = {

@@ -11,10 +11,11 @@ from scipy.optimize import brentq
 
 import symofros as sf
 from symofros.tools import METHODS
-from validation.mechanics.geometry import Array
-from validation.mechanics.rod import StrainRod
-from validation.procedures.scene import Cell, Scene, off
-from validation.procedures.steps import STEPS, Path, alpha_run, repeated_run, variational_run
+
+from ..mechanics.geometry import Array
+from ..mechanics.rod import StrainRod
+from .scene import Cell, Scene, off
+from .steps import STEPS, Path, alpha_run, repeated_run, variational_run
 
 # Rounding of some ten steps; where a Jacobian is of finite differences, what these leave; where steps are chosen by an
 # estimate, a relative rounding of the estimate moves each end a little.

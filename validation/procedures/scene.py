@@ -11,8 +11,9 @@ from scipy.linalg import expm, null_space
 from scipy.spatial.transform import Rotation
 
 import symofros as sf
-from validation.mechanics.assembly import Assembly
-from validation.mechanics.geometry import Array, skew
+
+from ..mechanics.assembly import Assembly
+from ..mechanics.geometry import Array, skew
 
 # Inputs as a function of time and state.
 Law = Callable[[float, Array, Array], Array]

@@ -13,8 +13,8 @@ from zlib import crc32
 
 import numpy as np
 
-from validation.reporting.figures import SHAPES, Chart, Curve, Drawing
-from validation.reporting.numbers import short
+from .figures import SHAPES, Chart, Curve, Drawing
+from .numbers import short
 
 # Names in the style sheet -> colours on light and on dark paper.
 INK, SOFT, LINE, PAPER, GOOD, BAD = "#1c2024", "#5c6670", "#dfe3e6", "#fcfcfb", "#1a7f4b", "#c0362c"

@@ -17,9 +17,10 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 import symofros as sf
 from symofros.tools import write_atomically
-from validation.reporting import html, markdown, terminal
-from validation.reporting.provenance import Provenance, stamp
-from validation.reporting.record import Data, Report, Topic
+
+from . import html, markdown, terminal
+from .provenance import Provenance, stamp
+from .record import Data, Report, Topic
 
 REPORTS = Path("reports")
 

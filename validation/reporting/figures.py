@@ -9,8 +9,8 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import PlainValidator
 
-from validation.mechanics.geometry import Array
-from validation.reporting.plain import as_array
+from ..mechanics.geometry import Array
+from .plain import as_array
 
 Values = Annotated[Array | Sequence[float], PlainValidator(as_array)]
 Kind = Literal["line", "dashed", "dotted", "points", "joined", "steps"]

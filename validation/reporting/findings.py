@@ -10,10 +10,10 @@ from typing import Annotated
 import numpy as np
 from pydantic import BeforeValidator
 
-from validation.mechanics.geometry import Array
-from validation.reporting.figures import Figure
-from validation.reporting.numbers import short
-from validation.reporting.plain import Number
+from ..mechanics.geometry import Array
+from .figures import Figure
+from .numbers import short
+from .plain import Number
 
 # A bound: JSON writes null where a side is open.
 _High = Annotated[float, BeforeValidator(lambda x: math.inf if x is None else x)]

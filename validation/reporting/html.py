@@ -6,10 +6,10 @@ import re
 from html import escape
 from importlib.resources import files
 
-from validation.reporting.charts import PALETTE, draw
-from validation.reporting.figures import Chart, Drawing, Figure
-from validation.reporting.provenance import Provenance
-from validation.reporting.record import MISSED, Block, Bullets, Cell, Code, Fact, Report, Section, Table, Text
+from .charts import PALETTE, draw
+from .figures import Chart, Drawing, Figure
+from .provenance import Provenance
+from .record import MISSED, Block, Bullets, Cell, Code, Fact, Report, Section, Table, Text
 
 _PAGE = """<!doctype html>
 <html lang="en">

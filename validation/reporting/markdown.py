@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from validation.reporting.provenance import Provenance
-from validation.reporting.record import Block, Bullets, Cell, Code, Report, Section, Table, Text
+from .provenance import Provenance
+from .record import Block, Bullets, Cell, Code, Report, Section, Table, Text
 
 
 def page(report: Report, provenance: Provenance, closing: str) -> str:

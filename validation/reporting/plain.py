@@ -9,8 +9,8 @@ from typing import Annotated, Any, TypeVar
 import numpy as np
 from pydantic import BeforeValidator, TypeAdapter
 
-from validation.mechanics.geometry import Array
-from validation.reporting.numbers import finite, rounded
+from ..mechanics.geometry import Array
+from .numbers import finite, rounded
 
 T = TypeVar("T")
 # A number that may be NaN, which JSON writes as null.

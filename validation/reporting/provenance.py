@@ -13,7 +13,8 @@ from typing import Any
 
 import symofros as sf
 from symofros.tools import find_toolchain
-from validation.reporting.numbers import named
+
+from .numbers import named
 
 # Packages that have a say in the numbers of one report or another.
 _PACKAGES = tuple(

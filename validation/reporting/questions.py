@@ -8,11 +8,11 @@ from typing import Annotated, Any
 
 import typer
 
-from validation.reporting.command import Quick, Run, known
-from validation.reporting.findings import Finding, Question, Study
-from validation.reporting.numbers import counted, short
-from validation.reporting.plain import plain, restored
-from validation.reporting.record import Block, Compose, Data, Fact, Report, Section, Table, Text, verdict
+from .command import Quick, Run, known
+from .findings import Finding, Question, Study
+from .numbers import counted, short
+from .plain import plain, restored
+from .record import Block, Compose, Data, Fact, Report, Section, Table, Text, verdict
 
 # Where a sentence ends and another begins.
 _SENTENCE = re.compile(r"(?<=[.?!])\s+(?=[A-Z])")

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
 from typing import Any, Literal
 
-from validation.reporting.figures import Chart, Drawing, Figure
+from .figures import Chart, Drawing, Figure
 
 MISSED = "**missed** "
 _BAR = re.compile(r"\s*(?<!\S)\|(?!\S)\s*")

@@ -9,8 +9,8 @@ from rich.console import Console
 from rich.markdown import Markdown
 from rich.text import Text
 
-from validation.reporting import markdown
-from validation.reporting.record import Report, Table
+from . import markdown
+from .record import Report, Table
 
 # Where the output is no terminal, which has a width of its own: lines of text, and of tables, whose rows stay whole.
 PLAIN_WIDTH = 100

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from validation.stability.closed_loops import baumgarte, long_loops, redundant, singular, soft_closures
-from validation.stability.flexible import beams, deflection, families, spin
-from validation.stability.rigid import energy, euler_angles, light_bodies, mass_ratio, stick_slip
-from validation.stability.study import ParameterStudy
+from .closed_loops import baumgarte, long_loops, redundant, singular, soft_closures
+from .flexible import beams, deflection, families, spin
+from .rigid import energy, euler_angles, light_bodies, mass_ratio, stick_slip
+from .study import ParameterStudy
 
 STUDIES: dict[str, ParameterStudy] = {
     "baumgarte": baumgarte.STUDY,

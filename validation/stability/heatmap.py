@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from validation.mechanics.geometry import Array
-from validation.reporting.charts import BAD, GOOD, INK, PAPER, SERIES, library, logarithmic
-from validation.reporting.figures import Drawing
-from validation.stability.study import FINISHED, Cell, Grid, Map
+from ..mechanics.geometry import Array
+from ..reporting.charts import BAD, GOOD, INK, PAPER, SERIES, library, logarithmic
+from ..reporting.figures import Drawing
+from .study import FINISHED, Cell, Grid, Map
 
 SIZE = (430.0, 280.0)
 # Kind of a cell -> its colour.

@@ -7,12 +7,12 @@ from typing import Annotated, Any
 
 import typer
 
-from validation.reporting.command import Quick, Run, known
-from validation.reporting.numbers import rounded
-from validation.reporting.plain import plain
-from validation.reporting.record import Data
-from validation.stability.catalogue import STUDIES
-from validation.stability.study import Map, ParameterStudy, survey
+from ..reporting.command import Quick, Run, known
+from ..reporting.numbers import rounded
+from ..reporting.plain import plain
+from ..reporting.record import Data
+from .catalogue import STUDIES
+from .study import Map, ParameterStudy, survey
 
 # Different reasons of ends that are kept of a map.
 _MOST_NOTES = 8

@@ -7,16 +7,16 @@ from collections import Counter
 
 import numpy as np
 
-from validation.reporting.figures import Figure
-from validation.reporting.findings import Finding
-from validation.reporting.numbers import counted, short
-from validation.reporting.plain import restored
-from validation.reporting.questions import findings_fold, judged
-from validation.reporting.record import Bullets, Data, Fact, Report, Section, Text, Topic
-from validation.stability import heatmap
-from validation.stability.catalogue import STUDIES
-from validation.stability.measure import measure
-from validation.stability.study import FINISHED, Cell, Map, ParameterStudy
+from ..reporting.figures import Figure
+from ..reporting.findings import Finding
+from ..reporting.numbers import counted, short
+from ..reporting.plain import restored
+from ..reporting.questions import findings_fold, judged
+from ..reporting.record import Bullets, Data, Fact, Report, Section, Text, Topic
+from . import heatmap
+from .catalogue import STUDIES
+from .measure import measure
+from .study import FINISHED, Cell, Map, ParameterStudy
 
 INTRO = """Where simulations fail, and what to use instead. Each map runs one study over two parameters: a cell is a
 run, blue where it meets the criterion, orange where it comes to its end and misses it, red where it ended before with

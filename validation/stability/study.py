@@ -12,8 +12,9 @@ import numpy as np
 import numpy.typing as npt
 
 import symofros as sf
-from validation.mechanics.geometry import Array
-from validation.reporting.findings import Finding
+
+from ..mechanics.geometry import Array
+from ..reporting.findings import Finding
 
 # What an Outcome is called when nothing went wrong, here as in `symofros.Outcome`.
 FINISHED = ("finished", "event")

@@ -14,10 +14,11 @@ import numpy as np
 import typer
 
 import symofros as sf
-from validation.inputs.cases import robot_case
-from validation.reporting.command import Run
-from validation.reporting.plain import plain
-from validation.reporting.record import Data
+
+from ..inputs.cases import robot_case
+from ..reporting.command import Run
+from ..reporting.plain import plain
+from ..reporting.record import Data
 
 ROBOT = "xarm7"
 CALLS = 1_000_000

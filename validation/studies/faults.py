@@ -13,7 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from symofros.tools import ADD, MUL, OPS, Edge, Function, Graph, Program, needed_nodes
-from validation.mechanics.geometry import Array
+
+from ..mechanics.geometry import Array
 
 PERTURBATION = 1e-6
 

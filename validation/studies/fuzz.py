@@ -23,12 +23,13 @@ from typing import Annotated
 import typer
 
 import symofros as sf
-from validation.reporting.command import Run
-from validation.reporting.record import Data
-from validation.studies.fuzz_file_inputs import FILE_KINDS, mutated_files
-from validation.studies.fuzz_files import feed_file
-from validation.studies.fuzz_inputs import KINDS as TEXT_KINDS
-from validation.studies.fuzz_inputs import mutated
+
+from ..reporting.command import Run
+from ..reporting.record import Data
+from .fuzz_file_inputs import FILE_KINDS, mutated_files
+from .fuzz_files import feed_file
+from .fuzz_inputs import KINDS as TEXT_KINDS
+from .fuzz_inputs import mutated
 
 KINDS = (*TEXT_KINDS, *FILE_KINDS)
 # A reader that takes longer on some kilobytes has been made to hang.

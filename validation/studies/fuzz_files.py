@@ -21,7 +21,8 @@ import numpy as np
 
 import symofros as sf
 from symofros import blocks, tools
-from validation.studies.fuzz_file_inputs import PARTS, PLACE
+
+from .fuzz_file_inputs import PARTS, PLACE
 
 # Of what is accepted, one in so many is drawn as well.
 DRAWN = 25

@@ -21,20 +21,21 @@ import typer
 import reference_models
 import symofros as sf
 from symofros.tools import Function, evaluate_edges, evaluate_precisely
-from validation.adapters import ROUTES, Missing, description
-from validation.adapters.interpreted import build as interpreted
-from validation.comparison.errors import Scales, compute, state_errors, typical_scales
-from validation.comparison.variants import with_forces
-from validation.contract.interface import Engine, States, Subject, Unsupported
-from validation.contract.quantities import FORCES_STATED, FRAME_QUANTITIES, QUANTITIES, Quantity
-from validation.inputs.cases import standard_set
-from validation.inputs.frames import chosen_frames
-from validation.inputs.sampling import sample
-from validation.mechanics.assembly import assemble
-from validation.mechanics.geometry import Array
-from validation.reporting.command import Run
-from validation.reporting.record import Data
-from validation.studies.faults import Fault, FaultSimulator, faults_at
+
+from ..adapters import ROUTES, Missing, description
+from ..adapters.interpreted import build as interpreted
+from ..comparison.errors import Scales, compute, state_errors, typical_scales
+from ..comparison.variants import with_forces
+from ..contract.interface import Engine, States, Subject, Unsupported
+from ..contract.quantities import FORCES_STATED, FRAME_QUANTITIES, QUANTITIES, Quantity
+from ..inputs.cases import standard_set
+from ..inputs.frames import chosen_frames
+from ..inputs.sampling import sample
+from ..mechanics.assembly import assemble
+from ..mechanics.geometry import Array
+from ..reporting.command import Run
+from ..reporting.record import Data
+from .faults import Fault, FaultSimulator, faults_at
 
 STATES = 60
 # Outputs that agree to this many of DIGITS digits at random points are equal.

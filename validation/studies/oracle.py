@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from validation.reporting.command import Run, known
-from validation.reporting.record import Data
+from ..reporting.command import Run, known
+from ..reporting.record import Data
 
 
 def measure(
@@ -22,8 +22,8 @@ def measure(
     With --model, the report is that of these models alone, in the subfolder oracle.
     """
     # SymPy's mechanics cost a second to import; only this command pays.
-    from validation.oracle.compare import check
-    from validation.oracle.models import MODELS
+    from ..oracle.compare import check
+    from ..oracle.models import MODELS
 
     models = known(chosen, MODELS, "--model", "model")
     if chosen:

@@ -29,9 +29,10 @@ from symofros.blocks import (
     joined,
 )
 from symofros.tools import Jitter, jitter_of
-from validation.mechanics.geometry import Array
-from validation.reporting.command import Run
-from validation.reporting.record import Data
+
+from ..mechanics.geometry import Array
+from ..reporting.command import Run
+from ..reporting.record import Data
 
 ROBOT = Path(reference_models.__file__).parent / "rigid" / "puma560.yaml"
 # Of the motion that is followed: half its width [rad], its frequency [rad/s].

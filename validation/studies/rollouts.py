@@ -11,14 +11,15 @@ import numpy as np
 import typer
 
 import symofros as sf
-from validation.adapters.mujoco import tree as mujoco
-from validation.adapters.mujoco.rollout import roll_out
-from validation.contract.interface import Subject, Unsupported
-from validation.mechanics.geometry import Array
-from validation.reporting.command import Run
-from validation.reporting.record import Data
-from validation.studies.simulation import DAMPING, STIFFNESS, TARGET
-from validation.timing.models import TIMED_MODELS
+
+from ..adapters.mujoco import tree as mujoco
+from ..adapters.mujoco.rollout import roll_out
+from ..contract.interface import Subject, Unsupported
+from ..mechanics.geometry import Array
+from ..reporting.command import Run
+from ..reporting.record import Data
+from ..timing.models import TIMED_MODELS
+from .simulation import DAMPING, STIFFNESS, TARGET
 
 TRAJECTORIES, STEPS, STEP = 10_000, 100, 1e-3
 # Starts about the neutral posture: of each joint [rad], of each speed [rad/s].

@@ -14,19 +14,20 @@ import typer
 
 import reference_models
 import symofros as sf
-from validation.accuracy.motion import spinup
-from validation.accuracy.reference import data
-from validation.adapters.exudyn.ancf import spin_up
-from validation.adapters.mujoco import motion as mujoco_motion
-from validation.adapters.mujoco import tree as mujoco
-from validation.contract.interface import Subject, Unsupported
-from validation.reporting.command import Run, known
-from validation.reporting.record import Data
-from validation.reporting.references import References
-from validation.stability.closed_loops import four_bars
-from validation.stability.closed_loops.singular import ends_of_crank
-from validation.stability.closed_loops.soft_closures import SOLIMP
-from validation.timing.models import panda7
+
+from ..accuracy.motion import spinup
+from ..accuracy.reference import data
+from ..adapters.exudyn.ancf import spin_up
+from ..adapters.mujoco import motion as mujoco_motion
+from ..adapters.mujoco import tree as mujoco
+from ..contract.interface import Subject, Unsupported
+from ..reporting.command import Run, known
+from ..reporting.record import Data
+from ..reporting.references import References
+from ..stability.closed_loops import four_bars
+from ..stability.closed_loops.singular import ends_of_crank
+from ..stability.closed_loops.soft_closures import SOLIMP
+from ..timing.models import panda7
 
 # Of each joint [N m/rad, N m s/rad]: what RK4 with a millisecond holds at the wrist, whose inertia is the smallest.
 STIFFNESS, DAMPING, TARGET = 20.0, 1.0, 0.4

@@ -12,7 +12,8 @@ from statistics import median
 import numpy as np
 
 import symofros as sf
-from validation.timing.race import pin_to_one_cpu
+
+from .race import pin_to_one_cpu
 
 STATES = 4096
 REPEATS, CALLS = 24, 2000
@@ -50,7 +51,7 @@ def times(path: str, floating: bool) -> dict[str, float]:
         "kernel": (kernel, 1, STATES),
     }
     try:
-        from validation.adapters.pinocchio.plain import mass_matrix_call  # Whoever lacks Pinocchio has the rest.
+        from ..adapters.pinocchio.plain import mass_matrix_call  # Whoever lacks Pinocchio has the rest.
     except ImportError:
         pass
     else:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from validation.timing.models import CHAINS, ROWS
-from validation.timing.record import Made, Record
+from .models import CHAINS, ROWS
+from .record import Made, Record
 
 # Smaller models are mostly constants: an exponent is that of the upper part.
 FROM = 7

@@ -9,16 +9,16 @@ from typing import Annotated, Any
 
 import typer
 
-from validation.reporting.command import Run, known
-from validation.reporting.record import Data
-from validation.timing import waits
-from validation.timing.contestants.programs import BuildError
-from validation.timing.flexible.race import LABEL, run_flexible
-from validation.timing.models import FUNCTIONS, TIMED_MODELS
-from validation.timing.record import Record, as_data, read
-from validation.timing.run import facts, jobs, load, prepare, run_job
-from validation.timing.task import STATES
-from validation.timing.worker import PEERS, Job
+from ..reporting.command import Run, known
+from ..reporting.record import Data
+from . import waits
+from .contestants.programs import BuildError
+from .flexible.race import LABEL, run_flexible
+from .models import FUNCTIONS, TIMED_MODELS
+from .record import Record, as_data, read
+from .run import facts, jobs, load, prepare, run_job
+from .task import STATES
+from .worker import PEERS, Job
 
 # Four times through the copies of a library.
 REPEATS = 24

@@ -10,7 +10,8 @@ import reference_models
 import symofros as sf
 from reference_models.closed.four_bars import n_four_bar, turned
 from reference_models.rigid.chain import chain
-from validation.inputs.cases import standard_set
+
+from ..inputs.cases import standard_set
 
 # Function of the generated code -> its name in tables.
 FUNCTIONS = {

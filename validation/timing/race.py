@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from validation.contract.quantities import ROUNDING, SOLVE
-from validation.mechanics.geometry import Array
-from validation.timing.task import Loop
+from ..contract.quantities import ROUNDING, SOLVE
+from ..mechanics.geometry import Array
+from .task import Loop
 
 # Of the largest entry of a state's result. Integrators of quaternions differ in method, by the fourth power of a step.
 _SOLVED = ("forward_dynamics", "forward_dynamics_derivatives", "forward_dynamics_vjp", "step")

@@ -9,8 +9,8 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from validation.reporting.plain import plain, restored
-from validation.timing.models import Labelled
+from ..reporting.plain import plain, restored
+from .models import Labelled
 
 SCHEMA = 2
 

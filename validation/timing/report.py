@@ -6,15 +6,15 @@ from collections.abc import Mapping, Sequence
 from statistics import median
 from typing import Any
 
-from validation.reporting.numbers import counted, times
-from validation.reporting.plain import restored
-from validation.reporting.record import Data, Fact, Report, Section, Table, Topic
-from validation.timing.flexible.report import flexible_section
-from validation.timing.measure import measure
-from validation.timing.models import FUNCTIONS
-from validation.timing.record import Entry, Record
-from validation.timing.tables import TARGETS_TEXT, duration, ratios, sections, targets_table
-from validation.timing.targets import MOST_REVERSE, reverse_costs, verdicts
+from ..reporting.numbers import counted, times
+from ..reporting.plain import restored
+from ..reporting.record import Data, Fact, Report, Section, Table, Topic
+from .flexible.report import flexible_section
+from .measure import measure
+from .models import FUNCTIONS
+from .record import Entry, Record
+from .tables import TARGETS_TEXT, duration, ratios, sections, targets_table
+from .targets import MOST_REVERSE, reverse_costs, verdicts
 
 LIMITS = (
     """One thread, pinned to one processor, whose time on it is what is measured. All sides of a function run in one

@@ -14,17 +14,18 @@ from pathlib import Path
 from typing import Any
 
 from symofros.tools import find_toolchain
-from validation.reporting.plain import restored
-from validation.reporting.provenance import machine
-from validation.timing.contestants.arrays import first_compiler
-from validation.timing.contestants.engines import CLOSED, PINOCCHIO_FLAGS, TREES, pinocchio_builds
-from validation.timing.contestants.generated import BUILDS
-from validation.timing.contestants.programs import BuildError, Say, Skipped, compilers, source
-from validation.timing.models import TIMED_MODELS
-from validation.timing.processes import WorkerError, follow, message
-from validation.timing.race import pin_to_one_cpu
-from validation.timing.record import Entry, Made, Record
-from validation.timing.worker import Job
+
+from ..reporting.plain import restored
+from ..reporting.provenance import machine
+from .contestants.arrays import first_compiler
+from .contestants.engines import CLOSED, PINOCCHIO_FLAGS, TREES, pinocchio_builds
+from .contestants.generated import BUILDS
+from .contestants.programs import BuildError, Say, Skipped, compilers, source
+from .models import TIMED_MODELS
+from .processes import WorkerError, follow, message
+from .race import pin_to_one_cpu
+from .record import Entry, Made, Record
+from .worker import Job
 
 Doing = Callable[[str, str, str], None]
 # What a worker that died had not done.

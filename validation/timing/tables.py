@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from validation.reporting.figures import Chart, Curve, Figure, Mark
-from validation.reporting.numbers import compact, formatted
-from validation.reporting.record import Section, Table, verdict
-from validation.timing.growth import Growth, growth
-from validation.timing.models import FUNCTIONS, REVERSE, TIMED_MODELS
-from validation.timing.record import Entry, Made, Record, Wait
-from validation.timing.targets import MOST_REVERSE, Verdict, reverse_costs
+from ..reporting.figures import Chart, Curve, Figure, Mark
+from ..reporting.numbers import compact, formatted
+from ..reporting.record import Section, Table, verdict
+from .growth import Growth, growth
+from .models import FUNCTIONS, REVERSE, TIMED_MODELS
+from .record import Entry, Made, Record, Wait
+from .targets import MOST_REVERSE, Verdict, reverse_costs
 
 _GENERATORS = ("symofros", "casadi", "sympy")
 _PEERS = ("pinocchio", "mujoco", "casadi", "sympy")

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from validation.timing.models import REVERSE, TIMED_MODELS, Labelled
-from validation.timing.record import Entry, Record
+from .models import REVERSE, TIMED_MODELS, Labelled
+from .record import Entry, Record
 
 
 @dataclass(frozen=True)

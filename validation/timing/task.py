@@ -8,12 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 import symofros as sf
-from validation.comparison.loops import MOST, assembled_states
-from validation.contract.interface import States
-from validation.inputs.sampling import sample
-from validation.mechanics.assembly import Assembly, assemble
-from validation.mechanics.geometry import Array
-from validation.timing.models import TIMED_MODELS
+
+from ..comparison.loops import MOST, assembled_states
+from ..contract.interface import States
+from ..inputs.sampling import sample
+from ..mechanics.assembly import Assembly, assemble
+from ..mechanics.geometry import Array
+from .models import TIMED_MODELS
 
 STATES = 1000
 # Of the integrators: short, so that a motion of STATES steps stays near its start, and both sides' ends comparable [s].

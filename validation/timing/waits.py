@@ -17,8 +17,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
 
-from validation.inputs.cases import robot_file
-from validation.timing.record import Wait
+from ..inputs.cases import robot_file
+from .record import Wait
 
 LABEL = "first_second"
 # Runs with a full cache take a second at most, those with an empty one up to half a minute.

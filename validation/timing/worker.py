@@ -18,14 +18,15 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from validation.timing.contestants.arrays import first_compiler
-from validation.timing.contestants.engines import mujoco_loops, pinocchio_loops
-from validation.timing.contestants.generated import casadi_loops, sympy_loops
-from validation.timing.contestants.programs import BuildError, Skipped
-from validation.timing.contestants.symofros import BATCH, COLUMNS, NAME, SINGLE, our_loops
-from validation.timing.race import OF_FLOATS, DisagreementError, checked, race
-from validation.timing.record import Entry, Made
-from validation.timing.task import Loop, Task, task
+
+from .contestants.arrays import first_compiler
+from .contestants.engines import mujoco_loops, pinocchio_loops
+from .contestants.generated import casadi_loops, sympy_loops
+from .contestants.programs import BuildError, Skipped
+from .contestants.symofros import BATCH, COLUMNS, NAME, SINGLE, our_loops
+from .race import OF_FLOATS, DisagreementError, checked, race
+from .record import Entry, Made
+from .task import Loop, Task, task
 
 Say = Callable[[str, Any], None]
 PEERS = ("pinocchio", "mujoco", "casadi", "sympy")

@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from validation.engines.interface import Joint, Link, Slot, Tree, Vector, rows
-from validation.engines.models.kinds import link, placed
-from validation.engines.proving.pieces import Layout
+from ..engines.interface import Joint, Link, Slot, Tree, Vector, rows
+from ..engines.models.kinds import link, placed
+from ..engines.proving.pieces import Layout
 
 # Kind of joint -> the chart that says what its coordinates and speeds are (`validation.engines.truth.charts`).
 CHARTS = {

@@ -10,9 +10,10 @@ from typing import Annotated
 import typer
 
 import reference_models
-from validation.reporting.command import Exit, known
-from validation.truth_data.catalogue import models
-from validation.truth_data.dataset import write
+
+from ..reporting.command import Exit, known
+from .catalogue import models
+from .dataset import write
 
 FOLDER = Path(reference_models.__file__).parent / "truth"
 

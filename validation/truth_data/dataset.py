@@ -20,13 +20,14 @@ import numpy as np
 
 import symofros as sf
 from symofros.tools import write_atomically
-from validation.engines.functions import FUNCTIONS as ALL
-from validation.engines.truth.arithmetic import many_digits
-from validation.engines.truth.charts import CHARTS as ALL_CHARTS
-from validation.engines.truth.dynamics import Point, Truth, random_state
-from validation.truth_data.catalogue import CHARTS, FUNCTIONS, Model, layout
-from validation.truth_data.descriptions import files, numbers
-from validation.truth_data.schema import SCHEMA
+
+from ..engines.functions import FUNCTIONS as ALL
+from ..engines.truth.arithmetic import many_digits
+from ..engines.truth.charts import CHARTS as ALL_CHARTS
+from ..engines.truth.dynamics import Point, Truth, random_state
+from .catalogue import CHARTS, FUNCTIONS, Model, layout
+from .descriptions import files, numbers
+from .schema import SCHEMA
 
 VERSION = "1"
 STATES = 3

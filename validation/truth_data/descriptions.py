@@ -7,9 +7,10 @@ from pathlib import Path
 from typing import Any
 
 import symofros as sf
-from validation.engines.interface import Joint, Link, Tree, Unsupported
-from validation.engines.plugins.writing.urdf import describe
-from validation.truth_data.catalogue import CHARTS, layout
+
+from ..engines.interface import Joint, Link, Tree, Unsupported
+from ..engines.plugins.writing.urdf import describe
+from .catalogue import CHARTS, layout
 
 # Constructors turn numbers into values; their types say what they keep.
 _s: Any = sf

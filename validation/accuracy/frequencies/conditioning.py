@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 import symofros as sf
-from validation.accuracy.beams import FIRST, cantilever, interpreted, squares, stiffness_and_mass
-from validation.accuracy.reference import data, source
-from validation.mechanics.geometry import Array
-from validation.reporting.figures import Chart, Figure, Mark, curves
-from validation.reporting.findings import Finding, Study, near
+
+from ...mechanics.geometry import Array
+from ...reporting.figures import Chart, Figure, Mark, curves
+from ...reporting.findings import Finding, Study, near
+from ..beams import FIRST, cantilever, interpreted, squares, stiffness_and_mass
+from ..reference import data, source
 
 COLORS = {"polynomial": 2, "spline": 1, "legendre": 0, "clamped_free": 5}
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from validation.accuracy.beams import spinning, spinning_squares
-from validation.accuracy.reference import data, source
-from validation.mechanics.geometry import Array
-from validation.reporting.figures import Chart, Curve, Figure, Kind
-from validation.reporting.findings import Finding, Study, exponent
+from ...mechanics.geometry import Array
+from ...reporting.figures import Chart, Curve, Figure, Kind
+from ...reporting.findings import Finding, Study, exponent
+from ..beams import spinning, spinning_squares
+from ..reference import data, source
 
 ETA, DELTA = 12, 1
 # Family -> most functions it is asked for; monomials are refused beyond seven.

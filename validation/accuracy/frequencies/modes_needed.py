@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from validation.accuracy.beams import spinning, spinning_squares
-from validation.accuracy.reference import data, source
-from validation.mechanics.geometry import Array
-from validation.reporting.figures import Chart, Curve, Figure, Kind, curves
-from validation.reporting.findings import Finding, Study
+from ...mechanics.geometry import Array
+from ...reporting.figures import Chart, Curve, Figure, Kind, curves
+from ...reporting.findings import Finding, Study
+from ..beams import spinning, spinning_squares
+from ..reference import data, source
 
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5)
 KINDS: dict[str, Kind] = {"clamped_free": "joined", "legendre": "dashed"}

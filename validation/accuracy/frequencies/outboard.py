@@ -7,10 +7,11 @@ import scipy.linalg
 import scipy.special
 
 import symofros as sf
-from validation.accuracy.beams import spinning, spinning_squares
-from validation.mechanics.geometry import Array
-from validation.reporting.figures import Chart, Curve, Figure
-from validation.reporting.findings import Finding, Study
+
+from ...mechanics.geometry import Array
+from ...reporting.figures import Chart, Curve, Figure
+from ...reporting.findings import Finding, Study
+from ..beams import spinning, spinning_squares
 
 MASSES = (0.0, 0.3, 1.0, 3.0)
 FUNCTIONS = 8

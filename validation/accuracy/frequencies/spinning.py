@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 import scipy.optimize
 
-from validation.accuracy.beams import FIRST, spinning, spinning_squares
-from validation.accuracy.reference import data, source
-from validation.adapters.exudyn.ancf import spinning_frequencies
-from validation.mechanics.geometry import Array
-from validation.reporting.figures import Chart, Curve, Figure, Kind, Mark
-from validation.reporting.findings import Finding, Study, near
+from ...adapters.exudyn.ancf import spinning_frequencies
+from ...mechanics.geometry import Array
+from ...reporting.figures import Chart, Curve, Figure, Kind, Mark
+from ...reporting.findings import Finding, Study, near
+from ..beams import FIRST, spinning, spinning_squares
+from ..reference import data, source
 
 PLANES = {"flap": ("bend_z", "flap"), "lag": ("bend_y", "chord")}
 LINES: dict[int, Kind] = {8: "joined", 10: "dashed"}

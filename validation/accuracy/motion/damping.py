@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 import symofros as sf
-from validation.accuracy.beams import FIRST, cantilever, motion
-from validation.mechanics.geometry import Array
-from validation.reporting.figures import Chart, Curve, Figure, Mark
-from validation.reporting.findings import Finding, Study, near
+
+from ...mechanics.geometry import Array
+from ...reporting.figures import Chart, Curve, Figure, Mark
+from ...reporting.findings import Finding, Study, near
+from ..beams import FIRST, cantilever, motion
 
 # Retardation time in units of sqrt(rhoA L^4/EI): the first mode has a damping ratio of about 0.02.
 TAU = 0.0114

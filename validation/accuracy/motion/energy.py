@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 import symofros as sf
-from validation.accuracy.beams import motion
-from validation.mechanics.geometry import Array
-from validation.reporting.figures import Chart, Curve, Figure, Mark, curves
-from validation.reporting.findings import Finding, Study, exponent
+
+from ...mechanics.geometry import Array
+from ...reporting.figures import Chart, Curve, Figure, Mark, curves
+from ...reporting.findings import Finding, Study, exponent
+from ..beams import motion
 
 PERIOD = 2 * np.pi / 3.516
 # At an integrator's tolerance of 1e-12 over a hundred periods.

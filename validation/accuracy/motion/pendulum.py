@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from validation.accuracy.beams import motion
-from validation.accuracy.reference import data, source
-from validation.mechanics.geometry import Array
-from validation.reporting.figures import Chart, Curve, Figure, Kind, Mark, curves
-from validation.reporting.findings import Finding, Study, near
+
+from ...mechanics.geometry import Array
+from ...reporting.figures import Chart, Curve, Figure, Kind, Mark, curves
+from ...reporting.findings import Finding, Study, near
+from ..beams import motion
+from ..reference import data, source
 
 GRAVITY, END = 9.81, 2.0
 MODELS: dict[str, dict[str, Any]] = {

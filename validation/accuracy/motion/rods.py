@@ -8,11 +8,12 @@ import numpy as np
 
 import reference_models
 import symofros as sf
-from validation.accuracy.beams import motion
-from validation.accuracy.motion import spinup
-from validation.accuracy.reference import data, source
-from validation.reporting.figures import Chart, Figure, Mark, curves
-from validation.reporting.findings import Finding, Study
+
+from ...reporting.figures import Chart, Figure, Mark, curves
+from ...reporting.findings import Finding, Study
+from ..beams import motion
+from ..reference import data, source
+from . import spinup
 
 # Largest distance of the spin-up's tip from the exact inextensible rod, by number of functions [m].
 SPIN_UP = {1: 0.25, 2: 0.03, 3: 5e-3, 4: 3e-4, 5: 1.5e-5, 6: 6e-7}

@@ -7,12 +7,13 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from validation.accuracy.beams import motion
-from validation.accuracy.reference import data, source
-from validation.adapters.exudyn.ancf import spin_up
-from validation.mechanics.geometry import Array
-from validation.reporting.figures import Chart, Curve, Figure, Mark, curves
-from validation.reporting.findings import Finding, Study, near
+
+from ...adapters.exudyn.ancf import spin_up
+from ...mechanics.geometry import Array
+from ...reporting.figures import Chart, Curve, Figure, Mark, curves
+from ...reporting.findings import Finding, Study, near
+from ..beams import motion
+from ..reference import data, source
 
 LENGTH, EI, RHO_A, END, RATE = 8.0, 566.7095928, 0.20187837656, 15.0, 6.0
 # Over the whole run, whatever the number of functions: the converged theory's distance from the rod [m].

@@ -8,11 +8,12 @@ import numpy as np
 import scipy.linalg
 
 import symofros as sf
-from validation.accuracy.beams import cantilever, interpreted, squares, stiffness_and_mass
-from validation.accuracy.reference import data, source
-from validation.mechanics.geometry import Array
-from validation.reporting.figures import Chart, Curve, Figure, Mark, curves
-from validation.reporting.findings import Finding, Study, exponent, near
+
+from ...mechanics.geometry import Array
+from ...reporting.figures import Chart, Curve, Figure, Mark, curves
+from ...reporting.findings import Finding, Study, exponent, near
+from ..beams import cantilever, interpreted, squares, stiffness_and_mass
+from ..reference import data, source
 
 FAMILIES = ("legendre", "polynomial", "spline", "clamped_free")
 COLORS = {"legendre": 0, "polynomial": 2, "spline": 1, "clamped_free": 5}

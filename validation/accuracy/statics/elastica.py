@@ -7,12 +7,13 @@ import scipy.optimize
 import scipy.special
 
 import symofros as sf
-from validation.accuracy.beams import cantilever, interpreted
-from validation.accuracy.reference import data, source
-from validation.adapters.exudyn.ancf import static_tip
-from validation.mechanics.geometry import Array
-from validation.reporting.figures import Chart, Curve, Figure, Mark, curves
-from validation.reporting.findings import Finding, Study, near
+
+from ...adapters.exudyn.ancf import static_tip
+from ...mechanics.geometry import Array
+from ...reporting.figures import Chart, Curve, Figure, Mark, curves
+from ...reporting.findings import Finding, Study, near
+from ..beams import cantilever, interpreted
+from ..reference import data, source
 
 # Relative error of the tip's deflection, in per cent, whose beginning is looked for.
 # EA of Exudyn's beam, which stretches, in units of EI/L^2.

@@ -9,13 +9,14 @@ import numpy as np
 from scipy.integrate import solve_bvp
 
 import symofros as sf
-from validation.accuracy.beams import cantilever, interpreted
-from validation.accuracy.statics.elastica import FUNCTIONS, STRETCH
-from validation.accuracy.statics.princeton import STEPS, rod_tips, strip_model
-from validation.adapters.exudyn.ancf import Strip, static_tip, swing
-from validation.mechanics.geometry import Array
-from validation.reporting.figures import Chart, Curve, Figure, Kind, Mark
-from validation.reporting.findings import Finding, Study
+
+from ...adapters.exudyn.ancf import Strip, static_tip, swing
+from ...mechanics.geometry import Array
+from ...reporting.figures import Chart, Curve, Figure, Kind, Mark
+from ...reporting.findings import Finding, Study
+from ..beams import cantilever, interpreted
+from .elastica import FUNCTIONS, STRETCH
+from .princeton import STEPS, rod_tips, strip_model
 
 # Errors between which the estimate is asked to be right, and within which factor.
 SMALLEST, LARGEST, FACTOR = 0.01, 0.5, 2.0

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 import symofros as sf
-from validation.adapters.exudyn.ancf import Strip, princeton
-from validation.mechanics.geometry import Array
-from validation.reporting.figures import Chart, Curve, Figure, Kind, Mark, curves
-from validation.reporting.findings import Finding, Study, exponent
+
+from ...adapters.exudyn.ancf import Strip, princeton
+from ...mechanics.geometry import Array
+from ...reporting.figures import Chart, Curve, Figure, Kind, Mark, curves
+from ...reporting.findings import Finding, Study, exponent
 
 # Dowell & Traybar 1975: loads of one, two and three pounds.
 LOADS = (4.448, 8.896, 13.345)

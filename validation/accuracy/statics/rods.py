@@ -9,12 +9,13 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
 
 import symofros as sf
-from validation.accuracy.beams import cantilever, interpreted
-from validation.accuracy.statics.elastica import exact
-from validation.adapters.exudyn.ancf import Strip
-from validation.mechanics.geometry import Array
-from validation.reporting.figures import Chart, Figure, curves
-from validation.reporting.findings import Finding, Study
+
+from ...adapters.exudyn.ancf import Strip
+from ...mechanics.geometry import Array
+from ...reporting.figures import Chart, Figure, curves
+from ...reporting.findings import Finding, Study
+from ..beams import cantilever, interpreted
+from .elastica import exact
 
 FUNCTIONS = ("generalized_force", "frame_pose")
 # P L^2/EI of the elastica, bent by 86 degrees; errors of its tip over L, the larger component, by a Ritz solution with

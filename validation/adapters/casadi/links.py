@@ -10,7 +10,10 @@ import casadi as ca
 import numpy as np
 
 import symofros as sf
-from validation.adapters.casadi.algebra import (
+
+from ...mechanics.assembly import BASE, Assembly, Mover
+from ..reach import armature
+from .algebra import (
     ZERO,
     Matrix,
     Scalar,
@@ -30,8 +33,6 @@ from validation.adapters.casadi.algebra import (
     transposed,
     turned,
 )
-from validation.adapters.reach import armature
-from validation.mechanics.assembly import BASE, Assembly, Mover
 
 UNIT: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 Motion = tuple[Vector, Vector]

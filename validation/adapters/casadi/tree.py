@@ -13,7 +13,12 @@ from typing import Any
 import casadi as ca
 
 import symofros as sf
-from validation.adapters.casadi.algebra import (
+
+from ...contract.interface import Unsupported
+from ...mechanics.assembly import BASE, assemble
+from ...mechanics.joint_kinds import PartKind
+from ..reach import unrepresented
+from .algebra import (
     ZERO,
     Matrix,
     Scalar,
@@ -31,7 +36,7 @@ from validation.adapters.casadi.algebra import (
     times,
     transposed,
 )
-from validation.adapters.casadi.links import (
+from .links import (
     UNIT,
     Articulated,
     Link,
@@ -43,10 +48,6 @@ from validation.adapters.casadi.links import (
     shifted,
     shifted_to_parent,
 )
-from validation.adapters.reach import unrepresented
-from validation.contract.interface import Unsupported
-from validation.mechanics.assembly import BASE, assemble
-from validation.mechanics.joint_kinds import PartKind
 
 # Kinds of simple joints that it has.
 _JOINTS: frozenset[PartKind] = frozenset({"revolute", "prismatic", "free"})

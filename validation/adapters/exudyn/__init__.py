@@ -1,6 +1,6 @@
 """Exudyn: trees, loops, beams, its own solvers (github.com/jgerstm/EXUDYN)."""
 
-from validation.contract.conventions import Difference
+from ...contract.conventions import Difference
 
 DIFFERENCES: tuple[Difference, ...] = (
     Difference("exudyn", "coordinates", "total", "counted from the reference configuration"),

@@ -20,8 +20,8 @@ import exudyn
 import numpy as np
 from exudyn import itemInterface as items
 
-from validation.adapters.exudyn.system import assembled
-from validation.mechanics.geometry import Array
+from ...mechanics.geometry import Array
+from .system import assembled
 
 # Of forces, as a multiple of the axial stiffness that makes them round off.
 _ROUNDING = 1e-13

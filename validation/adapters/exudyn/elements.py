@@ -10,17 +10,18 @@ from typing import NamedTuple
 import numpy as np
 
 import symofros as sf
-from validation.adapters.exudyn.meshes import Mesh, mesh
-from validation.adapters.exudyn.solids import Nodal, inertial
-from validation.adapters.exudyn.system import ExudynSystem
-from validation.contract.conventions import times
-from validation.mechanics import carried
-from validation.mechanics.assembly import Mover
-from validation.mechanics.carried import AllSpeeds, Carried
-from validation.mechanics.elastic import ElasticBeam
-from validation.mechanics.extrapolation import Refined
-from validation.mechanics.geometry import Array
-from validation.mechanics.rod import PRE_STRAINS, StrainRod
+
+from ...contract.conventions import times
+from ...mechanics import carried
+from ...mechanics.assembly import Mover
+from ...mechanics.carried import AllSpeeds, Carried
+from ...mechanics.elastic import ElasticBeam
+from ...mechanics.extrapolation import Refined
+from ...mechanics.geometry import Array
+from ...mechanics.rod import PRE_STRAINS, StrainRod
+from .meshes import Mesh, mesh
+from .solids import Nodal, inertial
+from .system import ExudynSystem
 
 # Meshes of a beam.
 MESHES = 5

@@ -25,13 +25,14 @@ import numpy as np
 from exudyn.FEM import ObjectFFRFreducedOrderInterface
 
 import symofros as sf
-from validation.adapters.exudyn.system import VERSION, ExudynSystem, assembled
-from validation.contract.conventions import Chart, Slot, times
-from validation.contract.interface import States, Subject, Unsupported
-from validation.mechanics.assembly import assemble
-from validation.mechanics.geometry import Array
-from validation.mechanics.quadrature import STATION, gauss_stations
-from validation.mechanics.shape_functions import of_family
+
+from ...contract.conventions import Chart, Slot, times
+from ...contract.interface import States, Subject, Unsupported
+from ...mechanics.assembly import assemble
+from ...mechanics.geometry import Array
+from ...mechanics.quadrature import STATION, gauss_stations
+from ...mechanics.shape_functions import of_family
+from .system import VERSION, ExudynSystem, assembled
 
 NAME = "exudyn-frf"
 # Gauss nodes of each piece of the shape functions: exact for products of two up to degree 15.

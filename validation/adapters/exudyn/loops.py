@@ -20,15 +20,16 @@ import numpy as np
 from exudyn import itemInterface as items
 
 import symofros as sf
-from validation.adapters.closed import AXES
-from validation.adapters.exudyn.system import VERSION, ExudynSystem, assembled
-from validation.adapters.reach import armature, unrepresented
-from validation.contract.conventions import xyzw_to_wxyz
-from validation.contract.interface import States, Subject, Unsupported
-from validation.mechanics.absolute import Moving, bodies, joint_accelerations, work_rows
-from validation.mechanics.assembly import BASE, Assembly, FrameSite, Mover, anchor_name, assemble
-from validation.mechanics.geometry import Array, Placement, along_z, matrix_quaternion
-from validation.mechanics.joint_kinds import PartKind
+
+from ...contract.conventions import xyzw_to_wxyz
+from ...contract.interface import States, Subject, Unsupported
+from ...mechanics.absolute import Moving, bodies, joint_accelerations, work_rows
+from ...mechanics.assembly import BASE, Assembly, FrameSite, Mover, anchor_name, assemble
+from ...mechanics.geometry import Array, Placement, along_z, matrix_quaternion
+from ...mechanics.joint_kinds import PartKind
+from ..closed import AXES
+from ..reach import armature, unrepresented
+from .system import VERSION, ExudynSystem, assembled
 
 NAME = "exudyn-loops"
 CAPABILITIES = frozenset({"forward_dynamics", "closure_gap", "frame_response"})

@@ -13,20 +13,21 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 import symofros as sf
-from validation.adapters.compiled import without_rotary
-from validation.adapters.exudyn.elements import Elements, Terms, elements
-from validation.adapters.exudyn.solids import Nodal, Solids, inertial, solids
-from validation.adapters.exudyn.system import VERSION
-from validation.adapters.reach import armature, stores_energy
-from validation.contract.conventions import times
-from validation.contract.interface import States, Subject, Unsupported
-from validation.contract.memory import LatestResults
-from validation.contract.quantities import TREE_QUANTITIES
-from validation.mechanics import carried
-from validation.mechanics.assembly import Assembly, FrameSite, assemble
-from validation.mechanics.carried import AllSpeeds, Carried
-from validation.mechanics.extrapolation import Refined
-from validation.mechanics.geometry import Array
+
+from ...contract.conventions import times
+from ...contract.interface import States, Subject, Unsupported
+from ...contract.memory import LatestResults
+from ...contract.quantities import TREE_QUANTITIES
+from ...mechanics import carried
+from ...mechanics.assembly import Assembly, FrameSite, assemble
+from ...mechanics.carried import AllSpeeds, Carried
+from ...mechanics.extrapolation import Refined
+from ...mechanics.geometry import Array
+from ..compiled import without_rotary
+from ..reach import armature, stores_energy
+from .elements import Elements, Terms, elements
+from .solids import Nodal, Solids, inertial, solids
+from .system import VERSION
 
 NAME = "exudyn-beams"
 # States in one call, with beams and without.

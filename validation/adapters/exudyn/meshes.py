@@ -17,11 +17,11 @@ import exudyn
 import numpy as np
 from exudyn import itemInterface as items
 
-from validation.adapters.exudyn.system import ExudynSystem, assembled
-from validation.mechanics.elastic import POINTS, ElasticBeam
-from validation.mechanics.geometry import Array
-from validation.mechanics.quadrature import gauss_stations
-from validation.mechanics.rod import StrainRod
+from ...mechanics.elastic import POINTS, ElasticBeam
+from ...mechanics.geometry import Array
+from ...mechanics.quadrature import gauss_stations
+from ...mechanics.rod import StrainRod
+from .system import ExudynSystem, assembled
 
 _NO_TURN = (1.0, 0.0, 0.0, 0.0)
 

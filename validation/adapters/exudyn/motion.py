@@ -9,7 +9,7 @@ import exudyn
 import exudyn.itemInterface as items
 import numpy as np
 
-from validation.mechanics.geometry import Array
+from ...mechanics.geometry import Array
 
 Link = tuple[tuple[float, float], float, float]
 

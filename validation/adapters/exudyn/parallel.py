@@ -15,8 +15,8 @@ import exudyn
 import numpy as np
 from exudyn import itemInterface as items
 
-from validation.adapters.exudyn.ancf import motion_at, motion_of_node
-from validation.mechanics.geometry import Array
+from ...mechanics.geometry import Array
+from .ancf import motion_at, motion_of_node
 
 # Absolute tolerance of Newton's method.
 _TOLERANCE = 1e-9

@@ -21,9 +21,10 @@ import numpy as np
 from exudyn import itemInterface as items
 
 import symofros as sf
-from validation.adapters.exudyn.system import ExudynSystem, assembled
-from validation.mechanics.assembly import BASE, Mass, Mover, assemble
-from validation.mechanics.geometry import Array
+
+from ...mechanics.assembly import BASE, Mass, Mover, assemble
+from ...mechanics.geometry import Array
+from .system import ExudynSystem, assembled
 
 # Singular values below this share of the largest belong to rows of a joint that bind nothing.
 _RANK = 1e-9

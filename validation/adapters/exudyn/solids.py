@@ -10,11 +10,11 @@ import exudyn
 import numpy as np
 from exudyn import itemInterface as items
 
-from validation.adapters.exudyn.system import ExudynSystem, assembled
-from validation.contract.conventions import times, xyzw_to_wxyz
-from validation.mechanics.assembly import BASE, Assembly, FrameSite
-from validation.mechanics.carried import Carried
-from validation.mechanics.geometry import Array, matrix_quaternion
+from ...contract.conventions import times, xyzw_to_wxyz
+from ...mechanics.assembly import BASE, Assembly, FrameSite
+from ...mechanics.carried import Carried
+from ...mechanics.geometry import Array, matrix_quaternion
+from .system import ExudynSystem, assembled
 
 NO_TURN = (1.0, 0.0, 0.0, 0.0)
 # Coordinates of a node: a place and Euler parameters.

@@ -15,7 +15,7 @@ from typing import Any
 import exudyn
 import numpy as np
 
-from validation.mechanics.geometry import Array
+from ...mechanics.geometry import Array
 
 EXPLICIT = ("ExplicitEuler", "ExplicitMidpoint", "RK33", "RK44", "RK67", "ODE23", "DOPRI5", "VelocityVerlet")
 # Of a step that is cut.

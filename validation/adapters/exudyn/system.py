@@ -9,7 +9,7 @@ from typing import Any, Literal
 import exudyn
 import numpy as np
 
-from validation.mechanics.geometry import Array
+from ...mechanics.geometry import Array
 
 VERSION: str = exudyn.__version__
 

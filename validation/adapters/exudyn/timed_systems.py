@@ -13,12 +13,13 @@ from exudyn import itemInterface as items
 from exudyn.advancedUtilities import CreateSymbolicUserFunction
 
 import symofros as sf
-from validation.adapters.exudyn.ancf import node_sensor, straight_beam
-from validation.adapters.exudyn.motion import Link, linkage
-from validation.adapters.exudyn.planar import Cable, populate
-from validation.adapters.exudyn.steps import Timed
-from validation.mechanics.assembly import BASE, anchor_name, assemble
-from validation.mechanics.geometry import Array
+
+from ...mechanics.assembly import BASE, anchor_name, assemble
+from ...mechanics.geometry import Array
+from .ancf import node_sensor, straight_beam
+from .motion import Link, linkage
+from .planar import Cable, populate
+from .steps import Timed
 
 # What its stubs state wrongly, or not at all.
 _ENGINE: Any = exudyn

@@ -16,15 +16,16 @@ import numpy as np
 from exudyn import itemInterface as items
 
 import symofros as sf
-from validation.adapters.exudyn import mapped
-from validation.adapters.exudyn.system import VERSION, ExudynSystem, assembled
-from validation.adapters.reach import armature, unrepresented
-from validation.contract.conventions import times
-from validation.contract.interface import Engine, States, Subject, Unsupported
-from validation.mechanics import carried
-from validation.mechanics.assembly import BASE, Assembly, FrameSite, Mover, assemble
-from validation.mechanics.geometry import Array, Placement, along_z
-from validation.mechanics.joint_kinds import PartKind
+
+from ...contract.conventions import times
+from ...contract.interface import Engine, States, Subject, Unsupported
+from ...mechanics import carried
+from ...mechanics.assembly import BASE, Assembly, FrameSite, Mover, assemble
+from ...mechanics.geometry import Array, Placement, along_z
+from ...mechanics.joint_kinds import PartKind
+from ..reach import armature, unrepresented
+from . import mapped
+from .system import VERSION, ExudynSystem, assembled
 
 NAME = "exudyn"
 # States in one call: Jacobians are read column by column.

@@ -1,6 +1,6 @@
 """Lagrange's equations by CasADi's automatic differentiation: the second opinion on beams."""
 
-from validation.contract.conventions import Difference
+from ...contract.conventions import Difference
 
 DIFFERENCES = (
     Difference("lagrangian", "terms of beams", "up to the order described", "all: compared with our model of all"),

@@ -12,8 +12,8 @@ from typing import Any, Literal, NamedTuple
 import casadi as ca
 import numpy as np
 
-from validation.mechanics.geometry import Array
-from validation.mechanics.shape_functions import Shape
+from ...mechanics.geometry import Array
+from ...mechanics.shape_functions import Shape
 
 Section = float | Callable[[float], float]
 SX = Any  # CasADi has no types.

@@ -15,15 +15,16 @@ import casadi as ca
 import numpy as np
 
 import symofros as sf
-from validation.adapters.description import StatedForces
-from validation.adapters.lagrangian.model import Translation
-from validation.adapters.lagrangian.motion import GROUND, Pose
-from validation.adapters.lagrangian.tree import WORLD, Lagrangian, rate_of, turning_of
-from validation.contract.interface import States, Subject, TreeEngine, Unsupported
-from validation.contract.quantities import FORCES_STATED, TREE_QUANTITIES
-from validation.mechanics.assembly import Assembly, assemble
-from validation.mechanics.geometry import Array, skew
-from validation.mechanics.parts import coordinate_symbols, speed_symbols
+
+from ...contract.interface import States, Subject, TreeEngine, Unsupported
+from ...contract.quantities import FORCES_STATED, TREE_QUANTITIES
+from ...mechanics.assembly import Assembly, assemble
+from ...mechanics.geometry import Array, skew
+from ...mechanics.parts import coordinate_symbols, speed_symbols
+from ..description import StatedForces
+from .model import Translation
+from .motion import GROUND, Pose
+from .tree import WORLD, Lagrangian, rate_of, turning_of
 
 NAME = "lagrangian"
 VERSION = f"casadi {version('casadi')}"

@@ -10,18 +10,19 @@ import casadi as ca
 import numpy as np
 
 import symofros as sf
-from validation.adapters.description import evaluate
-from validation.adapters.lagrangian import rod as rods
-from validation.adapters.lagrangian.beam import POINTS, SX, Flexible, Line, rotation_about
-from validation.adapters.lagrangian.motion import Manifold, quaternion_rotation
-from validation.adapters.lagrangian.rod import ExactRod, Strain
-from validation.adapters.lagrangian.tree import WORLD, Node, Rotor, Solid, Symbols
-from validation.mechanics import shape_functions as families
-from validation.mechanics.assembly import Assembly, Mover
-from validation.mechanics.geometry import Array, Placement
-from validation.mechanics.parts import coordinate_symbols, rate_symbols, speed_symbols
-from validation.mechanics.rod import STRAINS
-from validation.mechanics.shape_functions import Shape
+
+from ...mechanics import shape_functions as families
+from ...mechanics.assembly import Assembly, Mover
+from ...mechanics.geometry import Array, Placement
+from ...mechanics.parts import coordinate_symbols, rate_symbols, speed_symbols
+from ...mechanics.rod import STRAINS
+from ...mechanics.shape_functions import Shape
+from ..description import evaluate
+from . import rod as rods
+from .beam import POINTS, SX, Flexible, Line, rotation_about
+from .motion import Manifold, quaternion_rotation
+from .rod import ExactRod, Strain
+from .tree import WORLD, Node, Rotor, Solid, Symbols
 
 _CASADI: Mapping[str, Callable[..., SX]] = {
     "add": lambda a, b: a + b,

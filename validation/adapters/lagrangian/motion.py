@@ -15,7 +15,7 @@ from typing import Literal, NamedTuple
 
 import casadi as ca
 
-from validation.adapters.lagrangian.beam import SX
+from .beam import SX
 
 Manifold = Literal["flat", "ball", "free"]
 

@@ -14,8 +14,8 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from validation.adapters.lagrangian.beam import Line, Section, at_stations, rotation_about, stations
-from validation.mechanics.geometry import Array
+from ...mechanics.geometry import Array
+from .beam import Line, Section, at_stations, rotation_about, stations
 
 SX = Any  # CasADi has no types.
 

@@ -14,12 +14,12 @@ from typing import Any, NamedTuple
 import casadi as ca
 import numpy as np
 
-from validation.adapters.lagrangian import beam as beams
-from validation.adapters.lagrangian import rod as rods
-from validation.adapters.lagrangian.beam import SX, Flexible
-from validation.adapters.lagrangian.motion import GROUND, Manifold, Pose, displaced
-from validation.adapters.lagrangian.rod import ExactRod
-from validation.mechanics.geometry import Array
+from ...mechanics.geometry import Array
+from . import beam as beams
+from . import rod as rods
+from .beam import SX, Flexible
+from .motion import GROUND, Manifold, Pose, displaced
+from .rod import ExactRod
 
 WORLD = -1
 _COORDINATES: dict[Manifold, Callable[[int], int]] = {"flat": lambda n: n, "ball": lambda n: 4, "free": lambda n: 7}

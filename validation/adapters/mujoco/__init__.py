@@ -1,6 +1,6 @@
 """MuJoCo: trees, its own readings of files, its own integrators (github.com/google-deepmind/mujoco)."""
 
-from validation.contract.conventions import Difference
+from ...contract.conventions import Difference
 
 DIFFERENCES = (
     Difference("mujoco", "quaternion", "(x, y, z, w)", "(w, x, y, z)"),

@@ -7,7 +7,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from validation.mechanics.geometry import Array
+from ...mechanics.geometry import Array
 
 
 def connections(mjcf: str, q: Array, v: Array) -> tuple[Array, Array, Array]:

@@ -14,12 +14,12 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from validation.adapters.mujoco.tree import MujocoEngine, explain, quiet
-from validation.contract.conventions import Chart, Encoding, Slot
-from validation.contract.interface import States, Subject, Unsupported
-from validation.contract.quantities import FRAME_QUANTITIES, MJCF_ROUTE
-from validation.mechanics.assembly import Assembly, Mover, assemble
-from validation.mechanics.geometry import Array
+from ...contract.conventions import Chart, Encoding, Slot
+from ...contract.interface import States, Subject, Unsupported
+from ...contract.quantities import FRAME_QUANTITIES, MJCF_ROUTE
+from ...mechanics.assembly import Assembly, Mover, assemble
+from ...mechanics.geometry import Array
+from .tree import MujocoEngine, explain, quiet
 
 NAME = "mujoco-mjcf"
 

@@ -9,8 +9,8 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from validation.adapters.mujoco.tree import quiet
-from validation.mechanics.geometry import Array
+from ...mechanics.geometry import Array
+from .tree import quiet
 
 
 @dataclass(frozen=True)

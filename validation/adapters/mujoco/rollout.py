@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 from mujoco import rollout
 
-from validation.mechanics.geometry import Array
+from ...mechanics.geometry import Array
 
 
 def roll_out(

@@ -12,13 +12,13 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from validation.adapters.reach import armature, offered, unrepresented
-from validation.contract.conventions import Chart, Encoding, Slot, angular_first_to_linear_first, xyzw_to_wxyz
-from validation.contract.interface import States, Subject, TreeEngine, Unsupported
-from validation.contract.quantities import TREE_QUANTITIES
-from validation.mechanics.assembly import BASE, Assembly, Mover, assemble
-from validation.mechanics.geometry import Array, Placement, matrix_quaternion
-from validation.mechanics.joint_kinds import PartKind
+from ...contract.conventions import Chart, Encoding, Slot, angular_first_to_linear_first, xyzw_to_wxyz
+from ...contract.interface import States, Subject, TreeEngine, Unsupported
+from ...contract.quantities import TREE_QUANTITIES
+from ...mechanics.assembly import BASE, Assembly, Mover, assemble
+from ...mechanics.geometry import Array, Placement, matrix_quaternion
+from ...mechanics.joint_kinds import PartKind
+from ..reach import armature, offered, unrepresented
 
 NAME = "mujoco"
 VERSION: str = mujoco.__version__

@@ -7,10 +7,10 @@ import xml.etree.ElementTree as ElementTree
 import mujoco
 import numpy as np
 
-from validation.adapters.mujoco.tree import MujocoEngine, chart_of, compiled, explain, quiet
-from validation.contract.interface import Subject, Unsupported, UrdfSource
-from validation.contract.quantities import SECOND_ROUTE
-from validation.mechanics.assembly import Assembly, assemble
+from ...contract.interface import Subject, Unsupported, UrdfSource
+from ...contract.quantities import SECOND_ROUTE
+from ...mechanics.assembly import Assembly, assemble
+from .tree import MujocoEngine, chart_of, compiled, explain, quiet
 
 NAME = "mujoco-urdf"
 _ROOT_JOINT = "root_joint"

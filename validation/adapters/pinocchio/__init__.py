@@ -1,6 +1,6 @@
 """Pinocchio: trees, loops, its own reading of URDF (github.com/stack-of-tasks/pinocchio)."""
 
-from validation.contract.conventions import Difference
+from ...contract.conventions import Difference
 
 DIFFERENCES = (
     Difference("pinocchio", "frame acceleration", "d/dt of the frame velocity: classical", "spatial, unless asked"),

@@ -14,11 +14,12 @@ import numpy as np
 import pinocchio as pin
 
 import symofros as sf
-from validation.adapters.closed import AXES
-from validation.adapters.pinocchio import tree as trees
-from validation.contract.interface import States, Subject, Unsupported
-from validation.mechanics.assembly import BASE, Assembly, anchor_name, assemble
-from validation.mechanics.geometry import Array
+
+from ...contract.interface import States, Subject, Unsupported
+from ...mechanics.assembly import BASE, Assembly, anchor_name, assemble
+from ...mechanics.geometry import Array
+from ..closed import AXES
+from . import tree as trees
 
 NAME = "pinocchio-loops"
 CAPABILITIES = frozenset({"forward_dynamics", "multipliers", "constraint_force", "closure_gap", "frame_response"})

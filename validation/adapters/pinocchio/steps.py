@@ -10,7 +10,7 @@ import numpy as np
 import pinocchio as pin
 from scipy.integrate import solve_ivp
 
-from validation.mechanics.geometry import Array
+from ...mechanics.geometry import Array
 
 
 class Held:

@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from validation.adapters.reach import armature, bears_its_weight_alone, offered, unrepresented
-from validation.contract.conventions import Chart
-from validation.contract.interface import States, Subject, Unsupported
-from validation.contract.quantities import TREE_QUANTITIES
-from validation.mechanics.assembly import FrameSite, Mass, Mover, assemble
-from validation.mechanics.geometry import Array, Placement
-from validation.mechanics.joint_kinds import PartKind
+from ...contract.conventions import Chart
+from ...contract.interface import States, Subject, Unsupported
+from ...contract.quantities import TREE_QUANTITIES
+from ...mechanics.assembly import FrameSite, Mass, Mover, assemble
+from ...mechanics.geometry import Array, Placement
+from ...mechanics.joint_kinds import PartKind
+from ..reach import armature, bears_its_weight_alone, offered, unrepresented
 
 NAME = "pinocchio"
 VERSION: str = pin.__version__

@@ -6,11 +6,11 @@ from typing import Any
 
 import pinocchio as pin
 
-from validation.adapters.pinocchio.tree import PinocchioEngine
-from validation.contract.conventions import Chart, Slot
-from validation.contract.interface import Subject, Unsupported, UrdfSource
-from validation.contract.quantities import SECOND_ROUTE
-from validation.mechanics.assembly import Assembly, Mover, assemble
+from ...contract.conventions import Chart, Slot
+from ...contract.interface import Subject, Unsupported, UrdfSource
+from ...contract.quantities import SECOND_ROUTE
+from ...mechanics.assembly import Assembly, Mover, assemble
+from .tree import PinocchioEngine
 
 NAME = "pinocchio-urdf"
 _ROOT_JOINT = "root_joint"

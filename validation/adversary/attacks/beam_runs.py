@@ -8,8 +8,9 @@ import numpy as np
 from hypothesis import strategies as st
 
 import symofros as sf
-from validation.adversary.attack import Attack, Mechanism, Scene, Verdict, compared, decades, refused, undecided
-from validation.adversary.attacks.beam_statics import NAMES, beam
+
+from ..attack import Attack, Mechanism, Scene, Verdict, compared, decades, refused, undecided
+from .beam_statics import NAMES, beam
 
 # Stated errors are right within 2.2 in a swing of about one period, to the safe side; beyond, the phase runs away in
 # proportion to the time. What carries no note may err by three times one per cent each period, with a floor for the

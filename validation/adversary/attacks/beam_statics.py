@@ -8,8 +8,9 @@ import numpy as np
 from hypothesis import strategies as st
 
 import symofros as sf
-from validation.accuracy.statics.estimate import CRITICAL, Loads, elastica_tip
-from validation.adversary.attack import Attack, Mechanism, Scene, Verdict, compared, decades, refused, undecided
+
+from ...accuracy.statics.estimate import CRITICAL, Loads, elastica_tip
+from ..attack import Attack, Mechanism, Scene, Verdict, compared, decades, refused, undecided
 
 # Factor within which the stated error is right (section 6 of docs/theory/beams.md: two), with a margin; error from
 # which a result carries a note; floor of what five polynomials and the collocation leave.

@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 
 import symofros as sf
 from symofros.tools import evaluate_precisely
-from validation.adversary.attack import Attack, Mechanism, Scene, Verdict, along, compared, decades, inertia, refused
-from validation.mechanics.geometry import Array
+
+from ...mechanics.geometry import Array
+from ..attack import Attack, Mechanism, Scene, Verdict, along, compared, decades, inertia, refused
 
 DIGITS = 50
 # Rounding errors in units of the bound by the condition of each component: six digits are left to the growth of errors

@@ -12,7 +12,9 @@ from hypothesis import strategies as st
 
 import symofros as sf
 from symofros import blocks
-from validation.adversary.attack import (
+
+from ...mechanics.geometry import Array
+from ..attack import (
     Attack,
     Mechanism,
     Scene,
@@ -23,8 +25,7 @@ from validation.adversary.attack import (
     refused,
     undecided,
 )
-from validation.adversary.motion import MOVED, UNNOTED, UNNOTED_ENERGY, predictable
-from validation.mechanics.geometry import Array
+from ..motion import MOVED, UNNOTED, UNNOTED_ENERGY, predictable
 
 _PERIOD = 0.1
 # Forces between samples: none, a spring that hardens, a floor that is touched for a moment.

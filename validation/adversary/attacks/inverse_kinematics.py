@@ -8,8 +8,10 @@ import numpy as np
 from hypothesis import strategies as st
 
 import symofros as sf
-from validation.adapters.pinocchio import tree as pinocchio
-from validation.adversary.attack import (
+
+from ...adapters.pinocchio import tree as pinocchio
+from ...contract.interface import States, Subject, Unsupported
+from ..attack import (
     Attack,
     Mechanism,
     Scene,
@@ -22,7 +24,6 @@ from validation.adversary.attack import (
     undecided,
     worst,
 )
-from validation.contract.interface import States, Subject, Unsupported
 
 TOLERANCE = 1e-10
 ROUNDING = 1e-13

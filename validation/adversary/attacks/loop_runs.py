@@ -8,7 +8,9 @@ import numpy as np
 from hypothesis import strategies as st
 
 import symofros as sf
-from validation.adversary.attack import (
+
+from ...mechanics.geometry import Array
+from ..attack import (
     Attack,
     Mechanism,
     Scene,
@@ -20,8 +22,7 @@ from validation.adversary.attack import (
     refused,
     worst,
 )
-from validation.adversary.motion import against_finer, claimed_good
-from validation.mechanics.geometry import Array
+from ..motion import against_finer, claimed_good
 
 # Residual of the loop over its size that records may have: what projection leaves.
 CLOSED = 1e-6

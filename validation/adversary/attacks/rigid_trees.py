@@ -9,11 +9,12 @@ import numpy as np
 from hypothesis import strategies as st
 
 import symofros as sf
-from validation.adapters.pinocchio import tree as pinocchio
-from validation.adversary.attack import Attack, Scene, Verdict, compared, decades, refused, undecided
-from validation.contract.interface import States, Subject, Unsupported
-from validation.inputs.sampling import sample
-from validation.mechanics.assembly import assemble
+
+from ...adapters.pinocchio import tree as pinocchio
+from ...contract.interface import States, Subject, Unsupported
+from ...inputs.sampling import sample
+from ...mechanics.assembly import assemble
+from ..attack import Attack, Scene, Verdict, compared, decades, refused, undecided
 
 # Share of the terms of a row that rounding may leave: half of the digits.
 SHARE = 1e-8

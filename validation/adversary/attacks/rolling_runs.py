@@ -8,8 +8,9 @@ import numpy as np
 from hypothesis import strategies as st
 
 import symofros as sf
-from validation.adversary.attack import Attack, Mechanism, Scene, Verdict, decades, inertia
-from validation.adversary.motion import against_finer
+
+from ..attack import Attack, Mechanism, Scene, Verdict, decades, inertia
+from ..motion import against_finer
 
 _PARAMETERS = tuple(sf.Parameter(name, 1.0) for name in ("r", "m"))
 

@@ -9,8 +9,9 @@ import scipy.linalg
 from hypothesis import strategies as st
 
 import symofros as sf
-from validation.adversary.attack import Attack, Mechanism, Scene, Verdict, along, compared, decades, inertia, refused
-from validation.adversary.motion import UNNOTED, against_finer, claimed_good
+
+from ..attack import Attack, Mechanism, Scene, Verdict, along, compared, decades, inertia, refused
+from ..motion import UNNOTED, against_finer, claimed_good
 
 _METHODS = ("rk4", "euler", "semi_implicit_euler", "implicit_euler", "generalized_alpha", "dopri5", "rodas4")
 

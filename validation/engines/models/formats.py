@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from validation.engines.interface import Joint, Link, Tree, Unsupported
-from validation.engines.models.hostile import trees as hostile_trees
-from validation.engines.models.kinds import OBLIQUE, link, placed
-from validation.engines.models.readers import Reading, rpy_rotation
-from validation.engines.plugins import mujoco
-from validation.engines.plugins.writing import sdf, urdf
+from ..interface import Joint, Link, Tree, Unsupported
+from ..plugins import mujoco
+from ..plugins.writing import sdf, urdf
+from .hostile import trees as hostile_trees
+from .kinds import OBLIQUE, link, placed
+from .readers import Reading, rpy_rotation
 
 _WIDE = '<limit lower="-100" upper="100" effort="1e9" velocity="1e9"/>'
 _LIMIT = "<limit><lower>-9</lower><upper>9</upper><effort>9</effort><velocity>9</velocity></limit>"

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from validation.engines.interface import ORIGIN, Joint, Link, Rows, Tree, rows, vector
-from validation.engines.models.kinds import OBLIQUE, link, placed, shifted
+from ..interface import ORIGIN, Joint, Link, Rows, Tree, rows, vector
+from .kinds import OBLIQUE, link, placed, shifted
 
 _NOTHING: Rows = (ORIGIN, ORIGIN, ORIGIN)
 

@@ -8,7 +8,7 @@ from math import fsum
 import mpmath
 import numpy as np
 
-from validation.engines.interface import Joint, Link, Rows, Tree, Vector, rows, vector
+from ..interface import Joint, Link, Rows, Tree, Vector, rows, vector
 
 
 def turned(draw: np.random.Generator) -> Rows:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from validation.engines.interface import Constraint, End, Joint, Link, Tree
-from validation.engines.models.kinds import OBLIQUE, link, placed, shifted, turned
+from ..interface import Constraint, End, Joint, Link, Tree
+from .kinds import OBLIQUE, link, placed, shifted, turned
 
 _Y = (0.0, 1.0, 0.0)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from validation.engines.interface import Joint, Link, Rows, Tree, rows
+from ..interface import Joint, Link, Rows, Tree, rows
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from validation.engines.interface import ORIGIN, Joint, Link, Tree
-from validation.engines.models.hostile import trees as hostile_trees
-from validation.engines.models.kinds import OBLIQUE, link, placed
+from ..interface import ORIGIN, Joint, Link, Tree
+from .hostile import trees as hostile_trees
+from .kinds import OBLIQUE, link, placed
 
 
 def _hinge(draw: np.random.Generator, **changes: float) -> Joint:

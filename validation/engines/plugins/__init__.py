@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from validation.engines.interface import EnginePlugin
-from validation.engines.plugins import (
+from ..interface import EnginePlugin
+from . import (
     adam,
     casadi,
     dart,
@@ -20,7 +20,7 @@ from validation.engines.plugins import (
     pykdl,
     roboticstoolbox,
 )
-from validation.engines.plugins.loops import exudyn as exudyn_joints
+from .loops import exudyn as exudyn_joints
 
 _MODULES = (
     pinocchio,

@@ -7,8 +7,8 @@ fault of its derivatives, or of this text.
 
 from __future__ import annotations
 
-from validation.engines.interface import Difference, Joint, Tree, Unsupported
-from validation.engines.plugins.writing.source import Source, SourcePlugin, Way, in_series, series
+from ..interface import Difference, Joint, Tree, Unsupported
+from .writing.source import Source, SourcePlugin, Way, in_series, series
 
 _SETUP = """import casadi as ca
 import numpy as np

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from validation.engines.interface import Array, Difference, Joint, Slot, Tree, Unsupported
-from validation.engines.plugins.writing.source import Source, SourcePlugin, Way, series
+from ..interface import Array, Difference, Joint, Slot, Tree, Unsupported
+from .writing.source import Source, SourcePlugin, Way, series
 
 
 class _Native(NamedTuple):

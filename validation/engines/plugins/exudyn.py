@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from validation.engines.interface import Array, Difference, Slot, Tree, Unsupported
-from validation.engines.plugins.writing.source import Source, SourcePlugin, Way, series
+from ..interface import Array, Difference, Slot, Tree, Unsupported
+from .writing.source import Source, SourcePlugin, Way, series
 
 _SETUP = """import numpy as np
 import exudyn as exu

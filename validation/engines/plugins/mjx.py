@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from validation.engines.interface import Difference, Tree, Unsupported
-from validation.engines.plugins import mujoco
-from validation.engines.plugins.writing.source import Source, SourcePlugin, Way
+from ..interface import Difference, Tree, Unsupported
+from . import mujoco
+from .writing.source import Source, SourcePlugin, Way
 
 _SETUP = """import jax
 jax.config.update("jax_enable_x64", True)

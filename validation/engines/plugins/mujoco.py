@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from validation.engines.interface import Array, Difference, Joint, Slot, Steps, Tree, Unsupported
-from validation.engines.plugins.loops import mujoco as constrained
-from validation.engines.plugins.writing.source import Source, SourcePlugin, Way, attached, in_series, series
+from ..interface import Array, Difference, Joint, Slot, Steps, Tree, Unsupported
+from .loops import mujoco as constrained
+from .writing.source import Source, SourcePlugin, Way, attached, in_series, series
 
 # Kind of a joint -> elements (type, axis), chart, coordinates, speeds.
 _CHARTS: dict[str, tuple[str, int, int]] = {

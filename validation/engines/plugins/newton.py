@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from validation.engines.interface import Array, Difference, Joint, Link, Slot, Tree, Unsupported
-from validation.engines.plugins.writing.source import Source, SourcePlugin, Way, series
+from ..interface import Array, Difference, Joint, Link, Slot, Tree, Unsupported
+from .writing.source import Source, SourcePlugin, Way, series
 
 # Everything is in single precision: some hundred of its roundings.
 _SINGLE = 2e-5

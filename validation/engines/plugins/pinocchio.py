@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from validation.engines.functions import ALIGNED
-from validation.engines.interface import Array, Difference, End, Joint, Slot, Tree, Unsupported
-from validation.engines.plugins.loops import pinocchio as constrained
-from validation.engines.plugins.writing.source import Source, SourcePlugin, Way, attached, in_series, series
+from ..functions import ALIGNED
+from ..interface import Array, Difference, End, Joint, Slot, Tree, Unsupported
+from .loops import pinocchio as constrained
+from .writing.source import Source, SourcePlugin, Way, attached, in_series, series
 
 # Kind and form of a joint -> joint model, chart, coordinates, speeds. {axis} is X, Y or Z where the axis is one of
 # them.

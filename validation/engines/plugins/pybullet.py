@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 
-from validation.engines.interface import Difference, Tree, Unsupported
-from validation.engines.plugins.writing.source import Source, SourcePlugin, Way
-from validation.engines.plugins.writing.urdf import KINDS, describe, slots_of
+from ..interface import Difference, Tree, Unsupported
+from .writing.source import Source, SourcePlugin, Way
+from .writing.urdf import KINDS, describe, slots_of
 
 # One client serves all models; its gravity stays.
 _SETUP = """from tempfile import NamedTemporaryFile

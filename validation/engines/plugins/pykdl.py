@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from validation.engines.interface import Difference, Rows, Slot, Tree, Unsupported, Vector
-from validation.engines.plugins.writing.source import Source, SourcePlugin, Way
+from ..interface import Difference, Rows, Slot, Tree, Unsupported, Vector
+from .writing.source import Source, SourcePlugin, Way
 
 # Where Debian's package for the system's Python puts it.
 SYSTEM = Path("/usr/lib/python3/dist-packages")

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from validation.engines.interface import Array, Difference, Slot, Tree, Unsupported, Vector
-from validation.engines.plugins.writing.source import Source, SourcePlugin, Way
+from ..interface import Array, Difference, Slot, Tree, Unsupported, Vector
+from .writing.source import Source, SourcePlugin, Way
 
 _LETTERS = {(1.0, 0.0, 0.0): "x", (0.0, 1.0, 0.0): "y", (0.0, 0.0, 1.0): "z"}
 WAYS = {

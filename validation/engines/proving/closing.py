@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from validation.engines.interface import (
+from ..interface import (
     IDENTITY,
     ORIGIN,
     Array,
@@ -20,7 +20,7 @@ from validation.engines.interface import (
     rows,
     vector,
 )
-from validation.engines.proving.pieces import Piece, Pieces
+from .pieces import Piece, Pieces
 
 _UNITS: tuple[Vector, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from xml.etree import ElementTree
 
-from validation.engines.interface import IDENTITY, ORIGIN, Tree
-from validation.engines.proving.pieces import Pieces
+from ..interface import IDENTITY, ORIGIN, Tree
+from .pieces import Pieces
 
 Element = ElementTree.Element
 _URDF = '<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'

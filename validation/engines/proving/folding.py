@@ -8,7 +8,7 @@ import re
 import tokenize
 from collections.abc import Iterator
 
-from validation.engines.plugins.writing.source import WIDTH
+from ..plugins.writing.source import WIDTH
 
 _INDENT = "    "
 # Lines of XML leave room for quotes and what follows them.

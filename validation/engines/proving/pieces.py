@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from validation.engines.interface import Array, HasLayout, Slot, State, Unsupported
+from ..interface import Array, HasLayout, Slot, State, Unsupported
 
 
 @dataclass(frozen=True)

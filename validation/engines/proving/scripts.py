@@ -12,18 +12,18 @@ from pathlib import Path
 
 import numpy as np
 
-from validation.engines.functions import FUNCTIONS
-from validation.engines.interface import Array, EnginePlugin, Unsupported
-from validation.engines.matrix import SEED, Judged, Truths, judged
-from validation.engines.plugins.writing.source import WIDTH, SourcePlugin
-from validation.engines.proving.folding import folded
-from validation.engines.proving.pieces import assembled, taken
-from validation.engines.proving.plainness import plain
-from validation.engines.proving.pruning import pruned
-from validation.engines.proving.shortening import picked, shortened, still
-from validation.engines.proving.shrink import TRIES, Case, size, smallest
-from validation.engines.proving.threads import NONE, thread
-from validation.engines.workers import Crashed, Job, Worker
+from ..functions import FUNCTIONS
+from ..interface import Array, EnginePlugin, Unsupported
+from ..matrix import SEED, Judged, Truths, judged
+from ..plugins.writing.source import WIDTH, SourcePlugin
+from ..workers import Crashed, Job, Worker
+from .folding import folded
+from .pieces import assembled, taken
+from .plainness import plain
+from .pruning import pruned
+from .shortening import picked, shortened, still
+from .shrink import TRIES, Case, size, smallest
+from .threads import NONE, thread
 
 # A smaller case keeps at least this part of the error, so that it shows the same fault plainly.
 _KEPT = 0.05

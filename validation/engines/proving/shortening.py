@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from validation.engines.plugins.writing.source import WIDTH
+from ..plugins.writing.source import WIDTH
 
 
 def picked(script: str, place: Sequence[int]) -> tuple[str, str] | None:

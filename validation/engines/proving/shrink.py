@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any
 
-from validation.engines.interface import IDENTITY, ORIGIN, Joint, Link, Rows, Tree, Vector
-from validation.engines.models.formats import texts
-from validation.engines.proving import closing, files
-from validation.engines.proving.pieces import Piece, Pieces
+from ..interface import IDENTITY, ORIGIN, Joint, Link, Rows, Tree, Vector
+from ..models.formats import texts
+from . import closing, files
+from .pieces import Piece, Pieces
 
 # Cases that are tried for one fault.
 TRIES = 400

@@ -15,8 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from validation.engines.interface import Array, Joint
-from validation.engines.truth.arithmetic import (
+from ..interface import Array, Joint
+from .arithmetic import (
     Exact,
     cos_sin,
     exact,

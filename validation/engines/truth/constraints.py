@@ -12,10 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from validation.engines.interface import Array, Constraint, End, HasLayout, State, Tree, Unsupported
-from validation.engines.truth.arithmetic import Exact, exact, eye, many_digits, orthonormal, root, skew, solve, zeros
-from validation.engines.truth.dynamics import Point, Truth, digits, random_state
-from validation.engines.truth.kinematics import Kinematics
+from ..interface import Array, Constraint, End, HasLayout, State, Tree, Unsupported
+from .arithmetic import Exact, exact, eye, many_digits, orthonormal, root, skew, solve, zeros
+from .dynamics import Point, Truth, digits, random_state
+from .kinematics import Kinematics
 
 # Rows whose part that is free of the others is smaller than this, as part of the largest, are taken for redundant:
 # what roundings of a tree's numbers leave of the zeros of a plane mechanism is smaller by far, what counts larger.

@@ -13,9 +13,9 @@ from typing import Literal
 
 import numpy as np
 
-from validation.engines.truth.arithmetic import Exact, eye, skew, solve, stack, zeros
-from validation.engines.truth.dynamics import Point, Truth
-from validation.engines.truth.kinematics import Inertia
+from .arithmetic import Exact, eye, skew, solve, stack, zeros
+from .dynamics import Point, Truth
+from .kinematics import Inertia
 
 Frame = Literal["local", "aligned", "world"]
 FRAMES: tuple[Frame, ...] = ("local", "aligned", "world")

@@ -11,10 +11,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from validation.engines.interface import Array, HasLayout, State, Tree
-from validation.engines.truth.arithmetic import Exact, cross, exact, eye, many_digits, rate, solve, stack, zeros
-from validation.engines.truth.charts import CHARTS, Pose
-from validation.engines.truth.kinematics import Inertia, Kinematics
+from ..interface import Array, HasLayout, State, Tree
+from .arithmetic import Exact, cross, exact, eye, many_digits, rate, solve, stack, zeros
+from .charts import CHARTS, Pose
+from .kinematics import Inertia, Kinematics
 
 _REMEMBERED = 1000
 ROUNDING = 2.0**-52

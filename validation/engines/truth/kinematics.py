@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from validation.engines.interface import HasLayout, Joint, Link, Slot, Tree
-from validation.engines.truth.arithmetic import (
+from ..interface import HasLayout, Joint, Link, Slot, Tree
+from .arithmetic import (
     Exact,
     exact,
     eye,
@@ -19,7 +19,7 @@ from validation.engines.truth.arithmetic import (
     vee,
     zeros,
 )
-from validation.engines.truth.charts import CHARTS, GEOMETRIES, Pose
+from .charts import CHARTS, GEOMETRIES, Pose
 
 _REMEMBERED = 1000
 

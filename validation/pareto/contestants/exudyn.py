@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from validation.adapters.exudyn.steps import ADAPTIVE, Recorded, Solver, Timed
-from validation.pareto.contestants.symofros import milliseconds
-from validation.pareto.problem import Contestant, Measured
+from ...adapters.exudyn.steps import ADAPTIVE, Recorded, Solver, Timed
+from ..problem import Contestant, Measured
+from .symofros import milliseconds
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from validation.adapters.mujoco.steps import stepped
-from validation.mechanics.geometry import Array
-from validation.pareto.contestants.symofros import milliseconds
-from validation.pareto.problem import Contestant, Measured
+from ...adapters.mujoco.steps import stepped
+from ...mechanics.geometry import Array
+from ..problem import Contestant, Measured
+from .symofros import milliseconds
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,8 @@ import numpy as np
 
 import symofros as sf
 from symofros.tools import METHODS
-from validation.pareto.problem import OURS, Contestant, Measured
+
+from ..problem import OURS, Contestant, Measured
 
 Judge = Callable[[sf.Trajectory], float]
 # How many digits of a step or tolerance are written.

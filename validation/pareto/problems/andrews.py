@@ -9,15 +9,16 @@ import numpy as np
 
 import reference_models
 import symofros as sf
-from validation import studies
-from validation.adapters.exudyn.steps import Solver
-from validation.adapters.exudyn.timed_systems import joint_angles, looped
-from validation.mechanics.geometry import Array
-from validation.pareto.contestants.exudyn import ExudynModel
-from validation.pareto.contestants.symofros import SymofrosModel
-from validation.pareto.problem import BenchmarkProblem, Contestant, Prepared, Target
-from validation.pareto.problems.four_bar import CLOSED
-from validation.reporting.references import References
+
+from ... import studies
+from ...adapters.exudyn.steps import Solver
+from ...adapters.exudyn.timed_systems import joint_angles, looped
+from ...mechanics.geometry import Array
+from ...reporting.references import References
+from ..contestants.exudyn import ExudynModel
+from ..contestants.symofros import SymofrosModel
+from ..problem import BenchmarkProblem, Contestant, Prepared, Target
+from .four_bar import CLOSED
 
 END, OUTPUT = 0.03, 1e-3
 TIMES = np.linspace(0.0, END, round(END / OUTPUT) + 1)

@@ -10,20 +10,21 @@ from typing import TypeVar
 import numpy as np
 
 import symofros as sf
-from validation.adapters.exudyn.steps import Solver
-from validation.adapters.exudyn.timed_systems import held as exudyn_held
-from validation.adapters.mujoco import steps as mujoco_steps
-from validation.adapters.mujoco import tree as mujoco
-from validation.adapters.pinocchio import steps as pinocchio_steps
-from validation.adapters.pinocchio import tree as pinocchio
-from validation.contract.interface import Subject, Unsupported
-from validation.mechanics.geometry import Array
-from validation.pareto.contestants.exudyn import ExudynModel
-from validation.pareto.contestants.mujoco import MujocoModel
-from validation.pareto.contestants.symofros import SymofrosModel, milliseconds
-from validation.pareto.problem import BenchmarkProblem, Contestant, Measured, Prepared, Target
-from validation.studies.simulation import DAMPING, STIFFNESS, TARGET
-from validation.timing.models import panda7
+
+from ...adapters.exudyn.steps import Solver
+from ...adapters.exudyn.timed_systems import held as exudyn_held
+from ...adapters.mujoco import steps as mujoco_steps
+from ...adapters.mujoco import tree as mujoco
+from ...adapters.pinocchio import steps as pinocchio_steps
+from ...adapters.pinocchio import tree as pinocchio
+from ...contract.interface import Subject, Unsupported
+from ...mechanics.geometry import Array
+from ...studies.simulation import DAMPING, STIFFNESS, TARGET
+from ...timing.models import panda7
+from ..contestants.exudyn import ExudynModel
+from ..contestants.mujoco import MujocoModel
+from ..contestants.symofros import SymofrosModel, milliseconds
+from ..problem import BenchmarkProblem, Contestant, Measured, Prepared, Target
 
 END, OUTPUT = 10.0, 0.1
 TIMES = np.arange(round(END / OUTPUT) + 1, dtype=np.float64) * OUTPUT

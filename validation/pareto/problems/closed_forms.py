@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.special import ellipj, ellipkm1
 
-from validation.mechanics.geometry import Array
+from ...mechanics.geometry import Array
 
 
 def swinging(amplitude: float, V_over_J: float, times: Array) -> Array:

@@ -8,17 +8,18 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from validation.adapters.exudyn.steps import Solver
-from validation.adapters.exudyn.timed_systems import bars
-from validation.adapters.mujoco.steps import loaded
-from validation.mechanics.geometry import Array
-from validation.pareto.contestants.exudyn import ExudynModel
-from validation.pareto.contestants.mujoco import MujocoModel
-from validation.pareto.contestants.symofros import SymofrosModel
-from validation.pareto.problem import BenchmarkProblem, Contestant, Prepared, Target
-from validation.pareto.problems.closed_forms import turning
-from validation.stability.closed_loops import four_bars
-from validation.stability.closed_loops.soft_closures import DEFAULT, SOLIMP
+
+from ...adapters.exudyn.steps import Solver
+from ...adapters.exudyn.timed_systems import bars
+from ...adapters.mujoco.steps import loaded
+from ...mechanics.geometry import Array
+from ...stability.closed_loops import four_bars
+from ...stability.closed_loops.soft_closures import DEFAULT, SOLIMP
+from ..contestants.exudyn import ExudynModel
+from ..contestants.mujoco import MujocoModel
+from ..contestants.symofros import SymofrosModel
+from ..problem import BenchmarkProblem, Contestant, Prepared, Target
+from .closed_forms import turning
 
 END, OUTPUT = 10.0, 0.1
 TIMES = np.arange(round(END / OUTPUT) + 1, dtype=np.float64) * OUTPUT

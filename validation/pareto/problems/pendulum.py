@@ -5,16 +5,16 @@ from __future__ import annotations
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from validation.adapters.exudyn.steps import Solver
-from validation.adapters.exudyn.timed_systems import pendulum as exudyn_pendulum
-from validation.adapters.mujoco.steps import loaded
-from validation.mechanics.geometry import Array
-from validation.pareto.contestants.exudyn import ExudynModel
-from validation.pareto.contestants.mujoco import MujocoModel
-from validation.pareto.contestants.symofros import SymofrosModel
-from validation.pareto.problem import BenchmarkProblem, Contestant, Prepared, Target
-from validation.pareto.problems.closed_forms import swinging
-from validation.stability.rigid import energy
+from ...adapters.exudyn.steps import Solver
+from ...adapters.exudyn.timed_systems import pendulum as exudyn_pendulum
+from ...adapters.mujoco.steps import loaded
+from ...mechanics.geometry import Array
+from ...stability.rigid import energy
+from ..contestants.exudyn import ExudynModel
+from ..contestants.mujoco import MujocoModel
+from ..contestants.symofros import SymofrosModel
+from ..problem import BenchmarkProblem, Contestant, Prepared, Target
+from .closed_forms import swinging
 
 END, OUTPUT, GRAVITY = 1000.0, 1.0, 9.81
 TIMES = np.arange(round(END / OUTPUT) + 1, dtype=np.float64) * OUTPUT

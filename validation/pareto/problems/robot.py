@@ -10,14 +10,15 @@ import numpy as np
 
 import reference_models
 import symofros as sf
-from validation.adapters.exudyn.planar import Cable
-from validation.adapters.exudyn.steps import Solver
-from validation.adapters.exudyn.timed_systems import planar
-from validation.mechanics.geometry import Array
-from validation.pareto.contestants.exudyn import ExudynModel
-from validation.pareto.contestants.symofros import SymofrosModel
-from validation.pareto.problem import BenchmarkProblem, Contestant, Prepared, Target
-from validation.timing.flexible.equal_accuracy import EA
+
+from ...adapters.exudyn.planar import Cable
+from ...adapters.exudyn.steps import Solver
+from ...adapters.exudyn.timed_systems import planar
+from ...mechanics.geometry import Array
+from ...timing.flexible.equal_accuracy import EA
+from ..contestants.exudyn import ExudynModel
+from ..contestants.symofros import SymofrosModel
+from ..problem import BenchmarkProblem, Contestant, Prepared, Target
 
 END, OUTPUT = 2.0, 0.02
 TIMES = np.arange(round(END / OUTPUT) + 1, dtype=np.float64) * OUTPUT

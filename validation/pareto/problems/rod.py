@@ -13,8 +13,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from validation.adapters.exudyn.timed_systems import Rod
-from validation.mechanics.geometry import Array
+from ...adapters.exudyn.timed_systems import Rod
+from ...mechanics.geometry import Array
 
 
 def tip(rod: Rod, times: Array, links: int) -> Array:

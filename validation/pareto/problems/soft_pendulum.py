@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from validation.adapters.exudyn.steps import Solver
-from validation.adapters.exudyn.timed_systems import Rod, swinging_rod
-from validation.mechanics.geometry import Array
-from validation.pareto.contestants.exudyn import ExudynModel
-from validation.pareto.contestants.symofros import SymofrosModel
-from validation.pareto.problem import BenchmarkProblem, Contestant, Prepared, Target
+
+from ...adapters.exudyn.steps import Solver
+from ...adapters.exudyn.timed_systems import Rod, swinging_rod
+from ...mechanics.geometry import Array
+from ..contestants.exudyn import ExudynModel
+from ..contestants.symofros import SymofrosModel
+from ..problem import BenchmarkProblem, Contestant, Prepared, Target
 
 ROD = Rod(length=1.0, EI=1.0, EA=4e6, rhoA=1.0, duration=0.0, rate=0.0)
 # Without damping, waves that the release starts have fronts, which neither side resolves to 1e-5.

@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from validation.adapters.exudyn.steps import Recorded, Solver
-from validation.adapters.exudyn.timed_systems import Rod, spinning
-from validation.mechanics.geometry import Array
-from validation.pareto.contestants.exudyn import ExudynModel
-from validation.pareto.contestants.symofros import SymofrosModel
-from validation.pareto.problem import BenchmarkProblem, Contestant, Prepared, Target
+
+from ...adapters.exudyn.steps import Recorded, Solver
+from ...adapters.exudyn.timed_systems import Rod, spinning
+from ...mechanics.geometry import Array
+from ..contestants.exudyn import ExudynModel
+from ..contestants.symofros import SymofrosModel
+from ..problem import BenchmarkProblem, Contestant, Prepared, Target
 
 ROD = Rod(length=10.0, EI=1.4e4, EA=2.8e7, rhoA=1.2, duration=15.0, rate=6.0)
 RHO_I = 6e-4  # Moment of inertia of sections per length [kg m].

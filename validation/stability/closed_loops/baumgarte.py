@@ -9,9 +9,10 @@ from functools import cache
 import numpy as np
 
 import symofros as sf
-from validation.reporting.findings import Finding, exponent
-from validation.stability.reference import data, source
-from validation.stability.study import (
+
+from ...reporting.findings import Finding, exponent
+from ..reference import data, source
+from ..study import (
     Cell,
     Grid,
     Limit,

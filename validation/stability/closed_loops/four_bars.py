@@ -9,7 +9,8 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import symofros as sf
-from validation.mechanics.geometry import Array
+
+from ...mechanics.geometry import Array
 
 GRAVITY = 9.81
 # All bars are uniform, of 1 m and 1 kg; the cranks stand upright and their ends move along x with 1 m/s.

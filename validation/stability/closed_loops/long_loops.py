@@ -8,10 +8,11 @@ from functools import cache
 import numpy as np
 
 import symofros as sf
-from validation.mechanics.geometry import Array
-from validation.reporting.findings import Finding, exponent
-from validation.stability.closed_loops import four_bars
-from validation.stability.study import Cell, Grid, Maps, ParameterStudy, Subject, Verdict, cell, decades, simulate
+
+from ...mechanics.geometry import Array
+from ...reporting.findings import Finding, exponent
+from ..study import Cell, Grid, Maps, ParameterStudy, Subject, Verdict, cell, decades, simulate
+from . import four_bars
 
 # Parallelograms would not drift: errors of all cranks are the same. Pivots are a little nearer than bars are long.
 SPACING = 0.95

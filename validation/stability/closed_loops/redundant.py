@@ -9,11 +9,10 @@ import numpy as np
 
 import symofros as sf
 from reference_models import MODELS
-from validation.reporting.findings import Finding
-from validation.stability.closed_loops import four_bars
-from validation.stability.closed_loops.four_bars import AXIS, BAR, END_OF_BAR
-from validation.stability.reference import data, source
-from validation.stability.study import (
+
+from ...reporting.findings import Finding
+from ..reference import data, source
+from ..study import (
     Cell,
     Grid,
     Maps,
@@ -25,6 +24,8 @@ from validation.stability.study import (
     refused,
     simulate,
 )
+from . import four_bars
+from .four_bars import AXIS, BAR, END_OF_BAR
 
 END = 0.5
 BOUND = 1e-6

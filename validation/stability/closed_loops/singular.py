@@ -8,13 +8,14 @@ from collections.abc import Callable
 import numpy as np
 
 import symofros as sf
-from validation.adapters.exudyn import motion as exudyn_motion
-from validation.adapters.mujoco import motion as mujoco_motion
-from validation.mechanics.geometry import Array
-from validation.reporting.findings import Finding
-from validation.stability.closed_loops import four_bars
-from validation.stability.reference import data, source
-from validation.stability.study import Cell, Grid, Maps, ParameterStudy, Subject, Verdict, cell, decades, simulate
+
+from ...adapters.exudyn import motion as exudyn_motion
+from ...adapters.mujoco import motion as mujoco_motion
+from ...mechanics.geometry import Array
+from ...reporting.findings import Finding
+from ..reference import data, source
+from ..study import Cell, Grid, Maps, ParameterStudy, Subject, Verdict, cell, decades, simulate
+from . import four_bars
 
 END = 10.0
 BOUND = 1e-2

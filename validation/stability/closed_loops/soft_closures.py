@@ -7,12 +7,12 @@ from collections.abc import Callable
 
 import numpy as np
 
-from validation.adapters.mujoco import motion as mujoco_motion
-from validation.reporting.findings import Finding
-from validation.stability.closed_loops import four_bars
-from validation.stability.closed_loops.singular import ends_of_crank
-from validation.stability.reference import data, source
-from validation.stability.study import Cell, Grid, Limit, Maps, ParameterStudy, Subject, Verdict, decades, simulate
+from ...adapters.mujoco import motion as mujoco_motion
+from ...reporting.findings import Finding
+from ..reference import data, source
+from ..study import Cell, Grid, Limit, Maps, ParameterStudy, Subject, Verdict, decades, simulate
+from . import four_bars
+from .singular import ends_of_crank
 
 END = 10.0
 BOUND = 1e-2

@@ -9,10 +9,11 @@ import numpy as np
 from scipy.optimize import brentq
 
 import symofros as sf
-from validation.mechanics.geometry import Array
-from validation.reporting.findings import Finding
-from validation.stability.reference import data, source
-from validation.stability.study import (
+
+from ...mechanics.geometry import Array
+from ...reporting.findings import Finding
+from ..reference import data, source
+from ..study import (
     Cell,
     Grid,
     Limit,

@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from validation.accuracy.motion.pendulum import GRAVITY, MODELS, WORDS
-from validation.accuracy.motion.pendulum import pendulum as stated
-from validation.accuracy.reference import data, source
-from validation.reporting.findings import Finding
-from validation.stability.study import Cell, Grid, Map, Maps, ParameterStudy, Subject, Verdict, cell, simulate
+
+from ...accuracy.motion.pendulum import GRAVITY, MODELS, WORDS
+from ...accuracy.motion.pendulum import pendulum as stated
+from ...accuracy.reference import data, source
+from ...reporting.findings import Finding
+from ..study import Cell, Grid, Map, Maps, ParameterStudy, Subject, Verdict, cell, simulate
 
 END = 2.0
 BOUND = 1e-2

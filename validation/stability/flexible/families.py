@@ -7,9 +7,10 @@ from functools import cache
 import numpy as np
 
 import symofros as sf
-from validation.accuracy.reference import data, source
-from validation.reporting.findings import Finding
-from validation.stability.study import Cell, Grid, Maps, ParameterStudy, Subject, Verdict, refused
+
+from ...accuracy.reference import data, source
+from ...reporting.findings import Finding
+from ..study import Cell, Grid, Maps, ParameterStudy, Subject, Verdict, refused
 
 BOUND = 1e-6
 FAMILIES = ("polynomial", "legendre", "spline", "clamped_free")

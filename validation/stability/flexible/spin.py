@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from validation.reporting.findings import Finding
-from validation.stability.reference import data, source
-from validation.stability.study import Cell, Grid, Limit, Maps, ParameterStudy, Subject, Verdict, cell, simulate
+
+from ...reporting.findings import Finding
+from ..reference import data, source
+from ..study import Cell, Grid, Limit, Maps, ParameterStudy, Subject, Verdict, cell, simulate
 
 END = 30.0
 BOUND = 10.0

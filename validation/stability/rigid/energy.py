@@ -9,10 +9,11 @@ import numpy as np
 
 import symofros as sf
 from symofros.tools import METHODS
-from validation.adapters.mujoco import motion as mujoco_motion
-from validation.reporting.findings import Finding
-from validation.stability.reference import data, source
-from validation.stability.study import Cell, Grid, Maps, ParameterStudy, Subject, Verdict, cell, decades, simulate
+
+from ...adapters.mujoco import motion as mujoco_motion
+from ...reporting.findings import Finding
+from ..reference import data, source
+from ..study import Cell, Grid, Maps, ParameterStudy, Subject, Verdict, cell, decades, simulate
 
 STEPS = 100_000
 SHORT = 5_000

@@ -9,10 +9,11 @@ from functools import cache
 import numpy as np
 
 import symofros as sf
-from validation.mechanics.geometry import Array
-from validation.reporting.findings import Finding
-from validation.stability.reference import data, source
-from validation.stability.study import Cell, Grid, Maps, ParameterStudy, Subject, Verdict, cell, decades, simulate
+
+from ...mechanics.geometry import Array
+from ...reporting.findings import Finding
+from ..reference import data, source
+from ..study import Cell, Grid, Maps, ParameterStudy, Subject, Verdict, cell, decades, simulate
 
 END = 4.0
 BOUND = 1e-6

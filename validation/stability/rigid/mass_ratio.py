@@ -11,12 +11,13 @@ import mpmath
 import numpy as np
 
 import symofros as sf
-from validation.adapters import factory_of
-from validation.contract.interface import EngineFactory, States, TreeEngine, Unsupported
-from validation.contract.interface import Subject as Model
-from validation.mechanics.geometry import Array
-from validation.reporting.findings import Finding
-from validation.stability.study import Cell, Grid, Maps, ParameterStudy, Subject, Verdict, cell, decades, simulate
+
+from ...adapters import factory_of
+from ...contract.interface import EngineFactory, States, TreeEngine, Unsupported
+from ...contract.interface import Subject as Model
+from ...mechanics.geometry import Array
+from ...reporting.findings import Finding
+from ..study import Cell, Grid, Maps, ParameterStudy, Subject, Verdict, cell, decades, simulate
 
 BOUND = 1e-8
 GRAVITY = 9.81

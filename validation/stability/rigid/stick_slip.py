@@ -9,9 +9,10 @@ from functools import cache
 import numpy as np
 
 import symofros as sf
-from validation.mechanics.geometry import Array
-from validation.reporting.findings import Finding
-from validation.stability.study import (
+
+from ...mechanics.geometry import Array
+from ...reporting.findings import Finding
+from ..study import (
     Cell,
     Grid,
     Limit,

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from validation.reporting.figures import Chart, Figure, curves
-from validation.reporting.numbers import formatted
-from validation.reporting.record import Data, Fact, Report, Section, Table, Topic
-from validation.studies.exports import measure
+from ...reporting.figures import Chart, Figure, curves
+from ...reporting.numbers import formatted
+from ...reporting.record import Data, Fact, Report, Section, Table, Topic
+from ..exports import measure
 
 _LIMITS = """The machine runs other work and no real-time kernel: the median and 99.9 % say what the code takes, the
 longest call how long the operating system was away. Each call is timed by itself; the clock's own cost is the row

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from validation.reporting.numbers import counted
-from validation.reporting.record import Bullets, Data, Fact, Report, Section, Table, Topic, verdict
-from validation.studies.fuzz import COMPILED, MOST_MEMORY, SLOWEST, measure
+from ...reporting.numbers import counted
+from ...reporting.record import Bullets, Data, Fact, Report, Section, Table, Topic, verdict
+from ..fuzz import COMPILED, MOST_MEMORY, SLOWEST, measure
 
 _FAULTS_SHOWN = 20
 _TEXT = f"""An input is one of the package's own descriptions with one to four random changes: of bytes, words, numbers,

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from validation.reporting.numbers import counted
-from validation.reporting.record import Bullets, Data, Fact, Report, Section, Table, Topic, verdict
-from validation.studies.mutation import measure
+from ...reporting.numbers import counted
+from ...reporting.record import Bullets, Data, Fact, Report, Section, Table, Topic, verdict
+from ..mutation import measure
 
 _TEXT = """A fault replaces one operation of the generated program. It is caught if any output then differs from the
 independent engine's by more than the cross-check's own tolerance over 60 random states. {} are silent: the program with

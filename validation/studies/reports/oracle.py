@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from validation.reporting.numbers import counted
-from validation.reporting.record import Data, Fact, Report, Section, Table, Topic, verdict
-from validation.studies.oracle import measure
+from ...reporting.numbers import counted
+from ...reporting.record import Data, Fact, Report, Section, Table, Topic, verdict
+from ..oracle import measure
 
 _TEXT = """Decimal digits that agree at the worst of the points, relative to the largest entry: our generated equations
 and those that SymPy derives by Lagrange's or Kane's method, at {points} rational points a model (seed {seed}), both in

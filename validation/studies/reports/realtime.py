@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from validation.reporting.figures import Chart, Curve, Figure, Mark
-from validation.reporting.record import Data, Fact, Report, Section, Table, Topic
-from validation.studies.realtime import measure
+from ...reporting.figures import Chart, Curve, Figure, Mark
+from ...reporting.record import Data, Fact, Report, Section, Table, Topic
+from ..realtime import measure
 
 _LIMITS = """Each diagram runs in real time in the C loop, which sleeps until an instant is due; how late an instant
 began is read off the clock afterwards, so it is the operating system's waking plus whatever the instant before took too

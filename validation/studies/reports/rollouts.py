@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from operator import itemgetter
 
-from validation.reporting.numbers import counted, formatted, times
-from validation.reporting.record import Data, Fact, Report, Section, Table, Topic
-from validation.studies.rollouts import measure
+from ...reporting.numbers import counted, formatted, times
+from ...reporting.record import Data, Fact, Report, Section, Table, Topic
+from ..rollouts import measure
 
 _LIMITS = """Loops in C on both sides, in turn, from the same starts; times are the processor's, so that other programs
 do not lengthen them, and the loops' alone, without compiling, loading or copying the starts. MuJoCo keeps the state

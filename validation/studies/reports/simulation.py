@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from validation.reporting.numbers import counted, formatted, times
-from validation.reporting.record import Data, Fact, Report, Section, Table, Topic, verdict
-from validation.studies.simulation import measure
+from ...reporting.numbers import counted, formatted, times
+from ...reporting.record import Data, Fact, Report, Section, Table, Topic, verdict
+from ..simulation import measure
 
 _LIMITS = """Loops in C on both sides, one thread, in turn; seconds are those of the stepping alone for us and for
 MuJoCo, and of building and solving for Exudyn, whose models take milliseconds to build. Errors are against the

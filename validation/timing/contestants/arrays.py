@@ -9,8 +9,8 @@ from typing import Any
 import cffi
 import numpy as np
 
-from validation.mechanics.geometry import Array
-from validation.timing.contestants.programs import BuildError, Compiler, build, compilers, declared, source
+from ...mechanics.geometry import Array
+from .programs import BuildError, Compiler, build, compilers, declared, source
 
 _FLAGS = ("-O3", "-march=native", "-std=gnu99", "-Wall", "-Wextra")
 _PROTOTYPES = """

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from symofros.tools import Numbers, Strided, columns
-from validation.mechanics.geometry import Array
-from validation.timing.contestants.arrays import aligned_zeros, loops
+
+from ...mechanics.geometry import Array
+from .arrays import aligned_zeros, loops
 
 
 class Blocks:

@@ -15,11 +15,12 @@ from typing import Any
 import cffi
 import numpy as np
 
-from validation.contract.conventions import Chart
-from validation.contract.interface import Subject, Unsupported
-from validation.mechanics.assembly import Assembly
-from validation.mechanics.geometry import Array, matrix_quaternion, quaternion_product
-from validation.timing.contestants.programs import (
+from ...contract.conventions import Chart
+from ...contract.interface import Subject, Unsupported
+from ...mechanics.assembly import Assembly
+from ...mechanics.geometry import Array, matrix_quaternion, quaternion_product
+from ..task import START, STEP, Loop, Task, flat
+from .programs import (
     BuildError,
     Built,
     Compiler,
@@ -32,7 +33,6 @@ from validation.timing.contestants.programs import (
     silent,
     source,
 )
-from validation.timing.task import START, STEP, Loop, Task, flat
 
 PINOCCHIO_FLAGS = (
     "-std=c++17",
@@ -146,7 +146,7 @@ def pinocchio_loops(task: Task, functions: Sequence[str], warn: Callable[[str], 
 
 def _ties_text(task: Task) -> str:
     """How Pinocchio's rigid constraints close the loops, for `validation/native/loop_closed.cpp`."""
-    from validation.adapters.pinocchio import loops as pinocchio_loops
+    from ...adapters.pinocchio import loops as pinocchio_loops
 
     engine = pinocchio_loops.build(Subject(task.label, task.system))
     if isinstance(engine, Unsupported):
@@ -160,7 +160,7 @@ def mujoco_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
     Raises:
         Skipped: MuJoCo has no such model, or is not installed.
     """
-    from validation.adapters.mujoco import tree as mujoco
+    from ...adapters.mujoco import tree as mujoco
 
     if task.system.constraints:
         raise Skipped("its closures are soft: accelerations are others")

@@ -9,11 +9,11 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 
-from validation.mechanics.geometry import Array
-from validation.timing.contestants.arrays import Arrays, Turns, loops
-from validation.timing.contestants.programs import Built, Compiler, Skipped, build, compilers, copies
-from validation.timing.contestants.source import Source
-from validation.timing.task import Cost, Loop, Task
+from ...mechanics.geometry import Array
+from ..task import Cost, Loop, Task
+from .arrays import Arrays, Turns, loops
+from .programs import Built, Compiler, Skipped, build, compilers, copies
+from .source import Source
 
 # Straight-line code is erratic: between builds of one source, times differ by half. The best of these counts.
 BUILDS = (("-O3",), ("-O3", "-ffast-math"))
@@ -30,8 +30,8 @@ def casadi_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
     Raises:
         Skipped: The recursions have no equations for the model.
     """
-    from validation.adapters.casadi import code as casadi_code
-    from validation.adapters.casadi import tree as casadi_tree
+    from ...adapters.casadi import code as casadi_code
+    from ...adapters.casadi import tree as casadi_tree
 
     if task.assembly.nv > MOST_DERIVED and any(name.endswith(("derivatives", "vjp")) for name in functions):
         raise Skipped(f"derivatives are made up to {MOST_DERIVED} degrees of freedom, beyond which they take minutes")
@@ -68,7 +68,7 @@ def sympy_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
             f"{task.assembly.nv} degrees of freedom: Kane's equations by SymPy are made up to {MOST_KANE}, "
             "beyond which generation takes minutes; see the costs"
         )
-    from validation.timing.contestants.kane import FUNCTIONS, kane_source
+    from .kane import FUNCTIONS, kane_source
 
     yield from _built(task, [name for name in functions if name in FUNCTIONS], partial(kane_source, task.system))
 

@@ -11,8 +11,9 @@ import sympy
 from sympy.printing.c import C99CodePrinter
 
 import symofros as sf
-from validation.oracle.kane import derive
-from validation.timing.contestants.source import Source
+
+from ...oracle.kane import derive
+from .source import Source
 
 FUNCTIONS = ("mass_matrix", "bias", "dynamics", "forward_dynamics")
 # Digits of numbers in the text: a double, exactly.

@@ -13,11 +13,12 @@ import numpy as np
 
 import symofros as sf
 from symofros.tools import Precision, count_program, find_toolchain, fixed_step_loop
-from validation.mechanics.geometry import Array
-from validation.timing.contestants.arrays import Arrays, Turns, loops
-from validation.timing.contestants.blocks import Blocks
-from validation.timing.contestants.programs import BuildError, Compiler, build, copies, source
-from validation.timing.task import START, STEP, Cost, Loop, Task
+
+from ...mechanics.geometry import Array
+from ..task import START, STEP, Cost, Loop, Task
+from .arrays import Arrays, Turns, loops
+from .blocks import Blocks
+from .programs import BuildError, Compiler, build, copies, source
 
 NAME = "symofros"
 BATCH = "symofros, batch"

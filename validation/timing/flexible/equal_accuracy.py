@@ -13,9 +13,10 @@ import numpy as np
 
 import reference_models
 import symofros as sf
-from validation.adapters.exudyn.planar import Cable, PlanarTree, planar_tree
-from validation.mechanics.geometry import Array
-from validation.timing.flexible.race import LABEL
+
+from ...adapters.exudyn.planar import Cable, PlanarTree, planar_tree
+from ...mechanics.geometry import Array
+from .race import LABEL
 
 POSTURE = {"q1": 0.3, "q2": 0.8, "q3": -0.5}
 # E A of the strips, from the sections the model states: 200 GPa on 50 mm x 2.5 mm and on 40 mm x 2 mm [N].

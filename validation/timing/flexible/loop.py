@@ -11,7 +11,8 @@ import cffi
 import numpy as np
 
 import symofros as sf
-from validation.mechanics.geometry import Array
+
+from ...mechanics.geometry import Array
 
 
 class GeneratedLoop:

@@ -14,7 +14,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, Self
 
-from validation.timing.contestants.programs import BuildError
+from ..contestants.programs import BuildError
 
 LABEL = "planar_robot"
 # Shape functions a strip: as the model states it, and finer.

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from validation.reporting.numbers import formatted
-from validation.reporting.record import Section, Table
-from validation.timing.flexible.race import CALLS
+from ...reporting.numbers import formatted
+from ...reporting.record import Section, Table
+from .race import CALLS
 
 _LIMITS = (
     """`planar_robot`: three motors with harmonic drives, the first of them elastic, and two strips that bend. Exudyn

@@ -16,12 +16,12 @@ from time import thread_time_ns
 
 import numpy as np
 
-from validation.adapters.exudyn.planar import smallest
-from validation.adapters.exudyn.system import Part
-from validation.mechanics.assembly import assemble
-from validation.timing.flexible.equal_accuracy import NotTheSameError, Pair, pairs, robot
-from validation.timing.flexible.loop import GeneratedLoop
-from validation.timing.flexible.race import FlexibleTiming
+from ...adapters.exudyn.planar import smallest
+from ...adapters.exudyn.system import Part
+from ...mechanics.assembly import assemble
+from .equal_accuracy import NotTheSameError, Pair, pairs, robot
+from .loop import GeneratedLoop
+from .race import FlexibleTiming
 
 # Elastic coordinates of the states: the strips bend by some 3 % of their lengths [m].
 _DEFLECTION = 0.01

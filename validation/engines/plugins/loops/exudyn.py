@@ -20,9 +20,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from validation.engines.interface import Array, Constraint, Difference, Joint, Slot, Tree, Unsupported
-from validation.engines.plugins.loops import exudyn_systems
-from validation.engines.plugins.writing.source import Source, SourcePlugin, Way, series
+from ...interface import Array, Constraint, Difference, Joint, Slot, Tree, Unsupported
+from ..writing.source import Source, SourcePlugin, Way, series
+from . import exudyn_systems
 
 _X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 # Of conditions that are no polynomials, with steps of 4e-3: rounding over the step, and its sixth power.

@@ -6,8 +6,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from validation.engines.interface import Constraint, End, Tree
-from validation.engines.plugins.writing.source import Way
+from ...interface import Constraint, End, Tree
+from ..writing.source import Way
 
 KINDS = {
     "point": "equality/connect",

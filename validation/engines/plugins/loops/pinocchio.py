@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 
-from validation.engines.interface import Constraint, End
-from validation.engines.plugins.writing.source import Way
+from ...interface import Constraint, End
+from ..writing.source import Way
 
 KINDS = {"point": "RigidConstraintModel, CONTACT_3D", "weld": "RigidConstraintModel, CONTACT_6D"}
 _TYPES = {"point": "CONTACT_3D", "weld": "CONTACT_6D"}

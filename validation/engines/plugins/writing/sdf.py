@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from validation.engines.interface import Array, Link, Tree, Unsupported, rows, vector
-from validation.engines.plugins.writing.urdf import numbers, rpy
+from ...interface import Array, Link, Tree, Unsupported, rows, vector
+from .urdf import numbers, rpy
 
 _LIMIT = "<limit><lower>-100</lower><upper>100</upper><effort>1e9</effort><velocity>1e9</velocity></limit>"
 _TYPES = {"revolute": "revolute", "prismatic": "prismatic", "fixed": "fixed"}

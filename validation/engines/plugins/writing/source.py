@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from validation.engines.interface import Array, Difference, EngineModel, Slot, State, Steps, Tree, Unsupported
-from validation.engines.truth.charts import CHARTS
+from ...interface import Array, Difference, EngineModel, Slot, State, Steps, Tree, Unsupported
+from ...truth.charts import CHARTS
 
 # Names that not every tree's source defines -> why it may not.
 OPTIONAL = {

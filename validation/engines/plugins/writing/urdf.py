@@ -6,9 +6,9 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-from validation.engines.interface import IDENTITY, ORIGIN, Joint, Link, Rows, Slot, Tree, Unsupported, Vector
-from validation.engines.plugins.writing.source import Source
-from validation.engines.truth.charts import CHARTS
+from ...interface import IDENTITY, ORIGIN, Joint, Link, Rows, Slot, Tree, Unsupported, Vector
+from ...truth.charts import CHARTS
+from .source import Source
 
 # URDF's names of elementary joints with one coordinate, and of none.
 SIMPLE = {"revolute": "continuous", "prismatic": "prismatic", "fixed": "fixed"}
