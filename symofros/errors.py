@@ -132,7 +132,7 @@ class CompilerMissingWarning(UserWarning):
 
 
 class InconsistentModelWarning(UserWarning):
-    """A model leaves out terms of the order of those it keeps; it is for studies only."""
+    """A model leaves out terms of the order of those it keeps, or a matrix is a rotation to a few digits only."""
 
 
 def near_name(name: str, known: Iterable[str]) -> str:

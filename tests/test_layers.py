@@ -36,7 +36,7 @@ ALLOWED = table("""
     description: base errors expr
     mechanics.beams: errors expr description
     mechanics.topology: base errors expr description mechanics.beams
-    mechanics.kinematics: errors expr description mechanics.beams mechanics.topology
+    mechanics.kinematics: base errors expr description mechanics.beams mechanics.topology
     mechanics.dynamics: base errors expr description mechanics.beams mechanics.topology
         mechanics.kinematics
     generator.passes: base expr

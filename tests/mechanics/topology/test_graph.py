@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any, Literal
+
 import pytest
 
 import symofros as sf
@@ -162,10 +164,14 @@ def test_a_rotation_by_no_finite_angle_is_refused(rotation: tuple[str, int, int]
 
 @pytest.mark.parametrize("size", [0.0, 1e308])
 def test_directions_without_length_are_refused(size: float) -> None:
-    """Zero, or so long that the length overflows: the mechanism would be NaN."""
+    """Zero, or so long that the length overflows."""
     axis = (size, size, size)
     assert "has no direction" in only(arm().with_bodies(body("b", sf.Joint("q3", "revolute", axis=axis)))).what
-    turned = sf.Joint("q3", "revolute", rotation=sf.Rotation("quaternion", (*axis, size)))
+
+
+@pytest.mark.parametrize("rotation", [("quaternion", (0, 0, 0, 0)), ("axis_angle", (0, 0, 0, 1))])
+def test_rotations_without_direction_are_refused(rotation: tuple[Literal["quaternion", "axis_angle"], Any]) -> None:
+    turned = sf.Joint("q3", "revolute", rotation=sf.Rotation(*rotation))
     assert "has no direction" in only(arm().with_bodies(body("b", turned))).what
 
 
