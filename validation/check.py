@@ -147,6 +147,11 @@ def failed(label: str, stage: str, reason: str) -> ModelResult:
     return ModelResult(label, (Comparison(label, "symofros", stage, "failed", note=reason),))
 
 
+def absent(label: str, stage: str, reason: str) -> ModelResult:
+    """The result of a model that needs a package which is not installed."""
+    return ModelResult(label, (Comparison(label, "symofros", stage, "unsupported", note=reason),))
+
+
 def check(subject: Subject, settings: Settings, factories: Factories | None = None) -> ModelResult:
     """Compare our C of a subject with every engine.
 
@@ -206,8 +211,13 @@ def _comparisons(bench: _Bench) -> Iterator[Comparison]:
         if bench.settings.engines is None and bench.subject.system is reference_models.MODELS.get(bench.label):
             start = time.perf_counter()
             # Others have none, and their checks do without SciPy's integrators, which take half a second to import.
-            judge_procedures = import_module("validation.procedures.catalogue").judge_procedures
-            yield from judge_procedures(bench.label, bench.subject.system, bench.assembly)
+            try:
+                judge_procedures = import_module("validation.procedures.catalogue").judge_procedures
+            except ModuleNotFoundError as error:
+                note = f"{error}; pip install 'symofros[validation]'"
+                yield Comparison(bench.label, "symofros", "procedures", "unsupported", note=note)
+            else:
+                yield from judge_procedures(bench.label, bench.subject.system, bench.assembly)
             bench.seconds["procedures"] = time.perf_counter() - start
 
 

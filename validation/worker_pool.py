@@ -16,7 +16,7 @@ from typing import Any
 import symofros as sf
 
 from .adapters import ROUTES
-from .check import ModelResult, Settings, check, failed
+from .check import ModelResult, Settings, absent, check, failed
 from .inputs.cases import Case
 
 Report = Callable[[ModelResult], None]
@@ -41,6 +41,8 @@ def run_case(case: Case, settings: Settings) -> ModelResult:
         stage = "compile"
         return check(subject, settings)
     except (sf.SymofrosError, OSError, UnicodeDecodeError) as error:
+        if isinstance(error, sf.SymofrosError) and error.extra:
+            return absent(case.label, stage, f"{error.problem.what}; {error.problem.remedy}")
         return failed(case.label, stage, without_folder(str(error), case.path))
     except Exception as error:  # An engine's or our own fault, of any kind: one row of the table, with its place.
         place = traceback.extract_tb(error.__traceback__)[-1]

@@ -120,8 +120,8 @@ def edit(
     except ModuleNotFoundError as error:
         if error.name not in ("starlette", "uvicorn", "anyio"):
             raise
-        missing = f"no module {error.name}", "the editor is an extra", "pip install 'symofros[gui]'"
-        raise refuse(sf.SymofrosError(sf.Problem("edit: a package is not installed", *missing))) from None
+        missing = f"no module {error.name}", "the editor is an extra", "gui"
+        raise refuse(sf.SymofrosError(sf.Problem.of_extra("edit: a package is not installed", *missing))) from None
     try:
         serve(model, port, token, browser, lambda url: out.print(url, markup=False, highlight=False, soft_wrap=True))
     except (sf.SymofrosError, OSError) as error:

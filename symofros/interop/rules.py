@@ -63,11 +63,11 @@ def framework(name: str, extra: str) -> Any:
         if error.name != name:
             raise
         raise InteropError(
-            Problem(
+            Problem.of_extra(
                 f"symofros.interop.{extra} needs the package '{name}'",
                 "it is not installed",
                 "each framework is an extra",
-                f"pip install 'symofros[{extra}]'",
+                extra,
             )
         ) from None
 

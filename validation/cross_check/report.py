@@ -196,7 +196,7 @@ def _digest(record: Record) -> list[Block]:
     blocks: list[Block] = [said, tables.nearest(record, each)] if record.compared else []
     summary = "" if each else tables.left_out(record)
     apart = (f"not compared: {models}, {who}: {why}" for models, who, why in tables.unsupported(record, not each))
-    blocks += [Text(text, "soft") for text in (summary, *apart) if text]
+    blocks += [Text(text, "soft") for text in (summary, *apart, tables.not_installed(record)) if text]
     for model, who, text in tables.failures(record):
         what, *more = _PARTS.split(text)
         where = model if who == NOBODY else f"{model}, {who}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Sequence
 
 from ..adapters import ROUTES
@@ -31,6 +32,8 @@ UNJUDGED = "not judged"
 _PLACE = 30
 # Depth of the background of a cell whose error is at the tolerance.
 _DEEPEST = 0.55
+# As problems of missing extras state their remedies.
+_INSTALL = re.compile(r"pip install '[^']+'")
 
 
 def by_model(record: Record) -> Table:
@@ -182,6 +185,16 @@ def left_out(record: Record) -> str:
     counts = sorted(((len(names), engine) for engine, names in models.items()), reverse=True)
     said = ", ".join(f"{engine} {count}" for count, engine in counts)
     return said and f"not represented, or in part (models, by engine): {said}; reasons: in the report, or check of one"
+
+
+def not_installed(record: Record) -> str:
+    """What would bring the packages that were missing, in a sentence; "" where all that was asked for was there."""
+    remedies: dict[str, set[str]] = {}
+    for row in record.rows("unsupported"):
+        for remedy in _INSTALL.findall(row.note):
+            remedies.setdefault(remedy, set()).add(row.model)
+    said = "; ".join(f"{remedy} ({counted(len(models), 'model')})" for remedy, models in sorted(remedies.items()))
+    return said and f"not asked in full, as packages are not installed: {said}"
 
 
 def headline(record: Record) -> str:

@@ -74,11 +74,11 @@ def fmi_headers() -> Path:
     spec = importlib.util.find_spec("fmpy")
     if spec is None or spec.origin is None:
         raise ExportError(
-            Problem(
+            Problem.of_extra(
                 "an FMU needs the headers of the FMI standard",
                 "no package fmpy",
                 "they are read from the package FMPy",
-                "pip install 'symofros[fmi]'",
+                "fmi",
             )
         )
     return Path(spec.origin).parent / "c-code"

@@ -77,11 +77,11 @@ def cross_check(request: Json, tell: Tell) -> Json:
     system = system_of(request)
     if find_spec("validation") is None:
         raise SymofrosError(
-            Problem(
+            Problem.of_extra(
                 "cross-check: the harness is not installed",
                 "no package 'validation'",
                 "independent engines come with the extra 'validation'",
-                "pip install 'symofros[validation]'",
+                "validation",
             )
         )
     options = request.get("options", {})
