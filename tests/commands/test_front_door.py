@@ -15,6 +15,7 @@ import symofros as sf
 from symofros.__main__ import _COMMANDS, _command, app
 from symofros.commands.shared import shown
 from symofros.simulation.progress import pace_of
+from tests.late import require
 
 ROOT = Path(sf.__file__).parents[1]
 CART_POLE = ROOT / "reference_models/rigid/cart_pole.yaml"
@@ -282,7 +283,7 @@ def test_the_first_command_of_the_readme_brings_all_that_the_harness_starts_with
 
 def test_kernels_tell_registers_and_the_bound_of_the_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without a graphics processor, and so without times."""
-    pytest.importorskip("nvidia.cuda_nvrtc", reason="the extra cuda is not installed: pip install 'symofros[cuda]'")
+    require("nvidia.cuda_nvrtc", "cuda")
     monkeypatch.setattr("symofros.commands.kernels.present", lambda: None)
     told = invoke("kernels", CART_POLE, "--architecture", "sm_80", "--bandwidth", 2000, "--json")
     assert told.exit_code == 0, told.output

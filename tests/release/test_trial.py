@@ -21,8 +21,9 @@ import pytest
 
 import symofros as sf
 from tests.docs.pages import ROOT, blocks
+from tests.late import require
 
-pytest.importorskip("build", reason="needs the extra 'release', which 'dev' brings")
+require("build", "release")
 pytestmark = pytest.mark.slow(minutes=5)
 PACKAGES = ("symofros", "validation", "reference_models")
 # The page's sources; what is built from them is in editor/static.

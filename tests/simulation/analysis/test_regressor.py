@@ -7,11 +7,12 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from tests.late import require
 from tests.models import sampled
 from validation.adapters.pinocchio import tree as pin_adapter
 from validation.contract.interface import Subject
 
-pin = pytest.importorskip("pinocchio")
+pin = require("pinocchio", "validation")
 FUNCTIONS = sf.Options(functions=("regressor", "bias", "mass_matrix"))
 
 
