@@ -27,9 +27,9 @@ PENDULUM, URDF, MJCF = (
 # Of some GB, or made of all others.
 LARGE = ("torch", "engines", "engine-drake", "all", "dev")
 _CHECK = f"symofros check {PENDULUM} --states 5 --workers 1 --report out"
-_INTEROP = f"""python -c "
-import symofros as sf, symofros.interop.{{0}} as framework
-print(framework.{{1}}({{2}}))
+_INTEROP = """python -c "
+import symofros as sf, symofros.interop.{0} as framework
+print(framework.{1}({2}))
 " """
 _ENGINE = "symofros validation engines --engine {0} --kinds revolute_x --no-prove --report out"
 _EIGEN = """python -c "
@@ -97,8 +97,8 @@ TRIALS: dict[str, tuple[str, ...]] = {
     "gymnasium": ('python -c "import symofros.interop.gymnasium as g; print(g.MechanismEnv)"',),
     "fmi": (f"symofros export {PENDULUM} --target fmu2 -o out",),
     "sections": (
-        'python -c "import symofros as sf; from symofros.sections import Material, polygon;'
-        ' print(polygon(Material(E=1.0, G=0.4, rho=1.0), [(0, 0), (2, 0), (2, 1), (1, 1.5)]))"',
+        'python -c "import symofros as sf; S = sf.sections;'
+        ' print(S.polygon(S.Material(E=1.0, G=0.4, rho=1.0), [(0, 0), (2, 0), (2, 1), (1, 1.5)]))"',
     ),
     "docs": ("python -m sphinx --version", 'python -c "import myst_nb, furo, ipykernel"'),
     "test": (f"python -m pytest -n 1 {ROOT}/tests/base {ROOT}/tests/expr",),
