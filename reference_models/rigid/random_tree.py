@@ -73,7 +73,7 @@ def noisy_rotation(rng: np.random.Generator) -> sf.Rotation:
     quaternion = np.append(q, cosines[0] * a + sines[0] * b)
 
     def stated(exact: np.ndarray) -> list[float]:
-        noise = rng.standard_normal(exact.shape) * (rng.random(exact.shape) < 0.5)
+        noise = rng.uniform(-1, 1, exact.shape) * (rng.random(exact.shape) < 0.5)
         return list((exact + 10.0 ** rng.uniform(-16, -6.7) * noise).tolist())
 
     form = rng.integers(4)

@@ -15,7 +15,7 @@ import numpy as np
 
 from symofros.base.rotations import nearest_rotation, unit_scale
 from symofros.description.values import Rotation
-from symofros.expr.edges import ONE, Edge
+from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.expression import Expression, lower
 from symofros.expr.graph import Graph
 from symofros.expr.numerics.extended import nearest
@@ -271,17 +271,27 @@ def _scaled(g: Graph, x: Sequence[Edge]) -> list[Edge]:
 
 
 def unit_vector(v: Vec3) -> Vec3:
-    """Vector v divided by its length; exact along a coordinate axis."""
+    """Vector v divided by its length; exact along a coordinate axis, and where it is one but for rounding."""
     g = v.g
-    along = [i for i, edge in enumerate(v) if edge]
-    if len(along) == 1 and v.is_constant:
-        number = g.number(tuple(v)[along[0]])
-        assert number is not None
-        unit = Vec3.unit(g, along[0])
-        return unit if number > 0.0 else -unit
     v = Vec3(g, *_scaled(g, tuple(v)))
     length = g.sqrt(v.dot(v))
-    return Vec3(g, *(g.div(edge, length) for edge in v))
+    unit = Vec3(g, *(g.div(edge, length) for edge in v))
+    if not unit.is_constant:
+        return unit
+    x = [g.number(edge) or 0.0 for edge in unit]
+    # An entry rounds to 1 long before the others round to 0, which alone says that the vector is a coordinate axis.
+    x = [number if abs(number) > EXACT else 0.0 for number in x]
+    if sum(map(bool, x)) == 1:
+        x = [math.copysign(1.0, number) if number else 0.0 for number in x]
+    return Vec3(g, *map(g.constant, x))
+
+
+def coordinate_axis(n: Vec3) -> tuple[int, bool] | None:
+    """The coordinate axis that a unit vector lies along, and whether it points against it; None if along none."""
+    along = [i for i, edge in enumerate(n) if edge != ZERO]
+    if len(along) != 1 or abs(tuple(n)[along[0]]) != ONE:
+        return None
+    return along[0], tuple(n)[along[0]] < 0
 
 
 def axis_angle_matrix(n: Vec3, c: Edge, s: Edge) -> Mat3:
@@ -308,10 +318,10 @@ def frame_with_axis(n: Vec3) -> tuple[Mat3, int, bool] | None:
     g = n.g
     if not n.is_constant:
         return None
+    along = coordinate_axis(n)
+    if along is not None:
+        return Mat3.identity(g), *along
     x = [g.number(edge) or 0.0 for edge in n]
-    for k in range(3):
-        if abs(x[k]) == 1.0 and abs(x[(k + 1) % 3]) <= EXACT and abs(x[(k + 2) % 3]) <= EXACT:
-            return Mat3.identity(g), k, x[k] < 0.0
     # Column 2 is n; the first column is the coordinate axis least along n, made orthogonal to it.
     least = min(range(3), key=lambda i: abs(x[i]))
     first = [float(i == least) - x[least] * x[i] for i in range(3)]

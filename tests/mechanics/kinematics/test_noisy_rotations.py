@@ -85,6 +85,28 @@ def test_the_nearest_rotation_is_the_polar_factor(noise: float) -> None:
         np.testing.assert_allclose(nearest_rotation(R), U @ Vt, rtol=0, atol=ROUNDING)
 
 
+@pytest.mark.parametrize("k", range(3))
+@pytest.mark.parametrize("sign", [1.0, -2.0])
+@pytest.mark.parametrize("noise", [1e-16, 1e-14, 1e-12, 1e-9, 1e-6])
+def test_joints_turn_about_the_axes_stated(noise: float, sign: float, k: int) -> None:
+    """An axis with an entry that rounds to 1 is a coordinate axis only if its other entries are rounding, too."""
+    axis, second = sign * np.roll([1.0, noise, 0.0], k), np.roll([0.0, noise, 1.0], k)
+    turn = sf.Rotation.axis_angle(tuple(axis), "a")
+    joints = [
+        sf.Joint("a", "revolute", axis=tuple(axis)),
+        sf.Joint("a", "universal", axis=tuple(axis), axis2=tuple(second)),
+        sf.Joint("a", "general", coordinates=("a",), moving_rotation=turn),
+    ]
+    checker = Numbers(sf.System("s"))
+    for joint in joints:
+        body = sf.RigidBody("b", joint, sf.Inertia(1.0, (0.1, 0.2, 0.3), (1, 1, 1)))
+        model = sf.compile(sf.System("s", (body,)), sf.Options(backend="interpreter"))
+        q = np.zeros(model.nq)
+        q[0] = 0.7
+        expected = checker.rotation(sf.Rotation.axis_angle(tuple(axis), 0.7))
+        np.testing.assert_allclose(model.frame_pose("b", q)[1], expected, rtol=0, atol=ROUNDING)
+
+
 @pytest.mark.parametrize("size", [1e-300, 1e-160, 1.0, 1e160, 1e300])
 def test_axes_and_quaternions_of_any_length_give_the_same_rotation(size: float) -> None:
     x = np.array([0.3, -0.7, 0.2, 0.5])
