@@ -124,7 +124,7 @@ class Sources:
         for segment in self._curved:  # Of second derivatives by a quaternion the gradient is a part: linear.md, (27).
             own = slice(segment.q + segment.translations, segment.q + segment.size)
             pattern[own, own] = True
-        return pattern | pattern.T
+        return np.asarray(pattern | pattern.T, dtype=np.bool_)
 
     def _coordinates_of_speeds(self) -> Pattern:
         """Which coordinates (nq) a derivative by the motion of each speed (nv) goes to."""

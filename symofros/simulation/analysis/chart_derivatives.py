@@ -76,7 +76,8 @@ def _of_ball(theta: Array, w: Array) -> tuple[Array, Array, Array, Array]:
     """A, B, C, D of a rotation vector theta (..., 3) at the angular velocity w (..., 3)."""
     turned = np.stack([rotate(quaternion_exp(theta), e) for e in np.eye(3)], axis=-2)  # exp([theta])^T
     rate_by_w = np.stack([rotation_vector_rate(theta, e) for e in np.eye(3)], axis=-1)
-    return turned, np.linalg.inv(rate_by_w), _rate_slopes(theta, w), rate_by_w
+    moved: Array = np.asarray(np.linalg.inv(rate_by_w), dtype=np.float64)
+    return turned, moved, _rate_slopes(theta, w), rate_by_w
 
 
 def _of_pose(theta: Array, v: Array) -> tuple[Array, Array, Array, Array]:

@@ -272,12 +272,8 @@ def _stepped(
     n, s, segments = len(u), tableau.stages, model.record.segments
     t: Array = np.linspace(t0, t0 + h * n, n + 1)
     q, v = np.empty((n + 1, model.nq)), np.empty((n + 1, model.nv))
-    stages = _Stages(
-        t[:-1, None] + h * tableau.c[:s],
-        np.empty((n, s, model.nq)),
-        *np.empty((2, n, s, model.nv)),
-        np.empty((n, model.nv)),
-    )
+    at_q, theta_v, ends = np.empty((n, s, model.nq)), np.empty((2, n, s, model.nv)), np.empty((n, model.nv))
+    stages = _Stages(t[:-1, None] + h * tableau.c[:s], at_q, theta_v[0], theta_v[1], ends)
     slope_theta, slope_v = np.zeros((2, s, model.nv))
     dynamics = model.bind("forward_dynamics", par=par)
     held, a = dynamics.inputs, dynamics.outputs["a"]
