@@ -53,7 +53,7 @@ class Dynamics:
 
     def __init__(self, model: Model) -> None:
         check_model(model)
-        self.model = model
+        self.model = model.with_precision("double")
         self.coordinates = Coordinates(model.record.segments, _OPERATIONS)
         self._functions = {name: self._differentiable(name) for name in RULES}
 

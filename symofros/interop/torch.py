@@ -42,7 +42,7 @@ class Dynamics:
 
     def __init__(self, model: Model) -> None:
         check_model(model)
-        self.model = model
+        self.model = model.with_precision("double")
         self.coordinates = Coordinates(model.record.segments, _OPERATIONS)
 
     def forward_dynamics(self, q: Any, v: Any, u: Any, par: Any = None) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -144,3 +145,23 @@ def test_wrong_shapes_are_refused_in_words(dynamics: Any) -> None:
     zeros = torch.zeros(3, dtype=torch.float64)
     with pytest.raises(sf.SymofrosError, match=r"\(\.\.\., 2\)"):
         dynamics.forward_dynamics(zeros, zeros, zeros)
+
+
+def test_a_model_of_single_precision_computes_in_doubles(model: sf.Model) -> None:
+    q, v, u, _ = (x.detach() for x in tensors(model, 2, model.nu))
+    single = sf.interop.torch.Dynamics(model.with_precision("single")).forward_dynamics(q, v, u)
+    assert single.dtype == torch.float64
+    np.testing.assert_array_equal(single.numpy(), model.forward_dynamics(q.numpy(), v.numpy(), u.numpy()))
+
+
+def test_a_robot_with_a_floating_base_is_taken_from_its_urdf(tmp_path: Path) -> None:
+    inertial = """<inertial><mass value="2"/>
+        <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial>"""
+    (tmp_path / "hip.urdf").write_text(f"""<robot name="hip"><link name="base">{inertial}</link>
+        <link name="thigh">{inertial}</link><joint name="hip" type="revolute"><parent link="base"/><child link="thigh"/>
+        <axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="10" velocity="5"/></joint></robot>""")
+    m = sf.compile(sf.load(tmp_path / "hip.urdf", floating_base=True))
+    wrapped = sf.interop.torch.Dynamics(m)
+    q, v, u = leaves(m.neutral(), np.ones(m.nv), np.ones(m.nu))
+    wrapped.integrate(q, 0.1 * wrapped.forward_dynamics(q, v, u)).sum().backward()
+    assert q.grad.shape == (m.nq,) and bool(q.grad.isfinite().all())
