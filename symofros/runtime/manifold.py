@@ -104,6 +104,23 @@ def chart_rate(segments: Sequence[Segment], theta: Array, v: Array) -> Array:
     return rate
 
 
+def along_speeds(segments: Sequence[Segment], q: Array, by_coordinates: Array) -> Array:
+    """Derivatives along the motions of the speeds (..., nv), N^T of those by the coordinates (..., nq): q' = N v."""
+    along = np.empty((*np.broadcast_shapes(q.shape, by_coordinates.shape)[:-1], sum(each.speeds for each in segments)))
+    for segment in segments:
+        i, j, n = segment.q, segment.v, segment.size
+        if segment.kind == "linear":
+            along[..., j : j + n] = by_coordinates[..., i : i + n]
+            continue
+        start, angular = i + segment.translations, j + segment.translations
+        quaternion, weight = q[..., start : start + 4], by_coordinates[..., start : start + 4]
+        # Of q' = q w / 2: the vector part of q* weight / 2.
+        along[..., angular : angular + 3] = 0.5 * quaternion_product(conjugate(quaternion), weight)[..., :3]
+        if segment.kind == "pose":
+            along[..., j : j + 3] = rotate(conjugate(quaternion), by_coordinates[..., i : i + 3])
+    return along
+
+
 def random_state(record: ModelRecord, rng: np.random.Generator) -> tuple[Array, Array]:
     """A configuration within its limits, quaternions uniform on the sphere, and normal speeds."""
     bounds = np.array(record.sampling_bounds()).reshape(-1, 2)

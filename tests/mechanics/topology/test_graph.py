@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
+import numpy as np
 import pytest
 
 import symofros as sf
@@ -115,6 +116,43 @@ def test_a_formula_of_unknown_names_is_refused() -> None:
 def test_geometry_may_not_move() -> None:
     problem = only(arm().with_bodies(body("arm2", sf.Joint("q2", "revolute", position=("q1", 0, 0)))))
     assert "'q1' may not be used here" in problem.what and "parameters only" in problem.rule
+
+
+def winch(**cable: Any) -> sf.System:
+    """A free body below a point 2 m up, and what is between them."""
+    bob = sf.RigidBody(
+        "bob", sf.Joint("m", "free"), sf.Inertia(3.0, moments=(0.1, 0.1, 0.1)), loads=cable.pop("loads", ())
+    )
+    base = sf.RigidBody("base", None, None, [sf.Frame("top", (0, 0, 2))])
+    return sf.System("winch", [base, bob], [sf.Parameter("k", 1e4)], [sf.Input("length")], **cable)
+
+
+def test_a_cable_that_a_winch_draws_in_is_refused_with_what_states_it() -> None:
+    cable = sf.Connection("cable", ("base", "top"), ("bob", None), stiffness="k", length="length")
+    problem = only(winch(connections=[cable]))
+    assert "cable" in problem.what and "'length' may not be used here" in problem.what
+    assert "max(0, k*(d - length))" in problem.remedy and "virtual power" in problem.remedy
+
+
+@pytest.mark.parametrize("length", [1.0, 2.0])
+def test_that_remedy_pulls_and_does_not_push(length: float) -> None:
+    """As a load on a free body, and as virtual power on a slide 1 m beside the winch."""
+    d = "sqrt(m.px^2 + m.py^2 + (m.pz - 2)^2)"
+    pull = f"max(0, k*({d} - length))/{d}"
+    load = sf.Load((f"-{pull}*m.px", f"-{pull}*m.py", f"-{pull}*(m.pz - 2)"), axes="world")
+    m = sf.compile(winch(loads=[load]), sf.Options(backend="interpreter"))
+    line = np.array([0.3, 0.0, -1.5])
+    distance = float(np.linalg.norm(line))
+    Q = m.generalized_force([0.3, 0.0, 0.5, 0.0, 0.0, 0.0, 1.0], np.zeros(6), [length])
+    right = -1e4 * max(0.0, distance - length) / distance * line
+    np.testing.assert_allclose(Q, [*right, 0.0, 0.0, 0.0], rtol=1e-12, atol=1e-9)
+
+    power = sf.VirtualPower("cable", {"dx": "-max(0, k*(sqrt(x^2 + 1) - length))*x/sqrt(x^2 + 1)"})
+    slide = sf.RigidBody("slide", sf.Joint("x", "prismatic", axis=(1, 0, 0)), sf.Inertia(3.0))
+    system = sf.System("s", [slide], [sf.Parameter("k", 1e4)], [sf.Input("length")], virtual_power=[power])
+    Q = sf.compile(system, sf.Options(backend="interpreter")).generalized_force([1.2], [0.0], [length])
+    distance = float(np.hypot(1.2, 1.0))
+    np.testing.assert_allclose(Q, [-1e4 * max(0.0, distance - length) * 1.2 / distance], rtol=1e-12, atol=1e-9)
 
 
 def test_efforts_may_use_the_state() -> None:
