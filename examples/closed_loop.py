@@ -3,7 +3,7 @@
 import numpy as np
 
 import symofros as sf
-from reference_models import MODELS
+from symofros.reference_models import MODELS
 
 linkage = MODELS["four_bar"]
 model = sf.compile(linkage)

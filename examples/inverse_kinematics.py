@@ -3,7 +3,7 @@
 import numpy as np
 
 import symofros as sf
-from reference_models import MODELS
+from symofros.reference_models import MODELS
 
 model = sf.compile(MODELS["puma560"], sf.Options(functions=["frame_pose", "frame_jacobian"]))
 frame = model.names.frames[-1]

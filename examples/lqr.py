@@ -7,7 +7,7 @@ import numpy as np
 from scipy.linalg import solve_continuous_are
 
 import symofros as sf
-from reference_models import MODELS
+from symofros.reference_models import MODELS
 
 model = sf.compile(MODELS["cart_pole"])
 upright = np.zeros(2)

@@ -3,7 +3,7 @@
 import numpy as np
 
 import symofros as sf
-from reference_models import MODELS
+from symofros.reference_models import MODELS
 
 model = sf.compile(MODELS["cart_pole"])
 print("parameters", model.parameters)

@@ -8,7 +8,7 @@ import casadi as ca
 import numpy as np
 
 import symofros as sf
-from reference_models import MODELS
+from symofros.reference_models import MODELS
 
 model = sf.compile(MODELS["cart_pole"])  # x: the cart [m], q: the pole's angle, 0 upright [rad], F: the force [N]
 dynamics = sf.interop.casadi.Dynamics(MODELS["cart_pole"])

@@ -110,10 +110,18 @@ def claim(name: str) -> None:
 
     Args:
         name: The `__name__` of the package that is loaded first.
+
+    Raises:
+        ImportError: It is loaded from elsewhere than it belongs to this package.
     """
     package = name.rpartition(".")[2]
     folder = folder_of(package)
-    if folder.parent != _PACKAGE:  # A wheel has one name only, and `validation` is the user's.
+    loaded = sys.modules.get(name)
+    if loaded is not None and not _is_at(loaded.__file__, folder):
+        stated = f"{name} is {loaded.__file__}", f"symofros is {_PACKAGE}, which belongs to {folder}"
+        raise ImportError(str(Problem("two installations are mixed", *stated, f"pip install -e {folder.parent}")))
+    claimed = any(isinstance(finder, _OtherName) and finder.name == name for finder in sys.meta_path)
+    if folder.parent != _PACKAGE and not claimed:  # A wheel has one name only, and `validation` is the user's.
         other = package if name != package else f"symofros.{package}"
         sys.meta_path.insert(0, _OtherName(other, name, folder))
 
@@ -138,7 +146,7 @@ class _OtherName(MetaPathFinder, Loader):
 
     def _is_ours(self, fullname: str) -> bool:
         if fullname.startswith(f"{self.other}."):
-            return sys.modules.get(self.other) is sys.modules[self.name]
+            return self.name in sys.modules and sys.modules.get(self.other) is sys.modules[self.name]
         if fullname != self.other or "." in self.other:
             return fullname == self.other
         found = PathFinder.find_spec(fullname)

@@ -96,14 +96,15 @@ ALLOWED = table("""
 HARNESS = table("""
     mechanics:
     references:
+    program:
     contract:    mechanics
     inputs:      references contract mechanics
     adapters:    contract mechanics
     comparison:  adapters contract mechanics
     procedures:  references comparison contract mechanics
-    check:       references procedures comparison adapters inputs contract mechanics
-    worker_pool: check adapters inputs
-    reporting:   mechanics
+    checking:    references procedures comparison adapters inputs contract mechanics
+    worker_pool: checking adapters inputs
+    reporting:   program mechanics
 """)
 # ... and what builds on it: any of the above, and these others.
 STUDIES = table("""
@@ -131,7 +132,7 @@ STUDIES = table("""
 MAY_USE = (
     HARNESS
     | {name: others | set(HARNESS) for name, others in STUDIES.items()}
-    | {"oracle": {"mechanics", "references"}}
+    | {"oracle": {"mechanics", "references"}, "__init__": {"cross_check"}}
 )
 
 ENGINES = {route.package for route in ROUTES.values()} - {""}

@@ -16,7 +16,7 @@ from typing import Any
 import symofros as sf
 
 from .adapters import ROUTES
-from .check import ModelResult, Settings, check, failed
+from .checking import ModelResult, Settings, check, failed
 from .inputs.cases import Case
 
 Report = Callable[[ModelResult], None]

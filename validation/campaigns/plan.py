@@ -13,7 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError,
 
 from .. import references
 from ..adapters import ROUTES
-from ..check import description_hash
+from ..checking import description_hash
 from ..inputs.cases import Case, named
 from .design import Design, Range, points_of
 from .errors import PlanError

@@ -8,12 +8,11 @@ import sys
 from pathlib import Path
 
 import pytest
-import typer
 from ruamel.yaml import YAML
 
 from tests.validation.ci.test_plugin import ROOT, cases
 from tests.validation.subjects import URDF
-from validation.__main__ import app
+from validation.__main__ import command
 
 
 def template(name: str) -> dict:
@@ -77,7 +76,7 @@ def test_the_steps_of_a_template_ask_for_what_there_is(server) -> None:
     plugin = (ROOT / "symofros/pytest_plugin.py").read_text()
     assert "--symofros-model" in asked and all(f'"{option}"' in plugin for option in asked)
     asked = re.findall(r"--[a-z-]+", compare)
-    known = {name for option in typer.main.get_group(app).commands["check"].params for name in option.opts}
+    known = {name for option in command("check").params for name in option.opts}
     assert "--baseline" in asked and set(asked) <= known
 
 
