@@ -17,8 +17,14 @@ import hypothesis
 import numpy as np
 import pytest
 
+from symofros.harness import claim
 from tests.absent import CACHED, by_need, summary
 from tests.progress import Progress
+
+# The names of a checkout, whatever is installed; under those of a wheel, which pages and examples have, they are the
+# same modules.
+claim("validation")
+claim("reference_models")
 
 # Tests assert no time; Hypothesis would, of each example, and a machine that does other work exceeds it.
 hypothesis.settings.register_profile("untimed", deadline=None, suppress_health_check=[hypothesis.HealthCheck.too_slow])

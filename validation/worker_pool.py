@@ -16,7 +16,7 @@ from typing import Any
 import symofros as sf
 
 from .adapters import ROUTES
-from .check import ModelResult, Settings, absent, check, failed
+from .checking import ModelResult, Settings, absent, check, failed
 from .inputs.cases import Case
 
 Report = Callable[[ModelResult], None]
@@ -30,7 +30,7 @@ COLLECTED_AT = 50_000
 
 def _preloaded(settings: Settings) -> list[str]:
     """Modules loaded once into the process that the workers are forked from: no engine that is not asked for."""
-    return ["validation.worker_pool", "validation.inputs.readers", *(ROUTES[name].module for name in settings.routes())]
+    return [__name__, f"{__package__}.inputs.readers", *(ROUTES[name].module for name in settings.routes())]
 
 
 def run_case(case: Case, settings: Settings) -> ModelResult:

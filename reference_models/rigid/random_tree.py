@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from reference_models.rigid.point_masses import Triple, mass_and_center, moments_of_inertia
+
+from ..rigid.point_masses import Triple, mass_and_center, moments_of_inertia
 
 KINDS = ("revolute", "prismatic", "ball", "continuous", "fixed", "free")
 # Joints whose partial velocities depend on q, and those that slide along the axis they turn about.

@@ -10,7 +10,7 @@ import pytest
 from reference_models import MODELS
 from tests.late import require
 from tests.validation.subjects import floating_arm
-from validation.check import Settings, check
+from validation.checking import Settings, check
 from validation.comparison.participants import Participant
 from validation.contract.interface import States, Subject
 from validation.contract.quantities import MOTION_ENERGY, QUANTITIES, Quantity

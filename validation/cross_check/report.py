@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from ..adapters import ROUTES, differences
-from ..check import ModelResult
+from ..checking import ModelResult
 from ..comparison.elements import ROWS as ELEMENT_ROWS
 from ..comparison.errors import NOBODY
 from ..contract.quantities import ROUNDING, SMALL, SOLVE

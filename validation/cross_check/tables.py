@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable, Sequence
 
 from ..adapters import ROUTES
-from ..check import ModelResult
+from ..checking import ModelResult
 from ..comparison.errors import NOBODY, Comparison
 from ..contract.quantities import MOTION_ENERGY, QUANTITIES
 from ..procedures import ENGINE as FORMULAS
@@ -199,15 +199,28 @@ def not_installed(record: Record) -> str:
 
 def headline(record: Record) -> str:
     """The verdict in one sentence, or two."""
+    silent = f"no engine was asked: {_why_none(record)}; " if _nobody_was_asked(record) else ""
     models = {row.model for row in record.compared}
     what = f"{counted(len(record.compared), 'comparison')} on {counted(len(models), 'model')}"
     disagreeing = len(record.rows("disagree"))
     failed = len({row.model for row in record.rows("failed") if not row.unconfirmed})
-    unjudged = len({row.model for row in record.rows("failed") if row.unconfirmed})
+    unjudged = 0 if silent else len({row.model for row in record.rows("failed") if row.unconfirmed})
+    what += " between our own ways" if silent else ""
     agreeing = f"all {what} agree" if len(record.compared) > 1 else f"{what} agrees"
     parts = [f"{disagreeing} of {what} disagree" if disagreeing else agreeing] if record.compared else []
     parts += [f"{counted(failed, 'model')} failed"] if failed else []
     parts += [f"{counted(unjudged, 'model')} judged by no independent engine"] if unjudged else []
-    said = ", ".join(parts) or "nothing was compared"
+    said = silent + (", ".join(parts) or "nothing was compared")
     cut = f" Interrupted: {counted(len(record.unfinished), 'model')} not checked." if record.unfinished else ""
     return f"{said[0].upper()}{said[1:]}.{cut}"
+
+
+def _nobody_was_asked(record: Record) -> bool:
+    """Whether models were compared, or could have been, and none of them with an independent engine."""
+    return not record.judged and bool(record.compared or any(row.unconfirmed for row in record.rows("failed")))
+
+
+def _why_none(record: Record) -> str:
+    """The reasons why no independent engine was asked."""
+    reasons = dict.fromkeys(row.note for row in record.rows("failed") if row.unconfirmed)
+    return "; ".join(reasons) or "those that were named are ways of our own"

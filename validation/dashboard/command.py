@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import datetime
 import subprocess
-import sys
 import time
 from pathlib import Path
 from typing import Annotated
@@ -12,6 +11,9 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from symofros.harness import worker_command
+
+from ..program import PROGRAM
 from ..reporting import provenance
 from ..reporting.command import REPORTS, Exit, Output, known, progress_bar
 from ..reporting.command import render as render_report
@@ -98,7 +100,8 @@ def _all_anew(folder: Path) -> bool:
 def regenerate(topic: Topic, folder: Path) -> str:
     """How the command of a report ended; in a process of its own, so that one that crashes takes no other with it."""
     start, ends = time.perf_counter(), {0: "written", 1: "written; something in it is missed"}
-    command = [sys.executable, *topic.command.split()[1:], "--output", str(folder)]
+    arguments = topic.command.removeprefix(PROGRAM).split()
+    command = worker_command("__main__", [*arguments, "--output", str(folder)])
     run = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False)
     end = ends.get(run.returncode, f"failed ({run.returncode})")
     # The last lines of what it complained of, if it wrote no report.

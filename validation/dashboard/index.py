@@ -8,6 +8,7 @@ from pathlib import Path
 
 from symofros.tools import write_atomically
 
+from ..program import PROGRAM
 from ..reporting import html, markdown
 from ..reporting.figures import Figure
 from ..reporting.record import Block, Bullets, Report, Section, Table, Text, verdict
@@ -39,7 +40,7 @@ def write_index(entries: Mapping[str, Entry], folder: Path, date: str) -> Path:
     summaries = stored(folder / "summary.md")
     changes = history(summaries, tuple(entries))
     trend = Section("What changed", (trends(summaries), _TREND, changes), "history")
-    closing = f"Gathered {date} by `python -m validation dashboard`; `--regenerate` writes the reports anew before."
+    closing = f"Gathered {date} by `{PROGRAM} dashboard`; `--regenerate` writes the reports anew before."
     page = html.page(replace(report, sections=(trend, *report.sections)), closing=closing, listed=False)
     said = f"**{report.summary}** (gathered {date})", markdown.table(summary_table(entries)), origins(entries)
     write_atomically(folder / "index.html", page)

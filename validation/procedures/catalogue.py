@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-import reference_models
 import symofros as sf
 
+from .. import references
 from ..comparison.errors import Comparison, Status
 from ..mechanics.assembly import Assembly
 from ..mechanics.geometry import Array
@@ -141,7 +141,7 @@ def judge_procedures(label: str, system: sf.System, assembly: Assembly) -> Itera
         assembly: The same as numbers.
     """
     procedures = PROCEDURES.get(label, ())
-    if not procedures or system is not reference_models.MODELS[label]:
+    if not procedures or system is not references.MODELS[label]:
         return
     scene = first_scene(system, assembly)
     for procedure in procedures:

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
 from typing import Any, Literal
 
+from ..program import PROGRAM
 from .figures import Chart, Drawing, Figure
 
 MISSED = "**missed** "
@@ -217,7 +218,7 @@ class Topic:
         compose: JSON of the report -> report.
         measure: Run, and the options of the command -> JSON; None for a report whose commands are its own, which
             `dashboard --regenerate` leaves to hand.
-        arguments: Arguments after `python -m validation` that write it; the name if None.
+        arguments: Arguments after `python -m validation`, or its name elsewhere, that write it; the name if None.
         printed: Names in the JSON that --json prints; none: all.
     """
 
@@ -232,4 +233,4 @@ class Topic:
     @property
     def command(self) -> str:
         """What writes it."""
-        return f"python -m validation {self.name if self.arguments is None else self.arguments}".strip()
+        return f"{PROGRAM} {self.name if self.arguments is None else self.arguments}".strip()

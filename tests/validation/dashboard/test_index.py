@@ -107,7 +107,7 @@ def test_reports_are_written_one_by_one_and_an_interrupt_keeps_the_finished(
     ran: list[list[str]] = []
 
     def fake(words: list[str], **_: object) -> subprocess.CompletedProcess[str]:
-        ran.append(words[3:])
+        ran.append(words[4:])  # After the interpreter, -P, and what starts the harness.
         if len(ran) == 3:
             raise KeyboardInterrupt
         return subprocess.CompletedProcess(words, 0 if len(ran) == 1 else 7, None, "lines\nthe reason")

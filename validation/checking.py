@@ -9,9 +9,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from importlib import import_module
 
-import reference_models
 import symofros as sf
 
+from . import references
 from .adapters import ROUTES, compiled, has_beams
 from .comparison.elements import judge_elements
 from .comparison.errors import NOBODY, Comparison, Scales, compute, judge, scaled_errors, typical_scales
@@ -208,11 +208,11 @@ def _comparisons(bench: _Bench) -> Iterator[Comparison]:
             yield judge_order(bench.label, order, bench.assembly, *models, bench.variants.states)
         for one in bench.engines:
             yield from judge_elements(one, bench.assembly, bench.variants)
-        if bench.settings.engines is None and bench.subject.system is reference_models.MODELS.get(bench.label):
+        if bench.settings.engines is None and bench.subject.system is references.MODELS.get(bench.label):
             start = time.perf_counter()
             # Others have none, and their checks do without SciPy's integrators, which take half a second to import.
             try:
-                judge_procedures = import_module("validation.procedures.catalogue").judge_procedures
+                judge_procedures = import_module(".procedures.catalogue", __package__).judge_procedures
             except ModuleNotFoundError as error:
                 note = f"{error}; pip install 'symofros[validation]'"
                 yield Comparison(bench.label, "symofros", "procedures", "unsupported", note=note)
