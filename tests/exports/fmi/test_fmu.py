@@ -23,7 +23,7 @@ from fmpy.validation import validate_fmu
 import symofros as sf
 from reference_models import MODELS as REFERENCE
 from symofros.exports.c import compiling
-from tests.exports.cases import MODELS, PLANAR, STARTS, STEP, first_state, relative, run, system_of, trajectory
+from tests.exports.cases import MODELS, PLANAR, STARTS, STEP, STRICT, first_state, relative, run, system_of, trajectory
 from tests.models import sampled
 from tests.simulation.beam_models import at_rest, cantilever_system
 
@@ -181,12 +181,10 @@ def test_sources_compile_elsewhere(made: Any, version: int, tmp_path: Path) -> N
     headers = Path(fmpy.__file__).parent / "c-code"
     run(
         "gcc",
-        "-std=c99",
-        "-Wall",
-        "-Wextra",
-        "-Werror",
+        *STRICT,
         "-fsyntax-only",
-        f"-I{headers}",
+        "-isystem",  # The headers of FMI are not ours.
+        headers,
         f"four_bar_fmi{version}.c",
         cwd=tmp_path / "sources",
     )
