@@ -190,8 +190,8 @@ class Functions(Arguments):
             par: Run-time parameters.
             out: Arrays by names of outputs, which receive these and are returned. Batches are computed in place, unless
                 an array overlaps an input.
-            inputs: The function's inputs by name; `t` is 0 and `u` the default inputs where they are left out, as may be
-                those of no entries, multipliers of a tree.
+            inputs: The function's inputs by name; `t` is 0 and `u` the default inputs where they are left out; those of
+                no entries, multipliers of a tree, may be left out, too.
 
         Returns:
             The function's outputs in the order of the table, each (..., *shape).

@@ -23,10 +23,10 @@ Complex = npt.NDArray[np.complex128]
 
 @dataclass(frozen=True)
 class Modes:
-    """Modes in the order of their frequencies; pairs of conjugate eigenvalues count once, as do the two of a rigid motion.
+    """Modes in the order of their frequencies; pairs of conjugate eigenvalues count once, as the two of a rigid motion do.
 
-    A motion that is damped more than critically has two real eigenvalues, and two entries here; without such there are at
-    most nv.
+    A motion that is damped more than critically has two real eigenvalues, and two entries here; without such there are
+    at most nv.
 
     Attributes:
         eigenvalues: s of each mode, with Im(s) >= 0 [1/s] (k); exactly 0 of rigid motions, which come first.

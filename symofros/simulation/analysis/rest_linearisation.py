@@ -7,8 +7,8 @@ import numpy as np
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
 
-# Speeds from which this is derived and compiled sooner than derivatives in motion are: of a chain of 10 links on springs
-# in a quarter of the time, of one of 30 in an eighth.
+# Speeds from which this is derived and compiled sooner than derivatives in motion are: of a chain of 10 links on
+# springs in a quarter of the time, of one of 30 in a fortieth.
 MANY = 9
 # Imbalance of what rests, relative to the largest force, as `equilibrium` accepts it, or to the least stiffness where
 # all forces vanish, as of what hangs. d(M a)/dq, which is left out, is as small a share of the forces' derivatives.

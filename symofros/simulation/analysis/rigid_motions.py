@@ -1,4 +1,4 @@
-"""Which eigenvalues are rigid motions: zeros but for rounding, two for each motion that nothing damps (linear.md, 4)."""
+"""Which eigenvalues are rigid motions: zeros but for rounding, two of each that nothing damps (linear.md, 4)."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ class RigidMotions(NamedTuple):
 def rigid_motions(A: Array, basis: Array, s: Complex, states: Complex, inertia: Array) -> RigidMotions:
     """Rigid motions of x = basis y, y' = A y.
 
-    The s of a motion that nothing drives back is zero, and twice so if nothing damps it; rounding makes a pair of it that
-    is real, imaginary or zero. s^2 is an eigenvalue of A^2, whose entries err by rounding of the terms they are sums of,
-    eq. (7d). So a soft mode beside stiff ones is none as long as its own stiffness is no small difference.
+    The s of a motion that nothing drives back is zero, and twice so if nothing damps it; rounding makes a pair of it
+    that is real, imaginary or zero. s^2 is an eigenvalue of A^2, whose entries err by rounding of the terms they are
+    sums of, eq. (7d). So a soft mode beside stiff ones is none as long as its own stiffness is no small difference.
 
     Args:
         A: Matrix of the independent changes (k x k).
