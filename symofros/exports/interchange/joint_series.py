@@ -1,4 +1,4 @@
-"""Bodies that only carry, gathered on the next body: MuJoCo wants mass of whatever moves, and takes joints in series."""
+"""Bodies that only carry, gathered on the next one: MuJoCo wants mass of whatever moves, and takes joints in series."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class GatheredBody:
 def gathered(links: Sequence[RigidLink], kept: Collection[str]) -> list[GatheredBody]:
     """Links without those that only carry one other link by joints of single axes.
 
-    With T_A, T_L the places of A in its parent and of L in A, J_A and J_L the motions of their joints in their own frames,
+    With T_A, T_L the places of A in its parent and of L in A, J_A and J_L the motions of their joints in own frames,
     L stands at T_A J_A T_L J_L = (T_A T_L) (T_L^-1 J_A T_L) J_L: the joint of A keeps its motion, seen from L at zero.
 
     Args:

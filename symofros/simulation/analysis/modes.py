@@ -23,7 +23,7 @@ Complex = npt.NDArray[np.complex128]
 
 @dataclass(frozen=True)
 class Modes:
-    """Modes in the order of their frequencies; pairs of conjugate eigenvalues count once, as the two of a rigid motion do.
+    """Modes in the order of their frequencies; conjugate eigenvalues count once, as the two of a rigid motion do.
 
     A motion that is damped more than critically has two real eigenvalues, and two entries here; without such there are
     at most nv.

@@ -1,4 +1,4 @@
-"""MJCF of bodies that only carry: their joints are gathered on the next body, or a note says that MuJoCo refuses them."""
+"""MJCF of bodies that only carry: joints are gathered on the next body, or a note says that MuJoCo refuses them."""
 
 from __future__ import annotations
 
