@@ -52,7 +52,7 @@ class MomentumFunctions(Functions):
         return self._one("coriolis_matrix", {"q": q, "v": v, "u": u}, par)
 
     def gravity_force(self, q: ArrayLike, *, u: ArrayLike | None = None, par: ArrayLike | None = None) -> Array:
-        """Bias at rest g(q) = h(q, 0) (..., nv): the efforts that hold the weight; of springs and inputs nothing counts.
+        """Bias at rest g(q) = h(q, 0) (..., nv): the efforts that hold the weight; springs and inputs do not count.
 
         Not named `gravity`, which is the acceleration that a `System` states.
         """

@@ -74,6 +74,14 @@ def test_the_pace_is_kept(four_bar: Path) -> None:
     assert re.search(r"20 periods of 0\.01 s; \d+ late, at worst by [\d.]+ us", text)
 
 
+def test_arguments_that_say_nothing_are_refused(four_bar: Path) -> None:
+    build(four_bar, "example")
+    for arguments in (["x"], ["1", "0.1x"], ["1", "0.1", "2"], ["--quick"], ["nan"], ["1", "0"], ["-1"]):
+        done = subprocess.run(["./example", *arguments], cwd=four_bar, capture_output=True, text=True)
+        assert done.returncode == 2, arguments
+        assert done.stderr == "usage: four_bar_example [SECONDS [PERIOD]] [--fast]\n"
+
+
 def test_a_wrong_selftest_fails(four_bar: Path) -> None:
     """One sign in the equations, and the package says so."""
     text = (four_bar / "four_bar.c").read_text()
