@@ -190,6 +190,21 @@ def test_sources_compile_elsewhere(made: Any, version: int, tmp_path: Path) -> N
     )
 
 
+def test_sources_of_two_share_no_name(made: Any, version: int, tmp_path: Path) -> None:
+    """FMI 3 asks sources to prefix their functions; FMPy's header of FMI 2 knows no prefix."""
+    headers = Path(fmpy.__file__).parent / "c-code"
+    defined = []
+    for name in ("planar", "four_bar"):
+        fmpy.extract(str(made(name, version)), tmp_path / name)
+        source = tmp_path / name / "sources" / f"{name}_fmi{version}.c"
+        run("gcc", "-std=c99", "-O0", f"-I{headers}", "-c", source, "-o", f"{name}.o", cwd=tmp_path)
+        symbols = run("nm", "--defined-only", "--extern-only", f"{name}.o", cwd=tmp_path).split()[2::3]
+        defined.append({symbol for symbol in symbols if not symbol.startswith("fmi2")})
+    assert all(symbol.startswith("planar_") for symbol in defined[0])
+    assert not defined[0] & defined[1]
+    assert ("planar_fmi3GetVersion" in defined[0]) == (version == 3)
+
+
 def test_only_the_interface_is_visible(made: Any, version: int, tmp_path: Path) -> None:
     fmpy.extract(str(made("four_bar", version)), tmp_path)
     (library,) = (tmp_path / "binaries").rglob("*.so")
