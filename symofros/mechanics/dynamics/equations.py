@@ -145,11 +145,6 @@ class Equations(EquationsOfMotion):
         """Derivative of the inverse dynamics by the run-time parameters (nv x npar)."""
         return self.by_par(self.inverse_dynamics)
 
-    @property
-    def gravity_force(self) -> list[Edge]:
-        """Bias at rest, h(q, 0) (nv)."""
-        return self.at_rest.h
-
     @cached_property
     def momentum(self) -> list[Edge]:
         """Generalized momentum p = M v (nv)."""
