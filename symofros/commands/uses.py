@@ -59,7 +59,8 @@ def export_command(
     name: Annotated[str | None, typer.Option(help="Of files and functions; made of the model's by default.")] = None,
     frames: Annotated[str | None, typer.Option(help="Frames of kinematics, comma-separated; all by default.")] = None,
     functions: Annotated[
-        str | None, typer.Option(help="Further functions of WebAssembly, such as joint_wrenches; comma-separated.")
+        str | None,
+        typer.Option(help="Further functions of WebAssembly; those of a C package, in place of all; comma-separated."),
     ] = None,
     outputs: Annotated[
         str | None, typer.Option(help="Frames whose positions an FMU gives, or signals of a diagram; comma-separated.")

@@ -37,9 +37,10 @@ def integrate(segments: Sequence[Segment], q: Array, dq: Array) -> Array:
     Returns:
         The configuration (..., nq).
     """
-    theta = np.array(dq)
+    theta = dq
     for segment in segments:
         if segment.kind == "pose":
+            theta = np.array(theta)
             linear, angular = _pose_speeds(segment)
             theta[..., linear] = screw_displacement(dq[..., angular], dq[..., linear])
     return retract(segments, q, theta)
@@ -47,6 +48,8 @@ def integrate(segments: Sequence[Segment], q: Array, dq: Array) -> Array:
 
 def retract(segments: Sequence[Segment], q0: Array, theta: Array) -> Array:
     """The configurations (..., nq) at coordinates theta (..., nv) of the charts about q0 (..., nq)."""
+    if all(segment.kind == "linear" for segment in segments):
+        return np.asarray(q0 + theta)
     q = np.empty(np.broadcast_shapes(q0.shape[:-1], theta.shape[:-1]) + (q0.shape[-1],))
     for segment in segments:
         i, j, n = segment.q, segment.v, segment.size
@@ -70,6 +73,8 @@ def difference(segments: Sequence[Segment], q0: Array, q1: Array) -> Array:
         q0: (..., nq).
         q1: (..., nq).
     """
+    if all(segment.kind == "linear" for segment in segments):
+        return np.asarray(q1 - q0)
     nv = sum(segment.speeds for segment in segments)
     dq = np.empty(np.broadcast_shapes(q0.shape[:-1], q1.shape[:-1]) + (nv,))
     for segment in segments:

@@ -373,15 +373,15 @@ class Model(
             UnknownNameError: No such output or frame.
         """
         slopes = self._call("forward_dynamics_derivatives", "", {"q": q, "v": v, "u": u, "t": t}, par)
+        speeds = np.asarray(self.by_name("v", v), dtype=np.float64)
+        if outputs is None:
+            return linear.state_matrices(self.record.segments, slopes, speeds)
 
         def frame_derivatives(frame: str) -> FrameDerivatives:
             a = self.forward_dynamics(q, v, u, par=par, t=t)
             return self.frame_derivatives(frame, q, v, a, u=u, par=par)
 
-        speeds = np.asarray(self.by_name("v", v), dtype=np.float64)
-        stated = () if outputs is None else outputs
-        matrices = linear.linearize(self.record.segments, slopes, speeds, stated, frame_derivatives)
-        return matrices[:2] if outputs is None else matrices
+        return linear.linearize(self.record.segments, slopes, speeds, outputs, frame_derivatives)
 
     def residual_derivatives(
         self,

@@ -8,7 +8,7 @@ from typing import Literal, NamedTuple
 
 from symofros.description.beams.beam import MATRIX_ORDER, STATION, STRAINS, Beam, BeamLoad, Samples
 from symofros.description.constraints import Constraint, Coupling, Nonholonomic
-from symofros.description.entries import units_of
+from symofros.description.entry_units import units_of
 from symofros.description.forces import Connection, Load, Rotor
 from symofros.description.frames import Frame
 from symofros.description.joints.joint import Joint
@@ -118,7 +118,7 @@ def _joint_values(joint: Joint) -> Iterator[Stated]:
 
 
 def _of_coordinate(joint: Joint, number: int, units: tuple[str, ...]) -> tuple[str, ...]:
-    """Of units for a turn and for a translation, as docstrings state them, those of a coordinate."""
+    """Of units for a turn and for a translation, those of a coordinate."""
     known = joint_units(joint)
     if len(units) != 2 or not 0 <= number < len(known):
         return units
