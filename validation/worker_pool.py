@@ -41,7 +41,8 @@ def run_case(case: Case, settings: Settings) -> ModelResult:
         stage = "compile"
         return check(subject, settings)
     except (sf.SymofrosError, OSError, UnicodeDecodeError) as error:
-        return failed(case.label, stage, without_folder(str(error), case.path))
+        said = error.in_shell(case.reading.prefix) if isinstance(error, sf.SymofrosError) else str(error)
+        return failed(case.label, stage, without_folder(said, case.path))
     except Exception as error:  # An engine's or our own fault, of any kind: one row of the table, with its place.
         place = traceback.extract_tb(error.__traceback__)[-1]
         where = f"{Path(place.filename).name}:{place.lineno}, in {place.name}"

@@ -12,10 +12,11 @@ from rich.table import Table
 
 import symofros as sf
 from symofros.commands import view_options
+from symofros.commands.reading import ReadingOptions, reads_models
 from symofros.commands.shared import (
+    OF_A_DIAGRAM,
     AsJson,
     FilePath,
-    Floating,
     Network,
     assignments,
     load,
@@ -34,10 +35,12 @@ from symofros.simulation.progress import pace_of
 from symofros.simulation.stepping.methods import METHODS
 
 
+@reads_models
 def simulate(
     model: FilePath,
     t_end: Annotated[float | None, typer.Argument(help="Where to end [s]; 1, or what the diagram says.")] = None,
-    floating_base: Floating = False,
+    *,
+    reading: ReadingOptions,
     method: Annotated[str | None, typer.Option(help=f"{', '.join(METHODS)}; rk4 by default.")] = None,
     dt: Annotated[float | None, typer.Option(help="Step [s]; the first one of adaptive methods.")] = None,
     rtol: Annotated[float | None, typer.Option(help="Relative error of a step, adaptive methods.")] = None,
@@ -92,6 +95,7 @@ def simulate(
     viewing = view_options.ViewOptions(view, view_block, record_view, exaggeration, interactive)
     try:
         if is_diagram(model):
+            reading.require_none(OF_A_DIAGRAM)
             if inputs:
                 raise sf.SymofrosError(
                     sf.Problem(
@@ -123,7 +127,7 @@ def simulate(
                     )
                 )
             viewing.check()
-            system = load(model, floating_base)
+            system = load(model, reading)
             run = _simulated(system, t_end, given, inputs, every, pace, stated, wanted)
             files = ([str(run.save(output))] if output else []) + view_options.record_run(run, viewing, system)
             if picture:
