@@ -9,13 +9,13 @@ import difflib
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from itertools import islice
+from itertools import chain, islice
 
 # Nobody reads more, and hostile files have millions.
 MAX_PROBLEMS = 100
 _CANDIDATES = 1000
-# Objects of equal problems that are named after the first.
-_NAMED = 3
+# So many problems that differ in the names of their objects alone are told as one, which names so many of the others.
+_ALIKE, _NAMED = 3, 3
 _QUOTED = re.compile(r"'[^']*'")
 
 
@@ -85,22 +85,27 @@ class Problem:
 
 
 def listed(problems: Sequence[Problem]) -> str:
-    """The text of problems; those that differ in nothing but the names of their objects are one, with their number."""
+    """The text of problems; several that differ in the names of their objects alone are one, with their number."""
     alike: dict[tuple[str, ...], list[Problem]] = {}
     for problem in problems:
         kind = _QUOTED.sub("'", problem.what), problem.found, problem.rule, problem.remedy
         alike.setdefault(kind, []).append(problem)
-    return "\n".join(map(_gathered, alike.values()))
+    told = (map(str, each) if len(each) < _ALIKE else [_gathered(each)] for each in alike.values())
+    return "\n".join(chain.from_iterable(told))
 
 
 def _gathered(alike: Sequence[Problem]) -> str:
     """The first of problems of one kind, with the number of the others and the first names among these."""
-    first, others = alike[0], dict.fromkeys(problem.what for problem in alike[1:])
-    if not others:
-        return str(first)
-    names = [next(iter(_QUOTED.findall(what)), what) for what in islice(others, _NAMED)]
-    shown = ", ".join(names) + (", …" if len(others) > _NAMED else "")
+    first, others = alike[0], alike[1:]
+    shown = ", ".join(map(_named, others[:_NAMED])) + (", …" if len(others) > _NAMED else "")
     return str(replace(first, what=f"{first.what}; likewise {len(others)} more: {shown}"))
+
+
+def _named(problem: Problem) -> str:
+    """The object of a problem, with its line."""
+    name = next(iter(_QUOTED.findall(problem.what)), problem.what)
+    line = problem.where.rpartition(":")[2]
+    return f"{name} (line {line})" if line.isdigit() else name
 
 
 def first_of(problems: Iterable[Problem]) -> list[Problem]:
