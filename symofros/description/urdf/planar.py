@@ -12,8 +12,8 @@ from symofros.description.values import Rotation, Vector
 def planar_frames(rotation: Rotation, axis: Vector) -> tuple[Rotation, Rotation | None]:
     """Rotation to P, and from the frame that the joint moves to the child; None where that is the child's own.
 
-    P is the joint's frame, turned so that its z lies along the axis: by the shortest turn, and about x where the axis
-    is opposite to z.
+    P is the joint's frame, turned so that its z lies along the axis: by the shortest turn, and after half a turn about
+    x where the axis points to below.
 
     Args:
         rotation: Rotation to the joint's frame, roll, pitch and yaw.
@@ -30,9 +30,9 @@ def planar_frames(rotation: Rotation, axis: Vector) -> tuple[Rotation, Rotation 
 
 
 def _turn_to(n: Array) -> Array:
-    """The shortest rotation (3, 3) that takes z to a unit vector (3,)."""
-    cosine = float(n[2])
-    if cosine <= -1.0 + 1e-12:  # Near the opposite of z the turn's axis is noise: the one about x is as short.
-        return np.diag([1.0, -1.0, -1.0]) @ (np.eye(3) if cosine <= -1.0 else _turn_to(np.diag([1.0, -1.0, -1.0]) @ n))
+    """A rotation (3, 3) that takes z to a unit vector (3,): the shortest, or after half a turn about x, from -z."""
+    if n[2] < 0.0:  # Near the opposite of z the axis of the shortest turn is noise.
+        half = np.diag([1.0, -1.0, -1.0])
+        return np.asarray(half @ _turn_to(half @ n))
     V = skew(np.array([-n[1], n[0], 0.0]))
-    return np.asarray(np.eye(3) + V + V @ V / (1.0 + cosine))
+    return np.asarray(np.eye(3) + V + V @ V / (1.0 + n[2]))

@@ -77,7 +77,7 @@ def driven(**limits: float) -> sf.System:
     ("limits", "said"),
     [
         ({"effort": 5.0}, "the effort of 's' exceeds its limits, -5 to 5, at t = 0.5"),
-        ({"velocity": 1.0}, "the speed of 's' exceeds its limits, -1 to 1, at t = 0.44"),
+        ({"velocity": 1.0}, "the speed of 's' exceeds its limits, -1 to 1, at t = 0.4"),
         ({"effort": 10.0, "velocity": 5.0}, ""),
         ({"effort": 0.0, "velocity": 0.0}, ""),  # As files of kinematics alone state it.
         ({}, ""),
