@@ -32,6 +32,7 @@ from symofros.description.system import System
 from symofros.diagrams.files import command as diagrams
 from symofros.diagrams.files.kind import is_diagram
 from symofros.simulation.progress import pace_of
+from symofros.simulation.results.plots import MOST_CURVES
 from symofros.simulation.stepping.methods import METHODS
 
 
@@ -59,7 +60,9 @@ def simulate(
     every: Annotated[
         float | None, typer.Option("--record", "--every", help="Record at this interval [s]; each step by default.")
     ] = None,
-    signals: Annotated[str, typer.Option(help="Of a diagram: BLOCK.PORT,... to save and plot.")] = "",
+    signals: Annotated[
+        str, typer.Option(help="What to plot: NAME,... of a model; of a diagram BLOCK.PORT,..., to save as well.")
+    ] = "",
     output: Annotated[Path | None, typer.Option("--output", "-o", help="Write .npz, .csv or .parquet.")] = None,
     picture: Annotated[
         str, typer.Option("--plot", "--picture", help="Write a picture: .png, .svg, .pdf; of a diagram also 'window'.")
@@ -131,8 +134,7 @@ def simulate(
             run = _simulated(system, t_end, given, inputs, every, pace, stated, wanted)
             files = ([str(run.save(output))] if output else []) + view_options.record_run(run, viewing, system)
             if picture:
-                run.plot().savefig(picture, dpi=120)
-                files.append(picture)
+                files.append(_drawn(run, names_of(signals) or [], picture))
             _tell(run, files, as_json)
             view_options.show_run(run, viewing, system)
             ok = run.outcome.ok
@@ -168,6 +170,16 @@ def _simulated(
         progress=progress,
         **settings,
     )
+
+
+def _drawn(run: sf.Trajectory, names: list[str], picture: str) -> str:
+    """Write a picture of a run, and say what it leaves out."""
+    run.plot(*names).savefig(picture, dpi=120)
+    count = len(names or run.model.names.q)
+    if count > MOST_CURVES:
+        told = f"{picture} shows the first {MOST_CURVES} of {count} coordinates: --signals NAME,... chooses others"
+        err.print(told, markup=False, highlight=False, soft_wrap=True)
+    return picture
 
 
 def _tell(run: sf.Trajectory, files: list[str], as_json: bool) -> None:

@@ -246,8 +246,11 @@ class Beam:
         self._set_stiffness(what)
         for label in ("frames", "loads", "waive"):
             object.__setattr__(self, label, tuple(getattr(self, label)))
-        given = {key: entries_of(listed) or [listed] for key, listed in pairs_of(self.shapes, f"{what}: shapes")}
-        shapes = tuple((key, tuple(_shape(x, f"{what}: {key}") for x in given[key])) for key in STRAINS if key in given)
+        given = dict(pairs_of(self.shapes, f"{what}: shapes"))
+        entries = {key: entries_of(listed) for key, listed in given.items()}
+        functions = {key: [given[key]] if listed is None else listed for key, listed in entries.items()}
+        known = [key for key in STRAINS if key in functions]
+        shapes = tuple((key, tuple(_shape(x, f"{what}: {key}") for x in functions[key])) for key in known)
         object.__setattr__(self, "shapes", shapes)
         choices = (
             ("family", self.family, FAMILIES),
