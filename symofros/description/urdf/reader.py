@@ -265,7 +265,7 @@ class _Importer:
             self.values.remarks.add("damping and friction ignored", "joint", name)
         mimic = element.first("mimic")
         if mimic is not None and not self.mimic:
-            text = "mimic ignored, the coordinate stays independent (sf.load(..., mimic=True) couples it)"
+            text = "mimic ignored, the coordinate stays independent (mimic=True of load, or --mimic, couples it)"
             self.values.remarks.add(text, "joint", name)
         elif mimic is not None:
             self.couple(mimic, name)
