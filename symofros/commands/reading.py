@@ -144,7 +144,7 @@ def reads_models(command: _Command) -> _Command:
     parameters = [parameter for parameter in signature.parameters.values() if parameter.name != PARAMETER]
     keyword = inspect.Parameter.KEYWORD_ONLY
     for name, (kind, option) in _OPTIONS.items():
-        default = False if kind is bool else []
+        default: Any = False if kind is bool else []
         parameters.append(inspect.Parameter(name, keyword, default=default, annotation=Annotated[kind, option]))
 
     @wraps(command)

@@ -67,8 +67,9 @@ def _collect(check: Callable[[str, object], None] | None, what: str, values: Any
     listed = entries_of(values)
     if listed is None:
         raise ArgumentError(Problem(f"{what} is not a list", shown(values), "it is a list", "put it in brackets"))
-    for i, value in enumerate(listed) if check is not None else ():
-        check(f"{what}[{i}]", value)
+    if check is not None:
+        for i, value in enumerate(listed):
+            check(f"{what}[{i}]", value)
     return tuple(listed)
 
 
@@ -131,7 +132,7 @@ def _holds_values(annotation: Any) -> bool:
 def _conversions(cls: type) -> dict[str, _Convert]:
     """Entry -> what converts its value, or refuses it."""
     hints = get_type_hints(cls)
-    stated = ((field.name, _conversion(field.name, hints[field.name])) for field in fields(cls) if field.init)  # type: ignore[arg-type]
+    stated = ((field.name, _conversion(field.name, hints[field.name])) for field in fields(cls) if field.init)
     return {name: convert for name, convert in stated if convert is not None}
 
 

@@ -152,7 +152,7 @@ class Rotation(metaclass=CheckedCalls):
     @staticmethod
     def matrix(rows: Sequence[Sequence[Any]]) -> Rotation:
         """Nine entries, row by row."""
-        return Rotation("matrix", [entry for row in _rows(rows, "rotation (matrix)") for entry in row])
+        return Rotation("matrix", tuple(entry for row in _rows(rows, "rotation (matrix)") for entry in row))
 
     @property
     def is_identity(self) -> bool:

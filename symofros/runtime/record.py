@@ -62,13 +62,13 @@ class JointLimit(NamedTuple):
 
     Attributes:
         of: What is limited: "q" a coordinate, "v" a speed, "u" the effort that an input is.
-        index: Its index in that vector.
+        entry: Its index in that vector.
         lower: Least value; infinite where there is none.
         upper: Greatest value; infinite where there is none.
     """
 
     of: Literal["q", "v", "u"]
-    index: int
+    entry: int
     lower: float
     upper: float
 

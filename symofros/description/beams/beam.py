@@ -249,8 +249,8 @@ class Beam:
         given = dict(pairs_of(self.shapes, f"{what}: shapes"))
         entries = {key: entries_of(listed) for key, listed in given.items()}
         functions = {key: [given[key]] if listed is None else listed for key, listed in entries.items()}
-        known = [key for key in STRAINS if key in functions]
-        shapes = tuple((key, tuple(_shape(x, f"{what}: {key}") for x in functions[key])) for key in known)
+        directions = [key for key in STRAINS if key in functions]
+        shapes = tuple((key, tuple(_shape(x, f"{what}: {key}") for x in functions[key])) for key in directions)
         object.__setattr__(self, "shapes", shapes)
         choices = (
             ("family", self.family, FAMILIES),

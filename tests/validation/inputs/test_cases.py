@@ -35,22 +35,22 @@ def test_a_package_that_is_not_there(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_files_and_names_can_be_mixed(tmp_path: Path) -> None:
     path = tmp_path / "arm.urdf"
-    cases = named([str(path), "ur5", "some.yaml"], floating_base=True)
+    cases = named([str(path), "ur5", "some.yaml"], ReadingOptions(floating_base=True))
     assert [case.label for case in cases] == ["arm", "ur5", "some"]
-    assert [case.floating_base for case in cases] == [True, False, False]
+    assert [case.reading.floating_base for case in cases] == [True, False, False]
 
 
 def test_files_of_one_name_are_told_apart() -> None:
-    assert [case.label for case in named(["a/arm.urdf", "b/arm.urdf"], False)] == ["a/arm.urdf", "b/arm.urdf"]
+    assert [case.label for case in named(["a/arm.urdf", "b/arm.urdf"])] == ["a/arm.urdf", "b/arm.urdf"]
 
 
 def test_the_same_model_twice_is_checked_once() -> None:
-    assert [case.label for case in named(["ur5", "a/arm.urdf", "ur5", "a/arm.urdf"], False)] == ["ur5", "arm"]
+    assert [case.label for case in named(["ur5", "a/arm.urdf", "ur5", "a/arm.urdf"])] == ["ur5", "arm"]
 
 
 def test_unknown_name() -> None:
     with pytest.raises(LookupError, match="did you mean 'panda'"):
-        named(["pandas"], False)
+        named(["pandas"])
 
 
 @pytest.mark.parametrize("floating_base", [False, True])

@@ -42,4 +42,4 @@ def _limits(resolved: Resolved, part: Part) -> Iterator[JointLimit]:
             first = {"q": layout.q[name].start - part.q.start, "v": layout.v[name].start - part.v.start}
             for limit in joint_limits(models.tree(resolved.pieces[name].block.mechanism())):
                 if limit.of in first:
-                    yield limit._replace(index=first[limit.of] + limit.index)
+                    yield limit._replace(entry=first[limit.of] + limit.entry)
