@@ -6,13 +6,45 @@ Every message names the object, what was found, the rule it breaks, and the reme
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from itertools import islice
+from dataclasses import dataclass, replace
+from itertools import chain, islice
 
 # Nobody reads more, and hostile files have millions.
 MAX_PROBLEMS = 100
 _CANDIDATES = 1000
+# So many problems that differ in the names of their objects alone are told as one, which names so many of the others.
+_ALIKE, _NAMED = 3, 3
+_QUOTED = re.compile(r"'[^']*'")
+
+
+@dataclass(frozen=True)
+class Argument:
+    """An argument of `sf.load` that a remedy proposes, which commands have as an option of the same meaning.
+
+    Attributes:
+        name: Name of the argument.
+        value: Value, or one of several; "" of one that is switched on.
+        key: Key of the value, of an argument that is a mapping.
+    """
+
+    name: str
+    value: str = ""
+    key: str = ""
+
+    @property
+    def call(self) -> str:
+        """The argument in Python."""
+        if not self.value:
+            return f"load(…, {self.name}=True)"
+        stated = f"{{{self.key!r}: {self.value!r}}}" if self.key else f"[{self.value!r}]"
+        return f"load(…, {self.name}={stated})"
+
+    def option(self, prefix: str) -> str:
+        """The option of a command, whose name begins with the prefix; one occurrence states one value."""
+        name = self.name.removesuffix("s") if self.key else self.name.replace("_", "-")
+        return " ".join(filter(None, (f"{prefix}{name}", f"{self.key}={self.value}" if self.key else self.value)))
 
 
 @dataclass(frozen=True)
@@ -26,6 +58,7 @@ class Problem:
         remedy: Remedy: the change to make.
         where: "file:line", or "" for an object built in Python.
         extra: Extra of this distribution whose package is not installed; "" where that is not the fault.
+        argument: Argument of `load` that the remedy states as it is written in Python.
     """
 
     what: str
@@ -34,6 +67,7 @@ class Problem:
     remedy: str = ""
     where: str = ""
     extra: str = ""
+    argument: Argument | None = None
 
     @classmethod
     def of_extra(cls, what: str, found: str, rule: str, extra: str, instead: str = "") -> Problem:
@@ -49,11 +83,45 @@ class Problem:
         remedy = f"pip install 'symofros[{extra}]'"
         return cls(what, found, rule, f"{remedy}, or {instead}" if instead else remedy, extra=extra)
 
+    def in_shell(self, prefix: str = "--") -> Problem:
+        """The same, its remedy with the option that a command has in the place of the argument.
+
+        Args:
+            prefix: Beginning of the names of the command's options.
+        """
+        if self.argument is None:
+            return self
+        return replace(self, remedy=self.remedy.replace(self.argument.call, self.argument.option(prefix)))
+
     def __str__(self) -> str:
         """The message: one line, then the parts that are given, indented."""
         head = f"{self.where}: {self.what}" if self.where else self.what
         parts = [("found", self.found), ("rule", self.rule), ("remedy", self.remedy)]
         return "\n".join([head, *(f"  {label + ':':<8}{text}" for label, text in parts if text)])
+
+
+def listed(problems: Sequence[Problem]) -> str:
+    """The text of problems; several that differ in the names of their objects alone are one, with their number."""
+    alike: dict[tuple[str, ...], list[Problem]] = {}
+    for problem in problems:
+        kind = _QUOTED.sub("'", problem.what), problem.found, problem.rule, problem.remedy
+        alike.setdefault(kind, []).append(problem)
+    told = (map(str, each) if len(each) < _ALIKE else [_gathered(each)] for each in alike.values())
+    return "\n".join(chain.from_iterable(told))
+
+
+def _gathered(alike: Sequence[Problem]) -> str:
+    """The first of problems of one kind, with the number of the others and the first names among these."""
+    first, others = alike[0], alike[1:]
+    shown = ", ".join(map(_named, others[:_NAMED])) + (", …" if len(others) > _NAMED else "")
+    return str(replace(first, what=f"{first.what}; likewise {len(others)} more: {shown}"))
+
+
+def _named(problem: Problem) -> str:
+    """The object of a problem, with its line."""
+    name = next(iter(_QUOTED.findall(problem.what)), problem.what)
+    line = problem.where.rpartition(":")[2]
+    return f"{name} (line {line})" if line.isdigit() else name
 
 
 def first_of(problems: Iterable[Problem]) -> list[Problem]:
@@ -83,7 +151,7 @@ class SymofrosError(Exception):
     def __init__(self, problems: Sequence[Problem] | Problem | str) -> None:
         stated = Problem(problems) if isinstance(problems, str) else problems
         self.problems: tuple[Problem, ...] = (stated,) if isinstance(stated, Problem) else tuple(stated)
-        super().__init__("\n".join(map(str, self.problems)))
+        super().__init__(listed(self.problems))
 
     @property
     def problem(self) -> Problem:
@@ -94,6 +162,10 @@ class SymofrosError(Exception):
     def extra(self) -> str:
         """The extra that is not installed, where that is all that is wrong; else ""."""
         return self.problem.extra if len(self.problems) == 1 else ""
+
+    def in_shell(self, prefix: str = "--") -> str:
+        """The message for who gave a command, whose options begin with the prefix."""
+        return listed([problem.in_shell(prefix) for problem in self.problems])
 
     def __reduce__(self) -> tuple[type[SymofrosError], tuple[tuple[Problem, ...]]]:
         """Pickle by the problems, so that the error crosses process borders whole."""

@@ -5,12 +5,14 @@ from __future__ import annotations
 import difflib
 import os
 from collections.abc import Collection, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 from symofros.base.arguments import checked
 from symofros.base.atomic import write_atomically
 from symofros.base.sources import Source
+from symofros.description.packages import Folders, Packages
 from symofros.description.reading import MODEL_SUFFIXES, USD_SUFFIXES, YAML_SUFFIXES, Reading, in_order
 from symofros.description.remarks import note
 from symofros.description.system import WAIVERS, System
@@ -24,6 +26,14 @@ from symofros.mechanics.topology.units import unit_problems
 
 _PATHS = "check the path; a relative one starts at the current folder"
 _READABLE = (*MODEL_SUFFIXES, ".xacro", ".world")
+_URDF, _SDF = (".urdf", ".xacro"), (".sdf", ".world")
+# Argument -> formats that have a use for it, their suffixes, what to do about another.
+_OF_FORMATS = {
+    "floating_base": ("URDF", _URDF, "give the base a free joint in the file"),
+    "mimic": ("URDF", _URDF, "leave it out"),
+    "arguments": ("xacro", (".xacro",), "leave it out"),
+    "packages": ("URDF, xacro, SDF and MJCF", (*_URDF, *_SDF, ".xml"), "leave it out, or put the files in one folder"),
+}
 
 
 @checked
@@ -35,8 +45,12 @@ def load(
     waive: Collection[str] = (),
     mimic: bool = False,
     arguments: Mapping[str, str] | None = None,
+    packages: Mapping[str, str | os.PathLike[str]] | None = None,
 ) -> System:
     """Read a description and check it.
+
+    Files that a description names are read from its own folder, or its package, and from neighbours of that which a
+    package.xml, model.config or model.sdf declares to be packages or models; `packages` adds to these.
 
     Args:
         path: Native YAML (.yaml, .yml), URDF (.urdf), xacro (.xacro; needs the package xacro), SDFormat (.sdf,
@@ -46,6 +60,8 @@ def load(
         waive: Checks that every body is allowed to fail (WAIVERS), such as "massless_tip".
         mimic: URDF only: couple joints that mimic others to them (`Coupling`); otherwise they stay independent.
         arguments: xacro only: values of its <xacro:arg>.
+        packages: Name -> further folder that the description's files may be read from: packages of xacro and URDF by
+            their names, models of SDFormat or folders that hold some; of MJCF under any name. Not for YAML and USD.
 
     Returns:
         The system; its `notes` say what an importer ignored or changed, where units of formulas do not fit, and which
@@ -54,24 +70,43 @@ def load(
     Raises:
         DescriptionError: With every problem of the file and of the mechanism it describes.
     """
-    return load_with_sources(path, floating_base, snap_tol, waive, mimic, arguments)[0]
+    asked = Asked(floating_base, snap_tol, mimic, arguments or {}, packages or {})
+    return _checked(_waived(_read(Path(path), asked), waive))[0]
+
+
+@dataclass(frozen=True)
+class Asked:
+    """How a file is to be read, as in `load`."""
+
+    floating_base: bool = False
+    snap_tol: float = SNAP_TOL
+    mimic: bool = False
+    arguments: Mapping[str, str] = field(default_factory=dict)
+    packages: Folders = field(default_factory=dict)
 
 
 def load_with_sources(
-    path: str | os.PathLike[str],
-    floating_base: bool = False,
-    snap_tol: float = SNAP_TOL,
-    waive: Collection[str] = (),
-    mimic: bool = False,
-    arguments: Mapping[str, str] | None = None,
+    path: str | os.PathLike[str], waive: Collection[str] = (), **asked: Any
 ) -> tuple[System, tuple[Source, ...]]:
     """The system of `load`, and all files that it was made of; none where a package reads them, which does not tell.
+
+    Args:
+        path: The file.
+        waive: As of `load`.
+        asked: Fields of `Asked`.
 
     Raises:
         DescriptionError: As for `load`.
     """
-    file = Path(path)
-    reading = _waived(_read(file, floating_base, snap_tol, mimic, arguments or {}), waive)
+    return _checked(_waived(_read(Path(path), Asked(**asked)), waive))
+
+
+def _checked(reading: Reading) -> tuple[System, tuple[Source, ...]]:
+    """What was read, if it is a mechanism.
+
+    Raises:
+        DescriptionError: With every problem of the file and of the mechanism.
+    """
     problems = find_problems(reading.system, reading.broken) if reading.system is not None else []
     if reading.problems or problems or reading.system is None:
         raise DescriptionError(in_order([*reading.problems, *problems]))
@@ -97,46 +132,53 @@ def _waived(reading: Reading, waive: Collection[str]) -> Reading:
     return replace(reading, system=replace(reading.system, bodies=bodies))
 
 
-def _read(file: Path, floating_base: bool, snap_tol: float, mimic: bool, arguments: Mapping[str, str]) -> Reading:
+def _read(file: Path, asked: Asked) -> Reading:
     if file.is_dir():
         raise DescriptionError(_folder(file))
     if file.suffix or file.exists():
         _refuse_suffix(file, _READABLE, "read")
     if not file.exists():
         raise DescriptionError(_missing(file))
-    if file.suffix.lower() == ".urdf":
-        return _accept_inertias(read_urdf(file, floating_base=floating_base, snap_tol=snap_tol, mimic=mimic))
-    if file.suffix.lower() == ".xacro":
-        from symofros.description.urdf.xacro_files import expanded
+    suffix = file.suffix.lower()
+    _refuse_idle(file, suffix, asked)
+    packages, snap_tol = Packages(file, asked.packages), asked.snap_tol
+    if suffix in _URDF:
+        text = None
+        if suffix == ".xacro":
+            from symofros.description.urdf.xacro_files import expanded
 
-        text = expanded(file, arguments)
-        reading = read_urdf(file, floating_base=floating_base, snap_tol=snap_tol, mimic=mimic, text=text)
+            text = expanded(file, asked.arguments, packages)
+        base, mimic = asked.floating_base, asked.mimic
+        reading = read_urdf(file, floating_base=base, snap_tol=snap_tol, mimic=mimic, text=text, packages=packages)
         return _accept_inertias(reading)
-    if floating_base:
-        raise DescriptionError(
-            Problem(
-                "floating_base applies to URDF files only",
-                f"'{file}'",
-                "other descriptions state their joints",
-                "give the base a free joint in the file",
-            )
-        )
     # A reader of another format is not loaded with the one that is asked for: pydantic alone takes a fifth of a second.
-    if file.suffix.lower() == ".xml":
+    if suffix == ".xml":
         from symofros.description.mjcf.reader import read_mjcf
 
-        return _accept_inertias(read_mjcf(file, snap_tol=snap_tol))
-    if file.suffix.lower() in (".sdf", ".world"):
+        return _accept_inertias(read_mjcf(file, snap_tol=snap_tol, packages=packages))
+    if suffix in _SDF:
         from symofros.description.sdf.reader import read_sdf
 
-        return _accept_inertias(read_sdf(file, snap_tol=snap_tol))
-    if file.suffix.lower() in USD_SUFFIXES:
+        return _accept_inertias(read_sdf(file, snap_tol=snap_tol, packages=packages))
+    if suffix in USD_SUFFIXES:
         from symofros.description.usd.reader import read_usd
 
         return _accept_inertias(read_usd(file, snap_tol=snap_tol))
     from symofros.description.yaml.files import read_yaml
 
     return read_yaml(file)
+
+
+def _refuse_idle(file: Path, suffix: str, asked: Asked) -> None:
+    """Refuse arguments that the file's format has no use for.
+
+    Raises:
+        DescriptionError: There is one.
+    """
+    for name, (formats, suffixes, remedy) in _OF_FORMATS.items():
+        if getattr(asked, name) and suffix not in suffixes:
+            rule = "other descriptions state it themselves, or have no such thing"
+            raise DescriptionError(Problem(f"{name} applies to {formats} files only", f"'{file}'", rule, remedy))
 
 
 @checked

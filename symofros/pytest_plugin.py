@@ -36,6 +36,20 @@ def pytest_addoption(parser: Any) -> None:
     group.addoption("--symofros-tier", choices=TIERS, default="standard", help="how much is checked (standard)")
     group.addoption("--symofros-floating-base", action="store_true", help="put a free joint under the root of URDFs")
     group.addoption(
+        "--symofros-waive",
+        action="append",
+        metavar="CHECK",
+        default=[],
+        help="a check that every body may fail, such as massless_tip; repeatable",
+    )
+    group.addoption(
+        "--symofros-package",
+        action="append",
+        metavar="NAME=FOLDER",
+        default=[],
+        help="a further folder that models' files may be read from, by the name they give it; repeatable",
+    )
+    group.addoption(
         "--symofros-baseline",
         metavar="FILE",
         help="a check.json of before: fail where a cell is less accurate, or slower if it holds speeds",

@@ -262,9 +262,16 @@ def test_sympy_is_at_the_doors_only() -> None:
 
 
 # What the harness, as any tool beside the package, may import of it: the rest may change without notice.
-# Its command line is one program with the package's, and refuses in the same words.
+# Its command line is one program with the package's: the same words of refusal, the same options of reading.
 # Its own name in a process is told by the package, which starts it.
-PUBLIC = {"symofros", "symofros.blocks", "symofros.tools", "symofros.commands.grammar", "symofros.harness"}
+PUBLIC = {
+    "symofros",
+    "symofros.blocks",
+    "symofros.tools",
+    "symofros.commands.grammar",
+    "symofros.commands.reading",
+    "symofros.harness",
+}
 PACKAGE_MODULES = {".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__") for path in SOURCES}
 
 

@@ -43,7 +43,8 @@ def run_case(case: Case, settings: Settings) -> ModelResult:
     except (sf.SymofrosError, OSError, UnicodeDecodeError) as error:
         if isinstance(error, sf.SymofrosError) and error.extra:
             return absent(case.label, stage, f"{error.problem.what}; {error.problem.remedy}")
-        return failed(case.label, stage, without_folder(str(error), case.path))
+        said = error.in_shell(case.reading.prefix) if isinstance(error, sf.SymofrosError) else str(error)
+        return failed(case.label, stage, without_folder(said, case.path))
     except Exception as error:  # An engine's or our own fault, of any kind: one row of the table, with its place.
         place = traceback.extract_tb(error.__traceback__)[-1]
         where = f"{Path(place.filename).name}:{place.lineno}, in {place.name}"

@@ -12,7 +12,7 @@ import numbers
 import os
 import types
 from abc import ABCMeta
-from collections.abc import Callable, Collection, Hashable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Hashable, Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass, fields
 from functools import cache, wraps
 from pathlib import Path
@@ -132,15 +132,49 @@ def bound(
         raise _misfit(title, signature, str(error), kwargs) from None
 
 
+def checker_of(annotation: Any) -> Callable[[str, object], None] | None:
+    """What refuses values that an annotation does not allow, given what they are; None of one that is not judged.
+
+    The function raises ArgumentError.
+    """
+    kind = _kind(annotation)
+    if kind is None:
+        return None
+
+    def check(what: str, value: object) -> None:
+        if not kind.allows(value):
+            raise _refusal(what, value, kind)
+
+    return check
+
+
 def check_argument(what: str, value: object, annotation: Any) -> None:
     """Refuse a value that an annotation does not allow.
 
     Raises:
         ArgumentError: It is another.
     """
-    kind = _kind(annotation)
-    if kind is not None and not kind.allows(value):
-        raise _refusal(what, value, kind)
+    check = checker_of(annotation)
+    if check is not None:
+        check(what, value)
+
+
+def shown(value: object) -> str:
+    """Type and beginning of a value, of which some can't be written: integers of thousands of digits, odd objects."""
+    try:
+        return f"{type(value).__name__} {value!r:.60}"
+    except Exception:  # Whatever its own method raises.
+        return f"{type(value).__name__}, which can't be written"
+
+
+def entries_of(value: Any) -> list[Any] | None:
+    """The entries of a list; None of a text, of what has no order, and of what has no entries."""
+    if isinstance(value, str | bytes | Mapping | Set) or not isinstance(value, Iterable):
+        return None
+    try:
+        return list(value)
+    except TypeError:  # An array without dimensions.
+        return None
 
 
 def _refusal(what: str, value: object, kind: _Kind) -> ArgumentError:
@@ -148,8 +182,7 @@ def _refusal(what: str, value: object, kind: _Kind) -> ArgumentError:
     if entry is not None:
         name, part, wanted = entry
         return _refusal(f"{what}{name}", part, wanted)
-    stated = f"{type(value).__name__} {value!r:.60}"
-    return ArgumentError(Problem(f"{what} is not {kind.noun}", stated, f"it is {kind.noun}", kind.remedy(value)))
+    return ArgumentError(Problem(f"{what} is not {kind.noun}", shown(value), f"it is {kind.noun}", kind.remedy(value)))
 
 
 def _misfit(name: str, signature: inspect.Signature, fault: str, given: Mapping[str, object]) -> ArgumentError:

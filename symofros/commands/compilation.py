@@ -12,6 +12,7 @@ from symofros.base.functions import DEFAULT_FUNCTIONS
 from symofros.base.garbage import collect_rarely
 from symofros.base.options import Options
 from symofros.base.sources import Source
+from symofros.commands.reading import ReadingOptions
 from symofros.commands.shared import refuse, refusing_descriptions
 from symofros.compiler import Compilation, inconsistencies
 from symofros.errors import SymofrosError
@@ -25,7 +26,7 @@ from symofros.runtime.build.toolchain import find_toolchain
 
 def compile_description(
     model: Path,
-    floating_base: bool,
+    reading: ReadingOptions,
     functions: tuple[str, ...] | None,
     frames: str,
     request: str,
@@ -35,7 +36,7 @@ def compile_description(
 
     Args:
         model: The description.
-        floating_base: Whether a URDF's root link gets a free joint.
+        reading: How the description is read.
         functions: Functions of one library; None: the default ones, each in its own.
         frames: Frames of frame functions, comma-separated; all by default.
         request: All that was asked for, as `recall_prepared` has it.
@@ -48,7 +49,7 @@ def compile_description(
         typer.Exit: The description or the request is refused, which is said.
     """
     with refusing_descriptions(model):
-        system, sources = load_with_sources(model, floating_base)
+        system, sources = load_with_sources(model, **reading.keywords)
     collect_rarely()
     options = Options(functions or DEFAULT_FUNCTIONS, tuple(frames.split(",")) if frames else None)
     start = time.perf_counter()

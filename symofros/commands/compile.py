@@ -10,15 +10,18 @@ from typing import Annotated, Any
 import typer
 
 from symofros.base.functions import DEFAULT_FUNCTIONS
-from symofros.commands.shared import AsJson, Floating, ModelPath
+from symofros.commands.reading import ReadingOptions, reads_models
+from symofros.commands.shared import AsJson, ModelPath
 from symofros.errors import SymofrosError
 from symofros.runtime.build.prepared import recall_prepared
 from symofros.runtime.build.toolchain import find_toolchain
 
 
+@reads_models
 def compile_command(
     model: ModelPath,
-    floating_base: Floating = False,
+    *,
+    reading: ReadingOptions,
     output: Annotated[
         Path | None, typer.Option("--output", "-o", help="Also write NAME.c and symofros_model.h to this folder.")
     ] = None,
@@ -34,7 +37,7 @@ def compile_command(
 ) -> None:
     """Generate and compile a model; it is then in the cache."""
     names = tuple(functions.split(",")) if functions else DEFAULT_FUNCTIONS
-    request = repr((floating_base, functions, frames))
+    request = repr((reading, functions, frames))
     start = time.perf_counter()
     name = _known_name(model, request) if output is None else None
     result: dict[str, Any] = {"name": name, "functions": names, "seconds": time.perf_counter() - start}
@@ -43,7 +46,7 @@ def compile_command(
         from symofros.commands.compilation import compile_description
 
         chosen = names if functions or frames else None
-        result |= compile_description(model, floating_base, chosen, frames, request, output)
+        result |= compile_description(model, reading, chosen, frames, request, output)
     if as_json:
         print(json.dumps(result, indent=1))
         return

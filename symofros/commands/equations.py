@@ -7,13 +7,16 @@ from typing import Annotated
 import typer
 
 import symofros as sf
-from symofros.commands.shared import Floating, ModelPath, load, refuse
+from symofros.commands.reading import ReadingOptions, reads_models
+from symofros.commands.shared import ModelPath, load, refuse
 from symofros.commands.terminal import err
 
 
+@reads_models
 def equations(
     model: ModelPath,
-    floating_base: Floating = False,
+    *,
+    reading: ReadingOptions,
     latex: Annotated[bool, typer.Option("--latex", help="As LaTeX.")] = False,
     numpy: Annotated[bool, typer.Option("--numpy", help="As a Python function of NumPy arrays.")] = False,
     recursion: Annotated[
@@ -24,7 +27,7 @@ def equations(
     if latex + numpy + recursion > 1:
         err.print("equations: one form at a time\n  rule:   one of --latex, --numpy, --recursion", markup=False)
         raise typer.Exit(2)
-    readable = sf.equations(load(model, floating_base))
+    readable = sf.equations(load(model, reading))
     try:
         if recursion:
             text = readable.recursion()

@@ -70,7 +70,9 @@ class _AsWritten:
         self._kind = kind
 
     def coerce(self, value: Any, param: Any, ctx: Any) -> Any:
-        """The value; None where there is none."""
+        """The value; None where there is none, and an empty list of a parameter that is repeated."""
+        if self._kind is list:
+            return [*(value or ())]
         return None if value is None else self._kind(value)
 
 
@@ -84,7 +86,8 @@ def _take_as_written(command: Any, context: Any) -> None:
     for param in command.get_params(context):
         descriptor = getattr(param, "type_descriptor", None)
         kind, stated = getattr(descriptor, "annotation", None), getattr(descriptor, "parameter_info", None)
-        if kind in (bool, str, Path) and not any(getattr(stated, rule, None) for rule in _RULES_OF_VALUES):
+        kind = list if kind == list[str] else kind
+        if kind in (bool, str, Path, list) and not any(getattr(stated, rule, None) for rule in _RULES_OF_VALUES):
             param._runtime_param = _AsWritten(kind)
 
 

@@ -12,7 +12,8 @@ from rich.tree import Tree
 import symofros as sf
 from symofros.base.functions import DEFAULT_FRAME_FUNCTIONS, DEFAULT_FUNCTIONS
 from symofros.commands.details import details, frames_line, tables
-from symofros.commands.shared import AsJson, FilePath, Floating, Network, load, refuse
+from symofros.commands.reading import ReadingOptions, reads_models
+from symofros.commands.shared import OF_A_DIAGRAM, AsJson, FilePath, Network, load, refuse
 from symofros.commands.terminal import out
 from symofros.diagrams.files.kind import is_diagram
 from symofros.mechanics.topology.tree import BASE, SpanningTree, build_tree
@@ -21,9 +22,11 @@ if TYPE_CHECKING:
     from symofros.generator.passes.count import Operations
 
 
+@reads_models
 def info(
     model: FilePath,
-    floating_base: Floating = False,
+    *,
+    reading: ReadingOptions,
     network: Network = False,
     operations: Annotated[
         bool, typer.Option("--operations", help="Also derive every function and count its operations.")
@@ -32,6 +35,7 @@ def info(
 ) -> None:
     """Show a model: tree, sizes, masses, limits, parameters; or a diagram: blocks, rates, order."""
     if is_diagram(model):
+        reading.require_none(OF_A_DIAGRAM)
         from symofros.diagrams.files import command as diagrams  # Diagrams load the library of blocks.
 
         try:
@@ -39,7 +43,7 @@ def info(
         except sf.SymofrosError as error:
             raise refuse(error) from None
         return
-    system = load(model, floating_base)
+    system = load(model, reading)
     tree = build_tree(system)
     counts = _counts(system, tree.frames[-1].name) if operations else {}
     names = tree.coordinates

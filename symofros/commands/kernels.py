@@ -11,7 +11,8 @@ from rich.table import Table
 
 import symofros as sf
 from symofros.base.functions import FUNCTIONS
-from symofros.commands.shared import AsJson, Floating, ModelPath, load, names_of, refuse
+from symofros.commands.reading import ReadingOptions, reads_models
+from symofros.commands.shared import AsJson, ModelPath, load, names_of, refuse
 from symofros.commands.terminal import out
 from symofros.runtime.cuda.figures import KernelFigures, figures_of, present
 
@@ -20,14 +21,16 @@ _CAPTION = (
 )
 
 
+@reads_models
 def kernels(
     model: ModelPath,
+    *,
+    reading: ReadingOptions,
     functions: Annotated[str, typer.Option(help="Functions, comma-separated; of the last frame.")] = "dynamics",
     architecture: Annotated[
         str, typer.Option(help="Such as sm_80; this machine's, or sm_90 without a graphics processor.")
     ] = "",
     bandwidth: Annotated[float, typer.Option(help="Bandwidth of the memory [GB/s].")] = 3350.0,
-    floating_base: Floating = False,
     as_json: AsJson = False,
 ) -> None:
     """Compile kernels: registers, spills, what the memory bounds them by; timed where there is a graphics processor."""
@@ -35,7 +38,7 @@ def kernels(
     wanted = architecture or (device.architecture if device is not None else "sm_90")
     rows: list[KernelFigures] = []
     try:
-        compiled = sf.compile(load(model, floating_base))
+        compiled = sf.compile(load(model, reading))
         for name in names_of(functions) or []:
             frame = compiled.names.frames[-1] if name in FUNCTIONS and FUNCTIONS[name].of_frame else ""
             for precision in ("double", "single"):

@@ -12,10 +12,11 @@ from rich.table import Table
 
 import symofros as sf
 from symofros.commands import view_options
+from symofros.commands.reading import ReadingOptions, reads_models
 from symofros.commands.shared import (
+    OF_A_DIAGRAM,
     AsJson,
     FilePath,
-    Floating,
     Network,
     assignments,
     load,
@@ -31,13 +32,16 @@ from symofros.description.system import System
 from symofros.diagrams.files import command as diagrams
 from symofros.diagrams.files.kind import is_diagram
 from symofros.simulation.progress import pace_of
+from symofros.simulation.results.plots import MOST_CURVES
 from symofros.simulation.stepping.methods import METHODS
 
 
+@reads_models
 def simulate(
     model: FilePath,
     t_end: Annotated[float | None, typer.Argument(help="Where to end [s]; 1, or what the diagram says.")] = None,
-    floating_base: Floating = False,
+    *,
+    reading: ReadingOptions,
     method: Annotated[str | None, typer.Option(help=f"{', '.join(METHODS)}; rk4 by default.")] = None,
     dt: Annotated[float | None, typer.Option(help="Step [s]; the first one of adaptive methods.")] = None,
     rtol: Annotated[float | None, typer.Option(help="Relative error of a step, adaptive methods.")] = None,
@@ -56,7 +60,9 @@ def simulate(
     every: Annotated[
         float | None, typer.Option("--record", "--every", help="Record at this interval [s]; each step by default.")
     ] = None,
-    signals: Annotated[str, typer.Option(help="Of a diagram: BLOCK.PORT,... to save and plot.")] = "",
+    signals: Annotated[
+        str, typer.Option(help="What to plot: NAME,... of a model; of a diagram BLOCK.PORT,..., to save as well.")
+    ] = "",
     output: Annotated[Path | None, typer.Option("--output", "-o", help="Write .npz, .csv or .parquet.")] = None,
     picture: Annotated[
         str, typer.Option("--plot", "--picture", help="Write a picture: .png, .svg, .pdf; of a diagram also 'window'.")
@@ -92,6 +98,7 @@ def simulate(
     viewing = view_options.ViewOptions(view, view_block, record_view, exaggeration, interactive)
     try:
         if is_diagram(model):
+            reading.require_none(OF_A_DIAGRAM)
             if inputs:
                 raise sf.SymofrosError(
                     sf.Problem(
@@ -123,12 +130,11 @@ def simulate(
                     )
                 )
             viewing.check()
-            system = load(model, floating_base)
+            system = load(model, reading)
             run = _simulated(system, t_end, given, inputs, every, pace, stated, wanted)
             files = ([str(run.save(output))] if output else []) + view_options.record_run(run, viewing, system)
             if picture:
-                run.plot().savefig(picture, dpi=120)
-                files.append(picture)
+                files.append(_drawn(run, names_of(signals) or [], picture))
             _tell(run, files, as_json)
             view_options.show_run(run, viewing, system)
             ok = run.outcome.ok
@@ -164,6 +170,16 @@ def _simulated(
         progress=progress,
         **settings,
     )
+
+
+def _drawn(run: sf.Trajectory, names: list[str], picture: str) -> str:
+    """Write a picture of a run, and say what it leaves out."""
+    run.plot(*names).savefig(picture, dpi=120)
+    count = len(names or run.model.names.q)
+    if count > MOST_CURVES:
+        told = f"{picture} shows the first {MOST_CURVES} of {count} coordinates: --signals NAME,... chooses others"
+        err.print(told, markup=False, highlight=False, soft_wrap=True)
+    return picture
 
 
 def _tell(run: sf.Trajectory, files: list[str], as_json: bool) -> None:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 import symofros as sf
+from symofros.commands.reading import ReadingOptions, pairs
 
 if TYPE_CHECKING:
     from symofros.description.system import System
@@ -20,15 +21,16 @@ if TYPE_CHECKING:
 ModelPath = Annotated[Path, typer.Argument(help="A model: .yaml, .urdf, .sdf, .xml (MJCF) or .usd", show_default=False)]
 FilePath = Annotated[Path, typer.Argument(help="A model, or a diagram's .yaml.", show_default=False)]
 Network = Annotated[bool, typer.Option("--network", help="Let a diagram's blocks reach other machines.")]
-Floating = Annotated[bool, typer.Option("--floating-base", help="Put a free joint under a URDF's root link.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Machine-readable output.")]
 BAD_INPUT = 2
+# Why options of reading are refused.
+OF_A_DIAGRAM = "the file is a diagram, which states how its models are read"
 
 
-def load(path: Path, floating_base: bool) -> System:
+def load(path: Path, reading: ReadingOptions) -> System:
     """Read a model; problems are reported, all at once, and end the command."""
     with refusing_descriptions(path):
-        return sf.load(path, floating_base=floating_base)
+        return sf.load(path, **reading.keywords)
 
 
 @contextmanager
@@ -38,7 +40,7 @@ def refusing_descriptions(path: Path) -> Iterator[None]:
         yield
     except sf.DescriptionError as error:
         count = len(error.problems)
-        _complain(str(error), f"{path.name}: {count} problem{'s' * (count > 1)}")
+        _complain(error.in_shell(), f"{path.name}: {count} problem{'s' * (count > 1)}")
         raise typer.Exit(BAD_INPUT) from None
 
 
@@ -47,7 +49,7 @@ def refuse(error: Exception) -> typer.Exit:
     if isinstance(error, OSError) and error.filename is not None:
         what, rule = f"'{error.filename}' can't be used", "files and folders are there, and open to whoever runs this"
         error = sf.SymofrosError(sf.Problem(what, error.strerror or str(error), rule, "check the path, and its rights"))
-    _complain(str(error))
+    _complain(error.in_shell() if isinstance(error, sf.SymofrosError) else str(error))
     return typer.Exit(BAD_INPUT)
 
 
@@ -60,14 +62,10 @@ def _complain(*lines: str) -> None:
 
 def assignments(given: list[str], what: str) -> dict[str, str]:
     """NAME=TEXT options as a mapping."""
-    assigned = {}
-    for item in given:
-        name, sign, text = item.partition("=")
-        if not sign or not name or not text:
-            fault = sf.Problem(f"{what} '{item}'", "no name and value", f"{what} NAME=VALUE", "for example q1=0.5")
-            raise refuse(sf.SymofrosError(fault))
-        assigned[name.strip()] = text.strip()
-    return assigned
+    try:
+        return pairs(given, what, "q1=0.5")
+    except sf.SymofrosError as error:
+        raise refuse(error) from None
 
 
 def number(name: str, text: str) -> float:

@@ -9,7 +9,8 @@ import typer
 from rich.table import Table
 
 import symofros as sf
-from symofros.commands.shared import AsJson, Floating, ModelPath, assignments, load, number, refuse, shown
+from symofros.commands.reading import ReadingOptions, reads_models
+from symofros.commands.shared import AsJson, ModelPath, assignments, load, number, refuse, shown
 from symofros.commands.states import stated_state
 from symofros.commands.terminal import err, out
 from symofros.compiler import compile_system
@@ -17,9 +18,11 @@ from symofros.runtime.beams import BEAM_LIMIT
 from symofros.simulation.analysis.equilibrium import Equilibrium
 
 
+@reads_models
 def equilibrium(
     model: ModelPath,
-    floating_base: Floating = False,
+    *,
+    reading: ReadingOptions,
     given: Annotated[
         list[str],
         typer.Option(
@@ -34,7 +37,7 @@ def equilibrium(
     as_json: AsJson = False,
 ) -> None:
     """Find where a model rests, or moves steadily, and the inputs and efforts that hold it there."""
-    system = load(model, floating_base)
+    system = load(model, reading)
     try:
         compiled, q, v = stated_state(compile_system(system), assignments(given, "--set"))
         u = {name: number(name, text) for name, text in assignments(inputs, "--input").items()}

@@ -2,7 +2,28 @@
 
 from __future__ import annotations
 
-from rich.console import Console
+import os
 
-out = Console()
-err = Console(stderr=True)
+from rich.console import Console, ConsoleDimensions
+
+# Width of tables in a pipe or file [characters], which no window bounds: cells are as wide as what is in them.
+_PIPED = 400
+
+
+class _Output(Console):
+    """A console that lays out as wide as its window, or as its text where there is none."""
+
+    @property
+    def size(self) -> ConsoleDimensions:
+        """Columns and rows: those of the window, or as the environment has them."""
+        window = super().size
+        return window if self.is_terminal or "COLUMNS" in os.environ else ConsoleDimensions(_PIPED, window.height)
+
+    @size.setter
+    def size(self, new_size: tuple[int, int]) -> None:
+        self._width, self._height = new_size
+
+
+# Names and units have brackets, which markup would take for styles.
+out = _Output(markup=False)
+err = _Output(stderr=True, markup=False)

@@ -3,23 +3,38 @@
 from __future__ import annotations
 
 import json
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, cast
 
 import typer
 
 import symofros as sf
-from symofros.commands.shared import AsJson, FilePath, Floating, ModelPath, assignments, load, names_of, number, refuse
+from symofros.commands.reading import ReadingOptions, reads_models
+from symofros.commands.shared import (
+    OF_A_DIAGRAM,
+    AsJson,
+    FilePath,
+    ModelPath,
+    assignments,
+    load,
+    names_of,
+    number,
+    refuse,
+)
 from symofros.commands.terminal import out
+from symofros.description.reading import YAML_SUFFIXES
 from symofros.diagrams.files.kind import is_diagram
 from symofros.exports.exporting import TARGETS
 from symofros.studio.advice.report import table_of
 
 
+@reads_models
 def advise(
     model: ModelPath,
     scene: Annotated[Path, typer.Option(help="The scene, a YAML file (docs/advise.md).", show_default=False)],
-    floating_base: Floating = False,
+    *,
+    reading: ReadingOptions,
     tolerance: Annotated[
         list[str], typer.Option(help="NUMBER for every output, or OUTPUT=NUMBER; in place of the scene's.")
     ] = [],  # noqa: B006
@@ -27,7 +42,7 @@ def advise(
     as_json: AsJson = False,
 ) -> None:
     """Find the cheapest model that keeps a scene's tolerance, each choice verified by simulation."""
-    system = load(model, floating_base)
+    system = load(model, reading)
     try:
         advice = sf.advise(system, sf.load_scene(scene), _tolerances(tolerance))
         if output:
@@ -51,11 +66,13 @@ def _tolerances(given: list[str]) -> float | dict[str, float] | None:
     return {name: number(name, text) for name, text in assignments(given, "--tolerance").items()} or None
 
 
+@reads_models
 def export_command(
     model: FilePath,
     target: Annotated[str, typer.Option("--target", "-t", help=", ".join(TARGETS))],
     output: Annotated[Path, typer.Option("--output", "-o", help="Folder: new, empty, or of an earlier export.")],
-    floating_base: Floating = False,
+    *,
+    reading: ReadingOptions,
     name: Annotated[str | None, typer.Option(help="Of files and functions; made of the model's by default.")] = None,
     frames: Annotated[str | None, typer.Option(help="Frames of kinematics, comma-separated; all by default.")] = None,
     functions: Annotated[
@@ -75,7 +92,9 @@ def export_command(
     """Write a model for C, Matlab, Octave, Simulink, FMI, WebAssembly, or as URDF or MJCF; a diagram as a C program."""
     start = {key: number(key, text) for key, text in assignments(given, "--set").items()}
     try:
-        described = sf.load_diagram(model) if is_diagram(model) else load(model, floating_base)
+        if is_diagram(model):
+            reading.require_none(OF_A_DIAGRAM)
+        described = sf.load_diagram(model) if is_diagram(model) else load(model, reading)
         done = sf.export(
             described,
             cast(Any, target),
@@ -109,8 +128,11 @@ def export_command(
         out.print(f"note: {note}", markup=False, highlight=False, soft_wrap=True)
 
 
+@reads_models
 def edit(
     model: Annotated[Path | None, typer.Argument(help="A model; a new one if not given.")] = None,
+    *,
+    reading: ReadingOptions,
     port: Annotated[int, typer.Option(help="Of the local page; any free one by default.")] = 0,
     browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page.")] = True,
     token: Annotated[str | None, typer.Option(help="A fixed one, for tests; drawn at random by default.")] = None,
@@ -124,6 +146,9 @@ def edit(
         missing = f"no module {error.name}", "the editor is an extra", "gui"
         raise refuse(sf.SymofrosError(sf.Problem.of_extra("edit: a package is not installed", *missing))) from None
     try:
-        serve(model, port, token, browser, lambda url: out.print(url, markup=False, highlight=False, soft_wrap=True))
+        if model is None or model.suffix.lower() in YAML_SUFFIXES:
+            reading.require_none("a native file is opened as it stands")
+        show = partial(out.print, markup=False, highlight=False, soft_wrap=True)
+        serve(model, port, token, browser, show, reading.keywords)
     except (sf.SymofrosError, OSError) as error:
         raise refuse(error) from None

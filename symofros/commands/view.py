@@ -8,14 +8,18 @@ from typing import Annotated
 import typer
 
 import symofros as sf
-from symofros.commands.shared import BAD_INPUT, load
+from symofros.commands.reading import ReadingOptions, reads_models
+from symofros.commands.shared import ModelPath, load, refuse
 from symofros.errors import Problem
 from symofros.studio.viewer.drawing.poses import Mechanism
 from symofros.studio.viewer.playing.motion import read_motion
 
 
+@reads_models
 def view(
-    model: Annotated[Path, typer.Argument(help="A model: .yaml, .urdf, .sdf, .xml (MJCF) or .usd", show_default=False)],
+    model: ModelPath,
+    *,
+    reading: ReadingOptions,
     trajectory: Annotated[
         Path | None, typer.Option("--trajectory", help="A motion to play: .npz, .csv or .parquet.")
     ] = None,
@@ -28,20 +32,16 @@ def view(
     port: Annotated[int, typer.Option(help="Of the page; 0 for any free one.")] = 8080,
     host: Annotated[str, typer.Option(help="Address to serve at; this machine only by default.")] = "127.0.0.1",
     browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Whether to open the page.")] = True,
-    floating_base: Annotated[
-        bool, typer.Option("--floating-base", help="Put a free joint under a URDF's root link.")
-    ] = False,
 ) -> None:
     """Show a model in three dimensions in the browser; play or record a motion (docs/view.md)."""
-    system = load(model, floating_base)
+    system = load(model, reading)
     try:
         if output is not None:
             typer.echo(f"wrote {_record(system, trajectory, output, exaggeration, speed)}")
         else:
             _serve(system, trajectory, exaggeration, speed, host, port, browser)
     except (sf.SymofrosError, OSError) as error:
-        typer.echo(str(error), err=True)
-        raise typer.Exit(BAD_INPUT) from None
+        raise refuse(error) from None
 
 
 def _record(system: sf.System, trajectory: Path | None, output: Path, exaggeration: float, speed: float) -> Path:

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
-from symofros.description.entries import refuses_unknown_entries
+from symofros.description.entries import pairs_of, refuses_unknown_entries
 from symofros.description.forces import Anchor
 from symofros.description.values import Term, Value, as_value, symbols
 from symofros.errors import DescriptionError, Problem, did_you_mean
@@ -253,10 +252,9 @@ class Nonholonomic:
 
     def __post_init__(self) -> None:
         """Accept a mapping, and convert the formulas."""
-        given: Any = self.coefficients
-        pairs = given.items() if isinstance(given, Mapping) else given
         what = f"non-holonomic constraint '{self.name}'"
-        object.__setattr__(self, "coefficients", tuple((str(k), as_value(x, f"{what}: {k}")) for k, x in pairs))
+        pairs = pairs_of(self.coefficients, what)
+        object.__setattr__(self, "coefficients", tuple((k, as_value(x, f"{what}: {k}")) for k, x in pairs))
         object.__setattr__(self, "right", as_value(self.right, f"{what}: right"))
         if not self.coefficients:
             raise DescriptionError(

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import Any, Literal
+from typing import Literal
 
-from symofros.description.entries import refuses_unknown_entries
+from symofros.description.entries import pairs_of, refuses_unknown_entries
 from symofros.description.values import ORIGIN, Value, Vector, as_value, as_vector
 from symofros.errors import DescriptionError, Problem
 
@@ -208,10 +207,10 @@ class VirtualPower:
 
     def __post_init__(self) -> None:
         """Accept a mapping, and convert the formulas."""
-        given: Any = self.forces
-        pairs = given.items() if isinstance(given, Mapping) else given
         what = f"virtual power '{self.name}'"
-        object.__setattr__(self, "forces", tuple((str(k), as_value(x, f"{what}: {k}")) for k, x in pairs))
+        object.__setattr__(
+            self, "forces", tuple((k, as_value(x, f"{what}: {k}")) for k, x in pairs_of(self.forces, what))
+        )
 
 
 @refuses_unknown_entries

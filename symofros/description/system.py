@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any, Literal
 
+from symofros.base.arguments import entries_of, shown
 from symofros.description.beams.beam import Beam
 from symofros.description.beams.segments import SegmentAnchors, segment_names, segments_of
 from symofros.description.constraints import Constraint, section_order
@@ -88,14 +89,15 @@ class Inertia:
         """Convert numbers and check the choice of reference point."""
         object.__setattr__(self, "mass", as_value(self.mass, "mass"))
         object.__setattr__(self, "center_of_mass", as_vector(self.center_of_mass, "center_of_mass"))
-        moments = tuple(as_value(value, f"inertia[{i}]") for i, value in enumerate(self.moments))
+        listed = entries_of(self.moments) or []
+        moments = tuple(as_value(value, f"inertia[{i}]") for i, value in enumerate(listed))
         if len(moments) == 3:
             moments = (*moments, 0.0, 0.0, 0.0)
         if len(moments) != 6:
             raise DescriptionError(
                 Problem(
                     "inertia: wrong number of entries",
-                    f"{len(moments)} entries",
+                    f"{len(moments)} entries" if listed else shown(self.moments),
                     "three (Ixx, Iyy, Izz) or six (then Ixy, Ixz, Iyz)",
                     "give three, or all six, zeros included",
                 )

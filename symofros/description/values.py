@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from symofros.base.arguments import CheckedCalls
+from symofros.base.arguments import CheckedCalls, entries_of, shown
 from symofros.description.parser import ExpressionError, parse
 from symofros.errors import DescriptionError, Problem, did_you_mean
 from symofros.expr.expression import Expression
@@ -40,7 +40,10 @@ def as_value(value: Any, what: str = "value") -> Value:
             raise DescriptionError(error.problem_of(what)) from None
         return parsed.number if parsed.kind == "number" else parsed
     if isinstance(value, numbers.Real) and not isinstance(value, bool):
-        number = float(value)
+        try:
+            number = float(value)
+        except OverflowError:  # An integer that no double holds.
+            number = math.inf
         if not math.isfinite(number):
             raise DescriptionError(
                 Problem(f"{what}: not a finite number", repr(number), "every number is finite", "give a finite value")
@@ -65,7 +68,7 @@ def as_value(value: Any, what: str = "value") -> Value:
     raise DescriptionError(
         Problem(
             f"{what}: neither a number nor a formula",
-            f"{value!r:.80} of type {type(value).__name__}",
+            shown(value),
             "a value is a number, a formula such as 'L1/2', or a SymPy expression",
             "convert it to one of these",
         )
@@ -78,12 +81,9 @@ def as_values(values: Iterable[Any], size: int, what: str) -> tuple[Value, ...]:
     Raises:
         DescriptionError: The count is wrong, or a value is.
     """
-    if isinstance(values, str) or not isinstance(values, Iterable):
-        listed = [values]
-    elif isinstance(values, Mapping | Set):
-        listed = []  # Entries without an order.
-    else:
-        listed = list(values)
+    listed = entries_of(values)
+    if listed is None:  # One value, or entries without an order.
+        listed = [] if isinstance(values, Mapping | Set) else [values]
     if len(listed) != size:
         raise DescriptionError(
             Problem(
@@ -122,12 +122,12 @@ class Rotation(metaclass=CheckedCalls):
 
     def __post_init__(self) -> None:
         """Check the count and convert the values."""
-        size = _ROTATION_SIZE.get(self.kind)
+        size = _ROTATION_SIZE.get(self.kind) if isinstance(self.kind, str) else None
         if size is None:
             raise DescriptionError(
                 Problem(
-                    f"rotation: unknown kind '{self.kind}'",
-                    f"'{self.kind}'",
+                    f"rotation: unknown kind '{self.kind!s:.40}'",
+                    shown(self.kind),
                     f"one of {', '.join(_ROTATION_SIZE)}",
                     did_you_mean(str(self.kind), _ROTATION_SIZE),
                 )
@@ -142,7 +142,7 @@ class Rotation(metaclass=CheckedCalls):
     @staticmethod
     def axis_angle(axis: Sequence[Any], angle: Any) -> Rotation:
         """A turn by `angle` [rad] about `axis` (normalised by us)."""
-        return Rotation("axis_angle", (*axis, angle))
+        return Rotation("axis_angle", (*as_values(axis, 3, "rotation (axis_angle): axis"), angle))
 
     @staticmethod
     def quaternion(x: Any, y: Any, z: Any, w: Any) -> Rotation:
@@ -152,7 +152,7 @@ class Rotation(metaclass=CheckedCalls):
     @staticmethod
     def matrix(rows: Sequence[Sequence[Any]]) -> Rotation:
         """Nine entries, row by row."""
-        return Rotation("matrix", tuple(entry for row in rows for entry in row))
+        return Rotation("matrix", tuple(entry for row in _rows(rows, "rotation (matrix)") for entry in row))
 
     @property
     def is_identity(self) -> bool:
@@ -162,6 +162,42 @@ class Rotation(metaclass=CheckedCalls):
     def __iter__(self) -> Iterator[Value]:
         """Its values."""
         return iter(self.values)
+
+
+def _rows(rows: Any, what: str) -> list[list[Any]]:
+    """Three rows of three entries.
+
+    Raises:
+        DescriptionError: They are not.
+    """
+    entries = [entries_of(row) or [] for row in entries_of(rows) or []]
+    if [len(row) for row in entries] != [3, 3, 3]:
+        rule = "three rows of three numbers or formulas each"
+        raise DescriptionError(
+            Problem(f"{what}: no matrix of three rows", shown(rows), rule, "give all nine, zeros included")
+        )
+    return entries
+
+
+def as_rotation(what: str, value: Any) -> Rotation:
+    """A rotation, also by the rows of its matrix.
+
+    Args:
+        what: The thing it belongs to, for the error.
+        value: A Rotation, or three rows of three numbers.
+
+    Raises:
+        DescriptionError: It is neither.
+    """
+    if isinstance(value, Rotation):
+        return value
+    try:
+        rows = _rows(value, what)
+    except DescriptionError:
+        rule = "it is a Rotation, or the rows of a matrix"
+        remedy = "sf.Rotation.rpy(roll, pitch, yaw), .quaternion(x, y, z, w), .axis_angle(axis, angle) or .matrix(rows)"
+        raise DescriptionError(Problem(f"{what} is no rotation", shown(value), rule, remedy)) from None
+    return Rotation.matrix(rows)
 
 
 IDENTITY = Rotation()

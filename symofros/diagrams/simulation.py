@@ -137,7 +137,7 @@ class Simulation:
         with begun(resolved.wired) as called, bar(progress, t0, t_end) as show:
             run = run_interpreted(blocks, called, course, watch, show, observer)
         run = replace(run, outcome=refuse_no_rotation(run.outcome, resolved, run.t, run.values.__getitem__))
-        notes = joint_limit_notes(resolved, run.t, run.q)
+        notes = joint_limit_notes(resolved, run.t, run.q, run.v)
         if run.outcome.ok:
             notes += notes_on_steps(run, blocks, course, called, METHODS[method])
         return replace(run, outcome=replace(run.outcome, notes=(*run.outcome.notes, *notes)))

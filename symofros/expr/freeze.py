@@ -38,6 +38,8 @@ def freeze(expression: sympy.Expr) -> Expression:
     Raises:
         ValueError: The expression holds something without a C equivalent, such as an integral or a complex number.
     """
+    if not isinstance(expression, sympy.Expr):
+        raise ValueError(f"a {type(expression).__name__} of SymPy is no expression")
     if expression.is_Symbol:
         return Expression("symbol", name=str(expression.name))
     if expression.is_number and (expression.is_Number or expression.is_NumberSymbol):

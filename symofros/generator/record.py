@@ -19,7 +19,7 @@ from symofros.mechanics.kinematics.joint import neutral_coordinates
 from symofros.mechanics.topology.coordinates import angles, joint_sizes
 from symofros.mechanics.topology.formulas import TIME, stated_values
 from symofros.mechanics.topology.tree import SpanningTree, frame_of, joint_names, prescribed_speeds, section_names
-from symofros.runtime.record import ClosureRecord, ModelRecord, Segment
+from symofros.runtime.record import ClosureRecord, JointLimit, ModelRecord, Segment
 
 GENERATOR = "symofros 0.1.0"
 
@@ -84,16 +84,24 @@ def model_record(tree: SpanningTree, options: Options) -> ModelRecord:
     )
 
 
-def joint_limits(tree: SpanningTree) -> tuple[tuple[int, float, float], ...]:
-    """Limits of joints that state them: index in q, least and greatest coordinate; infinite where one is left out."""
+def joint_limits(tree: SpanningTree) -> tuple[JointLimit, ...]:
+    """Limits of joints that state them. Zero is no limit of speed or effort: files of kinematics alone state it."""
+    inputs = {name: i for i, name in enumerate(tree.coordinates.u)}
     stated = []
     for link in tree.links:
         limits = link.joint.limits
-        if limits is None or link.joint.prescribed or (limits.lower is None and limits.upper is None):
+        if limits is None or link.joint.prescribed:
             continue
-        lower = -math.inf if limits.lower is None else limits.lower
-        upper = math.inf if limits.upper is None else limits.upper
-        stated += [(i, lower, upper) for i in range(link.q[0], sum(link.q))]
+        speeds = range(link.v[0], sum(link.v))
+        if limits.lower is not None or limits.upper is not None:
+            lower = -math.inf if limits.lower is None else limits.lower
+            upper = math.inf if limits.upper is None else limits.upper
+            stated += [JointLimit("q", i, lower, upper) for i in range(link.q[0], sum(link.q))]
+        if limits.velocity:
+            stated += [JointLimit("v", i, -limits.velocity, limits.velocity) for i in speeds]
+        if limits.effort and link.joint.actuated and not link.joint.effort:
+            places = (inputs[tree.coordinates.v[i]] for i in speeds)
+            stated += [JointLimit("u", i, -limits.effort, limits.effort) for i in places]
     return tuple(stated)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from symofros.base.manifold import ManifoldKind
 from symofros.base.measures import Measures
@@ -57,6 +57,22 @@ class ClosureRecord(NamedTuple):
     rotations: tuple[int, ...]
 
 
+class JointLimit(NamedTuple):
+    """Limit of a joint, which no force keeps.
+
+    Attributes:
+        of: What is limited: "q" a coordinate, "v" a speed, "u" the effort that an input is.
+        entry: Its index in that vector.
+        lower: Least value; infinite where there is none.
+        upper: Greatest value; infinite where there is none.
+    """
+
+    of: Literal["q", "v", "u"]
+    entry: int
+    lower: float
+    upper: float
+
+
 @dataclass(frozen=True)
 class ModelRecord:
     """The description of a compiled model that needs no symbols.
@@ -85,7 +101,7 @@ class ModelRecord:
         quaternion_inputs: First index in u of each quaternion among these.
         measures: Measures of the rows and columns of the constraint Jacobian.
         timed: Whether a formula depends on the time t.
-        joint_limits: Limits of joints that state them: index in q, least and greatest coordinate.
+        joint_limits: Limits of joints that state them: of coordinates, speeds and inputs.
     """
 
     name: str
@@ -115,7 +131,12 @@ class ModelRecord:
     quaternion_inputs: tuple[int, ...] = ()
     measures: Measures = Measures()
     timed: bool = False
-    joint_limits: tuple[tuple[int, float, float], ...] = ()
+    joint_limits: tuple[JointLimit, ...] = ()
+
+    @property
+    def vectors(self) -> dict[str, tuple[str, ...]]:
+        """Names of the entries of q, v and u."""
+        return {"q": self.q_names, "v": self.v_names, "u": self.u_names}
 
     @property
     def nc(self) -> int:

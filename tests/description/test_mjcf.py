@@ -172,8 +172,8 @@ def test_rounded_numbers_are_made_exact_unless_asked_not_to(tmp_path: Path) -> N
         ('<sensor><jointpos joint="q"/></sensor>', "<sensor> ignored"),
         ('<equality><joint name="loop" joint1="q"/></equality>', "hold exactly, in MuJoCo softly: 1 constraint (loop)"),
         ('<equality><joint joint1="q" active="false"/></equality>', "switched off ignored: 1 constraint (equality0)"),
-        ('<equality><tendon name="t" tendon1="x"/></equality>', "<equality> ignored: 1 element (t)"),
-        ('<actuator><motor name="m" tendon="x"/></actuator>', "<actuator> ignored: 1 element (m)"),
+        ('<equality><tendon name="t" tendon1="x"/></equality>', "<tendon> of <equality> ignored: 1 element (t)"),
+        ('<actuator><motor name="m" tendon="x"/></actuator>', "actuators that drive a tendon ignored: 1 actuator (m)"),
         (
             '<actuator><intvelocity joint="q" kp="1" actrange="-1 1"/></actuator>',
             "activation dynamics: an effort on the joint is the input",
@@ -182,6 +182,7 @@ def test_rounded_numbers_are_made_exact_unless_asked_not_to(tmp_path: Path) -> N
         ('<actuator><motor joint="q" armature="1"/></actuator>', "armature and damping of actuators ignored"),
         ('<option><flag actuation="disable"/></option><actuator><motor joint="q"/></actuator>', "switched off"),
         ('<tendon><fixed name="t"><joint joint="q" coef="1"/></fixed></tendon>', "<tendon> ignored: 1 element (t)"),
+        ('<tendon><spatial name="t" stiffness="5"/></tendon>', "stiffness of <tendon> ignored: 1 tendon (t)"),
         ('<keyframe><key qpos="1"/></keyframe>', "<keyframe> ignored"),
         ('<extension><plugin plugin="mujoco.pid"/></extension>', "contacts ignored"),
         ('<option density="1.2" viscosity="0.1"/>', "forces of the medium ignored"),

@@ -187,7 +187,7 @@ def test_what_is_ignored_is_said(tmp_path: Path, text: str, said: str) -> None:
         ('<robot name="r"/>', ["no SDFormat", "model.sdf:1"]),
         ('<sdf version="1.4"><model name="m"/></sdf>', ["no SDFormat of version 1.5"]),
         ('<sdf version="1.9"/>', ["there is no model"]),
-        (document("<include><uri>model://x</uri></include>" + ONE), ["included models can't be read", "model://x"]),
+        (document("<include><uri>model://x</uri></include>" + ONE), ["'model://x' is not found"]),
         (document('\n<link name="a"><pose>1 2 3</pose></link>' + joint("q", "world", "a")), ["<pose> is bad", ":2"]),
         (document('<link name="a"><pose relative_to="b">0 0 0 0 0 0</pose></link>'), ["there is no frame 'b'"]),
         (document('<link name="a"/><link name="a"/>'), ["the name is taken"]),

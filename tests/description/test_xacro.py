@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 import symofros as sf
+from symofros.description.packages import Packages
 from symofros.description.urdf import xacro_expressions, xacro_files, xacro_worker
 from tests.late import require
 
@@ -71,7 +72,9 @@ def test_files_of_the_package_are_found(tmp_path: Path) -> None:
     include = '<xacro:include filename="$(find robot_description)/part.xacro"/>'
     path = write(package / "urdf", f'{include}{MACRO}<xacro:bar name="a" parent="base"/>')
     assert sf.load(path).body("a").name == "a"
-    assert "packages other than that" in faults(write(package / "urdf", include.replace("robot_", "other_")))
+    assert "there is no package 'other_description'" in faults(
+        write(package / "urdf", include.replace("robot_", "other_"))
+    )
     # A clone's folder may have another name than the package that its package.xml states.
     (package / "package.xml").write_text("<package><name>other_description</name></package>")
     assert sf.load(write(package / "urdf", include.replace("robot_", "other_") + MACRO + ARM)).body("a").name == "a"
@@ -121,7 +124,7 @@ def test_nothing_outside_of_the_folder_is_included(tmp_path: Path, where: str) -
     write(tmp_path, "", "secret.xacro")
     (folder / "link.xacro").symlink_to(tmp_path / "secret.xacro")
     text = f'<xacro:include filename="{where.format(outside=tmp_path)}"/>'
-    assert "leaves the folder" in faults(write(folder, text))
+    assert "leaves the folders" in faults(write(folder, text))
 
 
 def test_entities_are_refused(tmp_path: Path) -> None:
@@ -240,9 +243,11 @@ def test_bounds_that_are_set_are_kept() -> None:
 @pytest.mark.parametrize("attempt", ["open(0)", "os.open(here + '/a', os.O_WRONLY)", "open(here + '/a', 'r+')"])
 def test_guard_refuses_descriptors_and_writing(tmp_path: Path, attempt: str) -> None:
     (tmp_path / "a").write_text("a")
-    code = f"import os; here = {str(tmp_path.resolve())!r}; os.chdir(here); worker['guard'](here); open('a').close()\n"
+    code = (
+        f"import os; here = {str(tmp_path.resolve())!r}; os.chdir(here); worker['guard']([here]); open('a').close()\n"
+    )
     attempted = f"try: {attempt}\nexcept Exception as refusal: print(refusal)"
-    assert "leaves the folder" in worker(code + attempted)
+    assert "leaves the folders" in worker(code + attempted)
 
 
 LIBRARY = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:property name="L" value="0.5"/>
@@ -273,6 +278,6 @@ def test_trusted_files_expand_as_by_xacro_itself(tmp_path: Path) -> None:
     file = str((tmp_path / "robot.xacro").resolve())
     code = "import sys, xacro; print(xacro.process_file(sys.argv[1], mappings={'n': '4'}).toprettyxml(indent=' '))"
     theirs = subprocess.run([sys.executable, "-c", code, file], capture_output=True, text=True, check=True).stdout
-    ours = xacro_files.expanded(file, {"n": "4"}).decode()
+    ours = xacro_files.expanded(file, {"n": "4"}, Packages(Path(file))).decode()
     assert 'name="right_y_T"' in ours and "<never" not in ours
     assert ours.split() == theirs.split()

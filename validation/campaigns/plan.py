@@ -11,6 +11,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError, model_validator
 
+from symofros.commands.reading import ReadingOptions
+
 from .. import references
 from ..adapters import ROUTES
 from ..checking import description_hash
@@ -42,6 +44,7 @@ class CheckPlan(_Strict):
         seed: Seed of the states.
         engines: Engines to compare with; None: all.
         floating_base: Whether URDF files get a free joint under their root.
+        waive: Checks that every body of a file may fail.
     """
 
     kind: Literal["check"] = "check"
@@ -51,6 +54,12 @@ class CheckPlan(_Strict):
     seed: Seed = 0
     engines: tuple[str, ...] | None = Field(default=None, min_length=1)
     floating_base: bool = False
+    waive: tuple[str, ...] = ()
+
+    @property
+    def reading(self) -> ReadingOptions:
+        """How files are read."""
+        return ReadingOptions(self.floating_base, waive=self.waive)
 
     @model_validator(mode="after")
     def _sound(self) -> CheckPlan:
@@ -177,7 +186,7 @@ def cases(plan: Plan) -> list[Case]:
     """
     names = [plan.model] if isinstance(plan, SweepPlan) else list(plan.models)
     try:
-        chosen = named(names, isinstance(plan, CheckPlan) and plan.floating_base)
+        chosen = named(names, plan.reading if isinstance(plan, CheckPlan) else ReadingOptions())
     except (LookupError, OSError) as error:
         rule = "a model is a name of the standard set, or a file below the folder that the command runs in"
         raise PlanError("models", str(error.args[0]), rule, "mend the name") from None

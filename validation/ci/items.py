@@ -10,6 +10,9 @@ from typing import Any
 
 import pytest
 
+import symofros as sf
+from symofros.commands.reading import ReadingOptions, reading_of
+
 from ..adapters import ROUTES
 from ..checking import ModelResult, Settings
 from ..comparison.errors import Comparison
@@ -151,7 +154,7 @@ def cross_checks(session: Any, config: Any) -> Iterator[pytest.Item]:
         return
     models = named_models or TIERS[tier].models
     try:
-        cases = named(list(models), config.getoption("--symofros-floating-base")) if models else standard_set()
+        cases = named(list(models), _reading(config)) if models else standard_set()
     except (LookupError, FileNotFoundError) as error:
         raise pytest.UsageError(f"--symofros-model: {error.args[0]}") from None
     states = TIERS[tier].states
@@ -170,6 +173,17 @@ def cross_checks(session: Any, config: Any) -> Iterator[pytest.Item]:
         if stored is not None:
             settings = Settings(stored.record.states, stored.record.seed, tuple(_engines(stored)))
             yield test(BaselineCheck, case, "baseline", settings, stored=stored)
+
+
+def _reading(config: Any) -> ReadingOptions:
+    """How the options say that models are read."""
+    floating_base, waive, packages = (
+        config.getoption(f"--symofros-{name}") for name in ("floating-base", "waive", "package")
+    )
+    try:
+        return reading_of(floating_base=floating_base, waive=waive, packages=packages, prefix="--symofros-")
+    except sf.SymofrosError as error:
+        raise pytest.UsageError(str(error)) from None
 
 
 def _stored(path: str | None) -> Baseline | None:

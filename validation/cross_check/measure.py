@@ -12,6 +12,7 @@ from typing import Annotated
 import typer
 
 import symofros as sf
+from symofros.commands.reading import ReadingOptions, reads_models
 from symofros.tools import write_atomically
 
 from ..adapters import ROUTES
@@ -35,15 +36,15 @@ _AGAIN = 2
 WORKERS = min(os.cpu_count() or 1, 4)
 
 
+@reads_models
 def measure(
     run: Run,
     models: Annotated[
         list[str] | None,
         typer.Argument(help="URDF, MJCF or YAML files, or names of the standard set; none: all of it."),
     ] = None,
-    floating_base: Annotated[
-        bool, typer.Option("--floating-base", help="Put a free joint under the root of URDF files.")
-    ] = False,
+    *,
+    reading: ReadingOptions,
     states: Annotated[int, typer.Option(min=1, help="Random states a model.")] = DEFAULT_STATES,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the random states.")] = 0,
     engine: Annotated[
@@ -61,7 +62,7 @@ def measure(
     settings = Settings(states, seed, tuple(engine) if engine else None)
     stored = _baseline(baseline, settings)
     try:
-        cases = named(models, floating_base) if models else standard_set()
+        cases = named(models, reading) if models else standard_set()
         files = [case.path for case in cases if case.path is not None]
         if len(files) == len(cases) and not any(path.exists() for path in files):
             sf.load(files[0])  # Says that it is missing, and what is there; beside others it is one that fails.

@@ -8,10 +8,13 @@ from importlib import metadata
 from pathlib import Path
 
 import symofros as sf
+from symofros.commands.reading import ReadingOptions
 
 from .. import references
 from ..contract.interface import MjcfSource, Subject, UrdfSource
 
+# How files are read unless options say more.
+AS_THEY_ARE = ReadingOptions()
 ROBOT_PACKAGE = "example-robot-data"
 # Work of a body, in bytes of a robot's file; of what a beam and a loop add, in bodies.
 BODY, ELASTIC, LOOP = 1500, 8, 4
@@ -27,12 +30,12 @@ class Case:
     Attributes:
         label: Name in tables.
         path: Path of its file; None for a reference model.
-        floating_base: Whether a free joint goes under a URDF's root.
+        reading: How the file is read.
     """
 
     label: str
     path: Path | None = None
-    floating_base: bool = False
+    reading: ReadingOptions = AS_THEY_ARE
 
     @property
     def weight(self) -> int:
@@ -54,14 +57,15 @@ class Case:
         """
         if self.path is None:
             return Subject(self.label, references.MODELS[self.label])
-        system = sf.load(self.path, floating_base=self.floating_base)
+        system = sf.load(self.path, **self.reading.keywords)
         suffix = self.path.suffix.lower()
-        if suffix == ".xml":
-            return Subject(self.label, system, mjcf=MjcfSource(self.path, sf.load(self.path, snap_tol=0.0)))
-        if suffix != ".urdf":
+        if suffix not in (".xml", ".urdf"):
             return Subject(self.label, system)
-        verbatim = sf.load(self.path, floating_base=self.floating_base, snap_tol=0.0)
-        return Subject(self.label, system, urdf=UrdfSource(self.path.read_bytes(), verbatim, self.floating_base))
+        verbatim = sf.load(self.path, **self.reading.keywords, snap_tol=0.0)
+        if suffix == ".xml":
+            return Subject(self.label, system, mjcf=MjcfSource(self.path, verbatim))
+        source = UrdfSource(self.path.read_bytes(), verbatim, self.reading.floating_base)
+        return Subject(self.label, system, urdf=source)
 
 
 @dataclass(frozen=True)
@@ -121,7 +125,7 @@ def robot_case(label: str) -> Case:
         FileNotFoundError: The package is not installed, or lacks the file.
     """
     robot = ROBOTS[label]
-    return Case(label, robot_file(robot.file), robot.floating_base)
+    return Case(label, robot_file(robot.file), ReadingOptions(robot.floating_base))
 
 
 def robot_file(name: str) -> Path:
@@ -145,31 +149,31 @@ def robot_file(name: str) -> Path:
     raise FileNotFoundError(f"no {name} in package {ROBOT_PACKAGE}")
 
 
-def named(names: list[str], floating_base: bool) -> list[Case]:
+def named(names: list[str], reading: ReadingOptions = AS_THEY_ARE) -> list[Case]:
     """The models that a user named: paths of files, or names of the standard set.
 
     Args:
         names: Names in the order of the report.
-        floating_base: Whether URDF files among them get a free joint under the root.
+        reading: How files among them are read; what only URDF has is left out for others.
 
     Raises:
         LookupError: A name is neither.
         FileNotFoundError: A robot's package is not installed.
     """
-    cases = list(dict.fromkeys(_named(name, floating_base) for name in names))
+    cases = list(dict.fromkeys(_named(name, reading) for name in names))
     labels = [case.label for case in cases]
     return [
         case
         if labels.count(case.label) == 1 or case.path is None
-        else Case(f"{case.path.parent.name}/{case.path.name}", case.path, case.floating_base)
+        else Case(f"{case.path.parent.name}/{case.path.name}", case.path, case.reading)
         for case in cases
     ]
 
 
-def _named(name: str, floating_base: bool) -> Case:
+def _named(name: str, reading: ReadingOptions) -> Case:
     path = Path(name)
     if path.suffix or path.exists():
-        return Case(path.stem, path, floating_base and path.suffix.lower() == ".urdf")
+        return Case(path.stem, path, reading.fit_for(path))
     if name in ROBOTS:
         return robot_case(name)
     if name in references.MODELS:

@@ -162,6 +162,17 @@ class Assembly:
         free = [described for described in self.free_joints if described.joint.actuated]
         return sum(described.v.stop - described.v.start for described in free)
 
+    @property
+    def moves_no_mass(self) -> bool:
+        """Whether some joint moves no mass, as in files of kinematics alone: then M has no inverse."""
+        moving = [bool(mover.joint.armature or mover.joint.rotors) for mover in self.movers]
+        for i, mover in enumerate(self.movers):
+            moving[i] |= any(one.mass != 0.0 or bool(np.any(one.J_BC)) for one in mover.masses)
+        for i in range(len(moving) - 1, -1, -1):  # Those that are carried stand behind their carriers.
+            if moving[i] and self.movers[i].parent != BASE:
+                moving[self.movers[i].parent] = True
+        return not all(moving)
+
     def leaves(self) -> list[int]:
         """Moving bodies that carry no other."""
         parents = {mover.parent for mover in self.movers}

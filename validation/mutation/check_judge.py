@@ -69,7 +69,7 @@ def compiled_models(module: str) -> tuple[str, ...]:
 
 def subject(name: str) -> Subject:
     """A model of the standard set."""
-    return named([name], False)[0].load()
+    return named([name])[0].load()
 
 
 def judge(module: str) -> dict[str, Any]:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Set
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, fields
 from itertools import combinations, pairwise
 from numbers import Real
 from typing import Any, Literal, get_args
 
-from symofros.description.entries import refuses_unknown_entries
+from symofros.base.arguments import entries_of
+from symofros.description.entries import pairs_of, refuses_unknown_entries
 from symofros.description.frames import Frame
 from symofros.description.joints.joint import Joint
 from symofros.description.values import ORIGIN, Value, Vector, as_value, as_values, as_vector
@@ -245,8 +246,11 @@ class Beam:
         self._set_stiffness(what)
         for label in ("frames", "loads", "waive"):
             object.__setattr__(self, label, tuple(getattr(self, label)))
-        given: Any = dict(self.shapes)
-        shapes = tuple((key, tuple(_shape(x, f"{what}: {key}") for x in given[key])) for key in STRAINS if key in given)
+        given = dict(pairs_of(self.shapes, f"{what}: shapes"))
+        entries = {key: entries_of(listed) for key, listed in given.items()}
+        functions = {key: [given[key]] if listed is None else listed for key, listed in entries.items()}
+        directions = [key for key in STRAINS if key in functions]
+        shapes = tuple((key, tuple(_shape(x, f"{what}: {key}") for x in functions[key])) for key in directions)
         object.__setattr__(self, "shapes", shapes)
         choices = (
             ("family", self.family, FAMILIES),
@@ -460,8 +464,8 @@ def stiffness_rows(stated: Any, label: str) -> tuple[tuple[Value, ...], ...]:
     Raises:
         DescriptionError: It has other rows, or is not symmetric.
     """
-    is_list = isinstance(stated, Iterable) and not isinstance(stated, str | Mapping | Set)
-    listed = list(stated) if is_list else [stated]
+    listed = entries_of(stated)
+    listed = [stated] if listed is None else listed
     if not listed:
         return ()
     size = len(MATRIX_ORDER)

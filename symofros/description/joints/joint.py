@@ -30,6 +30,16 @@ class Limits:
     velocity: float | None = None
     effort: float | None = None
 
+    def __post_init__(self) -> None:
+        """Refuse sizes below zero."""
+        for label in ("velocity", "effort"):
+            size = getattr(self, label)
+            if size is not None and size < 0.0:
+                rule = f"the limit of {label} is a size, for both directions"
+                raise DescriptionError(
+                    Problem(f"limits: {label} is negative", f"{size:g}", rule, "leave it out where there is none")
+                )
+
 
 @refuses_unknown_entries
 @dataclass(frozen=True)

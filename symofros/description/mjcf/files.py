@@ -1,12 +1,14 @@
-"""The files of an MJCF model: its own, those it includes, its meshes; none from outside of the model's folder."""
+"""The files of an MJCF model: its own, those it includes, its meshes; none from other folders than those given."""
 
 from __future__ import annotations
 
+import os
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
+from symofros.description.packages import Packages, widening
 from symofros.description.reading import read_bytes, resolved
 from symofros.description.xml_nodes import MAX_DEPTH, Element, XmlFault, parse_xml
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import Argument, DescriptionError, Problem
 
 MAX_BYTES = 16 << 20
 MAX_MESH_BYTES = 256 << 20
@@ -15,15 +17,17 @@ MAX_ELEMENTS = 30_000
 
 
 class Folder:
-    """The folder of a model's main file, and what was read from it.
+    """The folder of a model's main file, with others that may be read, and what was read from them.
 
     Attributes:
         main: The model's main file.
+        packages: What may be read.
         problems: Every fault met.
     """
 
-    def __init__(self, main: Path) -> None:
+    def __init__(self, main: Path, packages: Packages | None = None) -> None:
         self.main = main
+        self.packages = packages or Packages(main)
         self.problems: list[Problem] = []
         self._read: set[Path] = set()
         self._bytes = {MAX_BYTES: 0, MAX_MESH_BYTES: 0}
@@ -48,7 +52,7 @@ class Folder:
             user: The element that states it.
             what: The mesh and what needs it, for the problem.
         """
-        path = self._inside(file, user, self.main.parent)
+        path = self._place(file, user, self.main.parent)
         if path is None:
             return None
         try:
@@ -64,9 +68,17 @@ class Folder:
             )
             return None
 
-    def fault(self, element: Element, what: str, found: str, rule: str, remedy: str = "") -> None:
+    def fault(
+        self,
+        element: Element,
+        what: str,
+        found: str,
+        rule: str,
+        remedy: str = "",
+        argument: Argument | None = None,
+    ) -> None:
         """Note a problem."""
-        self.problems.append(Problem(what, found, rule, remedy, element.where))
+        self.problems.append(Problem(what, found, rule, remedy, element.where, argument))
 
     def _parsed(self, path: Path, shown: str) -> Element:
         self._read.add(path)
@@ -119,11 +131,9 @@ class Folder:
             )
             return []
         # From the main file's folder, or else from that of the file that includes it.
-        places = [self._inside(file, include, base) for base in dict.fromkeys((self.main.parent, folder))]
-        paths = [path for path in places if path is not None]
-        if len(paths) < len(places):
+        path = self._place(file, include, *dict.fromkeys((self.main.parent, folder)))
+        if path is None:
             return []
-        path = next((path for path in paths if path.is_file()), paths[0])
         if path in self._read:
             self.fault(
                 include,
@@ -144,22 +154,40 @@ class Folder:
         self._expand(root, path.parent, depth)
         return root.children
 
-    def _inside(self, file: str, user: Element, base: Path) -> Path | None:
-        """The path of a file that a model names, if that is inside of the model's folder, links followed."""
-        plain = PurePosixPath(file.replace("\\", "/"))
-        folder = resolved(self.main.parent)
-        if not plain.is_absolute() and not PureWindowsPath(file).drive and ".." not in plain.parts and "\0" not in file:
-            path = resolved(base / plain)
-            if path.is_relative_to(folder):
-                return path
+    def _place(self, file: str, user: Element, *bases: Path) -> Path | None:
+        """The path of a file that a model names, links followed; None, after a fault, where it may not be read.
+
+        Args:
+            file: File name as the model states it.
+            user: The element that states it.
+            bases: Folders that it may start from, in the order in which they are tried.
+        """
+        name = _relative(file)
+        paths = [] if name is None else [self.packages.file(name, base) for base in bases]
+        inside = [path for path in paths if path is not None]
+        found = next((path for path in inside if os.path.isfile(path)), None)
+        if found is not None or (inside and len(inside) == len(paths)):
+            return found or inside[0]
+        argument = None
+        if name is not None:
+            there = (base for base in bases if os.path.isfile(base / name))
+            argument = widening((next(there, bases[-1]) / name).parent)
+        widened = f", or, of a file that you trust, name its folder: {argument.call}" if argument else ""
         self.fault(
             user,
             f"<{user.tag}> leaves the model's folder",
             f"'{file:.80}'",
-            "files of a model lie in the folder of its main file or below, without '..'",
-            f"copy the file into '{folder}'",
+            "files of a model lie in the folder of its main file or below, or in folders that you name as packages",
+            f"copy the file into '{self.packages.folder}'{widened}",
+            argument,
         )
         return None
+
+
+def _relative(file: str) -> str | None:
+    """A file name with slashes; None of one that is absolute, or none."""
+    plain = PurePosixPath(file.replace("\\", "/"))
+    return None if plain.is_absolute() or PureWindowsPath(file).drive or "\0" in file else str(plain)
 
 
 def size(element: Element) -> int:

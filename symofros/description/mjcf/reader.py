@@ -19,6 +19,7 @@ from symofros.description.mjcf.files import Folder
 from symofros.description.mjcf.meshes import Meshes
 from symofros.description.mjcf.model import Importer, Stated
 from symofros.description.mjcf.sections import Sections
+from symofros.description.packages import Packages
 from symofros.description.reading import Reading, check_snap_tol, in_order
 from symofros.description.remarks import Remarks
 from symofros.description.xml_nodes import Element, XmlFault
@@ -28,13 +29,14 @@ _LINE = re.compile(r",? ?line (\d+)")
 MAX_WARNINGS = 10
 
 
-def read_mjcf(path: str | os.PathLike[str], *, snap_tol: float) -> Reading:
+def read_mjcf(path: str | os.PathLike[str], *, snap_tol: float, packages: Packages | None = None) -> Reading:
     """Read an MJCF file; needs the package `mujoco`.
 
     Args:
         path: The main file; what it includes, and the meshes that give inertia, lie in its folder or below.
         snap_tol: Lengths this close to 0 [m], and entries of axes and rotations this close to 0 or +-1, are made
             exact.
+        packages: Further folders that its files may be read from.
 
     Returns:
         The system, and every problem.
@@ -43,7 +45,7 @@ def read_mjcf(path: str | os.PathLike[str], *, snap_tol: float) -> Reading:
         ArgumentError: `snap_tol` is not a small number.
     """
     check_snap_tol(snap_tol)
-    folder, remarks = Folder(Path(path)), Remarks()
+    folder, remarks = Folder(Path(path), packages), Remarks()
     try:
         document = vetted(folder, remarks)
         if folder.problems:

@@ -35,7 +35,10 @@ _BODY = frozenset({"body", "frame", "replicate", "joint", "freejoint", "inertial
 _EQUALITIES = frozenset({"connect", "weld", "joint"})
 _ACTUATORS = frozenset({"general", "motor", "position", "velocity", "intvelocity", "damper", "cylinder", "muscle"})
 # What an actuator drives that is not kept.
-_ELSEWHERE = frozenset({"tendon", "cranksite", "slidersite", "body"})
+_DRIVEN = {"tendon": "tendon", "cranksite": "slider-crank", "slidersite": "slider-crank", "body": "body"}
+_ELSEWHERE = _DRIVEN.keys()
+# What acts on bodies through a tendon.
+_PASSIVE = frozenset({"stiffness", "damping", "frictionloss", "armature", "range", "limited"})
 _KEPT: dict[str, frozenset[str]] = {
     "mujoco": _KEPT_SECTIONS,
     "option": frozenset({"flag"}),
@@ -95,10 +98,11 @@ class Sections:
     def _children(self, element: Element) -> Iterator[Element]:
         kept, ignored = _KEPT.get(element.tag, frozenset()), _IGNORED.get(element.tag, frozenset())
         for child in element.children:
-            if element.tag in ("equality", "actuator") and (
-                child.tag not in kept or _ELSEWHERE & child.attributes.keys()
-            ):
-                self._remark(child, element.tag)
+            driven = sorted(_ELSEWHERE & child.attributes.keys()) if element.tag == "actuator" else []
+            if driven:
+                self.remarks.add(f"actuators that drive a {_DRIVEN[driven[0]]} ignored", "actuator", _name(child))
+            elif element.tag in ("equality", "actuator") and child.tag not in kept:
+                self.remarks.add(f"<{child.tag}> of <{element.tag}> ignored", "element", _name(child))
             elif child.tag in kept:
                 yield self._kept(child, element.tag == "asset")
             elif child.tag in _REFUSED:
@@ -126,9 +130,10 @@ class Sections:
             return
         whole = section == "mujoco"
         for item in element.children if whole else [element]:
-            name = item.attributes.get("name") or f"{item.tag} in line {item.line}"
-            tag = section if section in ("equality", "actuator") else element.tag
-            self.remarks.add(f"<{tag}> ignored", "element", name)
+            self.remarks.add(f"<{element.tag}> ignored", "element", _name(item))
+            passive = sorted(_PASSIVE & item.attributes.keys()) if element.tag == "tendon" else []
+            for label in passive:
+                self.remarks.add(f"{label} of <tendon> ignored", "tendon", _name(item))
 
     def _expanded(self, element: Element) -> int:
         """How many elements MuJoCo makes of one; it takes time for copies of nothing, too."""
@@ -142,6 +147,10 @@ class Sections:
             )
             return 1
         return 1 + int(count) * max(1, inside)
+
+
+def _name(element: Element) -> str:
+    return element.attributes.get("name") or f"{element.tag} in line {element.line}"
 
 
 def _listed(tags: frozenset[str] | dict[str, str]) -> str:

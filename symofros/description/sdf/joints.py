@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from symofros.base.rotations import Array
+from symofros.description.closing import closing_remedy
 from symofros.description.constraints import AXES, AxisName, Closure, Coupling, mimicry
 from symofros.description.forces import Damper, JointElement, Spring
 from symofros.description.frames import Frame
@@ -106,7 +107,7 @@ class JointReader:
         if kind is None:
             stated = element.attributes.get("type", "")
             remedy = (
-                "couple two revolute joints by their formula" if stated == "gearbox" else did_you_mean(stated, _KINDS)
+                "couple two revolute joints by sf.Coupling" if stated == "gearbox" else did_you_mean(stated, _KINDS)
             )
             rule = f"one of {', '.join(_KINDS)}"
             self.values.fault(element, f"{owner}: type '{stated:.40}' can't be read", f"'{stated:.40}'", rule, remedy)
@@ -169,12 +170,13 @@ class JointReader:
         self._closing.add(joint.name)
         blocked = _BLOCKED.get(joint.kind)
         if blocked is None:
+            instead = closing_remedy(joint.name, joint.kind, *bodies.values())
             self.values.fault(
                 joint.element,
                 f"joint '{joint.name}' closes a loop",
                 f"type '{joint.element.attributes.get('type')}'",
                 f"a loop is closed by one of {', '.join(_BLOCKED)}",
-                "let another joint of the loop be the last one",
+                f"let another joint of the loop be the last one, or {instead}",
             )
             return None
         self.values.remarks.add(
@@ -263,11 +265,8 @@ class JointReader:
         element = axis.first("limit")
         if element is None:
             return Limits()
-        lower, upper, velocity, effort = (
-            self.values.bound(element, tag, owner) for tag in ("lower", "upper", "velocity", "effort")
-        )
-        # Below zero stands for no limit, too.
-        velocity, effort = (None if bound is not None and bound < 0.0 else bound for bound in (velocity, effort))
+        lower, upper = (self.values.bound(element, tag, owner) for tag in ("lower", "upper"))
+        velocity, effort = (self.values.size(element, tag, owner) for tag in ("velocity", "effort"))
         return Limits(lower, upper, velocity, effort)
 
     def _pitch(self, joint: SdfJoint) -> float:

@@ -1,13 +1,12 @@
 """SDFormat in, as its specification and Drake read it: models of links, whose roots float unless a joint holds them.
 
-A file is untrusted: its size is bounded, document types are refused, and no other file is read: `<include>` is refused,
-and meshes are only named, where they lie in the file's folder or below.
+A file is untrusted: its size is bounded, document types are refused, models that it includes lie in folders that may be
+read (`includes.py`), and meshes are only named, where they lie in these.
 """
 
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -17,9 +16,11 @@ from symofros.description.forces import Load
 from symofros.description.frames import Frame
 from symofros.description.joints.joint import WORLD, Joint
 from symofros.description.mjcf.geometry import Exact
-from symofros.description.reading import Reading, check_snap_tol, fresh_name, in_order, read_bytes
+from symofros.description.packages import Packages
+from symofros.description.reading import Reading, check_snap_tol, fresh_name, in_order, read_bytes, resolved
 from symofros.description.remarks import Remarks
 from symofros.description.sdf.frames import MODEL, SEPARATOR, Frames
+from symofros.description.sdf.includes import Includes
 from symofros.description.sdf.joints import JointReader, SdfJoint
 from symofros.description.sdf.values import SdfValues
 from symofros.description.sdf.visuals import as_urdf
@@ -36,20 +37,20 @@ _SILENT = frozenset(
     {"pose", "gui", "scene", "light", "physics", "self_collide", "allow_auto_disable", "static", "gravity", "name"}
     | {"atmosphere", "magnetic_field", "spherical_coordinates", "audio", "state", "must_be_base_link"}
 )
-_VERSIONS = re.compile(r"1\.([5-9]|1[0-9])\Z")
 _READ = frozenset({"model", "link", "joint", "frame"})
 # Gravity of a <world> that states none [m/s^2].
 _GRAVITY = (0.0, 0.0, -9.8)
 _GRAVITY_OF_SYSTEMS = (0.0, 0.0, -9.81)  # Default of System.
 
 
-def read_sdf(path: str | os.PathLike[str], *, snap_tol: float) -> Reading:
+def read_sdf(path: str | os.PathLike[str], *, snap_tol: float, packages: Packages | None = None) -> Reading:
     """Read an SDFormat file, of version 1.5 or later.
 
     Args:
         path: The file; one <model>, or a <world> of models.
         snap_tol: Lengths this close to 0 [m], and entries of axes and rotations this close to 0 or +-1, are made
             exact.
+        packages: Further folders that its files may be read from.
 
     Returns:
         The system, and every problem.
@@ -61,31 +62,25 @@ def read_sdf(path: str | os.PathLike[str], *, snap_tol: float) -> Reading:
     file = os.fspath(path)
     values = SdfValues(file, snap_tol)
     try:
+        readable = packages or Packages(Path(path))
+        includes = Includes(readable, values)
         content = read_bytes(Path(path), MAX_BYTES)
         root = parse_xml(content, file)
-        world = _world(root, values)
-        system = _Importer(Path(path), values, world).system() if world is not None else None
+        if includes.version(root) is not None:
+            includes.expand(root, readable.folder, (resolved(Path(path)),))
+        # What refers to a model that is not there is no fault of its own.
+        world = None if values.problems else _world(root, values)
+        system = _Importer(readable, values, world).system() if world is not None else None
     except XmlFault as error:
         return Reading(None, (error.problem,))
     except DescriptionError as error:
         return Reading(None, error.problems)
-    sources = (Source.of(Path(path), content),)
+    sources = (Source.of(Path(path), content), *includes.sources)
     return Reading(None if values.problems else system, in_order(values.problems), sources=sources)
 
 
 def _world(root: Element, values: SdfValues) -> Element | None:
     """The element that holds the models: the <world>, or the root."""
-    version = root.attributes.get("version", "")
-    if root.tag != "sdf" or not _VERSIONS.match(version):
-        values.fault(
-            root,
-            "the file is no SDFormat of version 1.5 or later",
-            f'<{root.tag:.60} version="{version:.20}">',
-            "the root element is <sdf>, its version 1.5 to 1.19",
-            "convert an older file by `gz sdf --print FILE`",
-        )
-        return None
-    values.version = int(version.removeprefix("1."))
     worlds = list(root.all("world"))
     if len(worlds) > 1 or (worlds and root.first("model")):
         values.fault(
@@ -100,12 +95,12 @@ def _world(root: Element, values: SdfValues) -> Element | None:
 
 
 class _Importer:
-    def __init__(self, file: Path, values: SdfValues, world: Element) -> None:
+    def __init__(self, packages: Packages, values: SdfValues, world: Element) -> None:
         self.values, self.world = values, world
         self.exact = Exact(values.snap_tol)
         self.frames = Frames(values, world)
         self.joints = JointReader(values, self.frames, self.exact)
-        self.visuals = Visuals(file, world, values.remarks)
+        self.visuals = Visuals(packages, world, values.remarks)
         self.links: dict[str, Element] = {}
         self.canonical: dict[str, str] = {}
         self.static: set[str] = set()
@@ -186,15 +181,7 @@ class _Importer:
         default = self.frames.full(scope, MODEL)
         default = default if default in self.frames.nodes else WORLD
         for child in element.children:
-            if child.tag == "include":
-                self.values.fault(
-                    child,
-                    "included models can't be read",
-                    f"<include> of '{self.values.text(child, 'uri', '?'):.80}'",
-                    "all of a model stands in one file",
-                    "write it whole by `gz sdf --print FILE`",
-                )
-            elif child.tag not in _READ and child.tag not in _SILENT and remarked:
+            if child.tag not in _READ and child.tag not in _SILENT and remarked:
                 name = child.attributes.get("name", f"line {child.line}")
                 self.values.remarks.add(f"<{child.tag:.60}> ignored", "element", name)
             if child.tag not in _READ - {"model"} or element.tag == "sdf":
@@ -338,4 +325,4 @@ class _Importer:
 
     def shapes(self, name: str, link: Element) -> tuple[Visual, ...]:
         """What a link looks like."""
-        return self.visuals.of(as_urdf(link), name)
+        return self.visuals.of(as_urdf(link), name, Path(link.file).parent)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from symofros.description.system import Inertia
 from symofros.description.urdf.values import Values, finite_numbers
 from symofros.description.values import Rotation
 from symofros.description.xml_nodes import Element
+from symofros.errors import Problem
 
 # SDFormat's number for "no bound".
 UNBOUNDED = 1e16
@@ -37,14 +39,28 @@ _READ_IN: dict[str, frozenset[str]] = {
 _MOMENTS = (("ixx", 1.0), ("iyy", 1.0), ("izz", 1.0), ("ixy", 0.0), ("ixz", 0.0), ("iyz", 0.0))
 
 
+@dataclass
 class SdfValues(Values):
     """Reads the content of elements, which states what attributes do in URDF.
 
     Attributes:
-        version: Minor version of the file: 7 of SDFormat 1.7.
+        versions: Minor version of each file: 7 of SDFormat 1.7.
     """
 
-    version = 7
+    versions: dict[str, int] = field(default_factory=dict)
+
+    def where(self, element: Element) -> str:
+        """The element's place, in a file that the main one includes, too."""
+        return element.where if element.file else super().where(element)
+
+    def add(self, problem: Problem) -> None:
+        """Note a problem.
+
+        Raises:
+            DescriptionError: There are more than anybody reads.
+        """
+        self.problems.append(problem)
+        self.check_count()
 
     def text(self, element: Element, tag: str, default: str = "") -> str:
         """Content of a child; the default where there is none."""
@@ -94,7 +110,7 @@ class SdfValues(Values):
         if pose is None:
             return ""
         name, older = (pose.attributes.get(label, "") for label in ("relative_to", "frame"))
-        if older and self.version >= 7:
+        if older and self.versions.get(pose.file, 7) >= 7:
             self.fault(
                 pose,
                 f"{owner}: <pose> is bad",

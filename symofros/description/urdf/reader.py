@@ -12,13 +12,18 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from symofros.base.sources import Source
+from symofros.description.closing import closing_remedy
 from symofros.description.constraints import Coupling, mimicry
 from symofros.description.joints.joint import WORLD, Joint
 from symofros.description.joints.joint_kinds import KINDS
-from symofros.description.reading import Reading, check_snap_tol, in_order, read_bytes
+from symofros.description.packages import Packages
+from symofros.description.reading import Reading, check_snap_tol, fresh_name, in_order, read_bytes
 from symofros.description.system import Inertia, RigidBody, System
+from symofros.description.urdf.extras import remark_extras
+from symofros.description.urdf.planar import planar_frames
 from symofros.description.urdf.values import Values, finite_numbers
 from symofros.description.urdf.visuals import Visuals
+from symofros.description.values import Rotation, Vector
 from symofros.description.visual import Visual
 from symofros.description.xml_nodes import Element, XmlFault, parse_xml
 from symofros.errors import DescriptionError, Problem, did_you_mean
@@ -30,8 +35,8 @@ SNAP_TOL = 1e-14
 MAX_LINKS = 10_000
 ROOT_JOINT = "root_joint"
 
-_KINDS = {row.urdf: row for row in KINDS.values() if row.urdf is not None}
-_USED = frozenset({"link", "joint", "material"})
+_PLANAR = "planar"  # Written as its three simple joints, which more programs read; read by its name.
+_KINDS = {row.urdf: row for row in KINDS.values() if row.urdf is not None} | {_PLANAR: KINDS["planar"]}
 
 
 def read_urdf(
@@ -41,6 +46,7 @@ def read_urdf(
     snap_tol: float = SNAP_TOL,
     mimic: bool = False,
     text: bytes | None = None,
+    packages: Packages | None = None,
 ) -> Reading:
     """Read a URDF file.
 
@@ -51,6 +57,7 @@ def read_urdf(
             this close to 0 or +-1 are taken for exact, because files carry rounded digits.
         mimic: Couple joints that mimic others to them; otherwise their coordinates stay independent.
         text: URDF that was made of the file (xacro), whose lines problems then name.
+        packages: Folders that its files may be read from; its own by default.
 
     Returns:
         The system without the links that could not be read, and every problem.
@@ -77,7 +84,8 @@ def read_urdf(
         )
         return Reading(None, (problem,))
     try:
-        reading = _Importer(Path(path), Values(file, snap_tol), root, floating_base, mimic).reading()
+        readable = packages or Packages(Path(path))
+        reading = _Importer(readable, Values(file, snap_tol), root, floating_base, mimic).reading()
     except DescriptionError as error:
         return Reading(None, error.problems)
     return replace(reading, sources=(Source.of(Path(path), content),)) if text is None else reading
@@ -95,9 +103,9 @@ class _Link:
 
 
 class _Importer:
-    def __init__(self, file: Path, values: Values, robot: Element, floating_base: bool, mimic: bool) -> None:
+    def __init__(self, packages: Packages, values: Values, robot: Element, floating_base: bool, mimic: bool) -> None:
         self.values = values
-        self.visuals = Visuals(file, robot, values.remarks)
+        self.visuals = Visuals(packages, robot, values.remarks)
         self.looks: dict[str, tuple[Visual, ...]] = {}
         self.robot = robot
         self.floating_base = floating_base
@@ -105,6 +113,8 @@ class _Importer:
         self.couplings: list[Coupling] = []
         self.links: dict[str, _Link] = {}
         self.broken: set[str] = set()
+        # Rotations from the frames that planar joints move to their links, whose axes are others, by the joint's name.
+        self.turned: dict[str, Rotation] = {}
         self.origin: dict[tuple[str, ...], str] = {("system",): values.where(robot)}
 
     def reading(self) -> Reading:
@@ -126,7 +136,7 @@ class _Importer:
                 "expand the file's macros first (xacro)?",
             )
         bodies = tuple(self.bodies())
-        self.ignored()
+        remark_extras(self.robot, self.values.remarks)
         problems = in_order(self.values.problems)
         if not self.links:
             return Reading(None, problems)
@@ -188,7 +198,7 @@ class _Importer:
                 f"link '{child}' has two parents",
                 f"'{link.parent}' and '{parent}'",
                 "each link is the child of one joint at most: links form a tree",
-                "cut the loop by removing one of the joints",
+                closing_remedy(name, element.attributes.get("type", ""), parent or "?", child),
             )
             return
         link.parent = parent or "?"
@@ -222,17 +232,16 @@ class _Importer:
         kind = _KINDS.get(stated or "")
         if kind is None:
             if stated is not None:
-                remedy = did_you_mean(stated, _KINDS)
-                if stated == "planar":
-                    remedy = "use two prismatic joints and a continuous one, with massless links between them"
                 self.values.fault(
                     element,
                     f"{owner}: joints of type '{stated}' are unknown here",
                     f"type '{stated}'",
                     f"one of {', '.join(_KINDS)}",
-                    remedy,
+                    did_you_mean(stated, _KINDS),
                 )
             return None
+        if stated == _PLANAR:
+            return self.planar(element, name, parent, position, rotation)
         if "axis" not in kind.entries:
             return Joint(name, kind.name, parent, position=position, rotation=rotation)
         limits = self.values.limits(element, "limits" in kind.entries, owner)
@@ -241,13 +250,22 @@ class _Importer:
         alone = not (self.mimic and element.first("mimic"))
         return Joint(name, kind.name, parent, None, position, rotation, axis, actuated=alone, limits=limits)
 
+    def planar(self, element: Element, name: str, parent: str, position: Vector, rotation: Rotation) -> Joint:
+        """A planar joint: its coordinates lie in x and y of P, whose z is the axis; passive, as a floating one is."""
+        if element.first("limit") is not None:
+            self.values.remarks.add("limits of planar joints ignored", "joint", name)
+        placed, turned = planar_frames(rotation, self.values.axis(element, f"joint '{name}'"))
+        if turned is not None:
+            self.turned[name] = turned
+        return Joint(name, "planar", parent, position=position, rotation=placed)
+
     def remark_ignored(self, element: Element, name: str) -> None:
         dynamics = element.first("dynamics")
         if dynamics is not None and any(self.is_nonzero(text) for text in dynamics.attributes.values()):
             self.values.remarks.add("damping and friction ignored", "joint", name)
         mimic = element.first("mimic")
         if mimic is not None and not self.mimic:
-            text = "mimic ignored, the coordinate stays independent (sf.load(..., mimic=True) couples it)"
+            text = "mimic ignored, the coordinate stays independent (mimic=True of load, or --mimic, couples it)"
             self.values.remarks.add(text, "joint", name)
         elif mimic is not None:
             self.couple(mimic, name)
@@ -315,9 +333,10 @@ class _Importer:
                 done.add(name)
                 stack.extend(reversed(self.links[name].children))
                 if name not in self.broken:
-                    yield self.body(name, name == floating)
+                    yield from self.body(name, name == floating)
 
-    def body(self, name: str, floating: bool) -> RigidBody:
+    def body(self, name: str, floating: bool) -> Iterator[RigidBody]:
+        """A link with its joint, after the massless body that carries it where their axes differ."""
         link = self.links[name]
         if floating:
             taken = {other.joint.name for other in self.links.values() if other.joint is not None}
@@ -325,15 +344,15 @@ class _Importer:
             while root_joint in taken:
                 root_joint += "_"
             self.origin["joint", root_joint] = self.values.where(link.element)
-            return RigidBody(name, Joint(root_joint, "free", WORLD), link.inertia)
-        if link.parent is None and link.inertia is not None:
+            yield RigidBody(name, Joint(root_joint, "free", WORLD), link.inertia)
+        elif link.parent is None and link.inertia is not None:
             self.values.remarks.add("inertia of the base dropped, it never moves", "link", name)
-            return RigidBody(name)
-        return RigidBody(name, link.joint, link.inertia)
-
-    def ignored(self) -> None:
-        """Remark on the elements that mean nothing here."""
-        for element in self.robot.children:
-            if element.tag not in _USED:
-                name = element.attributes.get("name") or element.attributes.get("reference") or f"line {element.line}"
-                self.values.remarks.add(f"<{element.tag:.60}> ignored", "element", name)
+            yield RigidBody(name)
+        elif link.joint is not None and link.joint.name in self.turned:
+            taken = {*self.links, *(other.joint.name for other in self.links.values() if other.joint is not None)}
+            carrier, held = (fresh_name(f"{name}_{what}", taken) for what in (f"at_{link.joint.name}", "fixed"))
+            yield RigidBody(carrier, link.joint)
+            fixed = Joint(held, "fixed", carrier, rotation=self.turned[link.joint.name])
+            yield RigidBody(name, fixed, link.inertia)
+        else:
+            yield RigidBody(name, link.joint, link.inertia)

@@ -53,6 +53,14 @@ class Values:
             DescriptionError: There are more than anybody reads.
         """
         self.problems.append(Problem(what, found, rule, remedy, self.where(element)))
+        self.check_count()
+
+    def check_count(self) -> None:
+        """Stop at more problems than anybody reads.
+
+        Raises:
+            DescriptionError: There are more.
+        """
         if len(self.problems) > MAX_PROBLEMS:
             raise DescriptionError(first_of(self.problems))
 
@@ -162,13 +170,21 @@ class Values:
         element = joint.first("limit")
         if element is None:
             return None
-        velocity, effort = (self.bound(element, name, owner) for name in ("velocity", "effort"))
+        velocity, effort = (self.size(element, name, owner) for name in ("velocity", "effort"))
         if not bounded or not {"lower", "upper"} & element.attributes.keys():
             return Limits(velocity=velocity, effort=effort)
         lower, upper = (
             self.bound(element, name, owner) if name in element.attributes else 0.0 for name in ("lower", "upper")
         )
         return Limits(lower, upper, velocity, effort)
+
+    def size(self, element: Element, name: str, owner: str) -> float | None:
+        """A limit of a size; of a negative one, by which some mean none and which no size keeps, none."""
+        bound = self.bound(element, name, owner)
+        if bound is None or not bound < 0.0:
+            return bound
+        self.remarks.add(f"negative limits of {name} taken for none", "joint", _bare(owner))
+        return None
 
     def bound(self, element: Element, name: str, owner: str) -> float | None:
         """A limit that may be infinite or not given."""

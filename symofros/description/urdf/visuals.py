@@ -1,7 +1,7 @@
 """The <visual> elements of a URDF. What can't be drawn is no fault of a mechanism: it is left out, and that is said.
 
-A file is untrusted: a mesh lies in the folder of its URDF or below, or in the package that it names, where that is one
-of the folders above. Meshes are not opened here.
+A file is untrusted: a mesh lies in the folder of its file or below, or in the package that it names, where that is one
+of the folders above or one that may be read (`Packages`). Meshes are not opened here.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path, PurePosixPath
 
+from symofros.description.packages import Packages
 from symofros.description.reading import resolved
 from symofros.description.remarks import Remarks
 from symofros.description.urdf.values import finite_numbers
@@ -43,32 +44,38 @@ class Visuals:
     """Reads what links look like.
 
     Args:
-        file: The URDF.
+        packages: Folders that may be read.
         robot: Root element, for materials that links share.
         remarks: Remarks on what is left out.
     """
 
-    def __init__(self, file: Path, robot: Element, remarks: Remarks) -> None:
-        self.folder = resolved(file).parent
+    def __init__(self, packages: Packages, robot: Element, remarks: Remarks) -> None:
+        self.packages, self.folder = packages, packages.folder
         self.remarks = remarks
         self.count = 0
         named = ((element.attributes.get("name", ""), _color(element)) for element in robot.all("material"))
         self.materials: Mapping[str, Color] = {name: color for name, color in named if color is not None}
 
-    def of(self, link: Element, name: str) -> tuple[Visual, ...]:
-        """The shapes of a link."""
-        return tuple(self._shapes(link, name))
+    def of(self, link: Element, name: str, folder: Path | None = None) -> tuple[Visual, ...]:
+        """The shapes of a link.
 
-    def _shapes(self, link: Element, name: str) -> Iterator[Visual]:
+        Args:
+            link: The element.
+            name: Name of the link.
+            folder: Folder of its file, where that is another than the main file's.
+        """
+        return tuple(self._shapes(link, name, self.folder if folder is None else resolved(folder)))
+
+    def _shapes(self, link: Element, name: str, folder: Path) -> Iterator[Visual]:
         for element in link.all("visual"):
-            shape = self._shape(element) if self.count < MOST_VISUALS else None
+            shape = self._shape(element, folder) if self.count < MOST_VISUALS else None
             if shape is None:
                 self.remarks.add("visual shapes that can't be drawn ignored", "link", name)
             else:
                 self.count += 1
                 yield shape
 
-    def _shape(self, element: Element) -> Visual | None:
+    def _shape(self, element: Element, folder: Path) -> Visual | None:
         geometry, origin = element.first("geometry"), element.first("origin")
         stated = geometry.children[0] if geometry is not None and geometry.children else None
         kind = _KINDS.get(stated.tag) if stated is not None else None
@@ -78,7 +85,7 @@ class Visuals:
             return None
         numbers = " ".join(stated.attributes.get(name, default) for name, default in _SIZES[kind])
         size = finite_numbers(numbers, 3 if kind in ("box", "mesh") else len(_SIZES[kind]))
-        file = self._file(stated.attributes.get("filename", "")) if kind == "mesh" else ""
+        file = self._file(stated.attributes.get("filename", ""), folder) if kind == "mesh" else ""
         if size is None or (not file if kind == "mesh" else min(size) <= 0.0):
             return None
         x, y, z = position
@@ -90,14 +97,16 @@ class Visuals:
             return None
         return _color(material) or self.materials.get(material.attributes.get("name", ""))
 
-    def _file(self, stated: str) -> str:
+    def _file(self, stated: str, folder: Path) -> str:
         """Where a mesh is; "" where that is not to be looked at."""
         package = _PACKAGE.match(stated)
         name, inner = (package[1], PurePosixPath(package[2])) if package else ("", PurePosixPath(stated))
         if "://" in str(inner) or inner.is_absolute() or ".." in (name, *inner.parts) or "\0" in stated:
             return ""
-        above = [folder for folder in (self.folder, *self.folder.parents) if package and folder.name == name]
-        places = [*((root, root) for root in above), (self.folder, self.folder), (self.folder, self.folder / name)]
+        above = [root for root in (folder, *folder.parents) if package and root.name == name]
+        known = self.packages.named.get(name) or self.packages.model(name) if package else None
+        places = [*((root, root) for root in above), (folder, folder), (folder, folder / name)]
+        places += [(known, known)] if known is not None else []
         for root, place in places:
             # Unlike pathlib's, these are content with names that can't be: too long, links in a circle.
             path = os.path.realpath(place / inner)

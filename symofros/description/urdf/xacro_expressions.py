@@ -54,7 +54,16 @@ _COMPARISONS: Mapping[type, Callable[[Any, Any], Any]] = {
 
 
 class Refusal(Exception):
-    """What a file may not do."""
+    """What a file may not do.
+
+    Args:
+        text: What it is.
+        package: Name of a package that is not known, where that is the reason.
+    """
+
+    def __init__(self, text: str, package: str = "") -> None:
+        super().__init__(text)
+        self.package = package
 
 
 def _bounded(value: Any) -> Any:
@@ -214,7 +223,7 @@ class Evaluator:
         try:
             return self._value(ast.parse(expression.strip(), mode="eval").body)
         except Refusal as refusal:
-            raise Refusal(f"'{expression:.80}': {refusal}") from None
+            raise Refusal(f"'{expression:.80}': {refusal}", refusal.package) from None
 
     def _value(self, node: ast.expr) -> Any:
         method = getattr(self, f"_{type(node).__name__.lower()}", None)

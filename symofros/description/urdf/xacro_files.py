@@ -7,32 +7,39 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from symofros.description.packages import Packages
 from symofros.description.reading import read_bytes, resolved
 from symofros.description.urdf import xacro_worker
 from symofros.description.workers import answer_of
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import Argument, DescriptionError, Problem
 
 # Wall time of the process [s]; its processor time is bounded by itself.
 TIMEOUT = 60
 _RULE = (
     "expressions compute (arithmetic, comparisons, indexing, functions of math and a few of Python); files lie in the "
-    "package of the file, or in its folder; environment and other packages are not there"
+    "package of the file or in one that it finds; there is no environment"
 )
 
 
-def expanded(path: str | os.PathLike[str], arguments: Mapping[str, str]) -> bytes:
+def expanded(path: str | os.PathLike[str], arguments: Mapping[str, str], packages: Packages) -> bytes:
     """The URDF text of a xacro file.
 
     Args:
         path: The file.
         arguments: Values of its <xacro:arg>.
+        packages: Packages that it may find.
 
     Raises:
         DescriptionError: xacro is not installed, the file can't be expanded, or it asks for what is not allowed.
     """
     file = resolved(Path(path))
     read_bytes(Path(path), xacro_worker.MAX_BYTES)
-    task = {"file": str(file), "folder": str(_package(file)), "arguments": {k: str(v) for k, v in arguments.items()}}
+    task = {
+        "file": str(file),
+        "folder": str(packages.own),
+        "packages": {name: str(folder) for name, folder in packages.named.items()},
+        "arguments": {k: str(v) for k, v in arguments.items()},
+    }
     answer = _answer(task)
     if "absent" in answer:
         raise DescriptionError(
@@ -43,6 +50,8 @@ def expanded(path: str | os.PathLike[str], arguments: Mapping[str, str]) -> byte
                 "xacro",
             )
         )
+    if name := answer.get("package", ""):
+        raise DescriptionError(_unknown_package(f"{name:.60}", packages, path))
     if "text" not in answer:
         raise DescriptionError(
             Problem(
@@ -56,9 +65,17 @@ def expanded(path: str | os.PathLike[str], arguments: Mapping[str, str]) -> byte
     return str(answer["text"]).encode()
 
 
-def _package(file: Path) -> Path:
-    """The nearest folder above a file with a package.xml, or its own folder."""
-    return next((folder for folder in file.parents if (folder / "package.xml").is_file()), file.parent)
+def _unknown_package(name: str, packages: Packages, path: str | os.PathLike[str]) -> Problem:
+    known = ", ".join(f"'{other}'" for other in [*packages.named][:12])
+    argument = Argument("packages", "FOLDER", name)
+    return Problem(
+        f"xacro can't expand the file: there is no package '{name}'",
+        f"$(find {name}), with the packages {known}",
+        "packages are that of the file, those beside it by the names in their package.xml, and those that you name",
+        f"name its folder: {argument.call}",
+        os.fspath(path),
+        argument,
+    )
 
 
 def _answer(task: Mapping[str, Any]) -> dict[str, Any]:

@@ -1,8 +1,9 @@
 """A process that expands one xacro file: a script of its own, which knows of the rest of this package one module.
 
 xacro gives expressions to Python's `eval` and opens what a file names. Here xacro_expressions evaluates them; files are
-opened inside of one folder only; XML has no document types; memory, time and environment are bounded. It reads {"file",
-"folder", "arguments"} as JSON, and writes {"text"} or {"fault"}.
+opened inside of the folders that it is given only; XML has no document types; memory, time and environment are bounded.
+It reads {"file", "folder", "packages", "arguments"} as JSON, and writes {"text"}, or {"fault"} with the "package" that
+is not known.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import os
 import sys
 import xml.dom.expatbuilder  # noqa: F401 - loaded before files are guarded
 import xml.dom.minidom
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -20,6 +22,7 @@ from xml.parsers import expat
 
 MAX_BYTES = 16 << 20
 MAX_FAULT = 2000  # Characters of what went wrong, of which the parent shows fewer.
+MAX_CAUSES = 10
 MEMORY = 2 << 30  # [bytes]
 SECONDS = 20  # of processor time
 
@@ -59,18 +62,8 @@ def parsed(inp: Any, filename: str | None = None) -> Any:
     return xml.dom.minidom.parseString(inp)
 
 
-def package_names(folder: str) -> set[str]:
-    """Names of the package that a folder holds: what its package.xml states, and the folder's own."""
-    names = {os.path.basename(folder)}
-    manifest = os.path.join(folder, "package.xml")
-    if os.path.isfile(manifest):
-        for element in parsed(None, manifest).getElementsByTagName("name"):
-            names.add("".join(child.data for child in element.childNodes if child.nodeType == child.TEXT_NODE).strip())
-    return names
-
-
-def guard(folder: str) -> None:
-    """From here on open files inside of a folder alone, and start nothing."""
+def guard(folders: Collection[str]) -> None:
+    """From here on open files inside of some folders alone, to which the caller may add, and start nothing."""
     writing = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
 
     def hook(event: str, args: tuple[Any, ...]) -> None:
@@ -78,9 +71,10 @@ def guard(folder: str) -> None:
             path, mode, flags = str(args[0]), *(args[1:3] if event == "open" else ("r", 0))
             real = os.path.realpath(os.fsdecode(args[0]) if isinstance(args[0], bytes) else path)
             # A number is a file that is open already, such as standard input.
-            inside = not isinstance(args[0], int) and (real == folder or real.startswith(folder + os.sep))
+            near = any(real == folder or real.startswith(folder + os.sep) for folder in folders)
+            inside = near and not isinstance(args[0], int)
             if not inside or set(str(mode or "r")) & set("wax+") or flags & writing:
-                raise expressions.Refusal(f"'{path:.100}' leaves the folder of the file")
+                raise expressions.Refusal(f"'{path:.100}' leaves the folders of the file")
         elif event.startswith(("os.", "subprocess.", "socket.", "shutil.", "ctypes.", "import")):
             raise expressions.Refusal(f"'{event}' is not allowed")
 
@@ -102,12 +96,13 @@ def bound() -> None:
             continue
 
 
-def expanded(file: str, folder: str, arguments: dict[str, str]) -> str:
+def expanded(file: str, folder: str, packages: Mapping[str, str], arguments: Mapping[str, str]) -> str:
     """The text that xacro makes of a file.
 
     Args:
         file: Path of the file.
-        folder: Folder that it may open files in, which `$(find NAME)` gives for the name of its package, or its own.
+        folder: Folder that it may open files in.
+        packages: Name -> folder that `$(find NAME)` gives, in which files may be opened from then on.
         arguments: Values of <xacro:arg>.
     """
     import xacro
@@ -132,9 +127,9 @@ def expanded(file: str, folder: str, arguments: dict[str, str]) -> str:
 
     def find(name: str) -> str:
         if name not in packages:
-            what = f"packages other than that of the file, '{folder}', are not looked for"
-            raise expressions.Refusal(f"$(find {name:.60}): {what}")
-        return folder
+            raise expressions.Refusal(f"$(find {name:.60}): no such package", name)
+        folders.append(packages[name])
+        return packages[name]
 
     def opened(inp: Any, filename: str | None = None) -> Any:
         """As `parsed`; a missing file is xacro's error, which an optional include looks for."""
@@ -144,12 +139,12 @@ def expanded(file: str, folder: str, arguments: dict[str, str]) -> str:
             xacro.filestack.pop()
             raise xacro.XacroException(f"{error.strerror}: {filename}", exc=error) from None
 
-    packages = package_names(folder)
+    folders = [folder]
     xacro.safe_eval, xacro.parse = safe_eval, opened
     substitution_args._eval, substitution_args._eval_find = substitution, find
     os.environ.clear()
     bound()
-    guard(folder)
+    guard(folders)
     document = xacro.process_file(file, mappings=dict(arguments))
     text = str(document.toprettyxml(indent=" "))
     if len(text) > MAX_BYTES:
@@ -164,21 +159,38 @@ def printable(text: str) -> str:
     return "".join(c if c.isprintable() or c == "\n" else f"\\u{ord(c):04x}" for c in text[:MAX_FAULT])
 
 
+def innermost(error: BaseException) -> BaseException:
+    """The first cause of an error, which xacro wraps."""
+    for _ in range(MAX_CAUSES):
+        cause = getattr(error, "exc", None) or error.__cause__
+        if cause is None:
+            break
+        error = cause
+    return error
+
+
+def told(error: BaseException) -> str:
+    """What went wrong, once, and what xacro says of the places where it did: its own texts repeat their causes."""
+    first = innermost(error)
+    said = [str(first).strip() or type(first).__name__]
+    while error is not first:
+        own = Exception.__str__(error).strip() if isinstance(error, Exception) else ""
+        texts = (own, str(getattr(error, "suffix", None) or "").strip())
+        said += [text for text in texts if text and text != "None" and said[0] not in text]
+        error = getattr(error, "exc", None) or error.__cause__ or first
+    return "; ".join(dict.fromkeys(said))
+
+
 def main() -> None:
     """Expand what is asked for."""
     task = json.load(sys.stdin)
     out, sys.stdout = sys.stdout, sys.stderr  # What xacro prints is no answer.
     try:
-        answer = {"text": expanded(task["file"], task["folder"], task["arguments"])}
+        answer = {"text": expanded(task["file"], task["folder"], task["packages"], task["arguments"])}
     except ImportError:
         answer = {"absent": "xacro"}
     except BaseException as error:  # Also what is no Exception: the parent says it, whatever it is.
-        causes: list[str] = []
-        cause: BaseException | None = error
-        while cause is not None and len(causes) < 5:
-            causes.append(str(cause).strip() or type(cause).__name__)
-            cause = getattr(cause, "exc", None) or cause.__cause__
-        answer = {"fault": printable("; ".join(dict.fromkeys(causes)))}
+        answer = {"fault": printable(told(error)), "package": printable(getattr(innermost(error), "package", ""))}
     out.write(json.dumps(answer))
 
 

@@ -227,12 +227,14 @@ class JointMaker:
         else:
             effort = min(forces, default=math.inf) * self._effort(kind)
         velocity = _first(joint, _VELOCITY)
-        return Limits(
-            lower,
-            upper,
-            velocity * unit if velocity is not None and math.isfinite(velocity) else None,
-            effort if math.isfinite(effort) else None,
-        )
+        speed = math.inf if velocity is None else velocity * unit
+        return Limits(lower, upper, self._size(joint, "speed", speed), self._size(joint, "effort", effort))
+
+    def _size(self, joint: UsdJoint, what: str, bound: float) -> float | None:
+        """A limit of a size; none where it is infinite, or negative, by which some mean none."""
+        if bound < 0.0:
+            self.remarks.add(f"negative limits of {what} taken for none", "joint", joint.name)
+        return bound if 0.0 <= bound < math.inf else None
 
     def _effort(self, kind: JointKindName) -> float:
         """Newtons, or newton metres, in the stage's unit of efforts."""

@@ -192,7 +192,7 @@ class EquationsOfMotion:
                         f"system '{self.tree.system.name}': speed '{name}' moves no mass",
                         "its row of M is zero",
                         _DIVIDES,
-                        "give it an inertia, or bind it by a constraint",
+                        "give it an inertia, bind it by a constraint, or ask for other functions, such as frame_pose",
                     )
                 )
 

@@ -13,7 +13,7 @@ from symofros.description.beams.beam import STATION, Beam, BeamLoad
 from symofros.description.forces import Load
 from symofros.description.joints.joint import WORLD, Joint
 from symofros.description.system import Body, RigidBody, System
-from symofros.errors import DescriptionError, Problem, did_you_mean, first_of
+from symofros.errors import Argument, DescriptionError, Problem, did_you_mean, first_of
 from symofros.expr.expression import CONSTANTS
 from symofros.expr.ops import FUNCTIONS
 from symofros.mechanics.topology.beams import beam_conditions, beam_number_problems, beam_problems
@@ -30,6 +30,7 @@ from symofros.mechanics.topology.run_time import rotations_of, value_conditions
 # Systems in which no problem was found, by identity: nothing in a system can change, and `replace` makes another one.
 _sound: WeakValueDictionary[int, System] = WeakValueDictionary()
 _MAX_NAME = 200
+_FLOATING = Argument("floating_base")
 _SHOWN = 12  # Names listed in a message.
 
 
@@ -223,7 +224,8 @@ class _Checker:
                 f"system '{self.system.name}': nothing moves",
                 f"{len(self.system.bodies)} bodies, no moving joint",
                 "a model has at least one joint that is not fixed",
-                "add a joint; floating_base=True frees a URDF root",
+                f"add a joint; of a URDF, {_FLOATING.call} frees the root",
+                argument=_FLOATING,
             )
 
     def _joint(self, body: Body, joint: Joint) -> Iterator[Problem]:
@@ -269,7 +271,7 @@ class _Checker:
                     f"{len(loop)} bodies; their joints are {listed(joints)}",
                     "joints form a tree that starts at the base",
                     "give one of these joints a parent that none of the bodies carries, such as 'world'; "
-                    "a loop of the mechanism itself is cut at one joint and closed by a closure",
+                    "a loop of the mechanism itself is cut at one joint and closed by a closure (sf.Closure)",
                     self.where("body", name),
                 )
             done.update(walk)

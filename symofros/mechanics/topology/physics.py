@@ -12,7 +12,7 @@ from symofros.base.rotations import Array
 from symofros.description.beams.beam import STATION, Beam
 from symofros.description.system import Body, Inertia, RigidBody, System
 from symofros.description.values import Term, Value, substituted, symbols
-from symofros.errors import Problem
+from symofros.errors import Argument, Problem
 from symofros.mechanics.topology.conditions import Condition, Formulas, violations
 from symofros.mechanics.topology.numbers import Numbers
 
@@ -78,8 +78,9 @@ def _nonphysical(body: RigidBody, where: str, numbers: Numbers) -> Problem:
         f"body '{body.name}': non-physical inertia",
         _fault(body, numbers),
         "mass >= 0; principal moments about the mass centre >= 0, none above the sum of the other two",
-        "mend the numbers (is the matrix about the mass centre?), or waive: [nonphysical_inertia]",
+        f"mend the numbers (is the matrix about the mass centre?), or {_waived('nonphysical_inertia')}",
         where,
+        Argument("waive", "nonphysical_inertia"),
     )
 
 
@@ -185,9 +186,15 @@ def _massless_tip(body: str, joint: str, where: str, numbers: Numbers) -> Proble
         f"body '{body}': joint '{joint}' moves no mass",
         "no inertia on this body or on anything it carries, as the joint moves it",
         "each moving joint carries some inertia, or the mass matrix is singular",
-        "give an inertia, make the joint fixed, or waive: [massless_tip] or load(…, waive=['massless_tip'])",
+        f"give an inertia, make the joint fixed, or {_waived('massless_tip')}",
         where,
+        Argument("waive", "massless_tip"),
     )
+
+
+def _waived(check: str) -> str:
+    """How a check is waived: by the entry of a body, in Python or a native file, or of all bodies that are read."""
+    return f"waive: [{check}] or {Argument('waive', check).call}"
 
 
 def _tips_first(parent_of: Mapping[str, str]) -> list[str]:

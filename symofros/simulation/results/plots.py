@@ -9,7 +9,7 @@ from typing import Any
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.calls.kernel import Array
 
-_MOST = 12  # Curves in one picture; more can't be distinguished.
+MOST_CURVES = 12  # In one panel; more can't be distinguished.
 
 
 def figure_class() -> Any:
@@ -41,8 +41,10 @@ def draw(t: Array, panels: Mapping[str, Mapping[str, Array]], title: str) -> Any
     figure = figure_class()(figsize=(8.0, 2.2 * len(panels)), layout="constrained")
     axes = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
     for axis, (label, curves) in zip(axes, panels.items(), strict=True):
-        for name, values in list(curves.items())[:_MOST]:
+        for name, values in list(curves.items())[:MOST_CURVES]:
             axis.plot(t, values, label=name)
+        if len(curves) > MOST_CURVES:
+            axis.set_title(f"the first {MOST_CURVES} of {len(curves)}; others by their names", fontsize="small")
         axis.set_ylabel(label)
         axis.grid(alpha=0.3)
         axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize="small")

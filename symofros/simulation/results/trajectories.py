@@ -132,7 +132,8 @@ class Trajectories:
         bendings = self.bendings(index)
         t, reached = float(self.t_last[index]), self._states(index)
         record = self.model.record
-        notes = (*limit_notes(record.q_names, record.joint_limits, *reached[:2]), *bending_notes(bendings))
+        values = dict(zip("qvu", reached[1:], strict=True))
+        notes = (*limit_notes(record.vectors, record.joint_limits, reached[0], values), *bending_notes(bendings))
         if self.status[index] < 0:
             reason = self._input_fault(index) or reason
         mode, remarks = self._step_size(index)

@@ -213,19 +213,28 @@ class Trajectory:
         }
 
     def plot(self, *names: str) -> Any:
-        """A Matplotlib figure of coordinates (those named), speeds, inputs and energy; `.savefig(path)` writes it.
+        """A Matplotlib figure of coordinates, speeds, inputs (those named) and energy; `.savefig(path)` writes it.
+
+        A panel shows its first 12 curves, and says how many there are.
 
         Raises:
             SymofrosError: Matplotlib is not installed.
+            UnknownNameError: A name is none of a coordinate, speed or input.
         """
         known = self.model.names
+        every = [*dict.fromkeys((*known.q, *known.v, *known.u))]
+        for name in (name for name in names if name not in every):
+            rule = "a picture shows coordinates, speeds and inputs by their names"
+            missing = f"plot: no coordinate, speed or input '{name}'"
+            raise UnknownNameError(Problem(missing, ", ".join(every[:12]), rule, did_you_mean(name, every)))
         panels = {
             "coordinates [rad, m]": _curves(known.q, self.q, names),
             "speeds [rad/s, m/s]": _curves(known.v, self.v, names),
             "change of energy [J]": {"kinetic + potential": self.energy - self.energy[0]},
         }
         if self.u.any():
-            panels["inputs [N m, N]"] = _curves(known.u, self.u, ())
+            panels["inputs [N m, N]"] = _curves(known.u, self.u, names if {*names} & {*known.u} else ())
+        panels = {label: curves for label, curves in panels.items() if curves}
         title = f"{self.model.record.name}: {self.statistics.method}, {self.outcome.kind} at t = {self.outcome.t:.4g} s"
         return draw(self.t, panels, title)
 

@@ -10,7 +10,7 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from symofros.base.arguments import CheckedCalls
+from symofros.base.arguments import CheckedCalls, shown
 from symofros.errors import DescriptionError, Problem, did_you_mean
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.results.trajectory import Trajectory
@@ -41,11 +41,11 @@ class Output(metaclass=CheckedCalls):
     def __post_init__(self) -> None:
         """Check the kind and the tolerance."""
         what = f"output '{self.name}'"
-        if self.kind not in KINDS:
+        if not isinstance(self.kind, str) or self.kind not in KINDS:
             raise DescriptionError(
                 Problem(
                     f"{what}: unknown kind",
-                    f"'{self.kind}'",
+                    shown(self.kind),
                     f"one of {', '.join(KINDS)}",
                     did_you_mean(str(self.kind), KINDS),
                 )

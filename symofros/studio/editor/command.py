@@ -5,10 +5,10 @@ from __future__ import annotations
 import secrets
 import socket
 import webbrowser
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import uvicorn
 
@@ -26,7 +26,14 @@ HOST = "127.0.0.1"
 SOCKETS: Literal["websockets-sansio", "none"] = "websockets-sansio" if find_spec("websockets") else "none"
 
 
-def serve(file: Path | None, port: int, token: str | None, browser: bool, tell: Callable[[str], object]) -> None:
+def serve(
+    file: Path | None,
+    port: int,
+    token: str | None,
+    browser: bool,
+    tell: Callable[[str], object],
+    reading: Mapping[str, Any] | None = None,
+) -> None:
     """Serve the editor until it is interrupted.
 
     Args:
@@ -35,13 +42,14 @@ def serve(file: Path | None, port: int, token: str | None, browser: bool, tell: 
         token: Token that requests must carry; None: drawn at random.
         browser: Whether to open the page.
         tell: Receives the page's address once the server listens.
+        reading: Arguments of `load` for a file of another format.
 
     Raises:
         FileError: The file can't be opened.
         DescriptionError: A file of another format can't be read.
         OSError: The port is taken.
     """
-    session = _opened(file)
+    session = _opened(file, reading or {})
     token = token or secrets.token_urlsafe(32)
     with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as listener:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -62,7 +70,7 @@ def serve(file: Path | None, port: int, token: str | None, browser: bool, tell: 
         server.run(sockets=[listener])
 
 
-def _opened(file: Path | None) -> Session:
+def _opened(file: Path | None, reading: Mapping[str, Any]) -> Session:
     """A native file as it stands; of another format, a new document that says the same."""
     if file is None:
         return Session(Workspace(Path.cwd()))
@@ -72,7 +80,7 @@ def _opened(file: Path | None) -> Session:
     workspace = Workspace(path.parent)
     if path.suffix.lower() in YAML_SUFFIXES:
         return Session(workspace, path)
-    text = write_yaml(symofros.load(path))
+    text = write_yaml(symofros.load(path, **reading))
     session = Session(workspace)
     session.storage.adopt(path.name, text)
     return session

@@ -51,9 +51,9 @@ def compiling(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Compiling:
     counted = Compiling(tmp_path / "cache")
     monkeypatch.setenv("SYMOFROS_CACHE", str(counted.cache))
 
-    def load_with_sources(*arguments: Any) -> tuple[sf.System, tuple[Source, ...]]:
+    def load_with_sources(*arguments: Any, **named: Any) -> tuple[sf.System, tuple[Source, ...]]:
         counted.read += 1
-        return original(*arguments)
+        return original(*arguments, **named)
 
     original = compilation.load_with_sources
     monkeypatch.setattr(compilation, "load_with_sources", load_with_sources)

@@ -4,6 +4,7 @@ import pytest
 
 import reference_models
 import symofros as sf
+from symofros.commands.reading import ReadingOptions
 from tests.validation.subjects import URDF
 from validation.inputs.cases import FILES, ROBOTS, Case, named, robot_case, standard_set
 
@@ -12,7 +13,7 @@ def test_robots_are_found_in_the_package() -> None:
     assert len(ROBOTS) >= 12
     for label, robot in ROBOTS.items():
         case = robot_case(label)
-        assert case.path is not None and case.path.is_file() and case.floating_base == robot.floating_base
+        assert case.path is not None and case.path.is_file() and case.reading.floating_base == robot.floating_base
 
 
 def test_the_standard_set_is_robots_reference_models_and_files() -> None:
@@ -34,29 +35,29 @@ def test_a_package_that_is_not_there(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_files_and_names_can_be_mixed(tmp_path: Path) -> None:
     path = tmp_path / "arm.urdf"
-    cases = named([str(path), "ur5", "some.yaml"], floating_base=True)
+    cases = named([str(path), "ur5", "some.yaml"], ReadingOptions(floating_base=True))
     assert [case.label for case in cases] == ["arm", "ur5", "some"]
-    assert [case.floating_base for case in cases] == [True, False, False]
+    assert [case.reading.floating_base for case in cases] == [True, False, False]
 
 
 def test_files_of_one_name_are_told_apart() -> None:
-    assert [case.label for case in named(["a/arm.urdf", "b/arm.urdf"], False)] == ["a/arm.urdf", "b/arm.urdf"]
+    assert [case.label for case in named(["a/arm.urdf", "b/arm.urdf"])] == ["a/arm.urdf", "b/arm.urdf"]
 
 
 def test_the_same_model_twice_is_checked_once() -> None:
-    assert [case.label for case in named(["ur5", "a/arm.urdf", "ur5", "a/arm.urdf"], False)] == ["ur5", "arm"]
+    assert [case.label for case in named(["ur5", "a/arm.urdf", "ur5", "a/arm.urdf"])] == ["ur5", "arm"]
 
 
 def test_unknown_name() -> None:
     with pytest.raises(LookupError, match="did you mean 'panda'"):
-        named(["pandas"], False)
+        named(["pandas"])
 
 
 @pytest.mark.parametrize("floating_base", [False, True])
 def test_a_urdf_brings_its_text_and_its_digits(tmp_path: Path, floating_base: bool) -> None:
     path = tmp_path / "arm.urdf"
     path.write_text(URDF.replace('rpy="0.3 0 0"', 'rpy="1e-15 0 0"'))
-    subject = Case("arm", path, floating_base).load()
+    subject = Case("arm", path, ReadingOptions(floating_base)).load()
     assert subject.urdf is not None and subject.urdf.text == path.read_bytes()
     assert subject.urdf.verbatim != subject.system
     assert any(b.joint and b.joint.kind == "free" for b in subject.system.bodies) == floating_base

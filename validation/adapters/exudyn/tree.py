@@ -166,6 +166,8 @@ def build(subject: Subject) -> Engine | Unsupported:
     if beam is not None:
         return Unsupported(f"beam '{beam.name}': left to finite elements, exudyn-beams")
     assembly = assemble(system)
+    if assembly.moves_no_mass:
+        return Unsupported("a joint that moves no mass: its systems are solved, which gives NaN")
     obstacle = unrepresented(system, assembly, carried.KINDS)
     if obstacle is not None:
         return obstacle

@@ -33,6 +33,8 @@ def _read(source: UrdfSource, assembly: Assembly) -> PinocchioEngine | Unsupport
     except (ValueError, RuntimeError) as error:
         return Unsupported(str(error))
     model.gravity.linear = assembly.gravity
+    if any(joint.shortname() == "JointModelPlanar" for joint in model.joints):
+        return Unsupported("a planar joint, whose speeds are the body's own in Pinocchio")
     if model.nv != assembly.nv:
         return Unsupported(f"{model.nv} speeds, ours has {assembly.nv}")
     names = [mover.joint.name for mover in assembly.movers]

@@ -95,7 +95,7 @@ def diagnose(ended: Ended, bendings: Sequence[BeamBending]) -> tuple[Outcome, Re
         bendings: Bending of its beams.
     """
     loop, status, t = ended.loop, ended.status, ended.t
-    left = joint_limit_notes(ended.resolved, *ended.states[:2])
+    left = joint_limit_notes(ended.resolved, *ended.states[:3])
     notes = (*bending_notes(bendings), *([loop.fault] if loop.fault else []), *left)
     if ended.interrupted:
         return Outcome("interrupted", t, "Ctrl-C; the part up to here is kept", notes=notes), Resolution()

@@ -2,35 +2,44 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.program.layout import Part
 from symofros.generator.record import joint_limits
 from symofros.runtime.calls.kernel import Array
+from symofros.runtime.record import JointLimit
 from symofros.simulation.analysis.kinematics.postures import limit_notes
 
 
-def joint_limit_notes(resolved: Resolved, t: Array, q: Array) -> list[str]:
-    """At most one note a part.
+def joint_limit_notes(resolved: Resolved, t: Array, q: Array, v: Array) -> list[str]:
+    """At most one note a part and kind of limit; efforts, which are signals here, are not looked at.
 
     Args:
         resolved: Diagram that ran.
         t: Recorded times (n).
         q: States (n, nq).
+        v: Speeds (n, nv).
     """
     layout = resolved.layout
     return [
         note
         for part in layout.parts
-        for note in limit_notes(layout.q_names[part.q], _limits(resolved, part), t, q[:, part.q])
+        for note in limit_notes(
+            {"q": layout.q_names[part.q], "v": layout.v_names[part.v]},
+            list(_limits(resolved, part)),
+            t,
+            {"q": q[:, part.q], "v": v[:, part.v]},
+        )
     ]
 
 
-def _limits(resolved: Resolved, part: Part) -> list[tuple[int, float, float]]:
-    """Limits of joints of a part's mechanisms, by index in the part's q."""
+def _limits(resolved: Resolved, part: Part) -> Iterator[JointLimit]:
+    """Limits of joints of a part's mechanisms, by index in the part's q or v."""
     models, layout = resolved.wired.models, resolved.layout
-    return [
-        (layout.q[name].start - part.q.start + i, lower, upper)
-        for name in part.blocks
-        if name in layout.q
-        for i, lower, upper in joint_limits(models.tree(resolved.pieces[name].block.mechanism()))
-    ]
+    for name in part.blocks:
+        if name in layout.q:
+            first = {"q": layout.q[name].start - part.q.start, "v": layout.v[name].start - part.v.start}
+            for limit in joint_limits(models.tree(resolved.pieces[name].block.mechanism())):
+                if limit.of in first:
+                    yield limit._replace(entry=first[limit.of] + limit.entry)

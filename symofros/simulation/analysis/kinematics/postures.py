@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
+from symofros.runtime.record import JointLimit
 
 # A loop whose conditions are this much weaker than at their best is close to a singular posture. A step that all but
 # lands in the posture itself costs decades of accuracy (atlas of stability, singular postures).
@@ -175,31 +176,45 @@ def _between(model: Model, most: int, t: Array, q: Array, u: Array) -> tuple[Arr
     return np.append(times, t[-1]), np.vstack([inner, q[-1:]]), np.vstack([np.repeat(u[:-1], parts, axis=0), u[-1:]])
 
 
+# What is limited -> what a note says of it, and of what would keep the limit.
+_LIMITED = {
+    "q": ("'{}' leaves its limits", "limits are data here, no stops"),
+    "v": ("the speed of '{}' exceeds its limits", "limits are data here, nothing brakes"),
+    "u": ("the effort of '{}' exceeds its limits", "limits are data here, inputs act as they are given"),
+}
+
+
 def limit_notes(
-    names: Sequence[str], limits: Sequence[tuple[int, float, float]], t: Array, q: Array
+    names: Mapping[str, Sequence[str]], limits: Sequence[JointLimit], t: Array, values: Mapping[str, Array]
 ) -> tuple[str, ...]:
-    """A note where a run left the limits of its joints, which no force keeps.
+    """Notes where a run left the limits of its joints, which no force keeps: one of each kind at most.
 
     Args:
-        names: Names of the coordinates.
-        limits: Limits, as `ModelRecord.joint_limits` has them.
+        names: Names of the entries of each vector.
+        limits: Limits, as `ModelRecord.joint_limits` has them; those of vectors without values are not looked at.
         t: Recorded times (n).
-        q: States (n, nq).
+        values: Vectors at these times, by what is limited: q (n, nq), v (n, nv), u (n, nu).
     """
-    if not limits or not len(t):
-        return ()
-    index, lower, upper = (np.array(column) for column in zip(*limits, strict=True))
-    reached = q[:, index]
+    kinds = ((of, [limit for limit in limits if limit.of == of]) for of in _LIMITED if of in values)
+    notes = (_limit_note(of, names[of], of_kind, t, values[of]) for of, of_kind in kinds if of_kind and len(t))
+    return tuple(filter(None, notes))
+
+
+def _limit_note(of: str, names: Sequence[str], limits: Sequence[JointLimit], t: Array, values: Array) -> str:
+    """The note on one kind of limits; "" where they are kept."""
+    index, lower, upper = (np.array(column) for column in zip(*(limit[1:] for limit in limits), strict=True))
+    reached = values[:, index]
     below, above = lower - AT_LIMIT * (1.0 + np.abs(lower)), upper + AT_LIMIT * (1.0 + np.abs(upper))
     excess = np.fmax(below - reached, reached - above)
     beyond = excess > 0.0
     left = np.flatnonzero(beyond.any(axis=0))
     if not len(left):
-        return ()
+        return ""
     first = int(left[np.argmin(beyond[:, left].argmax(axis=0))])
-    others = f", as do {len(left) - 1} more coordinates" if len(left) > 2 else ", as does one more" * (len(left) == 2)
+    others = f", as do {len(left) - 1} more" if len(left) > 2 else ", as does one more" * (len(left) == 2)
     when, most = t[beyond[:, first].argmax()], np.nanmax(excess[:, first])
+    what, rule = _LIMITED[of]
     return (
-        f"'{names[index[first]]}' leaves its limits, {lower[first]:.6g} to {upper[first]:.6g}, at"
-        f" t = {when:.6g} s, by up to {most:.3g}{others}: limits are data here, no stops",
+        f"{what.format(names[index[first]])}, {lower[first]:.6g} to {upper[first]:.6g}, at"
+        f" t = {when:.6g} s, by up to {most:.3g}{others}: {rule}"
     )

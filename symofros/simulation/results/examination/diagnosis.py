@@ -208,7 +208,7 @@ def _notes(stepper: Stepper, states: Sequence[Array], bendings: Sequence[BeamBen
                 " their strength: compare with another step"
             )
     record = stepper.model.record
-    notes += limit_notes(record.q_names, record.joint_limits, states[0], states[1])
+    notes += limit_notes(record.vectors, record.joint_limits, states[0], dict(zip("qvu", states[1:], strict=True)))
     notes += bending_notes(bendings)
     if run.late_steps:
         notes.append(f"{run.late_steps} of {run.paced_steps} steps began late, by {1e3 * run.late_max:.3g} ms at most")

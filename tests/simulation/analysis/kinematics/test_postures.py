@@ -65,3 +65,41 @@ def test_a_run_beyond_the_limits_of_a_joint_says_when_and_how_far(t_end: float, 
 
 def test_limits_that_are_not_stated_are_not_left() -> None:
     assert not sf.simulate(sf.compile(falling()), t_end=1.0).outcome.notes
+
+
+def driven(**limits: float) -> sf.System:
+    """A mass of 1 kg on a slide without gravity, driven by a force."""
+    joint = sf.Joint("s", "prismatic", axis=(0, 0, 1), actuated=True, limits=sf.Limits(**limits))
+    return sf.System("driven", [sf.RigidBody("b", joint, sf.Inertia(1.0))], gravity=(0, 0, 0))
+
+
+@pytest.mark.parametrize(
+    ("limits", "said"),
+    [
+        ({"effort": 5.0}, "the effort of 's' exceeds its limits, -5 to 5, at t = 0.5"),
+        ({"velocity": 1.0}, "the speed of 's' exceeds its limits, -1 to 1, at t = 0.4"),
+        ({"effort": 10.0, "velocity": 5.0}, ""),
+        ({"effort": 0.0, "velocity": 0.0}, ""),  # As files of kinematics alone state it.
+        ({}, ""),
+    ],
+)
+def test_a_run_beyond_the_limits_of_speed_or_effort_says_so(limits: dict[str, float], said: str) -> None:
+    """A force of 10 t N: it passes 5 N at 0.5 s and 1 m/s at 0.447 s, and ends at 10 N and 5 m/s."""
+    m = sf.compile(driven(**limits))
+    alone = sf.simulate(m, t_end=1.0, u={"s": "10*t"}, dt=1e-2, method="rk4").outcome
+    batch = sf.simulate_batch(m, np.zeros((2, 1)), t_end=1.0, u={"s": "10*t"}, dt=1e-2, output=1e-2).outcome(1)
+    for outcome in (alone, batch):
+        told = [note for note in outcome.notes if "exceeds its limits" in note]
+        assert len(told) == bool(said) and all(said in note for note in told), told
+
+
+def test_speeds_are_looked_at_in_diagrams() -> None:
+    system = driven(velocity=1.0, effort=1.0)
+    diagram = sf.Diagram("one_mass")
+    diagram.add_model("driven", system)
+    diagram.add(blocks.ForwardDynamics(name="mass", model="driven"))
+    diagram.add(blocks.Constant(name="force", value=[5.0]))
+    diagram.connect("force.y", "mass.u")
+    for run in (sf.Simulation(diagram).run, sf.Simulation(diagram).interpret):
+        notes = run(1.0, dt=1e-2, record=1e-2).outcome.notes
+        assert ["the speed of" in note for note in notes if "exceeds" in note] == [True]

@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 
 import symofros as sf
 from symofros.__main__ import app as symofros_app
+from symofros.commands.reading import ReadingOptions
 from tests.description.mjcf_models import MODELS, document
 from tests.models import sampled
 from tests.validation.subjects import subject_of
@@ -122,7 +123,7 @@ def test_it_is_for_mjcf_only() -> None:
 @pytest.mark.slow
 def test_the_command_lines(tmp_path: Path) -> None:
     path = write(tmp_path, MODELS["reference_and_spring_reference"])
-    assert named([str(path)], floating_base=True) == [Case("model", path)]
+    assert named([str(path)], ReadingOptions(floating_base=True)) == [Case("model", path)]
     run = CliRunner().invoke(app, ["check", str(path), "--states", "5", "--json", "--report", str(tmp_path / "r")])
     rows = json.loads(run.stdout)["comparisons"]
     assert run.exit_code == 0, run.stdout

@@ -1,0 +1,158 @@
+"""How a model is read, as commands state it: the arguments of `sf.load` as options, defined once for all commands.
+
+What `symofros compile` does where the cache knows its answer imports this: nothing here reads models.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from functools import wraps
+from pathlib import Path
+from typing import Annotated, Any, TypeVar
+
+import typer
+
+from symofros.errors import Problem, SymofrosError
+
+_Command = TypeVar("_Command", bound=Callable[..., Any])
+# Parameter of a command that takes all options below.
+PARAMETER = "reading"
+
+
+@dataclass(frozen=True)
+class ReadingOptions:
+    """Options of `sf.load`; hashable, as `sf.load` has them where they are mappings or lists.
+
+    Attributes:
+        floating_base: Whether a free joint goes under a URDF's root link.
+        mimic: Whether joints of a URDF that mimic others are coupled to them.
+        waive: Checks that every body may fail.
+        packages: Names and folders of packages.
+        arguments: Names and values of xacro's arguments.
+        prefix: Beginning of the names of the options that state all this.
+    """
+
+    floating_base: bool = False
+    mimic: bool = False
+    waive: tuple[str, ...] = ()
+    packages: tuple[tuple[str, str], ...] = ()
+    arguments: tuple[tuple[str, str], ...] = ()
+    prefix: str = "--"
+
+    @property
+    def keywords(self) -> dict[str, Any]:
+        """What is stated, as keywords of `sf.load`."""
+        stated = {name: value for name in _OPTIONS if (value := getattr(self, name))}
+        mappings = {name: dict(stated[name]) for name in ("packages", "arguments") if name in stated}
+        return stated | mappings
+
+    def fit_for(self, path: Path) -> ReadingOptions:
+        """The same for one of several files of different formats: without what its format has not."""
+        suffix = path.suffix.lower()
+        own = self if suffix == ".xacro" else replace(self, arguments=())
+        return own if suffix in (".urdf", ".xacro") else replace(own, floating_base=False, mimic=False)
+
+    def require_none(self, why: str) -> None:
+        """Refuse options where no model is read by them.
+
+        Raises:
+            SymofrosError: Some are stated.
+        """
+        if stated := ", ".join(self.keywords):
+            rule = "options of reading apply to the file of a model"
+            raise SymofrosError(Problem(f"options of reading: {why}", stated, rule, "leave them out"))
+
+
+# As a command states them.
+_OPTIONS: dict[str, tuple[Any, Any]] = {
+    "floating_base": (bool, typer.Option("--floating-base", help="Put a free joint under a URDF's root link.")),
+    "mimic": (bool, typer.Option("--mimic", help="Couple the joints of a URDF that mimic others to them.")),
+    "waive": (
+        list[str],
+        typer.Option(
+            "--waive", metavar="CHECK", help="A check that every body may fail, such as massless_tip; repeatable."
+        ),
+    ),
+    "packages": (
+        list[str],
+        typer.Option(
+            "--package",
+            metavar="NAME=FOLDER",
+            help="A further folder that the model's files may be read from, by the name they give it; repeatable.",
+        ),
+    ),
+    "arguments": (
+        list[str],
+        typer.Option("--argument", metavar="NAME=VALUE", help="An argument of a xacro file; repeatable."),
+    ),
+}
+
+
+def reading_of(
+    *,
+    floating_base: bool = False,
+    mimic: bool = False,
+    waive: Iterable[str] = (),
+    packages: Iterable[str] = (),
+    arguments: Iterable[str] = (),
+    prefix: str = "--",
+) -> ReadingOptions:
+    """Options as they are stated, NAME=TEXT where they are pairs.
+
+    Args:
+        floating_base: As in `ReadingOptions`, like the next two.
+        mimic: As there.
+        waive: As there.
+        packages: Pairs of names and folders.
+        arguments: Pairs of names and values.
+        prefix: Beginning of the options' names, for the problem.
+
+    Raises:
+        SymofrosError: A text is no pair.
+    """
+    named = pairs(packages, f"{prefix}package", "hand_description=../hand_description")
+    given = pairs(arguments, f"{prefix}argument", "gripper=true")
+    return ReadingOptions(floating_base, mimic, tuple(waive), tuple(named.items()), tuple(given.items()), prefix)
+
+
+def pairs(given: Iterable[str], what: str, example: str) -> dict[str, str]:
+    """NAME=TEXT options as a mapping.
+
+    Args:
+        given: The texts.
+        what: Name of the option, for the problem.
+        example: A pair, for the remedy.
+
+    Raises:
+        SymofrosError: A text is no pair.
+    """
+    stated = {}
+    for item in given:
+        name, sign, text = item.partition("=")
+        if not sign or not name or not text:
+            fault = Problem(f"{what} '{item}'", "no name and value", f"{what} NAME=VALUE", f"for example {example}")
+            raise SymofrosError(fault)
+        stated[name.strip()] = text.strip()
+    return stated
+
+
+def reads_models(command: _Command) -> _Command:
+    """Give a command the options of reading, in the place of its parameter `reading`."""
+    signature = inspect.signature(command, eval_str=True)
+    parameters = [parameter for parameter in signature.parameters.values() if parameter.name != PARAMETER]
+    keyword = inspect.Parameter.KEYWORD_ONLY
+    for name, (kind, option) in _OPTIONS.items():
+        default: Any = False if kind is bool else []
+        parameters.append(inspect.Parameter(name, keyword, default=default, annotation=Annotated[kind, option]))
+
+    @wraps(command)
+    def wrapped(*args: Any, **given: Any) -> Any:
+        stated = {name: given.pop(name) for name in _OPTIONS if name in given}
+        return command(*args, **given, **{PARAMETER: reading_of(**stated)})
+
+    positional = [p.replace(kind=keyword) if p.kind is not keyword else p for p in parameters]
+    wrapped.__signature__ = signature.replace(parameters=positional)  # type: ignore[attr-defined]
+    wrapped.__annotations__ = {p.name: p.annotation for p in positional} | {"return": signature.return_annotation}
+    return wrapped  # type: ignore[return-value]

@@ -1,0 +1,158 @@
+"""Options of reading: the same in every command that loads a model; remedies name what the user can type."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+import symofros as sf
+from symofros.__main__ import app
+from symofros.commands.reading import ReadingOptions, pairs, reading_of
+from symofros.errors import Argument, Problem, SymofrosError
+
+KINEMATIC = (
+    '<robot name="k"><link name="base"/>{}</robot>',
+    '<link name="l{0}"/><joint name="j{0}" type="continuous"><parent link="{1}"/><child link="l{0}"/></joint>',
+)
+LOADERS = ("info", "compile", "simulate", "export", "view", "edit", "equilibrium", "equations", "kernels", "advise")
+
+
+def kinematic(folder: Path, count: int) -> Path:
+    outer, link = KINEMATIC
+    links = (link.format(i, f"l{i - 1}" if i else "base") for i in range(count))
+    (folder / "k.urdf").write_text(outer.format("\n".join(links)))
+    return folder / "k.urdf"
+
+
+def invoke(*arguments: object) -> Any:
+    return CliRunner().invoke(app, [*map(str, arguments)])
+
+
+@pytest.mark.parametrize("command", LOADERS)
+def test_every_command_that_loads_a_model_takes_the_options(command: str) -> None:
+    told = invoke(command, "--help").output
+    for option in ("--floating-base", "--mimic", "--waive", "--package", "--argument"):
+        assert option in told
+
+
+def test_a_check_is_waived_where_the_remedy_says_so(tmp_path: Path) -> None:
+    path = kinematic(tmp_path, 2)
+    told = invoke("info", path)
+    assert told.exit_code == 2 and "or --waive massless_tip" in told.output and "load(" not in told.output
+    assert json.loads(invoke("info", path, "--waive", "massless_tip", "--json").output)["nv"] == 2
+    picture = tmp_path / "k.png"
+    assert invoke("view", path, "--waive", "massless_tip", "--record", picture).exit_code == 0 and picture.is_file()
+    wrong = invoke("info", path, "--waive", "massless_tips")
+    assert wrong.exit_code == 2 and "did you mean 'massless_tip'" in wrong.output
+
+
+def test_compile_knows_models_by_how_they_are_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path / "cache"))
+    path = kinematic(tmp_path, 1)
+    asked = "compile", path, "--functions", "frame_pose"
+    assert invoke(*asked, "--waive", "massless_tip").exit_code == 0
+    assert invoke(*asked).exit_code == 2
+    said = invoke("compile", path, "--waive", "massless_tip").output
+    assert "ask for other functions, such as frame_pose" in said
+
+
+def test_diagrams_and_native_files_have_no_options_of_reading(tmp_path: Path) -> None:
+    diagram = tmp_path / "d.yaml"
+    diagram.write_text("symofros_diagram: 1\nblocks: {}\n")
+    for command in ("info", "simulate"):
+        told = invoke(command, diagram, "--waive", "massless_tip")
+        assert told.exit_code == 2 and "the file is a diagram" in told.output
+    told = invoke("edit", tmp_path / "new.yaml", "--waive", "massless_tip", "--no-browser")
+    assert told.exit_code == 2 and "opened as it stands" in told.output
+
+
+def test_pairs_are_names_and_texts() -> None:
+    assert reading_of(packages=["a=b", "c = d "]).keywords == {"packages": {"a": "b", "c": "d"}}
+    assert ReadingOptions().keywords == {}
+    with pytest.raises(SymofrosError, match="no name and value"):
+        pairs(["a"], "--package", "a=b")
+    assert invoke("info", "x.urdf", "--package", "a").exit_code == 2
+
+
+def test_options_that_a_format_has_not_are_left_out_for_several_files() -> None:
+    stated = reading_of(floating_base=True, mimic=True, waive=["massless_tip"], arguments=["a=b"])
+    assert stated.fit_for(Path("a.xml")) == ReadingOptions(waive=("massless_tip",))
+    assert stated.fit_for(Path("a.urdf")) == ReadingOptions(True, True, ("massless_tip",))
+    assert stated.fit_for(Path("a.xacro")) == stated
+
+
+def test_equal_problems_are_one_line_with_their_number(tmp_path: Path) -> None:
+    with pytest.raises(sf.DescriptionError) as caught:
+        sf.load(kinematic(tmp_path, 24))
+    text = str(caught.value)
+    assert len(caught.value.problems) == 24 and text.count("moves no mass") == 1
+    assert "k.urdf:1: body 'l0': joint 'j0' moves no mass; likewise 23 more: 'l1' (line 2), 'l2' (line 3)" in text
+    assert len(text.splitlines()) == 4
+    assert invoke("info", tmp_path / "k.urdf").output.rstrip().endswith("k.urdf: 24 problems")
+
+
+def test_problems_that_differ_are_told_each() -> None:
+    """In what was found, in the rule, in the remedy; and a pair is told with both lines."""
+    stated = [Problem(f"body '{name}' is odd", found, "r", "m", f"a:{i}") for i, (name, found) in enumerate(PAIRS)]
+    assert len(str(SymofrosError(stated)).splitlines()) == 4 * 4
+    pair = [Problem(f"body '{name}' is odd", "f", "r", "m") for name in "ab"]
+    assert str(SymofrosError(pair)) == "\n".join(map(str, pair))
+
+
+PAIRS = (("a", "1"), ("b", "2"), ("c", "3"), ("d", "3"))
+
+
+@pytest.mark.parametrize(
+    ("argument", "call", "option"),
+    [
+        (Argument("waive", "massless_tip"), "load(…, waive=['massless_tip'])", "--waive massless_tip"),
+        (Argument("packages", "/a", "b"), "load(…, packages={'b': '/a'})", "--package b=/a"),
+        (Argument("floating_base"), "load(…, floating_base=True)", "--floating-base"),
+    ],
+)
+def test_an_argument_is_an_option_in_the_shell(argument: Argument, call: str, option: str) -> None:
+    problem = Problem("x", "y", "z", f"or {argument.call}", argument=argument)
+    assert problem.remedy == f"or {call}" and problem.in_shell().remedy == f"or {option}"
+    assert problem.in_shell("--symofros-").remedy == f"or --symofros-{option.removeprefix('--')}"
+
+
+def test_tables_in_a_pipe_keep_their_lines(tmp_path: Path) -> None:
+    name = "a_body_of_a_name_that_is_as_long_as_names_of_robots_are"
+    inertia = sf.Inertia(1.23456789, (0.123456, 0.234567, 0.345678), (1, 1, 1))
+    loaded = [
+        sf.RigidBody(f"{name}_{i}", sf.Joint(f"q{i}", "revolute", f"{name}_0" if i else "world"), inertia)
+        for i in range(2)
+    ]
+    sf.save(sf.System("s", loaded), tmp_path / "s.yaml")
+    code = "import sys; sys.argv = ['symofros', 'info', sys.argv[1]]; from symofros.__main__ import app; app()"
+    free = {name: text for name, text in os.environ.items() if name != "COLUMNS"}
+    asked = [sys.executable, "-c", code, tmp_path / "s.yaml"]
+    told = subprocess.run(asked, capture_output=True, text=True, env=free).stdout
+    (row,) = [line for line in told.splitlines() if f"{name}_1 " in line and "0.123456" in line]
+    assert "0.123456, 0.234567, 0.345678" in row
+    assert "mass [kg]" in told  # Brackets are no styles.
+
+
+def test_a_picture_says_what_it_leaves_out(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    chain = [
+        sf.RigidBody(f"b{i}", sf.Joint(f"q{i}", "revolute", f"b{i - 1}" if i else "world"), sf.Inertia(1.0, (1, 0, 0)))
+        for i in range(14)
+    ]
+    sf.save(sf.System("chain", chain), tmp_path / "chain.yaml")
+    asked = "simulate", tmp_path / "chain.yaml", "0.001", "--plot", tmp_path / "a.png"
+    assert "shows the first 12 of 14 coordinates: --signals NAME,..." in invoke(*asked).output
+    assert "shows the first" not in invoke(*asked, "--signals", "q12,q13").output
+    wrong = invoke(*asked, "--signals", "q99")
+    assert wrong.exit_code == 2 and "no coordinate, speed or input 'q99'" in wrong.output
+    run = sf.simulate(sf.compile(sf.System("chain", chain)), t_end=1e-3)
+    titles = [axis.get_title() for axis in run.plot().axes]
+    assert "the first 12 of 14; others by their names" in titles
+    assert [axis.get_title() for axis in run.plot("q13").axes][0] == ""
