@@ -6,7 +6,6 @@ import gc
 import multiprocessing
 import os
 import signal
-import traceback
 from collections.abc import Callable, Sequence
 from multiprocessing.connection import Connection, wait
 from multiprocessing.context import BaseContext
@@ -17,6 +16,7 @@ import symofros as sf
 
 from .adapters import ROUTES
 from .check import ModelResult, Settings, check, failed
+from .contract.raised import words
 from .inputs.cases import Case
 
 Report = Callable[[ModelResult], None]
@@ -43,9 +43,7 @@ def run_case(case: Case, settings: Settings) -> ModelResult:
     except (sf.SymofrosError, OSError, UnicodeDecodeError) as error:
         return failed(case.label, stage, without_folder(str(error), case.path))
     except Exception as error:  # An engine's or our own fault, of any kind: one row of the table, with its place.
-        place = traceback.extract_tb(error.__traceback__)[-1]
-        where = f"{Path(place.filename).name}:{place.lineno}, in {place.name}"
-        return failed(case.label, "check", f"{type(error).__name__}: {error} ({where})")
+        return failed(case.label, "check", words(error))
 
 
 def without_folder(text: str, path: Path | None) -> str:

@@ -274,11 +274,18 @@ def condition(M: Array, G: Array) -> float:
 
 
 def of_clear_rank(M: Array, G: Array) -> Array:
-    """Which states (N,) have a Jacobian whose rank every algorithm must find: no singular value near the border."""
+    """Which states (N,) have a Jacobian whose rank every algorithm must find: no singular value near the border.
+
+    Where M is not positive definite, nothing is solved for, and the rank is in nobody's way.
+    """
     clear = np.zeros(len(G), dtype=bool)
     for i, (one, row) in enumerate(zip(M, G, strict=True)):
         if np.all(np.isfinite(row)):
-            s = _sizes(one, row)
+            try:
+                s = _sizes(one, row)
+            except np.linalg.LinAlgError:
+                clear[i] = True
+                continue
             share = s / max(float(s.max(initial=0.0)), 1e-300)
             clear[i] = not np.any((share > RANK / BORDER) & (share < RANK * BORDER))
     return clear

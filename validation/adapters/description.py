@@ -18,8 +18,7 @@ from ..mechanics.parts import coordinate_symbols, rate_symbols, speed_symbols
 
 NAME = "description"
 
-# Operations of formulas in arrays.
-NUMPY: Mapping[str, Callable[..., Any]] = {
+_NUMPY: Mapping[str, Callable[..., Any]] = {
     "add": np.add,
     "sub": np.subtract,
     "mul": np.multiply,
@@ -150,7 +149,7 @@ def element_energy(element: sf.Spring | sf.Stop, x: Array, values: Mapping[str, 
 
 
 def evaluate(
-    formula: sf.Expression | float, values: Mapping[str, Any], rules: Mapping[str, Callable[..., Any]] = NUMPY
+    formula: sf.Expression | float, values: Mapping[str, Any], rules: Mapping[str, Callable[..., Any]] = _NUMPY
 ) -> Any:
     """The value of a formula where symbols are arrays, or what the rules of its operations take."""
     if not isinstance(formula, sf.Expression):
