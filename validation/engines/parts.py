@@ -113,6 +113,7 @@ def merged(own: Data, parts: Sequence[Data]) -> Data:
         result["engines"] = [*result["engines"], *({"measured": origin} | engine for engine in part["engines"])]
         result["functions"] = part["functions"] | result["functions"]
         result["absent"] = result["absent"] | part["absent"]
+        result["ours"] = [*result.get("ours", ()), *part.get("ours", ())]
         result["proofs"] = [*result["proofs"], *part["proofs"]]
         for table in ("cells", "identities"):
             result[table] = result[table] | part[table]
@@ -124,5 +125,5 @@ def merged(own: Data, parts: Sequence[Data]) -> Data:
 def write_scripts(proofs: Iterable[Mapping[str, Any]], folder: Path) -> None:
     """The scripts of stored proofs, beside those that were written now."""
     folder.mkdir(parents=True, exist_ok=True)
-    for proof in proofs:
+    for proof in (one for one in proofs if one["text"]):
         (folder / Path(proof["file"]).name).write_text(proof["text"], encoding="utf-8")

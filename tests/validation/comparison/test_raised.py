@@ -1,4 +1,4 @@
-"""An exception inside an adapter is a failed row with its words; the other engines go on, and nothing is called good."""
+"""An exception inside an adapter is a failed row with its words; the other engines go on."""
 
 from __future__ import annotations
 
