@@ -193,6 +193,7 @@ def headline(record: Record) -> str:
     unjudged = len({row.model for row in record.rows("failed") if row.unconfirmed})
     agreeing = f"all {what} agree" if len(record.compared) > 1 else f"{what} agrees"
     parts = [f"{disagreeing} of {what} disagree" if disagreeing else agreeing] if record.compared else []
+    parts += [f"{record.independent} of them with independent engines"] if record.compared else []
     parts += [f"{counted(failed, 'model')} failed"] if failed else []
     parts += [f"{counted(unjudged, 'model')} judged by no independent engine"] if unjudged else []
     said = ", ".join(parts) or "nothing was compared"
