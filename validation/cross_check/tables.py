@@ -185,7 +185,7 @@ def left_out(record: Record) -> str:
 
 
 def headline(record: Record) -> str:
-    """The verdict in one sentence, or two."""
+    """The verdict in one sentence, what of it is evidence, and what was cut."""
     models = {row.model for row in record.compared}
     what = f"{counted(len(record.compared), 'comparison')} on {counted(len(models), 'model')}"
     disagreeing = len(record.rows("disagree"))
@@ -193,9 +193,9 @@ def headline(record: Record) -> str:
     unjudged = len({row.model for row in record.rows("failed") if row.unconfirmed})
     agreeing = f"all {what} agree" if len(record.compared) > 1 else f"{what} agrees"
     parts = [f"{disagreeing} of {what} disagree" if disagreeing else agreeing] if record.compared else []
-    parts += [f"{record.independent} of them with independent engines"] if record.compared else []
     parts += [f"{counted(failed, 'model')} failed"] if failed else []
     parts += [f"{counted(unjudged, 'model')} judged by no independent engine"] if unjudged else []
     said = ", ".join(parts) or "nothing was compared"
     cut = f" Interrupted: {counted(len(record.unfinished), 'model')} not checked." if record.unfinished else ""
-    return f"{said[0].upper()}{said[1:]}.{cut}"
+    apart = f" {record.independent} of the comparisons are with independent engines." if record.compared else ""
+    return f"{said[0].upper()}{said[1:]}.{apart}{cut}"
