@@ -36,7 +36,7 @@ from .comparison.retained import judge_order, omitted_orders
 from .comparison.variants import ModelVariants
 from .contract.interface import States, Subject
 from .contract.quantities import CONSTRAINED, FRAME_QUANTITIES, LOOPS, MOTION_ENERGY, QUANTITIES, Quantity
-from .contract.raised import Raised, attempted
+from .contract.raised import Raised, attempted, words
 from .inputs.frames import chosen_frames
 from .inputs.sampling import DEFAULT_STATES, sample, special_states
 from .mechanics.assembly import Assembly, assemble
@@ -146,6 +146,11 @@ class _Bench:
 def failed(label: str, stage: str, reason: str) -> ModelResult:
     """The result of a model that could not be compared."""
     return ModelResult(label, (Comparison(label, "symofros", stage, "failed", note=reason),))
+
+
+def broken(label: str, error: BaseException) -> ModelResult:
+    """The result of a model whose check raised what nothing accounts for."""
+    return failed(label, "check", words(error))
 
 
 def check(subject: Subject, settings: Settings, factories: Factories | None = None) -> ModelResult:

@@ -15,8 +15,7 @@ from typing import Any
 import symofros as sf
 
 from .adapters import ROUTES
-from .check import ModelResult, Settings, check, failed
-from .contract.raised import words
+from .check import ModelResult, Settings, broken, check, failed
 from .inputs.cases import Case
 
 Report = Callable[[ModelResult], None]
@@ -43,7 +42,7 @@ def run_case(case: Case, settings: Settings) -> ModelResult:
     except (sf.SymofrosError, OSError, UnicodeDecodeError) as error:
         return failed(case.label, stage, without_folder(str(error), case.path))
     except Exception as error:  # An engine's or our own fault, of any kind: one row of the table, with its place.
-        return failed(case.label, "check", words(error))
+        return broken(case.label, error)
 
 
 def without_folder(text: str, path: Path | None) -> str:

@@ -136,9 +136,11 @@ class ConstrainedEngine:
         return kinematics
 
     def _one(self, item: sf.Constraint, frames: dict[str, _Kinematics], states: States) -> tuple[Array, Array, Array]:
-        if isinstance(item, sf.Nonholonomic | sf.Coupling):
-            form = by_formula.coupling if isinstance(item, sf.Coupling) else by_formula.condition_on_speeds
-            return form(item, self._subject.system.parameter_values(), self._assembly, states)
+        parameters = self._subject.system.parameter_values()
+        if isinstance(item, sf.Nonholonomic):
+            return by_formula.condition_on_speeds(item, parameters, self._assembly, states)
+        if isinstance(item, sf.Coupling):
+            return by_formula.coupling(item, parameters, self._assembly, states)
         anchors = [item.first, item.second] if isinstance(item, sf.Closure | sf.Rod) else [item.anchor]
         bodies = [frames[anchor_name(self._assembly, anchor)] for anchor in anchors]
         if isinstance(item, sf.Closure):

@@ -339,8 +339,9 @@ def installed(own: Mapping[str, EnginePlugin], functions: Collection[str] = ()) 
     registry = Registry(dict(own))
     for point in entry_points(group=GROUP):
         plugin = attempted(point.load)
-        fault = plugin.words if isinstance(plugin, Raised) else _fault(plugin, point.name, functions)
-        if fault:
+        if isinstance(plugin, Raised):
+            registry.failures[point.name] = plugin.words
+        elif fault := _fault(plugin, point.name, functions):
             registry.failures[point.name] = fault
         else:
             registry.plugins[point.name] = plugin

@@ -164,3 +164,16 @@ def test_numpy_is_imported_where_it_is_named() -> None:
     assert with_numpy("value = 2") == "value = 2"
     script = "from __future__ import annotations\nimport math\nvalue = [0.0, 0.0, 0.0]"
     exec(compile(shortened(script), "script", "exec"), {})
+
+
+def test_a_plug_in_that_raises_fails_its_test_in_pytest(monkeypatch: pytest.MonkeyPatch) -> None:
+    from validation.ci import engines
+    from validation.ci.cells import CellFailure
+    from validation.engines.verdicts import Cell
+
+    cell = Cell("uncalled", "revolute x", "gravity", "raises", words="KeyError: 'no joint 7'")
+    monkeypatch.setattr(engines, "_cells", lambda *_: {"gravity": cell})
+    item = engines.EngineCheck.__new__(engines.EngineCheck)
+    item.engine, item.kind, item.wanted, item.together = "uncalled", "revolute x", "gravity", ("gravity",)
+    with pytest.raises(CellFailure, match="the plug-in raises KeyError: 'no joint 7'"):
+        item.runtest()
