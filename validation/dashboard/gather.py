@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..reporting.command import present
+from ..reporting.evidence import said_of
 from ..reporting.provenance import Provenance
 from ..reporting.record import Data, Report, Topic
 from .catalogue import TOPICS
@@ -88,7 +89,7 @@ def doubts(origin: Provenance, installed: Mapping[str, str]) -> list[str]:
     """Why a report may say nothing of the code as it is, or can't say; what it was made with that has changed."""
     asked = "when it was made", "on which machine", "with which versions"
     stated = zip(asked, (origin.date, origin.machine, origin.versions), strict=True)
-    said = [f"is {origin.standing}"] if origin.standing else []
+    said = [said_of(origin.standing)] if origin.standing else []
     said += [f"does not say {what}" for what, value in stated if not value]
     changed = [
         f"{name} {version}, now {installed[name]}"

@@ -10,7 +10,7 @@ from pathlib import Path
 from symofros.tools import write_atomically
 
 from ..reporting import html, markdown
-from ..reporting.evidence import revision
+from ..reporting.evidence import revision, said_of
 from ..reporting.figures import Figure
 from ..reporting.record import Block, Bullets, Report, Section, Table, Text, verdict
 from .gather import Entry
@@ -113,7 +113,7 @@ def _section(name: str, entry: Entry) -> Section:
         facts = tuple(f"**{fact.value}** {fact.label}" for fact in entry.report.facts)
         blocks += [f"**{entry.report.summary}**", Bullets(facts), Figure("", entry.report.first_chart)]
     for remark in entry.remarks:
-        doubtful = remark == f"is {entry.standing}" or any(word in remark for word in ("can't", "layout"))
+        doubtful = remark == said_of(entry.standing) or any(word in remark for word in ("can't", "layout"))
         blocks.append(Text(f"This report {remark}.", "bad" if doubtful else "soft"))
     whole = f"[The whole report]({entry.page}). " if entry.page else ""
     origin = "; ".join(f"{what} {value}" for what, value in entry.provenance.rows)

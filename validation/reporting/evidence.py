@@ -121,6 +121,11 @@ def _imported(name: str) -> frozenset[str]:
     return frozenset(one for top in found for one in (top, f"{top}.py") if (HARNESS / one).exists())
 
 
+def said_of(standing: str) -> str:
+    """What a standing says of a report, after its name."""
+    return f"{'is' if standing == OLDER else 'was'} {standing}"
+
+
 def standing(data: Mapping[str, Any], present: str) -> str:
     """What a reader must know of a report's age; "" where its sources are those of now.
 

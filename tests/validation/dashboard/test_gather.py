@@ -82,9 +82,9 @@ def test_a_broken_report_says_so_and_spares_the_others(tmp_path: Path, text: str
     [
         ({"versions": {"numpy": "1.0"}}, "was made with numpy 1.0, now 2.0"),
         ({"digest": "another"}, "is older than the code it judges"),
-        ({"digest": ""}, "is made before digests were kept"),
+        ({"digest": ""}, "was made before digests were kept"),
         ({"digests": [DIGEST, "another"]}, "is older than the code it judges"),
-        ({"digest": evidence.MIXED}, "is made while the code changed"),
+        ({"digest": evidence.MIXED}, "was made while the code changed"),
         ({"date": ""}, "does not say when it was made"),
         ({"machine": {}}, "does not say on which machine"),
         ({"versions": {}}, "does not say with which versions"),
