@@ -14,7 +14,7 @@ import symofros as sf
 from . import references
 from .adapters import ROUTES, compiled, has_beams
 from .comparison.elements import judge_elements
-from .comparison.errors import NOBODY, Comparison, Scales, compute, judge, scaled_errors, typical_scales
+from .comparison.errors import NOBODY, Comparison, Scales, compute, judge, raised, scaled_errors, typical_scales
 from .comparison.loops import of_unique_multipliers
 from .comparison.motion import MOTIONS, FreeMotion, fall, judge_drift, smoothness_obstacle
 from .comparison.participants import (
@@ -36,6 +36,7 @@ from .comparison.retained import judge_order, omitted_orders
 from .comparison.variants import ModelVariants
 from .contract.interface import States, Subject
 from .contract.quantities import CONSTRAINED, FRAME_QUANTITIES, LOOPS, MOTION_ENERGY, QUANTITIES, Quantity
+from .contract.raised import Raised, attempted, words
 from .inputs.frames import chosen_frames
 from .inputs.sampling import DEFAULT_STATES, sample, special_states
 from .mechanics.assembly import Assembly, assemble
@@ -152,6 +153,11 @@ def absent(label: str, stage: str, reason: str) -> ModelResult:
     return ModelResult(label, (Comparison(label, "symofros", stage, "unsupported", note=reason),))
 
 
+def broken(label: str, error: BaseException) -> ModelResult:
+    """The result of a model whose check raised what nothing accounts for."""
+    return failed(label, "check", words(error))
+
+
 def check(subject: Subject, settings: Settings, factories: Factories | None = None) -> ModelResult:
     """Compare our C of a subject with every engine.
 
@@ -207,7 +213,8 @@ def _comparisons(bench: _Bench) -> Iterator[Comparison]:
             models = bench.variants.as_described, bench.variants.untruncated
             yield judge_order(bench.label, order, bench.assembly, *models, bench.variants.states)
         for one in bench.engines:
-            yield from judge_elements(one, bench.assembly, bench.variants)
+            rows = attempted(lambda one: list(judge_elements(one, bench.assembly, bench.variants)), one)
+            yield from [raised(bench.label, one.name, "elements", rows)] if isinstance(rows, Raised) else rows
         if bench.settings.engines is None and bench.subject.system is references.MODELS.get(bench.label):
             start = time.perf_counter()
             # Others have none, and their checks do without SciPy's integrators, which take half a second to import.
@@ -237,7 +244,7 @@ def _unsampled_motion(system: sf.System, assembly: Assembly) -> str:
 def _quantities(bench: _Bench) -> list[Quantity]:
     absent = frozenset() if bench.subject.frames else FRAME_QUANTITIES
     if not bench.solvable:
-        absent |= {FORWARD}
+        absent |= {*SOLVED}
     if not bench.subject.system.constraints:
         absent |= CONSTRAINED | LOOPS
     return [quantity for quantity in QUANTITIES.values() if quantity.name not in absent]
@@ -245,7 +252,7 @@ def _quantities(bench: _Bench) -> list[Quantity]:
 
 def _compared(bench: _Bench, quantity: Quantity) -> Iterator[Comparison]:
     """One quantity by every engine that offers it."""
-    our_values: dict[tuple[int, bool, int], Array] = {}
+    our_values: dict[tuple[int, bool, int], Array | Raised] = {}
     for one in bench.engines:
         if quantity.name not in one.engine.capabilities:
             continue
@@ -258,14 +265,24 @@ def _compared(bench: _Bench, quantity: Quantity) -> Iterator[Comparison]:
                 continue
         key = (id(one.model), one.route.loops, len(states))
         if key not in our_values:
-            our_values[key] = compute(one.model, quantity, states)
-        row = _judged(bench, one, quantity, our_values[key], states, bench.scales)
-        if len(states) < len(bench.variants.states) and not row.note and not one.route.loops:
-            asked = len(bench.variants.states)
-            row = replace(row, note=f"the first {len(states)} of {asked} states: each takes long")
-        if quantity.name == JACOBIAN.name:
-            row = judge_undefined(bench.label, one.engine, bench.regular.undefined) or row
-        yield replace(row, extra={"condition": _condition(bench, one)}) if quantity.name == FORWARD else row
+            our_values[key] = attempted(compute, one.model, quantity, states)
+            if isinstance(fault := our_values[key], Raised):
+                yield raised(bench.label, "symofros", quantity.name, fault)
+        ours = our_values[key]
+        if not isinstance(ours, Raised):
+            row = attempted(_compared_with, bench, one, quantity, ours, states)
+            yield raised(bench.label, one.name, quantity.name, row) if isinstance(row, Raised) else row
+
+
+def _compared_with(bench: _Bench, one: Participant, quantity: Quantity, ours: Array, states: States) -> Comparison:
+    """One quantity by one engine."""
+    row = _judged(bench, one, quantity, ours, states, bench.scales)
+    if len(states) < len(bench.variants.states) and not row.note and not one.route.loops:
+        asked = len(bench.variants.states)
+        row = replace(row, note=f"the first {len(states)} of {asked} states: each takes long")
+    if quantity.name == JACOBIAN.name:
+        row = judge_undefined(bench.label, one.engine, bench.regular.undefined) or row
+    return replace(row, extra={"condition": _condition(bench, one)}) if quantity.name == FORWARD else row
 
 
 def _judged(
@@ -300,8 +317,13 @@ def _free_motion(bench: _Bench) -> Iterator[Comparison]:
     scales = replace(bench.scales, energy=motion.scale)
     for one in bench.engines:
         if {"kinetic_energy", "potential_energy"} <= one.engine.capabilities:
-            ours = sum_of_energies(one.model, motion.states)
-            yield _judged(bench, one, MOTION_ENERGY, ours, motion.states, scales)
+            row = attempted(_energies, bench, one, motion, scales)
+            yield raised(bench.label, one.name, MOTION_ENERGY.name, row) if isinstance(row, Raised) else row
+
+
+def _energies(bench: _Bench, one: Participant, motion: FreeMotion, scales: Scales) -> Comparison:
+    """The energy along a free motion by one engine."""
+    return _judged(bench, one, MOTION_ENERGY, sum_of_energies(one.model, motion.states), motion.states, scales)
 
 
 def _drift(bench: _Bench, motion: FreeMotion) -> Comparison:

@@ -6,7 +6,6 @@ import gc
 import multiprocessing
 import os
 import signal
-import traceback
 from collections.abc import Callable, Sequence
 from multiprocessing.connection import Connection, wait
 from multiprocessing.context import BaseContext
@@ -16,7 +15,7 @@ from typing import Any
 import symofros as sf
 
 from .adapters import ROUTES
-from .checking import ModelResult, Settings, absent, check, failed
+from .checking import ModelResult, Settings, absent, broken, check, failed
 from .inputs.cases import Case
 
 Report = Callable[[ModelResult], None]
@@ -46,9 +45,7 @@ def run_case(case: Case, settings: Settings) -> ModelResult:
         said = error.in_shell(case.reading.prefix) if isinstance(error, sf.SymofrosError) else str(error)
         return failed(case.label, stage, without_folder(said, case.path))
     except Exception as error:  # An engine's or our own fault, of any kind: one row of the table, with its place.
-        place = traceback.extract_tb(error.__traceback__)[-1]
-        where = f"{Path(place.filename).name}:{place.lineno}, in {place.name}"
-        return failed(case.label, "check", f"{type(error).__name__}: {error} ({where})")
+        return broken(case.label, error)
 
 
 def without_folder(text: str, path: Path | None) -> str:

@@ -34,4 +34,5 @@ TOPIC = Topic(
     "How accurate are beams?",
     composing("Accuracy of beams", "docs/theory/beams.md"),
     measuring(STUDIES, "Measure beams against closed forms, tables and exact rods."),
+    folder="accuracy",
 )

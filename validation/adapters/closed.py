@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -19,16 +18,13 @@ from ..contract.memory import LatestResults
 from ..contract.quantities import CONSTRAINED
 from ..mechanics.assembly import Assembly, anchor_name, assemble
 from ..mechanics.geometry import Array
-from ..mechanics.parts import coordinate_symbols, speed_symbols
-from .description import evaluate
+from . import by_formula
 
 AXES = "xyz"
 # As in our solver: what is smaller, relative to the largest, repeats other conditions.
 RANK = 1e-6
 # Within this factor of it, one algorithm may keep a condition that another one drops.
 BORDER = 100.0
-# Differences of sixth order: weights of the steps 1 to 3.
-_SLOPE = ((1, 3 / 4), (2, -3 / 20), (3, 1 / 60))
 
 
 @dataclass(frozen=True)
@@ -140,10 +136,11 @@ class ConstrainedEngine:
         return kinematics
 
     def _one(self, item: sf.Constraint, frames: dict[str, _Kinematics], states: States) -> tuple[Array, Array, Array]:
+        parameters = self._subject.system.parameter_values()
         if isinstance(item, sf.Nonholonomic):
-            return self._by_formula(item, states)
+            return by_formula.condition_on_speeds(item, parameters, self._assembly, states)
         if isinstance(item, sf.Coupling):
-            return self._coupled(item, states)
+            return by_formula.coupling(item, parameters, self._assembly, states)
         anchors = [item.first, item.second] if isinstance(item, sf.Closure | sf.Rod) else [item.anchor]
         bodies = [frames[anchor_name(self._assembly, anchor)] for anchor in anchors]
         if isinstance(item, sf.Closure):
@@ -156,51 +153,6 @@ class ConstrainedEngine:
 
     def _number(self, value: sf.Expression | float) -> float:
         return float(sf.evaluate(value, self._subject.system.parameter_values()))
-
-    def _coupled(self, item: sf.Coupling, states: States) -> tuple[Array, Array, Array]:
-        """phi(q) = 0 of joints with q' = v: slopes by complex steps, which lose no digits."""
-        known: dict[str, Any] = {**self._subject.system.parameter_values(), "pi": np.pi}
-
-        def at(step: Any) -> Any:
-            values = dict(known)
-            for described in self._assembly.joints:
-                for k, name in enumerate(coordinate_symbols(described.joint)):
-                    values[name] = states.q[:, described.q.start + k] + step[:, described.v.start + k]
-            return np.broadcast_to(evaluate(item.residual, values), (len(states),))
-
-        tiny, h = 1e-30, 1e-3
-        units = np.eye(states.v.shape[1])
-        G = np.stack([at(1j * tiny * np.tile(unit, (len(states), 1))).imag / tiny for unit in units], axis=1)
-
-        def rate(step: float) -> Array:
-            return np.asarray(at((step + 1j * tiny) * states.v).imag / tiny)
-
-        curvature = sum(w * (rate(k * h) - rate(-k * h)) for k, w in _SLOPE) / h
-        return np.array(at(np.zeros_like(states.v)).real)[:, None], G[:, None], -np.asarray(curvature)[:, None]
-
-    def _by_formula(self, item: sf.Nonholonomic, states: States) -> tuple[Array, Array, Array]:
-        """A v = b; its derivative along the motion by a step in extended precision."""
-        index: dict[str, int] = {}
-        for described in self._assembly.joints:
-            index |= dict(zip(speed_symbols(described.joint), range(described.v.start, described.v.stop), strict=True))
-        h = 1e-4
-
-        def at(step: float) -> tuple[Array, Array]:
-            values: dict[str, Any] = {**self._subject.system.parameter_values(), "pi": np.pi, "t": step}
-            for described in self._assembly.joints:
-                for k, name in enumerate(coordinate_symbols(described.joint)):
-                    values[name] = states.q[:, described.q.start + k] + step * states.v[:, described.v.start + k]
-            G = np.zeros((len(states), 1, states.v.shape[1]))
-            for speed, value in item.coefficients:
-                G[:, 0, index[speed]] += evaluate(value, values)
-            return G, np.broadcast_to(evaluate(item.right, values), (len(states),))
-
-        def residual(step: float) -> Array:
-            G, right = at(step)
-            return np.asarray(np.einsum("nj,nj->n", G[:, 0], states.v) - right)
-
-        rate = sum(w * (residual(k * h) - residual(-k * h)) for k, w in _SLOPE) / h
-        return np.zeros((len(states), 1)), at(0.0)[0], -np.asarray(rate)[:, None]
 
 
 def joined_frames(assembly: Assembly, system: sf.System) -> tuple[str, ...]:
@@ -324,11 +276,18 @@ def condition(M: Array, G: Array) -> float:
 
 
 def of_clear_rank(M: Array, G: Array) -> Array:
-    """Which states (N,) have a Jacobian whose rank every algorithm must find: no singular value near the border."""
+    """Which states (N,) have a Jacobian whose rank every algorithm must find: no singular value near the border.
+
+    Where M is not positive definite, nothing is solved for, and the rank is in nobody's way.
+    """
     clear = np.zeros(len(G), dtype=bool)
     for i, (one, row) in enumerate(zip(M, G, strict=True)):
         if np.all(np.isfinite(row)):
-            s = _sizes(one, row)
+            try:
+                s = _sizes(one, row)
+            except np.linalg.LinAlgError:
+                clear[i] = True
+                continue
             share = s / max(float(s.max(initial=0.0)), 1e-300)
             clear[i] = not np.any((share > RANK / BORDER) & (share < RANK * BORDER))
     return clear

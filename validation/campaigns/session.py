@@ -14,6 +14,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 import symofros as sf
 
 from ..reporting import provenance
+from ..reporting.evidence import digest
 from .errors import PlanError, StoreError, Unfinished
 from .plan import Plan, SweepPlan, as_text, cases, identities, make, plan_hash
 from .runner import Pool, run, sources
@@ -106,6 +107,7 @@ def _complete(store: Store, plan: Plan, pool: Pool) -> None:
         "effort": effort(store.journal()),
         "sources": sources(),
         **provenance.stamp(),
+        "digest": digest("campaigns"),
     }
     store.merge(len(wanted), metadata)
 

@@ -52,6 +52,8 @@ class EngineCheck(CellItem):
     def runtest(self) -> None:
         """Ask the engine, and fail if its answer is wrong, or none."""
         cell = _cells(self.engine, self.kind, self.together)[self.wanted]
+        if cell.verdict == "raises":
+            raise CellFailure(f"{self.engine}, {self.wanted} on {self.kind}: the plug-in raises {cell.words}")
         if cell.verdict in RED:
             stated = cell.words if cell.verdict == "crashes" else f"error {digits(cell.error)}"
             raise CellFailure(

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..contract.interface import Engine, States
 from ..contract.quantities import QUANTITIES, SMALL, Quantity
+from ..contract.raised import Raised
 from ..mechanics.geometry import Array
 
 Status = Literal["agree", "disagree", "unsupported", "failed"]
@@ -71,6 +72,11 @@ class Comparison:
     def title(self) -> str:
         """The quantity, for people."""
         return self.quantity.replace("_", " ")
+
+
+def raised(model: str, engine: str, quantity: str, fault: Raised) -> Comparison:
+    """The row of an exception inside an engine's adapter, or inside our own model: what it says is no agreement."""
+    return Comparison(model, engine, quantity, "failed", note=f"raises {fault.words}")
 
 
 @dataclass(frozen=True)

@@ -15,9 +15,10 @@ from ..adapters.closed import ConstrainedEngine, condition, joined_frames
 from ..adapters.compiled import SymofrosEngine
 from ..contract.interface import Engine, EngineFactory, States, Subject, TreeEngine, Unsupported
 from ..contract.quantities import MOTION_ENERGY, QUANTITIES, Quantity
+from ..contract.raised import Raised, attempted
 from ..mechanics.assembly import Assembly
 from ..mechanics.geometry import Array
-from .errors import Comparison, compute
+from .errors import Comparison, compute, raised
 from .variants import ModelVariants
 
 # What constraints are made of, for engines that know trees.
@@ -73,7 +74,7 @@ class Participant:
 def participants(
     assembly: Assembly, variants: ModelVariants, names: Sequence[str], factories: Factories
 ) -> Iterator[Participant | Comparison]:
-    """Every engine that can represent a subject; a row of the table for each that can't.
+    """Every engine that can represent a subject; a row of the table for each that can't, or whose adapter raises.
 
     Args:
         assembly: The subject as numbers.
@@ -86,7 +87,10 @@ def participants(
         route = ROUTES[name]
         if not route.applies_to(subject):
             continue
-        engine = _built(route, factory_of(name, factories), subject, assembly)
+        engine = attempted(_built, route, factory_of(name, factories), subject, assembly)
+        if isinstance(engine, Raised):
+            yield raised(subject.label, name, "all", engine)
+            continue
         if route.loops and not isinstance(engine, Unsupported) and not len(variants.assembled):
             engine = Unsupported("no random state leads to a posture that keeps the constraints")
         if isinstance(engine, Unsupported):

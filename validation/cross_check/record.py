@@ -23,6 +23,12 @@ _STATED = tuple("model engine quantity states error tolerance ok median worst_st
 # Adapters that are our own code and have no version of their own.
 _OURS = frozenset(name for name, route in ROUTES.items() if not route.independent)
 
+
+def is_independent(row: Comparison) -> bool:
+    """Whether a row is of an engine that shares no equations with us: not our own C, formulas or readers."""
+    return row.engine in ROUTES and ROUTES[row.engine].independent
+
+
 # Quantity -> engine -> states in each bin of BIN_EDGES, all models together.
 Distributions = Mapping[str, Mapping[str, Sequence[int]]]
 
@@ -65,6 +71,11 @@ class Record:
     def compared(self) -> list[Comparison]:
         """The rows with a verdict on numbers."""
         return self.rows("agree", "disagree")
+
+    @property
+    def independent(self) -> int:
+        """How many of these are with engines that share no equations with us."""
+        return sum(is_independent(row) for row in self.compared)
 
     def rows(self, *status: str) -> list[Comparison]:
         """The rows of these statuses."""
@@ -117,6 +128,8 @@ def as_data(
     return {
         "schema": SCHEMA,
         "ok": compared and all(model.ok for model in models) and not unfinished,
+        # Of the comparisons with a verdict on numbers.
+        "independent": sum(is_independent(row) for row in rows if row.status in ("agree", "disagree")),
         "comparisons": [_entry(row) for row in rows if row.status != "unsupported"],
         "unsupported": [
             {"model": row.model, "engine": row.engine, "quantity": row.quantity, "reason": row.note}

@@ -124,8 +124,10 @@ def _facts(record: Record, engines: list[str]) -> list[Fact]:
     independent = sum(ROUTES[name].independent for name in engines)
     speeds = [model.sizes["nv"] for model in record.models if "nv" in model.sizes]
     span = f", {min(speeds)} to {max(speeds)} speeds" if speeds else ""
+    own = len(record.compared) - record.independent
     facts = [
         Fact(str(len(record.models)), f"models{span}, {record.states} states each"),
+        Fact(str(record.independent), f"comparisons with independent engines; {own} with our own code and formulas"),
         Fact(str(independent), f"independent opinions, and {len(engines) - independent} of our own"),
     ]
     rounding = {q.name for q in tables.COMPARED if q.tolerance == ROUNDING}
@@ -205,4 +207,6 @@ def _digest(record: Record) -> list[Block]:
 
 
 QUESTION = "Do our C and independent engines agree?"
-TOPIC = Topic("check", "Correctness", QUESTION, compose, measure, "", ("ok", "comparisons", "unsupported"))
+TOPIC = Topic(
+    "check", "Correctness", QUESTION, compose, measure, "", ("ok", "independent", "comparisons", "unsupported")
+)

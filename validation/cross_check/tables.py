@@ -198,7 +198,7 @@ def not_installed(record: Record) -> str:
 
 
 def headline(record: Record) -> str:
-    """The verdict in one sentence, or two."""
+    """The verdict in one sentence, what of it is evidence, and what was cut."""
     silent = f"no engine was asked: {_why_none(record)}; " if _nobody_was_asked(record) else ""
     models = {row.model for row in record.compared}
     what = f"{counted(len(record.compared), 'comparison')} on {counted(len(models), 'model')}"
@@ -212,7 +212,8 @@ def headline(record: Record) -> str:
     parts += [f"{counted(unjudged, 'model')} judged by no independent engine"] if unjudged else []
     said = silent + (", ".join(parts) or "nothing was compared")
     cut = f" Interrupted: {counted(len(record.unfinished), 'model')} not checked." if record.unfinished else ""
-    return f"{said[0].upper()}{said[1:]}.{cut}"
+    apart = f" {record.independent} of the comparisons are with independent engines." if record.compared else ""
+    return f"{said[0].upper()}{said[1:]}.{apart}{cut}"
 
 
 def _nobody_was_asked(record: Record) -> bool:

@@ -1,4 +1,4 @@
-"""The reports, in the order of the index and of `--regenerate`."""
+"""The reports, in the order of the index and of `python -m validation all`."""
 
 from __future__ import annotations
 

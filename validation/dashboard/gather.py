@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import datetime
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..reporting.command import present
+from ..reporting.evidence import said_of
 from ..reporting.provenance import Provenance
 from ..reporting.record import Data, Report, Topic
 from .catalogue import TOPICS
-
-# Older reports are still true of what they name; they are marked, so that nobody takes them for news.
-STALE_DAYS = 30
 
 
 @dataclass(frozen=True)
@@ -41,27 +39,42 @@ class Entry:
         return "absent" if self.report is None else self.report.verdict
 
     @property
+    def standing(self) -> str:
+        """What a reader must know of its age; "" where its sources are those of now, or where there is none."""
+        return self.provenance.standing if self.report else ""
+
+    @property
     def said(self) -> str:
         """What it found, in a sentence."""
         return self.report.summary if self.report else "; ".join(self.remarks)
 
 
 def gather(
-    folder: Path, installed: Mapping[str, str], today: datetime.date, names: Iterable[str] = TOPICS
+    folder: Path,
+    installed: Mapping[str, str],
+    digest: Callable[[Topic], str] = present,
+    names: Iterable[str] = TOPICS,
 ) -> dict[str, Entry]:
-    """Reports of a folder; their versions are compared with those `installed`, their age counts from `today`."""
-    return {name: _entry(folder, TOPICS[name], installed, today) for name in names}
+    """Reports of a folder.
+
+    Args:
+        folder: The folder.
+        installed: Versions of now, which those of the reports are compared with.
+        digest: Digest of the sources of a report as they are.
+        names: Names of the reports.
+    """
+    return {name: _entry(folder, TOPICS[name], installed, digest) for name in names}
 
 
-def _entry(folder: Path, topic: Topic, installed: Mapping[str, str], today: datetime.date) -> Entry:
+def _entry(folder: Path, topic: Topic, installed: Mapping[str, str], digest: Callable[[Topic], str]) -> Entry:
     pages = (f"{topic.name}.{kind}" for kind in ("html", "md", "json"))
     page = next((page for page in pages if (folder / page).is_file()), "")
     report, data, origin = None, {}, Provenance()
     try:
         data = json.loads((folder / f"{topic.name}.json").read_text(encoding="utf-8"))
-        origin = Provenance.of(data)
+        origin = Provenance.of(data, digest(topic))
         report = topic.compose(data)
-        remarks = doubts(origin, installed, today)
+        remarks = doubts(origin, installed)
     except FileNotFoundError:
         remarks = ["is not made yet"]
     except (json.JSONDecodeError, OSError) as error:
@@ -72,19 +85,15 @@ def _entry(folder: Path, topic: Topic, installed: Mapping[str, str], today: date
     return Entry(topic, report, data, origin, tuple(remarks), page)
 
 
-def doubts(origin: Provenance, installed: Mapping[str, str], today: datetime.date) -> list[str]:
-    """Why a report may be out of date, or can't say."""
+def doubts(origin: Provenance, installed: Mapping[str, str]) -> list[str]:
+    """Why a report may say nothing of the code as it is, or can't say; what it was made with that has changed."""
     asked = "when it was made", "on which machine", "with which versions"
     stated = zip(asked, (origin.date, origin.machine, origin.versions), strict=True)
-    said = [f"does not say {what}" for what, value in stated if not value]
+    said = [said_of(origin.standing)] if origin.standing else []
+    said += [f"does not say {what}" for what, value in stated if not value]
     changed = [
         f"{name} {version}, now {installed[name]}"
         for name, version in origin.versions.items()
         if installed.get(name, version) != version
     ]
-    said += [f"stale: made with {', '.join(changed)}"] if changed else []
-    try:
-        days = (today - datetime.date.fromisoformat(origin.date[:10])).days
-    except ValueError:
-        return said
-    return [*said, f"stale: {days} days old"] if days > STALE_DAYS else said
+    return said + ([f"was made with {', '.join(changed)}"] if changed else [])

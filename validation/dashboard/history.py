@@ -56,7 +56,10 @@ def stored(summary: Path) -> tuple[Stored, ...]:
     for entry in git("log", f"-{COMMITS}", "--format=%h %ct %cs", "--", summary.name).splitlines():
         commit, time, date = entry.split()
         rows = _ROW.findall(git("show", f"{commit}:./{summary.name}"))
-        lines = {name: Line(said, word, made.strip(" -").removesuffix(" UTC")) for name, said, word, made in rows}
+        lines = {
+            name: Line(said, word, made.partition(";")[0].strip(" -").removesuffix(" UTC"))
+            for name, said, word, made in rows
+        }
         found.append(Stored(commit, float(time), date, lines))
     return tuple(found)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -10,6 +11,7 @@ from symofros.tools import write_atomically
 
 from ..program import PROGRAM
 from ..reporting import html, markdown
+from ..reporting.evidence import revision, said_of
 from ..reporting.figures import Figure
 from ..reporting.record import Block, Bullets, Report, Section, Table, Text, verdict
 from .gather import Entry
@@ -40,9 +42,10 @@ def write_index(entries: Mapping[str, Entry], folder: Path, date: str) -> Path:
     summaries = stored(folder / "summary.md")
     changes = history(summaries, tuple(entries))
     trend = Section("What changed", (trends(summaries), _TREND, changes), "history")
-    closing = f"Gathered {date} by `{PROGRAM} dashboard`; `--regenerate` writes the reports anew before."
+    closing = f"Gathered {date} by `{PROGRAM} dashboard`; `{PROGRAM} all` makes reports anew."
     page = html.page(replace(report, sections=(trend, *report.sections)), closing=closing, listed=False)
-    said = f"**{report.summary}** (gathered {date})", markdown.table(summary_table(entries)), origins(entries)
+    source = f" of revision {revision()[:9]}" if revision() else ""
+    said = f"**{report.summary}** (gathered {date}{source})", markdown.table(summary_table(entries)), origins(entries)
     write_atomically(folder / "index.html", page)
     write_atomically(folder / "summary.md", "\n\n".join(said) + "\n")
     return folder / "index.html"
@@ -78,6 +81,8 @@ def headline(entries: Mapping[str, Entry]) -> str:
     said += [f"missed: {', '.join(missed)}"] if missed else []
     said += [f"{len(measured)} measure without one"] if measured else []
     said += [f"absent: {', '.join(absent)}"] if absent else []
+    aged = Counter(entry.standing for entry in entries.values() if entry.standing)
+    said += [f"{number} {standing}" for standing, number in aged.items()]
     return "; ".join(said) + "."
 
 
@@ -88,7 +93,7 @@ def summary_table(entries: Mapping[str, Entry], linked: bool = False) -> Table:
             f"[{name}](#{name})" if linked else name,
             entry.said,
             verdict(entry.verdict, not linked or entry.verdict != "missed"),
-            entry.provenance.date.removesuffix(" UTC") or "-",
+            "; ".join(filter(None, (entry.provenance.date.removesuffix(" UTC") or "-", entry.standing))),
         )
         for name, entry in entries.items()
     )
@@ -109,7 +114,7 @@ def _section(name: str, entry: Entry) -> Section:
         facts = tuple(f"**{fact.value}** {fact.label}" for fact in entry.report.facts)
         blocks += [f"**{entry.report.summary}**", Bullets(facts), Figure("", entry.report.first_chart)]
     for remark in entry.remarks:
-        doubtful = any(word in remark for word in ("stale", "can't", "layout"))
+        doubtful = remark == said_of(entry.standing) or any(word in remark for word in ("can't", "layout"))
         blocks.append(Text(f"This report {remark}.", "bad" if doubtful else "soft"))
     whole = f"[The whole report]({entry.page}). " if entry.page else ""
     origin = "; ".join(f"{what} {value}" for what, value in entry.provenance.rows)

@@ -15,4 +15,5 @@ TOPIC = Topic(
     "How does the paper's robot trace its square?",
     composing("Diagrams: a controlled flexible robot", "docs/theory/diagrams.md"),
     measuring(STUDIES, "Run the paper's simulations from their block diagrams."),
+    folder="diagrams",
 )

@@ -112,7 +112,8 @@ def held(cells: Sequence[Judged]) -> Iterator[Held]:
     """The identities of which an engine answered all that is in them."""
     answers: dict[tuple[str, str], dict[str, Judged]] = {}
     for one in cells:
-        if isinstance(one.answer.value, np.ndarray):
+        value = one.answer.value
+        if isinstance(value, np.ndarray) and one.want is not None and value.size == one.want.value.size:
             answers.setdefault((one.cell.engine, one.cell.model), {})[one.cell.function] = one
     for (engine, model), known in answers.items():
         for name, identity in IDENTITIES.items():

@@ -14,13 +14,15 @@ R of a placement turns components of the placed frame into those of the frame it
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from importlib.metadata import entry_points
 from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+
+from ..contract.raised import Raised, attempted
 
 Array = NDArray[np.float64]
 Vector = tuple[float, float, float]
@@ -310,29 +312,56 @@ class EnginePlugin(Protocol):
         """A file by the engine's own parser; its `text` states the tree, with joints and links of the links' names."""
 
 
+# What a plug-in has.
+_MEMBERS = tuple("name package extra conventions kinds functions gravity formats slacks version build read".split())
+
+
 @dataclass
 class Registry:
     """The plug-ins of this installation.
 
     Attributes:
         plugins: Name -> plug-in.
-        failures: Entry points that did not load -> why.
+        failures: Entry points that did not load, or not what the contract asks for -> why.
     """
 
     plugins: dict[str, EnginePlugin] = field(default_factory=dict)
     failures: dict[str, str] = field(default_factory=dict)
 
 
-def installed(own: Mapping[str, EnginePlugin]) -> Registry:
-    """Our plug-ins and those of other packages.
+def installed(own: Mapping[str, EnginePlugin], functions: Collection[str] = ()) -> Registry:
+    """Our plug-ins and those of other packages; of these, what breaks the contract at first sight is a failure.
 
     Args:
         own: Plug-ins that come with this package.
+        functions: Names of the functions that can be offered; none: any.
     """
     registry = Registry(dict(own))
     for point in entry_points(group=GROUP):
-        try:
-            registry.plugins[point.name] = point.load()
-        except Exception as error:  # A stranger's package may fail in any way; the others go on.
-            registry.failures[point.name] = f"{type(error).__name__}: {error}"
+        plugin = attempted(point.load)
+        if isinstance(plugin, Raised):
+            registry.failures[point.name] = plugin.words
+        elif fault := _fault(plugin, point.name, functions):
+            registry.failures[point.name] = fault
+        else:
+            registry.plugins[point.name] = plugin
     return registry
+
+
+def _fault(plugin: EnginePlugin, name: str, functions: Collection[str]) -> str:
+    """What makes a stranger's plug-in of no use; "" for nothing."""
+
+    def stated() -> str:
+        missing = [member for member in _MEMBERS if not hasattr(plugin, member)]
+        if missing:
+            return f"no {', '.join(missing)}: a plug-in has the members of EnginePlugin"
+        if plugin.name != name:
+            return f"its name is '{plugin.name}', that of its entry point '{name}': they must be the same"
+        if any(len(row) != 2 for row in plugin.conventions) or len(plugin.gravity) not in (0, 3):
+            return "conventions are pairs of what and convention, gravity is three numbers or none"
+        dict(plugin.kinds), dict(plugin.slacks), plugin.version()
+        unknown = [one for one in plugin.functions if functions and one.partition(":")[0] not in functions]
+        return f"no functions {', '.join(unknown)}: those that can be offered are in functions.py" if unknown else ""
+
+    said = attempted(stated)
+    return said.words if isinstance(said, Raised) else said

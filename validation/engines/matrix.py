@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..contract.raised import Raised, words
 from .functions import CONSTRAINED, FUNCTIONS
 from .interface import EnginePlugin, State, Steps, Tree, Unsupported, vector
 from .verdicts import Cell, Expected, Verdict, expected, judge
@@ -110,10 +111,15 @@ def _judge(plugin: EnginePlugin, tree: Tree, answer: Answer, truths: Truths) -> 
     if isinstance(value, Unsupported):
         verdict: Verdict = "refuses" if value.offered else "not offered"
         return Cell(plugin.name, tree.name, answer.function, verdict, words=value.reason), None
+    if isinstance(value, Raised):
+        return Cell(plugin.name, tree.name, answer.function, "raises", words=value.words), None
     try:
         want = truths.of(answer.function, tree, answer, plugin.slacks.get(answer.function, 0.0))
     except ZeroDivisionError:
         return Cell(plugin.name, tree.name, answer.function, "not offered", words="the truth is singular"), None
+    except Exception as error:  # Of a layout that can't be: a fault of the plug-in's, or of ours.
+        said = f"the truth in its layout: {words(error)}"
+        return Cell(plugin.name, tree.name, answer.function, "raises", words=said), None
     return judge(plugin.name, tree, answer.function, value, want), want
 
 

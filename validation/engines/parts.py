@@ -19,7 +19,7 @@ Row = dict[str, Any]
 CELLS = ("engine", "function", "model"), ("verdict", "error", "tolerance", "words")
 IDENTITIES = ("engine", "identity", "model"), ("error", "ok")
 # Whoever measured says when, of which source, and by which versions.
-ORIGIN = ("revision", "date", "versions")
+ORIGIN = ("revision", "date", "versions", "digest")
 # What an answer is held to: trees, truths, tolerances. Parts by other plug-ins or proofs answer the same question.
 _ASKED = ("functions.py", "identities.py", "matrix.py", "verdicts.py", "models/*.py", "truth/*.py")
 
@@ -109,13 +109,16 @@ def merged(own: Data, parts: Sequence[Data]) -> Data:
         raise PartsDisagree("the parts were asked about different trees: --kinds must be the same for all")
     result = dict(own) | {"models": models[0]}
     for part in parts:
-        origin = {name: part[name] for name in ORIGIN}
+        origin = {name: part[name] for name in ORIGIN if name in part}
         result["engines"] = [*result["engines"], *({"measured": origin} | engine for engine in part["engines"])]
         result["functions"] = part["functions"] | result["functions"]
         result["absent"] = result["absent"] | part["absent"]
+        result["ours"] = [*result.get("ours", ()), *part.get("ours", ())]
         result["proofs"] = [*result["proofs"], *part["proofs"]]
         for table in ("cells", "identities"):
             result[table] = result[table] | part[table]
+    # Each part's sources are to be those of now.
+    result["digests"] = sorted({one for part in parts for one in (part.get("digest", ""), *part.get("digests", ()))})
     present = {engine["name"] for engine in result["engines"]}
     result["absent"] = {name: why for name, why in result["absent"].items() if name not in present}
     return result
@@ -124,5 +127,5 @@ def merged(own: Data, parts: Sequence[Data]) -> Data:
 def write_scripts(proofs: Iterable[Mapping[str, Any]], folder: Path) -> None:
     """The scripts of stored proofs, beside those that were written now."""
     folder.mkdir(parents=True, exist_ok=True)
-    for proof in proofs:
+    for proof in (one for one in proofs if one["text"]):
         (folder / Path(proof["file"]).name).write_text(proof["text"], encoding="utf-8")

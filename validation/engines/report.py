@@ -9,6 +9,7 @@ from typing import Any
 from ..reporting.numbers import counted
 from ..reporting.record import Bullets, Cell, Code, Data, Fact, Report, Section, Table, Text, Topic, verdict
 from . import parts
+from .proving.scripts import NO_SCRIPT
 from .study import RED, measure
 
 _TEXT = """Each engine builds the same small trees by its own API and answers in its own conventions: coordinates,
@@ -16,9 +17,10 @@ speeds, frames. What is right is worked out in 130 digits from nothing but what 
 (`validation/engines/truth/charts.py`), by Newton's and Euler's equations and differences. An answer may be off by what
 2000 roundings of its inputs and of the forces between links make of it. **wrong**: off by more, and by more than a
 millionth of the largest entry. **imprecise**: off by more, but less than that. **refuses**: says in words that it
-can't. **crashes**: takes its process with it. Empty: not offered. Each red cell stands for a script that imports the
-engine alone, was shrunk to the plainest tree and state that still show it, and was run in a process of its own to
-fail."""
+can't. **crashes**: takes its process with it. **raises**: the plug-in, not the engine, ends in an exception: nothing is
+said of the engine. Empty: not offered. A proven fault has a script that imports the engine alone, was shrunk to the
+plainest tree and state that still show it, and was run in a process of its own to fail; one that does not end proves
+nothing."""
 _DECISION = "**Which engine is wrong:** {}, proven by {}."
 _COUNTED = """A cell counts where the answer is wrong against the truth in many digits; {} more lose digits beyond what
 rounding explains."""
@@ -40,9 +42,15 @@ def compose(data: Data) -> Report:
     wrong = Counter(cell["engine"] for cell in cells if cell["verdict"] in ("wrong", "crashes"))
     listed = ", ".join(f"{engine} in {number}" for engine, number in wrong.most_common())
     listed = f"{listed} cells of [the matrix](engines.html#overview)" if listed else "none"
-    scripts = counted(sum(proof["proven"] for proof in proofs), "script")
-    all_proven, held = all(proof["proven"] for proof in proofs), sum(row["ok"] for row in identities)
-    head = "engine | version | right | wrong | imprecise | crashes | refuses | faults proven | measured"
+    proven, held = sum(proof["proven"] for proof in proofs), sum(row["ok"] for row in identities)
+    scripts, open_faults = counted(proven, "script"), len(proofs) - proven
+    all_proven = all(proof["proven"] or proof["output"] == NO_SCRIPT for proof in proofs)
+    # Of plug-ins from elsewhere an exception is an answer; of ours it is a fault of ours.
+    raising = Counter(cell["engine"] for cell in cells if cell["verdict"] == "raises")
+    sound = not raising.keys() & set(data.get("ours", ()))
+    said = f", {open_faults} of {len(proofs)} faults not proven" if open_faults else ""
+    said += f"; {counted(raising.total(), 'cell')} where a plug-in raises" if raising else ""
+    head = "engine | version | right | wrong | imprecise | crashes | refuses | raises | faults proven | measured"
     overview = Table.of(head, (_tally(engine, data) for engine in data["engines"]))
     absent = "; ".join(f"{name}: {why}" for name, why in data["absent"].items())
     missing = (Text(f"Not installed here: {absent}.", "soft"),) if absent else ()
@@ -52,8 +60,8 @@ def compose(data: Data) -> Report:
         "Which engine is wrong where",
         f"{counted(len(data['engines']), 'engine')}, {counted(len(data['models']), 'tree')}, "
         f"{counted(len(data['functions']), 'function')}: {tally['right']} cells right, {red} red, "
-        f"by {counted(len(proofs), 'script')} that fail as they must.",
-        all_proven,
+        f"by {scripts} that fail as they must{said}.",
+        all_proven and sound,
         (_TEXT,),
         (
             Section("Engines", (overview, *missing), "overview"),
@@ -65,7 +73,8 @@ def compose(data: Data) -> Report:
         facts=(
             Fact(str(tally["right"]), "cells right"),
             Fact(str(red), "red cells: wrong, imprecise, crashing"),
-            Fact(str(len(proofs)), "scripts that prove them", all_proven),
+            Fact(str(proven), f"scripts that prove them, of {len(proofs)} faults", all_proven),
+            *((Fact(str(raising.total()), "cells where a plug-in raises", sound),) if raising else ()),
             Fact(str(tally["refuses"]), "cells where the engine refuses in words"),
             Fact(f"{held} of {len(identities)}", "identities that hold"),
         ),
@@ -92,8 +101,10 @@ def _wrong_about(data: Data, wrong: Counter[str]) -> Iterator[tuple[str, ...]]:
 def _tally(engine: Row, data: Data) -> tuple[str, ...]:
     """A line of the overview."""
     name, tally = engine["name"], Counter(cell["verdict"] for cell in data["cells"] if cell["engine"] == engine["name"])
-    proofs = sum(proof["engine"] == name for proof in data["proofs"]) if any(tally[red] for red in RED) else ""
-    counts = verdict(tally["wrong"], not tally["wrong"]), tally["imprecise"], tally["crashes"], tally["refuses"], proofs
+    own = [proof["proven"] for proof in data["proofs"] if proof["engine"] == name]
+    proofs = (f"{sum(own)} of {len(own)}" if not all(own) else len(own)) if any(tally[red] for red in RED) else ""
+    further = *(tally[name] for name in ("imprecise", "crashes", "refuses", "raises")), proofs
+    counts = verdict(tally["wrong"], not tally["wrong"]), *further
     measured = {name: data.get(name, "") for name in parts.ORIGIN} | engine.get("measured", {})
     when = f"{measured['date']}, {measured['revision'][:8]}"
     return f"[{name}](#engine-{name})", engine["version"], str(tally["right"]), *map(str, counts), when
@@ -148,10 +159,11 @@ def _proof(proof: Row) -> Section:
         f"tolerance {proof['tolerance']:.1e}.",
         f"The same functions are red on: {', '.join(proof['models'])}.",
         f"Public thread: {proof['thread']}.",
-        f"Script: `reports/engines/{proof['file']}`.",
+        *((f"Script: `reports/engines/{proof['file']}`.",) if proof["text"] else ()),
     )
-    title = f"{proof['engine']}: {proof['native']}, {proof['model']}"
-    return Section(title, (Bullets(facts), Code(proof["text"]), Code(proof["output"])), _anchor(proof), page_only=True)
+    title = f"{proof['engine']}: {proof['native']}, {proof['model']}{'' if proof['proven'] else ': not proven'}"
+    shown = tuple(map(Code, filter(None, (proof["text"], proof["output"]))))
+    return Section(title, (Bullets(facts), *shown), _anchor(proof), page_only=True)
 
 
 TOPIC = Topic("engines", "Correctness", "Which engine is wrong where?", compose, measure)

@@ -19,6 +19,7 @@ from .matrix import SEED, Judged, Truths, asked, judged, names, suited
 from .models import hostile, kinds, loops, transformed
 from .models.formats import formats
 from .models.readers import Reading, readings
+from .plugins import OWN
 from .proving.scripts import Proof, Shown, prove
 from .proving.shrink import TRIES
 from .workers import Job, Worker, registry
@@ -172,6 +173,8 @@ def measure(
         "absent": {name: plugin.extra for name, plugin in plugins.items() if name not in present} | registry().failures,
         "models": names_wanted,
         "functions": {name: FUNCTIONS[name.partition(":")[0]].text for name in names(chosen)},
+        # Exceptions inside plug-ins that come with this package are faults of ours.
+        "ours": [name for name in chosen if plugins[name] is OWN.get(name)],
         # What an engine does not offer is what is left: a third of all.
         "cells": parts.nested((asdict(one.cell) for one in cells if one.cell.verdict != "not offered"), parts.CELLS),
         "identities": parts.nested(map(asdict, held(cells)), parts.IDENTITIES),

@@ -14,7 +14,7 @@ from .proving.pieces import Layout
 from .truth.arithmetic import Exact
 from .truth.dynamics import ROUNDING, Point, Truth, digits
 
-Verdict = Literal["right", "imprecise", "wrong", "refuses", "crashes", "not offered"]
+Verdict = Literal["right", "imprecise", "wrong", "refuses", "raises", "crashes", "not offered"]
 
 # An answer may be off by what BACKWARD roundings of its inputs and of each link's force and moment make of it, and by
 # FORWARD of its largest entry: good recursions lose some tens of roundings, engines that form 1e3 products in series

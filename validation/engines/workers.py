@@ -11,9 +11,14 @@ from functools import cache
 from multiprocessing.connection import Connection
 from typing import Any
 
-from .interface import Array, EngineModel, Registry, State, Tree, Unsupported, installed
+import numpy as np
+
+from ..contract.raised import Raised, attempted
+from .functions import FUNCTIONS
+from .interface import Array, EngineModel, Registry, Slot, State, Tree, Unsupported, installed
 from .plugins import OWN
 from .proving.pieces import Layout, Pieces, assembled
+from .truth.charts import CHARTS
 from .truth.constraints import closed
 from .truth.dynamics import random_state
 
@@ -64,14 +69,14 @@ class Answer:
 
     Attributes:
         function: Its name.
-        value: The result.
+        value: The result, or what came in its place.
         layout: Layout of the model; None where there is no model.
         state: The state that it was evaluated at.
         script: Text that does the same, for a value only.
     """
 
     function: str
-    value: Array | Unsupported | Crashed
+    value: Array | Unsupported | Crashed | Raised
     layout: Layout | None = None
     state: State | None = None
     script: str = ""
@@ -80,7 +85,7 @@ class Answer:
 @cache
 def registry() -> Registry:
     """The plug-ins, looked up once a process: that reads the metadata of all packages."""
-    return installed(OWN)
+    return installed(OWN, FUNCTIONS)
 
 
 def made(job: Job) -> EngineModel | Unsupported:
@@ -90,37 +95,76 @@ def made(job: Job) -> EngineModel | Unsupported:
 
 
 def answered(job: Job) -> Iterator[Answer]:
-    """Do a job in this process."""
-    model = made(job)
-    if isinstance(model, Unsupported):
-        yield from (Answer(function, model) for function in job.functions)
+    """Do a job in this process; whatever a plug-in raises is its answer."""
+    prepared = attempted(_prepared, job)
+    if isinstance(prepared, Raised | Unsupported):
+        yield from (Answer(function, prepared) for function in job.functions)
         return
-    layout = Layout(model.nq, model.nv, model.slots)
-    state = assembled(layout, job.pieces) if job.pieces else random_state(job.tree, model, job.seed)
-    if job.tree.constraints and not isinstance(state, Unsupported):
-        state = closed(job.tree, layout, state, restarts=0 if job.pieces else 20)
-    if isinstance(state, Unsupported):
-        yield from (Answer(function, state) for function in job.functions)
-        return
+    model, layout, state = prepared
     for function in job.functions:
-        value = model.call(function, state) if job.called else Unsupported("not called")
-        silent = job.called and isinstance(value, Unsupported)
-        script = "" if silent else model.script(function, state)
+        value = attempted(_called, model, function, state) if job.called else Unsupported("not called")
+        silent = job.called and not isinstance(value, np.ndarray)
+        script = "" if silent else attempted(model.script, function, state)
+        if isinstance(script, Raised):
+            value, script = Raised(f"the script of {function}: {script.words}"), ""
         yield Answer(function, value, layout, state, script)
 
 
+def _prepared(job: Job) -> tuple[EngineModel, Layout, State] | Unsupported:
+    """The model of a job, and the state that it is asked at."""
+    model = made(job)
+    if isinstance(model, Unsupported):
+        return model
+    slots = tuple(tuple(Slot(one.chart, tuple(one.q), tuple(one.v)) for one in link) for link in model.slots)
+    layout = Layout(int(model.nq), int(model.nv), slots)
+    _require(job.tree, layout)
+    state = assembled(layout, job.pieces) if job.pieces else random_state(job.tree, layout, job.seed)
+    if job.tree.constraints and not isinstance(state, Unsupported):
+        state = closed(job.tree, layout, state, restarts=0 if job.pieces else 20)
+    return state if isinstance(state, Unsupported) else (model, layout, state)
+
+
+def _require(tree: Tree, layout: Layout) -> None:
+    """Refuse a layout that is none of the tree.
+
+    Raises:
+        ValueError: It is none; the message says where.
+    """
+    if len(layout.slots) != len(tree.links):
+        raise ValueError(f"slots of {len(layout.slots)} links for a tree of {len(tree.links)}")
+    for link, slots in zip(tree.links, layout.slots, strict=True):
+        moving = [joint for joint in link.joints if joint.kind != "fixed" and joint.locked is None]
+        if len(slots) != len(moving):
+            raise ValueError(f"{len(slots)} slots for link '{link.name}', which has {len(moving)} moving joints")
+        for slot in slots:
+            chart = CHARTS.get(slot.chart)
+            if chart is None:
+                raise ValueError(f"slot of link '{link.name}': no chart '{slot.chart}'; they are in truth/charts.py")
+            if (len(slot.q), len(slot.v)) != (chart.nq, chart.nv):
+                stated = f"{len(slot.q)} coordinates and {len(slot.v)} speeds"
+                raise ValueError(
+                    f"slot of link '{link.name}': {stated}, not the {chart.nq} and {chart.nv} of its chart"
+                )
+            for place, size in ((slot.q, layout.nq), (slot.v, layout.nv)):
+                if not set(place) <= set(range(size)):
+                    raise ValueError(f"slot of link '{link.name}': places {place} of {size}")
+
+
+def _called(model: EngineModel, function: str, state: State) -> Array | Unsupported:
+    """What a call returns; an array of numbers, if it is one."""
+    value = model.call(function, state)
+    return value if isinstance(value, Unsupported) else np.array(value, dtype=float)
+
+
 def serve(pipe: Connection) -> None:
-    """Do jobs as they come; what can't be sent back is no answer."""
+    """Do jobs as they come."""
     while True:
         try:
             job = pipe.recv()
         except EOFError:
             return
-        try:
-            for answer in answered(job):
-                pipe.send(answer)
-        except Exception as error:  # A fault of ours, or of a plug-in: reported, not hidden.
-            pipe.send(Unsupported(f"{type(error).__name__}: {error}"))
+        for answer in answered(job):
+            pipe.send(answer)
         pipe.send(None)
 
 
@@ -177,9 +221,6 @@ class Worker:
                 self.close()
                 yield Answer(function, Crashed(reason if code is None else _exit_reason(code)))
                 return
-            if isinstance(message, Unsupported):
-                self.close()
-                raise RuntimeError(f"{job.engine}, {function}: {message.reason}")
             # The end of the job is read before its last answer is handed out: who takes that and no more leaves nothing
             # in the pipe that the next job would take for its own.
             if not left and pipe.poll(self._limit):

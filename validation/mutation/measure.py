@@ -51,7 +51,8 @@ def measure(
         unfinished = [fault.id for fault in study.faults if study.fate(fault) == OPEN]
     finally:
         study.overlay.close()
-    return as_data(study) | {"seed": seed, "copied": study.overlay.revision, "unfinished": unfinished}
+    origin = {"copied": study.overlay.revision, "digest": study.overlay.digest}
+    return as_data(study) | {"seed": seed, **origin, "unfinished": unfinished}
 
 
 def as_data(study: Study) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from ..reporting.provenance import revision
+from ..reporting.evidence import digest, revision
 from .fault import SourceFault
 
 # What tests read, beside the packages.
@@ -35,6 +35,7 @@ class Overlay:
 
     Attributes:
         revision: Revision of the repository that was copied; "" if it is not known.
+        digest: Digest of the sources that were copied; "" if it is not known.
     """
 
     def __init__(self, root: Path, folder: Path, cache: Path | None = None) -> None:
@@ -42,12 +43,15 @@ class Overlay:
         self.tree, self.cache, self.log = folder / "tree", folder / "cache", folder / "log"
         self._compiler = folder / "cc"
         folder.mkdir(parents=True, exist_ok=True)
-        origin = folder / "revision"
+        origins = {"revision": folder / "revision", "digest": folder / "digest"}
         if not self.tree.exists():
             _copy_tree(root, self.tree)
             _fix_identity(self.tree)
-            origin.write_text(revision(root), encoding="utf-8")
-        self.revision = origin.read_text(encoding="utf-8").strip() if origin.exists() else ""
+            origins["revision"].write_text(revision(root), encoding="utf-8")
+            origins["digest"].write_text(digest("mutation", "tests"), encoding="utf-8")
+        self.revision, self.digest = (
+            origin.read_text(encoding="utf-8").strip() if origin.exists() else "" for origin in origins.values()
+        )
         self._backup = folder / "planted.json"  # Of the file that holds a fault, if the process is killed meanwhile.
         self._restore()
         self.cache.mkdir(mode=0o700, exist_ok=True)

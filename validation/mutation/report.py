@@ -109,4 +109,5 @@ def compose(data: Data) -> Report:
     )
 
 
-TOPIC = Topic("mutants", "Correctness", "Would check or the tests see a fault in the source?", compose, measure)
+QUESTION = "Would check or the tests see a fault in the source?"
+TOPIC = Topic("mutants", "Correctness", QUESTION, compose, measure, beside=("tests",))

@@ -19,6 +19,7 @@ import symofros as sf
 from symofros.tools import write_atomically
 
 from . import html, markdown, terminal
+from .evidence import MIXED, digest
 from .provenance import Provenance, stamp
 from .record import Data, Report, Topic
 
@@ -84,6 +85,7 @@ class Run:
     def __init__(self, topic: Topic, folder: Path | None = None) -> None:
         self.topic, self.folder, self.asked, self.writes = topic, folder or REPORTS, folder is not None, True
         self.start, self._done, self._total = time.perf_counter(), 0, 0
+        self._digest = present(topic)
         self._console = Console(stderr=True)
         self.bar = progress_bar(self._console)
         self._task = self.bar.add_task(topic.name, total=None)
@@ -137,11 +139,17 @@ class Run:
 
     def stamped(self, data: Data) -> Data:
         """All of the JSON: with the origin of the numbers, where the data does not state it."""
-        return {"seconds": self.seconds, **stamp(), **data}
+        digest = self._digest if self._digest == present(self.topic) else MIXED
+        return {"seconds": self.seconds, **stamp(), "digest": digest, **data}
 
     def save(self, data: Data) -> None:
         """Write the report as far as it is."""
         write(self.topic, self.stamped(data), self.folder)
+
+
+def present(topic: Topic) -> str:
+    """Digest of the sources of a report as they are."""
+    return digest(topic.home, *topic.beside)
 
 
 def composed(topic: Topic, data: Data) -> Report:
@@ -164,7 +172,8 @@ def render(topic: Topic, data: Data, folder: Path, report: Report) -> Report:
     """Write NAME.md and NAME.html."""
     written = f"Written by `{topic.command}`; everything is in `{topic.name}.json`, figures in `{topic.name}.html`."
     for kind, renderer in (("html", html), ("md", markdown)):
-        write_atomically(folder / f"{topic.name}.{kind}", renderer.page(report, Provenance.of(data), written))
+        origin = Provenance.of(data, present(topic))
+        write_atomically(folder / f"{topic.name}.{kind}", renderer.page(report, origin, written))
     return report
 
 

@@ -7,6 +7,7 @@ from html import escape
 from pathlib import Path
 
 from .charts import PALETTE, draw
+from .evidence import said_of
 from .figures import Chart, Drawing, Figure
 from .provenance import Provenance
 from .record import MISSED, Block, Bullets, Cell, Code, Fact, Report, Section, Table, Text
@@ -47,9 +48,11 @@ def page(report: Report, provenance: Provenance | None = None, closing: str = ""
         listed: Whether links to the sections come before them.
     """
     links = [section for section in report.sections if section.anchor] if listed else []
+    standing = provenance.standing if provenance else ""
     parts = [
         f"<h1>{escape(report.title)}</h1>",
         f'<p class="verdict {_TONE[report.ok]}">{prose(report.summary)}</p>',
+        block(Text(f"This report {said_of(standing)}.", "bad")) if standing else "",
         *(f'<div class="decisions">{block(one)}</div>' for one in report.decisions),
         block(Text("**Missed:**", "bad")) + block(Bullets(report.missed)) if report.missed else "",
         f'<div class="tiles">{"".join(map(tile, report.facts))}</div>' if report.facts else "",

@@ -5,7 +5,6 @@ from __future__ import annotations
 import datetime
 import os
 import platform
-import subprocess
 from dataclasses import dataclass, field
 from importlib import metadata
 from pathlib import Path
@@ -14,6 +13,7 @@ from typing import Any
 import symofros as sf
 from symofros.tools import find_toolchain
 
+from .evidence import revision, standing
 from .numbers import named
 
 # Packages that have a say in the numbers of one report or another.
@@ -26,16 +26,30 @@ _ALIASES = {"pinocchio": "pin", "pinocchio-urdf": "pin", "mujoco-urdf": "mujoco"
 
 @dataclass(frozen=True)
 class Provenance:
-    """The origin of a report's numbers; empty where it does not say. `rows` has everything for people, in pairs."""
+    """The origin of a report's numbers; empty where it does not say.
+
+    Attributes:
+        date: When it was made.
+        machine: On which machine.
+        versions: With which versions.
+        rows: Everything for people, in pairs.
+        standing: What a reader must know of its age; "" where its sources are those of now (`evidence.standing`).
+    """
 
     date: str = ""
     machine: str = ""
     versions: dict[str, str] = field(default_factory=dict)
     rows: tuple[tuple[str, str], ...] = ()
+    standing: str = ""
 
     @classmethod
-    def of(cls, data: Any) -> Provenance:
-        """From the top of a report, and from what it says of the machine, which may be of several compilers."""
+    def of(cls, data: Any, present: str = "") -> Provenance:
+        """From the top of a report, and from what it says of the machine, which may be of several compilers.
+
+        Args:
+            data: JSON of the report.
+            present: Digest of the sources as they are; "" if it is not known.
+        """
         stated = {**data, **data.get("machine", {})}
         flags, cores = stated.get("flags", ""), stated.get("cores", "")
         parts = stated.get("processor"), cores and f"{cores} cores", stated.get("system")
@@ -47,10 +61,19 @@ class Provenance:
             "versions": named(stated.get("versions", {}), ", "),
             "compiler": "; ".join(stated.get("compilers", ())) or stated.get("compiler", ""),
             "flags": named(flags, "; ") if isinstance(flags, dict) else flags,
-            "revision": stated.get("revision", ""),
+            "revision": stated.get("revision", "").replace("+", ", with changes that are not committed"),
+            "sources": _digest(stated, present),
         }
         rows = tuple((what, value) for what, value in pairs.items() if value)
-        return cls(pairs["made"], machine, stated.get("versions", {}), rows)
+        return cls(pairs["made"], machine, stated.get("versions", {}), rows, standing(data, present))
+
+
+def _digest(data: Any, present: str) -> str:
+    """The digest of the sources, and whether it is that of now."""
+    stated = data.get("digest", "")
+    if not stated:
+        return ""
+    return f"digest {stated}" + (f", {standing(data, present) or 'as they are'}" if present else "")
 
 
 def stamp() -> dict[str, Any]:
@@ -104,16 +127,3 @@ def _processor() -> str:
 def now() -> str:
     """The date (UTC)."""
     return datetime.datetime.now(datetime.UTC).strftime("%Y-%m-%d %H:%M UTC")
-
-
-def revision(folder: Path = Path(sf.__file__).parent) -> str:
-    """The source's revision, "+" where files differ from it; empty where there is no repository."""
-    git = ["git", "-C", str(folder)]
-    try:
-        head, changes = (
-            subprocess.run([*git, *arguments], capture_output=True, text=True, timeout=10, check=True).stdout.strip()
-            for arguments in (["rev-parse", "HEAD"], ["status", "--porcelain", "--untracked-files=no", "--", "."])
-        )
-    except (OSError, subprocess.SubprocessError):
-        return ""
-    return head + ("+" if changes else "")

@@ -216,10 +216,11 @@ class Topic:
         group: Heading that it stands under in the index.
         question: Question that it answers.
         compose: JSON of the report -> report.
-        measure: Run, and the options of the command -> JSON; None for a report whose commands are its own, which
-            `dashboard --regenerate` leaves to hand.
+        measure: Run, and the options of the command -> JSON; None for a report whose commands are its own.
         arguments: Arguments after `python -m validation`, or its name elsewhere, that write it; the name if None.
         printed: Names in the JSON that --json prints; none: all.
+        folder: Folder of the harness that measures it; by default that of `measure`, or else of `compose`.
+        beside: Folders beside the harness that its numbers rest on, too.
     """
 
     name: str
@@ -229,6 +230,14 @@ class Topic:
     measure: Callable[..., Data] | None = None
     arguments: str | None = None
     printed: tuple[str, ...] = ()
+    folder: str = ""
+    beside: tuple[str, ...] = ()
+
+    @property
+    def home(self) -> str:
+        """Folder of the harness that its numbers come from."""
+        package = __name__.removesuffix("reporting.record")
+        return self.folder or (self.measure or self.compose).__module__.removeprefix(package).partition(".")[0]
 
     @property
     def command(self) -> str:

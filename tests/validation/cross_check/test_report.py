@@ -87,6 +87,21 @@ def test_good_news(good: ModelResult) -> None:
     assert "shapes ignored" in page
 
 
+def test_what_independent_engines_compared_is_counted_apart(mixed: Data) -> None:
+    """Our own code, read by other compilers or by NumPy, and formulas of ours are no second opinion."""
+    own = {"vectors", "interpreted", "description", "formulas", "symofros"}
+    judged = [row for row in mixed["comparisons"] if row["tolerance"]]
+    independent = [row for row in judged if row["engine"] not in own]
+    assert 0 < len(independent) < len(judged)
+    assert mixed["independent"] == len(independent) == Record.of(mixed).independent
+    said = f"{len(independent)} of the comparisons are with independent engines."
+    report = compose(mixed)
+    assert report.summary.endswith(said) and said in to_html(mixed)
+    facts = {fact.label: fact.value for fact in report.facts}
+    label = f"comparisons with independent engines; {len(judged) - len(independent)} with our own code and formulas"
+    assert facts[label] == str(len(independent))
+
+
 def test_bad_news(mixed: Data) -> None:
     assert not mixed["ok"] and code(compose(mixed)) == 1
     for text in (to_html(mixed), to_markdown(mixed)):

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import datetime
 import json
 from collections.abc import Mapping
 from pathlib import Path
@@ -10,10 +9,12 @@ import pytest
 
 from validation.dashboard.catalogue import TOPICS
 from validation.dashboard.gather import Entry, doubts, gather
+from validation.reporting import evidence
 from validation.reporting.figures import Chart
 from validation.reporting.provenance import Provenance
+from validation.reporting.record import Topic
 
-TODAY = datetime.date(2026, 11, 21)
+DIGEST = "0123456789abcdef"
 FUZZ: dict[str, Any] = {
     "ok": True,
     "inputs": 10,
@@ -30,6 +31,7 @@ FUZZ: dict[str, Any] = {
             "slowest_input": 3,
         }
     },
+    "digest": DIGEST,
     "date": "2026-11-20 10:00 UTC",
     "versions": {"numpy": "2.0"},
     "flags": "-O2",
@@ -37,8 +39,12 @@ FUZZ: dict[str, Any] = {
 }
 
 
+def digest(_: Topic) -> str:
+    return DIGEST
+
+
 def entry(folder: Path, name: str = "fuzz") -> Entry:
-    return gather(folder, {"numpy": "2.0"}, TODAY)[name]
+    return gather(folder, {"numpy": "2.0"}, digest)[name]
 
 
 def write(folder: Path, data: object, name: str = "fuzz") -> Path:
@@ -56,7 +62,7 @@ def test_a_report_says_what_it_found_and_where_it_is_from(tmp_path: Path) -> Non
 
 
 def test_an_absent_report_says_so(tmp_path: Path) -> None:
-    assert {one.verdict for one in gather(tmp_path, {}, TODAY).values()} == {"absent"}
+    assert {one.verdict for one in gather(tmp_path, {}, digest).values()} == {"absent"}
     assert entry(tmp_path).remarks == ("is not made yet",)
 
 
@@ -74,8 +80,11 @@ def test_a_broken_report_says_so_and_spares_the_others(tmp_path: Path, text: str
 @pytest.mark.parametrize(
     ("change", "says"),
     [
-        ({"versions": {"numpy": "1.0"}}, "stale: made with numpy 1.0, now 2.0"),
-        ({"date": "2026-09-01 10:00 UTC"}, "stale: 81 days old"),
+        ({"versions": {"numpy": "1.0"}}, "was made with numpy 1.0, now 2.0"),
+        ({"digest": "another"}, "is older than the code it judges"),
+        ({"digest": ""}, "was made before digests were kept"),
+        ({"digests": [DIGEST, "another"]}, "is older than the code it judges"),
+        ({"digest": evidence.MIXED}, "was made while the code changed"),
         ({"date": ""}, "does not say when it was made"),
         ({"machine": {}}, "does not say on which machine"),
         ({"versions": {}}, "does not say with which versions"),
@@ -94,7 +103,7 @@ def test_what_is_said_of_several_compilers_comes_before_the_default_one() -> Non
 
 def test_a_package_that_is_not_installed_makes_nothing_stale() -> None:
     origin = Provenance.of(FUZZ | {"versions": {"adams": "1"}})
-    assert doubts(origin, {"numpy": "2.0"}, TODAY) == []
+    assert doubts(origin, {"numpy": "2.0"}) == []
 
 
 @pytest.mark.parametrize("place", ["top", "machine"])
@@ -117,7 +126,7 @@ PRESENT = [name for name in TOPICS if (REPORTS / f"{name}.json").is_file()]
 
 @pytest.fixture(scope="module")
 def entries() -> Mapping[str, Entry]:
-    return gather(REPORTS, {"numpy": "2.0"}, TODAY)
+    return gather(REPORTS, {"numpy": "2.0"}, digest)
 
 
 @pytest.mark.parametrize("name", PRESENT)

@@ -2,19 +2,17 @@ from __future__ import annotations
 
 import json
 import re
-import subprocess
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 from typer.testing import CliRunner
 
-from tests.validation.dashboard.test_gather import FUZZ, TODAY, write
+from tests.validation.dashboard.test_gather import DIGEST, FUZZ, digest, write
 from validation.__main__ import app
-from validation.dashboard import command as dashboard
 from validation.dashboard.catalogue import TOPICS
 from validation.dashboard.gather import gather
 from validation.dashboard.index import BEGIN, END, QuoteError, headline, quote, write_index
+from validation.reporting.command import present
 from validation.reporting.html import prose
 
 ROOT = Path(__file__).parents[3]
@@ -39,19 +37,19 @@ def test_the_list_of_reports_has_each_with_its_command() -> None:
 @pytest.fixture
 def page(tmp_path: Path) -> str:
     write(tmp_path, FUZZ | {"versions": {"numpy": "<b>1"}})
-    path = write_index(gather(tmp_path, {"numpy": "2"}, TODAY), tmp_path, "2026-11-21 12:00 UTC")
+    path = write_index(gather(tmp_path, {"numpy": "2"}, digest), tmp_path, "2026-11-21 12:00 UTC")
     return path.read_text(encoding="utf-8")
 
 
 def test_the_page_has_every_report_and_nothing_from_outside(page: str) -> None:
     assert all(f'id="{name}"' in page for name in TOPICS)
     assert not re.search(r'(src|href)="(https?:)?//', page) and "<script" not in page
-    assert "is not made yet" in page and "stale: made with numpy &lt;b&gt;1, now 2" in page
+    assert "is not made yet" in page and "was made with numpy &lt;b&gt;1, now 2" in page
 
 
 def test_a_bad_report_is_in_the_headline(tmp_path: Path) -> None:
     write(tmp_path, FUZZ | {"ok": False})
-    said = headline(gather(tmp_path, {}, TODAY))
+    said = headline(gather(tmp_path, {}, digest))
     assert said.startswith("0 of 1 reports with a verdict are good; missed: fuzz; absent: check, ")
 
 
@@ -101,30 +99,29 @@ def test_a_folder_that_is_not_there_is_refused(tmp_path: Path) -> None:
     assert result.exit_code == 2 and "no folder" in result.output
 
 
-def test_reports_are_written_one_by_one_and_an_interrupt_keeps_the_finished(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    ran: list[list[str]] = []
+@pytest.mark.parametrize(
+    ("stated", "says"),
+    [(DIGEST, ""), ("another", "older than the code it judges"), ("", "made before digests were kept")],
+)
+def test_what_is_older_than_the_code_says_so_wherever_it_is_quoted(tmp_path: Path, stated: str, says: str) -> None:
+    entries = gather(write(tmp_path, FUZZ | {"digest": stated}), {"numpy": "2.0"}, digest)
+    page = write_index(entries, tmp_path, "2026-11-21 12:00 UTC").read_text(encoding="utf-8")
+    summary = (tmp_path / "summary.md").read_text(encoding="utf-8")
+    assert (f"| 2026-11-20 10:00{'; ' * bool(says)}{says} |" in summary) and (f"; 1 {says}." in summary) == bool(says)
+    assert all((text in page) == bool(says) for text in (f"{says}.", f"10:00; {says}<")) or not says
+    assert says or not any(text in summary + page for text in ("older than", "before digests"))
 
-    def fake(words: list[str], **_: object) -> subprocess.CompletedProcess[str]:
-        ran.append(words[4:])  # After the interpreter, -P, and what starts the harness.
-        if len(ran) == 3:
-            raise KeyboardInterrupt
-        return subprocess.CompletedProcess(words, 0 if len(ran) == 1 else 7, None, "lines\nthe reason")
 
-    instead = SimpleNamespace(run=fake, DEVNULL=subprocess.DEVNULL, PIPE=subprocess.PIPE)
-    monkeypatch.setattr(dashboard, "subprocess", instead)
-    result = CliRunner().invoke(app, ["dashboard", "--report", str(tmp_path), "--readme", "none", "--regenerate"])
-    assert result.exit_code == 130
-    assert ran == [["--output", str(tmp_path)], *([name, "--output", str(tmp_path)] for name in ("oracle", "mutation"))]
-    for says in (
-        "check: written",
-        "oracle: failed (7)",
-        "the reason",
-        "interrupted; the reports that were finished are kept",
-    ):
-        assert says in result.output
-    assert (tmp_path / "index.html").is_file()
+def test_pages_of_a_report_say_that_it_is_older(tmp_path: Path) -> None:
+    write(tmp_path, FUZZ | {"digest": "another"})
+    assert CliRunner().invoke(app, ["render", "fuzz", "--output", str(tmp_path)]).exit_code == 0
+    for kind in ("html", "md"):
+        assert "This report is older than the code it judges." in (tmp_path / f"fuzz.{kind}").read_text()
+    present_digest = present(TOPICS["fuzz"])
+    write(tmp_path, FUZZ | {"digest": present_digest})
+    assert CliRunner().invoke(app, ["render", "fuzz", "--output", str(tmp_path)]).exit_code == 0
+    text = (tmp_path / "fuzz.md").read_text()
+    assert "older than" not in text and f"digest {present_digest}, as they are" in text
 
 
 def test_pages_are_rendered_anew_from_what_was_measured(tmp_path: Path) -> None:

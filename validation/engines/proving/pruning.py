@@ -56,7 +56,9 @@ def _bound(statement: ast.stmt) -> set[str] | None:
     if isinstance(statement, ast.Import):
         return {(alias.asname or alias.name).partition(".")[0] for alias in statement.names}
     if isinstance(statement, ast.ImportFrom):
-        return {alias.asname or alias.name for alias in statement.names}
+        bound = {alias.asname or alias.name for alias in statement.names}
+        # What "*" binds shows when it runs, and what __future__ does is no name.
+        return None if "*" in bound or statement.module == "__future__" else bound
     if isinstance(statement, ast.Assign) and _is_constant(statement.value):
         targets = [target.id for target in statement.targets if isinstance(target, ast.Name)]
         return set(targets) if len(targets) == len(statement.targets) else None

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ...contract.raised import Raised, attempted
 from ..functions import FUNCTIONS
 from ..interface import Array, EnginePlugin, Unsupported
 from ..matrix import SEED, Judged, Truths, judged
@@ -21,7 +22,7 @@ from .folding import folded
 from .pieces import assembled, taken
 from .plainness import plain
 from .pruning import pruned
-from .shortening import picked, shortened, still
+from .shortening import picked, shortened, still, with_numpy
 from .shrink import TRIES, Case, size, smallest
 from .threads import NONE, thread
 
@@ -34,6 +35,8 @@ _SHAPES = re.compile(r" \((?:10 )?(?:\d+|L|m|n[qv])(?: \+ m|, (?:10 )?(?:\d+|L|m
 _PATIENCE = 60.0
 # A line more is worth as many letters.
 _LINE = 60.0
+# What is said in place of the output of a script where the plug-in has none (`EngineModel.script`).
+NO_SCRIPT = "no script: the plug-in states none"
 
 
 @dataclass(frozen=True)
@@ -49,8 +52,8 @@ class Proof:
         error: Error of the cell, as part of the largest entry.
         tolerance: Tolerance, likewise.
         file: Name of the script's file.
-        text: The script.
-        output: What it printed, and how it ended.
+        text: The script; "" where there is none.
+        output: What it printed, and how it ended; or why there is no script.
         proven: Whether it failed as it must.
         thread: Public thread that knows the fault, or "none found".
     """
@@ -164,7 +167,18 @@ def prove(
     tries: int = TRIES,
     shown: Shown | None = None,
 ) -> Proof:
-    """A script of a red cell, run in a fresh process: the folder's, where it still fails, or else a new one, shrunk."""
+    """A script of a red cell, run in a fresh process: the folder's, where it still fails, or else a new one, shrunk.
+
+    Whatever is raised on the way, by the plug-in or by a script that is cut wrongly, is said in place of a proof.
+    """
+    made = attempted(_proved, plugin, red, worker, truths, folder, tries, shown)
+    known = thread(plugin.name, red.cell.model, red.cell.function)
+    return _proof(plugin, red, "", f"no script: {made.words}", False, known) if isinstance(made, Raised) else made
+
+
+def _proved(
+    plugin: EnginePlugin, red: Judged, worker: Worker, truths: Truths, folder: Path, tries: int, shown: Shown | None
+) -> Proof:
     name = red.cell.function
     known = thread(plugin.name, red.cell.model, name)
     path = folder / file_of(red)
@@ -178,6 +192,8 @@ def prove(
         if red.cell.verdict == "crashes"
         else shrunk(plugin, red, worker, truths, tries, shown)
     )
+    if not small.answer.script.strip():
+        return _proof(plugin, red, "", NO_SCRIPT, False, known)
     folder.mkdir(parents=True, exist_ok=True)
     for script in _variants(plugin, small, known):
         path.write_text(script, encoding="utf-8")
@@ -294,7 +310,7 @@ def text(plugin: EnginePlugin, red: Judged, known: str, *, merged: bool = False)
         return f"{head}{red.answer.script}\n"
     place, value = _worst(red)
     raw = np.asarray(red.answer.value)
-    script = red.answer.script.rstrip()
+    script = with_numpy(red.answer.script.rstrip(), always=True)
     if place is None:
         shape = tuple(red.want.value.shape)
         return f"{head}{script}\nassert np.shape(value) == {shape}, np.shape(value)\n"
@@ -318,7 +334,7 @@ def fails(path: Path) -> tuple[str, bool]:
     try:
         done = subprocess.run([sys.executable, str(path)], capture_output=True, text=True, timeout=_TIME)
     except subprocess.TimeoutExpired:
-        return f"no end in {_TIME:g} s", True
+        return f"no end in {_TIME:g} s, which proves nothing", False
     said = done.stdout + done.stderr.replace(str(path.absolute()), path.name).replace(str(path), path.name)
     said = re.sub(r"\S*/site-packages/", "", said)  # Warnings of engines name where they are installed here.
     said = said.replace(str(Path.home()), "~")  # Banners of engines name their caches.

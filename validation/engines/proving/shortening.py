@@ -22,7 +22,10 @@ def picked(script: str, place: Sequence[int]) -> tuple[str, str] | None:
     Returns:
         The script, and the entry's expression; None where `value` comes in another way.
     """
-    *before, last = _statements(script)
+    statements = _statements(script)
+    if not statements:
+        return None
+    *before, last = statements
     if not isinstance(last, ast.Assign) or [ast.unparse(one) for one in last.targets] != ["value"]:
         return None
     answer = last.value
@@ -87,7 +90,20 @@ def shortened(script: str) -> str:
     statements = [_Units().visit(one) for one in _statements(script)]
     while (simpler := _inlined(statements)) is not None:
         statements = simpler
-    return _text(_imported(statements))
+    return with_numpy(_text(_imported(statements)))
+
+
+def with_numpy(script: str, *, always: bool = False) -> str:
+    """A script that imports NumPy as np: where it names np, or `always`, and does not do so."""
+    statements = _statements(script)
+    aliases = [alias for one in statements if isinstance(one, ast.Import) for alias in one.names]
+    bound = any((alias.asname or alias.name) == "np" for alias in aliases)
+    if bound or not (always or any("np" in _loaded(one) for one in statements)):
+        return script
+    later = (one for one in statements if not isinstance(one, ast.ImportFrom) or one.module != "__future__")
+    lines, first = script.split("\n"), next(later, None)
+    place = len(lines) if first is None else first.lineno - 1
+    return "\n".join([*lines[:place], "import numpy as np", *lines[place:]])
 
 
 def still(script: str) -> str:

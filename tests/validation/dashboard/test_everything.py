@@ -1,0 +1,195 @@
+"""All reports of one state of the code: made one by one, gone on with after an end of any kind, named where not."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+from tests.validation.dashboard.test_gather import FUZZ
+from validation.__main__ import app
+from validation.dashboard import everything
+from validation.dashboard.catalogue import TOPICS
+from validation.dashboard.everything import Job
+from validation.dashboard.needs import NEEDS, Needs
+from validation.reporting.command import present
+
+ROOT = Path(__file__).parents[3]
+# In place of a report's command: writes what that would write, as its name asks for.
+CHILD = """
+import json, pathlib, sys, time
+name, folder, data, way = sys.argv[1:5]
+print("doing", name, flush=True)
+if way == "endless":
+    time.sleep(1000)
+if way == "broken":
+    raise ValueError("no such thing")
+path = pathlib.Path(folder) / f"{name}.json"
+path.write_text(data)
+with (pathlib.Path(folder) / "runs").open("a") as runs:
+    runs.write(name + chr(10))
+sys.exit(1 if way == "missed" else 0)
+"""
+NAMES = ("fuzz", "mutation", "oracle")
+
+
+def faked(ways: dict[str, str]) -> Any:
+    """`Job.command` with processes that take no time."""
+
+    def command(job: Job, topic: Any) -> list[str]:
+        data = json.dumps(FUZZ | {"digest": present(topic)})
+        return [sys.executable, "-c", CHILD, topic.name, str(job.output), data, ways.get(topic.name, "")]
+
+    return command
+
+
+@pytest.fixture
+def ways(monkeypatch: pytest.MonkeyPatch) -> dict[str, str]:
+    """How each report ends, by name: all are fuzz's, so that they can be read."""
+    ends: dict[str, str] = {}
+    monkeypatch.setattr(Job, "command", faked(ends))
+    topics = {name: TOPICS["fuzz"] for name in NAMES}
+    from dataclasses import replace
+
+    monkeypatch.setattr(everything, "TOPICS", {name: replace(one, name=name) for name, one in topics.items()})
+    monkeypatch.setattr(everything, "NEEDS", {})
+    return ends
+
+
+def run(folder: Path, *words: str) -> Any:
+    return CliRunner().invoke(app, ["all", "--output", str(folder), "--work", str(folder / "work"), *words])
+
+
+def made(folder: Path) -> list[str]:
+    runs = folder / "runs"
+    return runs.read_text().split() if runs.exists() else []
+
+
+def test_reports_are_made_and_what_is_made_of_this_code_is_left(tmp_path: Path, ways: dict[str, str]) -> None:
+    first = run(tmp_path)
+    assert first.exit_code == 0 and made(tmp_path) == [*NAMES], first.output
+    assert "[1/3] fuzz: written" in first.output
+    again = run(tmp_path, "--resume")
+    assert again.exit_code == 0 and made(tmp_path) == [*NAMES]
+    assert again.output.count("made already of this code") == 3
+    assert run(tmp_path).exit_code == 0 and made(tmp_path) == [*NAMES, *NAMES]
+    state = json.loads((tmp_path / "work/state.json").read_text())
+    assert set(state) == set(NAMES) and state["fuzz"]["digest"] == present(TOPICS["fuzz"])
+
+
+def test_what_is_of_other_code_or_made_otherwise_is_made_anew(tmp_path: Path, ways: dict[str, str]) -> None:
+    run(tmp_path)
+    state = json.loads((tmp_path / "work/state.json").read_text())
+    state["fuzz"]["digest"] = "other code"
+    state["oracle"]["quick"] = True
+    (tmp_path / "work/state.json").write_text(json.dumps(state))
+    (tmp_path / "mutation.json").write_text("{}")
+    assert run(tmp_path, "--resume").exit_code == 0 and made(tmp_path)[3:] == [*NAMES]
+    assert run(tmp_path, "--resume", "--quick").exit_code == 0 and made(tmp_path)[6:] == [*NAMES]
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", '{"fuzz": 3}', '{"fuzz": {"digest": "x"}}'])
+def test_a_damaged_state_is_no_state(tmp_path: Path, ways: dict[str, str], text: str) -> None:
+    (tmp_path / "work").mkdir()
+    (tmp_path / "work/state.json").write_text(text)
+    assert run(tmp_path, "--resume").exit_code == 0 and made(tmp_path) == [*NAMES]
+
+
+def test_a_report_that_fails_keeps_no_other_from_being_made(tmp_path: Path, ways: dict[str, str]) -> None:
+    ways |= {"fuzz": "missed", "mutation": "broken"}
+    done = run(tmp_path)
+    assert done.exit_code == 1 and made(tmp_path) == ["fuzz", "oracle"]
+    assert "fuzz: written; something in it is missed" in done.output
+    assert "mutation: failed (1)" in done.output and "ValueError: no such thing" in done.output
+    ways.clear()
+    assert run(tmp_path, "--resume").exit_code == 0 and made(tmp_path) == ["fuzz", "oracle", "mutation"]
+
+
+def test_what_this_machine_lacks_is_named_with_the_age_of_what_there_is(
+    tmp_path: Path, ways: dict[str, str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lacking = {"fuzz": Needs(("no_such_package",)), "oracle": Needs(programs=("no-such-program",))}
+    monkeypatch.setattr(everything, "NEEDS", lacking)
+    (tmp_path / "fuzz.json").write_text(json.dumps(FUZZ | {"digest": "other"}))
+    done = run(tmp_path)
+    assert done.exit_code == 0 and made(tmp_path) == ["mutation"]
+    assert (
+        "fuzz: not made, this machine lacks package no_such_package; "
+        "the report that there is: made 2026-11-20 10:00 UTC, older than the code it judges" in done.output
+    )
+    assert "oracle: not made, this machine lacks program no-such-program; there is no report" in done.output
+    assert run(tmp_path, "--only", "fuzz").exit_code == 1
+    listed = run(tmp_path, "--list", "--only", "fuzz")
+    assert listed.exit_code == 0 and "older than the code it judges | - |" in listed.output
+    assert "| package no_such_package |" in listed.output and "| mutation |" not in listed.output
+
+
+def test_only_what_there_is_can_be_asked_for(tmp_path: Path) -> None:
+    result = run(tmp_path, "--only", "fuss")
+    assert result.exit_code == 2 and "no report 'fuss'" in result.output
+
+
+def test_the_table_has_every_report_with_its_command(tmp_path: Path) -> None:
+    result = run(tmp_path, "--list")
+    assert result.exit_code == 0
+    for name in TOPICS:
+        assert f"| {name} | - | - |" in result.output
+    assert f"python -m validation fuzz --output {tmp_path}" in result.output
+    assert f"campaign run --models all --report {tmp_path} -o {tmp_path}/work/campaign-" in result.output
+    assert "--quick" not in result.output and NEEDS.keys() <= TOPICS.keys()
+    quick = run(tmp_path, "--list", "--quick", "--only", "pareto", "--only", "oracle").output
+    assert "pareto --output" in quick and quick.count("--quick") == 1
+
+
+PARENT = """
+import sys
+from tests.validation.dashboard.test_everything import NAMES, faked
+from validation.__main__ import app
+from validation.dashboard import everything
+everything.Job.command = faked({"mutation": "endless"} if sys.argv[1] == "endless" else {})
+everything.TOPICS = {name: everything.TOPICS[name] for name in NAMES}
+everything.NEEDS = {}
+everything.Job._written = lambda job, topic: (job.output / f"{topic.name}.json").exists()
+app(["all", *sys.argv[2:]])
+"""
+
+
+def parent(folder: Path, way: str, *words: str) -> subprocess.Popen[bytes]:
+    asked = ["--output", str(folder), "--work", str(folder / "work"), *words]
+    command = [sys.executable, "-c", PARENT, way, *asked]
+    paths = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
+    return subprocess.Popen(
+        command,
+        cwd=ROOT,
+        env=os.environ | {"PYTHONPATH": paths},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        start_new_session=True,
+    )
+
+
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL])
+def test_a_run_that_is_ended_goes_on_where_it_was(tmp_path: Path, how: signal.Signals) -> None:
+    """Ctrl-C reaches the whole group of processes; a kill leaves no time for words."""
+    process = parent(tmp_path, "endless")
+    log = tmp_path / "work/mutation.log"
+    end = time.monotonic() + 120.0
+    while not (log.exists() and b"doing" in log.read_bytes()) and time.monotonic() < end:
+        time.sleep(0.1)
+    os.killpg(process.pid, how)
+    said, _ = process.communicate(timeout=60)
+    assert made(tmp_path) == ["fuzz"] and set(json.loads((tmp_path / "work/state.json").read_text())) == {"fuzz"}
+    if how == signal.SIGINT:
+        assert process.returncode == 130 and b"mutation: interrupted; --resume goes on with it" in said, said
+    again = parent(tmp_path, "at once", "--resume")
+    said, _ = again.communicate(timeout=120)
+    assert again.returncode == 0 and made(tmp_path) == ["fuzz", "mutation", "oracle"], said
+    assert b"fuzz: made already of this code" in said

@@ -1,0 +1,154 @@
+"""The digest of what a report rests on: of the text of sources alone, wherever they lie."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from validation.dashboard.catalogue import TOPICS
+from validation.reporting import evidence
+from validation.reporting.command import Run, present
+from validation.reporting.record import Report, Topic
+
+TREE = {
+    "symofros/__init__.py": "",
+    "symofros/native/a.c": "int a;\n",
+    "symofros/studio/editor/page.py": "",
+    "reference_models/arm.py": "L = 1\n",
+    "validation/check.py": "from .mechanics import parts\n",
+    "validation/mechanics/parts.py": "",
+    "validation/reporting/html.py": "",
+    "validation/timing/race.py": "from ..oracle import digits\nfrom .report import x\n",
+    "validation/timing/report.py": "from ..pareto import front\n",
+    "validation/oracle/digits.py": "",
+    "validation/pareto/front.py": "",
+    "validation/native/loop.c": "",
+    "tests/test_a.py": "",
+    "README.md": "",
+}
+COUNTS = {
+    "symofros/native/a.c": True,
+    "reference_models/arm.py": True,
+    "validation/check.py": True,
+    "validation/mechanics/parts.py": True,
+    "validation/timing/race.py": True,
+    "validation/oracle/digits.py": True,
+    "validation/native/loop.c": True,
+    "symofros/studio/editor/page.py": False,
+    "validation/reporting/html.py": False,
+    "validation/timing/report.py": False,
+    "validation/pareto/front.py": False,
+    "tests/test_a.py": False,
+    "README.md": False,
+}
+
+
+def git(folder: Path, *words: str) -> None:
+    identity = "-c", "user.name=a", "-c", "user.email=a@b"
+    subprocess.run(["git", "-C", str(folder), *identity, *words], check=True, capture_output=True)
+
+
+@pytest.fixture
+def tree(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A small repository in the place of this one."""
+    root = tmp_path / "one"
+    for name, text in TREE.items():
+        (root / name).parent.mkdir(parents=True, exist_ok=True)
+        (root / name).write_text(text)
+    git(tmp_path, "init", str(root))
+    git(root, "add", "-A")
+    git(root, "commit", "-m", "all")
+    put(root, monkeypatch)
+    yield root
+    forget()
+
+
+def put(root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(evidence, "HARNESS", root / "validation")
+    monkeypatch.setattr(evidence, "sf", SimpleNamespace(__file__=str(root / "symofros/__init__.py")))
+    forget()
+
+
+def forget() -> None:
+    evidence._reached.cache_clear()
+    evidence._imported.cache_clear()
+
+
+@pytest.mark.parametrize(("name", "counts"), COUNTS.items())
+def test_what_numbers_come_from_counts_and_nothing_else(tree: Path, name: str, counts: bool) -> None:
+    before = evidence.digest("timing")
+    (tree / name).write_text(TREE[name] + "# changed\n")
+    forget()
+    assert (evidence.digest("timing") != before) == counts
+
+
+def test_tests_count_where_they_are_asked_for(tree: Path) -> None:
+    before = evidence.digest("timing", "tests")
+    (tree / "tests/test_a.py").write_text("# changed\n")
+    assert evidence.digest("timing", "tests") != before
+
+
+def test_neither_the_place_nor_files_that_are_not_part_of_the_repository_count(
+    tree: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = evidence.digest("timing")
+    (tree / "symofros/new.py").write_text("")
+    (tree / "symofros/__pycache__").mkdir()
+    (tree / "symofros/__pycache__/new.py").write_text("")
+    (tree / "symofros/native/a.c").write_bytes(b"int a;\r\n")
+    assert evidence.digest("timing") == before
+    elsewhere = tree.parent / "another/place"
+    git(tree.parent, "clone", str(tree), str(elsewhere))
+    put(elsewhere, monkeypatch)
+    assert evidence.digest("timing") == before
+    shutil.rmtree(elsewhere / ".git")  # As a package of sources has it.
+    assert evidence.digest("timing") == before and evidence.revision(elsewhere) == ""
+
+
+def test_an_installed_harness_has_the_same_digest(tree: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A wheel has the harness and the reference models within the package."""
+    before = evidence.digest("timing")
+    site = tree.parent / "site"
+    shutil.copytree(tree / "symofros", site / "symofros")
+    for name in ("validation", "reference_models"):
+        shutil.copytree(tree / name, site / "symofros" / name)
+    put(site, monkeypatch)
+    monkeypatch.setattr(evidence, "HARNESS", site / "symofros/validation")
+    assert evidence.digest("timing") == before
+
+
+def test_a_revision_says_whether_sources_differ_from_it(tree: Path) -> None:
+    plain = evidence.revision(tree)
+    (tree / "README.md").write_text("changed")
+    (tree / "symofros/new.py").write_text("not part of it")
+    assert len(plain) == 40 and evidence.revision(tree) == plain
+    (tree / "symofros/native/a.c").write_text("int b;")
+    assert evidence.revision(tree) == f"{plain}+"
+
+
+def test_a_deleted_source_is_a_change(tree: Path) -> None:
+    before = evidence.digest("timing")
+    (tree / "reference_models/arm.py").unlink()
+    assert evidence.digest("timing") != before
+
+
+@pytest.mark.parametrize("name", TOPICS)
+def test_every_report_names_the_folder_that_measures_it(name: str) -> None:
+    names = {name for name, _ in evidence.sources(TOPICS[name].home, *TOPICS[name].beside)}
+    assert any(one.startswith(f"validation/{TOPICS[name].home}/") for one in names), TOPICS[name].home
+    assert {"symofros/compiler.py", "symofros/native/model/symofros_model.h"} <= names
+    assert {"validation/adapters/closed.py", "reference_models/__init__.py"} <= names
+    assert not any(one.startswith(("validation/reporting/", "symofros/studio/editor/")) for one in names)
+
+
+def test_a_run_during_which_the_code_changes_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    topic = Topic("t", "g", "q?", lambda _: Report("t", "s.", True, ()))
+    run = Run(topic)
+    assert run.stamped({})["digest"] == present(topic)
+    monkeypatch.setattr("validation.reporting.command.present", lambda _: "another")
+    assert run.stamped({})["digest"] == evidence.MIXED
