@@ -32,7 +32,7 @@ ALLOWED = table("""
     errors:
     base: errors
     native:
-    expr: errors
+    expr: base errors
     description: base errors expr
     mechanics.beams: errors expr description
     mechanics.topology: base errors expr description mechanics.beams

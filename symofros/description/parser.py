@@ -6,7 +6,12 @@ The grammar (powers bind tightest and to the right, a minus sign less tightly th
     product = unary (("*" | "/") unary)*
     unary   = ("-" | "+") unary | power
     power   = atom (("^" | "**") unary)?
-    atom    = number | name | function "(" sum ("," sum)* ")" | "(" sum ")"
+    atom    = number | name | quoted | function "(" sum ("," sum)* ")" | "(" sum ")"
+
+A name is an identifier, with points and an index if need be: q1, wrist.qx, u[0]. Any other name stands between
+backquotes, a backquote within it doubled: `left-hip`, `L/R`, `c d`. What belongs to it may stand outside: its speed is
+d`left-hip` or `dleft-hip`, a component `left-hip`.qx or `left-hip.qx`. The same quotes tell names from what formulas
+reserve: `t`, `pi`, `sin`.
 
 Nothing is ever evaluated, looked up or imported; length, depth and size of numbers are bounded.
 """
@@ -15,11 +20,12 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
+from symofros.base.names import QUOTE, symbol_of, unquoted
 from symofros.errors import Problem, SymofrosError, did_you_mean
-from symofros.expr.expression import Expression
+from symofros.expr.expression import DUNDER, PLAIN_NAME, Expression
 from symofros.expr.ops import FUNCTIONS
 
 Token = tuple[str, str, int]
@@ -32,15 +38,18 @@ _SHORT = 100
 # Of the tree: 1 + 1 + 1 + … is a tower. What works on formulas recurses into them.
 MAX_HEIGHT = 300
 
+# d and dd before the quotes are those of speeds and of their rates.
+_QUOTED = r"d{0,2}`(?:[^`]|``)+`(?:\.[A-Za-z_][A-Za-z0-9_]*)*(?:\[\d{1,6}\])?"
+_WHOLE = re.compile(_QUOTED, re.ASCII)
+_PARTS = re.compile(r"(d*)(`(?:[^`]|``)+`)(.*)", re.DOTALL)
 _TOKEN = re.compile(
     r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![A-Za-z0-9_.]))"
-    r"|(?P<name>[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z_][A-Za-z0-9_]*)*(?:\[\d{1,6}\])?)"
+    rf"|(?P<quoted>{_QUOTED})"
+    rf"|(?P<name>{PLAIN_NAME})"
     r"|(?P<sign>\*\*|[-+*/^(),]))",
     re.ASCII,
 )
 _WORD = re.compile(r"\.?[0-9][A-Za-z0-9_.]*", re.ASCII)
-_DUNDER = re.compile(r"(?:^|\.)__|__(?:$|\.)")
-
 
 _PRODUCTS = "write products with '*', and numbers without units: they are in SI, angles in radians"
 
@@ -142,8 +151,17 @@ class _Reader:
                 self.at -= 1
                 return self.call(text)
             if text in FUNCTIONS:
-                raise self.fail(f"function '{text}' without its arguments", f"write {text}(…)")
+                raise self.fail(
+                    f"function '{text}' without its arguments",
+                    f"write {text}(…); a joint or an input of that name is written {QUOTE}{text}{QUOTE}",
+                )
             return Expression("symbol", name=text)
+        if kind == "quoted":
+            name = quoted_symbol(text)
+            if not name.isprintable():
+                raise self.fail("a name between backquotes holds characters that can't be printed")
+            self.at += 1
+            return Expression("symbol", name=name)
         if self.take("("):
             inner = self.sum()
             if not self.take(")"):
@@ -167,7 +185,7 @@ class _Reader:
 
 
 def tokenize(text: str) -> list[Token]:
-    """The tokens of a formula: kind ("number", "name", "sign" and at last "end"), text, position.
+    """The tokens of a formula: kind ("number", "name", "quoted", "sign" and at last "end"), text, position.
 
     Raises:
         ExpressionError: Too long, or something that is not a token.
@@ -180,17 +198,34 @@ def tokenize(text: str) -> list[Token]:
         match = _TOKEN.match(text, at)
         if match is None or match.lastgroup is None:
             at += len(text[at:]) - len(text[at:].lstrip())
+            if text[at] == QUOTE:
+                remedy = "end the name with a backquote; one within a name is doubled"
+                raise ExpressionError(text, "a name between backquotes that never ends", at, remedy)
             word = _WORD.match(text, at)
             if word is not None:
                 raise ExpressionError(text, f"'{word.group():.60}' is neither a number nor a name", at, _PRODUCTS)
             raise ExpressionError(text, f"{text[at]!r} is not allowed in a formula", at)
         kind, token, start = match.lastgroup, match.group(match.lastgroup), match.start(match.lastgroup)
-        if kind == "name" and _DUNDER.search(token):
+        if kind == "name" and DUNDER.search(token):
             raise ExpressionError(text, f"'{token}' is not a legal name", start)
         tokens.append((kind, token, start))
         at = match.end()
     tokens.append(("end", "", end))
     return tokens
+
+
+def quoted_symbol(token: str) -> str:
+    """The symbol that a token with backquotes stands for: d`left-hip` and `dleft-hip` for dleft-hip."""
+    return symbol_of(name_of(token))
+
+
+def name_of(text: str) -> str:
+    """The name that a text of a user's stands for where nothing but a name can be: with backquotes or without."""
+    match = _PARTS.fullmatch(text) if _WHOLE.fullmatch(text) else None
+    if match is None:
+        return text
+    rate, inner, rest = match.groups()
+    return f"{rate}{unquoted(inner)}{rest}"
 
 
 def parse(text: str) -> Expression:
@@ -212,7 +247,7 @@ def _parsed(text: str) -> Expression:
         raise reader.fail(f"'{reader.token[1]}' unexpected", _PRODUCTS)
     if _height(expression) > MAX_HEIGHT:
         raise ExpressionError(text, f"a chain of more than {MAX_HEIGHT} operations", 0, "group terms by parentheses")
-    return expression
+    return replace(expression, written=text)
 
 
 # An editor reads the same file after each edit, and nearly all of its formulas are as before.

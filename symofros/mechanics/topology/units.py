@@ -11,13 +11,14 @@ from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from math import isclose
 
+from symofros.base.names import TIME, symbol_of
 from symofros.base.units import NAMES, parse
 from symofros.description.beams.beam import STATION
 from symofros.description.system import System
 from symofros.errors import DescriptionError, Problem
 from symofros.expr.expression import Expression
-from symofros.mechanics.topology.coordinates import coordinate_names, joint_units, rate_symbols, speed_symbols
-from symofros.mechanics.topology.formulas import TIME, stated_values
+from symofros.mechanics.topology.coordinates import coordinate_symbols, joint_units, rate_symbols, speed_symbols
+from symofros.mechanics.topology.formulas import stated_values
 
 # Powers of kg, m, s, A, K, mol and cd; None: open.
 Powers = tuple[Fraction, ...]
@@ -42,12 +43,12 @@ def unit_problems(system: System) -> Iterator[Problem]:
     declared += [("input", item.name, item.unit) for item in system.inputs]
     for kind, name, unit in declared:
         try:
-            known[name] = _powers(unit) if unit else None
+            known[symbol_of(name)] = _powers(unit) if unit else None
         except DescriptionError as error:
             where, fault = system.origin.get((kind, name), ""), error.problem
             yield Problem(f"{kind} '{name}': no such unit", fault.found, fault.rule, fault.remedy, where)
     known |= {TIME: _parsed("s"), STATION: _parsed("m"), "xi": _ONE} | _of_motion(system)
-    if not any(known.get(name) for _, name, _ in declared):
+    if not any(known.get(symbol_of(name)) for _, name, _ in declared):
         return
     for stated in stated_values(system):
         if not stated.units or not isinstance(stated.value, Expression) or stated.value.kind == "number":
@@ -71,7 +72,7 @@ def _of_motion(system: System) -> dict[str, Powers | None]:
     """Units of coordinates, of speeds, and of prescribed rates."""
     known: dict[str, Powers | None] = {}
     for joint in (body.joint for body in system.bodies if body.joint is not None):
-        names = coordinate_names(joint)
+        names = coordinate_symbols(joint)
         units = joint_units(joint)
         known |= {name: _parsed(unit) for name, unit in zip(names, units, strict=True)}
         speeds = speed_symbols(joint)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from symofros.base.names import TIME
 from symofros.description.beams.beam import STATION
 from symofros.description.joints.joint import WORLD, Joint
 from symofros.description.joints.joint_kinds import KINDS
@@ -14,7 +15,6 @@ from symofros.errors import DescriptionError
 from symofros.expr.expression import CONSTANTS
 from symofros.expr.ops import FUNCTIONS
 from symofros.mechanics.topology.coordinates import coordinate_names, rate_symbols, speed_symbols
-from symofros.mechanics.topology.formulas import TIME
 from symofros.mechanics.topology.joints import IDENTIFIER
 from symofros.studio.editor.editing.data_edits import Edit, Path, edited, fault
 from symofros.studio.editor.editing.diagram_renaming import renaming_in_diagram
