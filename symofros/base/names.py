@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Collection
+
 QUOTE = "`"
 TIME = "t"
 # What these mean in formulas is fixed: the time, and a number.
 RESERVED = frozenset({TIME, "pi"})
+
+# A name between backquotes; d and dd before it are those of speeds and their rates, what follows is a component.
+QUOTED_NAME = r"d{0,2}`(?:[^`]|``)+`(?:\.[A-Za-z_][A-Za-z0-9_]*)*(?:\[\d{1,6}\])?"
+_QUOTED = re.compile(QUOTED_NAME, re.ASCII)
+_PARTS = re.compile(r"(d*)`((?:[^`]|``)+)`(.*)", re.DOTALL)
 
 
 def quoted(name: str) -> str:
@@ -13,9 +21,13 @@ def quoted(name: str) -> str:
     return f"{QUOTE}{name.replace(QUOTE, 2 * QUOTE)}{QUOTE}"
 
 
-def unquoted(text: str) -> str:
-    """The name that a quoted text stands for."""
-    return text[1:-1].replace(2 * QUOTE, QUOTE)
+def name_of(text: str) -> str:
+    """The name that a text stands for where nothing but a name can be: d`left-hip`, `dleft-hip`, dleft-hip."""
+    match = _PARTS.fullmatch(text) if _QUOTED.fullmatch(text) else None
+    if match is None:
+        return text
+    rate, inner, rest = match.groups()
+    return f"{rate}{inner.replace(2 * QUOTE, QUOTE)}{rest}"
 
 
 def symbol_of(name: str) -> str:
@@ -27,7 +39,29 @@ def symbol_of(name: str) -> str:
     return quoted(name) if name in RESERVED else name
 
 
-def speed_column(coordinate: str, coordinates: tuple[str, ...]) -> str:
-    """Name of the column of a coordinate's rate: d and its name, which is quoted where a coordinate has that name."""
-    plain = f"d{coordinate}"
-    return plain if plain not in coordinates else f"d{quoted(coordinate)}"
+def coordinate_of(text: str, coordinates: Collection[str]) -> str:
+    """The coordinate, input or parameter that a text names, with backquotes or without; "" where there is none."""
+    plain = text if text in coordinates else name_of(text) if text.startswith(QUOTE) else ""
+    return plain if plain in coordinates else ""
+
+
+def speed_of(text: str, speeds: Collection[str]) -> str:
+    """The speed that a text names, itself or as the rate of its coordinate (dq1, d`left-hip`); "" where there is none.
+
+    Args:
+        text: As a user wrote it.
+        speeds: Names of speeds, those of their coordinates where they are their rates.
+    """
+    plain = coordinate_of(text, speeds)
+    if plain:
+        return plain
+    if not text.startswith("d"):
+        text = name_of(text)
+    return coordinate_of(text[1:], speeds) if text.startswith("d") else ""
+
+
+def speed_column(speed: str, coordinates: Collection[str]) -> str:
+    """Name of the column of a speed: d before its coordinate's name, which has quotes where dNAME is a coordinate."""
+    if speed not in coordinates:
+        return speed
+    return f"d{speed}" if f"d{speed}" not in coordinates else f"d{quoted(speed)}"

@@ -5,6 +5,7 @@ A command that finds all it was asked for in the cache imports this: NumPy and R
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -13,6 +14,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 import symofros as sf
+from symofros.base.names import QUOTED_NAME
 
 if TYPE_CHECKING:
     from symofros.description.system import System
@@ -23,6 +25,7 @@ Network = Annotated[bool, typer.Option("--network", help="Let a diagram's blocks
 Floating = Annotated[bool, typer.Option("--floating-base", help="Put a free joint under a URDF's root link.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Machine-readable output.")]
 BAD_INPUT = 2
+_QUOTED = re.compile(QUOTED_NAME, re.ASCII)
 
 
 def load(path: Path, floating_base: bool) -> System:
@@ -59,10 +62,13 @@ def _complain(*lines: str) -> None:
 
 
 def assignments(given: list[str], what: str) -> dict[str, str]:
-    """NAME=TEXT options as a mapping."""
+    """NAME=TEXT options as a mapping; a name that holds an equals sign stands between backquotes."""
     assigned = {}
     for item in given:
-        name, sign, text = item.partition("=")
+        begin = _QUOTED.match(item)
+        head = begin.group() if begin else ""
+        name, sign, text = item[len(head) :].partition("=")
+        name = head + name
         if not sign or not name or not text:
             fault = sf.Problem(f"{what} '{item}'", "no name and value", f"{what} NAME=VALUE", "for example q1=0.5")
             raise refuse(sf.SymofrosError(fault))

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any, Literal
 
+from symofros.base.names import name_of
 from symofros.description.entries import refuses_unknown_entries
 from symofros.description.values import ORIGIN, Value, Vector, as_value, as_vector
 from symofros.errors import DescriptionError, Problem
@@ -208,7 +209,7 @@ class VirtualPower:
         given: Any = self.forces
         pairs = given.items() if isinstance(given, Mapping) else given
         what = f"virtual power '{self.name}'"
-        object.__setattr__(self, "forces", tuple((str(k), as_value(x, f"{what}: {k}")) for k, x in pairs))
+        object.__setattr__(self, "forces", tuple((name_of(str(k)), as_value(x, f"{what}: {k}")) for k, x in pairs))
 
 
 @refuses_unknown_entries

@@ -23,7 +23,7 @@ import re
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
-from symofros.base.names import QUOTE, symbol_of, unquoted
+from symofros.base.names import QUOTE, QUOTED_NAME, name_of, symbol_of
 from symofros.errors import Problem, SymofrosError, did_you_mean
 from symofros.expr.expression import DUNDER, PLAIN_NAME, Expression
 from symofros.expr.ops import FUNCTIONS
@@ -38,13 +38,9 @@ _SHORT = 100
 # Of the tree: 1 + 1 + 1 + … is a tower. What works on formulas recurses into them.
 MAX_HEIGHT = 300
 
-# d and dd before the quotes are those of speeds and of their rates.
-_QUOTED = r"d{0,2}`(?:[^`]|``)+`(?:\.[A-Za-z_][A-Za-z0-9_]*)*(?:\[\d{1,6}\])?"
-_WHOLE = re.compile(_QUOTED, re.ASCII)
-_PARTS = re.compile(r"(d*)(`(?:[^`]|``)+`)(.*)", re.DOTALL)
 _TOKEN = re.compile(
     r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![A-Za-z0-9_.]))"
-    rf"|(?P<quoted>{_QUOTED})"
+    rf"|(?P<quoted>{QUOTED_NAME})"
     rf"|(?P<name>{PLAIN_NAME})"
     r"|(?P<sign>\*\*|[-+*/^(),]))",
     re.ASCII,
@@ -157,7 +153,7 @@ class _Reader:
                 )
             return Expression("symbol", name=text)
         if kind == "quoted":
-            name = quoted_symbol(text)
+            name = symbol_of(name_of(text))
             if not name.isprintable():
                 raise self.fail("a name between backquotes holds characters that can't be printed")
             self.at += 1
@@ -212,20 +208,6 @@ def tokenize(text: str) -> list[Token]:
         at = match.end()
     tokens.append(("end", "", end))
     return tokens
-
-
-def quoted_symbol(token: str) -> str:
-    """The symbol that a token with backquotes stands for: d`left-hip` and `dleft-hip` for dleft-hip."""
-    return symbol_of(name_of(token))
-
-
-def name_of(text: str) -> str:
-    """The name that a text of a user's stands for where nothing but a name can be: with backquotes or without."""
-    match = _PARTS.fullmatch(text) if _WHOLE.fullmatch(text) else None
-    if match is None:
-        return text
-    rate, inner, rest = match.groups()
-    return f"{rate}{unquoted(inner)}{rest}"
 
 
 def parse(text: str) -> Expression:

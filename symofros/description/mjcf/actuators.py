@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.names import symbol_of
 from symofros.description.forces import Load
 from symofros.description.mjcf.joints import BALL, FREE, JointEfforts
 from symofros.description.mjcf.names import Names
@@ -67,10 +68,7 @@ class ActuatorReader:
         m = self.model
         joints = [self.joints[j] for j in range(m.njnt)]
         suffixes = ("", ".px", ".py", ".pz", ".qx", ".qy", ".qz", ".qw", ".vx", ".vy", ".vz", ".wx", ".wy", ".wz")
-        taken = {f"{rate}{joint}{suffix}" for joint in joints for suffix in suffixes for rate in ("", "d")} | {
-            "t",
-            "pi",
-        }
+        taken = {f"{rate}{joint}{suffix}" for joint in joints for suffix in suffixes for rate in ("", "d")}
         stated = [m.actuator(i).name for i in range(m.nu)]
         wanted = [f"{name}_control" if name in taken else name for name in stated]
         names = Names("actuator", wanted)
@@ -168,7 +166,7 @@ class ActuatorReader:
 
 
 def _symbol(name: str) -> Term:
-    return Term(Expression("symbol", name=name))
+    return Term(Expression("symbol", name=symbol_of(name)))
 
 
 def _dot(ratios: Sequence[float], names: Sequence[str]) -> list[Term]:

@@ -11,6 +11,7 @@ from typing import Any
 from pydantic import ValidationError
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
+from ruamel.yaml.scalarstring import DoubleQuotedScalarString
 
 from symofros.description.beams.beam import Beam
 from symofros.description.constraints import (
@@ -26,6 +27,7 @@ from symofros.description.constraints import (
 )
 from symofros.description.forces import Anchor
 from symofros.description.frames import Frame
+from symofros.description.quoting import text_among
 from symofros.description.system import Body, Inertia, System
 from symofros.description.values import Rotation, Value
 from symofros.description.yaml.derived import NounEntry
@@ -50,7 +52,9 @@ from symofros.description.yaml.schema_forces import (
     LoadEntry,
     RotorEntry,
 )
+from symofros.description.yaml.yaml_nodes import scalar_of
 from symofros.errors import DescriptionError, Problem
+from symofros.expr.expression import Expression, needs_quotes
 
 LINE_WIDTH = 120
 
@@ -98,7 +102,7 @@ def write_yaml(system: System) -> str:
     problems = list(_duplicates(system))
     if problems:
         raise DescriptionError(problems)
-    document = _document(system)
+    document = _spelled(_document(system), _needing_quotes(system))
     try:
         NativeFile.model_validate(document)
     except ValidationError as error:
@@ -113,6 +117,10 @@ def write_yaml(system: System) -> str:
 def _duplicates(system: System) -> Iterator[Problem]:
     groups = [("parameter", [item.name for item in system.parameters])]
     groups += [("input", [item.name for item in system.inputs]), ("body", [item.name for item in system.bodies])]
+    groups += [("connection", [item.name for item in system.connections])]
+    groups += [("virtual power", [item.name for item in system.virtual_power])]
+    groups += [("potential", [item.name for item in system.potentials])]
+    groups += [("constraint", [item.name for item in system.constraints])]
     groups += [(f"body '{body.name}': frame", [frame.name for frame in body.frames]) for body in system.bodies]
     for kind, names in groups:
         for name, count in Counter(names).items():
@@ -233,15 +241,37 @@ def _condition(item: KnifeEdge | Rolling | Nonholonomic) -> Plain:
 
 
 def _number(value: Value) -> Any:
-    """A number in its shortest exact form, a formula as text."""
+    """A number in its shortest exact form; a formula as it is."""
     if not isinstance(value, float):
-        return str(value)
+        return value
     whole = abs(value) < _WHOLE and value.is_integer() and str(value) != "-0.0"
     return int(value) if whole else value
 
 
+def _needing_quotes(system: System) -> list[str]:
+    """Symbols that formulas could take for an operation on others."""
+    names = {item.name for item in (*system.parameters, *system.inputs)}
+    names |= {name for body in system.bodies if isinstance(body, Beam) for name in body.coordinates}
+    for joint in (body.joint for body in system.bodies if body.joint is not None):
+        suffixes = (*joint.traits.coordinate_suffixes, *(joint.traits.speed_suffixes or ()))
+        stems = {*joint.coordinates, *(f"{joint.name}.{suffix}" if suffix else joint.name for suffix in suffixes)}
+        names |= {f"{rate}{stem}" for stem in stems for rate in ("", "d", "dd")}
+    return needs_quotes(names)
+
+
+def _spelled(value: Any, symbols: list[str]) -> Any:
+    """The same data with formulas as texts."""
+    if isinstance(value, dict):
+        return {key: _spelled(item, symbols) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_spelled(item, symbols) for item in value]
+    return text_among(value, symbols) if isinstance(value, Expression) else value
+
+
 def _styled(value: Any, role: str) -> Any:
     """The same data with its layout: sections, bodies and their parts on lines, small things in braces."""
+    if isinstance(value, str) and not isinstance(scalar_of(value), str):
+        return DoubleQuotedScalarString(value)  # What reads as a number or nothing without: a joint called 1e3.
     if isinstance(value, list):
         sequence = CommentedSeq(_styled(item, "item") for item in value)
         sequence.fa.set_flow_style()
