@@ -14,7 +14,7 @@ import symofros as sf
 from ...mechanics import shape_functions as families
 from ...mechanics.assembly import Assembly, Mover
 from ...mechanics.geometry import Array, Placement
-from ...mechanics.parts import coordinate_symbols, rate_symbols, speed_symbols
+from ...mechanics.parts import coordinate_symbols, input_symbol, rate_symbols, speed_symbols
 from ...mechanics.rod import STRAINS
 from ...mechanics.shape_functions import Shape
 from ..description import evaluate
@@ -256,7 +256,7 @@ class Translation:
 
     def _values(self, symbols: Symbols) -> dict[str, Any]:
         """What formulas of loads stand for."""
-        values = self._numbers | {item.name: symbols.u[i] for i, item in enumerate(self.system.inputs)}
+        values = self._numbers | {input_symbol(item.name): symbols.u[i] for i, item in enumerate(self.system.inputs)}
         for described in self.assembly.free_joints:
             names, speeds = coordinate_symbols(described.joint), speed_symbols(described.joint)
             values |= {name: symbols.q[described.q.start + i] for i, name in enumerate(names)}
