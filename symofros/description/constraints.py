@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
-from symofros.base.names import name_of, symbol_of
+from symofros.base.names import symbol_of
 from symofros.description.entries import refuses_unknown_entries
 from symofros.description.forces import Anchor
 from symofros.description.values import Term, Value, as_value, symbols
@@ -257,8 +257,7 @@ class Nonholonomic:
         given: Any = self.coefficients
         pairs = given.items() if isinstance(given, Mapping) else given
         what = f"non-holonomic constraint '{self.name}'"
-        coefficients = tuple((name_of(str(k)), as_value(x, f"{what}: {k}")) for k, x in pairs)
-        object.__setattr__(self, "coefficients", coefficients)
+        object.__setattr__(self, "coefficients", tuple((str(k), as_value(x, f"{what}: {k}")) for k, x in pairs))
         object.__setattr__(self, "right", as_value(self.right, f"{what}: right"))
         if not self.coefficients:
             raise DescriptionError(

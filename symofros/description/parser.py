@@ -23,7 +23,7 @@ import re
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
-from symofros.base.names import QUOTE, QUOTED_NAME, name_of, symbol_of
+from symofros.base.names import QUOTE, QUOTED_NAME, symbol_in
 from symofros.errors import Problem, SymofrosError, did_you_mean
 from symofros.expr.expression import DUNDER, PLAIN_NAME, Expression
 from symofros.expr.ops import FUNCTIONS
@@ -153,7 +153,7 @@ class _Reader:
                 )
             return Expression("symbol", name=text)
         if kind == "quoted":
-            name = symbol_of(name_of(text))
+            name = symbol_in(text)
             if not name.isprintable():
                 raise self.fail("a name between backquotes holds characters that can't be printed")
             self.at += 1

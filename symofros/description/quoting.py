@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterable
 
-from symofros.base.names import QUOTE, quoted
-from symofros.description.parser import ExpressionError, parse
+from symofros.base.names import is_rate_symbol, quoted
+from symofros.description.parser import ExpressionError, parse, tokenize
 from symofros.errors import did_you_mean
-from symofros.expr.expression import Expression, needs_quotes, spelled
+from symofros.expr.expression import Expression, always_quoted, needs_quotes, spelled
 
 _BETWEEN_QUOTES = re.compile(r"(`(?:[^`]|``)*`)")
 
@@ -21,12 +21,14 @@ def readings(text: str, symbols: Iterable[str]) -> list[tuple[str, str]]:
         symbols: Symbols that exist; a symbol a-b gives the reading "2*`a-b`".
     """
     found = []
+    quotes = [match.span() for match in _BETWEEN_QUOTES.finditer(text)]
     for symbol in needs_quotes(symbol for symbol in symbols if symbol in text):
         start = text.find(symbol)
         while start >= 0:
             end = start + len(symbol)
             other = f"{text[:start]}{quoted(symbol)}{text[end:]}"
-            if text.count(QUOTE, 0, start) % 2 == 0 and symbol in _symbols(other):
+            outside = all(end <= first or start >= last for first, last in quotes)
+            if outside and symbol in _symbols(other):
                 found.append((symbol, other))
                 break
             start = text.find(symbol, start + 1)
@@ -50,15 +52,24 @@ def with_quotes(text: str, symbols: Collection[str]) -> str:
     return changed if changed != text and used and used <= {*symbols} else ""
 
 
-def text_among(formula: Expression, symbols: Collection[str]) -> str:
+def text_among(formula: Expression, symbols: Collection[str], both: Collection[str]) -> str:
     """A formula as text that nobody reads otherwise: with quotes around all names where one without could be another.
 
     Args:
         formula: The formula.
         symbols: All symbols of its description.
+        both: Those of a coordinate and of another's rate as well.
     """
     text = str(formula)
-    return text if not readings(text, symbols) else _all_quoted(formula)
+    doubtful = readings(text, symbols) or (both and formula.symbols() & {*both})
+    return formula.text(always_quoted) if doubtful else text
+
+
+def without_quotes(formula: Expression, names: Collection[str]) -> list[str]:
+    """Those of some names that a formula as it was written has without quotes."""
+    if not names or not formula.written:
+        return []
+    return sorted({text for kind, text, _ in tokenize(formula.written) if kind == "name"} & {*names})
 
 
 def two_meanings(formula: Expression, symbols: Collection[str]) -> tuple[str, str] | None:
@@ -72,7 +83,7 @@ def two_meanings(formula: Expression, symbols: Collection[str]) -> tuple[str, st
     if not found:
         return None
     symbol, other = found[0]
-    return symbol, f"write {other} for what is called '{symbol}', or {_all_quoted(formula)} for the operation"
+    return symbol, f"write {other} for what is called '{symbol}', or {formula.text(always_quoted)} for the operation"
 
 
 def unknown_symbol_remedy(name: str, written: str, symbols: Collection[str]) -> str:
@@ -86,7 +97,7 @@ def unknown_symbol_remedy(name: str, written: str, symbols: Collection[str]) -> 
     meant = with_quotes(written, symbols)
     if meant:
         return quotes_remedy(meant)
-    return did_you_mean(name, symbols, spelled)
+    return did_you_mean(name, [symbol for symbol in symbols if not is_rate_symbol(symbol)], spelled)
 
 
 def quotes_remedy(meant: str) -> str:
@@ -100,7 +111,3 @@ def _symbols(text: str) -> frozenset[str]:
         return parse(text).symbols()
     except ExpressionError:
         return frozenset()
-
-
-def _all_quoted(formula: Expression) -> str:
-    return formula.text(lambda symbol: symbol if symbol.startswith(QUOTE) else quoted(symbol))

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
-from symofros.base.names import RESERVED, quoted, symbol_of
+from symofros.base.names import QUOTE, RESERVED, is_rate_symbol, quoted, symbol_of
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
 from symofros.expr.numerics.extended import Extended, extended_context, extended_rule
@@ -65,10 +65,15 @@ def walk(expression: Expression) -> Iterator[Expression]:
 
 def spelled(symbol: str) -> str:
     """A symbol as formulas have it: between backquotes unless it is a plain name without another meaning."""
-    if symbol in _QUOTED_RESERVED:
+    if symbol in _QUOTED_RESERVED or is_rate_symbol(symbol):
         return symbol
     plain = _PLAIN.fullmatch(symbol) and symbol not in FUNCTIONS and not DUNDER.search(symbol)
     return symbol if plain else quoted(symbol)
+
+
+def always_quoted(symbol: str) -> str:
+    """The same with backquotes where they would not be needed, too."""
+    return symbol if spelled(symbol) == symbol and symbol.endswith(QUOTE) else quoted(symbol)
 
 
 def needs_quotes(symbols: Iterable[str]) -> list[str]:

@@ -54,6 +54,15 @@ def speed_symbols(joint: sf.Joint) -> tuple[str, ...]:
     return tuple(f"d{name}" for name in _coordinates(joint)) if speeds is None else _named(joint, speeds)
 
 
+def rates_by_coordinate(joint: sf.Joint) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """What formulas may call a joint's speeds, and a prescribed joint's rates of them, as well: d`q` and dd`q`."""
+    names = [
+        name.replace("`", "``") for name in (speed_symbols(joint) if has_quaternion(joint) else _coordinates(joint))
+    ]
+    first = speed_symbols(joint) if has_quaternion(joint) else tuple(f"d`{name}`" for name in names)
+    return first, tuple(f"{'d' if has_quaternion(joint) else 'dd'}`{name}`" for name in names)
+
+
 def _coordinates(joint: sf.Joint) -> tuple[str, ...]:
     if joint.kind not in STATED_JOINTS:
         return joint.coordinates

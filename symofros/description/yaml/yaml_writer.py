@@ -102,7 +102,7 @@ def write_yaml(system: System) -> str:
     problems = list(_duplicates(system))
     if problems:
         raise DescriptionError(problems)
-    document = _spelled(_document(system), _needing_quotes(system))
+    document = _spelled(_document(system), *_needing_quotes(system))
     try:
         NativeFile.model_validate(document)
     except ValidationError as error:
@@ -248,24 +248,24 @@ def _number(value: Value) -> Any:
     return int(value) if whole else value
 
 
-def _needing_quotes(system: System) -> list[str]:
-    """Symbols that formulas could take for an operation on others."""
+def _needing_quotes(system: System) -> tuple[list[str], frozenset[str]]:
+    """Symbols that formulas could take for operations on others; and those of coordinates that are rates by name."""
     names = {item.name for item in (*system.parameters, *system.inputs)}
-    names |= {name for body in system.bodies if isinstance(body, Beam) for name in body.coordinates}
+    stems = {name for body in system.bodies if isinstance(body, Beam) for name in body.coordinates}
     for joint in (body.joint for body in system.bodies if body.joint is not None):
         suffixes = (*joint.traits.coordinate_suffixes, *(joint.traits.speed_suffixes or ()))
-        stems = {*joint.coordinates, *(f"{joint.name}.{suffix}" if suffix else joint.name for suffix in suffixes)}
-        names |= {f"{rate}{stem}" for stem in stems for rate in ("", "d", "dd")}
-    return needs_quotes(names)
+        stems |= {*joint.coordinates, *(f"{joint.name}.{suffix}" if suffix else joint.name for suffix in suffixes)}
+    rates = {f"d{stem}" for stem in stems}
+    return needs_quotes(names | stems | rates | {f"d{rate}" for rate in rates}), frozenset(stems & rates)
 
 
-def _spelled(value: Any, symbols: list[str]) -> Any:
+def _spelled(value: Any, symbols: list[str], both: frozenset[str]) -> Any:
     """The same data with formulas as texts."""
     if isinstance(value, dict):
-        return {key: _spelled(item, symbols) for key, item in value.items()}
+        return {key: _spelled(item, symbols, both) for key, item in value.items()}
     if isinstance(value, list):
-        return [_spelled(item, symbols) for item in value]
-    return text_among(value, symbols) if isinstance(value, Expression) else value
+        return [_spelled(item, symbols, both) for item in value]
+    return text_among(value, symbols, both) if isinstance(value, Expression) else value
 
 
 def _styled(value: Any, role: str) -> Any:

@@ -32,7 +32,7 @@ def stated_formulas(tree: SpanningTree, formulas: Sequence[Any]) -> list[Value]:
         DescriptionError: A text is no formula, or can be read in two ways.
     """
     names = tree.coordinates
-    what, known = f"system '{tree.system.name}'", frozenset({*names.symbols, *names.constants})
+    what, known = f"system '{tree.system.name}'", frozenset({*names.symbols, *names.keys, *names.constants})
     both = frozenset(map(symbol_of, names.q)) & frozenset(names.speed_symbols)
     return [_stated(what, formula, known, both) for formula in formulas]
 
@@ -86,7 +86,7 @@ def formula_program(
 
 def _rate(kinematics: TreeKinematics, value: Value, order: int) -> Edge:
     names, g = kinematics.tree.coordinates, kinematics.g
-    moving = {name for name, slot in names.symbols.items() if slot.group in ("q", "v", "u")}
+    moving = {name for name, slot in (*names.symbols.items(), *names.keys.items()) if slot.group in ("q", "v", "u")}
     if order and (used := sorted(symbols(value) & moving)):
         raise DescriptionError(
             Problem(

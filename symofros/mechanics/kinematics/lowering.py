@@ -37,7 +37,7 @@ class Lowering:
     def symbol(self, name: str) -> Edge:
         """The edge of a coordinate, speed, input, parameter or of t."""
         if name not in self._bindings:
-            slot = self.coordinates.symbols[name]
+            slot = self.coordinates.symbols.get(name) or self.coordinates.keys[name]
             self._bindings[name] = self.g.input(slot.group, slot.index)
         return self._bindings[name]
 
@@ -47,13 +47,13 @@ class Lowering:
 
     def speeds_of(self, joint: Joint) -> tuple[Edge, ...]:
         """The edges of a joint's speeds."""
-        return tuple(map(self._key, speed_keys(joint)))
+        return tuple(map(self._rate, speed_keys(joint)))
 
     def rates_of(self, joint: Joint) -> tuple[Edge, ...]:
         """The edges of the rates of a prescribed joint's speeds."""
-        return tuple(map(self._key, rate_keys(joint)))
+        return tuple(map(self._rate, rate_keys(joint)))
 
-    def _key(self, key: str) -> Edge:
+    def _rate(self, key: str) -> Edge:
         slot = self.coordinates.keys[key]
         return self.g.input(slot.group, slot.index)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from symofros.base.names import TIME, quoted, symbol_of
+from symofros.base.names import TIME, rate_symbol, symbol_of
 from symofros.description.joints.joint import Joint
 from symofros.description.system import System
 from symofros.expr.graph import Slot
@@ -63,15 +63,17 @@ def rate_symbols(joint: Joint) -> tuple[str, ...]:
 
 
 def speed_keys(joint: Joint) -> tuple[str, ...]:
-    """Symbols of a joint's speeds that nothing else can have: a coordinate door has the name of the rate of one oor."""
+    """Symbols of a joint's speeds that nothing else can have, of which `speed_symbols` are short forms."""
     if joint.traits.quasi_velocities:
         return speed_names(joint)
-    return tuple(f"d{quoted(name)}" for name in coordinate_names(joint))
+    return tuple(map(rate_symbol, coordinate_names(joint)))
 
 
 def rate_keys(joint: Joint) -> tuple[str, ...]:
     """The same of the rates of a prescribed joint's speeds."""
-    return tuple(f"d{key}" if "`" in key else f"d{quoted(key)}" for key in speed_keys(joint))
+    if joint.traits.quasi_velocities:
+        return tuple(map(rate_symbol, speed_names(joint)))
+    return tuple(rate_symbol(name, 2) for name in coordinate_names(joint))
 
 
 @dataclass(frozen=True)
@@ -84,7 +86,7 @@ class CoordinateMap:
         par_default: Values of the run-time parameters.
         constants: Values of the constant parameters, by name.
         symbols: Slots by the names that formulas use; constants are not among them.
-        keys: Slots of speeds and of prescribed rates by names that nothing else has.
+        keys: Slots of speeds and of prescribed rates by symbols that nothing else has; formulas may use them, too.
         speed_symbols: What formulas call the speeds, in the order of v.
     """
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from typing import Literal, NamedTuple
 
-from symofros.base.names import TIME, symbol_of
+from symofros.base.names import TIME, quoted, symbol_of
 from symofros.description.beams.beam import MATRIX_ORDER, STATION, STRAINS, Beam, BeamLoad, Samples
 from symofros.description.constraints import Constraint, Coupling, Nonholonomic
 from symofros.description.entries import units_of
@@ -14,12 +14,19 @@ from symofros.description.forces import Connection, Load, Rotor
 from symofros.description.frames import Frame
 from symofros.description.joints.joint import Joint
 from symofros.description.joints.joint_kinds import CONSTANT_ENTRIES
-from symofros.description.quoting import two_meanings, unknown_symbol_remedy
+from symofros.description.quoting import two_meanings, unknown_symbol_remedy, without_quotes
 from symofros.description.system import Inertia, RigidBody, System
 from symofros.description.values import Value, symbols
 from symofros.errors import Problem, did_you_mean
 from symofros.expr.expression import Expression, spelled
-from symofros.mechanics.topology.coordinates import coordinate_symbols, joint_units, rate_symbols, speed_symbols
+from symofros.mechanics.topology.coordinates import (
+    coordinate_symbols,
+    joint_units,
+    rate_keys,
+    rate_symbols,
+    speed_keys,
+    speed_symbols,
+)
 
 # What a formula may use: parameters alone; also coordinates; also t; also speeds and inputs; a general joint's own
 # coordinates; parameters and the station x of a beam; everything and x; the station xi = x/L alone.
@@ -194,9 +201,10 @@ def _known(system: System) -> _Scopes:
     coordinates = frozenset(name for joint in joints for name in coordinate_symbols(joint))
     rates = {name for joint in joints for name in speed_symbols(joint)}
     rates |= {name for joint in joints if joint.prescribed for name in rate_symbols(joint)}
+    keys = {name for joint in joints for name in (*speed_keys(joint), *(rate_keys(joint) if joint.prescribed else ()))}
     inputs = {symbol_of(item.name) for item in system.inputs}
     placed = parameters | coordinates
-    return _Scopes(parameters, placed, placed | {TIME}, placed | {TIME} | inputs | rates, coordinates & rates)
+    return _Scopes(parameters, placed, placed | {TIME}, placed | {TIME} | inputs | rates | keys, coordinates & rates)
 
 
 _RULES: dict[Scope, str] = {
@@ -271,12 +279,13 @@ def meaning_problems(
     """
     if not isinstance(formula, Expression):
         return
-    for name in sorted(formula.symbols() & both):
+    for name in without_quotes(formula, both):
+        other = name.removeprefix("d")
         yield Problem(
             f"{what}: '{name}' has two meanings",
-            f"'{formula}'",
-            f"'{name}' is the coordinate of that name, and the rate of '{name.removeprefix('d')}'",
-            "rename one of the two joints",
+            f"'{formula.written}'",
+            f"'{name}' is the coordinate of that name, and the rate of '{other}'",
+            f"write {quoted(name)} for the coordinate, d{quoted(other)} for the rate",
             where,
         )
     meant = two_meanings(formula, allowed)

@@ -17,7 +17,14 @@ from symofros.description.beams.beam import STATION
 from symofros.description.system import System
 from symofros.errors import DescriptionError, Problem
 from symofros.expr.expression import Expression
-from symofros.mechanics.topology.coordinates import coordinate_symbols, joint_units, rate_symbols, speed_symbols
+from symofros.mechanics.topology.coordinates import (
+    coordinate_symbols,
+    joint_units,
+    rate_keys,
+    rate_symbols,
+    speed_keys,
+    speed_symbols,
+)
 from symofros.mechanics.topology.formulas import stated_values
 
 # Powers of kg, m, s, A, K, mol and cd; None: open.
@@ -71,17 +78,17 @@ _REMEDY = "change the formula, or the unit of a parameter in it; a parameter wit
 def _of_motion(system: System) -> dict[str, Powers | None]:
     """Units of coordinates, of speeds, and of prescribed rates."""
     known: dict[str, Powers | None] = {}
+    rates: dict[str, Powers | None] = {}
     for joint in (body.joint for body in system.bodies if body.joint is not None):
-        names = coordinate_symbols(joint)
         units = joint_units(joint)
-        known |= {name: _parsed(unit) for name, unit in zip(names, units, strict=True)}
-        speeds = speed_symbols(joint)
-        if len(speeds) == len(units) and not joint.traits.quasi_velocities:
-            known |= {name: _parsed(f"{unit}/s") for name, unit in zip(speeds, units, strict=True) if unit}
-            if joint.prescribed:
-                rates = rate_symbols(joint)
-                known |= {name: _parsed(f"{unit}/s^2") for name, unit in zip(rates, units, strict=False) if unit}
-    return known
+        known |= {name: _parsed(unit) for name, unit in zip(coordinate_symbols(joint), units, strict=True)}
+        if joint.traits.quasi_velocities:
+            continue
+        of_order = [("/s", speed_symbols(joint)), ("/s", speed_keys(joint))]
+        of_order += [("/s^2", rate_symbols(joint)), ("/s^2", rate_keys(joint))] if joint.prescribed else []
+        for per, names in of_order:
+            rates |= {name: _parsed(f"{unit}{per}") for name, unit in zip(names, units, strict=True) if unit}
+    return rates | known
 
 
 def _parsed(text: str) -> Powers | None:

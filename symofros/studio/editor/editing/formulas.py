@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from symofros.base.names import name_of, symbol_of
+from symofros.base.names import symbol_in
 from symofros.description.parser import ExpressionError, tokenize
 from symofros.description.yaml.schema import json_schema
 from symofros.expr.expression import spelled
@@ -76,6 +76,6 @@ def _names(text: str) -> Iterator[tuple[str, int, int]]:
         return
     for (kind, name, start), following in zip(tokens, tokens[1:], strict=False):
         if kind == "quoted":
-            yield symbol_of(name_of(name)), start, start + len(name)
+            yield symbol_in(name), start, start + len(name)
         elif kind == "name" and following[:2] != ("sign", "("):
             yield name, start, start + len(name)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from symofros.base.names import TIME, name_of, symbol_of
+from symofros.base.names import TIME, rate_symbol, symbol_of
 from symofros.description.beams.beam import STATION
 from symofros.description.joints.joint import WORLD, Joint
 from symofros.description.joints.joint_kinds import KINDS
@@ -13,7 +13,13 @@ from symofros.description.yaml.files import DIAGRAM
 from symofros.description.yaml.schema import default_joint_name
 from symofros.errors import DescriptionError
 from symofros.expr.expression import CONSTANTS
-from symofros.mechanics.topology.coordinates import coordinate_symbols, rate_symbols, speed_symbols
+from symofros.mechanics.topology.coordinates import (
+    coordinate_symbols,
+    rate_keys,
+    rate_symbols,
+    speed_keys,
+    speed_symbols,
+)
 from symofros.studio.editor.editing.data_edits import Edit, Path, edited, fault
 from symofros.studio.editor.editing.diagram_renaming import renaming_in_diagram
 from symofros.studio.editor.editing.formulas import formulas, with_names
@@ -42,6 +48,7 @@ def renaming(data: Any, edit: Edit) -> list[Edit]:
     if len(path) == 5 and path[0] == "bodies" and path[2:4] == ("joint", "coordinates"):
         old = str(_at(data, path))
         names = {symbol_of(f"{rate}{old}"): symbol_of(f"{rate}{new}") for rate in ("", "d", "dd")}
+        names |= {rate_symbol(old, order): rate_symbol(new, order) for order in (1, 2)}
         return [*_symbols(data, path, names), Edit("set", path, new)]
     edited(data, edit)  # Whether it can be done at all.
     edits: list[Edit] = []
@@ -137,7 +144,8 @@ def symbols_of(joint: dict[str, Any], name: str) -> tuple[str, ...]:
         stated = Joint(name, kind=kind)
     except DescriptionError:
         return ()
-    return (*coordinate_symbols(stated), *speed_symbols(stated), *rate_symbols(stated))
+    of_motion = (coordinate_symbols, speed_symbols, rate_symbols, speed_keys, rate_keys)
+    return tuple(name for names in of_motion for name in names(stated))
 
 
 def taken(data: Any) -> set[str]:
@@ -169,9 +177,8 @@ def _symbols(data: Any, at: Path, new: dict[str, str]) -> list[Edit]:
         changed = with_names(text, new)
         if changed != text:
             edits.append(Edit("set", path, changed))
-    for path, speeds in speed_keys(data):
-        renamed = [(speed, new[name_of(speed)]) for speed in speeds if name_of(speed) in new]
-        edits += [Edit("rename", (*path, speed), key=name) for speed, name in renamed]
+    for path, speeds in speeds_as_keys(data):
+        edits += [Edit("rename", (*path, speed), key=new[speed]) for speed in speeds if speed in new]
     odd = [name for name in new.values() if not name or not name.isprintable()]
     if odd:
         raise fault(at, f"{odd[0]!r:.50}", "a name has characters that can be printed", "choose another name")
@@ -179,7 +186,7 @@ def _symbols(data: Any, at: Path, new: dict[str, str]) -> list[Edit]:
     return edits
 
 
-def speed_keys(data: Any) -> Iterator[tuple[Path, list[str]]]:
+def speeds_as_keys(data: Any) -> Iterator[tuple[Path, list[str]]]:
     """Every mapping whose keys are speeds: its path, and these."""
     for section, inner in _BY_SPEED:
         for name, entry in _mapping(data, section).items():
