@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterable
+from functools import lru_cache
 
 from symofros.base.names import is_rate_symbol, quoted
 from symofros.description.parser import ExpressionError, parse, tokenize
@@ -14,25 +15,31 @@ _BETWEEN_QUOTES = re.compile(r"(`(?:[^`]|``)*`)")
 
 
 def readings(text: str, symbols: Iterable[str]) -> list[tuple[str, str]]:
-    """Other readings of a formula: each symbol that could be meant by a part of it without quotes, and the text then.
+    """Other readings of a formula: each symbol that could be meant by an operation in it, and the text then.
 
     Args:
         text: Formula as it was written: "2*a-b".
         symbols: Symbols that exist; a symbol a-b gives the reading "2*`a-b`".
     """
     found = []
-    quotes = [match.span() for match in _BETWEEN_QUOTES.finditer(text)]
-    for symbol in needs_quotes(symbol for symbol in symbols if symbol in text):
+    for symbol in needs_quotes(symbol for symbol in symbols if symbol in text and _is_operation(symbol)):
         start = text.find(symbol)
         while start >= 0:
-            end = start + len(symbol)
-            other = f"{text[:start]}{quoted(symbol)}{text[end:]}"
-            outside = all(end <= first or start >= last for first, last in quotes)
-            if outside and symbol in _symbols(other):
+            other = f"{text[:start]}{quoted(symbol)}{text[start + len(symbol) :]}"
+            if _symbols(other) and ("quoted", quoted(symbol), start) in tokenize(other):
                 found.append((symbol, other))
                 break
             start = text.find(symbol, start + 1)
     return found
+
+
+@lru_cache(maxsize=1 << 12)
+def _is_operation(symbol: str) -> bool:
+    """Whether a name reads as a formula of others without quotes: a-b does, 1e3 and `c d` do not."""
+    try:
+        return bool(parse(symbol).args)
+    except ExpressionError:
+        return False
 
 
 def with_quotes(text: str, symbols: Collection[str]) -> str:
