@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import fields
-from io import StringIO
 from typing import Any
 
 from pydantic import ValidationError
-from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
-from ruamel.yaml.scalarstring import SingleQuotedScalarString
 
 from symofros.description.beams.beam import Beam
 from symofros.description.constraints import (
@@ -53,12 +49,9 @@ from symofros.description.yaml.schema_forces import (
     LoadEntry,
     RotorEntry,
 )
-from symofros.description.yaml.yaml_nodes import scalar_of
+from symofros.description.yaml.yaml_output import key_text, value_text, yaml_text
 from symofros.errors import DescriptionError, Problem
 from symofros.expr.expression import Expression, needs_quotes
-
-LINE_WIDTH = 120
-_ENDLESS = 1 << 30
 
 # Below this, a whole number reads better without ".0" and is the same double.
 _WHOLE = 1e15
@@ -86,8 +79,6 @@ _OPEN = frozenset(
 )
 
 Plain = dict[str, Any]
-_SIGNS_OF_YAML = frozenset("?:,[]{}#&*!|>'\"%@`~")
-_BLANKS_OR_ESCAPES = re.compile(r"  |\\")
 
 _ENTRIES: dict[type, type[NounEntry]] = {
     entry.noun: entry for entry in (BeamLoadEntry, LimitsEntry, LoadEntry, RotorEntry, SamplesEntry)
@@ -111,23 +102,7 @@ def write_yaml(system: System) -> str:
         NativeFile.model_validate(document)
     except ValidationError as error:
         raise DescriptionError([problem_of(fault, "") for fault in error.errors(include_url=False)]) from None
-    return yaml_text(document)
-
-
-def yaml_text(document: Plain) -> str:
-    """The text of a document: data of dicts, lists, texts, numbers, which the reader finds unchanged in it."""
-    stream = StringIO()
-    yaml = YAML()
-    # A key is on one line, which the emitter does not mind.
-    yaml.width = LINE_WIDTH if _longest_key(document) < LINE_WIDTH // 2 else _ENDLESS
-    yaml.dump(_styled(document, ""), stream)
-    return stream.getvalue()
-
-
-def _longest_key(value: Any) -> int:
-    if isinstance(value, dict):
-        return max((max(len(key), _longest_key(item)) for key, item in value.items()), default=0)
-    return max(map(_longest_key, value), default=0) if isinstance(value, list) else 0
+    return yaml_text(_styled(document, ""))
 
 
 def _duplicates(system: System) -> Iterator[Problem]:
@@ -287,22 +262,17 @@ def _spelled(value: Any, symbols: list[str], both: frozenset[str]) -> Any:
 def _styled(value: Any, role: str) -> Any:
     """The same data with its layout: sections, bodies and their parts on lines, small things in braces."""
     if isinstance(value, str):
-        return _text(value) if isinstance(scalar_of(value), str) else SingleQuotedScalarString(value)
+        return value_text(value)
     if isinstance(value, list):
         sequence = CommentedSeq(_styled(item, "item") for item in value)
         sequence.fa.set_flow_style()
         return sequence
     if not isinstance(value, dict):
         return value
-    mapping = CommentedMap((_text(key), _styled(item, _role(key, role))) for key, item in value.items())
+    mapping = CommentedMap((key_text(key), _styled(item, _role(key, role))) for key, item in value.items())
     if role not in _OPEN or not value:
         mapping.fa.set_flow_style()
     return mapping
-
-
-def _text(text: str) -> str:
-    """A text in quotes where YAML would take its first sign for its own, or lose blanks at which it breaks lines."""
-    return SingleQuotedScalarString(text) if text[:1] in _SIGNS_OF_YAML or _BLANKS_OR_ESCAPES.search(text) else text
 
 
 def _role(key: str, owner: str) -> str:
