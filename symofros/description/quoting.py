@@ -53,7 +53,7 @@ def with_quotes(text: str, symbols: Collection[str]) -> str:
     for symbol in needs_quotes(symbol for symbol in symbols if symbol in text):
         whole = rf"(?<![\w.]){re.escape(symbol)}(?![\w.])"
         parts = _BETWEEN_QUOTES.split(changed)
-        parts[::2] = [re.sub(whole, lambda _, name=symbol: quoted(name), part) for part in parts[::2]]  # type: ignore[misc]
+        parts[::2] = [re.sub(whole, lambda _, name=symbol: quoted(name), part) for part in parts[::2]]
         changed = "".join(parts)
     used = _symbols(changed)
     return changed if changed != text and used and used <= {*symbols} else ""
