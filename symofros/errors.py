@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, islice
 
@@ -228,28 +228,29 @@ class InconsistentModelWarning(UserWarning):
     """A model leaves out terms of the order of those it keeps, or a matrix is a rotation to a few digits only."""
 
 
-def near_name(name: str, known: Iterable[str]) -> str:
+def near_name(name: str, known: Iterable[str], spelling: Callable[[str], str] = str) -> str:
     """The question whether the nearest known name, capitals apart, was meant; "" where none is near."""
     candidates = {str(other).lower(): other for other in islice(known, _CANDIDATES)}
     near = difflib.get_close_matches(str(name).lower(), candidates, n=1, cutoff=0.5)
-    return f"did you mean '{candidates[near[0]]}'?" if near else ""
+    return f"did you mean '{spelling(candidates[near[0]])}'?" if near else ""
 
 
-def did_you_mean(name: str, known: Iterable[str]) -> str:
+def did_you_mean(name: str, known: Iterable[str], spelling: Callable[[str], str] = str) -> str:
     """The remedy for a misspelt name: the nearest known one, or the list of them.
 
     Args:
         name: Name as it was written.
         known: Names that exist.
+        spelling: How a name is written there; as it is by default.
 
     Returns:
         "did you mean 'tip'?", or "use one of: …", or "" when nothing is known.
     """
     known = list(known)
-    near = near_name(name, known)
+    near = near_name(name, known, spelling)
     if near:
         return near
     if not known:
         return ""
-    shown = ", ".join(known[:12]) + (", …" if len(known) > 12 else "")
+    shown = ", ".join(map(spelling, known[:12])) + (", …" if len(known) > 12 else "")
     return f"use one of: {shown}"

@@ -36,7 +36,7 @@ ALLOWED = table("""
     pytest_plugin: errors harness
     base: errors
     native:
-    expr: errors
+    expr: base errors
     description: base errors expr
     mechanics.beams: errors expr description
     mechanics.topology: base errors expr description mechanics.beams

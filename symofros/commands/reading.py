@@ -6,6 +6,7 @@ What `symofros compile` does where the cache knows its answer imports this: noth
 from __future__ import annotations
 
 import inspect
+import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import wraps
@@ -14,11 +15,13 @@ from typing import Annotated, Any, TypeVar
 
 import typer
 
+from symofros.base.names import QUOTED_NAME
 from symofros.errors import Problem, SymofrosError
 
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 # Parameter of a command that takes all options below.
 PARAMETER = "reading"
+_QUOTED = re.compile(QUOTED_NAME, re.ASCII)
 
 
 @dataclass(frozen=True)
@@ -118,7 +121,7 @@ def reading_of(
 
 
 def pairs(given: Iterable[str], what: str, example: str) -> dict[str, str]:
-    """NAME=TEXT options as a mapping.
+    """NAME=TEXT options as a mapping; a name that holds an equals sign stands between backquotes.
 
     Args:
         given: The texts.
@@ -130,7 +133,10 @@ def pairs(given: Iterable[str], what: str, example: str) -> dict[str, str]:
     """
     stated = {}
     for item in given:
-        name, sign, text = item.partition("=")
+        begin = _QUOTED.match(item)
+        head = begin.group() if begin else ""
+        rest, sign, text = item[len(head) :].partition("=")
+        name = head + rest
         if not sign or not name or not text:
             fault = Problem(f"{what} '{item}'", "no name and value", f"{what} NAME=VALUE", f"for example {example}")
             raise SymofrosError(fault)

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 import symofros as sf
+from symofros.base.names import coordinate_of, speed_of
 from symofros.commands.shared import number, refuse
 from symofros.errors import did_you_mean
 from symofros.runtime.calls.kernel import Array
@@ -19,16 +20,15 @@ def stated_state(model: sf.Model, given: Mapping[str, str]) -> tuple[sf.Model, A
     """
     stated = {name: number(name, text) for name, text in given.items()}
     states = (*model.names.q, *model.names.v)
-    parameters = {name: value for name, value in stated.items() if name in model.names.par and name not in states}
-    model = model.with_parameters(**parameters)
+    parameters = {name: parameter for name in stated if (parameter := coordinate_of(name, model.names.par))}
+    parameters = {name: parameter for name, parameter in parameters.items() if parameter not in states}
+    model = model.with_parameters(**{parameter: stated[name] for name, parameter in parameters.items()})
     q, v = model.neutral(), np.zeros(model.nv)
     for name in stated.keys() - parameters.keys():
-        if name in model.names.q:
-            q[model.names.q.index(name)] = stated[name]
-        elif name.removeprefix("d") in model.names.v:
-            v[model.names.v.index(name.removeprefix("d"))] = stated[name]
-        elif name in model.names.v:
-            v[model.names.v.index(name)] = stated[name]
+        if coordinate := coordinate_of(name, model.names.q):
+            q[model.names.q.index(coordinate)] = stated[name]
+        elif speed := speed_of(name, model.names.v):
+            v[model.names.v.index(speed)] = stated[name]
         else:
             known = (*model.names.q, *(f"d{speed}" for speed in model.names.v), *model.names.par)
             missing = f"--set: no coordinate, speed or run-time parameter '{name}'"

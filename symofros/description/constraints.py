@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
+from symofros.base.names import symbol_of
 from symofros.description.entries import pairs_of, refuses_unknown_entries
 from symofros.description.forces import Anchor
 from symofros.description.values import Term, Value, as_value, symbols
@@ -154,7 +155,7 @@ def mimicry(follower: str, leader: str, multiplier: float, offset: float) -> Cou
         multiplier: Ratio of the speeds.
         offset: Coordinate of the follower where that of the leader is zero.
     """
-    q, leading = (Term(Expression("symbol", name=name)) for name in (follower, leader))
+    q, leading = (Term(Expression("symbol", name=symbol_of(name))) for name in (follower, leader))
     return Coupling(f"{follower}_mimics_{leader}", (q - Term(multiplier) * leading - Term(offset)).value)
 
 

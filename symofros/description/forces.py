@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import Literal
 
+from symofros.base.names import name_of
 from symofros.description.entries import pairs_of, refuses_unknown_entries
 from symofros.description.values import ORIGIN, Value, Vector, as_value, as_vector
 from symofros.errors import DescriptionError, Problem
@@ -208,9 +209,8 @@ class VirtualPower:
     def __post_init__(self) -> None:
         """Accept a mapping, and convert the formulas."""
         what = f"virtual power '{self.name}'"
-        object.__setattr__(
-            self, "forces", tuple((k, as_value(x, f"{what}: {k}")) for k, x in pairs_of(self.forces, what))
-        )
+        listed = pairs_of(self.forces, what)
+        object.__setattr__(self, "forces", tuple((name_of(k), as_value(x, f"{what}: {k}")) for k, x in listed))
 
 
 @refuses_unknown_entries

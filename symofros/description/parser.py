@@ -6,7 +6,12 @@ The grammar (powers bind tightest and to the right, a minus sign less tightly th
     product = unary (("*" | "/") unary)*
     unary   = ("-" | "+") unary | power
     power   = atom (("^" | "**") unary)?
-    atom    = number | name | function "(" sum ("," sum)* ")" | "(" sum ")"
+    atom    = number | name | quoted | function "(" sum ("," sum)* ")" | "(" sum ")"
+
+A name is an identifier, with points and an index if need be: q1, wrist.qx, u[0]. Any other name stands between
+backquotes, a backquote within it doubled: `left-hip`, `L/R`, `c d`. What belongs to it may stand outside: its speed is
+d`left-hip` or `dleft-hip`, a component `left-hip`.qx or `left-hip.qx`. The same quotes tell names from what formulas
+reserve: `t`, `pi`, `sin`.
 
 Nothing is ever evaluated, looked up or imported; length, depth and size of numbers are bounded.
 """
@@ -15,11 +20,12 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
+from symofros.base.names import QUOTE, QUOTED_NAME, symbol_in
 from symofros.errors import Problem, SymofrosError, did_you_mean
-from symofros.expr.expression import Expression
+from symofros.expr.expression import DUNDER, PLAIN_NAME, Expression
 from symofros.expr.ops import FUNCTIONS
 
 Token = tuple[str, str, int]
@@ -34,13 +40,12 @@ MAX_HEIGHT = 300
 
 _TOKEN = re.compile(
     r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![A-Za-z0-9_.]))"
-    r"|(?P<name>[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z_][A-Za-z0-9_]*)*(?:\[\d{1,6}\])?)"
+    rf"|(?P<quoted>{QUOTED_NAME})"
+    rf"|(?P<name>{PLAIN_NAME})"
     r"|(?P<sign>\*\*|[-+*/^(),]))",
     re.ASCII,
 )
 _WORD = re.compile(r"\.?[0-9][A-Za-z0-9_.]*", re.ASCII)
-_DUNDER = re.compile(r"(?:^|\.)__|__(?:$|\.)")
-
 
 _PRODUCTS = "write products with '*', and numbers without units: they are in SI, angles in radians"
 
@@ -142,8 +147,17 @@ class _Reader:
                 self.at -= 1
                 return self.call(text)
             if text in FUNCTIONS:
-                raise self.fail(f"function '{text}' without its arguments", f"write {text}(…)")
+                raise self.fail(
+                    f"function '{text}' without its arguments",
+                    f"write {text}(…); a joint or an input of that name is written {QUOTE}{text}{QUOTE}",
+                )
             return Expression("symbol", name=text)
+        if kind == "quoted":
+            name = symbol_in(text)
+            if not name.isprintable():
+                raise self.fail("a name between backquotes holds characters that can't be printed")
+            self.at += 1
+            return Expression("symbol", name=name)
         if self.take("("):
             inner = self.sum()
             if not self.take(")"):
@@ -167,7 +181,7 @@ class _Reader:
 
 
 def tokenize(text: str) -> list[Token]:
-    """The tokens of a formula: kind ("number", "name", "sign" and at last "end"), text, position.
+    """The tokens of a formula: kind ("number", "name", "quoted", "sign" and at last "end"), text, position.
 
     Raises:
         ExpressionError: Too long, or something that is not a token.
@@ -180,12 +194,15 @@ def tokenize(text: str) -> list[Token]:
         match = _TOKEN.match(text, at)
         if match is None or match.lastgroup is None:
             at += len(text[at:]) - len(text[at:].lstrip())
+            if text[at] == QUOTE:
+                remedy = "end the name with a backquote; one within a name is doubled"
+                raise ExpressionError(text, "a name between backquotes that never ends", at, remedy)
             word = _WORD.match(text, at)
             if word is not None:
                 raise ExpressionError(text, f"'{word.group():.60}' is neither a number nor a name", at, _PRODUCTS)
             raise ExpressionError(text, f"{text[at]!r} is not allowed in a formula", at)
         kind, token, start = match.lastgroup, match.group(match.lastgroup), match.start(match.lastgroup)
-        if kind == "name" and _DUNDER.search(token):
+        if kind == "name" and DUNDER.search(token):
             raise ExpressionError(text, f"'{token}' is not a legal name", start)
         tokens.append((kind, token, start))
         at = match.end()
@@ -212,7 +229,7 @@ def _parsed(text: str) -> Expression:
         raise reader.fail(f"'{reader.token[1]}' unexpected", _PRODUCTS)
     if _height(expression) > MAX_HEIGHT:
         raise ExpressionError(text, f"a chain of more than {MAX_HEIGHT} operations", 0, "group terms by parentheses")
-    return expression
+    return replace(expression, written=text)
 
 
 # An editor reads the same file after each edit, and nearly all of its formulas are as before.

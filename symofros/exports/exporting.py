@@ -11,6 +11,7 @@ import numpy as np
 
 from symofros.base.arguments import checked
 from symofros.base.functions import FRAME_FUNCTIONS, exported
+from symofros.base.names import coordinate_of, speed_of
 from symofros.base.options import Options
 from symofros.compiler import GENERATOR, Compilation, compile_system
 from symofros.description.beams.beam import Beam
@@ -275,24 +276,25 @@ def _outputs(known: Sequence[str], generated: Sequence[str], wanted: Sequence[st
 def _start(model: Model, given: Mapping[str, float]) -> tuple[Array, Array]:
     """The first state, on the constraints; coordinates that were given keep their values where that is possible."""
     q, v = model.neutral(), np.zeros(model.nv)
-    speeds = [f"d{speed}" for speed in model.names.v]
+    held: list[str] = []
     for label, value in given.items():
-        if label in model.names.q:
-            q[model.names.q.index(label)] = value
-        elif label in speeds:
-            v[speeds.index(label)] = value
+        coordinate, speed = coordinate_of(label, model.names.q), speed_of(label, model.names.v)
+        if coordinate:
+            q[model.names.q.index(coordinate)] = value
+        elif speed:
+            v[model.names.v.index(speed)] = value
         else:
             raise UnknownNameError(
                 Problem(
                     f"export: no coordinate or speed '{label}'",
                     label,
                     "start gives coordinates by name, speeds by d + name",
-                    did_you_mean(label, [*model.names.q, *speeds]),
+                    did_you_mean(label, [*model.names.q, *(f"d{speed}" for speed in model.names.v)]),
                 )
             )
+        held += [name for name in (coordinate, speed) if name in model.names.v]
     if not model.nc:
         return q, v
-    held = [x for x in model.names.v if x in given or f"d{x}" in given]
     try:
         closed = assemble(model, q, v, held=held)
     except AssemblyError:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 
+from symofros.base.names import QUOTE, RESERVED, is_rate_symbol, quoted, symbol_of
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
 from symofros.expr.numerics.extended import Extended, extended_context, extended_rule
@@ -13,6 +15,12 @@ from symofros.expr.ops import FUNCTIONS
 CONSTANTS: dict[str, float] = {"pi": 3.141592653589793}
 _PRECEDENCE = {"add": 1, "sub": 1, "mul": 2, "div": 2, "neg": 3, "pow": 4}
 _SIGN = {"add": " + ", "sub": " - ", "mul": "*", "div": "/", "pow": "^"}
+
+# What stands in formulas without backquotes: identifiers between points, and an index.
+PLAIN_NAME = r"[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z_][A-Za-z0-9_]*)*(?:\[\d{1,6}\])?"
+DUNDER = re.compile(r"(?:^|\.)__|__(?:$|\.)")
+_PLAIN = re.compile(PLAIN_NAME, re.ASCII)
+_QUOTED_RESERVED = frozenset(map(symbol_of, RESERVED))
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,17 +31,23 @@ class Expression:
         kind: "number", "symbol", "add", "sub", "mul", "div", "pow", "neg", or a function's name.
         args: Operands.
         number: The value of a "number".
-        name: The name of a "symbol".
+        name: The name of a "symbol"; of a coordinate or input called t or pi, "`t`" or "`pi`".
+        written: The text that a user wrote, of the whole of a formula alone; formulas are equal whatever it is.
     """
 
     kind: str
     args: tuple[Expression, ...] = ()
     number: float = 0.0
     name: str = ""
+    written: str = field(default="", compare=False, repr=False)
 
     def __str__(self) -> str:
         """The formula in the notation that the parser reads."""
-        return _text(self, 0)
+        return self.text(spelled)
+
+    def text(self, spelling: Callable[[str], str]) -> str:
+        """The formula with its symbols, constants left out, in a spelling of the caller's."""
+        return _text(self, 0, spelling)
 
     def symbols(self) -> frozenset[str]:
         """The names this formula depends on; `pi` is a number, not a name."""
@@ -49,22 +63,40 @@ def walk(expression: Expression) -> Iterator[Expression]:
         stack.extend(node.args)
 
 
-def _text(node: Expression, outer: int) -> str:
+def spelled(symbol: str) -> str:
+    """A symbol as formulas have it: between backquotes unless it is a plain name without another meaning."""
+    if symbol in _QUOTED_RESERVED or is_rate_symbol(symbol):
+        return symbol
+    plain = _PLAIN.fullmatch(symbol) and symbol not in FUNCTIONS and not DUNDER.search(symbol)
+    return symbol if plain else quoted(symbol)
+
+
+def always_quoted(symbol: str) -> str:
+    """The same with backquotes where they would not be needed, too."""
+    return symbol if spelled(symbol) == symbol and symbol.endswith(QUOTE) else quoted(symbol)
+
+
+def needs_quotes(symbols: Iterable[str]) -> list[str]:
+    """Those of some symbols that formulas have between backquotes, the longest first."""
+    return sorted((name for name in symbols if spelled(name) != name), key=lambda name: (-len(name), name))
+
+
+def _text(node: Expression, outer: int, spelling: Callable[[str], str]) -> str:
     if node.kind == "number":
         text = repr(node.number).removesuffix(".0")
         return f"({text})" if text.startswith("-") and outer > 1 else text
     if node.kind == "symbol":
-        return node.name
+        return node.name if node.name in CONSTANTS else spelling(node.name)
     own = _PRECEDENCE.get(node.kind)
     if own is None:
-        return f"{node.kind}({', '.join(_text(arg, 0) for arg in node.args)})"
+        return f"{node.kind}({', '.join(_text(arg, 0, spelling) for arg in node.args)})"
     if node.kind == "neg":
-        text = "-" + _text(node.args[0], own)
+        text = "-" + _text(node.args[0], own, spelling)
     else:
         left, right = node.args
         # Subtraction and division associate to the left, powers to the right.
         raise_left, raise_right = (1, 0) if node.kind == "pow" else (0, 1)
-        text = _text(left, own + raise_left) + _SIGN[node.kind] + _text(right, own + raise_right)
+        text = _text(left, own + raise_left, spelling) + _SIGN[node.kind] + _text(right, own + raise_right, spelling)
     return f"({text})" if own < outer else text
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 
+from symofros.base.names import TIME
 from symofros.base.options import Options
 from symofros.description.beams.beam import Beam
 from symofros.description.constraints import AXES, Closure
@@ -17,7 +18,7 @@ from symofros.mechanics.dynamics.constraints.measures import measures_of
 from symofros.mechanics.dynamics.constraints.wrenches import acts_on_bodies
 from symofros.mechanics.kinematics.joint import neutral_coordinates
 from symofros.mechanics.topology.coordinates import angles, joint_sizes
-from symofros.mechanics.topology.formulas import TIME, stated_values
+from symofros.mechanics.topology.formulas import stated_values
 from symofros.mechanics.topology.tree import SpanningTree, frame_of, joint_names, prescribed_speeds, section_names
 from symofros.runtime.record import ClosureRecord, JointLimit, ModelRecord, Segment
 

@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 
 from symofros.base.options import Options
-from symofros.description.values import as_value
 from symofros.errors import CompileError
 from symofros.expr.program import Program
 from symofros.generator.codegen.cuda import device_code
@@ -24,7 +23,7 @@ from symofros.generator.codegen.names import identifier
 from symofros.generator.passes import run_passes
 from symofros.generator.programs import ProgramBuilder
 from symofros.generator.record import GENERATOR
-from symofros.mechanics.dynamics.formulas import formula_program
+from symofros.mechanics.dynamics.formulas import formula_program, stated_formulas
 from symofros.mechanics.dynamics.functions import Request
 from symofros.native import native_text
 from symofros.runtime.build.build import build_library, recall_library
@@ -88,8 +87,8 @@ class UnitCompiler:
     def formulas(self, formulas: Sequence[Any], derivatives: bool) -> Unit:
         """A unit of one function, "formulas": numbers, texts or SymPy expressions over the model's names."""
         rates = [item if isinstance(item, Rate) else Rate(item, 0) for item in formulas]
-        what = f"system '{self._programs.tree.system.name}': formula"
-        values = [(as_value(rate.formula, what), rate.order) for rate in rates]
+        stated = stated_formulas(self._programs.tree, [rate.formula for rate in rates])
+        values = [(value, rate.order) for value, rate in zip(stated, rates, strict=True)]
 
         def program() -> Program:
             return run_passes(formula_program(self._programs.equations().kinematics, values, derivatives))

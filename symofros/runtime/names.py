@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from symofros.base.arrays import real_array
+from symofros.base.names import coordinate_of, speed_of
 from symofros.errors import Problem, ShapeError, UnknownNameError, did_you_mean
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.record import ModelRecord
@@ -86,12 +87,10 @@ def stacked(record: ModelRecord, par: Array, argument: str, values: Mapping[str,
     columns: list[Any] = list(defaults)
     given: set[str] = set()
     for stated, value in values.items():
-        name = stated
-        if name not in names and kind == "speeds" and str(name).removeprefix("d") in names:
-            name = name.removeprefix("d")
-        if name not in names:
+        name = (speed_of if kind == "speeds" else coordinate_of)(str(stated), names)
+        if not name:
             listed = ", ".join(names[:12]) + (", …" if len(names) > 12 else "") or f"no {kind}"
-            remedy = did_you_mean(str(name)[:80], names) or f"name {kind} of the model"
+            remedy = did_you_mean(str(stated)[:80], names) or f"name {kind} of the model"
             raise UnknownNameError(Problem(f"{what}: no '{str(stated)[:80]}'", listed, f"names are of {kind}", remedy))
         if name in given:
             rule = f"each of the {kind} is named once"

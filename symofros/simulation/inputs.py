@@ -12,6 +12,7 @@ import numpy as np
 
 from symofros.base.arguments import CheckedCalls, check_fields
 from symofros.base.arrays import numeric
+from symofros.base.names import coordinate_of
 from symofros.errors import Problem, ShapeError, UnknownNameError, did_you_mean
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.functions import Rate
@@ -158,6 +159,7 @@ def _signal_of_all(model: Model, signal: Signal, constant: Array) -> InputPlan:
 def _by_name(model: Model, given: Mapping[str, Any], constant: Array) -> InputPlan:
     plan = InputPlan(constant)
     names = model.names.u
+    given = {coordinate_of(str(stated), names) or stated: value for stated, value in given.items()}
     for name, value in given.items():
         if name not in names:
             raise UnknownNameError(

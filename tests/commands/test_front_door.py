@@ -336,3 +336,17 @@ def test_a_reader_that_has_seen_enough_is_told_nothing() -> None:
     done = subprocess.run(command, stdout=writing, stderr=subprocess.PIPE, text=True)
     os.close(writing)
     assert done.returncode == 1 and not done.stderr
+
+
+def test_names_of_any_signs_are_stated_in_the_shell(tmp_path: Path) -> None:
+    inertial = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+    joint = (
+        '<joint name="{0}" type="revolute"><parent link="b"/><child link="l{0}"/><limit lower="-9" upper="9"/></joint>'
+    )
+    links = "".join(f'<link name="l{name}">{inertial}</link>{joint.format(name)}' for name in ("left-hip", "a=b"))
+    (tmp_path / "hip.urdf").write_text(f'<robot name="r"><link name="b"/>{links}</robot>')
+    command = "simulate", tmp_path / "hip.urdf", "0.01", "--json", "--set", "left-hip=0.5", "--set", "d`a=b`=0.25"
+    last = json.loads(invoke(*command, "--input", "`a=b`=-20*`left-hip` - 2*d`left-hip`").output)["last"]
+    assert last["left-hip"] == 0.5 and last["da=b"] == pytest.approx(0.25 - 10 * 0.01, rel=1e-12)
+    refused = invoke(*command, "--input", "left-hip=-20*left-hip")
+    assert refused.exit_code == 2 and "between backquotes: -20*`left-hip`" in refused.output

@@ -14,7 +14,7 @@ from ..contract.interface import States, Subject, Unsupported
 from ..contract.quantities import FORCES_STATED
 from ..mechanics.assembly import Assembly, assemble
 from ..mechanics.geometry import Array
-from ..mechanics.parts import coordinate_symbols, rate_symbols, speed_symbols
+from ..mechanics.parts import coordinate_symbols, input_symbol, rate_symbols, rates_by_coordinate, speed_symbols
 
 NAME = "description"
 
@@ -86,14 +86,18 @@ class StatedForces:
     def values(self, states: States) -> dict[str, Any]:
         """What formulas' symbols stand for, one value a state."""
         values: dict[str, Any] = {"pi": np.pi, "t": 0.0, **self.system.parameter_values()}
-        values |= {item.name: states.u[:, i] for i, item in enumerate(self.system.inputs)}
+        values |= {input_symbol(item.name): states.u[:, i] for i, item in enumerate(self.system.inputs)}
         for described in self.assembly.free_joints:
+            for names in (speed_symbols(described.joint), rates_by_coordinate(described.joint)[0]):
+                values |= dict(zip(names, states.v[:, described.v].T, strict=True))
+        for described in self.assembly.free_joints:  # Rather than the rate of another joint, if both have one name.
             values |= dict(zip(coordinate_symbols(described.joint), states.q[:, described.q].T, strict=True))
-            values |= dict(zip(speed_symbols(described.joint), states.v[:, described.v].T, strict=True))
         motion = len(self.system.inputs) + self.assembly.motors
         for joint in self.assembly.driven_joints:
-            for symbol in (*coordinate_symbols(joint), *speed_symbols(joint), *rate_symbols(joint)):
-                values[symbol] = states.u[:, motion]
+            q, (v, a) = coordinate_symbols(joint), rates_by_coordinate(joint)
+            plain, others = (*q, *speed_symbols(joint), *rate_symbols(joint)), (*q, *v, *a)
+            for names in zip(plain, others, strict=True):
+                values |= dict.fromkeys(names, states.u[:, motion])
                 motion += 1
         return values
 

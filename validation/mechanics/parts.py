@@ -38,17 +38,35 @@ class Part:
     speeds: int = 1
 
 
+def input_symbol(name: str) -> str:
+    """Name of an input in formulas, where t and pi mean something else without quotes (docs/yaml.md)."""
+    return f"`{name}`" if name in ("t", "pi") else name
+
+
 def coordinate_symbols(joint: sf.Joint) -> tuple[str, ...]:
     """Names of a joint's coordinates in formulas."""
-    if joint.kind not in STATED_JOINTS:
-        return joint.coordinates
-    return _named(joint, STATED_JOINTS[joint.kind].coordinates)
+    return tuple(map(input_symbol, _coordinates(joint)))
 
 
 def speed_symbols(joint: sf.Joint) -> tuple[str, ...]:
     """Names of a joint's speeds in formulas."""
     speeds = STATED_JOINTS[joint.kind].speeds if joint.kind in STATED_JOINTS else None
-    return tuple(f"d{name}" for name in coordinate_symbols(joint)) if speeds is None else _named(joint, speeds)
+    return tuple(f"d{name}" for name in _coordinates(joint)) if speeds is None else _named(joint, speeds)
+
+
+def rates_by_coordinate(joint: sf.Joint) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """What formulas may call a joint's speeds, and a prescribed joint's rates of them, as well: d`q` and dd`q`."""
+    names = [
+        name.replace("`", "``") for name in (speed_symbols(joint) if has_quaternion(joint) else _coordinates(joint))
+    ]
+    first = speed_symbols(joint) if has_quaternion(joint) else tuple(f"d`{name}`" for name in names)
+    return first, tuple(f"{'d' if has_quaternion(joint) else 'dd'}`{name}`" for name in names)
+
+
+def _coordinates(joint: sf.Joint) -> tuple[str, ...]:
+    if joint.kind not in STATED_JOINTS:
+        return joint.coordinates
+    return _named(joint, STATED_JOINTS[joint.kind].coordinates)
 
 
 def _named(joint: sf.Joint, suffixes: tuple[str, ...]) -> tuple[str, ...]:
@@ -89,9 +107,10 @@ def _general(joint: sf.Joint) -> list[Part]:
     for kind, axis, value in (*slides, *turns):
         if value == 0.0:
             continue
-        if not isinstance(value, sf.Expression) or value.kind != "symbol" or value.name not in joint.coordinates:
+        names = coordinate_symbols(joint)
+        if not isinstance(value, sf.Expression) or value.kind != "symbol" or value.name not in names:
             return whole
-        index = joint.coordinates.index(value.name)
+        index = names.index(value.name)
         parts.append(Part("prismatic" if kind == "prismatic" else "revolute", axis, index))
     used = sorted(part.first for part in parts)
     return parts if used == list(range(len(joint.coordinates))) else whole

@@ -151,10 +151,10 @@ class _Model:
         if joint.kind == "general":
             position = self.vector(joint.moving_position, P)
             return self._by_formula(P, joint.moving_rotation), self._moved(proximal, position, position.dt(P))
-        names = coordinate_symbols(joint)
+        names, speeds = coordinate_symbols(joint), speed_symbols(joint)
         for part in series(joint):
-            axis, name = self.unit(part.axis, P), names[part.first]
-            q, rate = self.scope.function[name], self.scope.rate[f"d{name}"]
+            axis = self.unit(part.axis, P)
+            q, rate = self.scope.function[names[part.first]], self.scope.rate[speeds[part.first]]
             pitch = {"prismatic": sympy.Integer(1), "screw": self.scope.value(joint.pitch)}.get(part.kind)
             if pitch is not None:
                 Po = self._moved((P, Po), pitch * q * axis, pitch * rate * axis)

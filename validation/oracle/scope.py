@@ -11,7 +11,7 @@ from sympy.physics.mechanics import dynamicsymbols
 
 import symofros as sf
 
-from ..mechanics.parts import coordinate_symbols, has_quaternion, speed_symbols
+from ..mechanics.parts import coordinate_symbols, has_quaternion, input_symbol, rates_by_coordinate, speed_symbols
 
 TIME = dynamicsymbols._t
 # Functions that SymPy spells otherwise.
@@ -84,14 +84,19 @@ class Scope:
             self._add_coordinates(joint)
         self._constant = {item.name: sympy.Dummy(item.name) for item in system.parameters}
         self._constant |= {"t": sympy.Dummy("t")}
-        stated = {item.name: sympy.Dummy(item.name) for item in system.inputs}
+        stated = {input_symbol(item.name): sympy.Dummy(item.name) for item in system.inputs}
         self.motors = {name: sympy.Dummy(name) for joint in free if joint.actuated for name in speed_symbols(joint)}
-        self._known = {"pi": sympy.pi, **self._constant, **stated, **self.function, **self.rate}
+        self._known = {"pi": sympy.pi, **self._constant, **stated, **self.rate, **self.function}
+        for joint in joints:
+            self._known |= {
+                name: self.rate[v] for name, v in zip(rates_by_coordinate(joint)[0], speed_symbols(joint), strict=True)
+            }
         self._inputs = [*stated.values(), *self.motors.values()]
         for joint in driven:
             q = [self.function[name] for name in coordinate_symbols(joint)]
             self._inputs += [self._plain[x.diff(TIME, n) if n else x] for n in range(3) for x in q]
-            self._known |= {f"dd{n}": x.diff(TIME, 2) for n, x in zip(coordinate_symbols(joint), q, strict=True)}
+            for names in ([f"d{name}" for name in speed_symbols(joint)], rates_by_coordinate(joint)[1]):
+                self._known |= {name: x.diff(TIME, 2) for name, x in zip(names, q, strict=True)}
 
     def _carried_by(self, name: str | None) -> list[sf.RigidBody]:
         """Depth first; None for the ground, which the base is, too."""

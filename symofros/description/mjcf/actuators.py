@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.names import speed_column, symbol_of
 from symofros.description.forces import Load
 from symofros.description.mjcf.joints import BALL, FREE, JointEfforts
 from symofros.description.mjcf.names import Names
@@ -54,6 +55,7 @@ class ActuatorReader:
         self.loads: dict[int, tuple[Load, ...]] = {}
         self._efforts: dict[int, list[Term]] = {}
         self._driven: set[int] = set()
+        self._joint_names = frozenset(joints[j] for j in range(model.njnt))
         self._names = self._input_names()
         for i in range(model.nu):
             self._read(i)
@@ -65,12 +67,8 @@ class ActuatorReader:
     def _input_names(self) -> list[str]:
         """Names of the actuators; formulas must tell them from coordinates and speeds, so some get a suffix."""
         m = self.model
-        joints = [self.joints[j] for j in range(m.njnt)]
         suffixes = ("", ".px", ".py", ".pz", ".qx", ".qy", ".qz", ".qw", ".vx", ".vy", ".vz", ".wx", ".wy", ".wz")
-        taken = {f"{rate}{joint}{suffix}" for joint in joints for suffix in suffixes for rate in ("", "d")} | {
-            "t",
-            "pi",
-        }
+        taken = {f"{rate}{joint}{suffix}" for joint in self._joint_names for suffix in suffixes for rate in ("", "d")}
         stated = [m.actuator(i).name for i in range(m.nu)]
         wanted = [f"{name}_control" if name in taken else name for name in stated]
         names = Names("actuator", wanted)
@@ -103,7 +101,11 @@ class ActuatorReader:
             self._drive(target, self._force(i, [], _dot(gear, speeds)), gear[:3])
         else:
             joint = self.joints[target]
-            self._drive(target, self._force(i, _dot(gear, [joint]), _dot(gear, [f"d{joint}"])), gear[:1])
+            self._drive(
+                target,
+                self._force(i, _dot(gear, [joint]), _dot(gear, [speed_column(joint, self._joint_names)])),
+                gear[:1],
+            )
 
     def _obstacle(self, i: int, place: int, target: int) -> str:
         """What keeps an actuator from being a formula of its control; "" where nothing does."""
@@ -168,7 +170,7 @@ class ActuatorReader:
 
 
 def _symbol(name: str) -> Term:
-    return Term(Expression("symbol", name=name))
+    return Term(Expression("symbol", name=symbol_of(name)))
 
 
 def _dot(ratios: Sequence[float], names: Sequence[str]) -> list[Term]:

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.names import symbol_of
 from symofros.base.rotations import Array
 from symofros.description.constraints import AXES, Closure, Coupling
 from symofros.description.forces import Anchor
@@ -108,6 +109,6 @@ class EqualityReader:
 
     def _distance(self, joint: int) -> Term:
         """Coordinate of a hinge or slide, counted from its reference."""
-        q = Term(Expression("symbol", name=self.joints[joint]))
+        q = Term(Expression("symbol", name=symbol_of(self.joints[joint])))
         ref = float(self.model.qpos0[self.model.jnt_qposadr[joint]])
         return q - Term(ref) if ref else q

@@ -10,6 +10,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from symofros.base.names import rate_symbol, symbol_of
 from symofros.base.sources import Source
 from symofros.description.constraints import Constraint, Coupling
 from symofros.description.forces import Connection, Potential, VirtualPower
@@ -326,7 +327,8 @@ def _names_of(section: str, name: str, entry: Any) -> set[str]:
     joint = entry.get("joint") if isinstance(entry, dict) else None
     stated = joint.get("name") if isinstance(joint, dict) else None
     own = stated if isinstance(stated, str) else default_joint_name(name)
-    return {name, own, f"d{own}", *(f"{own}.{suffix}" for suffix in _SUFFIXES)}
+    symbols = {symbol_of(own), f"d{own}", rate_symbol(own)}
+    return {name, own, *symbols, *(f"{own}.{suffix}" for suffix in _SUFFIXES)}
 
 
 def _body_origin(body: Body, root: Node, shown: str) -> Iterator[tuple[tuple[str, ...], str]]:

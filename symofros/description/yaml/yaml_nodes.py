@@ -146,6 +146,7 @@ _PLAINLY = {
     "expected <block end>, but found '<block mapping start>'": "an entry indented unlike its neighbours",
     "expected <block end>, but found '<block sequence start>'": "a '-' indented unlike its neighbours",
     "mapping values are not allowed here": "a ':' where no entry can begin",
+    "found character '`' that cannot start any token": "a text that begins with a backquote and is not in quotes",
     "found character '\\t' that cannot start any token": "a tab; indentation is by blanks",
     "found unexpected end of stream": "a quotation that never ends",
     "but got '<stream end>'": "but the file ends",
@@ -259,7 +260,7 @@ class _Builder:
             start, end = event.start_mark.index, event.end_mark.index
             self.put(Node(line, value, line, start, end, style=event.style or "plain"))
             return
-        if event.value == "<<":
+        if event.value == "<<" and event.implicit[0]:
             raise self.fault(
                 "merge keys are refused", "<<", "every value is written where it is used", line, "write the entries out"
             )

@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import fields
-from io import StringIO
 from typing import Any
 
 from pydantic import ValidationError
-from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
 from symofros.description.beams.beam import Beam
@@ -26,6 +24,7 @@ from symofros.description.constraints import (
 )
 from symofros.description.forces import Anchor
 from symofros.description.frames import Frame
+from symofros.description.quoting import text_among
 from symofros.description.system import Body, Inertia, System
 from symofros.description.values import Rotation, Value
 from symofros.description.yaml.derived import NounEntry
@@ -50,9 +49,9 @@ from symofros.description.yaml.schema_forces import (
     LoadEntry,
     RotorEntry,
 )
+from symofros.description.yaml.yaml_output import key_text, value_text, yaml_text
 from symofros.errors import DescriptionError, Problem
-
-LINE_WIDTH = 120
+from symofros.expr.expression import Expression, needs_quotes
 
 # Below this, a whole number reads better without ".0" and is the same double.
 _WHOLE = 1e15
@@ -98,21 +97,21 @@ def write_yaml(system: System) -> str:
     problems = list(_duplicates(system))
     if problems:
         raise DescriptionError(problems)
-    document = _document(system)
+    document = _spelled(_document(system), *_needing_quotes(system))
     try:
         NativeFile.model_validate(document)
     except ValidationError as error:
         raise DescriptionError([problem_of(fault, "", document) for fault in error.errors(include_url=False)]) from None
-    stream = StringIO()
-    yaml = YAML()
-    yaml.width = LINE_WIDTH
-    yaml.dump(_styled(document, ""), stream)
-    return stream.getvalue()
+    return yaml_text(_styled(document, ""))
 
 
 def _duplicates(system: System) -> Iterator[Problem]:
     groups = [("parameter", [item.name for item in system.parameters])]
     groups += [("input", [item.name for item in system.inputs]), ("body", [item.name for item in system.bodies])]
+    groups += [("connection", [item.name for item in system.connections])]
+    groups += [("virtual power", [item.name for item in system.virtual_power])]
+    groups += [("potential", [item.name for item in system.potentials])]
+    groups += [("constraint", [item.name for item in system.constraints])]
     groups += [(f"body '{body.name}': frame", [frame.name for frame in body.frames]) for body in system.bodies]
     for kind, names in groups:
         for name, count in Counter(names).items():
@@ -233,22 +232,44 @@ def _condition(item: KnifeEdge | Rolling | Nonholonomic) -> Plain:
 
 
 def _number(value: Value) -> Any:
-    """A number in its shortest exact form, a formula as text."""
+    """A number in its shortest exact form; a formula as it is."""
     if not isinstance(value, float):
-        return str(value)
+        return value
     whole = abs(value) < _WHOLE and value.is_integer() and str(value) != "-0.0"
     return int(value) if whole else value
 
 
+def _needing_quotes(system: System) -> tuple[list[str], frozenset[str]]:
+    """Symbols that formulas could take for operations on others; and those of coordinates that are rates by name."""
+    names = {item.name for item in system.parameters} | {item.name for item in system.inputs}
+    stems = {name for body in system.bodies if isinstance(body, Beam) for name in body.coordinates}
+    for joint in (body.joint for body in system.bodies if body.joint is not None):
+        suffixes = (*joint.traits.coordinate_suffixes, *(joint.traits.speed_suffixes or ()))
+        stems |= {*joint.coordinates, *(f"{joint.name}.{suffix}" if suffix else joint.name for suffix in suffixes)}
+    rates = {f"d{stem}" for stem in stems}
+    return needs_quotes(names | stems | rates | {f"d{rate}" for rate in rates}), frozenset(stems & rates)
+
+
+def _spelled(value: Any, symbols: list[str], both: frozenset[str]) -> Any:
+    """The same data with formulas as texts."""
+    if isinstance(value, dict):
+        return {key: _spelled(item, symbols, both) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_spelled(item, symbols, both) for item in value]
+    return text_among(value, symbols, both) if isinstance(value, Expression) else value
+
+
 def _styled(value: Any, role: str) -> Any:
     """The same data with its layout: sections, bodies and their parts on lines, small things in braces."""
+    if isinstance(value, str):
+        return value_text(value)
     if isinstance(value, list):
         sequence = CommentedSeq(_styled(item, "item") for item in value)
         sequence.fa.set_flow_style()
         return sequence
     if not isinstance(value, dict):
         return value
-    mapping = CommentedMap((key, _styled(item, _role(key, role))) for key, item in value.items())
+    mapping = CommentedMap((key_text(key), _styled(item, _role(key, role))) for key, item in value.items())
     if role not in _OPEN or not value:
         mapping.fa.set_flow_style()
     return mapping

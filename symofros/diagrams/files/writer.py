@@ -5,17 +5,15 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import fields
-from io import StringIO
 from pathlib import Path
 from typing import Any
 
-from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
 from symofros.base.arguments import checked
 from symofros.base.atomic import write_atomically
 from symofros.description.reading import resolved
-from symofros.description.yaml.yaml_writer import LINE_WIDTH
+from symofros.description.yaml.yaml_output import key_text, value_text, yaml_text
 from symofros.diagrams.block import Block, ModelSetup
 from symofros.diagrams.diagram import INSIDE, Diagram, Part
 from symofros.diagrams.files.fields import MISSING, same, write
@@ -62,11 +60,7 @@ def save_diagram(diagram: Diagram, path: str | os.PathLike[str]) -> list[Path]:
     document = {HEAD: VERSION, **writer.document(diagram)}
     for target, setup in writer.models.items():
         save(setup.system, target)
-    stream = StringIO()
-    yaml = YAML()
-    yaml.width = LINE_WIDTH
-    yaml.dump(_styled(document, 0), stream)
-    write_atomically(file, stream.getvalue())
+    write_atomically(file, yaml_text(_styled(document, 0)))
     return [*writer.models, file]
 
 
@@ -256,8 +250,10 @@ def _styled(value: Any, depth: int) -> Any:
             sequence.fa.set_flow_style()
         return sequence
     if not isinstance(value, Mapping):
-        return value
-    mapping = CommentedMap((key, _styled(item, depth + (2 if key == "inputs" else 1))) for key, item in value.items())
+        return value_text(value) if isinstance(value, str) else value
+    mapping = CommentedMap(
+        (key_text(key), _styled(item, depth + (2 if key == "inputs" else 1))) for key, item in value.items()
+    )
     inside = "diagram" in value or any(key in value for key in ("models", "blocks", "parts"))
     if depth > 2 and not inside and not any(isinstance(item, Mapping) for item in value.values()):
         mapping.fa.set_flow_style()

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from symofros.base.functions import FRAME_FUNCTIONS
+from symofros.base.names import coordinate_of, speed_of
 from symofros.base.options import Options
 from symofros.compiler import compile_system
 from symofros.description.forces import Friction
@@ -135,10 +136,10 @@ class Models:
         record = self.record(name)
         q, v = np.array(record.q_neutral, dtype=np.float64), np.zeros(len(record.v_names))
         for key, value in self.setup(name).start.items():
-            if key in record.q_names:
-                q[record.q_names.index(key)] = value
+            if coordinate := coordinate_of(key, record.q_names):
+                q[record.q_names.index(coordinate)] = value
             else:
-                speed = key.removeprefix("d") if key not in record.v_names else key
+                speed = speed_of(key, record.v_names) or key
                 v[self._index(name, "coordinate or speed", speed, record.v_names)] = value
         return q, v
 

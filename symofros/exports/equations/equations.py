@@ -10,6 +10,7 @@ from functools import cached_property
 from typing import Any
 
 from symofros.base.arguments import checked
+from symofros.base.names import TIME
 from symofros.base.options import Options
 from symofros.compiler import GENERATOR, Compilation
 from symofros.description.system import Parameter, System
@@ -29,7 +30,6 @@ from symofros.mechanics.topology.tree import SpanningTree, build_tree
 LIMIT = 300
 # Products of terms that one product of two sums may take: what is beyond has thousands of terms.
 _PRODUCTS = 4000
-_PYTHON_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _G = "g"
 _TAKEN = {"M", "h", "Q", "G", "q", "v", "u", "par", "t", "np"}
 _REMEDY = "read `recursion()`, the equations body by body, or evaluate the model: sf.compile(system)"
@@ -99,6 +99,8 @@ class ReadableEquations:
         """Symbols of q, v, u, par and t, in the order of the model's arrays; of "gravity" g, where it is a symbol."""
         coordinates = self._tree.coordinates
         names = {slot: name for name, slot in coordinates.symbols.items()}
+        # A coordinate door has the name of the rate of one called oor, which is d`oor` then.
+        names |= {slot: name for name, slot in coordinates.keys.items() if slot not in names}
         names |= {Slot("u", i): f"tau_{name}" for i, name in enumerate(coordinates.u) if Slot("u", i) not in names}
         sizes = {"q": len(coordinates.q), "v": len(coordinates.v), "u": len(coordinates.u)}
         sizes |= {"par": len(coordinates.par), "t": 1}
@@ -220,11 +222,13 @@ class ReadableEquations:
     @cached_property
     def _latex_names(self) -> dict[Any, str]:
         names = {symbol: formulas.latex_of_name(symbol.name) for group in self.symbols.values() for symbol in group}
-        rates = {f"d{symbol.name}": symbol for symbol in self.symbols["q"]}
-        for symbol in self.symbols["v"]:
-            if symbol.name in rates:
-                base, sign, index = names[rates[symbol.name]].partition("_")
-                names[symbol] = f"\\dot{{{base}}}{sign}{index}"
+        coordinates = self._tree.coordinates
+        symbols = dict(zip(coordinates.q, self.symbols["q"], strict=True))
+        for name, symbol in zip(coordinates.v, self.symbols["v"], strict=True):
+            if name in symbols:
+                base, sign, index = names[symbols[name]].partition("_")
+                plain = "{" not in base  # Otherwise the name is a text, which an underscore does not part.
+                names[symbol] = f"\\dot{{{base}}}{sign}{index}" if plain else f"\\dot{{{names[symbols[name]]}}}"
         for symbol in self.symbols["u"]:
             if symbol.name.startswith("tau_"):
                 names[symbol] = f"\\tau_{{{formulas.latex_of_name(symbol.name.removeprefix('tau_'))}}}"
@@ -235,9 +239,10 @@ class ReadableEquations:
         names: dict[Any, str] = {}
         for group in self.symbols.values():
             for symbol in group:
-                plain = re.sub(r"\W", "_", symbol.name)
-                name = plain if _PYTHON_NAME.fullmatch(plain) and not keyword.iskeyword(plain) else f"{plain}_"
-                if symbol.name != "t":
+                plain = re.sub(r"\W", "_", symbol.name, flags=re.ASCII)
+                plain = plain if plain[:1].isalpha() or plain[:1] == "_" else f"_{plain}"
+                name = f"{plain}_" if keyword.iskeyword(plain) else plain
+                if symbol.name != TIME:
                     while name in _TAKEN or name in names.values():
                         name += "_"
                 names[symbol] = name

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import reduce
@@ -9,9 +10,10 @@ from typing import Any
 
 import sympy
 
+from symofros.base.names import name_of
 from symofros.exports.equations.harmonics import Frequency, Harmonics, Monomial, real_waves
 from symofros.exports.equations.reading import Call
-from symofros.expr.expression import Expression
+from symofros.expr.expression import Expression, spelled
 from symofros.expr.graph import Slot
 from symofros.expr.ops import DIV
 
@@ -31,6 +33,15 @@ _FUNCTIONS: dict[str, Callable[..., Any]] = {
     "step": lambda x: sympy.Heaviside(x, 1),
     **{name: getattr(sympy, name) for name in ("exp", "log", "sin", "cos", "tan", "asin", "acos", "atan", "atan2")},
     **{name: getattr(sympy, name) for name in ("sinh", "cosh", "tanh", "sign", "floor")},
+}
+
+_WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_.]*")
+_ESCAPED = {
+    **{sign: f"\\{sign}" for sign in "_#$%&{}"},
+    "\\": "\\textbackslash{}",
+    "^": "\\textasciicircum{}",
+    "~": "\\textasciitilde{}",
+    "`": "\\textasciigrave{}",
 }
 
 # A term: its number, and the power of each factor.
@@ -172,8 +183,10 @@ def matrix(rows: Sequence[Sequence[Any]], columns: int) -> Any:
 
 
 def text(expression: Any) -> str:
-    """An expression in SymPy's notation."""
-    return str(sympy.sstr(expression, full_prec=False))
+    """An expression in SymPy's notation; names that could be taken for operations between backquotes."""
+    names = {old: old.name if name_of(old.name) != old.name else spelled(old.name) for old in expression.free_symbols}
+    renamed = {old: symbol(new) for old, new in names.items() if new != old.name}
+    return str(sympy.sstr(expression.xreplace(renamed), full_prec=False))
 
 
 def latex(expression: Any, names: Mapping[Any, str]) -> str:
@@ -182,9 +195,16 @@ def latex(expression: Any, names: Mapping[Any, str]) -> str:
 
 
 def latex_of_name(name: str) -> str:
-    """LaTeX of a name: Greek letters by theirs, digits and what follows an underscore as indices."""
+    """LaTeX of a name: Greek letters by theirs, digits and what follows an underscore as indices; else as text."""
+    if name_of(name) != name or (spelled(name) != name and not _WORD.fullmatch(name)):
+        return f"\\text{{{latex_text(name_of(name))}}}"
     plain = name.replace(".", "_")
     return str(sympy.latex(sympy.Symbol(plain)))
+
+
+def latex_text(name: str) -> str:
+    """A name as text of LaTeX."""
+    return "".join(_ESCAPED.get(sign, sign) for sign in name)
 
 
 def numpy_text(expression: Any, names: Mapping[Any, str]) -> str:

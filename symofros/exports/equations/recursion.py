@@ -9,7 +9,8 @@ from symofros.description.beams.beam import Beam
 from symofros.description.system import Inertia
 from symofros.description.values import ORIGIN, Rotation, Value
 from symofros.exports.equations import formulas
-from symofros.mechanics.topology.coordinates import coordinate_names, speed_symbols
+from symofros.exports.equations.formulas import latex_text
+from symofros.mechanics.topology.coordinates import coordinate_symbols, speed_symbols
 from symofros.mechanics.topology.tree import BASE, Link, SpanningTree
 
 _AXES = ("axis", "axis2")
@@ -58,10 +59,13 @@ class _Writer:
 
     def link(self, index: int, link: Link, links: Sequence[Link]) -> str:
         """One joint and what it carries."""
-        parent = "the base" if link.parent == BASE else f"link {link.parent + 1} ({_text(links[link.parent].name)})"
+        parent = (
+            "the base" if link.parent == BASE else f"link {link.parent + 1} ({latex_text(links[link.parent].name)})"
+        )
         what = "deformation of the beam" if link.tip_of is not None else f"{link.joint.kind} joint"
-        head = f"\\paragraph{{Link {index + 1} ({_text(link.name)})}} on {parent}: {what} {_text(link.joint.name)}."
-        q = [self._name(name) for name in coordinate_names(link.joint)]
+        name, joint = latex_text(link.name), latex_text(link.joint.name)
+        head = f"\\paragraph{{Link {index + 1} ({name})}} on {parent}: {what} {joint}."
+        q = [self._name(name) for name in coordinate_symbols(link.joint)]
         v = [self._name(name) for name in speed_symbols(link.joint)]
         rows = [f"q_{{{index + 1}}} &= ({', '.join(q)}), \\quad v_{{{index + 1}}} = ({', '.join(v)})"]
         for step in link.placement:
@@ -126,8 +130,3 @@ class _Writer:
 
     def _value(self, value: Value) -> str:
         return formulas.latex(formulas.of_expression(value, self._symbols), self._names)
-
-
-def _text(name: str) -> str:
-    """A name as text."""
-    return name.replace("_", "\\_")

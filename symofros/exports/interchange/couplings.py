@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
 
+from symofros.base.names import symbol_of
 from symofros.description.constraints import Coupling
 from symofros.description.system import System
 from symofros.description.values import Value
@@ -54,8 +55,9 @@ def polynomial_coupling(coupling: Coupling, numbers: Numbers, candidates: set[st
         candidates: Names of coordinates that may be bound: those of turns and slides.
     """
     names = _symbols(coupling.residual)
+    called = {symbol_of(name): name for name in candidates}
     bound = sorted(names - numbers.parameters.keys())
-    if not 0 < len(bound) <= 2 or not candidates.issuperset(bound):
+    if not 0 < len(bound) <= 2 or not called.keys() >= {*bound}:
         return None
     terms = _terms(coupling.residual, numbers, tuple(bound))
     if terms is None:
@@ -66,8 +68,8 @@ def polynomial_coupling(coupling: Coupling, numbers: Numbers, candidates: set[st
     for i in order:
         solved = _solved(terms, i)
         if solved is not None:
-            leader = bound[1 - i] if len(bound) == 2 and any(solved[1:]) else None
-            return PolynomialCoupling(coupling.name, bound[i], leader, solved)
+            leader = called[bound[1 - i]] if len(bound) == 2 and any(solved[1:]) else None
+            return PolynomialCoupling(coupling.name, called[bound[i]], leader, solved)
     return None
 
 

@@ -3,14 +3,61 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
 
-from symofros.description.values import Value, symbols
-from symofros.errors import DescriptionError, Problem, UnknownNameError, did_you_mean
+from symofros.base.names import symbol_of
+from symofros.description.quoting import quotes_remedy, unknown_symbol_remedy, with_quotes
+from symofros.description.values import Value, as_value, symbols
+from symofros.errors import DescriptionError, Problem, UnknownNameError
 from symofros.expr.derivative import directional
 from symofros.expr.edges import ONE, Edge
+from symofros.expr.expression import Expression
 from symofros.expr.program import Function, Output, Program
 from symofros.mechanics.dynamics.derivatives.differentiation import by_configuration, by_inputs
 from symofros.mechanics.kinematics.links import TreeKinematics
+from symofros.mechanics.topology.formulas import meaning_problems
+from symofros.mechanics.topology.tree import SpanningTree
+
+
+def stated_formulas(tree: SpanningTree, formulas: Sequence[Any]) -> list[Value]:
+    """A user's formulas over the names of a mechanism: laws, events.
+
+    Args:
+        tree: Its names are what they may use.
+        formulas: Numbers, texts, SymPy expressions.
+
+    Raises:
+        UnknownNameError: A formula uses a name that the mechanism lacks.
+        DescriptionError: A text is no formula, or can be read in two ways.
+    """
+    names = tree.coordinates
+    what, known = f"system '{tree.system.name}'", frozenset({*names.symbols, *names.keys, *names.constants})
+    both = frozenset(map(symbol_of, names.q)) & frozenset(names.speed_symbols)
+    return [_stated(what, formula, known, both) for formula in formulas]
+
+
+def _stated(what: str, formula: Any, known: frozenset[str], both: frozenset[str]) -> Value:
+    try:
+        value = as_value(formula, f"{what}: formula")
+    except DescriptionError as error:
+        meant = with_quotes(formula, known) if isinstance(formula, str) else ""
+        if not meant:
+            raise
+        raise DescriptionError(replace(error.problem, remedy=quotes_remedy(meant))) from None
+    written = value.written or str(value) if isinstance(value, Expression) else ""
+    for name in sorted(symbols(value) - known):
+        raise UnknownNameError(
+            Problem(
+                f"{what}: unknown symbol '{name}'",
+                f"'{written}'",
+                "a formula uses coordinates, speeds (d and the coordinate's name), inputs, parameters and t",
+                unknown_symbol_remedy(name, written, known) or "see model.names",
+            )
+        )
+    for problem in meaning_problems(what, value, known, both):
+        raise DescriptionError(problem)
+    return value
 
 
 def formula_program(
@@ -19,26 +66,14 @@ def formula_program(
     """One function, "formulas", of q, v, u and t: the values, and their derivatives by q (along its manifold) and v.
 
     Args:
-        kinematics: Kinematics of the tree, in whose graph the formulas are formed; its names are what they may use.
-        values: Numbers and formulas, and how often each is differentiated by t.
+        kinematics: Kinematics of the tree, in whose graph the formulas are formed.
+        values: Numbers and formulas over its names, and how often each is differentiated by t.
         derivatives: Whether to form those by q and v.
 
     Raises:
-        UnknownNameError: A formula uses a name that the mechanism lacks.
         DescriptionError: One that is differentiated depends on more than t and parameters.
     """
     tree, names = kinematics.tree, kinematics.tree.coordinates
-    known = {*names.symbols, *names.constants}
-    for value, _ in values:
-        for name in sorted(symbols(value) - known):
-            raise UnknownNameError(
-                Problem(
-                    f"system '{tree.system.name}': unknown symbol '{name}'",
-                    f"'{value}'",
-                    "a formula uses coordinates, speeds (d and the coordinate's name), inputs, parameters and t",
-                    did_you_mean(name, known) or "see model.names",
-                )
-            )
     g, nv, n = kinematics.g, len(names.v), len(values)
     edges = [_rate(kinematics, value, order) for value, order in values]
     outputs = [Output("value", (n,), tuple(edges))]
@@ -51,7 +86,7 @@ def formula_program(
 
 def _rate(kinematics: TreeKinematics, value: Value, order: int) -> Edge:
     names, g = kinematics.tree.coordinates, kinematics.g
-    moving = {name for name, slot in names.symbols.items() if slot.group in ("q", "v", "u")}
+    moving = {name for name, slot in (*names.symbols.items(), *names.keys.items()) if slot.group in ("q", "v", "u")}
     if order and (used := sorted(symbols(value) & moving)):
         raise DescriptionError(
             Problem(

@@ -26,7 +26,6 @@ from symofros.mechanics.kinematics.rotations import (
     snapped,
     unit_vector,
 )
-from symofros.mechanics.topology.coordinates import coordinate_names, rate_symbols, speed_symbols
 from symofros.mechanics.topology.tree import BASE, Link, SpanningTree
 
 
@@ -173,9 +172,8 @@ def tree_kinematics(g: Graph, tree: SpanningTree, deflected_tips: bool = False) 
         R_AP, p_AP = lowering.placement(link.placement, R_AB)
         # P and D are both turned by R_BL, so that the axis lies along a coordinate axis of both.
         R_BL, axis = _aligned(lowering, link)
-        q = tuple(lowering.symbol(name) for name in coordinate_names(link.joint))
-        speeds = tuple(lowering.symbol(name) for name in speed_symbols(link.joint))
-        rates = tuple(lowering.symbol(name) for name in rate_symbols(link.joint)) if link.joint.prescribed else None
+        q, speeds = lowering.coordinates_of(link.joint), lowering.speeds_of(link.joint)
+        rates = lowering.rates_of(link.joint) if link.joint.prescribed else None
         if link.beam is not None:
             elastic = tuple(map(lowering.symbol, link.beam.coordinates))
             make = rod_of if link.beam.theory == "strain" else beam_forms
@@ -188,9 +186,7 @@ def tree_kinematics(g: Graph, tree: SpanningTree, deflected_tips: bool = False) 
         else:
             if link.station is not None:
                 joint, first_speed = tree.links[link.station.tip].joint, links[link.station.tip].first_speed
-                q, speeds = (
-                    tuple(map(lowering.symbol, names)) for names in (coordinate_names(joint), speed_symbols(joint))
-                )
+                q, speeds = lowering.coordinates_of(joint), lowering.speeds_of(joint)
             xi = 1.0 if link.station is None else link.station.xi
             across = _across_deformation(beams[-1], xi, q, speeds, deflected_tips)
         constant = constant_rotation(snapped(R_AP @ R_BL))

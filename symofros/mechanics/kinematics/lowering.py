@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from symofros.description.joints.joint import Joint
 from symofros.description.values import Rotation, Value, Vector
 from symofros.expr.edges import Edge
 from symofros.expr.expression import Expression, lower
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Vec3
 from symofros.mechanics.kinematics.rotations import snapped, stated_rotation
-from symofros.mechanics.topology.coordinates import CoordinateMap
+from symofros.mechanics.topology.coordinates import CoordinateMap, coordinate_symbols, rate_keys, speed_keys
 from symofros.mechanics.topology.tree import Placement
 
 
@@ -36,9 +37,25 @@ class Lowering:
     def symbol(self, name: str) -> Edge:
         """The edge of a coordinate, speed, input, parameter or of t."""
         if name not in self._bindings:
-            slot = self.coordinates.symbols[name]
+            slot = self.coordinates.symbols.get(name) or self.coordinates.keys[name]
             self._bindings[name] = self.g.input(slot.group, slot.index)
         return self._bindings[name]
+
+    def coordinates_of(self, joint: Joint) -> tuple[Edge, ...]:
+        """The edges of a joint's coordinates."""
+        return tuple(map(self.symbol, coordinate_symbols(joint)))
+
+    def speeds_of(self, joint: Joint) -> tuple[Edge, ...]:
+        """The edges of a joint's speeds."""
+        return tuple(map(self._rate, speed_keys(joint)))
+
+    def rates_of(self, joint: Joint) -> tuple[Edge, ...]:
+        """The edges of the rates of a prescribed joint's speeds."""
+        return tuple(map(self._rate, rate_keys(joint)))
+
+    def _rate(self, key: str) -> Edge:
+        slot = self.coordinates.keys[key]
+        return self.g.input(slot.group, slot.index)
 
     def vector(self, vector: Vector) -> Vec3:
         """The edges of a vector."""

@@ -16,7 +16,7 @@ from symofros.expr.edges import ZERO
 from symofros.expr.expression import Expression, lower
 from symofros.expr.graph import Graph
 from symofros.mechanics.topology.conditions import Condition
-from symofros.mechanics.topology.coordinates import coordinate_names, speed_symbols
+from symofros.mechanics.topology.coordinates import coordinate_symbols, speed_symbols
 from symofros.mechanics.topology.frames import frame_remedy, frames_of
 from symofros.mechanics.topology.numbers import Numbers
 
@@ -61,8 +61,8 @@ def constraint_problems(
     """Constraints on frames, bodies and speeds that are not there, or that can't be bound."""
     joints = [body.joint for body in system.bodies if body.joint is not None]
     speeds = {name for joint in joints if not joint.prescribed for name in speed_symbols(joint)}
-    free = {name for joint in joints if not joint.prescribed for name in coordinate_names(joint)}
-    known = {name for joint in joints for name in coordinate_names(joint)} | {item.name for item in system.parameters}
+    free = {name for joint in joints if not joint.prescribed for name in coordinate_symbols(joint)}
+    known = {name for joint in joints for name in coordinate_symbols(joint)} | {item.name for item in system.parameters}
     for item in system.constraints:
         what, where = f"constraint '{item.name}'", system.origin.get(("constraint", item.name), "")
         if isinstance(item, Nonholonomic):

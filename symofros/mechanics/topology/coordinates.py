@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from symofros.base.names import TIME, rate_symbol, symbol_of
 from symofros.description.joints.joint import Joint
 from symofros.description.system import System
 from symofros.expr.graph import Slot
@@ -32,6 +33,11 @@ def coordinate_names(joint: Joint) -> tuple[str, ...]:
     return _names(joint, joint.traits.coordinate_suffixes)
 
 
+def coordinate_symbols(joint: Joint) -> tuple[str, ...]:
+    """Symbols of a joint's coordinates in formulas: their names, but for those that formulas reserve."""
+    return tuple(map(symbol_of, coordinate_names(joint)))
+
+
 def speed_names(joint: Joint) -> tuple[str, ...]:
     """Names of a joint's speeds: those of its coordinates, but for quasi-velocities."""
     suffixes = joint.traits.speed_suffixes
@@ -56,6 +62,20 @@ def rate_symbols(joint: Joint) -> tuple[str, ...]:
     return tuple(f"d{name}" for name in speed_symbols(joint))
 
 
+def speed_keys(joint: Joint) -> tuple[str, ...]:
+    """Symbols of a joint's speeds that nothing else can have, of which `speed_symbols` are short forms."""
+    if joint.traits.quasi_velocities:
+        return speed_names(joint)
+    return tuple(map(rate_symbol, coordinate_names(joint)))
+
+
+def rate_keys(joint: Joint) -> tuple[str, ...]:
+    """The same of the rates of a prescribed joint's speeds."""
+    if joint.traits.quasi_velocities:
+        return tuple(map(rate_symbol, speed_names(joint)))
+    return tuple(rate_symbol(name, 2) for name in coordinate_names(joint))
+
+
 @dataclass(frozen=True)
 class CoordinateMap:
     """Index map: names to indices of q, v, u, par.
@@ -66,6 +86,8 @@ class CoordinateMap:
         par_default: Values of the run-time parameters.
         constants: Values of the constant parameters, by name.
         symbols: Slots by the names that formulas use; constants are not among them.
+        keys: Slots of speeds and of prescribed rates by symbols that nothing else has; formulas may use them, too.
+        speed_symbols: What formulas call the speeds, in the order of v.
     """
 
     q: tuple[str, ...]
@@ -76,6 +98,8 @@ class CoordinateMap:
     par_default: tuple[float, ...]
     constants: dict[str, float]
     symbols: dict[str, Slot]
+    keys: dict[str, Slot]
+    speed_symbols: tuple[str, ...]
 
 
 def map_coordinates(system: System, joints: Sequence[Joint]) -> CoordinateMap:
@@ -97,13 +121,19 @@ def map_coordinates(system: System, joints: Sequence[Joint]) -> CoordinateMap:
         for name in (*coordinate_names(joint), *speed_symbols(joint), *rate_symbols(joint))
     )
     run_time = [parameter for parameter in system.parameters if not parameter.constant]
-    symbols = {name: Slot("q", i) for i, name in enumerate(q)}
-    symbols |= {name: Slot("v", i) for i, name in enumerate(s for joint in free for s in speed_symbols(joint))}
-    symbols |= {name: Slot("u", i) for i, name in enumerate(stated)}
     efforts = len(stated) + len(actuated)
-    symbols |= {name: Slot("u", efforts + i) for i, name in enumerate(prescribed)}
+    rates = tuple(name for joint in free for name in speed_symbols(joint))
+    symbols = {name: Slot("v", i) for i, name in enumerate(rates)}
+    keys = {name: Slot("v", i) for i, name in enumerate(name for joint in free for name in speed_keys(joint))}
+    symbols |= {symbol_of(name): Slot("u", efforts + i) for i, name in enumerate(prescribed)}
+    driven = [joint for joint in joints if joint.prescribed]
+    given = [name for joint in driven for name in (*coordinate_symbols(joint), *speed_keys(joint), *rate_keys(joint))]
+    keys |= {name: Slot("u", efforts + i) for i, name in enumerate(given)}
+    # Where a coordinate has the name of another's rate, formulas mean the coordinate, or are refused.
+    symbols |= {symbol_of(name): Slot("q", i) for i, name in enumerate(q)}
+    symbols |= {symbol_of(name): Slot("u", i) for i, name in enumerate(stated)}
     symbols |= {parameter.name: Slot("par", i) for i, parameter in enumerate(run_time)}
-    symbols["t"] = Slot("t", 0)
+    symbols[TIME] = Slot("t", 0)
     return CoordinateMap(
         q,
         v,
@@ -113,4 +143,6 @@ def map_coordinates(system: System, joints: Sequence[Joint]) -> CoordinateMap:
         tuple(float(parameter.value) for parameter in run_time),
         {parameter.name: float(parameter.value) for parameter in system.parameters if parameter.constant},
         symbols,
+        keys,
+        rates,
     )

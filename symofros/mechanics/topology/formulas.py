@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from typing import Literal, NamedTuple
 
+from symofros.base.names import TIME, quoted, symbol_of
 from symofros.description.beams.beam import MATRIX_ORDER, STATION, STRAINS, Beam, BeamLoad, Samples
 from symofros.description.constraints import Constraint, Coupling, Nonholonomic
 from symofros.description.entry_units import units_of
@@ -13,12 +14,20 @@ from symofros.description.forces import Connection, Load, Rotor
 from symofros.description.frames import Frame
 from symofros.description.joints.joint import Joint
 from symofros.description.joints.joint_kinds import CONSTANT_ENTRIES
+from symofros.description.quoting import two_meanings, unknown_symbol_remedy, without_quotes
 from symofros.description.system import Inertia, RigidBody, System
 from symofros.description.values import Value, symbols
 from symofros.errors import Problem, did_you_mean
-from symofros.mechanics.topology.coordinates import coordinate_names, joint_units, rate_symbols, speed_symbols
+from symofros.expr.expression import Expression, spelled
+from symofros.mechanics.topology.coordinates import (
+    coordinate_symbols,
+    joint_units,
+    rate_keys,
+    rate_symbols,
+    speed_keys,
+    speed_symbols,
+)
 
-TIME = "t"
 # What a formula may use: parameters alone; also coordinates; also t; also speeds and inputs; a general joint's own
 # coordinates; parameters and the station x of a beam; everything and x; the station xi = x/L alone.
 Scope = Literal["parameters", "coordinates", "configuration", "motion", "joint", "section", "spread", "shape"]
@@ -176,17 +185,18 @@ def _units_along_axis(label: str) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class _Scopes:
-    """The names that exist, by what they are."""
+    """The names that exist, by what they are; `both` are those of a coordinate and of another's rate as well."""
 
     parameters: frozenset[str]
     coordinates: frozenset[str]
     configuration: frozenset[str]
     motion: frozenset[str]
+    both: frozenset[str]
 
     def of(self, stated: Stated) -> frozenset[str]:
         if stated.scope == "joint":
             assert stated.joint is not None
-            return self.parameters | frozenset(stated.joint.coordinates)
+            return self.parameters | frozenset(coordinate_symbols(stated.joint))
         if stated.scope == "section":
             return self.parameters | {STATION}
         if stated.scope == "spread":
@@ -198,15 +208,14 @@ class _Scopes:
 
 def _known(system: System) -> _Scopes:
     parameters = frozenset(item.name for item in system.parameters)
-    configuration, motion = set(parameters) | {TIME}, {item.name for item in system.inputs}
-    for body in system.bodies:
-        if body.joint is not None:
-            configuration.update(coordinate_names(body.joint))
-            motion.update(speed_symbols(body.joint))
-            motion.update(rate_symbols(body.joint) if body.joint.prescribed else ())
-    return _Scopes(
-        parameters, frozenset(configuration - {TIME}), frozenset(configuration), frozenset(configuration | motion)
-    )
+    joints = [body.joint for body in system.bodies if body.joint is not None]
+    coordinates = frozenset(name for joint in joints for name in coordinate_symbols(joint))
+    rates = {name for joint in joints for name in speed_symbols(joint)}
+    rates |= {name for joint in joints if joint.prescribed for name in rate_symbols(joint)}
+    keys = {name for joint in joints for name in (*speed_keys(joint), *(rate_keys(joint) if joint.prescribed else ()))}
+    inputs = {symbol_of(item.name) for item in system.inputs}
+    placed = parameters | coordinates
+    return _Scopes(parameters, placed, placed | {TIME}, placed | {TIME} | inputs | rates | keys, coordinates & rates)
 
 
 _RULES: dict[Scope, str] = {
@@ -234,25 +243,67 @@ _REMEDIES: dict[Scope, str] = {
 
 
 def formula_problems(system: System, broken: frozenset[str]) -> Iterator[Problem]:
-    """Formulas that use unknown names, or names that exist but may not be used there."""
+    """Formulas that use unknown names, names that exist but may not be used there, or that could mean two things."""
     known = _known(system)
     for stated in stated_values(system):
+        if not isinstance(stated.value, Expression):
+            continue
         allowed = known.of(stated)
-        for name in sorted(symbols(stated.value) - allowed - broken):
-            where = system.origin.get(stated.key, "")
+        where = system.origin.get(stated.key, "")
+        unknown = sorted(symbols(stated.value) - allowed - broken)
+        for name in unknown:
             if name in known.motion:
-                yield Problem(
-                    f"{stated.what}: '{name}' may not be used here",
-                    f"'{stated.value}'",
-                    _RULES[stated.scope],
-                    stated.remedy or _REMEDIES[stated.scope],
-                    where,
-                )
+                remedy = stated.remedy or _REMEDIES[stated.scope]
+                if symbol_of(name) in allowed:
+                    remedy = f"the coordinate of that name is written {symbol_of(name)}"
+                rule = _RULES[stated.scope]
+                yield Problem(f"{stated.what}: '{name}' may not be used here", f"'{stated.value}'", rule, remedy, where)
             else:
-                remedy = did_you_mean(name, allowed) if allowed else f"declare it under parameters: {name}"
-                yield Problem(
-                    f"{stated.what}: unknown symbol '{name}'", f"'{stated.value}'", _RULES["motion"], remedy, where
-                )
+                what, remedy = f"{stated.what}: unknown symbol '{name}'", _declared(name, stated, allowed)
+                yield Problem(what, f"'{stated.value}'", _RULES["motion"], remedy, where)
+        if not unknown:
+            both = known.both if stated.scope in ("motion", "spread") else frozenset[str]()
+            yield from meaning_problems(stated.what, stated.value, allowed, both, where)
+
+
+def _declared(name: str, stated: Stated, allowed: frozenset[str]) -> str:
+    """The remedy for an unknown symbol of a description: what was meant, or to declare it."""
+    assert isinstance(stated.value, Expression)
+    if stated.scope == "shape":
+        return _REMEDIES["shape"]
+    near = unknown_symbol_remedy(name, stated.value.written, allowed) if allowed else ""
+    declare = f"declare it under parameters: {name}"
+    return f"{near} Otherwise {declare}" if near.endswith("?") else near or declare
+
+
+def meaning_problems(
+    what: str, formula: Value, allowed: frozenset[str], both: frozenset[str], where: str = ""
+) -> Iterator[Problem]:
+    """Formulas that can be read in two ways.
+
+    Args:
+        what: The object that the formula belongs to.
+        formula: The formula; as a text it is judged as it was written.
+        allowed: Symbols that it may use.
+        both: Symbols that are both a coordinate and the rate of another.
+        where: "file:line".
+    """
+    if not isinstance(formula, Expression):
+        return
+    for name in without_quotes(formula, both):
+        other = name.removeprefix("d")
+        yield Problem(
+            f"{what}: '{name}' has two meanings",
+            f"'{formula.written}'",
+            f"'{name}' is the coordinate of that name, and the rate of '{other}'",
+            f"write {quoted(name)} for the coordinate, d{quoted(other)} for the rate",
+            where,
+        )
+    meant = two_meanings(formula, allowed)
+    if meant is not None:
+        symbol, remedy = meant
+        rule = f"a name of other signs than letters, digits and _ stands between backquotes: {spelled(symbol)}"
+        yield Problem(f"{what}: it could also mean '{symbol}'", f"'{formula.written}'", rule, remedy, where)
 
 
 def power_problems(system: System, broken: frozenset[str]) -> Iterator[Problem]:

@@ -9,20 +9,20 @@ from weakref import WeakValueDictionary
 
 import numpy as np
 
+from symofros.base.names import TIME, symbol_of
 from symofros.description.beams.beam import STATION, Beam, BeamLoad
 from symofros.description.forces import Load
 from symofros.description.joints.joint import WORLD, Joint
 from symofros.description.system import Body, RigidBody, System
 from symofros.errors import Argument, DescriptionError, Problem, did_you_mean, first_of
 from symofros.expr.expression import CONSTANTS
-from symofros.expr.ops import FUNCTIONS
 from symofros.mechanics.topology.beams import beam_conditions, beam_number_problems, beam_problems
 from symofros.mechanics.topology.conditions import violations
 from symofros.mechanics.topology.constraints import anchor_problems, constraint_conditions, constraint_problems
-from symofros.mechanics.topology.coordinates import coordinate_names, speed_symbols
-from symofros.mechanics.topology.formulas import TIME, formula_problems, power_problems
+from symofros.mechanics.topology.coordinates import coordinate_symbols, rate_symbols, speed_symbols
+from symofros.mechanics.topology.formulas import formula_problems, power_problems
 from symofros.mechanics.topology.frames import frame_remedy, frames_of
-from symofros.mechanics.topology.joints import IDENTIFIER, joint_number_problems, joint_problems
+from symofros.mechanics.topology.joints import joint_number_problems, joint_problems
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.physics import inertia_problems, massless_tip_conditions
 from symofros.mechanics.topology.run_time import rotations_of, value_conditions
@@ -129,12 +129,15 @@ class _Checker:
 
     def _all_names(self) -> Iterator[tuple[str, str]]:
         yield "system", self.system.name
+        yield from (("parameter", item.name) for item in self.system.parameters)
+        yield from (("input", item.name) for item in self.system.inputs)
         for body in self.system.bodies:
             yield "body", body.name
             for frame in body.frames:
                 yield "frame", frame.name
         for joint in self.joints:
             yield "joint", joint.name
+            yield from (("coordinate", name) for name in joint.coordinates)
 
     def _joints_unique(self) -> Iterator[Problem]:
         bodies: dict[str, list[str]] = {}
@@ -166,40 +169,45 @@ class _Checker:
     def _symbols_unique(self) -> Iterator[Problem]:
         """Parameters, inputs, coordinates and speeds share the name space of formulas."""
         taken: dict[str, str] = {TIME: "the time", **dict.fromkeys(CONSTANTS, "a constant")}
-        taken |= dict.fromkeys(FUNCTIONS, "a function")
         if any(isinstance(body, Beam) for body in self.system.bodies):
             taken[STATION] = "the station along a beam"
-        stated = [("parameter", item.name) for item in self.system.parameters]
-        stated += [("input", item.name) for item in self.system.inputs]
-        for kind, name in stated:
-            if not IDENTIFIER.match(name):
-                yield Problem(
-                    f"{kind} '{name:.60}': not a legal name",
-                    repr(name)[:60],
-                    "a letter or underscore, then letters, digits, underscores",
-                    "rename it",
-                    self.where(kind, name),
-                )
-            elif name in taken:
+        # Inputs and joints of files may be called t or pi; a parameter is its author's own, and has no other symbol.
+        stated = [("parameter", item.name, item.name) for item in self.system.parameters]
+        stated += [("input", item.name, symbol_of(item.name)) for item in self.system.inputs]
+        for kind, name, symbol in stated:
+            if symbol in taken:
                 yield Problem(
                     f"{kind} '{name}': the name is taken",
-                    f"'{name}' is also {taken[name]}",
+                    f"'{name}' is also {taken[symbol]}",
                     "names that formulas use are unique",
                     "rename one of them",
                     self.where(kind, name),
                 )
-            taken.setdefault(name, f"a {kind}" if kind == "parameter" else "an input")
+            taken.setdefault(symbol, f"a {kind}" if kind == "parameter" else "an input")
         for joint in self.joints:
-            for role, names in (("coordinate", coordinate_names(joint)), ("speed", speed_symbols(joint))):
-                for name in names:
-                    if taken.get(name, "a coordinate") not in ("a coordinate", "a speed"):
-                        yield Problem(
-                            f"joint '{joint.name}': the name of its {role} is taken",
-                            f"'{name}' is also {taken[name]}",
-                            "names that formulas use are unique",
-                            "rename the joint or the other",
-                            self.where("joint", joint.name),
-                        )
+            yield from self._taken(joint, "coordinate", coordinate_symbols(joint), taken)
+        for joint in self.joints:
+            rates = speed_symbols(joint) + (rate_symbols(joint) if joint.prescribed else ())
+            yield from self._taken(joint, "speed", rates, taken)
+
+    def _taken(self, joint: Joint, role: str, symbols: Sequence[str], taken: dict[str, str]) -> Iterator[Problem]:
+        """Symbols of a joint that are taken already; those that are not are taken then.
+
+        A coordinate door may have the name of the rate of one called oor, which formulas alone could confuse; they are
+        refused where they do. Inputs, which rates of prescribed joints are, and speeds of their own are told by names.
+        """
+        shared = role == "speed" and not joint.prescribed and not joint.traits.quasi_velocities
+        for symbol in symbols:
+            owner = taken.get(symbol, "")
+            if owner and f"joint '{joint.name}'" not in owner and not (shared and " of joint " in owner):
+                yield Problem(
+                    f"joint '{joint.name}': the name of its {role} is taken",
+                    f"'{symbol}' is also {owner}",
+                    "names that formulas use are unique",
+                    "rename the joint or the other",
+                    self.where("joint", joint.name),
+                )
+            taken.setdefault(symbol, f"a {role} of joint '{joint.name}'")
 
     # The tree.
 

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Iterator
 
 import numpy as np
 
 from symofros.description.joints.joint import WORLD, Joint
 from symofros.errors import Problem, did_you_mean
-from symofros.mechanics.topology.coordinates import joint_sizes
+from symofros.mechanics.topology.coordinates import coordinate_symbols, joint_sizes
 from symofros.mechanics.topology.formulas import element_problems
 from symofros.mechanics.topology.numbers import ROTATION_TOLERANCE, Numbers
 
-IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 _MAX_GENERAL = 6
 _SAMPLES = 20
 
@@ -97,11 +95,11 @@ def _general_problems(joint: Joint, where: str) -> Iterator[Problem]:
             "name them under coordinates",
             where,
         )
-    if len(set(names)) < len(names) or not all(map(IDENTIFIER.match, names)):
+    if len(set(names)) < len(names):
         yield Problem(
-            f"joint '{joint.name}': unusable coordinate names",
+            f"joint '{joint.name}': coordinates of the same name",
             ", ".join(names)[:80],
-            "different names of letters, digits and underscores",
+            "coordinates of a joint have different names",
             "rename them",
             where,
         )
@@ -129,7 +127,7 @@ def _sampled_rotation(joint: Joint, numbers: Numbers, where: str) -> Iterator[Pr
     """A general joint's matrix is checked to be a rotation at random coordinates, always the same ones."""
     rng = np.random.default_rng(0)
     for _ in range(_SAMPLES):
-        q = dict(zip(joint.coordinates, rng.uniform(-1.0, 1.0, len(joint.coordinates)).tolist(), strict=True))
+        q = dict(zip(coordinate_symbols(joint), rng.uniform(-1.0, 1.0, len(joint.coordinates)).tolist(), strict=True))
         at = numbers.extended(q)
         R = at.rotation(joint.moving_rotation)
         error = float(np.abs(R @ R.T - np.eye(3)).max())

@@ -11,13 +11,21 @@ from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from math import isclose
 
+from symofros.base.names import TIME, symbol_of
 from symofros.base.units import NAMES, parse
 from symofros.description.beams.beam import STATION
 from symofros.description.system import System
 from symofros.errors import DescriptionError, Problem
 from symofros.expr.expression import Expression
-from symofros.mechanics.topology.coordinates import coordinate_names, joint_units, rate_symbols, speed_symbols
-from symofros.mechanics.topology.formulas import TIME, stated_values
+from symofros.mechanics.topology.coordinates import (
+    coordinate_symbols,
+    joint_units,
+    rate_keys,
+    rate_symbols,
+    speed_keys,
+    speed_symbols,
+)
+from symofros.mechanics.topology.formulas import stated_values
 
 # Powers of kg, m, s, A, K, mol and cd; None: open.
 Powers = tuple[Fraction, ...]
@@ -42,12 +50,12 @@ def unit_problems(system: System) -> Iterator[Problem]:
     declared += [("input", item.name, item.unit) for item in system.inputs]
     for kind, name, unit in declared:
         try:
-            known[name] = _powers(unit) if unit else None
+            known[symbol_of(name)] = _powers(unit) if unit else None
         except DescriptionError as error:
             where, fault = system.origin.get((kind, name), ""), error.problem
             yield Problem(f"{kind} '{name}': no such unit", fault.found, fault.rule, fault.remedy, where)
     known |= {TIME: _parsed("s"), STATION: _parsed("m"), "xi": _ONE} | _of_motion(system)
-    if not any(known.get(name) for _, name, _ in declared):
+    if not any(known.get(symbol_of(name)) for _, name, _ in declared):
         return
     for stated in stated_values(system):
         if not stated.units or not isinstance(stated.value, Expression) or stated.value.kind == "number":
@@ -70,17 +78,17 @@ _REMEDY = "change the formula, or the unit of a parameter in it; a parameter wit
 def _of_motion(system: System) -> dict[str, Powers | None]:
     """Units of coordinates, of speeds, and of prescribed rates."""
     known: dict[str, Powers | None] = {}
+    rates: dict[str, Powers | None] = {}
     for joint in (body.joint for body in system.bodies if body.joint is not None):
-        names = coordinate_names(joint)
         units = joint_units(joint)
-        known |= {name: _parsed(unit) for name, unit in zip(names, units, strict=True)}
-        speeds = speed_symbols(joint)
-        if len(speeds) == len(units) and not joint.traits.quasi_velocities:
-            known |= {name: _parsed(f"{unit}/s") for name, unit in zip(speeds, units, strict=True) if unit}
-            if joint.prescribed:
-                rates = rate_symbols(joint)
-                known |= {name: _parsed(f"{unit}/s^2") for name, unit in zip(rates, units, strict=False) if unit}
-    return known
+        known |= {name: _parsed(unit) for name, unit in zip(coordinate_symbols(joint), units, strict=True)}
+        if joint.traits.quasi_velocities:
+            continue
+        of_order = [("/s", speed_symbols(joint)), ("/s", speed_keys(joint))]
+        of_order += [("/s^2", rate_symbols(joint)), ("/s^2", rate_keys(joint))] if joint.prescribed else []
+        for per, names in of_order:
+            rates |= {name: _parsed(f"{unit}{per}") for name, unit in zip(names, units, strict=True) if unit}
+    return rates | known
 
 
 def _parsed(text: str) -> Powers | None:

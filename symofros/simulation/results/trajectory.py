@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 from symofros.base.arguments import checked
 from symofros.base.html import html_table
+from symofros.base.names import TIME, coordinate_of, speed_column, speed_of, symbol_of
 from symofros.errors import Problem, UnknownNameError, did_you_mean
 from symofros.runtime.beams import BeamBending
 from symofros.runtime.calls.kernel import Array
@@ -172,21 +173,20 @@ class Trajectory:
             UnknownNameError: There is none of that name.
         """
         names = self.model.names
-        if name in names.q:
-            return self.q[:, names.q.index(name)]
-        if name in names.u:
-            return self.u[:, names.u.index(name)]
-        for candidate in (name, name.removeprefix("d")):
-            if candidate in names.v:
-                return self.v[:, names.v.index(candidate)]
-        known = tuple(self.columns())
-        listed = ", ".join(known[:12]) + (", …" if len(known) > 12 else "")
+        name = str(name)
+        for known, values in ((names.q, self.q), (names.u, self.u)):
+            if found := coordinate_of(name, known):
+                return values[:, known.index(found)]
+        if found := speed_of(name, names.v):
+            return self.v[:, names.v.index(found)]
+        columns = tuple(self.columns())
+        listed = ", ".join(columns[:12]) + (", …" if len(columns) > 12 else "")
         raise UnknownNameError(
             Problem(
                 f"trajectory of '{self.model.record.name}': no '{str(name)[:80]}'",
                 listed,
                 "names are of coordinates, speeds and inputs",
-                did_you_mean(str(name)[:80], known) or "see trajectory.columns(); frames are in trajectory.frames",
+                did_you_mean(str(name)[:80], columns) or "see trajectory.columns(); frames are in trajectory.frames",
             )
         )
 
@@ -203,11 +203,13 @@ class Trajectory:
         return html_table(repr(self).strip("<>"), ("name", "range"), rows)
 
     def columns(self) -> dict[str, Array]:
-        """Time, coordinates, speeds and inputs by name (n); a speed that shares its coordinate's name bears a d."""
+        """Time, coordinates, speeds and inputs by name (n); a speed that shares its coordinate's name bears a d.
+
+        A coordinate called t is in the column "`t`".
+        """
         names = self.model.names
-        columns_by_name = {"t": self.t} | {name: self.q[:, i] for i, name in enumerate(names.q)}
-        for i, name in enumerate(names.v):
-            columns_by_name[f"d{name}" if name in names.q else name] = self.v[:, i]
+        columns_by_name = {TIME: self.t} | {symbol_of(name): self.q[:, i] for i, name in enumerate(names.q)}
+        columns_by_name |= {speed_column(name, names.q): self.v[:, i] for i, name in enumerate(names.v)}
         return columns_by_name | {
             (name if name not in columns_by_name else f"u.{name}"): self.u[:, i] for i, name in enumerate(names.u)
         }

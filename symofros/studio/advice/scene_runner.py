@@ -10,6 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
+from symofros.base.names import coordinate_of, speed_of
 from symofros.base.options import Options
 from symofros.compiler import compile_system, program_of
 from symofros.description.system import System
@@ -144,10 +145,10 @@ class SceneRunner:
         """
         q, v, names = model.neutral(), np.zeros(model.nv), model.names
         for name, value in self.scene.start.items():
-            if name in names.q:
-                q[names.q.index(name)] = value
-            elif name.removeprefix("d") in names.v:
-                v[names.v.index(name.removeprefix("d"))] = value
+            if coordinate := coordinate_of(name, names.q):
+                q[names.q.index(coordinate)] = value
+            elif speed := speed_of(name, names.v):
+                v[names.v.index(speed)] = value
             else:
                 known = (*names.q, *(f"d{speed}" for speed in names.v))
                 raise UnknownNameError(

@@ -11,6 +11,7 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from symofros.studio.viewer.playing.motion import read_motion
 from tests.late import require
 
 
@@ -102,3 +103,29 @@ def test_section_forces_of_a_swing_start_with_what_the_joint_transmits(tmp_path:
         forces["mz"]
     with pytest.raises(sf.UnknownNameError, match="no section forces of 'c'"):
         run.section_forces("c")
+
+
+def test_names_of_columns_are_told_apart_and_survive_files(tmp_path: Path) -> None:
+    """Commas, quotes, the name of the time, and a name that is the rate of another."""
+    names = ("t", 'a,"b', "door", "oor", "left-hip")
+    bodies = [
+        sf.RigidBody(name, sf.Joint(name, "revolute", axis=(0, 1, 0)), sf.Inertia(1, (0.1, 0, 0), (1, 1, 1)))
+        for name in names
+    ]
+    model = sf.compile(sf.System("named", bodies, inputs=[sf.Input("sin")]))
+    start = dict(zip(names, (0.1, 0.2, 0.3, 0.4, 0.5), strict=True))
+    run = sf.simulate(model, start, {"d`oor`": 4.0, "door": 3.0, "dleft-hip": 5.0}, 0.02, dt=0.01, u={"`sin`": "`t`"})
+    assert list(run.columns()) == [
+        *("t", "`t`", 'a,"b', "door", "oor", "left-hip"),
+        *("dt", 'da,"b', "ddoor", "d`oor`", "dleft-hip", "sin"),
+    ]
+    for name, index in (("door", 2), ("`left-hip`", 4), ("`t`", 0)):
+        np.testing.assert_array_equal(run[name], run.q[:, index])
+    for name, index in (("d`oor`", 3), ("ddoor", 2), ("d`left-hip`", 4), ("dleft-hip", 4)):
+        np.testing.assert_array_equal(run[name], run.v[:, index])
+    assert run.v[0].tolist() == [0.0, 0.0, 3.0, 4.0, 5.0] and run["sin"][0] == 0.1
+    for suffix in (".csv", ".parquet", ".npz"):
+        motion = read_motion(run.save(tmp_path / f"run{suffix}"), model)
+        np.testing.assert_array_equal(motion.q, run.q)
+    with open(run.save(tmp_path / "run.csv"), newline="") as stream:
+        assert next(csv.reader(stream)) == list(run.columns())

@@ -14,7 +14,7 @@ import symofros as sf
 from ...mechanics import shape_functions as families
 from ...mechanics.assembly import Assembly, Mover
 from ...mechanics.geometry import Array, Placement
-from ...mechanics.parts import coordinate_symbols, rate_symbols, speed_symbols
+from ...mechanics.parts import coordinate_symbols, input_symbol, rate_symbols, rates_by_coordinate, speed_symbols
 from ...mechanics.rod import STRAINS
 from ...mechanics.shape_functions import Shape
 from ..description import evaluate
@@ -256,17 +256,22 @@ class Translation:
 
     def _values(self, symbols: Symbols) -> dict[str, Any]:
         """What formulas of loads stand for."""
-        values = self._numbers | {item.name: symbols.u[i] for i, item in enumerate(self.system.inputs)}
+        values = self._numbers | {input_symbol(item.name): symbols.u[i] for i, item in enumerate(self.system.inputs)}
         for described in self.assembly.free_joints:
-            names, speeds = coordinate_symbols(described.joint), speed_symbols(described.joint)
+            for speeds in (speed_symbols(described.joint), rates_by_coordinate(described.joint)[0]):
+                values |= {name: symbols.seen[described.v.start + i] for i, name in enumerate(speeds)}
+        for described in self.assembly.free_joints:  # Rather than the rate of another joint, if both have one name.
+            names = coordinate_symbols(described.joint)
             values |= {name: symbols.q[described.q.start + i] for i, name in enumerate(names)}
-            values |= {name: symbols.seen[described.v.start + i] for i, name in enumerate(speeds)}
         i = k = 0
         for joint in self.assembly.driven_joints:
             for name in coordinate_symbols(joint):
                 values[name], i = symbols.s[i], i + 1
-            for speed, rate in zip(speed_symbols(joint), rate_symbols(joint), strict=True):
-                values[speed], values[rate], k = symbols.ds[k], symbols.dds[k], k + 1
+            plain, others = (speed_symbols(joint), rate_symbols(joint)), rates_by_coordinate(joint)
+            for speed, rate, same_speed, same_rate in zip(*plain, *others, strict=True):
+                values |= dict.fromkeys((speed, same_speed), symbols.ds[k])
+                values |= dict.fromkeys((rate, same_rate), symbols.dds[k])
+                k += 1
         return values
 
     def _loads(self, mover: Mover, length: float, values: Mapping[str, Any]) -> tuple[Line, ...]:

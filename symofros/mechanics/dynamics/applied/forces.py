@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
 from symofros.base.manifold import ManifoldKind
 from symofros.expr.derivative import along
 from symofros.expr.edges import ONE, ZERO, Edge
+from symofros.expr.graph import Graph
 from symofros.expr.quaternion import Quaternion
 from symofros.mechanics.dynamics.acceleration import Wrench, no_wrench
 from symofros.mechanics.dynamics.applied.beam_loads import beam_loads
@@ -17,7 +18,7 @@ from symofros.mechanics.dynamics.jourdain import virtual_power
 from symofros.mechanics.kinematics.frames import FrameKinematics
 from symofros.mechanics.kinematics.links import MovingBeam, TreeKinematics
 from symofros.mechanics.kinematics.lowering import Lowering
-from symofros.mechanics.topology.coordinates import coordinate_names, speed_symbols
+from symofros.mechanics.topology.coordinates import joint_sizes
 from symofros.mechanics.topology.tree import Link
 
 
@@ -33,7 +34,7 @@ def generalized_forces(kinematics: TreeKinematics, frames: FrameKinematics) -> l
     """
     g, system = kinematics.g, kinematics.tree.system
     total = _joint_forces(kinematics)
-    index = {name: kinematics.lowering.coordinates.symbols[name].index for name in _free_speeds(kinematics)}
+    index = {name: i for i, name in enumerate(kinematics.lowering.coordinates.speed_symbols)}
     for power in system.virtual_power:
         for speed, formula in power.forces:
             total[index[speed]] = g.add(total[index[speed]], kinematics.lowering.value(formula))
@@ -89,14 +90,10 @@ def stored_energy(kinematics: TreeKinematics, frames: FrameKinematics) -> Edge:
     return g.sum([*parts, connection_energy(kinematics, frames)])
 
 
-def _free_speeds(kinematics: TreeKinematics) -> list[str]:
-    return [name for link in kinematics.tree.links if not link.joint.prescribed for name in speed_symbols(link.joint)]
-
-
 def _coordinate(lowering: Lowering, link: Link, index: int) -> Edge:
     """The coordinate an element acts on; the zero where the joint has fewer (dampers do without)."""
-    names = coordinate_names(link.joint)
-    return lowering.symbol(names[index]) if index < len(names) else ZERO
+    q = lowering.coordinates_of(link.joint)
+    return q[index] if index < len(q) else ZERO
 
 
 def _joint_forces(kinematics: TreeKinematics) -> list[Edge]:
@@ -112,7 +109,7 @@ def _joint_forces(kinematics: TreeKinematics) -> list[Edge]:
         start, size = link.v
         if size == 0:
             continue  # Forces on a prescribed motion do no virtual power.
-        speeds = [lowering.symbol(name) for name in speed_symbols(link.joint)]
+        speeds = lowering.speeds_of(link.joint)
         for k, value in enumerate(link.joint.effort):
             add(start + k, lowering.value(value))
         for element in link.joint.elements:
@@ -133,7 +130,7 @@ def _gradient(kinematics: TreeKinematics, energy: Edge) -> list[Edge]:
 def rates_per_speed(kinematics: TreeKinematics) -> list[dict[Edge, Edge]]:
     """For each speed, the rates of coordinates per unit of it: the columns of N in q' = N v."""
     return [
-        _RATES[link.joint.traits.manifold](kinematics.lowering, coordinate_names(link.joint), k)
+        _RATES[link.joint.traits.manifold](kinematics.g, kinematics.lowering.coordinates_of(link.joint), k)
         for link in kinematics.tree.links
         for k in range(link.v[1])
     ]
@@ -142,10 +139,10 @@ def rates_per_speed(kinematics: TreeKinematics) -> list[dict[Edge, Edge]]:
 def prescribed_rates_per_speed(kinematics: TreeKinematics) -> list[dict[Edge, Edge]]:
     """For each speed of a prescribed motion, the rates of its coordinates per unit of it."""
     return [
-        _RATES[link.joint.traits.manifold](kinematics.lowering, coordinate_names(link.joint), k)
+        _RATES[link.joint.traits.manifold](kinematics.g, kinematics.lowering.coordinates_of(link.joint), k)
         for link in kinematics.tree.links
         if link.joint.prescribed
-        for k in range(len(speed_symbols(link.joint)))
+        for k in range(joint_sizes(link.joint)[1])
     ]
 
 
@@ -154,37 +151,33 @@ def coordinate_rates(kinematics: TreeKinematics) -> dict[Edge, Edge]:
     g, lowering = kinematics.g, kinematics.lowering
     rates: dict[Edge, Edge] = {}
     for link in kinematics.tree.links:
-        names, speeds = coordinate_names(link.joint), speed_symbols(link.joint)
-        for k, speed in enumerate(speeds):
-            for coordinate, slope in _RATES[link.joint.traits.manifold](lowering, names, k).items():
-                part = g.mul(slope, lowering.symbol(speed))
+        q = lowering.coordinates_of(link.joint)
+        for k, speed in enumerate(lowering.speeds_of(link.joint)):
+            for coordinate, slope in _RATES[link.joint.traits.manifold](g, q, k).items():
+                part = g.mul(slope, speed)
                 rates[coordinate] = g.add(rates.get(coordinate, ZERO), part)
     return rates
 
 
-def _own_rate(lowering: Lowering, names: tuple[str, ...], k: int) -> dict[Edge, Edge]:
-    return {lowering.symbol(names[k]): ONE}
+def _own_rate(g: Graph, q: tuple[Edge, ...], k: int) -> dict[Edge, Edge]:
+    return {q[k]: ONE}
 
 
-def _quaternion(lowering: Lowering, names: Sequence[str]) -> Quaternion:
-    return Quaternion.of(lowering.g, *(lowering.symbol(name) for name in names))
-
-
-def _ball_rate(lowering: Lowering, names: tuple[str, ...], k: int) -> dict[Edge, Edge]:
+def _ball_rate(g: Graph, q: tuple[Edge, ...], k: int) -> dict[Edge, Edge]:
     """Rates of a quaternion per unit angular velocity along axis k of D."""
-    quaternion = _quaternion(lowering, names)
+    quaternion = Quaternion.of(g, *q)
     return dict(zip(quaternion, quaternion.rate(k), strict=True))
 
 
-def _free_rate(lowering: Lowering, names: tuple[str, ...], k: int) -> dict[Edge, Edge]:
+def _free_rate(g: Graph, q: tuple[Edge, ...], k: int) -> dict[Edge, Edge]:
     """Rates of position and quaternion per unit body velocity: the position moves along column k of R_PD."""
     if k >= 3:
-        return _ball_rate(lowering, names[3:], k - 3)
-    direction = _quaternion(lowering, names[3:]).matrix.column(k)
-    return {lowering.symbol(name): edge for name, edge in zip(names[:3], direction, strict=True)}
+        return _ball_rate(g, q[3:], k - 3)
+    direction = Quaternion.of(g, *q[3:]).matrix.column(k)
+    return dict(zip(q[:3], direction, strict=True))
 
 
-_RATES: dict[ManifoldKind, Callable[[Lowering, tuple[str, ...], int], dict[Edge, Edge]]] = {
+_RATES: dict[ManifoldKind, Callable[[Graph, tuple[Edge, ...], int], dict[Edge, Edge]]] = {
     "linear": _own_rate,
     "quaternion": _ball_rate,
     "pose": _free_rate,

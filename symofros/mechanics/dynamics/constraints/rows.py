@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from symofros.base.names import TIME
 from symofros.description.constraints import AXES, AxisName, Closure, Coupling, KnifeEdge, Nonholonomic, Rod, Rolling
 from symofros.description.forces import Anchor
 from symofros.expr.derivative import along, directional
@@ -20,7 +21,6 @@ from symofros.expr.vector import Mat3, Vec3
 from symofros.mechanics.dynamics.applied.forces import coordinate_rates, rates_per_speed
 from symofros.mechanics.kinematics.frames import FrameKinematics
 from symofros.mechanics.kinematics.links import TreeKinematics
-from symofros.mechanics.topology.coordinates import rate_symbols, speed_symbols
 from symofros.mechanics.topology.tree import frame_of
 
 
@@ -165,9 +165,7 @@ class Constraints:
         rates = coordinate_rates(self.kinematics)
         rate = directional(g, [phi], rates)[0]
         for joint in (link.joint for link in self.kinematics.tree.links if link.joint.prescribed):
-            rates |= zip(
-                map(lowering.symbol, speed_symbols(joint)), map(lowering.symbol, rate_symbols(joint)), strict=True
-            )
+            rates |= zip(lowering.speeds_of(joint), lowering.rates_of(joint), strict=True)
         yield Row(phi, tuple(G), rate, -directional(g, [rate], rates)[0])
 
     # Rolling and sliding.
@@ -208,11 +206,11 @@ class Constraints:
         g, lowering = self.g, self.kinematics.lowering
         G = [ZERO] * self.nv
         for name, formula in constraint.coefficients:
-            k = lowering.coordinates.symbols[name].index
+            k = lowering.coordinates.speed_symbols.index(name)
             G[k] = g.add(G[k], lowering.value(formula))
         speeds = [g.input("v", k) for k in range(self.nv)]
         rate = g.sub(g.sum(g.mul(a, v) for a, v in zip(G, speeds, strict=True)), lowering.value(constraint.right))
-        seeds = coordinate_rates(self.kinematics) | {lowering.symbol("t"): ONE}
+        seeds = coordinate_rates(self.kinematics) | {lowering.symbol(TIME): ONE}
         yield Row(ZERO, tuple(G), rate, -directional(g, [rate], seeds)[0])
 
     def _row(self, phi: Edge, rate: Edge, gamma: Edge, parts: Sequence[_Part]) -> Row:

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from symofros.base.names import symbol_in
 from symofros.description.parser import ExpressionError, tokenize
 from symofros.description.yaml.schema import json_schema
+from symofros.expr.expression import spelled
 from symofros.studio.editor.editing.data_edits import Path
 
 _FORMULA = "#/$defs/Formula"
@@ -54,23 +56,26 @@ def _alternatives(schema: dict[str, Any]) -> Iterator[dict[str, Any]]:
 
 def names_in(text: str) -> list[str]:
     """The names that a formula uses, functions left out; none of a text that is no formula."""
-    return [name for name, _ in _names(text)]
+    return [name for name, _, _ in _names(text)]
 
 
 def with_names(text: str, new: Mapping[str, str]) -> str:
-    """A formula with names exchanged; all else of its text stays."""
+    """A formula with names exchanged, between backquotes where they need them; all else of its text stays."""
     done, at = "", 0
-    for name, start in _names(text):
-        done += text[at:start] + new.get(name, name)
-        at = start + len(name)
+    for name, start, end in _names(text):
+        done += text[at:start] + (spelled(new[name]) if name in new else text[start:end])
+        at = end
     return done + text[at:]
 
 
-def _names(text: str) -> Iterator[tuple[str, int]]:
+def _names(text: str) -> Iterator[tuple[str, int, int]]:
+    """Symbols of a formula, and where each begins and ends."""
     try:
         tokens = tokenize(text)
     except ExpressionError:
         return
     for (kind, name, start), following in zip(tokens, tokens[1:], strict=False):
-        if kind == "name" and following[:2] != ("sign", "("):
-            yield name, start
+        if kind == "quoted":
+            yield symbol_in(name), start, start + len(name)
+        elif kind == "name" and following[:2] != ("sign", "("):
+            yield name, start, start + len(name)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from symofros.base.names import TIME, rate_symbol, symbol_of
 from symofros.description.beams.beam import STATION
 from symofros.description.joints.joint import WORLD, Joint
 from symofros.description.joints.joint_kinds import KINDS
@@ -12,10 +13,13 @@ from symofros.description.yaml.files import DIAGRAM
 from symofros.description.yaml.schema import default_joint_name
 from symofros.errors import DescriptionError
 from symofros.expr.expression import CONSTANTS
-from symofros.expr.ops import FUNCTIONS
-from symofros.mechanics.topology.coordinates import coordinate_names, rate_symbols, speed_symbols
-from symofros.mechanics.topology.formulas import TIME
-from symofros.mechanics.topology.joints import IDENTIFIER
+from symofros.mechanics.topology.coordinates import (
+    coordinate_symbols,
+    rate_keys,
+    rate_symbols,
+    speed_keys,
+    speed_symbols,
+)
 from symofros.studio.editor.editing.data_edits import Edit, Path, edited, fault
 from symofros.studio.editor.editing.diagram_renaming import renaming_in_diagram
 from symofros.studio.editor.editing.formulas import formulas, with_names
@@ -43,7 +47,8 @@ def renaming(data: Any, edit: Edit) -> list[Edit]:
         return _joint(data, path[:3], new)
     if len(path) == 5 and path[0] == "bodies" and path[2:4] == ("joint", "coordinates"):
         old = str(_at(data, path))
-        names = {f"{rate}{old}": f"{rate}{new}" for rate in ("", "d", "dd")}
+        names = {symbol_of(f"{rate}{old}"): symbol_of(f"{rate}{new}") for rate in ("", "d", "dd")}
+        names |= {rate_symbol(old, order): rate_symbol(new, order) for order in (1, 2)}
         return [*_symbols(data, path, names), Edit("set", path, new)]
     edited(data, edit)  # Whether it can be done at all.
     edits: list[Edit] = []
@@ -52,7 +57,8 @@ def renaming(data: Any, edit: Edit) -> list[Edit]:
     elif len(path) == 4 and path[0] == "bodies" and path[2] == "frames":
         edits = _frame(data, str(path[1]), str(path[3]), new)
     elif len(path) == 2 and path[0] in _BARE:
-        edits = _symbols(data, path, {str(path[1]): new})
+        of = symbol_of if path[0] == "inputs" else str
+        edits = _symbols(data, path, {of(str(path[1])): of(new)})
     return [*edits, edit]
 
 
@@ -138,19 +144,20 @@ def symbols_of(joint: dict[str, Any], name: str) -> tuple[str, ...]:
         stated = Joint(name, kind=kind)
     except DescriptionError:
         return ()
-    return (*coordinate_names(stated), *speed_symbols(stated), *rate_symbols(stated))
+    of_motion = (coordinate_symbols, speed_symbols, rate_symbols, speed_keys, rate_keys)
+    return tuple(name for names in of_motion for name in names(stated))
 
 
 def taken(data: Any) -> set[str]:
     """The names that formulas could use."""
-    names = {TIME, *CONSTANTS, *FUNCTIONS, *_mapping(data, "parameters"), *_mapping(data, "inputs")}
+    names = {TIME, *CONSTANTS, *_mapping(data, "parameters"), *map(symbol_of, _mapping(data, "inputs"))}
     for body, entry in _mapping(data, "bodies").items():
         if _mapping(entry, "beam"):
             names.add(STATION)
         joint = _mapping(entry, "joint")
         stated = joint.get("coordinates") if joint.get("kind") == "general" else None
         if isinstance(stated, list):
-            names.update(f"{rate}{name}" for rate in ("", "d", "dd") for name in stated)
+            names.update(symbol_of(f"{rate}{name}") for rate in ("", "d", "dd") for name in stated)
         elif joint:
             names.update(symbols_of(joint, str(joint.get("name", default_joint_name(body)))))
     return names
@@ -160,7 +167,7 @@ def _symbols(data: Any, at: Path, new: dict[str, str]) -> list[Edit]:
     """Names exchanged in all formulas, and where speeds are keys.
 
     Raises:
-        EditError: A new name is taken, and could not be told from the other one afterwards; or none that formulas know.
+        EditError: A new name is taken, and could not be told from the other one afterwards; or can't be printed.
     """
     clash = sorted(set(new.values()) & (taken(data) - new.keys()))
     if clash:
@@ -170,21 +177,16 @@ def _symbols(data: Any, at: Path, new: dict[str, str]) -> list[Edit]:
         changed = with_names(text, new)
         if changed != text:
             edits.append(Edit("set", path, changed))
-    for path, speeds in speed_keys(data):
+    for path, speeds in speeds_as_keys(data):
         edits += [Edit("rename", (*path, speed), key=new[speed]) for speed in speeds if speed in new]
-    odd = [name for name in new.values() if not all(map(IDENTIFIER.match, name.split(".")))]
-    if odd and (edits or at[0] in _BARE):
-        raise fault(
-            at,
-            f"'{odd[0][:50]}'",
-            "a letter or underscore, then letters, digits, underscores, where formulas use a name",
-            "choose another name",
-        )
+    odd = [name for name in new.values() if not name or not name.isprintable()]
+    if odd:
+        raise fault(at, f"{odd[0]!r:.50}", "a name has characters that can be printed", "choose another name")
     # A formula within a mapping is changed under its old key, before the key is.
     return edits
 
 
-def speed_keys(data: Any) -> Iterator[tuple[Path, list[str]]]:
+def speeds_as_keys(data: Any) -> Iterator[tuple[Path, list[str]]]:
     """Every mapping whose keys are speeds: its path, and these."""
     for section, inner in _BY_SPEED:
         for name, entry in _mapping(data, section).items():

@@ -88,7 +88,7 @@ def trace(text: str, edit: Edit) -> tuple[str, Path | None]:
         if not path:
             raise fault(
                 edit.path,
-                "what the format refuses, such as a key '<<'",
+                "what the format refuses, such as nesting of many levels",
                 "edits keep the document readable",
                 "choose other names",
             )

@@ -16,6 +16,7 @@ import numpy as np
 
 import symofros as sf
 from symofros.base.functions import exported
+from symofros.base.names import quoted, speed_column, speed_of, symbol_of
 from symofros.compiler import Compilation, compile_system
 from symofros.description.yaml.files import write_yaml
 from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
@@ -167,8 +168,9 @@ def _motion(run: sf.Trajectory, tree: SpanningTree) -> Json:
         for i, name in enumerate(group):
             own = units.get(name, "")
             unit = own if kind == "q" else (f"{own}/s" if own else "") if kind == "v" else ""
-            prefix = {"v": "d", "u": "u."}.get(kind, "")  # As in files of trajectories.
-            label = f"{prefix}{name}" if name in names.q else name
+            # As in files of trajectories.
+            inputs = f"u.{name}" if name in names.q else name
+            label = {"q": symbol_of(name), "v": speed_column(name, names.q), "u": inputs}[kind]
             series.append({"name": label, "kind": kind, "unit": unit, "values": _numbers(values[:, i])})
     cost, end = run.statistics, run.outcome
     return {
@@ -213,7 +215,7 @@ def page(request: Json, tell: Tell) -> Json:
     tell(0, 2, "reading")
     system, options = system_of(request), request.get("options", {})
     start = {str(name): _number(x, str(name)) for name, x in (options.get("q0") or {}).items()}
-    start |= {f"d{name}": _number(x, str(name)) for name, x in (options.get("v0") or {}).items()}
+    start |= {f"d{quoted(str(name))}": _number(x, str(name)) for name, x in (options.get("v0") or {}).items()}
     stepping: Json = {"method": options["method"]} if options.get("method") else {}
     stepping |= {key: _number(options[key], key) for key in ("dt", "rtol") if options.get(key) is not None}
     tell(1, 2, "compiling for WebAssembly; the first time takes a minute or two")
@@ -251,8 +253,8 @@ def _vector(names: tuple[str, ...], given: Any, default: Any, what: str) -> Any:
     """Values by name over defaults; a speed may bear its coordinate's d."""
     values = np.array(default, dtype=np.float64)
     for name, number in (given or {}).items():
-        plain = name if name in names else name.removeprefix("d")
-        if plain not in names:
+        plain = speed_of(str(name), names)
+        if not plain:
             raise UnknownNameError(
                 Problem(
                     f"no {what} '{name}'", ", ".join(names[:12]), f"a {what} of the model", did_you_mean(name, names)

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arrays import numeric
+from symofros.base.names import TIME, symbol_of
 from symofros.base.npz import TooLargeError, read_npz
 from symofros.errors import Problem, ShapeError, SymofrosError
 from symofros.runtime.model import ArrayLike, Model
@@ -207,7 +208,7 @@ def _read_parquet(file: Path, model: Model) -> PlayedMotion:
             )
         ) from None
     with parquet.ParquetFile(file) as stored:
-        wanted = {"t", *model.names.q, *model.names.u, *(f"u.{name}" for name in model.names.u)}
+        wanted = {TIME, *map(symbol_of, model.names.q), *model.names.u, *(f"u.{name}" for name in model.names.u)}
         columns = [name for name in stored.schema_arrow.names if name in wanted]
         # A column of one value, repeated, takes a few bytes whatever its length.
         if stored.metadata.num_rows * len(columns) > MAX_NUMBERS:
@@ -217,7 +218,7 @@ def _read_parquet(file: Path, model: Model) -> PlayedMotion:
 
 
 def _from_columns(columns: Mapping[str, Array], file: Path, model: Model) -> PlayedMotion:
-    missing = [name for name in ("t", *model.names.q) if name not in columns]
+    missing = [name for name in (TIME, *map(symbol_of, model.names.q)) if name not in columns]
     if missing:
         _refuse(
             file.name,
@@ -233,8 +234,8 @@ def _from_columns(columns: Mapping[str, Array], file: Path, model: Model) -> Pla
             u[:, i] = numeric(f"{file.name}: {column}", columns[column])
     q = np.empty((n, model.nq))
     for i, name in enumerate(model.names.q):
-        q[:, i] = numeric(f"{file.name}: {name}", columns[name])
-    return _checked(model, columns["t"], q, u, None, file.name)
+        q[:, i] = numeric(f"{file.name}: {name}", columns[symbol_of(name)])
+    return _checked(model, columns[TIME], q, u, None, file.name)
 
 
 def _checked(

@@ -43,6 +43,15 @@ def test_there_and_back_gives_the_first_bytes_and_no_problems(name: str, path: P
     assert renamed(there, back, old) == TEXTS[name]
 
 
+@pytest.mark.parametrize("odd", ["brand-new", "a b", "L/R", "sin", "a::b", "1e3", "b`q", "ü: [x, #]"])
+@pytest.mark.parametrize(("name", "path", "old"), CASES[::40], ids=lambda x: str(x) if isinstance(x, str) else None)
+def test_names_that_formulas_quote_go_there_and_back(name: str, path: Path, old: str, odd: str) -> None:
+    there = renamed(TEXTS[name], path, odd)
+    assert not analyse(FILES[name], there).problems
+    back = path if "joint" in path else (*path[:-1], odd)
+    assert YamlText(renamed(there, back, old)).data == DATA[name]  # YAML's own quotes stay.
+
+
 def test_a_renamed_model_is_the_same_mechanism(tmp_path) -> None:
     text = TEXTS["friction_arm"]
     for path, old in reversed(names_of("friction_arm")):  # What is in a body before the body.
@@ -110,12 +119,11 @@ def test_a_frame_is_renamed_on_its_own_body_only() -> None:
     [
         (("parameters", "L"), "Lx", "'Lx'"),
         (("parameters", "L"), "q_arm", "'q_arm' is taken"),
-        (("parameters", "L"), "sin", "'sin' is taken"),
-        (("parameters", "L"), "a b", "'a b'"),
+        (("parameters", "L"), "t", "'t' is taken"),
+        (("parameters", "L"), "a\nb", "'a\\nb'"),
         (("bodies", "arm"), "hand", "'hand'"),
         (("bodies", "arm"), "world", "'world'"),
         (("bodies", "arm", "joint"), "L", "'L' is taken"),
-        (("bodies", "arm", "joint"), "no-symbol", "'no-symbol'"),
         (("bodies", "zz"), "y", "no 'zz'"),
     ],
 )
@@ -123,6 +131,12 @@ def test_a_name_that_would_be_confused_is_refused(path: Path, to: str, says: str
     with pytest.raises(EditError) as caught:
         renamed(TEXT, path, to)
     assert says in caught.value.problem.found
+
+
+def test_joints_take_the_names_that_formulas_reserve() -> None:
+    done = renamed(TEXT, ("bodies", "arm", "joint"), "t")
+    assert "cos(`t`)" in done and "-dt*L" in done
+    assert renamed(done, ("bodies", "arm", "joint"), "q_arm").count("q_arm") >= TEXT.count("q_arm")
 
 
 def test_formulas_are_found_by_the_schema() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import reduce
 from typing import Any
 
 import pytest
@@ -200,7 +201,7 @@ def test_the_comment_above_an_entry_goes_with_it_and_the_head_stays() -> None:
         (edit("rename", "bodies", "a", key="b"), "'b'"),
         (edit("rename", "bodies", "b", "loads", 0, key="x"), "an entry of a list"),
         (edit("move", "bodies", "a", index=2), "index 2"),
-        (edit("set", "bodies", "a", value={"<<": 1}), "'<<'"),
+        (edit("set", "bodies", "a", value=reduce(lambda inner, _: {"a": inner}, range(60), {})), "nesting"),
     ],
 )
 def test_an_edit_without_sense_is_refused(wrong: Edit, says: str) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 from symofros.description.yaml.schema import VERSION, default_joint_name
 from symofros.studio.editor.editing.data_edits import SECTIONS, Edit, Path, edited, fault, same
 from symofros.studio.editor.editing.formulas import formulas, names_in
-from symofros.studio.editor.editing.renaming import anchors, renaming, speed_keys, symbols_of, taken
+from symofros.studio.editor.editing.renaming import anchors, renaming, speeds_as_keys, symbols_of, taken
 
 Json = dict[str, Any]
 
@@ -69,7 +69,7 @@ def _belongs(section: str, name: str, entry: Any, bodies: set[str], own: set[str
     alone = {section: {name: entry}}
     held = [anchor.get("body") for _, anchor in anchors(alone)]
     used = {symbol for _, text in formulas(alone) for symbol in names_in(text)}
-    used |= {speed for _, speeds in speed_keys(alone) for speed in speeds}
+    used |= {speed for _, speeds in speeds_as_keys(alone) for speed in speeds}
     if held:
         return all(body in bodies for body in held) and not used & foreign
     return bool(used & own) and not used & foreign

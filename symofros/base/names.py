@@ -1,0 +1,90 @@
+"""Names that users choose against names that formulas reserve: what formulas, columns and tables call a thing."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection
+
+QUOTE = "`"
+TIME = "t"
+# What these mean in formulas is fixed: the time, and a number.
+RESERVED = frozenset({TIME, "pi"})
+
+# A name between backquotes; d and dd before it are those of speeds and their rates, what follows is a component.
+QUOTED_NAME = r"d{0,2}`(?:[^`]|``)+`(?:\.[A-Za-z_][A-Za-z0-9_]*)*(?:\[\d{1,6}\])?"
+_QUOTED = re.compile(QUOTED_NAME, re.ASCII)
+_RATE = re.compile(r"d{1,2}`(?:[^`]|``)+`")
+_PARTS = re.compile(r"(d*)`((?:[^`]|``)+)`(.*)", re.DOTALL)
+
+
+def quoted(name: str) -> str:
+    """A name between backquotes; one within it is doubled."""
+    return f"{QUOTE}{name.replace(QUOTE, 2 * QUOTE)}{QUOTE}"
+
+
+def name_of(text: str) -> str:
+    """The name that a text stands for where nothing but a name can be: d`left-hip`, `dleft-hip`, dleft-hip."""
+    return "".join(_parts(text) or (text,))
+
+
+def symbol_in(text: str) -> str:
+    """The symbol that a name with backquotes stands for in a formula: left-hip, or d`left-hip` of a rate."""
+    rate, name = _parts(text) or ("", text)
+    return rate_symbol(name, len(rate)) if rate else symbol_of(name)
+
+
+def rate_symbol(coordinate: str, order: int = 1) -> str:
+    """The symbol of a coordinate's rate that nothing else can have: a coordinate door may be there besides oor."""
+    return "d" * order + quoted(coordinate)
+
+
+def is_rate_symbol(symbol: str) -> bool:
+    """Whether a symbol is of that form."""
+    return _RATE.fullmatch(symbol) is not None
+
+
+def _parts(text: str) -> tuple[str, str] | None:
+    """The d or dd of a rate and the name of what it is the rate of; None of a text without backquotes."""
+    match = _PARTS.fullmatch(text) if _QUOTED.fullmatch(text) else None
+    if match is None:
+        return None
+    rate, inner, rest = match.groups()
+    return rate, inner.replace(2 * QUOTE, QUOTE) + rest
+
+
+def symbol_of(name: str) -> str:
+    """The symbol of a coordinate, speed or input in formulas and columns: its name, but "`t`" for one called t.
+
+    Within the program a symbol is the plain name, whatever signs it holds; formulas print it with backquotes where
+    they need them. A reserved name bears them everywhere, as it would mean something else without; so does the name in
+    `rate_symbol`, which the symbol dNAME is short for.
+    """
+    return quoted(name) if name in RESERVED else name
+
+
+def coordinate_of(text: str, coordinates: Collection[str]) -> str:
+    """The coordinate, input or parameter that a text names, with backquotes or without; "" where there is none."""
+    plain = text if text in coordinates else name_of(text) if text.startswith(QUOTE) else ""
+    return plain if plain in coordinates else ""
+
+
+def speed_of(text: str, speeds: Collection[str]) -> str:
+    """The speed that a text names, itself or as the rate of its coordinate (dq1, d`left-hip`); "" where there is none.
+
+    Args:
+        text: As a user wrote it.
+        speeds: Names of speeds, those of their coordinates where they are their rates.
+    """
+    plain = coordinate_of(text, speeds)
+    if plain:
+        return plain
+    if not text.startswith("d"):
+        text = name_of(text)
+    return coordinate_of(text[1:], speeds) if text.startswith("d") else ""
+
+
+def speed_column(speed: str, coordinates: Collection[str]) -> str:
+    """What columns and formulas call a speed: dNAME of its coordinate, or d`NAME` where dNAME is a coordinate."""
+    if speed not in coordinates:
+        return speed
+    return f"d{speed}" if f"d{speed}" not in coordinates else rate_symbol(speed)
