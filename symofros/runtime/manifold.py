@@ -48,7 +48,7 @@ def integrate(segments: Sequence[Segment], q: Array, dq: Array) -> Array:
 
 def retract(segments: Sequence[Segment], q0: Array, theta: Array) -> Array:
     """The configurations (..., nq) at coordinates theta (..., nv) of the charts about q0 (..., nq)."""
-    if all(segment.kind == "linear" for segment in segments):
+    if _is_flat(segments):
         return np.asarray(q0 + theta)
     q = np.empty(np.broadcast_shapes(q0.shape[:-1], theta.shape[:-1]) + (q0.shape[-1],))
     for segment in segments:
@@ -73,7 +73,7 @@ def difference(segments: Sequence[Segment], q0: Array, q1: Array) -> Array:
         q0: (..., nq).
         q1: (..., nq).
     """
-    if all(segment.kind == "linear" for segment in segments):
+    if _is_flat(segments):
         return np.asarray(q1 - q0)
     nv = sum(segment.speeds for segment in segments)
     dq = np.empty(np.broadcast_shapes(q0.shape[:-1], q1.shape[:-1]) + (nv,))
@@ -95,6 +95,8 @@ def difference(segments: Sequence[Segment], q0: Array, q1: Array) -> Array:
 
 def chart_rate(segments: Sequence[Segment], theta: Array, v: Array) -> Array:
     """The rates of theta (..., nv) in a chart, where the speeds are v (..., nv)."""
+    if _is_flat(segments):
+        return np.array(v if v.shape == theta.shape else np.broadcast_arrays(theta, v)[1])
     rate = np.empty(np.broadcast_shapes(theta.shape, v.shape))
     for segment in segments:
         j, n = segment.v, segment.size
@@ -135,6 +137,11 @@ def random_state(record: ModelRecord, rng: np.random.Generator) -> tuple[Array, 
             start = segment.q + segment.translations
             q[start : start + 4] = normalized(rng.standard_normal(4))
     return q, rng.standard_normal(len(record.v_names))
+
+
+def _is_flat(segments: Sequence[Segment]) -> bool:
+    """Whether there are linear coordinates alone, in the order of the speeds."""
+    return all(segment.kind == "linear" for segment in segments)
 
 
 def _pose_speeds(segment: Segment) -> tuple[slice, slice]:

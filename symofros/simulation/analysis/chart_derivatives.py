@@ -30,14 +30,16 @@ class BlockDiagonal:
     blocks: tuple[Array, ...]
 
     def times(self, at: Any, x: Array) -> Array:
-        """The product of the matrix with index `at` with columns x (nv, k)."""
+        """The product of the matrix with index `at` with columns x (nv, k); x itself where there are no blocks."""
         return self._product(x, [block[at] for block in self.blocks])
 
     def transposed_times(self, at: Any, x: Array) -> Array:
-        """The product of the transposed matrix with index `at` with a vector x (nv)."""
+        """The product of the transposed matrix with index `at` with a vector x (nv); x itself without blocks."""
         return self._product(x, [block[at].T for block in self.blocks])
 
     def _product(self, x: Array, blocks: Sequence[Array]) -> Array:
+        if not self.rows:
+            return x if self.diagonal else np.zeros_like(x)
         y = self.diagonal * x
         for rows, block in zip(self.rows, blocks, strict=True):
             y[rows] = block @ x[rows]

@@ -127,10 +127,10 @@ class Rollout:
                 y_v[i] = out["by_v"] + chart.rate_by_v.transposed_times((n, i), slope_theta)
                 y_theta[i] = chart.by_theta.transposed_times((n, i), out["by_q"])
                 y_theta[i] += chart.rate_by_theta.transposed_times((n, i), slope_theta)
-                x_q += chart.by_start.transposed_times((n, i), out["by_q"])
+                x_q = x_q + chart.by_start.transposed_times((n, i), out["by_q"])
                 by_u[n] += out["by_u"]
                 by_par += out["by_par"]
-            x_q += weights_q[n]
+            x_q = x_q + weights_q[n]
             x_v += y_v.sum(axis=0) + weights_v[n]
         return MotionGradient(x_q, x_v, by_u, by_par)
 
