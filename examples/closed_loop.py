@@ -1,9 +1,9 @@
 """A closed loop: a four-bar linkage is assembled, asked for the forces in its pins, and let go."""
 
 import numpy as np
+from symofros.reference_models import MODELS
 
 import symofros as sf
-from reference_models import MODELS
 
 linkage = MODELS["four_bar"]
 model = sf.compile(linkage)

@@ -7,9 +7,9 @@ import warnings
 
 import numpy as np
 from gymnasium.utils.env_checker import check_env
+from symofros.reference_models import MODELS
 
 import symofros as sf
-from reference_models import MODELS
 
 gym = sf.interop.gymnasium
 model = sf.compile(MODELS["planar_robot"])

@@ -1,9 +1,9 @@
 """Inverse kinematics: six joints put the hand of a Puma 560 where it is wanted, and follow a line with it."""
 
 import numpy as np
+from symofros.reference_models import MODELS
 
 import symofros as sf
-from reference_models import MODELS
 
 model = sf.compile(MODELS["puma560"], sf.Options(functions=["frame_pose", "frame_jacobian"]))
 frame = model.names.frames[-1]

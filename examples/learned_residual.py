@@ -5,9 +5,9 @@ motion predicted with it stays near the measured one. Needs the extra `torch`.
 """
 
 import torch
+from symofros.reference_models import MODELS
 
 import symofros as sf
-from reference_models import MODELS
 
 torch.manual_seed(0)
 dynamics = sf.interop.torch.Dynamics(sf.compile(MODELS["cart_pole"]))

@@ -5,9 +5,9 @@ Needs SciPy, for the Riccati equation.
 
 import numpy as np
 from scipy.linalg import solve_continuous_are
+from symofros.reference_models import MODELS
 
 import symofros as sf
-from reference_models import MODELS
 
 model = sf.compile(MODELS["cart_pole"])
 upright = np.zeros(2)

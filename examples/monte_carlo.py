@@ -1,9 +1,9 @@
 """Monte Carlo: a pendulum on a cart, released 2000 times with random masses and lengths; the batch runs in C."""
 
 import numpy as np
+from symofros.reference_models import MODELS
 
 import symofros as sf
-from reference_models import MODELS
 
 model = sf.compile(MODELS["cart_pole"])
 print("parameters", model.parameters)

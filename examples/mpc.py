@@ -6,9 +6,9 @@ the dynamics. Needs the extra `casadi`.
 
 import casadi as ca
 import numpy as np
+from symofros.reference_models import MODELS
 
 import symofros as sf
-from reference_models import MODELS
 
 model = sf.compile(MODELS["cart_pole"])  # x: the cart [m], q: the pole's angle, 0 upright [rad], F: the force [N]
 dynamics = sf.interop.casadi.Dynamics(MODELS["cart_pole"])

@@ -8,9 +8,9 @@ from dataclasses import replace
 
 import casadi as ca
 import numpy as np
+from symofros.reference_models import MODELS
 
 import symofros as sf
-from reference_models import MODELS
 
 # One shape function a link; without the motors' friction, which controllers compensate by a block of its own.
 bodies = [replace(b, bend_y=1) if isinstance(b, sf.Beam) else b for b in MODELS["planar_robot"].bodies]

@@ -10,15 +10,18 @@ from functools import cache
 from pathlib import Path
 
 import symofros as sf
-from reference_models.closed import spatial
-from reference_models.closed.four_bars import n_four_bar
-from reference_models.closed.two_arms import two_arms
-from reference_models.flexible.arm import flexible_arm
-from reference_models.flexible.station import flexible_mss
-from reference_models.rigid.chain import chain
-from reference_models.rigid.random_tree import KINDS, SERIES_KINDS, random_tree
-from reference_models.rigid.station import mss, spdm, ssrms
+from symofros.harness import claim
 
+from .closed import spatial
+from .closed.four_bars import n_four_bar
+from .closed.two_arms import two_arms
+from .flexible.arm import flexible_arm
+from .flexible.station import flexible_mss
+from .rigid.chain import chain
+from .rigid.random_tree import KINDS, SERIES_KINDS, random_tree
+from .rigid.station import mss, spdm, ssrms
+
+claim(__name__)
 _FOLDER = Path(__file__).parent
 
 _BUILT: dict[str, Callable[[], sf.System]] = {

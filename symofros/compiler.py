@@ -36,6 +36,7 @@ from symofros.generator.units import UnitCompiler
 from symofros.mechanics.dynamics.functions import Request
 from symofros.mechanics.topology.beams import omitted_rotary_inertia
 from symofros.mechanics.topology.numbers import Numbers
+from symofros.mechanics.topology.remarks import rounded_rotations
 from symofros.mechanics.topology.run_time import RunTimeCheck
 from symofros.mechanics.topology.tree import SpanningTree, build_tree
 from symofros.runtime.build.toolchain import NO_COMPILER, Toolchain, find_toolchain
@@ -167,7 +168,8 @@ class Compilation:
     def model(self) -> Model:
         """The functions that the options name, callable; where they name none, each is generated when first called."""
         chosen = self.requests  # A description that can't be a mechanism is refused here, not at the first call.
-        for text in inconsistencies(self.system):
+        rounded = (text for text in rounded_rotations(self.system) if text not in self.system.notes)
+        for text in (*inconsistencies(self.system), *rounded):
             warnings.warn(text, InconsistentModelWarning, stacklevel=3)
         units = self._units(_choose_toolchain(self.options))
         if self.options.functions is None:

@@ -25,6 +25,7 @@ class Problem:
         rule: Rule that must hold.
         remedy: Remedy: the change to make.
         where: "file:line", or "" for an object built in Python.
+        extra: Extra of this distribution whose package is not installed; "" where that is not the fault.
     """
 
     what: str
@@ -32,6 +33,21 @@ class Problem:
     rule: str = ""
     remedy: str = ""
     where: str = ""
+    extra: str = ""
+
+    @classmethod
+    def of_extra(cls, what: str, found: str, rule: str, extra: str, instead: str = "") -> Problem:
+        """The problem that a package is not installed, which an extra brings.
+
+        Args:
+            what: What was asked.
+            found: What is missing.
+            rule: Why it is needed.
+            extra: The extra that brings it.
+            instead: What serves without it.
+        """
+        remedy = f"pip install 'symofros[{extra}]'"
+        return cls(what, found, rule, f"{remedy}, or {instead}" if instead else remedy, extra=extra)
 
     def __str__(self) -> str:
         """The message: one line, then the parts that are given, indented."""
@@ -73,6 +89,11 @@ class SymofrosError(Exception):
     def problem(self) -> Problem:
         """The first problem, the only one of most errors."""
         return self.problems[0]
+
+    @property
+    def extra(self) -> str:
+        """The extra that is not installed, where that is all that is wrong; else ""."""
+        return self.problem.extra if len(self.problems) == 1 else ""
 
     def __reduce__(self) -> tuple[type[SymofrosError], tuple[tuple[Problem, ...]]]:
         """Pickle by the problems, so that the error crosses process borders whole."""
@@ -132,7 +153,7 @@ class CompilerMissingWarning(UserWarning):
 
 
 class InconsistentModelWarning(UserWarning):
-    """A model leaves out terms of the order of those it keeps; it is for studies only."""
+    """A model leaves out terms of the order of those it keeps, or a matrix is a rotation to a few digits only."""
 
 
 def near_name(name: str, known: Iterable[str]) -> str:

@@ -19,6 +19,7 @@ from symofros.errors import DescriptionError, Problem, did_you_mean
 from symofros.mechanics.topology.graph import find_problems
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.physics import has_physical_inertia
+from symofros.mechanics.topology.remarks import rounded_rotations
 from symofros.mechanics.topology.units import unit_problems
 
 _PATHS = "check the path; a relative one starts at the current folder"
@@ -47,7 +48,8 @@ def load(
         arguments: xacro only: values of its <xacro:arg>.
 
     Returns:
-        The system; its `notes` say what an importer ignored or changed, and where units of formulas do not fit.
+        The system; its `notes` say what an importer ignored or changed, where units of formulas do not fit, and which
+        matrices of few digits were replaced by the nearest rotations.
 
     Raises:
         DescriptionError: With every problem of the file and of the mechanism it describes.
@@ -75,7 +77,8 @@ def load_with_sources(
         raise DescriptionError(in_order([*reading.problems, *problems]))
     system = reading.system
     units = [f"{problem.what}: {problem.found}; {problem.rule}" for problem in unit_problems(system)]
-    return replace(system, notes=(*system.notes, *units)) if units else system, reading.sources
+    remarks = [*units, *rounded_rotations(system)]
+    return replace(system, notes=(*system.notes, *remarks)) if remarks else system, reading.sources
 
 
 def _waived(reading: Reading, waive: Collection[str]) -> Reading:

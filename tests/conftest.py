@@ -17,7 +17,14 @@ import hypothesis
 import numpy as np
 import pytest
 
+from symofros.harness import claim
+from tests.absent import CACHED, by_need, summary
 from tests.progress import Progress
+
+# The names of a checkout, whatever is installed; under those of a wheel, which pages and examples have, they are the
+# same modules.
+claim("validation")
+claim("reference_models")
 
 # Tests assert no time; Hypothesis would, of each example, and a machine that does other work exceeds it.
 hypothesis.settings.register_profile("untimed", deadline=None, suppress_health_check=[hypothesis.HealthCheck.too_slow])
@@ -67,6 +74,21 @@ def pytest_sessionstart(session: pytest.Session) -> None:
     gc.disable()
     if session.config.getoption("numprocesses", None) and session.config.pluginmanager.has_plugin("terminalreporter"):
         session.config.pluginmanager.register(Progress(session.config.get_terminal_writer()))
+
+
+def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:
+    """In one line, how much was left out for which option and for which extra; which tests, in pytest's cache."""
+    skipped = [
+        (report.nodeid, str(report.longrepr[2]))
+        for report in terminalreporter.stats.get("skipped", [])
+        if isinstance(report.longrepr, tuple)
+    ]
+    needs = by_need(skipped)
+    if said := summary(needs):
+        terminalreporter.write_line(said)
+    cache = getattr(config, "cache", None)
+    if cache is not None:
+        cache.set(CACHED, {need: sorted(set(tests)) for need, tests in needs.items() if need.startswith("extra ")})
 
 
 def pytest_collection_finish() -> None:

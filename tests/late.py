@@ -28,6 +28,15 @@ class LateModule:
 def late(name: str, extra: str = "") -> Any:
     """A module for the tests of a file; they are skipped where it is of an extra that is not installed."""
     if extra and find_spec(name) is None:
-        reason = f"the package {name} is not installed: pip install 'symofros[{extra}]'"
-        pytest.skip(reason, allow_module_level=True)
+        pytest.skip(needs_extra(extra, name), allow_module_level=True)
     return LateModule(name)
+
+
+def needs_extra(extra: str, package: str) -> str:
+    """The reason to skip what a package of an extra is missing for; the summary of a run counts these by extra."""
+    return f"needs the extra '{extra}': the package {package} is not installed"
+
+
+def require(package: str, extra: str) -> Any:
+    """A package; the test, or the file, that asks for it is skipped where its extra is not installed."""
+    return pytest.importorskip(package, reason=needs_extra(extra, package))

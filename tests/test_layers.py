@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import subprocess
 import sys
 from collections.abc import Callable, Collection, Iterable, Iterator
@@ -30,13 +31,16 @@ def table(text: str) -> dict[str, set[str]]:
 # "errors" stands for errors.py, and so on.
 ALLOWED = table("""
     errors:
+    # Where the harness is, by name: it is loaded by those who are asked for it, and by nobody else.
+    harness: errors
+    pytest_plugin: errors harness
     base: errors
     native:
     expr: errors
     description: base errors expr
     mechanics.beams: errors expr description
     mechanics.topology: base errors expr description mechanics.beams
-    mechanics.kinematics: errors expr description mechanics.beams mechanics.topology
+    mechanics.kinematics: base errors expr description mechanics.beams mechanics.topology
     mechanics.dynamics: base errors expr description mechanics.beams mechanics.topology
         mechanics.kinematics
     generator.passes: base expr
@@ -77,7 +81,7 @@ ALLOWED = table("""
         simulation diagrams exports __init__
     # The editor checks documents itself, and hands the rest to workers that use the front doors.
     studio.editor: base errors expr description mechanics.beams mechanics.topology generator.passes
-        runtime compiler simulation diagrams diagrams.files exports studio.viewer __init__
+        runtime compiler simulation diagrams diagrams.files exports studio.viewer harness __init__
     # Passes left out in turn, for studies: their context managers reach into every stage.
     generator.ablation: base expr mechanics.kinematics mechanics.dynamics generator.passes generator.codegen
         runtime
@@ -91,14 +95,16 @@ ALLOWED = table("""
 # The same of the harness: what a check is made of ...
 HARNESS = table("""
     mechanics:
+    references:
+    program:
     contract:    mechanics
-    inputs:      contract mechanics
+    inputs:      references contract mechanics
     adapters:    contract mechanics
     comparison:  adapters contract mechanics
-    procedures:  comparison contract mechanics
-    check:       procedures comparison adapters inputs contract mechanics
-    worker_pool: check adapters inputs
-    reporting:   mechanics
+    procedures:  references comparison contract mechanics
+    checking:    references procedures comparison adapters inputs contract mechanics
+    worker_pool: checking adapters inputs
+    reporting:   program mechanics
 """)
 # ... and what builds on it: any of the above, and these others.
 STUDIES = table("""
@@ -122,8 +128,12 @@ STUDIES = table("""
     dashboard:   adversary cross_check cuda engines environments campaigns diagrams accuracy timing passes stability
                  studies pareto mutation
 """)
-# The oracle answers for itself: of the harness it knows how joints come apart, nothing else.
-MAY_USE = HARNESS | {name: others | set(HARNESS) for name, others in STUDIES.items()} | {"oracle": {"mechanics"}}
+# The oracle answers for itself: of the harness it knows how joints come apart, and the models, nothing else.
+MAY_USE = (
+    HARNESS
+    | {name: others | set(HARNESS) for name, others in STUDIES.items()}
+    | {"oracle": {"mechanics", "references"}, "__init__": {"cross_check"}}
+)
 
 ENGINES = {route.package for route in ROUTES.values()} - {""}
 # Folder of validation/adapters -> the engine that it alone may import.
@@ -140,6 +150,13 @@ def import_statements(path: Path) -> tuple[ast.Import | ast.ImportFrom, ...]:
     )
 
 
+def absolute(path: Path, node: ast.ImportFrom) -> str:
+    """The module that a statement of a file imports from, in a checkout."""
+    package = path.relative_to(ROOT).parent.parts
+    above = package[: len(package) + 1 - node.level] if node.level else ()
+    return ".".join([*above, *filter(None, [node.module])])
+
+
 @cache
 def imported(path: Path) -> tuple[str, ...]:
     modules: list[str] = []
@@ -147,8 +164,7 @@ def imported(path: Path) -> tuple[str, ...]:
         if isinstance(node, ast.Import):
             modules += (alias.name for alias in node.names)
         else:
-            assert node.level == 0, f"{path}: relative import"
-            module = node.module or ""
+            module = absolute(path, node)
             if module in ("validation", "validation.adapters"):  # What is taken from them may be a layer.
                 modules += (f"{module}.{alias.name}" for alias in node.names)
             else:
@@ -170,6 +186,7 @@ def layer(module: str) -> str:
 
 SOURCES = sorted((ROOT / "symofros").rglob("*.py"))
 HARNESS_SOURCES = sorted((ROOT / "validation").rglob("*.py"))
+REFERENCE_SOURCES = sorted((ROOT / "reference_models").rglob("*.py"))
 
 
 def check_all(paths: Iterable[Path], faults: Callable[[Path], Iterable[str]]) -> None:
@@ -193,6 +210,50 @@ def test_imports_run_one_way() -> None:
     check_all(SOURCES, faults)
 
 
+# Names of modules that are installed under another name than that of their folder.
+_NAMED = re.compile(r"(symofros\.)?(validation|reference_models)(\.\w+)*")
+_BY_NAME = {"import_module", "find_spec", "files", "run_module"}
+# The harness's name is told by one; the other's judges run in a copy of the repository, which is a checkout.
+_MAY_NAME = {"symofros/harness.py", "validation/mutation/study.py"}
+
+
+def test_modules_with_two_names_are_named_in_one_place() -> None:
+    """What a wheel installs within `symofros` finds itself by relative imports, and others find it by `harness.py`."""
+
+    def faults(path: Path) -> Iterator[str]:
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.Constant) and isinstance(node.value, str):
+                if "." in node.value and _NAMED.fullmatch(node.value) and not node.value.endswith(".py"):
+                    yield f"names {node.value}"
+            elif isinstance(node, ast.Call) and ast.unparse(node.func).rpartition(".")[2] in _BY_NAME:
+                for value in node.args:
+                    if isinstance(value, ast.Constant) and _NAMED.fullmatch(str(value.value)):
+                        yield f"finds {value.value} by name"
+
+    sources = (*SOURCES, *HARNESS_SOURCES, *REFERENCE_SOURCES)
+    check_all([path for path in sources if path.relative_to(ROOT).as_posix() not in _MAY_NAME], faults)
+
+
+def test_the_package_imports_absolutely_and_what_is_installed_within_it_relatively() -> None:
+    """The reference models are stated by their name for type checkers alone, who see a checkout."""
+
+    def faults(path: Path) -> Iterator[str]:
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
+                told.update(map(id, node.body))
+            if isinstance(node, ast.ImportFrom) and node.level and path in SOURCES:
+                yield f"line {node.lineno}: a relative import"
+            if isinstance(node, ast.Import | ast.ImportFrom) and path not in SOURCES:
+                names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else [node.module or ""]
+                absolute_ones = isinstance(node, ast.Import) or not node.level
+                wrong = {name for name in names if _NAMED.fullmatch(name)} if absolute_ones else set()
+                if wrong and not (id(node) in told and wrong <= {n for n in wrong if n.startswith("reference_models")}):
+                    yield f"line {node.lineno}: {', '.join(wrong)}: not relative"
+
+    told: set[int] = set()  # Statements for type checkers; a walk comes to them after the condition.
+    check_all((*SOURCES, *HARNESS_SOURCES, *REFERENCE_SOURCES), faults)
+
+
 def test_sympy_is_at_the_doors_only() -> None:
     """Where its expressions come in, and where people read them."""
     doors = {"symofros/expr/freeze.py", "symofros/exports/equations/formulas.py"}
@@ -202,7 +263,8 @@ def test_sympy_is_at_the_doors_only() -> None:
 
 # What the harness, as any tool beside the package, may import of it: the rest may change without notice.
 # Its command line is one program with the package's, and refuses in the same words.
-PUBLIC = {"symofros", "symofros.blocks", "symofros.tools", "symofros.commands.grammar"}
+# Its own name in a process is told by the package, which starts it.
+PUBLIC = {"symofros", "symofros.blocks", "symofros.tools", "symofros.commands.grammar", "symofros.harness"}
 PACKAGE_MODULES = {".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__") for path in SOURCES}
 
 
@@ -211,11 +273,10 @@ def test_the_harness_imports_public_modules_only() -> None:
         for node in import_statements(path):
             if isinstance(node, ast.Import):
                 modules = {alias.name for alias in node.names}
-            elif isinstance(node, ast.ImportFrom) and node.module is not None:
-                packages = {f"{node.module}.{alias.name}" for alias in node.names} & PACKAGE_MODULES
-                modules = packages | ({node.module} if len(packages) < len(node.names) else set())
             else:
-                continue
+                module = absolute(path, node)
+                packages = {f"{module}.{alias.name}" for alias in node.names} & PACKAGE_MODULES
+                modules = packages | ({module} if len(packages) < len(node.names) else set())
             yield from {module for module in modules if module.partition(".")[0] == "symofros"} - PUBLIC
 
     check_all(HARNESS_SOURCES, faults)
@@ -278,9 +339,9 @@ def _imported_modules(path: Path, known: Collection[str]) -> set[str]:
     for node in import_statements(path):
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom) and node.module is not None:
-            of_package = {f"{node.module}.{alias.name}" for alias in node.names}
-            names |= of_package & set(known) or {node.module}
+        else:
+            module = absolute(path, node)
+            names |= {f"{module}.{alias.name}" for alias in node.names} & set(known) or {module}
     return names & set(known)
 
 

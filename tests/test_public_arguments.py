@@ -103,6 +103,7 @@ CALLS: dict[str, Callable[[], tuple[Callable[..., Any], dict[str, Any]]]] = {
     "linearize": lambda: (model().linearize, {"q": Q, "v": V, "u": U}),
     "frame_pose": lambda: (model().frame_pose, {"frame": "tip", "q": Q}),
     "frame_jacobian": lambda: (model().frame_jacobian, {"frame": "tip", "q": Q}),
+    "regressor": lambda: (model().regressor, {"q": Q, "v": V, "a": V}),
     "bind": lambda: (model().bind, {"name": "mass_matrix"}),
     "evaluate": lambda: (model().evaluate, {"name": "mass_matrix", "q": Q}),
     "vjp": lambda: (model().vjp, {"name": "bias", "q": Q, "v": V, "h_bar": V}),

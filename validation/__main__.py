@@ -4,47 +4,51 @@ from __future__ import annotations
 
 import difflib
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cache
 from importlib import import_module
 from types import ModuleType
 from typing import Any
 
 import typer
+from typer.core import TyperCommand
 
 import symofros as sf
 from symofros.commands.grammar import BAD_INPUT, Group, program
+
+from .commands import COMMANDS, EXTRAS
 
 
 def imported(name: str) -> ModuleType:
     """A module of the harness; where a package that it needs is not installed, that is said, and the program ends."""
     try:
-        return import_module(name)
+        return import_module(f".{name}", __package__)
     except ModuleNotFoundError as error:
         missing = (error.name or "").partition(".")[0]
-        if missing in ("", "validation", "symofros"):
+        if missing in ("", "symofros", str(__package__).partition(".")[0]):
             raise
-        stated = f"no module {missing}", "the harness is an extra", "pip install 'symofros[validation]'"
+        extra = EXTRAS.get(missing, "validation")
+        stated = f"no module {missing}", f"the extra '{extra}' brings it", f"pip install 'symofros[{extra}]'"
         print(sf.Problem("the harness: a package is not installed", *stated), file=sys.stderr)
         raise SystemExit(BAD_INPUT) from None
 
 
 @cache
-def studies() -> Mapping[str, Any]:
-    """The commands beside `check`, by name; this imports the studies and with them all engines."""
-    return typer.main.get_group(imported("validation.commands").app).commands
-
-
-@cache
-def campaign() -> Any:
-    """The commands of campaigns alone: each of their processes would import the studies."""
-    app = program()
-    imported("validation.campaigns.command").register(app)
-    return typer.main.get_group(app).commands["campaign"]
+def command(name: str) -> Any:
+    """A command by its name; this imports its module, and with it the engines that it asks."""
+    module, single = imported(COMMANDS[name].module), program()
+    if hasattr(module, "register"):
+        module.register(single)
+    else:
+        imported("reporting.command").add_command(single, module.TOPIC)
+    return typer.main.get_group(single).commands[name]
 
 
 class Commands(Group):
-    """`check` at hand, the other commands when they are asked for. Typer's own copy of Click has no public types."""
+    """Commands of the table. Typer's own copy of Click has no public types."""
+
+    _listing = False
 
     def parse_args(self, ctx: Any, args: list[str]) -> Any:
         """Options without a command are those of `check`."""
@@ -53,29 +57,49 @@ class Commands(Group):
 
     def list_commands(self, ctx: Any) -> list[str]:
         """Names of all commands."""
-        return [*super().list_commands(ctx), *studies()]
+        return [*COMMANDS]
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """The command that arguments begin with; another name is refused with the nearest."""
-        if self.get_command(ctx, args[0]) is None and not ctx.resilient_parsing:
-            names = self.list_commands(ctx)
-            near = difflib.get_close_matches(args[0], names, n=1)
+        if args[0] not in COMMANDS and not ctx.resilient_parsing:
+            near = difflib.get_close_matches(args[0], COMMANDS, n=1)
             remedy = f"did you mean '{near[0]}'?" if near else "check MODEL cross-checks a model"
-            print(sf.Problem(f"no command '{args[0]}'", args[0], ", ".join(names), remedy), file=sys.stderr)
+            print(sf.Problem(f"no command '{args[0]}'", args[0], ", ".join(COMMANDS), remedy), file=sys.stderr)
             raise SystemExit(BAD_INPUT)
         return super().resolve_command(ctx, args)
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         """A command by its name."""
-        known = super().get_command(ctx, cmd_name)
-        return known or (campaign() if cmd_name == "campaign" else studies().get(cmd_name))
+        if cmd_name not in COMMANDS:
+            return None
+        if self._listing:
+            return TyperCommand(cmd_name, help=COMMANDS[cmd_name].summary, rich_markup_mode=None)
+        return command(cmd_name)
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """The list of all commands in the help."""
+        with self._names_alone():
+            super().format_commands(ctx, formatter)
+
+    def shell_complete(self, ctx: Any, incomplete: str) -> Any:
+        """Names of commands that begin so."""
+        with self._names_alone():
+            return super().shell_complete(ctx, incomplete)
+
+    @contextmanager
+    def _names_alone(self) -> Iterator[None]:
+        """Commands are asked for to be listed, which imports none."""
+        self._listing = True
+        try:
+            yield
+        finally:
+            self._listing = False
 
 
 if __name__ == "__main__" and not {"--help", "--json"} & set(sys.argv):
     # Engines take seconds to load on a busy machine: something is said before.
     print("loading the engines", file=sys.stderr, flush=True)
 app = program(cls=Commands, add_completion=False, no_args_is_help=False, pretty_exceptions_enable=False)
-imported("validation.reporting.command").add_command(app, imported("validation.cross_check.report").TOPIC)
 
 
 @app.callback()

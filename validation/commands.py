@@ -1,19 +1,94 @@
-"""The commands beside `check`: their modules load engines, so they are imported when one of them is asked for."""
+"""The commands by name: where each is, and what it does in a line; none is imported before it is asked for."""
 
 from __future__ import annotations
 
-from symofros.commands.grammar import program
+from dataclasses import dataclass
 
-from .campaigns import command as campaign
-from .dashboard import command as dashboard
-from .dashboard.catalogue import TOPICS
-from .reporting.command import add_command
-from .truth_data import command as truth
 
-app = program()
-for topic in TOPICS.values():
-    if topic.name != "check":
-        add_command(app, topic)
-campaign.register(app)
-dashboard.register(app)
-truth.register(app)
+@dataclass(frozen=True)
+class Command:
+    """One command.
+
+    Attributes:
+        module: Its module, from this package on; it has a TOPIC, or a function `register`.
+        summary: First sentence of its help, for lists: to read it off the module would import every engine.
+    """
+
+    module: str
+    summary: str
+
+
+COMMANDS = {
+    "check": Command("cross_check.report", "Compare our C of each MODEL with every engine that can represent it."),
+    "oracle": Command(
+        "studies.reports.oracle",
+        "Compare with SymPy's derivations by Lagrange and by Kane, in extended precision.",
+    ),
+    "mutation": Command(
+        "studies.reports.mutation",
+        "Plant single faults in generated programs; the cross-check must catch every one that matters.",
+    ),
+    "mutants": Command(
+        "mutation.report",
+        "Plant single faults in the source, Python and C: `check` or the tests must see each that changes a result.",
+    ),
+    "fuzz": Command(
+        "studies.reports.fuzz",
+        "Feed mutated, hostile files and formulas to the readers: none may crash or hang them.",
+    ),
+    "adversary": Command(
+        "adversary.report",
+        "Search for scenes that we answer as good where an independent route says otherwise; write each as a test.",
+    ),
+    "engines": Command(
+        "engines.report",
+        "Hold engines against thirty digits of truth: every kind of joint, every function that they offer.",
+    ),
+    "accuracy": Command("accuracy.catalogue", "Measure beams against closed forms, tables and exact rods."),
+    "diagrams": Command("diagrams.catalogue", "Run the paper's simulations from their block diagrams."),
+    "stability": Command("stability.report", "Map where simulations fail, against closed forms and other engines."),
+    "timing": Command(
+        "timing.report",
+        "Time generated C against Pinocchio's C++, MuJoCo's C, C by CasADi and by SymPy, and Exudyn's flexible robot.",
+    ),
+    "simulation": Command(
+        "studies.reports.simulation",
+        "Time motions: times real time, and against MuJoCo and Exudyn at equal accuracy.",
+    ),
+    "rollouts": Command("studies.reports.rollouts", "Time thousands of motions of an arm, against mujoco.rollout."),
+    "realtime": Command("studies.reports.realtime", "Keep pace with the clock, and say how well."),
+    "passes": Command(
+        "passes.report",
+        "Measure what each pass of the generator gains: the same models with one of them left out.",
+    ),
+    "exports": Command(
+        "studies.reports.exports",
+        "Time calls of an exported seven-joint arm: C, Python, MEX, FMU; and the worst case in C.",
+    ),
+    "environments": Command(
+        "environments.report",
+        "Check and time models in JAX, PyTorch, CasADi and WebAssembly, beside native C and beside peers.",
+    ),
+    "cuda": Command(
+        "cuda.report",
+        "Check and time kernels on a graphics processor, beside C and MuJoCo Warp; without one: registers and spills.",
+    ),
+    "pareto": Command(
+        "pareto.report",
+        "Compare speed at equal accuracy: our models and methods, and engines with their own integrators.",
+    ),
+    "dashboard": Command("dashboard.command", "Gather the reports on one page."),
+    "all": Command("dashboard.command", "Make every report that this machine can make of the code as it is: hours."),
+    "render": Command(
+        "dashboard.command",
+        "Write the HTML and Markdown of reports anew from their JSON, without measuring anything.",
+    ),
+    "truth": Command(
+        "truth_data.command",
+        "Write models, states and right answers to thirty digits as Parquet and JSON, for engines in any language.",
+    ),
+    "campaign": Command("campaigns.command", "Long campaigns: checkpointed, resumable, over processes or a cluster."),
+}
+
+# Package, by the name that it is imported under -> the extra that brings it, of those that `validation` does not.
+EXTRAS = {"dask": "campaign", "distributed": "campaign", "pyarrow": "parquet", "pytest": "test"}

@@ -15,7 +15,7 @@ from typing import Any
 import symofros as sf
 
 from .adapters import ROUTES
-from .check import ModelResult, Settings, broken, check, failed
+from .checking import ModelResult, Settings, absent, broken, check, failed
 from .inputs.cases import Case
 
 Report = Callable[[ModelResult], None]
@@ -29,7 +29,7 @@ COLLECTED_AT = 50_000
 
 def _preloaded(settings: Settings) -> list[str]:
     """Modules loaded once into the process that the workers are forked from: no engine that is not asked for."""
-    return ["validation.worker_pool", "validation.inputs.readers", *(ROUTES[name].module for name in settings.routes())]
+    return [__name__, f"{__package__}.inputs.readers", *(ROUTES[name].module for name in settings.routes())]
 
 
 def run_case(case: Case, settings: Settings) -> ModelResult:
@@ -40,6 +40,8 @@ def run_case(case: Case, settings: Settings) -> ModelResult:
         stage = "compile"
         return check(subject, settings)
     except (sf.SymofrosError, OSError, UnicodeDecodeError) as error:
+        if isinstance(error, sf.SymofrosError) and error.extra:
+            return absent(case.label, stage, f"{error.problem.what}; {error.problem.remedy}")
         return failed(case.label, stage, without_folder(str(error), case.path))
     except Exception as error:  # An engine's or our own fault, of any kind: one row of the table, with its place.
         return broken(case.label, error)

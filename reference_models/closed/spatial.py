@@ -7,7 +7,8 @@ from dataclasses import replace
 from math import cos, pi, sin
 
 import symofros as sf
-from reference_models.rigid.station import mss
+
+from ..rigid.station import mss
 
 Point = tuple[float, float, float]
 

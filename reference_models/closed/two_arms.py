@@ -10,7 +10,8 @@ from __future__ import annotations
 from math import cos, pi, sin
 
 import symofros as sf
-from reference_models.rigid.station import AXES, SPDM, UNIT, two_arm_bodies
+
+from ..rigid.station import AXES, SPDM, UNIT, two_arm_bodies
 
 # Joint angles of the left arm as it holds the point [rad], q1 to q7; of the right one before and after its move.
 HOLD = (0.1, 0.2, 0.9, -1.5, 0.3, 0.1, 0.2)

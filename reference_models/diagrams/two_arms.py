@@ -8,9 +8,10 @@ that.
 from __future__ import annotations
 
 import symofros as sf
-from reference_models.closed.two_arms import HOLD, PICK, PLACE, STOWED, two_arms
-from reference_models.rigid.station import spdm
 from symofros import blocks
+
+from ..closed.two_arms import HOLD, PICK, PLACE, STOWED, two_arms
+from ..rigid.station import spdm
 
 REACHED, GRIPPED, LIFTED, PLACED, T_END = 6.0, 8.0, 9.0, 15.0, 20.0
 # What each joint moves, alone, as the arms stand at the start [kg m^2]: trunk, left arm, right arm with its payload.

@@ -10,7 +10,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 import symofros as sf
-from reference_models.rigid.station import mss
+
+from ..rigid.station import mss
 
 # Stiffness [N m/rad] and damping [N m s/rad] of a joint, and inertia of its motor seen at the output [kg m^2], by arm.
 _JOINTS = {"ssrms": (6.0e4, 60.0, 40.0), "spdm_left": (9.0e3, 6.0, 2.0), "spdm_right": (9.0e3, 6.0, 2.0)}

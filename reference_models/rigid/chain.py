@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 import symofros as sf
-from reference_models.rigid.point_masses import mass_and_center, moments_of_inertia
+
+from ..rigid.point_masses import mass_and_center, moments_of_inertia
 
 AXES = ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0), (1.0, 0.0, 0.0))
 INERTIAL = ("m", "cx", "cy", "cz", "Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz")

@@ -61,6 +61,14 @@ def _row(
 _ROWS: tuple[ModelFunction, ...] = (
     _row("mass_matrix", "q", "M (nv, nv)", "dynamics", "mass matrix M(q)", exported=True),
     _row("bias", "q v", "h (nv)", "dynamics", "Coriolis, centrifugal and gravity terms h(q, v)", exported=True),
+    _row(
+        "gravity_force",
+        "q",
+        "g (nv) = gravity_force",
+        "dynamics",
+        "g(q) = h(q, 0), what holds the weight at rest: the efforts of gravity compensation",
+        exported=True,
+    ),
     _row("generalized_force", "q v u t", "Q (nv)", "dynamics", "applied and joint forces Q(q, v, u)", exported=True),
     _row("dynamics", "q v u t", "M (nv, nv); h (nv); Q (nv)", "dynamics", "M, h and Q in one call", exported=True),
     _row(

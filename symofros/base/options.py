@@ -25,7 +25,10 @@ class Options(metaclass=CheckedCalls):
             singular, and usually slower (docs/theory/constraints.md, section 8).
         forward_dynamics: How trees are solved: by "factors" of the mass matrix; by "articulated" bodies, which lose
             hundreds of times fewer digits where light links carry heavy loads; "auto", the cheaper by count
-            (docs/theory/rigid.md, section 7).
+            (docs/theory/rigid.md, section 7). "articulated" also holds for the first derivatives, vector-Jacobian
+            products and `linearize`, whose code is then up to twice as long ("auto": factors); models with rotors
+            that it can't serve are refused. Constraints, Hessians of forward dynamics and implicit steps need M
+            itself: they are solved by factors, whatever is chosen here.
         batch: How large batches are evaluated: "vector", several states at once, by code that is compiled for each
             function when its first batch of 512 states or more arrives (docs/theory/code.md); or "loop", one by one.
         packs: Whether values of one state formed by the same operations share vectors: entries of a row of M, say, or

@@ -36,6 +36,37 @@ def matrix_product(R: Array, x: Array) -> Array:
     return np.asarray(columns[:, 0] * x[0] + columns[:, 1] * x[1] + columns[:, 2] * x[2])
 
 
+# Rows of a rotation are orthonormal to within a few roundings of its entries.
+_ORTHONORMAL = 1e-15
+
+
+def nearest_rotation(R: Array) -> Array:
+    """The rotation nearest to a matrix (3, 3) that is one but for noise: its polar factor.
+
+    Newton's iteration X <- X (3 - X^T X)/2 squares the defect X^T X - 1 each time; it is written out so that every
+    machine rounds alike. A matrix that is a rotation to rounding is returned as it is.
+
+    Args:
+        R: Matrix (3, 3) with |R^T R - 1| well below 1, and a positive determinant.
+    """
+    X = np.asarray(R, dtype=np.float64)
+    for _ in range(_NEWTON_STEPS):
+        defect = np.eye(3) - matrix_product(X.T, X)
+        if np.abs(defect).max() <= _ORTHONORMAL:
+            break
+        X = X + 0.5 * matrix_product(X, defect)
+    return X
+
+
+# A defect of 1e-2 is below rounding after four steps.
+_NEWTON_STEPS = 6
+
+
+def unit_scale(x: Array) -> Array:
+    """A vector times the power of two that brings its largest entry to between 1/2 and 1: squares keep their digits."""
+    return np.ldexp(x, -np.frexp(np.abs(x).max())[1])
+
+
 def axis_rotation(axis: Array, cosine: float, sine: float) -> Array:
     """The rotation matrix (3, 3) about a unit axis (3,) by the angle of that cosine and sine: Rodrigues' formula."""
     K = skew(axis)

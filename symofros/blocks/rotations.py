@@ -127,13 +127,17 @@ def euler_of_matrix(R: Tensor, sequence: str) -> Tensor:
         side = _pair(R[i, i], R[i, j])
         second = (sign * R[i, k]).apply("atan2", side)
         first = (-sign * R[j, k]).apply("atan2", R[k, k])
-    regular = (side - 1e-8).apply("step")
+    regular = (side - _ALIGNED).apply("step")
     first = first * regular + (1.0 - regular) * (sign * R[k, j]).apply("atan2", R[j, j])
     # Row j of what is left once the first turn is undone is that of the third turn alone.
     c, s = first.apply("cos"), first.apply("sin")
     row = [c * R[j, n] + sign * s * R[k, n] for n in range(3)]
     third = (-sign * row[k] if repeats else sign * row[i]).apply("atan2", row[j])
     return joined([first, second, regular * third])
+
+
+# Sine or cosine of the second angle below which the other two axes are one but for rounding.
+_ALIGNED = 1e-14
 
 
 def _pair(a: Tensor, b: Tensor) -> Tensor:

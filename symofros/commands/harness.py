@@ -1,17 +1,13 @@
-"""symofros check, symofros validation: the harness, from anywhere.
-
-It runs in an interpreter of its own: a file `validation.py` in the folder of the call would take its package's place.
-"""
+"""symofros check, symofros validation: the harness, from anywhere, in an interpreter of its own."""
 
 from __future__ import annotations
 
 import subprocess
-import sys
-from pathlib import Path
+from collections.abc import Sequence
 
 import typer
 
-import symofros as sf
+from symofros.harness import command_line
 
 
 def check(context: typer.Context) -> None:
@@ -24,13 +20,9 @@ def validation(context: typer.Context) -> None:
     raise typer.Exit(_run(context.args))
 
 
-def _run(arguments: list[str]) -> int:
+def _run(arguments: Sequence[str]) -> int:
     """The harness with these arguments; its exit code."""
-    root = Path(sf.__file__).parents[1]
-    start = f"import sys; sys.path.insert(0, {str(root)!r}); from validation.__main__ import app; "
-    start += "app(prog_name='symofros validation')"
-    # -P: the folder of the call is not searched for modules.
-    process = subprocess.Popen([sys.executable, "-P", "-c", start, *arguments])
+    process = subprocess.Popen(command_line(arguments))
     while True:
         try:
             return process.wait()

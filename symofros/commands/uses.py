@@ -59,7 +59,8 @@ def export_command(
     name: Annotated[str | None, typer.Option(help="Of files and functions; made of the model's by default.")] = None,
     frames: Annotated[str | None, typer.Option(help="Frames of kinematics, comma-separated; all by default.")] = None,
     functions: Annotated[
-        str | None, typer.Option(help="Further functions of WebAssembly, such as joint_wrenches; comma-separated.")
+        str | None,
+        typer.Option(help="Further functions of WebAssembly; those of a C package, in place of all; comma-separated."),
     ] = None,
     outputs: Annotated[
         str | None, typer.Option(help="Frames whose positions an FMU gives, or signals of a diagram; comma-separated.")
@@ -120,8 +121,8 @@ def edit(
     except ModuleNotFoundError as error:
         if error.name not in ("starlette", "uvicorn", "anyio"):
             raise
-        missing = f"no module {error.name}", "the editor is an extra", "pip install 'symofros[gui]'"
-        raise refuse(sf.SymofrosError(sf.Problem("edit: a package is not installed", *missing))) from None
+        missing = f"no module {error.name}", "the editor is an extra", "gui"
+        raise refuse(sf.SymofrosError(sf.Problem.of_extra("edit: a package is not installed", *missing))) from None
     try:
         serve(model, port, token, browser, lambda url: out.print(url, markup=False, highlight=False, soft_wrap=True))
     except (sf.SymofrosError, OSError) as error:

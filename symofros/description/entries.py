@@ -1,4 +1,4 @@
-"""Entries of description classes: what they are, their units; an unknown one is refused with a suggestion."""
+"""Entries of description classes: what they are; an unknown one is refused with a suggestion."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from symofros.errors import ArgumentError, DescriptionError, Problem, did_you_me
 
 _Class = TypeVar("_Class", bound=type)
 _ATTRIBUTE = re.compile(r"^    (\w+): (.*(?:\n {8}.*)*)", re.MULTILINE)
-_UNIT = re.compile(r"\[([^\]]+)\]")
 # What is stated elsewhere, or by other programs under other names.
 _ABSENT: Mapping[str, str] = {
     "GA": "state GA_y and GA_z, with the correction of shear, of a rod with shear_y and shear_z; else leave it out",
@@ -28,12 +27,6 @@ def descriptions(noun: type) -> dict[str, str]:
     """Entry -> its line in the docstring of a dataclass."""
     text = inspect.cleandoc(noun.__doc__ or "").partition("Attributes:\n")[2]
     return {name: " ".join(line.split()) for name, line in _ATTRIBUTE.findall(text)}
-
-
-def units_of(noun: type, entry: str) -> tuple[str, ...]:
-    """Units that an entry of a dataclass may have, by its docstring: ("N m/rad", "N/m"); none where it states none."""
-    stated = _UNIT.findall(descriptions(noun).get(entry, ""))
-    return tuple(unit for text in stated for unit in text.split(" or "))
 
 
 class UnknownEntryError(DescriptionError, ArgumentError):

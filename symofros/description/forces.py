@@ -166,7 +166,10 @@ Anchor = tuple[str, str | None]
 @refuses_unknown_entries
 @dataclass(frozen=True)
 class Connection:
-    """A spring and damper along the line between two frames.
+    """A spring and damper along the line between two frames, which pulls and pushes.
+
+    A cable that only pulls, or a length that an input gives, is a force by formula: T = max(0, k*(d - length)) with the
+    distance d in terms of coordinates, in a `Load` in world axes or in `VirtualPower`.
 
     Attributes:
         name: Unique name.

@@ -28,6 +28,7 @@ from symofros.exports.c.c_text import comment, doubles, integers, strings
 from symofros.exports.c.parameter_check import Judged
 from symofros.exports.c.plant import plant_text
 from symofros.exports.folder import Exported, write_folder
+from symofros.exports.functions import cell, names_table
 from symofros.exports.material import Stepping
 from symofros.generator.codegen.model import model_source
 from symofros.generator.codegen.names import c_string, identifier
@@ -121,6 +122,9 @@ def write_diagram(
     until, values = _reference(resolved, outputs, stepping)
     fields = {
         "name": name,
+        "heading": cell(wired.name),
+        "signals": ", ".join(f"`{entry}`" for entry in _entries(resolved, sources)) or "none",
+        "names": names_table(record_of(resolved, None)),
         "generator": generator,
         "version": generator.rpartition(" ")[2],
         "until": repr(until),
@@ -130,6 +134,7 @@ def write_diagram(
         "sources": " ".join(file for file in files if file.endswith(".c")),
     }
     files["main.c"] = Template(native_text("exports/diagram_main.c.in")).substitute(fields)
+    files["README.md"] = Template(native_text("exports/diagram_README.md.in")).substitute(fields)
     files["CMakeLists.txt"] = Template(native_text("exports/diagram_CMakeLists.txt.in")).substitute(fields)
     files |= header_files(*INTEGRATOR_HEADERS, "diagrams/symofros_diagram.h", "diagrams/symofros_program.h")
     files["symofros_diagram.c"] = amalgamated("diagrams/symofros_diagram.c")

@@ -57,6 +57,7 @@ _COMPILED: dict[str, Callable[[Material, Path], Exported]] = {
 REACTIONS = ("joint_wrenches", "prescribed_efforts", "section_forces")
 # How programs and FMUs step where nobody says.
 _STEPPING: dict[str, Any] = {"method": "rk4", "dt": 1e-3, "rtol": 1e-6, "atol": 1e-8, "beam_limit": BEAM_LIMIT}
+_OF_CHOSEN_FUNCTIONS = ("c", "wasm")
 # Targets that give exact derivatives of their outputs, by inputs too.
 _DIFFERENTIATED = ("fmu2", "fmu3")
 _DESCRIBED: dict[str, Callable[[System, str | None, Path, str], Exported]] = {"urdf": write_urdf, "mjcf": write_mjcf}
@@ -91,7 +92,9 @@ def export(
         name: Name of files and functions; made of the system's name by default.
         frames: Frames to generate kinematics for; all by default, of CUDA the last one.
         functions: Of "wasm", functions of the model beside those that every module has, such as
-            "forward_dynamics_derivatives" or "joint_wrenches"; each makes it larger.
+            "forward_dynamics_derivatives" or "joint_wrenches"; each makes it larger. Of "c", the functions that the
+            package has beside those that its stepping method calls, in place of all: a fraction of the text of a large
+            robot. Efforts of actuators then need "dynamics", and of loops the functions of constraints.
         outputs: Of those frames, the ones whose positions are outputs of FMUs; the last one by default. Of a diagram,
             the signals that its program tells; by default what moves.
         start: Names of coordinates, and d + names of speeds -> first values; the neutral state at rest by default.
@@ -122,12 +125,12 @@ def export(
     system = model if isinstance(model, System) else load(model)
     place = Path(folder)
     check_folder(place)  # Before the work, not only after it.
-    if functions and target != "wasm":
+    if functions and target not in _OF_CHOSEN_FUNCTIONS:
         raise ExportError(
             Problem(
                 f"export: '{target}' has functions of its own",
                 ", ".join(functions),
-                'further ones are for "wasm"',
+                f"functions are chosen for {' and '.join(_OF_CHOSEN_FUNCTIONS)}",
                 "leave `functions` out",
             )
         )
@@ -192,11 +195,14 @@ def _material(
 ) -> Material:
     """What an export is made of: C packages have reactions, FMUs derivatives of outputs by prescribed motions."""
     _refuse_variational(system, stepping)
-    needs = (*stepping.method.family.functions, *(_reactions(system) if target == "c" else ()))
+    chosen = target == "c" and bool(further)
+    reactions = _reactions(system) if target == "c" and not chosen else ()
+    needs = (*stepping.method.family.functions, *reactions)
     if any(isinstance(body, Beam) and body.modes for body in system.bodies):
         needs = (*needs, "beam_stiffness", "mass_matrix")
     constrained = bool(system.constraints)
-    offered = wasm.functions(constrained) if target == "wasm" else exported(constrained)
+    stepped = ("forward_dynamics", "project") if constrained else ("forward_dynamics",)
+    offered = stepped if chosen else wasm.functions(constrained) if target == "wasm" else exported(constrained)
     functions = tuple(dict.fromkeys((*offered, *further, *needs)))
     compilation = Compilation(system, Options(functions, None if frames is None else tuple(frames)))
     record = compilation.record

@@ -88,7 +88,10 @@ class ProgramBuilder:
         return method, programs[method]
 
     def _optimised(self, requests: Sequence[Request], method: str) -> Program:
-        return run_passes(form_program(self.equations(), requests, Methods(self._options.constraints, method)))
+        # Derivatives have many columns, which favour the factors: articulated bodies where they are asked for by name.
+        slopes = "articulated" if self._options.forward_dynamics == "articulated" else "factors"
+        methods = Methods(self._options.constraints, method, slopes)
+        return run_passes(form_program(self.equations(), requests, methods))
 
 
 def requested(tree: SpanningTree, options: Options) -> tuple[Request, ...]:

@@ -72,6 +72,7 @@ def model_record(tree: SpanningTree, options: Options) -> ModelRecord:
         speed_conditions=tuple(name for item in tree.system.constraints for name in item.on_speeds),
         wrench_names=tuple(acts_on_bodies(tree.system.constraints)),
         joint_names=joint_names(tree),
+        link_names=tuple(link.name for link in tree.links),
         section_names=section_names(tree),
         prescribed_names=prescribed_speeds(tree),
         closures=tuple(_closure(tree, item) for item in tree.system.constraints if isinstance(item, Closure)),

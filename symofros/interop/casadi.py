@@ -3,10 +3,12 @@
     dynamics = sf.interop.casadi.Dynamics(system, frames=["tool"])
     a = dynamics.forward_dynamics(q, v, u)      # SX is not possible: MX, DM or numbers
     p = dynamics.frame_position("tool", q)
+    x_rate = dynamics.state_derivative(x, u)    # x = (q, v)
 
 The library has CasADi's interface of external functions: `dynamics.library`, and the names `dynamics.names`; acados
 takes what `dynamics.write_acados_library` writes. Jacobians, gradients and Hessians are exact and have their structural
-zeros: Ipopt takes its exact Hessian.
+zeros: Ipopt takes its exact Hessian. Quaternions may be of any length: functions are those of the unit ones
+(docs/theory/linear.md, section 9).
 """
 
 from __future__ import annotations
@@ -26,15 +28,21 @@ from symofros.base.options import Options
 from symofros.compiler import Compilation
 from symofros.description.system import System
 from symofros.errors import CompileError, Problem, UnknownNameError, did_you_mean
-from symofros.expr.program import Function
 from symofros.generator.codegen.names import identifier
-from symofros.interop.casadi_externals import External, Input, Output, gathered
+from symofros.interop.casadi_externals import External, Input, Output, gathered, slopes_of
+from symofros.interop.casadi_sources import Sources
+from symofros.interop.coordinates import Coordinates, Operations
 from symofros.interop.rules import RULES, check_record, framework
 from symofros.native import native_text
 from symofros.runtime.build.build import build_library
 from symofros.runtime.build.toolchain import NO_COMPILER, find_toolchain
 
 casadi = framework("casadi", "casadi")
+_OPERATIONS = Operations(
+    casadi.vertsplit,
+    lambda entries: casadi.vertcat(*entries),
+    *(casadi.sqrt, casadi.sin, casadi.cos, casadi.atan2, casadi.if_else),
+)
 
 
 @dataclass(frozen=True)
@@ -78,19 +86,19 @@ class Dynamics:
     """A system's dynamics for CasADi.
 
     Args:
-        system: System as the user stated it, whose speeds are the rates of its coordinates.
+        system: System as the user stated it.
         frames: Frames whose positions are functions, too.
         second_order: Whether there are Hessians; they take several times as long to generate. Without them Ipopt needs
-            the option "hessian_approximation": "limited-memory".
+            the option "hessian_approximation": "limited-memory", and cvodes and idas have no sensitivities.
 
     Attributes:
         library: Path of the shared library, with CasADi's own whole numbers.
         names: Name of each function in the library, by ours ("frame_position NAME" of a frame). Names of its Jacobian,
-            of its gradient and of that one's Jacobian begin with jac_, adj1_ and jac_adj1_.
+            of its gradient and of their Jacobians begin with jac_, adj1_, jac_jac_ and jac_adj1_.
         functions: Functions of CasADi, by ours; parameters are their last input.
 
     Raises:
-        InteropError: The model has quaternions, prescribed motions or forces that depend on time.
+        InteropError: The model has prescribed motions or forces that depend on time.
         UnknownNameError: There is no such frame.
         CompileError: There is no C compiler, or it refused.
     """
@@ -112,7 +120,8 @@ class Dynamics:
             raise CompileError(NO_COMPILER)
         c_name = identifier(system.name)
         self.names = {name: f"{c_name}_{identifier(name.replace(' ', '_'))}" for name in wanted}
-        self._par = known.record.par_default
+        self._par, self._sizes = known.record.par_default, (len(known.record.q_names), len(known.record.v_names))
+        self._coordinates = Coordinates(known.record.segments, _OPERATIONS)
         source = _source(compilation, c_name, {self.names[name]: each for name, each in wanted.items()}, second_order)
         self._build = partial(build_library, header=native_text("model/symofros_model.h"), toolchain=toolchain)
         self._c_name, self._source, self._symbol = c_name, source, f"{c_name}_model"
@@ -145,6 +154,27 @@ class Dynamics:
         """Efforts M a + h - Q(q, v, 0) (nv) of q, v, a (nv) and par (npar)."""
         return self.functions["inverse_dynamics"](q, v, a, self._parameters(par))
 
+    def state_derivative(self, x: Any, u: Any, par: Any = None) -> Any:
+        """Rates (N(q) v; v') (nq + nv) of states x = (q; v), of inputs u (nu) and par (npar).
+
+        They keep the lengths of quaternions, on which nothing depends: a state that starts with unit ones keeps them,
+        but for the errors of an integrator, which change no acceleration.
+        """
+        q, v = casadi.vertsplit(_expression(x), [0, self._sizes[0], sum(self._sizes)])
+        return casadi.vertcat(self.coordinate_rates(q, v), self.forward_dynamics(q, v, u, par))
+
+    def coordinate_rates(self, q: Any, v: Any) -> Any:
+        """Rates q' = N(q) v (nq) of q (nq), v (nv): v itself but for balls and free joints."""
+        return self._coordinates.rates(_expression(q), _expression(v))
+
+    def integrate(self, q: Any, dq: Any) -> Any:
+        """Move from q (nq) along the manifold by dq (nv), a velocity times a time: `Model.integrate`."""
+        return self._coordinates.integrate(_expression(q), _expression(dq))
+
+    def difference(self, q0: Any, q1: Any) -> Any:
+        """The dq (nv) that leads from q0 to q1 (nq): `Model.difference`."""
+        return self._coordinates.difference(_expression(q0), _expression(q1))
+
     def frame_position(self, frame: str, q: Any, par: Any = None) -> Any:
         """Position (3) of a frame's origin in the world [m], of q (nq) and par (npar).
 
@@ -166,6 +196,11 @@ class Dynamics:
 
     def _parameters(self, par: Any) -> Any:
         return casadi.DM(self._par) if par is None else par
+
+
+def _expression(x: Any) -> Any:
+    """An expression, or numbers as CasADi has them."""
+    return x if isinstance(x, (casadi.MX, casadi.SX, casadi.DM)) else casadi.DM(x)
 
 
 def _differentiable(nv: int) -> dict[str, _Differentiable]:
@@ -190,45 +225,61 @@ def _source(compilation: Compilation, c_name: str, wanted: Mapping[str, _Differe
     nv = len(record.v_names)
     sizes = {"q": len(record.q_names), "v": nv, "u": len(record.u_names), "a": nv, "par": len(record.par_names)}
     functions = {(function.name, function.frame): function for function in compilation.program.functions}
-    texts = [compilation.source(c_name), native_text("interop/symofros_casadi.c")]
+    sources = Sources(functions, record.segments)
+    texts = [compilation.source(c_name), native_text("stepping/rotations.c"), native_text("interop/symofros_casadi.c")]
+    texts.append(sources.segments_text)
     for own, each in wanted.items():
-        texts += [external.text(c_name) for external in _externals(own, each, sizes, functions, second_order)]
+        texts += [external.text(c_name) for external in _externals(own, each, sizes, sources, second_order)]
     return "\n".join(texts)
 
 
 def _externals(
-    own: str,
-    f: _Differentiable,
-    sizes: Mapping[str, int],
-    functions: Mapping[tuple[str, str], Function],
-    second_order: bool,
+    own: str, f: _Differentiable, sizes: Mapping[str, int], sources: Sources, second_order: bool
 ) -> Iterator[External]:
     """A function and its derivatives, as CasADi names and orders their inputs and outputs."""
 
-    def block(label: str, name: str, array: str, *shape: int, **options: Any) -> Output:
-        frame = f.frame if FUNCTIONS[name].of_frame else ""
-        return gathered(label, functions[name, frame], array, (shape[0], shape[1]), **options)
+    def slope(label: str, x: str, **options: Any) -> Output:
+        frame = f.frame if FUNCTIONS[f.slopes[x][0]].of_frame else ""
+        shape = (sizes[x], f.size) if options else (f.size, sizes[x])
+        return gathered(label, sources.slopes(f.slopes[x][0], frame, f.slopes[x][1], x), shape, **options)
 
     value = f.value[1]
     inputs = tuple(Input(x, sizes[x], x) for x in f.inputs)
     unread = Input(f"out_{value}", f.size)
-    yield External(own, inputs, (block(value, *f.value, f.size, 1),))
-    slopes = [block(f"jac_{value}_{x}", *f.slopes[x], f.size, sizes[x]) for x in f.inputs]
+    yield External(own, inputs, (gathered(value, sources.value(f.value[0], f.frame, value), (f.size, 1)),))
+    slopes = [slope(f"jac_{value}_{x}", x) for x in f.inputs]
     yield External(f"jac_{own}", (*inputs, unread), tuple(slopes))
     if not second_order:
         return
+    starts = {x: sum(sizes[before] for before in f.inputs[:i]) for i, x in enumerate(f.inputs)}
+    unread_slopes = (Input(f"out_{each.label}", like=each) for each in slopes)
+    yield External(
+        f"jac_jac_{own}", (*inputs, unread, *unread_slopes), _slopes_of_slopes(f, slopes, starts, sizes, sources)
+    )
     inputs = (*inputs, unread, Input(f"adj_{value}", f.size, f.cotangent))
     # CasADi takes gradients of the shape of their inputs, which are dense.
-    gradient = [block(f"adj_{x}", f.vjp, f"by_{x}", sizes[x], 1, dense=True) for x in f.inputs]
+    gradient = [gathered(f"adj_{x}", sources.gradient(f.vjp, f.frame, x), (sizes[x], 1), dense=True) for x in f.inputs]
     yield External(f"adj1_{own}", inputs, tuple(gradient))
-    starts = {x: sum(sizes[before] for before in f.inputs[:i]) for i, x in enumerate(f.inputs)}
     curvature = []
     for x in f.inputs:
         for y in f.inputs:
-            at = starts[x], starts[y]
-            curvature.append(block(f"jac_adj_{x}_{y}", f.hessian, "H", sizes[x], sizes[y], first=at))
+            H = sources.hessian(f.hessian, f.frame, f.vjp)
+            curvature.append(gathered(f"jac_adj_{x}_{y}", H, (sizes[x], sizes[y]), (starts[x], starts[y])))
         curvature.append(Output(f"jac_adj_{x}_out_{value}", (sizes[x], f.size)))
-        label = f"jac_adj_{x}_adj_{value}"
-        curvature.append(block(label, *f.slopes[x], sizes[x], f.size, transposed=True))
+        curvature.append(slope(f"jac_adj_{x}_adj_{value}", x, transposed=True))
     unread_gradient = (Input(f"out_adj_{x}", sizes[x]) for x in f.inputs)
     yield External(f"jac_adj1_{own}", (*inputs, *unread_gradient), tuple(curvature))
+
+
+def _slopes_of_slopes(
+    f: _Differentiable, slopes: Sequence[Output], starts: Mapping[str, int], sizes: Mapping[str, int], sources: Sources
+) -> tuple[Output, ...]:
+    """The derivatives of the Jacobian, of which integrators of stiff equations make sensitivities."""
+    H = sources.hessians(f.hessian, f.frame, f.vjp, f.cotangent, f.size)
+    outputs = []
+    for x, of in zip(f.inputs, slopes, strict=True):
+        m, columns = of.shape
+        for y in f.inputs:
+            outputs.append(slopes_of(f"jac_{of.label}_{y}", H, of, (starts[x], starts[y]), sizes[y]))
+        outputs.append(Output(f"jac_{of.label}_out_{f.value[1]}", (m * columns, f.size)))
+    return tuple(outputs)

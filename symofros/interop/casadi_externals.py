@@ -6,41 +6,45 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from symofros.expr.edges import ZERO
-from symofros.expr.program import Function
+import numpy as np
+
+from symofros.interop.casadi_sources import Source
 
 
 class Input(NamedTuple):
-    """An input of an external function, a column.
+    """An input of an external function, a column or a matrix with the pattern of an output.
 
     Attributes:
         label: Name for CasADi.
-        size: Number of entries.
+        size: Number of entries of a column.
         group: Input group of the model that it is; "" where it is not read.
+        like: Output that it has the pattern of.
     """
 
     label: str
-    size: int
+    size: int = 0
     group: str = ""
+    like: Output | None = None
+
+    @property
+    def sparsity(self) -> list[int]:
+        """As CasADi writes it: of a dense column its length, 1, 1."""
+        return [self.size, 1, 1] if self.like is None else self.like.sparsity
 
 
 class Output(NamedTuple):
-    """An output of an external function: entries of an array that a function of the model returns.
+    """An output of an external function: entries of an array that a source gives.
 
     Attributes:
         label: Name for CasADi.
         shape: Rows and columns that CasADi sees.
-        function: Name of the model's function.
-        frame: Its frame, or "".
-        array: Index of the array among what it returns.
+        source: What gives the array; None where all entries are zero.
         cells: Row and column of each nonzero, column by column, and its index in the array, which is row by row.
     """
 
     label: str
     shape: tuple[int, int]
-    function: str = ""
-    frame: str = ""
-    array: int = 0
+    source: Source | None = None
     cells: tuple[tuple[int, int, int], ...] = ()
 
     @property
@@ -51,14 +55,13 @@ class Output(NamedTuple):
     @property
     def sparsity(self) -> list[int]:
         """Rows, columns, first nonzero of each column, row of each nonzero."""
-        starts = [sum(column < k for _, column, _ in self.cells) for k in range(self.shape[1] + 1)]
-        return [*self.shape, *starts, *(row for row, _, _ in self.cells)]
+        counts = np.bincount([column for _, column, _ in self.cells], minlength=self.shape[1])
+        return [*self.shape, 0, *np.cumsum(counts).tolist(), *(row for row, _, _ in self.cells)]
 
 
 def gathered(
     label: str,
-    function: Function,
-    array: str,
+    source: Source,
     shape: tuple[int, int],
     first: tuple[int, int] = (0, 0),
     transposed: bool = False,
@@ -68,53 +71,40 @@ def gathered(
 
     Args:
         label: Name for CasADi.
-        function: Function of the model.
-        array: Name of the array that it returns.
+        source: What gives the array.
         shape: Shape that CasADi sees.
         first: Row and column of the array where the block begins.
         transposed: Whether CasADi sees the block's transpose.
         dense: Whether entries that are zero in every state stay.
     """
-    index = [name for name, _ in function.returns].index(array)
-    dimensions = function.returns[index][1]
-    width, nonzero = (dimensions[1] if len(dimensions) > 1 else 1), _nonzero(function, index)
+    width = source.nonzero.shape[1]
     cells = []
     for column in range(shape[1]):
         for row in range(shape[0]):
             i, k = (column, row) if transposed else (row, column)
-            at = (first[0] + i) * width + first[1] + k
-            if dense or nonzero[at]:
-                cells.append((row, column, at))
-    return Output(label, shape, function.name, function.frame, index, tuple(cells))
+            if dense or source.nonzero[first[0] + i, first[1] + k]:
+                cells.append((row, column, (first[0] + i) * width + first[1] + k))
+    return Output(label, shape, source, tuple(cells))
 
 
-def _nonzero(function: Function, index: int) -> list[bool]:
-    """Which entries of an array may differ from zero; of what a solver finishes, by what it is made of."""
-    solver = function.solver
-    if solver is None:
-        return [edge != ZERO for edge in function.outputs[index].edges]
-    if solver.routine == "transpose":
-        return [edge != ZERO for edge in solver.parts[0].outputs[index].edges]
-    if solver.routine == "differentiate":
-        slopes = solver.parts[0].outputs[index]
-        return _columns(slopes.edges, slopes.shape[1]) * slopes.shape[0]
-    if solver.routine == "hessian":
-        # docs/theory/linear.md, eq. 23.
-        slopes, (by_x, mixed) = solver.parts[0].outputs[0], solver.parts[1].outputs
-        n = slopes.shape[1]
-        moves, couples = _columns(slopes.edges, n), _columns(mixed.edges, n)
-        return [
-            by_x.edges[i * n + k] != ZERO or (couples[i] and moves[k]) or (couples[k] and moves[i])
-            for i in range(n)
-            for k in range(n)
-        ]
-    (shape,) = (shape for _, shape in function.returns[index : index + 1])
-    return [True] * (shape[0] if len(shape) == 1 else shape[0] * shape[1])
+def slopes_of(label: str, source: Source, of: Output, first: tuple[int, int], size: int) -> Output:
+    """The derivatives of a Jacobian (m, c), its entries column by column, from a matrix for each row of it.
 
-
-def _columns(edges: Sequence[int], width: int) -> list[bool]:
-    """Whether a column of a matrix has entries."""
-    return [any(edge != ZERO for edge in edges[k::width]) for k in range(width)]
+    Args:
+        label: Name for CasADi.
+        source: What gives the matrices, one below the other.
+        of: The Jacobian, whose entries that are zero in every state have no derivative.
+        first: Row and column of each matrix where the block begins.
+        size: Number of entries of what it is differentiated by.
+    """
+    (m, columns), width = of.shape, source.nonzero.shape[1]
+    cells = []
+    for k in range(size):
+        for i, j, _ in of.cells:
+            row, column = i * width + first[0] + j, first[1] + k
+            if source.nonzero[row, column]:
+                cells.append((i + m * j, k, row * width + column))
+    return Output(label, (m * columns, size), source, tuple(cells))
 
 
 @dataclass(frozen=True)
@@ -136,15 +126,20 @@ class External:
         own, n_in, n_out = self.name, len(self.inputs), len(self.outputs)
         lines = []
         for i, given in enumerate(self.inputs):
-            lines.append(f"static const casadi_int {own}_in_{i}[] = {{{given.size}, 1, 1}};")
+            lines.append(f"static const casadi_int {own}_in_{i}[] = {{{_numbers(given.sparsity)}}};")
         for i, output in enumerate(self.outputs):
             lines.append(f"static const casadi_int {own}_out_{i}[] = {{{_numbers(output.sparsity)}}};")
             lines.append(f"static const casadi_int {own}_gather_{i}[] = {{{_numbers(output.gather)}}};")
-        plans = ", ".join(self._plan(i) for i in range(n_out))
+        sources = list(dict.fromkeys(output.source for output in self.outputs if output.source is not None))
+        plans = ", ".join(self._plan(i, sources) for i in range(n_out))
+        made = ", ".join(source.text for source in sources)
         groups = ", ".join(f'"{given.group}"' for given in self.inputs)
         lines += [
             f"static const char *const {own}_groups[] = {{{groups}}};",
             f"static const sym_casadi_output {own}_outputs[] = {{{plans}}};",
+            f"static const sym_casadi_source {own}_sources[] = {{{made}}};",
+            f"static const sym_casadi_plan {own}_plan = {{{n_in}, {n_out}, {len(sources)}, SYM_CASADI_SEGMENTS,",
+            f"    {own}_groups, {own}_outputs, {own}_sources, sym_casadi_segments}};",
             f"SYM_EXPORT casadi_int {own}_n_in(void) {{ return {n_in}; }}",
             f"SYM_EXPORT casadi_int {own}_n_out(void) {{ return {n_out}; }}",
             *_table(f"const char *{own}_name_in", [f'"{given.label}"' for given in self.inputs]),
@@ -155,23 +150,22 @@ class External:
             f"    if (arg != NULL) *arg = {n_in};",
             f"    if (res != NULL) *res = {n_out};",
             "    if (iw != NULL) *iw = 0;",
-            f"    if (w != NULL) *w = (casadi_int)sym_casadi_work({c_name}_model());",
+            f"    if (w != NULL) *w = (casadi_int)sym_casadi_work({c_name}_model(), &{own}_plan);",
             "    return 0;",
             "}",
             f"SYM_EXPORT int {own}(const double **arg, double **res, casadi_int *iw, double *w, int mem) {{",
-            f"    const sym_model *model = {c_name}_model();",
             "    (void)iw, (void)mem;",
-            f"    return sym_casadi_call(model, {own}_groups, {n_in}, {own}_outputs, {n_out}, arg, res, w);",
+            f"    return sym_casadi_run({c_name}_model(), &{own}_plan, arg, res, w);",
             "}",
             "",
         ]
         return "\n".join(lines)
 
-    def _plan(self, index: int) -> str:
+    def _plan(self, index: int, sources: Sequence[Source]) -> str:
         """Initialiser of a sym_casadi_output."""
         output = self.outputs[index]
-        frame = f'"{output.frame}"' if output.frame else "NULL"
-        return f'{{"{output.function}", {frame}, {output.array}, {len(output.cells)}, {self.name}_gather_{index}}}'
+        source = -1 if output.source is None else sources.index(output.source)
+        return f"{{{source}, {len(output.cells)}, {self.name}_gather_{index}}}"
 
 
 def _table(declared: str, entries: Sequence[str]) -> list[str]:

@@ -3,9 +3,11 @@
     jax.config.update("jax_enable_x64", True)
     dynamics = sf.interop.jax.Dynamics(model)
     a = jax.jit(dynamics.forward_dynamics)(q, v, u)      # (..., nv), float64, on the CPU
+    q = dynamics.integrate(q, dt * v)
 
 `jit`, `vmap` (one batch in C), `grad`, `jacfwd`, `jacrev`, `jvp`, `vjp`; XLA calls C without Python in between.
-Derivatives are the model's, exact; they are not differentiated again.
+Derivatives are the model's, exact; they are not differentiated again. Quaternions may be of any length: functions are
+those of the unit ones (docs/theory/linear.md, section 9).
 """
 
 from __future__ import annotations
@@ -17,7 +19,8 @@ from pathlib import Path
 from typing import Any
 
 from symofros.errors import CompileError, Problem
-from symofros.interop.rules import RULES, InteropError, check_model, framework
+from symofros.interop.coordinates import Coordinates, Operations
+from symofros.interop.rules import RULES, InteropError, check_model, framework, second_derivatives
 from symofros.native import native_text
 from symofros.runtime.build.build import build_library
 from symofros.runtime.build.toolchain import NO_COMPILER, find_toolchain
@@ -29,6 +32,11 @@ jax = framework("jax", "jax")
 jnp = jax.numpy
 
 _LOCK = threading.Lock()
+_OPERATIONS = Operations(
+    lambda x: [x[..., i] for i in range(x.shape[-1])],
+    lambda entries: jnp.stack(jnp.broadcast_arrays(*entries), axis=-1),
+    *(jnp.sqrt, jnp.sin, jnp.cos, jnp.arctan2, jnp.where),
+)
 # Registered names with what must stay loaded; a name stands for the same function in all runs.
 _REGISTERED: dict[str, CompiledKernel] = {}
 
@@ -37,16 +45,16 @@ class Dynamics:
     """A model's dynamics for JAX.
 
     Args:
-        model: Compiled model, whose speeds are the rates of its coordinates.
+        model: Compiled model.
 
     Raises:
-        InteropError: The model has quaternions, prescribed motions or forces that depend on time; or it is not
-            compiled.
+        InteropError: The model has prescribed motions or forces that depend on time; or it is not compiled.
     """
 
     def __init__(self, model: Model) -> None:
         check_model(model)
-        self.model = model
+        self.model = model.with_precision("double")
+        self.coordinates = Coordinates(model.record.segments, _OPERATIONS)
         self._functions = {name: self._differentiable(name) for name in RULES}
 
     def forward_dynamics(self, q: Any, v: Any, u: Any, par: Any = None) -> Any:
@@ -57,54 +65,101 @@ class Dynamics:
         """Efforts M a + h - Q(q, v, 0) (..., nv) of arrays q, v, a (..., nv) and par (..., npar)."""
         return self._apply("inverse_dynamics", q, v, a, par)
 
+    def coordinate_rates(self, q: Any, v: Any) -> Any:
+        """Rates q' = N(q) v (..., nq) of arrays q (..., nq), v (..., nv): v itself but for balls and free joints."""
+        return self.coordinates.rates(*self._arrays("coordinate_rates", q=q, v=v))
+
+    def integrate(self, q: Any, dq: Any) -> Any:
+        """Move from q (..., nq) along the manifold by dq (..., nv), a velocity times a time: `Model.integrate`."""
+        return self.coordinates.integrate(*self._arrays("integrate", q=q, dq=dq))
+
+    def difference(self, q0: Any, q1: Any) -> Any:
+        """The dq (..., nv) that leads from q0 to q1 (..., nq): `Model.difference`."""
+        return self.coordinates.difference(*self._arrays("difference", q0=q0, q1=q1))
+
     def _apply(self, name: str, *arrays: Any) -> Any:
-        if not jax.config.jax_enable_x64:
-            raise InteropError(
-                Problem(
-                    f"{name}: arrays are in single precision",
-                    "jax_enable_x64 is off",
-                    "models compute in doubles",
-                    'jax.config.update("jax_enable_x64", True)',
-                )
-            )
         *states, par = arrays
-        given = [*states, self.model.parameter_values if par is None else par]
-        given = [jnp.asarray(x, dtype=jnp.float64) for x in given]
-        sizes = {"q": self.model.nq, "u": self.model.nu, "par": self.model.npar}
-        for label, x in zip(RULES[name].inputs, given, strict=True):
+        if par is None:
+            par = self.model.parameter_values
+        elif not isinstance(par, jax.core.Tracer):  # What is traced has no values yet.
+            self.model.checked_parameters(par)
+        return self._functions[name](*self._arrays(name, **dict(zip(RULES[name].inputs, (*states, par), strict=True))))
+
+    def _arrays(self, function: str, **given: Any) -> list[Any]:
+        """Arrays of doubles with the same leading dimensions."""
+        if not jax.config.jax_enable_x64:
+            raise _single(function, "arrays", "jax_enable_x64 is off", 'jax.config.update("jax_enable_x64", True)')
+        sizes = {
+            "q": self.model.nq,
+            "q0": self.model.nq,
+            "q1": self.model.nq,
+            "u": self.model.nu,
+            "par": self.model.npar,
+        }
+        arrays = []
+        for label, x in given.items():
+            x = jnp.asarray(x)
+            if jnp.issubdtype(x.dtype, jnp.inexact) and x.dtype != jnp.float64:
+                raise _single(function, f"'{label}'", str(x.dtype), f"{label}.astype(jax.numpy.float64)")
             size = sizes.get(label, self.model.nv)
             if x.ndim == 0 or x.shape[-1] != size:
                 raise InteropError(
-                    Problem(f"{name}: '{label}' has the wrong shape", str(x.shape), f"(..., {size})", "check its size")
+                    Problem(
+                        f"{function}: '{label}' has the wrong shape", str(x.shape), f"(..., {size})", "check its size"
+                    )
                 )
-        batch = jnp.broadcast_shapes(*(x.shape[:-1] for x in given))
-        return self._functions[name](*(jnp.broadcast_to(x, (*batch, x.shape[-1])) for x in given))
+            arrays.append(x.astype(jnp.float64))
+        batch = jnp.broadcast_shapes(*(x.shape[:-1] for x in arrays))
+        return [jnp.broadcast_to(x, (*batch, x.shape[-1])) for x in arrays]
 
     def _differentiable(self, name: str) -> Any:
         rule = RULES[name]
         wrapped = jax.custom_jvp(lambda *arrays: self._call(name, arrays, rule.inputs)[0])
 
         def derivative(primals: Any, tangents: Any) -> tuple[Any, Any]:
-            made: dict[str, dict[str, Any]] = {}
+            moved = {
+                key: tangent
+                for key, tangent in zip(rule.inputs, tangents, strict=True)
+                if not isinstance(tangent, jax.custom_derivatives.SymbolicZero) and tangent.shape[-1]
+            }
             total = jnp.zeros((*primals[0].shape[:-1], self.model.nv))
-            for key, tangent in zip(rule.inputs, tangents, strict=True):
-                function, output = rule.derivatives[key]
-                if isinstance(tangent, jax.custom_derivatives.SymbolicZero) or tangent.shape[-1] == 0:
-                    continue
-                if function not in made:
-                    names = [each for each, _ in self._kernel(function).signature.outputs]
-                    made[function] = dict(zip(names, self._call(function, primals, rule.inputs), strict=True))
-                slope = made[function][output][..., : self.model.nv, :]
+            slopes = self._slopes(name, tuple(moved))(*primals) if moved else ()
+            for slope, tangent in zip(slopes, moved.values(), strict=True):
                 total = total + jnp.einsum("...ij,...j->...i", slope, tangent)
             return wrapped(*primals), total
 
         wrapped.defjvp(derivative, symbolic_zeros=True)
         return wrapped
 
+    def _slopes(self, name: str, by: tuple[str, ...]) -> Any:
+        """The derivatives (..., nv, size) of a function by some inputs, as a function of all; not differentiated."""
+        rule = RULES[name]
+
+        def evaluated(*primals: Any) -> tuple[Any, ...]:
+            made: dict[str, dict[str, Any]] = {}
+            slopes = []
+            for function, output in (rule.derivatives[key] for key in by):
+                if function not in made:
+                    names = [each for each, _ in self._kernel(function).signature.outputs]
+                    made[function] = dict(zip(names, self._call(function, primals, rule.inputs), strict=True))
+                slopes.append(made[function][output][..., : self.model.nv, :])
+            if "q" in by:
+                at = by.index("q")
+                slopes[at] = self.coordinates.by_coordinates(primals[0][..., None, :], slopes[at])
+            return tuple(slopes)
+
+        def refused(_primals: Any, _tangents: Any) -> Any:
+            raise second_derivatives(self.model, name)
+
+        held = jax.custom_jvp(evaluated)
+        held.defjvp(refused)
+        return held
+
     def _call(self, function: str, arrays: Any, names: tuple[str, ...]) -> Any:
-        """All outputs of a function; inputs that are not given, as Baumgarte's gains, are zero."""
+        """All outputs of a function at unit quaternions; inputs not given, as Baumgarte's gains, are zero."""
         kernel = self._kernel(function)
         given = dict(zip(names, arrays, strict=True))
+        given["q"] = self.coordinates.unit(given["q"])
         batch = arrays[0].shape[:-1]
         inputs = [given.get(key, jnp.zeros((*batch, size))) for key, size in kernel.signature.inputs]
         results = [jax.ShapeDtypeStruct((*batch, *shape), jnp.float64) for _, shape in kernel.signature.outputs]
@@ -131,6 +186,12 @@ class Dynamics:
             if name not in _REGISTERED:
                 _register(name, self._kernel(function), len(_REGISTERED))
         return name
+
+
+def _single(function: str, what: str, found: str, remedy: str) -> InteropError:
+    return InteropError(
+        Problem(f"{function}: {what} can't be taken", found, "models compute in doubles, of numbers in doubles", remedy)
+    )
 
 
 def _register(name: str, kernel: CompiledKernel, slot: int) -> None:

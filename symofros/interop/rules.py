@@ -51,6 +51,20 @@ class InteropError(SymofrosError):
     """A model, or an array, that a framework's wrapper can't take."""
 
 
+def second_derivatives(model: Model, function: str) -> InteropError:
+    """What is said where a framework differentiates a derivative once more."""
+    product = " or model.inverse_dynamics_hvp(...)" if function == "inverse_dynamics" else ""
+    return InteropError(
+        Problem(
+            f"{function} of model '{model.record.name}': second derivatives are not available here",
+            "a derivative is differentiated again",
+            "frameworks are given exact first derivatives",
+            f"take a method of first order, such as Gauss-Newton, model.evaluate('{function}_hessian', ...){product}; "
+            "symofros.interop.casadi has Hessians",
+        )
+    )
+
+
 def framework(name: str, extra: str) -> Any:
     """A package, or an error that says how to install it.
 
@@ -63,20 +77,20 @@ def framework(name: str, extra: str) -> Any:
         if error.name != name:
             raise
         raise InteropError(
-            Problem(
+            Problem.of_extra(
                 f"symofros.interop.{extra} needs the package '{name}'",
                 "it is not installed",
                 "each framework is an extra",
-                f"pip install 'symofros[{extra}]'",
+                extra,
             )
         ) from None
 
 
 def check_model(model: Model) -> None:
-    """Refuse models whose derivatives are not those by the arrays that a framework holds.
+    """Refuse models whose functions take more than the arrays that a framework holds.
 
     Raises:
-        InteropError: Speeds are no rates of the coordinates, a motion is prescribed, or forces depend on time.
+        InteropError: A motion is prescribed, or forces depend on time.
     """
     check_record(model.record)
 
@@ -84,16 +98,6 @@ def check_model(model: Model) -> None:
 def check_record(record: ModelRecord) -> None:
     """The same of a model's names and sizes, before it is compiled."""
     what = f"model '{record.name}' is not offered to other frameworks"
-    if any(segment.kind != "linear" for segment in record.segments):
-        joints = ", ".join(name for name in record.q_names if name.endswith(".w")) or "quaternions"
-        raise InteropError(
-            Problem(
-                what,
-                f"coordinates that are quaternions: {joints}",
-                "derivatives by q are along its manifold; frameworks take q for a plain array",
-                "describe the joint by revolute and prismatic ones",
-            )
-        )
     if record.driven:
         names = ", ".join(record.u_names[-record.driven :])
         raise InteropError(

@@ -17,6 +17,7 @@ from symofros.runtime.record import ModelRecord
 
 # Numbers of a model: in the order of its names, or by name; what is not named keeps its default.
 ArrayLike = npt.ArrayLike | Mapping[str, npt.ArrayLike]
+_DOUBLE = np.dtype(np.float64)
 
 
 class Arguments:
@@ -72,6 +73,10 @@ class Arguments:
         return stacked(self.record, self._par, group, values) if isinstance(values, Mapping) else values
 
     def _array(self, group: str, values: ArrayLike | None, size: int, dtype: npt.DTypeLike = np.float64) -> Numbers:
+        # Arrays as they should be pass at once: what follows takes longer than a small function.
+        if type(values) is np.ndarray and values.dtype is _DOUBLE and dtype is np.float64 and group != "t":
+            if values.ndim and values.shape[-1] == size:
+                return values
         array = real_array(self.by_name(group, values) if isinstance(values, Mapping) else values, dtype)
         if array is None:
             raise ShapeError(

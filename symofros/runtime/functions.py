@@ -190,7 +190,8 @@ class Functions(Arguments):
             par: Run-time parameters.
             out: Arrays by names of outputs, which receive these and are returned. Batches are computed in place, unless
                 an array overlaps an input.
-            inputs: The function's inputs by name; `t` is 0 and `u` the default inputs where they are left out.
+            inputs: The function's inputs by name; `t` is 0 and `u` the default inputs where they are left out; those of
+                no entries, multipliers of a tree, may be left out, too.
 
         Returns:
             The function's outputs in the order of the table, each (..., *shape).
@@ -205,8 +206,10 @@ class Functions(Arguments):
             if group not in INPUTS:
                 raise self._unknown("input", group, tuple(INPUTS), f"{name} takes {', '.join(FUNCTIONS[name].inputs)}")
         values = {"u": None, "t": 0.0, "gains": np.zeros(2 * self.nc)} | inputs
-        for group, _ in kernel.signature.inputs:
-            if group not in values:
+        for group, size in kernel.signature.inputs:
+            if group not in values and size == 0:  # A tree has no multipliers, and none that are wrong.
+                values[group] = np.zeros(0)
+            elif group not in values:
                 takes = ", ".join(FUNCTIONS[name].inputs)
                 raise ShapeError(Problem(f"{name}: no {group}", f"{', '.join(inputs) or 'nothing'}", takes, "add it"))
         return self._call(name, public, values, par, out)

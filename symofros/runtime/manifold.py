@@ -37,9 +37,10 @@ def integrate(segments: Sequence[Segment], q: Array, dq: Array) -> Array:
     Returns:
         The configuration (..., nq).
     """
-    theta = np.array(dq)
+    theta = dq
     for segment in segments:
         if segment.kind == "pose":
+            theta = np.array(theta)
             linear, angular = _pose_speeds(segment)
             theta[..., linear] = screw_displacement(dq[..., angular], dq[..., linear])
     return retract(segments, q, theta)
@@ -47,6 +48,8 @@ def integrate(segments: Sequence[Segment], q: Array, dq: Array) -> Array:
 
 def retract(segments: Sequence[Segment], q0: Array, theta: Array) -> Array:
     """The configurations (..., nq) at coordinates theta (..., nv) of the charts about q0 (..., nq)."""
+    if all(segment.kind == "linear" for segment in segments):
+        return np.asarray(q0 + theta)
     q = np.empty(np.broadcast_shapes(q0.shape[:-1], theta.shape[:-1]) + (q0.shape[-1],))
     for segment in segments:
         i, j, n = segment.q, segment.v, segment.size
@@ -70,6 +73,8 @@ def difference(segments: Sequence[Segment], q0: Array, q1: Array) -> Array:
         q0: (..., nq).
         q1: (..., nq).
     """
+    if all(segment.kind == "linear" for segment in segments):
+        return np.asarray(q1 - q0)
     nv = sum(segment.speeds for segment in segments)
     dq = np.empty(np.broadcast_shapes(q0.shape[:-1], q1.shape[:-1]) + (nv,))
     for segment in segments:
@@ -102,6 +107,23 @@ def chart_rate(segments: Sequence[Segment], theta: Array, v: Array) -> Array:
             rate[..., linear] = rotate(quaternion_exp(theta[..., angular]), v[..., linear])
             rate[..., angular] = rotation_vector_rate(theta[..., angular], v[..., angular])
     return rate
+
+
+def along_speeds(segments: Sequence[Segment], q: Array, by_coordinates: Array) -> Array:
+    """Derivatives along the motions of the speeds (..., nv), N^T of those by the coordinates (..., nq): q' = N v."""
+    along = np.empty((*np.broadcast_shapes(q.shape, by_coordinates.shape)[:-1], sum(each.speeds for each in segments)))
+    for segment in segments:
+        i, j, n = segment.q, segment.v, segment.size
+        if segment.kind == "linear":
+            along[..., j : j + n] = by_coordinates[..., i : i + n]
+            continue
+        start, angular = i + segment.translations, j + segment.translations
+        quaternion, weight = q[..., start : start + 4], by_coordinates[..., start : start + 4]
+        # Of q' = q w / 2: the vector part of q* weight / 2.
+        along[..., angular : angular + 3] = 0.5 * quaternion_product(conjugate(quaternion), weight)[..., :3]
+        if segment.kind == "pose":
+            along[..., j : j + 3] = rotate(conjugate(quaternion), by_coordinates[..., i : i + 3])
+    return along
 
 
 def random_state(record: ModelRecord, rng: np.random.Generator) -> tuple[Array, Array]:

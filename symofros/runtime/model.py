@@ -22,6 +22,7 @@ from symofros.runtime.methods.adjoint import AdjointFunctions
 from symofros.runtime.methods.constraints import ConstraintFunctions
 from symofros.runtime.methods.copies import CopyFunctions
 from symofros.runtime.methods.frames import FrameFunctions
+from symofros.runtime.methods.identification import IdentificationFunctions
 from symofros.runtime.methods.linear import FrameDerivatives as FrameDerivatives
 from symofros.runtime.methods.linear import Output as Output
 from symofros.runtime.methods.linear import StateMatrices as StateMatrices
@@ -29,7 +30,15 @@ from symofros.runtime.methods.momentum import MomentumFunctions
 from symofros.runtime.methods.reactions import ReactionFunctions
 
 
-class Model(AdjointFunctions, ConstraintFunctions, CopyFunctions, FrameFunctions, MomentumFunctions, ReactionFunctions):
+class Model(
+    AdjointFunctions,
+    ConstraintFunctions,
+    CopyFunctions,
+    FrameFunctions,
+    IdentificationFunctions,
+    MomentumFunctions,
+    ReactionFunctions,
+):
     """The equations of one mechanism, ready to be evaluated.
 
     Every function takes float64 arrays with any leading batch dimensions, broadcasts them, and returns new arrays
@@ -364,15 +373,15 @@ class Model(AdjointFunctions, ConstraintFunctions, CopyFunctions, FrameFunctions
             UnknownNameError: No such output or frame.
         """
         slopes = self._call("forward_dynamics_derivatives", "", {"q": q, "v": v, "u": u, "t": t}, par)
+        speeds = np.asarray(self.by_name("v", v), dtype=np.float64)
+        if outputs is None:
+            return linear.state_matrices(self.record.segments, slopes, speeds)
 
         def frame_derivatives(frame: str) -> FrameDerivatives:
             a = self.forward_dynamics(q, v, u, par=par, t=t)
             return self.frame_derivatives(frame, q, v, a, u=u, par=par)
 
-        speeds = np.asarray(self.by_name("v", v), dtype=np.float64)
-        stated = () if outputs is None else outputs
-        matrices = linear.linearize(self.record.segments, slopes, speeds, stated, frame_derivatives)
-        return matrices[:2] if outputs is None else matrices
+        return linear.linearize(self.record.segments, slopes, speeds, outputs, frame_derivatives)
 
     def residual_derivatives(
         self,
@@ -387,13 +396,3 @@ class Model(AdjointFunctions, ConstraintFunctions, CopyFunctions, FrameFunctions
     ) -> list[Array]:
         """Derivatives of R = (M a + h - Q - G^T lam; G a - gamma) by q, v and u (..., nv + nc, nv or nu)."""
         return self._call("residual_derivatives", "", {"q": q, "v": v, "a": a, "u": u, "lam": lam, "t": t}, par)
-
-    def regressor(
-        self, q: ArrayLike, v: ArrayLike, a: ArrayLike, *, u: ArrayLike | None = None, par: ArrayLike | None = None
-    ) -> Array:
-        """Regressor Y (..., nv, 10 links) with M a + h = Y pi, for the links' inertial parameters pi.
-
-        Ten a link, in the order of the tree: m, m c (3), Ixx, Ixy, Iyy, Ixz, Iyz, Izz about the origin of its body
-        frame, along its axes; what is fixed to a body counts with it. Rotors, armatures and beams are not in pi.
-        """
-        return self._one("regressor", {"q": q, "v": v, "a": a, "u": u}, par)

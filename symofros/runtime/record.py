@@ -77,6 +77,7 @@ class ModelRecord:
         speed_conditions: Names of the conditions that bind speeds only.
         wrench_names: Constraints that act on bodies by a wrench: all but conditions by formula.
         joint_names: Joints that transmit wrenches, and tips of beams: one a link.
+        link_names: Bodies that joints move, with what is fixed to them: one a link.
         section_names: Sections of elastic beams whose forces can be asked for: name of the beam, and station x/L.
         prescribed_names: Speeds of prescribed motions.
         closures: Closures of frames, for checks of their rotations.
@@ -106,6 +107,7 @@ class ModelRecord:
     speed_conditions: tuple[str, ...] = ()
     wrench_names: tuple[str, ...] = ()
     joint_names: tuple[str, ...] = ()
+    link_names: tuple[str, ...] = ()
     section_names: tuple[tuple[str, float], ...] = ()
     prescribed_names: tuple[str, ...] = ()
     closures: tuple[ClosureRecord, ...] = ()

@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -15,6 +16,8 @@ import symofros as sf
 from symofros.__main__ import _COMMANDS, _command, app
 from symofros.commands.shared import shown
 from symofros.simulation.progress import pace_of
+from tests.late import require
+from validation.commands import COMMANDS
 
 ROOT = Path(sf.__file__).parents[1]
 CART_POLE = ROOT / "reference_models/rigid/cart_pole.yaml"
@@ -256,7 +259,7 @@ def test_the_harness_starts_from_any_folder(
     assert not (tmp_path / "reports").exists()
 
 
-@pytest.mark.parametrize("arguments", [["validation", "--help"], ["validation", "timing"]])
+@pytest.mark.parametrize("arguments", [["validation", "accuracy", "--help"], ["validation", "timing"]])
 def test_without_its_packages_the_harness_says_what_to_install(
     arguments: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -265,6 +268,18 @@ def test_without_its_packages_the_harness_says_what_to_install(
     monkeypatch.setenv("PYTHONPATH", f"{tmp_path}{os.pathsep}{ROOT}")  # Of the process that runs the harness.
     status, said = invoke(*arguments).exit_code, capfd.readouterr().err
     assert status == 2 and "Traceback" not in said and "pip install 'symofros[validation]'" in said
+
+
+def test_the_list_of_the_harness_needs_none_of_its_packages(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """Neither engines, nor what is computed and drawn with; one line, or two, for each command."""
+    gone = repr("numpy scipy matplotlib pinocchio mujoco casadi exudyn hypothesis".split())
+    (tmp_path / "sitecustomize.py").write_text(f"import sys\nsys.modules.update(dict.fromkeys({gone}))\n")
+    monkeypatch.setenv("PYTHONPATH", f"{tmp_path}{os.pathsep}{ROOT}")  # Of the process that runs the harness.
+    status, (said, complaints) = invoke("validation", "--help").exit_code, capfd.readouterr()
+    assert status == 0 and not complaints, complaints
+    assert re.findall(r"^  (\w+) {2,}\S", said.partition("Commands:")[2], re.MULTILINE) == [*COMMANDS]
 
 
 @pytest.mark.slow
@@ -282,7 +297,7 @@ def test_the_first_command_of_the_readme_brings_all_that_the_harness_starts_with
 
 def test_kernels_tell_registers_and_the_bound_of_the_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without a graphics processor, and so without times."""
-    pytest.importorskip("nvidia.cuda_nvrtc", reason="the extra cuda is not installed: pip install 'symofros[cuda]'")
+    require("nvidia.cuda_nvrtc", "cuda")
     monkeypatch.setattr("symofros.commands.kernels.present", lambda: None)
     told = invoke("kernels", CART_POLE, "--architecture", "sm_80", "--bandwidth", 2000, "--json")
     assert told.exit_code == 0, told.output

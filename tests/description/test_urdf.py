@@ -9,6 +9,7 @@ import pinocchio
 import pytest
 
 import symofros as sf
+from tests.late import require
 from validation.inputs.cases import robot_case
 
 INERTIAL = (
@@ -154,7 +155,7 @@ def test_every_robot_of_the_package_loads_or_says_why() -> None:
 
 @pytest.mark.parametrize("robot", ["talos_data/robots/talos_reduced.urdf", "panda_description/urdf/panda.urdf"])
 def test_inertias_equal_pinocchios(robot: str) -> None:
-    pinocchio = pytest.importorskip("pinocchio")
+    pinocchio = require("pinocchio", "validation")
     from validation.mechanics.assembly import assemble
 
     theirs = pinocchio.buildModelFromUrdf(str(robots_folder() / robot))

@@ -16,8 +16,9 @@ from symofros.description.usd.masses import _unit_shape
 from symofros.description.usd.reader import names_of
 from symofros.description.usd.usd_worker import shortest
 from tests.description.usd_models import body, freedoms, joint, placed, prim, shape, stage
+from tests.late import require
 
-pytest.importorskip("pxr.Usd")
+require("pxr.Usd", "usd")
 
 Load = Callable[[str], sf.System]
 ARM = {"mass": 2.0, "centerOfMass": (0.1, 0.2, -0.3), "diagonalInertia": (0.3, 0.4, 0.5)}

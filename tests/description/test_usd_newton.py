@@ -10,10 +10,11 @@ import pytest
 
 import symofros as sf
 from tests.description.usd_models import body, joint, prim, stage
+from tests.late import require
 
-pytest.importorskip("pxr.Usd")
-newton = pytest.importorskip("newton")
-pytest.importorskip("newton_usd_schemas", reason="Newton reads USD by it: pip install 'symofros[engine-newton]'")
+require("pxr.Usd", "usd")
+newton = require("newton", "engine-newton")
+require("newton_usd_schemas", "engine-newton")
 
 SINGLE = 5e-6
 LINKS = 6

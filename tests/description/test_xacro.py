@@ -12,8 +12,9 @@ import pytest
 
 import symofros as sf
 from symofros.description.urdf import xacro_expressions, xacro_files, xacro_worker
+from tests.late import require
 
-pytest.importorskip("xacro")
+require("xacro", "xacro")
 
 INERTIAL = '<inertial><mass value="${{{mass}}}"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
 MACRO = (

@@ -18,6 +18,7 @@ from ruamel.yaml import YAML
 import symofros as sf
 from tests.docs.pages import ELSEWHERE, GIVEN, ROOT, TAKEN, Block, blocks, pages, unseen
 from tests.docs.shell import commands, try_out
+from tests.late import needs_extra
 from validation.campaigns import plan
 
 # What is not run here: quotations, and code for Node that its test runs.
@@ -83,9 +84,13 @@ def folder(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 @pytest.mark.parametrize("page", WITH_CODE)
 def test_the_code_of_a_page_runs(page: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     names: dict[str, Any] = {"__name__": "__main__"}
+    absent = ""
     for block in blocks(page):
         package = block.said("needs ")
-        if not block.runs or (package and find_spec(package) is None):
+        if not block.runs:
+            continue
+        if package and find_spec(package) is None:
+            absent = package
             continue
         where = f"{page}:{block.line}"
         if block.language == "python":
@@ -103,6 +108,8 @@ def test_the_code_of_a_page_runs(page: str, folder: Path, capsys: pytest.Capture
             assert block.language in LANGUAGES, f"{where}: a block of language '{block.language}'"
             test = LANGUAGES[block.language]
             assert not test or page in (ROOT / test).read_text(encoding="utf-8"), f"{where}: {test} does not run it"
+    if absent:  # All other blocks ran; extras of frameworks are called like their packages.
+        pytest.skip(needs_extra(absent, absent))
 
 
 @pytest.mark.parametrize("page", sorted(ELSEWHERE))

@@ -19,10 +19,11 @@ import symofros as sf
 from symofros import blocks
 from symofros.__main__ import app as symofros
 from tests.docs.pages import ROOT
+from tests.late import require
 from validation.__main__ import app as validation
 
 for package in ("sphinx", "furo", "myst_nb"):
-    pytest.importorskip(package, reason="needs the extra `docs`")
+    require(package, "docs")
 
 BUILD = "-m sphinx -W --keep-going docs build/docs"
 # Public names that are no objects of their own: modules of the packages, and what `typing` and Python bring.

@@ -9,8 +9,9 @@ from typing import Any
 import pytest
 
 from tests.docs.pages import ROOT
+from tests.late import require
 
-pytest.importorskip("sphinx", reason="needs the extra `docs`")
+require("sphinx", "docs")
 
 
 @pytest.fixture

@@ -45,7 +45,7 @@ PLANAR = sf.System(
     ),
     gravity=(0, -9.81, 0),
 )
-STRICT = ("-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror")
+STRICT = ("-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Werror")
 # What an export compiles by itself has `compiling.FLAGS`; what the optimiser warns of shows under valgrind (--tools).
 BUILD = (*STRICT, "-O0")
 

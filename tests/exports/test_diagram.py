@@ -122,6 +122,35 @@ def test_the_program_tells_what_python_tells(case: str, tmp_path: Path) -> None:
         assert told[-1, 2] == run["ball.bounces"][-1] == 2
 
 
+NONSENSE = (
+    ["--fast"],
+    ["1", "x"],
+    ["1s"],
+    ["1", "0.1", "2"],
+    ["nan"],
+    ["inf"],
+    ["1", "0"],
+    ["-1"],
+    ["1", "--quiett"],
+    [""],
+)
+
+
+def test_arguments_that_say_nothing_are_refused_and_the_readme_tells_which_do(tmp_path: Path) -> None:
+    exported = sf.export(pendulum(), "c", tmp_path / "c")
+    program = build(exported.folder, "program")
+    for arguments in NONSENSE:
+        done = subprocess.run([program, *arguments], capture_output=True, text=True)
+        assert done.returncode == 2, arguments
+        assert done.stderr.startswith("usage: arm SECONDS [PERIOD]"), arguments
+        assert done.stdout == "", arguments
+    readme = (exported.folder / "README.md").read_text()
+    header = subprocess.run([program, "0"], capture_output=True, text=True).stdout.splitlines()[0]
+    assert all(f"`{entry}`" in readme for entry in header.split(",")[1:])
+    assert readme.startswith("# arm\n")
+    assert "--realtime" in readme
+
+
 def test_a_program_steps_as_its_diagram_states_or_as_is_said(tmp_path: Path) -> None:
     stated = pendulum()
     stated.simulation = RunSettings(method="euler", dt=0.004, rtol=1e-3, atol=1e-4, beam_limit=0.03)

@@ -18,6 +18,7 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from tests.interop.turning import SYSTEMS, states
 from tests.late import late
 
 casadi = late("casadi", extra="casadi")
@@ -119,20 +120,26 @@ def test_functions_and_derivatives_by_the_c_interface(dynamics: Any, types: tupl
         link = [str(dynamics.library), f"-Wl,-rpath,{dynamics.library.parent}"]
     rng, functions, right = np.random.default_rng(8), {}, []
     for own in dynamics.names.values():
-        for prefix in ("", "jac_", "adj1_", "jac_adj1_"):
+        for prefix in ("", "jac_", "adj1_", "jac_jac_", "jac_adj1_"):
             function = casadi.external(f"{prefix}{own}", str(dynamics.library))
-            given = [rng.uniform(0.5, 1.0, function.size1_in(i)) for i in range(function.n_in())]
+            given = [rng.uniform(0.5, 1.0, function.nnz_in(i)) for i in range(function.n_in())]
             functions[f"{prefix}{own}"] = given
-            right += function.call([casadi.DM(each) for each in given])
+            right += function.call([casadi.DM(function.sparsity_in(i), each) for i, each in enumerate(given)])
     found = called(tmp_path, link, types, functions)
     assert len(found) == len(right)
     for ours, theirs in zip(found, right, strict=True):
         np.testing.assert_array_equal(ours, np.array(theirs))
 
 
-def test_what_acados_generates_of_the_dynamics(dynamics: Any, model: sf.Model, tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", ["cart_pole", "hopper"])
+def test_what_acados_generates_of_the_dynamics(name: str, tmp_path: Path) -> None:
     """x' = f(x, u, p), its sensitivities and its Hessian, as acados states them for explicit integrators."""
-    nx, nu, npar = 2 * model.nv, model.nu, len(model.parameter_values)
+    system = MODELS[name] if name in MODELS else SYSTEMS[name]()
+    model, dynamics = (
+        sf.compile(system),
+        sf.interop.casadi.Dynamics(system, frames=["tip" if name in MODELS else "toe"]),
+    )
+    nx, nu, npar = model.nq + model.nv, model.nu, len(model.parameter_values)
     sym = casadi.MX.sym
     x, u, p, Sx, Su, lam = (
         sym("x", nx),
@@ -142,7 +149,7 @@ def test_what_acados_generates_of_the_dynamics(dynamics: Any, model: sf.Model, t
         sym("Su", nx, nu),
         sym("l", nx),
     )
-    f = casadi.vertcat(x[2:], dynamics.forward_dynamics(x[:2], x[2:], u, p))
+    f = dynamics.state_derivative(x, u, p)
     by_state, by_input = casadi.jtimes(f, x, Sx), casadi.jacobian(f, u) + casadi.jtimes(f, x, Su)
     xu = casadi.vertcat(x, u)
     adjoint = casadi.jtimes(f, xu, lam, True)
@@ -157,12 +164,8 @@ def test_what_acados_generates_of_the_dynamics(dynamics: Any, model: sf.Model, t
         code.add(function)
         code.generate(f"{tmp_path}/")
     rng = np.random.default_rng(2)
-    q, v, force, weights = (
-        rng.standard_normal(2),
-        rng.standard_normal(2),
-        rng.standard_normal(1),
-        rng.standard_normal(nx),
-    )
+    q, v = (each[0] for each in states(model, 1, rng))
+    force, weights = rng.standard_normal(nu), rng.standard_normal(nx)
     state, par, identity, none = np.concatenate([q, v]), model.parameter_values, np.eye(nx), np.zeros((nx, nu))
     functions = {
         "expl_ode_fun": [state, force, par],
@@ -172,7 +175,13 @@ def test_what_acados_generates_of_the_dynamics(dynamics: Any, model: sf.Model, t
     library = dynamics.write_acados_library(tmp_path)
     sources = [f"{name}.c" for name in generated]
     link = [*sources, "-Wno-unused", f"-L{tmp_path}", f"-l{library}", f"-Wl,-rpath,{tmp_path}"]
-    rate, rate_again, A, B, adj, hessian = called(tmp_path, link, ACADOS, functions)
+    found = called(tmp_path, link, ACADOS, functions)
+    right = [each for own, given in functions.items() for each in casadi.Function(own, *generated[own]).call(given)]
+    for ours, theirs in zip(found, right, strict=True):
+        np.testing.assert_allclose(ours, np.array(theirs), rtol=1e-12, atol=1e-11)
+    if model.nq != model.nv:
+        return
+    rate, rate_again, A, B, adj, hessian = found
     slopes = model.linearize(q, v, force)
     right = np.concatenate([v, model.forward_dynamics(q, v, force)])
     np.testing.assert_allclose(rate.ravel(), right, rtol=1e-12)
@@ -180,6 +189,6 @@ def test_what_acados_generates_of_the_dynamics(dynamics: Any, model: sf.Model, t
     np.testing.assert_allclose(A, slopes[0], rtol=1e-12, atol=1e-12)
     np.testing.assert_allclose(B, slopes[1], rtol=1e-12, atol=1e-12)
     np.testing.assert_allclose(adj.ravel(), np.hstack(slopes).T @ weights, rtol=1e-12, atol=1e-12)
-    at = {"q": q, "v": v, "u": force, "par": par, "a_bar": weights[2:], "lam_bar": np.zeros(0)}
+    at = {"q": q, "v": v, "u": force, "par": par, "a_bar": weights[model.nq :], "lam_bar": np.zeros(0)}
     (second,) = model.evaluate("forward_dynamics_hessian", **at)
     np.testing.assert_allclose(hessian, second[: nx + nu, : nx + nu], rtol=1e-12, atol=1e-12)

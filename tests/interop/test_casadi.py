@@ -9,6 +9,7 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from tests.interop.turning import SYSTEMS, rate_matrix, states, turns, unit
 from tests.late import late
 
 casadi = late("casadi", extra="casadi")
@@ -163,3 +164,120 @@ def test_ipopt_swings_the_pole_by_the_external_function(dynamics: Any, model: sf
         speed = speed + h * model.forward_dynamics(at, speed, np.array([force]))
         at = at + h * speed
     np.testing.assert_allclose([*at, *speed], 0.0, atol=1e-4)
+
+
+@pytest.fixture(scope="module", params=SYSTEMS)
+def turning(request: pytest.FixtureRequest) -> tuple[sf.Model, Any]:
+    system = SYSTEMS[request.param]()
+    return sf.compile(system), sf.interop.casadi.Dynamics(system, frames=["toe"])
+
+
+def with_arguments(m: sf.Model, name: str) -> tuple[list[np.ndarray], np.ndarray]:
+    """Arguments of a function, quaternions of any length, and the model's value there."""
+    rng = np.random.default_rng(11)
+    q, v = (x[0] for x in states(m, 1, rng))
+    if name.startswith("frame"):
+        return [q, m.parameter_values], m.frame_pose("toe", unit(m, q))[0]
+    third = rng.standard_normal(m.nu if name == "forward_dynamics" else m.nv)
+    return [q, v, third, m.parameter_values], getattr(m, name)(unit(m, q), v, third)
+
+
+def differences(f: Any, x: np.ndarray) -> np.ndarray:
+    """Derivatives of a function of CasADi by differences whose errors of second order cancel."""
+
+    def central(h: float) -> np.ndarray:
+        return np.column_stack([np.array(f(x + e) - f(x - e)).ravel(order="F") / (2 * h) for e in h * np.eye(len(x))])
+
+    return (4 * central(2e-4) - central(4e-4)) / 3
+
+
+@pytest.mark.parametrize("name", ["forward_dynamics", "inverse_dynamics", "frame_position toe"])
+def test_derivatives_of_quaternions_of_any_length_up_to_the_second(turning: tuple[sf.Model, Any], name: str) -> None:
+    """Values, Jacobians, gradients, their Hessians, and derivatives of the Jacobian itself."""
+    m, dynamics = turning
+    given, right = with_arguments(m, name)
+    x, at = casadi.MX.sym("x", sum(map(len, given))), np.concatenate(given)
+    parts = casadi.vertsplit(x, [0, *np.cumsum([len(each) for each in given]).tolist()])
+    value = dynamics.functions[name](*parts)
+    rng = np.random.default_rng(12)
+    weights, direction = casadi.DM(rng.standard_normal(len(right))), casadi.DM(rng.standard_normal(len(at)))
+    H, gradient = casadi.hessian(casadi.dot(weights, value), x)
+    J = casadi.jacobian(value, x)
+    made = {"value": value, "J": J, "g": gradient, "H": H, "Jd": J @ direction}
+    made["JJd"] = casadi.jacobian(made["Jd"], x)
+    f = {key: casadi.Function(key, [x], [each]) for key, each in made.items()}
+    np.testing.assert_allclose(np.array(f["value"](at)).ravel(), right, rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(np.array(weights.T @ f["J"](at)), np.array(f["g"](at)).T, rtol=1e-10, atol=1e-12)
+    for slope, of in (("J", "value"), ("H", "g"), ("JJd", "Jd")):
+        exact = np.array(f[slope](at))
+        np.testing.assert_allclose(exact, differences(f[of], at), rtol=0, atol=1e-8 * np.abs(exact).max())
+    H = np.array(f["H"](at))
+    np.testing.assert_allclose(H, H.T, rtol=0, atol=1e-12 * np.abs(H).max())
+    for turn in turns(m):  # Nothing depends on the length of a quaternion: by Euler's theorem H q = -g.
+        np.testing.assert_allclose(H[turn, turn] @ at[turn], -np.array(f["g"](at)).ravel()[turn], rtol=1e-9, atol=1e-11)
+
+
+def test_motions_along_the_manifold_are_the_models(turning: tuple[sf.Model, Any]) -> None:
+    m, dynamics = turning
+    rng = np.random.default_rng(13)
+    q, dq = (x[0] for x in states(m, 1, rng))
+    for scale in (0.0, 1e-9, 0.01, 1.0):
+        end = m.integrate(unit(m, q), scale * dq)
+        np.testing.assert_allclose(np.array(dynamics.integrate(q, scale * dq)).ravel(), end, rtol=1e-13, atol=1e-14)
+        back = np.array(dynamics.difference(q, end)).ravel()
+        np.testing.assert_allclose(back, scale * dq, rtol=1e-9, atol=1e-14)
+    at = unit(m, q)
+    np.testing.assert_allclose(np.array(dynamics.coordinate_rates(at, dq)).ravel(), rate_matrix(m, at) @ dq, atol=1e-8)
+
+
+@pytest.mark.parametrize("method", ["cvodes", "idas"])
+@pytest.mark.parametrize("name", ["cart_pole", "hopper"])
+def test_sensitivities_of_casadis_integrators(method: str, name: str) -> None:
+    """The Jacobian of the end by start and inputs, that of `rk` on many elements; quaternions keep their length."""
+    system = MODELS[name] if name in MODELS else SYSTEMS[name]()
+    m, dynamics = sf.compile(system), sf.interop.casadi.Dynamics(system)
+    x, u = casadi.MX.sym("x", m.nq + m.nv), casadi.MX.sym("u", m.nu)
+    ode = {"x": x, "p": u, "ode": dynamics.state_derivative(x, u)}
+    rng = np.random.default_rng(14)
+    start = np.concatenate([m.integrate(m.neutral(), rng.standard_normal(m.nv)), rng.standard_normal(m.nv)])
+    ends = []
+    for each, options in (("rk", {"number_of_finite_elements": 100}), (method, {"abstol": 1e-10, "reltol": 1e-10})):
+        step = casadi.integrator("step", each, ode, 0, 0.3, options)(x0=x, p=u)["xf"]
+        f = casadi.Function("f", [x, u], [step, casadi.jacobian(step, casadi.vertcat(x, u))])
+        ends.append([np.array(part) for part in f(start, np.ones(m.nu))])
+    # Errors of the integrators, of tolerance 1e-10 a step.
+    for found, right in zip(*ends, strict=True):
+        np.testing.assert_allclose(found, right, rtol=0, atol=1e-6 * np.abs(right).max())
+    for turn in turns(m):
+        assert np.linalg.norm(ends[0][0][turn]) == pytest.approx(1.0, abs=1e-9)
+
+
+def test_ipopt_turns_a_free_body_over() -> None:
+    """A torque turns a body at rest by a half: condition of the end on the rotation, not on all four coordinates."""
+    inertia = sf.Inertia(1.0, moments=(0.1, 0.2, 0.3))
+    joint = sf.Joint("float", "free", effort=("0", "0", "0", "tx", "ty", "tz"))
+    inputs = [sf.Input(name) for name in ("tx", "ty", "tz")]
+    system = sf.System("body", [sf.RigidBody("body", joint, inertia)], inputs=inputs, gravity=(0, 0, 0))
+    m, dynamics = sf.compile(system), sf.interop.casadi.Dynamics(system)
+    steps, h = 20, 0.1
+    opti = casadi.Opti()
+    q, v, u = opti.variable(7, steps + 1), opti.variable(6, steps + 1), opti.variable(3, steps)
+    opti.minimize(casadi.sumsqr(u) * h)
+    for k in range(steps):
+        opti.subject_to(v[:, k + 1] == v[:, k] + h * dynamics.forward_dynamics(q[:, k], v[:, k], u[:, k]))
+        opti.subject_to(q[:, k + 1] == dynamics.integrate(q[:, k], h * v[:, k + 1]))
+    goal = m.integrate(m.neutral(), np.array([0, 0, 0, 1.2, -0.5, 2.0]))
+    opti.subject_to(q[:, 0] == m.neutral())
+    opti.subject_to(v[:, 0] == np.zeros(6))
+    opti.subject_to(dynamics.difference(goal, q[:, steps]) == np.zeros(6))
+    opti.subject_to(v[:, steps] == np.zeros(6))
+    for k in range(steps + 1):
+        opti.set_initial(q[:, k], m.integrate(m.neutral(), k / steps * m.difference(m.neutral(), goal)))
+    opti.solver("ipopt", {"print_time": False}, {"print_level": 0, "max_iter": 100, "tol": 1e-8})
+    solution = opti.solve()
+    at, speed = m.neutral(), np.zeros(6)
+    for force in solution.value(u).T:
+        speed = speed + h * m.forward_dynamics(at, speed, force)
+        at = m.integrate(at, h * speed)
+    np.testing.assert_allclose(m.difference(goal, at), 0.0, atol=1e-6)
+    np.testing.assert_allclose(speed, 0.0, atol=1e-6)

@@ -10,6 +10,7 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from tests.interop.turning import SYSTEMS, rate_matrix, states, turns, unit
 from tests.late import late
 
 jax = late("jax", extra="jax")
@@ -79,6 +80,107 @@ def test_loops_are_differentiated_with_their_constraints(double_precision: None)
     slope = jax.jacrev(wrapped.forward_dynamics)(closed.q, closed.v, np.zeros(four_bar.nu))
     right = four_bar.forward_dynamics_derivatives(closed.q, closed.v, np.zeros(four_bar.nu))[0]
     np.testing.assert_allclose(slope, right, rtol=1e-12, atol=1e-12)
+
+
+@pytest.fixture(scope="module", params=SYSTEMS)
+def turning(request: pytest.FixtureRequest, double_precision: None) -> tuple[sf.Model, Any]:
+    m = sf.compile(SYSTEMS[request.param]())
+    return m, sf.interop.jax.Dynamics(m)
+
+
+@pytest.mark.parametrize("name", ["forward_dynamics", "inverse_dynamics"])
+def test_quaternions_of_any_length_pass_jaxs_checker(turning: tuple[sf.Model, Any], name: str) -> None:
+    from jax.test_util import check_grads
+
+    m, wrapped = turning
+    rng = np.random.default_rng(5)
+    q, v = states(m, 2, rng)
+    given = [q, v, rng.standard_normal((2, m.nu if name == "forward_dynamics" else m.nv)), m.parameter_values]
+    f = jax.jit(getattr(wrapped, name))
+    np.testing.assert_allclose(f(*given), getattr(m, name)(unit(m, q), *given[1:3]), rtol=1e-12, atol=1e-12)
+    check_grads(f, given, order=1, modes=["fwd", "rev"])
+
+
+def test_derivatives_by_coordinates_are_those_along_the_manifold(turning: tuple[sf.Model, Any]) -> None:
+    """Along the rates of each speed the model's own; along the length of a quaternion none."""
+    m, wrapped = turning
+    rng = np.random.default_rng(6)
+    q, v = (x[0] for x in states(m, 1, rng))
+    u = rng.standard_normal(m.nu)
+    at = unit(m, q)
+    slope = jax.jacrev(wrapped.forward_dynamics)(at, v, u)
+    np.testing.assert_allclose(slope @ rate_matrix(m, at), m.forward_dynamics_derivatives(at, v, u)[0], atol=1e-7)
+    for turn in turns(m):
+        slope_here = jax.jacrev(wrapped.forward_dynamics)(q, v, u)[:, turn]
+        np.testing.assert_allclose(slope_here @ q[turn], 0.0, atol=1e-12 * np.abs(slope_here).max())
+
+
+@pytest.mark.parametrize("scale", [0.0, 1e-9, 1e-2, 0.3, 2.5])
+def test_motions_along_the_manifold_are_the_models(turning: tuple[sf.Model, Any], scale: float) -> None:
+    """Differentiable twice, by JAX, at no turn as well, and on both sides of where a series ends."""
+    from jax.test_util import check_grads
+
+    m, wrapped = turning
+    rng = np.random.default_rng(7)
+    q, dq = states(m, 2, rng)
+    dq *= scale / max(1.0, float(np.abs(dq).max()))
+    ends = m.integrate(unit(m, q), dq)
+    np.testing.assert_allclose(wrapped.integrate(q, dq), ends, rtol=1e-13, atol=1e-14)
+    np.testing.assert_allclose(wrapped.difference(q, ends), dq, rtol=1e-9, atol=1e-14)
+    h = 1e-6
+    rates = (m.integrate(unit(m, q), h * dq) - m.integrate(unit(m, q), -h * dq)) / (2 * h)
+    np.testing.assert_allclose(wrapped.coordinate_rates(unit(m, q), dq), rates, atol=1e-8)
+    for f in (wrapped.integrate, wrapped.coordinate_rates):
+        check_grads(f, (q, dq), order=2, modes=["fwd", "rev"])
+    check_grads(wrapped.difference, (q, ends), order=2, modes=["fwd", "rev"])
+
+
+def test_gradients_through_steps_on_the_manifold(turning: tuple[sf.Model, Any]) -> None:
+    """Of semi-implicit steps; where only balls turn, these are the steps of `rollout`."""
+    from jax.test_util import check_grads
+
+    m, wrapped = turning
+    rng = np.random.default_rng(8)
+    q, v = (x[0] for x in states(m, 1, rng))
+    q, forces, h = unit(m, q), rng.standard_normal((5, m.nu)), 0.02
+    q_bar, v_bar = rng.standard_normal(m.nq), rng.standard_normal(m.nv)
+
+    def cost(forces: Any) -> Any:
+        def step(state: Any, force: Any) -> Any:
+            q, v = state
+            v = v + h * wrapped.forward_dynamics(q, v, force)
+            return (wrapped.integrate(q, h * v), v), None
+
+        (q_end, v_end), _ = jax.lax.scan(step, (q, v), forces)
+        return q_bar @ q_end + v_bar @ v_end
+
+    check_grads(jax.jit(cost), (forces,), order=1, modes=["fwd", "rev"])
+    if all(segment.kind != "pose" for segment in m.record.segments):
+        right = sf.rollout(m, q, v, forces, h, method="semi_implicit_euler").gradient(q_bar, v_bar)
+        np.testing.assert_allclose(jax.grad(cost)(forces), right.u, rtol=1e-9, atol=1e-12)
+
+
+def test_second_derivatives_are_refused_in_words(dynamics: Any, model: sf.Model) -> None:
+    """When they are traced, not by XLA."""
+    q, v, u, _ = (x[0] for x in arrays(model, 1, model.nu))
+    for transform in (jax.hessian, lambda f: jax.jit(jax.hessian(f)), lambda f: jax.jacrev(jax.jacrev(f))):
+        with pytest.raises(sf.SymofrosError, match=r"forward_dynamics_hessian"):
+            transform(lambda q: dynamics.forward_dynamics(q, v, u)[1])(q)
+
+
+def test_parameters_that_are_not_traced_are_judged(dynamics: Any, model: sf.Model) -> None:
+    q, v, u, par = arrays(model, 1, model.nu)
+    with pytest.raises(sf.ParameterError, match="run-time parameters"):
+        dynamics.forward_dynamics(q, v, u, jax.numpy.asarray(-par))
+
+
+@pytest.mark.parametrize("label", ["q", "v", "u", "par"])
+def test_arrays_of_single_precision_are_refused(dynamics: Any, model: sf.Model, label: str) -> None:
+    q, v, u, par = arrays(model, 1, model.nu)
+    given = {"q": q, "v": v, "u": u, "par": par}
+    given[label] = jax.numpy.asarray(given[label], dtype="float32")
+    with pytest.raises(sf.SymofrosError, match=f"'{label}' can't be taken"):
+        dynamics.forward_dynamics(**given)
 
 
 def test_single_precision_and_wrong_shapes_are_refused_in_words(dynamics: Any, model: sf.Model) -> None:

@@ -8,7 +8,6 @@ import sys
 import pytest
 
 import symofros as sf
-from reference_models import MODELS
 from symofros.interop import rules
 
 
@@ -27,11 +26,6 @@ def test_an_absent_framework_is_said_in_words() -> None:
 def test_unknown_modules_are_refused_with_the_known_ones() -> None:
     with pytest.raises(AttributeError, match="casadi, gymnasium, jax, torch"):
         _ = sf.interop.tensorflow
-
-
-def test_quaternions_are_refused() -> None:
-    with pytest.raises(sf.SymofrosError, match="quaternions"):
-        rules.check_model(sf.compile(MODELS["torque_free_body"]))
 
 
 @pytest.mark.parametrize("force", ["sin(t)", "max(t - 100, 0)", "t*(t - 0.7310585)*(t - 19.47)"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from tests.interop.turning import SYSTEMS, rate_matrix, states, turns, unit
 from tests.late import late
 
 torch = late("torch", extra="torch")
@@ -76,3 +78,90 @@ def test_loops_keep_their_constraints_in_the_derivatives() -> None:
     np.testing.assert_allclose(
         slope.numpy(), four_bar.forward_dynamics_derivatives(closed.q, closed.v, u.numpy())[0], rtol=1e-12, atol=1e-12
     )
+
+
+@pytest.fixture(scope="module", params=SYSTEMS)
+def turning(request: pytest.FixtureRequest) -> tuple[sf.Model, Any]:
+    m = sf.compile(SYSTEMS[request.param]())
+    return m, sf.interop.torch.Dynamics(m)
+
+
+def leaves(*arrays: np.ndarray) -> list[Any]:
+    return [torch.tensor(x, requires_grad=True) for x in arrays]
+
+
+@pytest.mark.parametrize("name", ["forward_dynamics", "inverse_dynamics"])
+def test_quaternions_of_any_length_pass_torchs_checker(turning: tuple[sf.Model, Any], name: str) -> None:
+    m, wrapped = turning
+    rng = np.random.default_rng(5)
+    q, v = states(m, 2, rng)
+    third = rng.standard_normal((2, m.nu if name == "forward_dynamics" else m.nv))
+    given = leaves(q, v, third, m.parameter_values)
+    f = getattr(wrapped, name)
+    np.testing.assert_allclose(
+        f(*given).detach().numpy(), getattr(m, name)(unit(m, q), v, third), rtol=1e-12, atol=1e-12
+    )
+    assert torch.autograd.gradcheck(f, given, check_forward_ad=True, check_batched_grad=True)
+
+
+def test_derivatives_by_coordinates_are_those_along_the_manifold(turning: tuple[sf.Model, Any]) -> None:
+    m, wrapped = turning
+    rng = np.random.default_rng(6)
+    q, v = (x[0] for x in states(m, 1, rng))
+    a, at = rng.standard_normal(m.nv), unit(m, q)
+
+    def slope(q: np.ndarray) -> np.ndarray:
+        return torch.func.jacrev(wrapped.inverse_dynamics)(*map(torch.tensor, (q, v, a))).numpy()
+
+    np.testing.assert_allclose(slope(at) @ rate_matrix(m, at), m.inverse_dynamics_derivatives(at, v, a)[0], atol=1e-7)
+    for turn in turns(m):
+        np.testing.assert_allclose(slope(q)[:, turn] @ q[turn], 0.0, atol=1e-12 * np.abs(slope(q)).max())
+
+
+@pytest.mark.parametrize("scale", [0.0, 1e-9, 1e-2, 2.5])
+def test_motions_along_the_manifold_are_the_models(turning: tuple[sf.Model, Any], scale: float) -> None:
+    m, wrapped = turning
+    rng = np.random.default_rng(7)
+    q, dq = states(m, 2, rng)
+    dq *= scale / max(1.0, float(np.abs(dq).max()))
+    ends = m.integrate(unit(m, q), dq)
+    given = leaves(q, dq)
+    np.testing.assert_allclose(wrapped.integrate(*given).detach().numpy(), ends, rtol=1e-13, atol=1e-14)
+    back = wrapped.difference(given[0], torch.tensor(ends)).detach().numpy()
+    np.testing.assert_allclose(back, dq, rtol=1e-9, atol=1e-14)
+    assert torch.autograd.gradcheck(wrapped.integrate, given, check_forward_ad=True)
+    assert torch.autograd.gradgradcheck(wrapped.coordinate_rates, given)
+    assert torch.autograd.gradcheck(wrapped.difference, leaves(q, ends))
+
+
+@pytest.mark.parametrize("given", [np.zeros(2), [0.0, 0.0]])
+def test_what_is_no_tensor_is_refused_in_words(dynamics: Any, given: object) -> None:
+    zeros = torch.zeros(2, dtype=torch.float64)
+    with pytest.raises(sf.SymofrosError, match="torch.as_tensor"):
+        dynamics.forward_dynamics(given, zeros, torch.zeros(1, dtype=torch.float64))
+
+
+def test_wrong_shapes_are_refused_in_words(dynamics: Any) -> None:
+    zeros = torch.zeros(3, dtype=torch.float64)
+    with pytest.raises(sf.SymofrosError, match=r"\(\.\.\., 2\)"):
+        dynamics.forward_dynamics(zeros, zeros, zeros)
+
+
+def test_a_model_of_single_precision_computes_in_doubles(model: sf.Model) -> None:
+    q, v, u, _ = (x.detach() for x in tensors(model, 2, model.nu))
+    single = sf.interop.torch.Dynamics(model.with_precision("single")).forward_dynamics(q, v, u)
+    assert single.dtype == torch.float64
+    np.testing.assert_array_equal(single.numpy(), model.forward_dynamics(q.numpy(), v.numpy(), u.numpy()))
+
+
+def test_a_robot_with_a_floating_base_is_taken_from_its_urdf(tmp_path: Path) -> None:
+    inertial = """<inertial><mass value="2"/>
+        <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial>"""
+    (tmp_path / "hip.urdf").write_text(f"""<robot name="hip"><link name="base">{inertial}</link>
+        <link name="thigh">{inertial}</link><joint name="hip" type="revolute"><parent link="base"/><child link="thigh"/>
+        <axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="10" velocity="5"/></joint></robot>""")
+    m = sf.compile(sf.load(tmp_path / "hip.urdf", floating_base=True))
+    wrapped = sf.interop.torch.Dynamics(m)
+    q, v, u = leaves(m.neutral(), np.ones(m.nv), np.ones(m.nu))
+    wrapped.integrate(q, 0.1 * wrapped.forward_dynamics(q, v, u)).sum().backward()
+    assert q.grad.shape == (m.nq,) and bool(q.grad.isfinite().all())

@@ -31,7 +31,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> dict[str, np.ndarray]:
     # The systems of packed matrices have the names of the full ones: tests/generator/codegen/test_sparse.py.
     files = dict.fromkeys(file for needed in ROUTINES.values() for file in needed if file != "sparse_system")
     routines = "\n".join(native_text(f"model/{file}.c.in") for file in files)
-    head = "#include <math.h>\n#include <stdint.h>\n#include <string.h>\n"
+    head = "#include <math.h>\n#include <string.h>\n" + native_text("model/symofros_model.h")
     (folder / "driver.c").write_text(head + routines + DRIVER.read_text(encoding="utf-8"), encoding="utf-8")
     built = subprocess.run([gcc, *FLAGS, "-o", "driver", "driver.c", "-lm"], cwd=folder, capture_output=True, text=True)
     if built.returncode != 0 and "sanitize" in built.stderr:

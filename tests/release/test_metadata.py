@@ -10,6 +10,7 @@ import pytest
 from ruamel.yaml import YAML
 
 import symofros as sf
+from tests.late import require
 
 ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
@@ -53,7 +54,7 @@ def test_commands_of_the_conda_recipe_name_files_that_its_tests_get() -> None:
 
 
 def test_the_conda_recipe_renders() -> None:
-    rattler = pytest.importorskip("rattler_build", reason="needs the extra 'release', which 'dev' brings")
+    rattler = require("rattler_build", "release")
     recipe = rattler.Stage0Recipe.from_file(ROOT / "recipe/recipe.yaml")
     assert recipe.render(rattler.VariantConfig({}), rattler.RenderConfig())
 

@@ -15,16 +15,26 @@ import tarfile
 import tomllib
 import venv
 import zipfile
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 import symofros as sf
 from tests.docs.pages import ROOT, blocks
+from tests.late import require
+from tests.validation.ci.test_templates import github, gitlab
+from tests.validation.subjects import URDF
+from validation.commands import COMMANDS
 
-pytest.importorskip("build", reason="needs the extra 'release', which 'dev' brings")
+require("build", "release")
 pytestmark = pytest.mark.slow(minutes=5)
-PACKAGES = ("symofros", "validation", "reference_models")
+# Folder of the repository -> where a wheel has it.
+INSTALLED = {
+    "symofros": "symofros",
+    "validation": "symofros/validation",
+    "reference_models": "symofros/reference_models",
+}
 # The page's sources; what is built from them is in editor/static.
 NOT_INSTALLED = "symofros/studio/editor/page/"
 TUTORIAL = ("first_arm", "beam", "loop", "controller", "export", "your_urdf")
@@ -67,9 +77,21 @@ class Environment:
             "OMP_NUM_THREADS": "1",
         }
 
-    def run(self, *command: str, fails: int = 0) -> str:
+    @property
+    def packages(self) -> Path:
+        """Folder of what is installed."""
+        (found,) = (self.folder / "venv/lib").glob("python*/site-packages")
+        return found
+
+    def run(self, *command: str, fails: int = 0, folder: Path | None = None) -> str:
         done = subprocess.run(
-            command, cwd=self.folder, env=self.variables, capture_output=True, text=True, errors="replace", timeout=900
+            command,
+            cwd=folder or self.folder,
+            env=self.variables,
+            capture_output=True,
+            text=True,
+            errors="replace",
+            timeout=900,
         )
         assert done.returncode == fails, f"{command}\n{done.stdout}{done.stderr}"
         return done.stdout + done.stderr
@@ -83,14 +105,28 @@ def base(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Environment:
 
 
 def tracked() -> set[str]:
-    listed = subprocess.run(["git", "ls-files", *PACKAGES], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    listed = subprocess.run(
+        ["git", "ls-files", *INSTALLED], cwd=ROOT, capture_output=True, text=True, check=True
+    ).stdout
     return {name for name in listed.splitlines() if (ROOT / name).is_file()}
 
 
 def test_the_wheel_holds_all_data_and_no_sources_of_pages_nor_tests(wheel: Path) -> None:
     names = {name for name in zipfile.ZipFile(wheel).namelist() if ".dist-info/" not in name}
-    assert names == {name for name in tracked() if not name.startswith(NOT_INSTALLED)}
+    sources = (name.partition("/") for name in tracked() if not name.startswith(NOT_INSTALLED))
+    assert names == {f"{INSTALLED[top]}/{rest}" for top, _, rest in sources}
     assert wheel.name == f"symofros-{sf.__version__}-py3-none-any.whl"
+
+
+def test_a_wheel_has_one_package_and_the_sources_build_the_same(
+    distributions: Path, wheel: Path, tmp_path: Path
+) -> None:
+    names = zipfile.ZipFile(wheel).namelist()
+    assert {name.partition("/")[0] for name in names} == {"symofros", f"symofros-{sf.__version__}.dist-info"}
+    (sources,) = distributions.glob("*.tar.gz")
+    command = [sys.executable, "-m", "pip", "wheel", "-q", "--no-deps", "-w", str(tmp_path), str(sources)]
+    subprocess.run(command, check=True, capture_output=True)
+    assert sorted(zipfile.ZipFile(tmp_path / wheel.name).namelist()) == sorted(names)
 
 
 def test_the_sources_hold_what_building_and_reading_them_takes(distributions: Path) -> None:
@@ -106,7 +142,7 @@ def test_the_sources_hold_what_building_and_reading_them_takes(distributions: Pa
 
 
 def test_the_base_installation_is_light(base: Environment) -> None:
-    (packages,) = (base.folder / "venv/lib").glob("python*/site-packages")
+    packages = base.packages
     files = [path for path in packages.rglob("*") if path.is_file() and not path.is_symlink()]
     size = sum(path.stat().st_size for path in files) / 1e6
     assert size < MEGABYTES, f"{size:.0f} MB"
@@ -115,9 +151,7 @@ def test_the_base_installation_is_light(base: Environment) -> None:
 
 
 def test_first_steps_of_the_readme_from_the_wheel(base: Environment) -> None:
-    (packages,) = (base.folder / "venv/lib").glob("python*/site-packages")
-    for name in ("validation", "reference_models"):
-        (base.folder / name).symlink_to(packages / name)
+    (base.folder / "reference_models").symlink_to(base.packages / INSTALLED["reference_models"])
     first = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)[0]
     assert "(1000, 2, 2) (6, 2)" in base.run("python", "-c", first)
     assert str(base.folder) in base.run("python", "-c", "import symofros; print(symofros.__file__)")
@@ -140,8 +174,8 @@ def test_first_steps_of_the_readme_from_the_wheel(base: Environment) -> None:
     [
         # It compares the ways of the package itself, which nobody confirms.
         ("symofros check robot.urdf", "validation", 1),
-        ("symofros validation --help", "validation", 2),
-        ("python -m validation", "validation", 2),
+        ("symofros validation accuracy", "validation", 2),
+        ("python -m symofros.validation", "validation", 2),
         ("symofros view robot.urdf", "view", 2),
         ("symofros edit arm.yaml", "gui", 2),
         ("symofros export robot.urdf --target fmu3 -o out/fmu", "fmi", 2),
@@ -156,6 +190,65 @@ def test_the_base_installation_says_which_extra_is_missing(
         (base.folder / name).write_text(source.read_text())
     told = "".join(base.run("bash", "-c", command, fails=code).split())  # Frames of messages break lines.
     assert f"symofros[{extra}]" in told.replace("│", "") and "Traceback" not in told
+
+
+@pytest.mark.parametrize("command", ["symofros validation --help", "python -m symofros.validation --help"])
+def test_the_base_installation_lists_the_commands_of_the_harness(base: Environment, command: str) -> None:
+    said = base.run("bash", "-c", command)
+    assert "scipy" not in said and all(f"\n  {name} " in said for name in COMMANDS)
+
+
+# Repositories of other people: files -> texts. Each has a module or packages of names that ours have in a checkout.
+OWN = "import validation\n\n\ndef test_own():\n    assert validation.MINE\n"
+REPOSITORIES = {
+    "a module": {"validation.py": "MINE = True\n", "test_own.py": OWN},
+    "packages": {
+        "validation/__init__.py": "MINE = True\n",
+        "reference_models/__init__.py": "MINE = True\n",
+        "tests/__init__.py": "MINE = True\n",
+        "tests/test_own.py": f"{OWN}    import reference_models\n\n    assert reference_models.MINE\n",
+    },
+    "nothing of ours": {"test_own.py": "def test_own():\n    pass\n"},
+}
+
+
+@pytest.fixture(params=REPOSITORIES)
+def repository(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
+    """Somebody's, with a robot, a baseline to come, and tests."""
+    for name, text in (REPOSITORIES[request.param] | {"robot.urdf": URDF}).items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(text)
+    return tmp_path
+
+
+def test_tests_of_other_people_run_beside_the_wheel(base: Environment, repository: Path) -> None:
+    """Their modules are the ones that are imported; without an option, nothing of ours is."""
+    base.run("pip", "install", "-q", "pytest")
+    assert "1 passed" in base.run("python", "-m", "pytest", folder=repository)
+    assert "1 passed" in base.run("pytest", folder=repository)
+
+
+@pytest.fixture(scope="module")
+def with_engines(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Environment:
+    environment = Environment(tmp_path_factory.mktemp("engines"))
+    environment.run("pip", "install", "-q", f"{wheel}[validation]", "pytest")
+    return environment
+
+
+@pytest.mark.parametrize("server", [github, gitlab])
+def test_the_steps_of_a_template_run_as_they_stand_beside_other_peoples_modules(
+    with_engines: Environment, repository: Path, server: Callable[[], tuple[dict[str, str], list[str]]]
+) -> None:
+    """But for the first, which installs: that is done."""
+    _, (_, check, compare) = server()
+    with_engines.variables["MODEL"] = "robot.urdf"
+    said = with_engines.run("bash", "-e", "-c", check, folder=repository)
+    assert "failed" not in said and " passed" in said
+    store = "symofros check robot.urdf --states 200 --report stored && cp stored/check.json symofros-baseline.json"
+    with_engines.run("bash", "-e", "-c", store, folder=repository)
+    assert "nothing is worse" in with_engines.run("bash", "-e", "-c", compare, folder=repository)
+    code = "from symofros.validation import check; assert check('robot.urdf', states=2), 'not all agree'"
+    with_engines.run("python", "-c", code, folder=repository)
 
 
 def test_the_list_of_an_installation_has_all_dependencies_with_licences(base: Environment, tmp_path: Path) -> None:

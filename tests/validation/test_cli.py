@@ -9,7 +9,7 @@ from typer.testing import CliRunner, Result
 from tests.validation.subjects import URDF
 from validation.__main__ import app
 from validation.adapters.pinocchio import tree as pinocchio
-from validation.check import failed
+from validation.checking import failed
 from validation.contract.interface import Subject
 
 KEYS = {"model", "engine", "quantity", "states", "error", "tolerance", "ok"}

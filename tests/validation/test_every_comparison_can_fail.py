@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from reference_models import MODELS
+from tests.late import require
 from tests.validation.subjects import floating_arm
-from validation.check import Settings, check
+from validation.checking import Settings, check
 from validation.comparison.participants import Participant
 from validation.contract.interface import States, Subject
 from validation.contract.quantities import MOTION_ENERGY, QUANTITIES, Quantity
@@ -79,7 +80,7 @@ def statuses(name: str, monkeypatch: pytest.MonkeyPatch, fault: Fault) -> dict[t
 def test_a_wrong_answer_is_red_whatever_the_quantity_and_the_engine(
     name: str, fault: Fault, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    pytest.importorskip("exudyn")
+    require("exudyn", "validation")
     answers = statuses(name, monkeypatch, fault)
     assert answers
     silent = sorted(key for key, status in answers.items() if status == "agree")

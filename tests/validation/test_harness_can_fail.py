@@ -13,7 +13,7 @@ from tests.validation.subjects import floating_arm
 from validation.adapters import compiled
 from validation.adapters.compiled import SymofrosEngine
 from validation.adapters.pinocchio import tree as pinocchio
-from validation.check import ModelResult, Settings, check
+from validation.checking import ModelResult, Settings, check
 from validation.contract.interface import States, Subject
 from validation.contract.quantities import QUANTITIES, TREE_QUANTITIES
 

@@ -3,7 +3,7 @@
 import pytest
 
 from tests.models import sampled
-from validation.check import Settings
+from validation.checking import Settings
 from validation.inputs.cases import robot_case
 from validation.worker_pool import run_case
 

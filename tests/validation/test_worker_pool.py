@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from tests.validation.subjects import URDF
-from validation.check import ModelResult, Settings
+from validation.checking import ModelResult, Settings
 from validation.contract.interface import Subject
 from validation.inputs.cases import Case
 from validation.worker_pool import ONE_THREAD, _context, run, run_case

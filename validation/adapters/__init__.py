@@ -82,20 +82,20 @@ class Route:
 
 # In the order of reports. The generated C itself is not among them: it is what they are compared with.
 ROUTES: dict[str, Route] = {
-    "pinocchio": Route("validation.adapters.pinocchio.tree", "pinocchio"),
-    "mujoco": Route("validation.adapters.mujoco.tree", "mujoco"),
-    "exudyn": Route("validation.adapters.exudyn.tree", "exudyn"),
-    "pinocchio-loops": Route("validation.adapters.pinocchio.loops", "pinocchio", loops=True),
-    "exudyn-loops": Route("validation.adapters.exudyn.loops", "exudyn", loops=True),
-    "pinocchio-urdf": Route("validation.adapters.pinocchio.urdf", "pinocchio", reads="urdf"),
-    "mujoco-urdf": Route("validation.adapters.mujoco.urdf", "mujoco", reads="urdf"),
-    "mujoco-mjcf": Route("validation.adapters.mujoco.mjcf", "mujoco", reads="mjcf"),
-    "lagrangian": Route("validation.adapters.lagrangian.engine", "casadi", beams=True),
-    "exudyn-beams": Route("validation.adapters.exudyn.mapped", "exudyn", beams=True, rotary=False),
-    "exudyn-frf": Route("validation.adapters.exudyn.frf", "exudyn", beams=True),
-    "vectors": Route("validation.adapters.vectors", independent=False),
-    "interpreted": Route("validation.adapters.interpreted", independent=False),
-    "description": Route("validation.adapters.description", independent=False),
+    "pinocchio": Route(f"{__name__}.pinocchio.tree", "pinocchio"),
+    "mujoco": Route(f"{__name__}.mujoco.tree", "mujoco"),
+    "exudyn": Route(f"{__name__}.exudyn.tree", "exudyn"),
+    "pinocchio-loops": Route(f"{__name__}.pinocchio.loops", "pinocchio", loops=True),
+    "exudyn-loops": Route(f"{__name__}.exudyn.loops", "exudyn", loops=True),
+    "pinocchio-urdf": Route(f"{__name__}.pinocchio.urdf", "pinocchio", reads="urdf"),
+    "mujoco-urdf": Route(f"{__name__}.mujoco.urdf", "mujoco", reads="urdf"),
+    "mujoco-mjcf": Route(f"{__name__}.mujoco.mjcf", "mujoco", reads="mjcf"),
+    "lagrangian": Route(f"{__name__}.lagrangian.engine", "casadi", beams=True),
+    "exudyn-beams": Route(f"{__name__}.exudyn.mapped", "exudyn", beams=True, rotary=False),
+    "exudyn-frf": Route(f"{__name__}.exudyn.frf", "exudyn", beams=True),
+    "vectors": Route(f"{__name__}.vectors", independent=False),
+    "interpreted": Route(f"{__name__}.interpreted", independent=False),
+    "description": Route(f"{__name__}.description", independent=False),
 }
 
 

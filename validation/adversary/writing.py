@@ -9,17 +9,18 @@ from pprint import pformat
 import symofros as sf
 from symofros.tools import write_atomically
 
+from ..program import PROGRAM
 from .attack import Attack
 from .search import Find
 
-_TEST = '''"""Found by `python -m validation adversary --attack {attack}`, and shrunk.
+_TEST = '''"""Found by `{program} adversary --attack {attack}`, and shrunk.
 
 Claim: {claim}.
 Route: {route}.
 Then: {said}.
 """
 
-from .catalogue import ATTACKS
+from {package}.catalogue import ATTACKS
 
 SCENE = {scene}
 
@@ -51,7 +52,7 @@ def write_find(find: Find, attack: Attack, folder: Path) -> tuple[Path, Path | N
     name = name_of(find)
     scene = pformat(find.scene, width=110, sort_dicts=False)
     said = find.said.replace("\\", "/").replace('"', "'").rstrip(".")
-    claims = {"claim": attack.claim, "route": attack.route, "said": said}
+    claims = {"claim": attack.claim, "route": attack.route, "said": said, "program": PROGRAM, "package": __package__}
     text = _TEST.format(attack=attack.name, name=name, scene=scene, **claims)
     test = folder / f"test_{name}.py"
     write_atomically(test, text)

@@ -13,6 +13,7 @@ import typer
 from symofros.commands.grammar import program
 
 from ..inputs.cases import standard_set
+from ..program import PROGRAM
 from ..reporting.command import AsJson, Exit, code, write
 from ..reporting.terminal import show as show_report
 from .errors import PlanError, Unfinished
@@ -99,7 +100,7 @@ def show(folder: Annotated[Path, typer.Argument(help="Of the campaign.")], as_js
             typer.echo(json.dumps(data))
         else:
             share = f"{data['finished']} of {data['size']} done, {data['batches']} of {data['of']} batches"
-            typer.echo(f"{share}; to go on: python -m validation campaign resume {folder}")
+            typer.echo(f"{share}; to go on: {PROGRAM} campaign resume {folder}")
 
 
 def _tell(data: dict[str, Any], folder: Path, report: Path | None, as_json: bool) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from ..program import PROGRAM
+
 
 class PlanError(ValueError):
     """A plan can't be carried out; says what was found, the rule, and the remedy."""
@@ -37,5 +39,5 @@ class Unfinished(RuntimeError):
     def __init__(self, folder: Path, reasons: list[str]) -> None:
         what = f"{len(reasons)} batches could not be done" if reasons else "interrupted; what is finished is kept"
         lines = [f"not done: {why}" for why in reasons]
-        super().__init__("\n".join([*lines, f"{what}; to go on: python -m validation campaign resume {folder}"]))
+        super().__init__("\n".join([*lines, f"{what}; to go on: {PROGRAM} campaign resume {folder}"]))
         self.interrupted = not reasons

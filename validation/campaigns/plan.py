@@ -11,10 +11,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError, model_validator
 
-import reference_models
-
+from .. import references
 from ..adapters import ROUTES
-from ..check import description_hash
+from ..checking import description_hash
 from ..inputs.cases import Case, named
 from .design import Design, Range, points_of
 from .errors import PlanError
@@ -200,7 +199,7 @@ def identities(models: Sequence[Case]) -> dict[str, str]:
 
 def _identity(case: Case) -> str:
     if case.path is None:
-        return description_hash(reference_models.MODELS[case.label])
+        return description_hash(references.MODELS[case.label])
     return hashlib.sha256(case.path.read_bytes()).hexdigest()[:16]
 
 

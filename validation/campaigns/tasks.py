@@ -8,7 +8,7 @@ from typing import Any, Protocol
 
 import pyarrow as pa
 
-from ..check import ModelResult, Settings
+from ..checking import ModelResult, Settings
 from ..inputs.cases import Case
 from ..worker_pool import run_case
 from .plan import CheckPlan, Plan, SweepPlan, cases

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from ..adapters import ROUTES
-from ..check import ModelResult, Settings
+from ..checking import ModelResult, Settings
 from ..comparison.errors import Comparison
 from ..cross_check.baseline import Baseline, BaselineError, Regression, machine_of
 from ..cross_check.record import Record, as_data

@@ -6,7 +6,7 @@ import re
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Sequence
 
-from ..check import ModelResult
+from ..checking import ModelResult
 from ..comparison.errors import Comparison
 from .baseline import Regression
 

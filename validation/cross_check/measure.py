@@ -15,7 +15,7 @@ import symofros as sf
 from symofros.tools import write_atomically
 
 from ..adapters import ROUTES
-from ..check import ModelResult, Settings
+from ..checking import ModelResult, Settings
 from ..inputs.cases import Case, named, standard_set
 from ..inputs.sampling import DEFAULT_STATES
 from ..reporting.command import Exit, Run, known

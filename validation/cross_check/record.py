@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from ..adapters import ROUTES
-from ..check import ModelResult, Settings
+from ..checking import ModelResult, Settings
 from ..comparison.errors import Comparison, Status
 from ..reporting.numbers import finite
 from ..reporting.provenance import stamp
@@ -56,6 +56,11 @@ class Record:
     def ok(self) -> bool:
         """Whether all that was asked for was compared, and nothing disagrees or failed."""
         return bool(self.compared) and all(model.ok for model in self.models) and not self.unfinished
+
+    @property
+    def judged(self) -> bool:
+        """Whether an engine that shares no equations with us was compared with."""
+        return any(row.engine in ROUTES and ROUTES[row.engine].independent for row in self.compared)
 
     @property
     def comparisons(self) -> list[Comparison]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from ..adapters import ROUTES, differences
-from ..check import ModelResult
+from ..checking import ModelResult
 from ..comparison.elements import ROWS as ELEMENT_ROWS
 from ..comparison.errors import NOBODY
 from ..contract.quantities import ROUNDING, SMALL, SOLVE
@@ -198,7 +198,7 @@ def _digest(record: Record) -> list[Block]:
     blocks: list[Block] = [said, tables.nearest(record, each)] if record.compared else []
     summary = "" if each else tables.left_out(record)
     apart = (f"not compared: {models}, {who}: {why}" for models, who, why in tables.unsupported(record, not each))
-    blocks += [Text(text, "soft") for text in (summary, *apart) if text]
+    blocks += [Text(text, "soft") for text in (summary, *apart, tables.not_installed(record)) if text]
     for model, who, text in tables.failures(record):
         what, *more = _PARTS.split(text)
         where = model if who == NOBODY else f"{model}, {who}"

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import ctypes
 import math
+import shutil
 import subprocess
 import tempfile
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache, partial
-from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
@@ -137,7 +137,7 @@ def yardstick() -> Turn:
     with tempfile.TemporaryDirectory(prefix="symofros-yardstick-") as private:
         library = Path(private) / "yardstick.so"
         source = Path(private) / "yardstick.c"
-        source.write_text((files("validation") / "native/yardstick.c").read_text(encoding="utf-8"), encoding="utf-8")
+        shutil.copyfile(Path(__file__).parents[1] / "native" / "yardstick.c", source)
         command = [*toolchain.command, *DEFAULT_FLAGS, "-std=c99", "-shared", "-fPIC", str(source), "-o", str(library)]
         done = subprocess.run([*command, "-lm"], capture_output=True, text=True, timeout=120)
         if done.returncode != 0:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Sequence
 
 from ..adapters import ROUTES
-from ..check import ModelResult
+from ..checking import ModelResult
 from ..comparison.errors import NOBODY, Comparison
 from ..contract.quantities import MOTION_ENERGY, QUANTITIES
 from ..procedures import ENGINE as FORMULAS
@@ -31,6 +32,8 @@ UNJUDGED = "not judged"
 _PLACE = 30
 # Depth of the background of a cell whose error is at the tolerance.
 _DEEPEST = 0.55
+# As problems of missing extras state their remedies.
+_INSTALL = re.compile(r"pip install '[^']+'")
 
 
 def by_model(record: Record) -> Table:
@@ -184,18 +187,41 @@ def left_out(record: Record) -> str:
     return said and f"not represented, or in part (models, by engine): {said}; reasons: in the report, or check of one"
 
 
+def not_installed(record: Record) -> str:
+    """What would bring the packages that were missing, in a sentence; "" where all that was asked for was there."""
+    remedies: dict[str, set[str]] = {}
+    for row in record.rows("unsupported"):
+        for remedy in _INSTALL.findall(row.note):
+            remedies.setdefault(remedy, set()).add(row.model)
+    said = "; ".join(f"{remedy} ({counted(len(models), 'model')})" for remedy, models in sorted(remedies.items()))
+    return said and f"not asked in full, as packages are not installed: {said}"
+
+
 def headline(record: Record) -> str:
     """The verdict in one sentence, what of it is evidence, and what was cut."""
+    silent = f"no engine was asked: {_why_none(record)}; " if _nobody_was_asked(record) else ""
     models = {row.model for row in record.compared}
     what = f"{counted(len(record.compared), 'comparison')} on {counted(len(models), 'model')}"
     disagreeing = len(record.rows("disagree"))
     failed = len({row.model for row in record.rows("failed") if not row.unconfirmed})
-    unjudged = len({row.model for row in record.rows("failed") if row.unconfirmed})
+    unjudged = 0 if silent else len({row.model for row in record.rows("failed") if row.unconfirmed})
+    what += " between our own ways" if silent else ""
     agreeing = f"all {what} agree" if len(record.compared) > 1 else f"{what} agrees"
     parts = [f"{disagreeing} of {what} disagree" if disagreeing else agreeing] if record.compared else []
     parts += [f"{counted(failed, 'model')} failed"] if failed else []
     parts += [f"{counted(unjudged, 'model')} judged by no independent engine"] if unjudged else []
-    said = ", ".join(parts) or "nothing was compared"
+    said = silent + (", ".join(parts) or "nothing was compared")
     cut = f" Interrupted: {counted(len(record.unfinished), 'model')} not checked." if record.unfinished else ""
     apart = f" {record.independent} of the comparisons are with independent engines." if record.compared else ""
     return f"{said[0].upper()}{said[1:]}.{apart}{cut}"
+
+
+def _nobody_was_asked(record: Record) -> bool:
+    """Whether models were compared, or could have been, and none of them with an independent engine."""
+    return not record.judged and bool(record.compared or any(row.unconfirmed for row in record.rows("failed")))
+
+
+def _why_none(record: Record) -> str:
+    """The reasons why no independent engine was asked."""
+    reasons = dict.fromkeys(row.note for row in record.rows("failed") if row.unconfirmed)
+    return "; ".join(reasons) or "those that were named are ways of our own"

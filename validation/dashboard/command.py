@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from ..program import PROGRAM
 from ..reporting import provenance
 from ..reporting.command import REPORTS, Exit, Output, known
 from ..reporting.command import render as render_report
@@ -61,7 +62,7 @@ def render(
 
 def _existing(folder: Path) -> Path:
     if not folder.is_dir():
-        raise typer.BadParameter(f"no folder {folder}; `python -m validation all` fills one", param_hint="--output")
+        raise typer.BadParameter(f"no folder {folder}; `{PROGRAM} all` fills one", param_hint="--output")
     return folder
 
 

@@ -19,8 +19,10 @@ from typing import Annotated, Any
 import typer
 from rich.console import Console
 
+from symofros.harness import worker_command
 from symofros.tools import write_atomically
 
+from ..program import PROGRAM
 from ..reporting import markdown, provenance
 from ..reporting.command import REPORTS, Exit, Output, Quick, known, present, progress_bar
 from ..reporting.record import Table, Topic
@@ -97,15 +99,19 @@ class Job:
             return False
 
     def command(self, topic: Topic) -> list[str]:
+        """The process that makes a report."""
+        return worker_command("__main__", self.arguments(topic))
+
+    def arguments(self, topic: Topic) -> list[str]:
         """What makes a report; what takes days keeps its own state, one for each state of the code."""
         own = self.work / f"{topic.name}-{present(topic)[:8]}"
         if topic.name == "campaign":
             arguments = ["campaign", "run", "--models", "all", "--report", str(self.output), "-o", str(own)]
         else:
-            arguments = [*topic.command.split()[3:], "--output", str(self.output)]
+            arguments = [*topic.command.removeprefix(PROGRAM).split(), "--output", str(self.output)]
         arguments += ["--work", str(own)] if topic.name == "mutants" else []
         arguments += ["--quick"] if self.quick and has_quick(topic) else []
-        return [sys.executable, "-m", "validation", *arguments]
+        return arguments
 
     def make(self, topic: Topic, doing: Any = id) -> tuple[int, str]:
         """Make one report: its exit code, and how it ended in words.
@@ -172,7 +178,7 @@ def listed(job: Job, topics: Iterable[Topic], entries: Mapping[str, Entry]) -> T
                 entry.provenance.date.removesuffix(" UTC") or "-",
                 entry.standing or ("yes" if entry.report else "-"),
                 f"{took:.0f} s" if took else "-",
-                " ".join(["python", *job.command(topic)[1:]]),
+                " ".join([PROGRAM, *job.arguments(topic)]),
                 NEEDS.get(topic.name, Needs()).missing or "-",
             )
         )
@@ -192,9 +198,9 @@ def make_all(
     output: Output = REPORTS,
     work: Annotated[Path, typer.Option(help="Folder of what is made so far, and of logs.")] = WORK,
 ) -> None:
-    """Make every report that this machine can make of the code as it is: hours; --resume goes on.
+    """Make every report that this machine can make of the code as it is: hours.
 
-    Each is made in a process of its own, one after the other. What this machine lacks something for is named, with the
+    --resume goes on after an end of any kind. Each is made in a process of its own, one after the other. What this machine lacks something for is named, with the
     age of the report that there is, which stays: its own command, which --list shows, makes what can be made of it.
 
     Exit code: 0 all were made and miss nothing, 1 one was not or does, 2 bad input, 130 interrupted.
@@ -256,7 +262,7 @@ def _all(job: Job, topics: Sequence[Topic], resume: bool) -> Exit:
         said = f"the code has changed meanwhile: {', '.join(changed)} are of another state of it; --resume makes them"
         console.print(said, markup=False, soft_wrap=True)
         worst = Exit.MISSED
-    console.print("python -m validation dashboard gathers them on one page", markup=False)
+    console.print(f"{PROGRAM} dashboard gathers them on one page", markup=False)
     return worst
 
 
@@ -265,9 +271,12 @@ def _detached(work: Path) -> None:
     arguments = [word for word in sys.argv[1:] if word != "--background"]
     log = work / "all.log"
     with log.open("ab") as said:
-        command = [sys.executable, "-m", "validation", *arguments]
         process = subprocess.Popen(
-            command, stdout=said, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, start_new_session=True
+            worker_command("__main__", arguments),
+            stdout=said,
+            stderr=subprocess.STDOUT,
+            stdin=subprocess.DEVNULL,
+            start_new_session=True,
         )
     typer.echo(f"process {process.pid} makes them; its progress: {log}")
     raise typer.Exit(Exit.GOOD)

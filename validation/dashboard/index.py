@@ -9,6 +9,7 @@ from pathlib import Path
 
 from symofros.tools import write_atomically
 
+from ..program import PROGRAM
 from ..reporting import html, markdown
 from ..reporting.evidence import revision, said_of
 from ..reporting.figures import Figure
@@ -41,7 +42,7 @@ def write_index(entries: Mapping[str, Entry], folder: Path, date: str) -> Path:
     summaries = stored(folder / "summary.md")
     changes = history(summaries, tuple(entries))
     trend = Section("What changed", (trends(summaries), _TREND, changes), "history")
-    closing = f"Gathered {date} by `python -m validation dashboard`; `python -m validation all` makes reports anew."
+    closing = f"Gathered {date} by `{PROGRAM} dashboard`; `{PROGRAM} all` makes reports anew."
     page = html.page(replace(report, sections=(trend, *report.sections)), closing=closing, listed=False)
     source = f" of revision {revision()[:9]}" if revision() else ""
     said = f"**{report.summary}** (gathered {date}{source})", markdown.table(summary_table(entries)), origins(entries)

@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 import symofros as sf
-from reference_models import MODELS
-from reference_models.diagrams.square import square
 
 from ..mechanics.geometry import Array
+from ..references import MODELS, reference_module
 from ..reporting.figures import Chart, Curve, Figure, Mark
 from ..reporting.findings import Finding, Study
+
+if TYPE_CHECKING:
+    from reference_models.diagrams.square import square
+else:
+    square = reference_module("diagrams.square").square
 
 DT, RECORD, T_END = 2.5e-4, 0.005, 12.0
 APPROACH, ALONG, CORNER, SIDE = 3.0, 2.0, (0.3, 0.3), 0.6  # As the diagram's file has them.

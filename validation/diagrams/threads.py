@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 import symofros as sf
-from reference_models import MODELS
 from symofros import blocks
 
+from ..references import MODELS
 from ..reporting.figures import Chart, Curve, Figure
 from ..reporting.findings import Finding, Study
 

@@ -2,15 +2,25 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 import symofros as sf
-from reference_models.closed.two_arms import HOLD, hand
-from reference_models.diagrams.two_arms import GRIPPED, PLACED, T_END, working
 
 from ..mechanics.geometry import Array
+from ..references import reference_module
 from ..reporting.figures import Chart, Curve, Figure, Mark
 from ..reporting.findings import Finding, Study
+
+if TYPE_CHECKING:
+    from reference_models.closed.two_arms import HOLD, hand
+    from reference_models.diagrams.two_arms import GRIPPED, PLACED, T_END, working
+else:
+    _two_arms = reference_module("closed.two_arms")
+    HOLD, hand = _two_arms.HOLD, _two_arms.hand
+    _at_work = reference_module("diagrams.two_arms")
+    GRIPPED, PLACED, T_END, working = _at_work.GRIPPED, _at_work.PLACED, _at_work.T_END, _at_work.working
 
 DT, RECORD = 1e-3, 0.02
 _SPRINGS = tuple(f"{kind}_{axis}" for kind in ("give", "sway") for axis in "xyz")

@@ -149,7 +149,7 @@ def _adam(subject: Subject) -> Callable[..., Mapping[str, Any]]:
 
 def _recursion(subject: Subject) -> Callable[..., Mapping[str, Any]]:
     """Newton-Euler and articulated bodies, as one would write them by hand to have CasADi generate good C."""
-    tree = import_module("validation.adapters.casadi.tree").CasadiTree(subject.system)
+    tree = import_module("..adapters.casadi.tree", __package__).CasadiTree(subject.system)
     functions = {name: tree.function(name, 0) for name in ("forward_dynamics", "inverse_dynamics")}
 
     def values(q: Any, v: Any, a: Any, tau: Any) -> Mapping[str, Any]:

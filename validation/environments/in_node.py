@@ -8,7 +8,6 @@ import subprocess
 import tempfile
 from collections.abc import Iterator, Sequence
 from functools import partial
-from importlib.resources import as_file, files
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -30,6 +29,7 @@ LIMITS = (
 )
 # Time for all races of a model [s].
 _LIMIT = 600.0
+_PROGRAM = Path(__file__).parents[1] / "native" / "race_wasm.mjs"
 INSTALL_PEER = f"npm install {PEER} (in the folder where the command runs)"
 
 
@@ -55,11 +55,10 @@ def run(subject: Subject, states: Sequence[int], turns: int) -> dict[str, Any]:
         scene = sf.export(subject.system, "mjcf", folder / "mjcf", name="robot")
         given = {name: getattr(subject, name).ravel().tolist() for name in ("q", "v", "w")}
         (folder / "states.json").write_text(json.dumps({**given, "counts": list(states), "turns": turns}))
-        with as_file(files("validation") / "native" / "race_wasm.mjs") as program:
-            module = folder / "wasm" / f"{made.name}.mjs"
-            described = next(path for path in scene.files if path.suffix == ".xml")
-            command = ["node", str(program), str(module), str(folder / "states.json"), str(described)]
-            done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=_LIMIT)
+        module = folder / "wasm" / f"{made.name}.mjs"
+        described = next(path for path in scene.files if path.suffix == ".xml")
+        command = ["node", str(_PROGRAM), str(module), str(folder / "states.json"), str(described)]
+        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=_LIMIT)
     if done.returncode != 0 or not done.stdout.strip():
         raise RuntimeError(f"node: {(done.stderr.strip() or 'no word').splitlines()[-1]}")
     printed: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])

@@ -3,12 +3,13 @@
 # Annotations are values here: the options of a command name the environments.
 import json
 import os
-import sys
 from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Annotated, Any
 
 import typer
+
+from symofros.harness import worker_command
 
 from ..reporting.command import Quick, Run, known
 from ..reporting.plain import plain, restored
@@ -48,7 +49,7 @@ def run_environment(
         RuntimeError: The process ended before its time; with its last words.
     """
     job = json.dumps({"environment": name, "models": models, "states": STATES, "turns": turns})
-    command = [sys.executable, "-m", "validation.environments.worker", job]
+    command = worker_command("environments.worker", [job])
     try:
         follow(command, partial(take, record=record, doing=doing), {**os.environ, **SETTINGS[name]})
     except WorkerError as error:

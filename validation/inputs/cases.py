@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
 
-import reference_models
 import symofros as sf
 
+from .. import references
 from ..contract.interface import MjcfSource, Subject, UrdfSource
 
 ROBOT_PACKAGE = "example-robot-data"
@@ -39,9 +39,9 @@ class Case:
         """A guess at the work it makes [bytes of a file]: large models first keep all workers busy to the end."""
         if self.path is not None:
             return self.path.stat().st_size if self.path.is_file() else 0
-        if self.label not in reference_models.MODELS:
+        if self.label not in references.MODELS:
             return 0  # `load` says what is wrong.
-        system = reference_models.MODELS[self.label]
+        system = references.MODELS[self.label]
         beams = sum(isinstance(body, sf.Beam) for body in system.bodies)
         return BODY * (len(system.bodies) + ELASTIC * beams + LOOP * len(system.constraints))
 
@@ -53,7 +53,7 @@ class Case:
             OSError: The file can't be read.
         """
         if self.path is None:
-            return Subject(self.label, reference_models.MODELS[self.label])
+            return Subject(self.label, references.MODELS[self.label])
         system = sf.load(self.path, floating_base=self.floating_base)
         suffix = self.path.suffix.lower()
         if suffix == ".xml":
@@ -106,7 +106,7 @@ def standard_set() -> list[Case]:
         FileNotFoundError: The package is not installed, or lacks a file.
     """
     robots = (robot_case(label) for label in ROBOTS)
-    return [*robots, *(Case(label) for label in reference_models.MODELS), *map(file_case, FILES)]
+    return [*robots, *(Case(label) for label in references.MODELS), *map(file_case, FILES)]
 
 
 def file_case(label: str) -> Case:
@@ -172,11 +172,11 @@ def _named(name: str, floating_base: bool) -> Case:
         return Case(path.stem, path, floating_base and path.suffix.lower() == ".urdf")
     if name in ROBOTS:
         return robot_case(name)
-    if name in reference_models.MODELS:
+    if name in references.MODELS:
         return Case(name)
     if name in FILES:
         return file_case(name)
-    known = [*ROBOTS, *reference_models.MODELS, *FILES]
+    known = [*ROBOTS, *references.MODELS, *FILES]
     near = difflib.get_close_matches(name, known, n=1)
     remedy = f"did you mean '{near[0]}'?" if near else f"the standard set has {', '.join(known)}"
     raise LookupError(f"'{name}' is neither a file nor a model of the standard set; {remedy}")

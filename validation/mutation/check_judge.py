@@ -9,7 +9,7 @@ from typing import Any
 import symofros as sf
 
 from ..adapters import ROUTES, compiled, interpreted
-from ..check import Settings, check
+from ..checking import Settings, check
 from ..comparison.errors import Comparison
 from ..contract.interface import Subject
 from ..inputs.cases import named

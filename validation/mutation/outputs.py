@@ -12,11 +12,11 @@ from typing import Any, Literal
 import numpy as np
 
 import symofros as sf
-from reference_models import MODELS
 from symofros.blocks import ForwardDynamics, PythonBlock
 from symofros.tools import METHODS
 
 from ..mechanics.geometry import Array
+from ..references import MODELS
 from .check_judge import BEAMS, GENERAL, READ, subject
 
 ROUNDING = 1e-11  # Of the largest entry; other orders of the same operations differ by less.

@@ -10,7 +10,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import symofros as sf
-from reference_models import MODELS as REFERENCE
+
+from ..references import MODELS as REFERENCE
 
 # Far more digits than an agreement by chance or in double precision could show; far fewer than are computed with.
 EXACT = 30.0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from ..program import PROGRAM
 from ..reporting.numbers import counted, duration, short, times
 from ..reporting.plain import restored
 from ..reporting.questions import failure_texts
@@ -108,7 +109,7 @@ def _chosen(name: str, problem: BenchmarkProblem, result: Result) -> list[str]:
 
 def _section(name: str, problem: BenchmarkProblem, result: Result, data: Data, quick: bool) -> Section:
     agree = f"They agree to {problem.shown(result.agreement)}; asked for is {problem.shown(problem.trust)}."
-    command = f"python -m validation pareto --problem {name}{' --quick' if quick else ''}"
+    command = f"{PROGRAM} pareto --problem {name}{' --quick' if quick else ''}"
     best, ended = front(charted(problem, result.points)), Bullets(tuple(refused(result)))
     runs = (f"{p.by} | {p.model} | {p.setting} | {problem.shown(p.error)} | {duration(p.seconds)}" for p in best)
     blocks = (

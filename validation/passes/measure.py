@@ -16,10 +16,10 @@ from typing import Annotated
 import numpy as np
 import typer
 
-import reference_models
 import symofros as sf
 from symofros.tools import ABLATIONS, count_program
 
+from .. import references
 from ..mechanics.geometry import Array
 from ..reporting.command import Run, known
 from ..reporting.record import Data
@@ -35,8 +35,8 @@ SAME = 1e-11
 MODELS: dict[str, Callable[[], sf.System]] = {
     "panda7": TIMED_MODELS["panda"].load,
     "talos": TIMED_MODELS["talos"].load,
-    "planar_robot": lambda: reference_models.MODELS["planar_robot"],
-    "flexible_mss": lambda: reference_models.MODELS["flexible_mss"],
+    "planar_robot": lambda: references.MODELS["planar_robot"],
+    "flexible_mss": lambda: references.MODELS["flexible_mss"],
 }
 # M, h and Q in one function share their kinematics.
 _FUSED, _PARTS = "dynamics", ("mass_matrix", "bias", "generalized_force")

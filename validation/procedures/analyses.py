@@ -184,6 +184,9 @@ def at_rest(scene: Scene, guess: Array, held: tuple[str, ...] = ()) -> Iterator[
     yield Cell("state space", _spectra(np.linalg.eigvals(space.A), wanted), 1e-6)
     found = sf.modes(model, rest.q, u=u, beam_limit=np.inf)
     both = np.concatenate([found.eigenvalues, found.eigenvalues[found.eigenvalues.imag > 1e-9].conj()])
+    # A rigid motion counts once, and has two zeros where nothing damps it.
+    twice = min(len(wanted) - len(both), int(np.sum(found.eigenvalues == 0.0)))
+    both = np.concatenate([both, np.zeros(max(0, twice))])
     yield Cell("modes", _spectra(both, wanted), 1e-6)
     shape_error = 0.0
     for s, shape in zip(found.eigenvalues, found.shapes.T, strict=True):

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-import reference_models
 import symofros as sf
 
-from ..comparison.errors import Comparison
+from .. import references
+from ..comparison.errors import Comparison, Status
 from ..mechanics.assembly import Assembly
 from ..mechanics.geometry import Array
 from . import ENGINE, analyses, batches, beams, diagrams, forces, identities, reactions, runs
@@ -141,14 +141,25 @@ def judge_procedures(label: str, system: sf.System, assembly: Assembly) -> Itera
         assembly: The same as numbers.
     """
     procedures = PROCEDURES.get(label, ())
-    if not procedures or system is not reference_models.MODELS[label]:
+    if not procedures or system is not references.MODELS[label]:
         return
     scene = first_scene(system, assembly)
     for procedure in procedures:
         try:
             yield from (row(label, cell) for cell in procedure(scene))
+        except sf.SymofrosError as error:
+            status: Status = "unsupported" if error.extra else "failed"
+            yield Comparison(label, ENGINE, "procedure", status, note=_one_line(error))
         except Exception as error:  # What a defect of ours raises is a row, too.
             yield Comparison(label, ENGINE, "procedure", "failed", note=f"{type(error).__name__}: {error}")
+
+
+def _one_line(error: sf.SymofrosError) -> str:
+    """An error for a table; of a package that is not installed, what is missing and how to get it."""
+    problem = error.problem
+    if error.extra:
+        return f"{problem.what}; {problem.remedy}"
+    return f"{type(error).__name__}: {error}"
 
 
 def row(label: str, cell: Cell) -> Comparison:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from html import escape
-from importlib.resources import files
+from pathlib import Path
 
 from .charts import PALETTE, draw
 from .evidence import said_of
@@ -63,7 +63,7 @@ def page(report: Report, provenance: Provenance | None = None, closing: str = ""
     if provenance is not None:
         parts += ["<h2>Versions and machine</h2>", table(Table(("what", "value"), provenance.rows))]
     parts.append(block(Text(closing, "soft")) if closing else "")
-    style = files("validation.reporting").joinpath("style.css").read_text(encoding="utf-8")
+    style = Path(__file__).with_name("style.css").read_text(encoding="utf-8")
     light, dark = (" ".join(f"--{name}: {pair[k]};" for name, pair in PALETTE.items()) for k in (0, 1))
     style = f":root {{ {light} }}\n@media (prefers-color-scheme: dark) {{ :root {{ {dark} }} }}\n{style}"
     return _PAGE.format(title=escape(report.title), style=style, body="\n".join(filter(None, parts)))

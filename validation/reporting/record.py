@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
 from typing import Any, Literal
 
+from ..program import PROGRAM
 from .figures import Chart, Drawing, Figure
 
 MISSED = "**missed** "
@@ -216,7 +217,7 @@ class Topic:
         question: Question that it answers.
         compose: JSON of the report -> report.
         measure: Run, and the options of the command -> JSON; None for a report whose commands are its own.
-        arguments: Arguments after `python -m validation` that write it; the name if None.
+        arguments: Arguments after `python -m validation`, or its name elsewhere, that write it; the name if None.
         printed: Names in the JSON that --json prints; none: all.
         folder: Folder of the harness that measures it; by default that of `measure`, or else of `compose`.
         beside: Folders beside the harness that its numbers rest on, too.
@@ -241,4 +242,4 @@ class Topic:
     @property
     def command(self) -> str:
         """What writes it."""
-        return f"python -m validation {self.name if self.arguments is None else self.arguments}".strip()
+        return f"{PROGRAM} {self.name if self.arguments is None else self.arguments}".strip()

@@ -7,6 +7,7 @@ from collections import Counter
 
 import numpy as np
 
+from ..program import PROGRAM
 from ..reporting.figures import Figure
 from ..reporting.findings import Finding
 from ..reporting.numbers import counted, short
@@ -60,7 +61,7 @@ def _section(name: str, data: Data, findings: tuple[Finding, ...], quick: bool) 
     maps = maps_of(study, data)
     pictures = tuple(heatmap.draw(one, study.x, study.y, study.quantity) for one in maps.values())
     ends = Bullets(tuple(f"{who}: {_ends(one, data['maps'][who]['said'])}." for who, one in maps.items()))
-    command = f"python -m validation stability --study {name}{' --quick' if quick else ''}"
+    command = f"{PROGRAM} stability --study {name}{' --quick' if quick else ''}"
     sources = f" Sources: {'; '.join(study.sources)}." if study.sources else ""
     blocks = (
         f"{study.setting} **Criterion:** {study.quantity} at most {short(study.bound)}.",

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-import reference_models
+from .. import references
 
 KINDS = ("yaml", "urdf", "formula", "diagram")
 CORPUS = Path(__file__).parent.parent / "corpus"
@@ -164,7 +164,7 @@ def corpus(kind: str) -> list[bytes]:
     """What mutations of a kind start from."""
     if kind == "formula":
         return list(_FORMULAS)
-    folders = (CORPUS, Path(reference_models.__file__).parent)
+    folders = (CORPUS, references.FOLDER)
     return [path.read_bytes() for folder in folders for path in sorted(folder.rglob(f"*.{kind}"))]
 
 

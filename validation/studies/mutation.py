@@ -18,10 +18,10 @@ import mpmath
 import numpy as np
 import typer
 
-import reference_models
 import symofros as sf
 from symofros.tools import Function, evaluate_edges, evaluate_precisely
 
+from .. import references
 from ..adapters import ROUTES, Missing, description
 from ..adapters.interpreted import build as interpreted
 from ..comparison.errors import Scales, compute, state_errors, typical_scales
@@ -227,7 +227,7 @@ def measure(
     scores = []
     run.expect(len(MODELS), "planting faults")
     for name in MODELS:
-        system = cases[name].load().system if name in cases else reference_models.MODELS[name]
+        system = cases[name].load().system if name in cases else references.MODELS[name]
         scores.append(mutate(name, system, faults, seed))
         run.advance()
     return as_data(scores) | {"faults_per_model": faults, "seed": seed}

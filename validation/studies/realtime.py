@@ -7,13 +7,11 @@ import socket
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
-from pathlib import Path
 from typing import Annotated
 
 import numpy as np
 import typer
 
-import reference_models
 import symofros as sf
 from symofros.blocks import (
     Block,
@@ -30,11 +28,12 @@ from symofros.blocks import (
 )
 from symofros.tools import Jitter, jitter_of
 
+from .. import references
 from ..mechanics.geometry import Array
 from ..reporting.command import Run
 from ..reporting.record import Data
 
-ROBOT = Path(reference_models.__file__).parent / "rigid" / "puma560.yaml"
+ROBOT = references.FOLDER / "rigid" / "puma560.yaml"
 # Of the motion that is followed: half its width [rad], its frequency [rad/s].
 SWING, RATE = 0.4, 2.0
 # Of the controller [1/s^2], [1/s].

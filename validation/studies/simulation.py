@@ -12,9 +12,9 @@ from typing import Annotated
 import numpy as np
 import typer
 
-import reference_models
 import symofros as sf
 
+from .. import references
 from ..accuracy.motion import spinup
 from ..accuracy.reference import data
 from ..adapters.exudyn.ancf import spin_up
@@ -182,7 +182,7 @@ def four_bar(repeats: int, span: float = 10.0) -> Race:
 
 def planar_robot(repeats: int, span: float = 2.0, h: float = 1e-3) -> Race:
     """The paper's robot, friction and all, let go with turning joints."""
-    m = sf.compile(reference_models.MODELS["planar_robot"])
+    m = sf.compile(references.MODELS["planar_robot"])
     v0 = np.zeros(m.nv)
     v0[[m.names.v.index(name) for name in ("q1", "q2", "q3")]] = 0.5, -0.8, 0.6
     exact = sf.simulate(m, None, v0, span, method="rodas4", rtol=1e-9, atol=1e-10).q[-1]
@@ -275,9 +275,9 @@ class Benchmark:
 def iftomm(repeats: int) -> list[Benchmark]:
     """A01 to A05, each to its end; tests/reference/test_iftomm.py compares whole motions."""
     pendulum = sf.RigidBody("bob", sf.Joint("q", "revolute", axis=(0, -1, 0)), sf.Inertia(1.0, (1, 0, 0), (0, 0, 0)))
-    governor = sf.compile(reference_models.MODELS["flyball_governor"])
-    bricard = sf.compile(reference_models.MODELS["bricard"])
-    andrews = sf.compile(reference_models.MODELS["andrews_squeezer"])
+    governor = sf.compile(references.MODELS["flyball_governor"])
+    bricard = sf.compile(references.MODELS["bricard"])
+    andrews = sf.compile(references.MODELS["andrews_squeezer"])
     known = References(Path(__file__).parent / "data").data("iftomm")
     start = np.array([known["andrews"]["start"][name] for name in andrews.names.q])
     end = np.array([known["andrews"]["end"][name] for name in andrews.names.q])

@@ -5,13 +5,21 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import TYPE_CHECKING
 
-import reference_models
 import symofros as sf
-from reference_models.closed.four_bars import n_four_bar, turned
-from reference_models.rigid.chain import chain
 
+from .. import references
 from ..inputs.cases import standard_set
+from ..references import reference_module
+
+if TYPE_CHECKING:
+    from reference_models.closed.four_bars import n_four_bar, turned
+    from reference_models.rigid.chain import chain
+else:
+    _four_bars = reference_module("closed.four_bars")
+    n_four_bar, turned = _four_bars.n_four_bar, _four_bars.turned
+    chain = reference_module("rigid.chain").chain
 
 # Function of the generated code -> its name in tables.
 FUNCTIONS = {
@@ -127,7 +135,7 @@ def arm(joints: int) -> sf.System:
 
 
 def _reference(name: str) -> sf.System:
-    return reference_models.MODELS[name]
+    return references.MODELS[name]
 
 
 TIMED_MODELS: dict[str, TimedModel] = {

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import subprocess
-import sys
 import tempfile
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
@@ -13,6 +12,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from symofros.harness import worker_command
 from symofros.tools import find_toolchain
 
 from ..reporting.plain import restored
@@ -48,7 +48,7 @@ def run_job(job: Job, record: Record, doing: Doing = lambda model, function, par
         "states": job.states,
     }
     record.forget([job.model], [LEFT], [])
-    command = [sys.executable, "-m", "validation.timing.worker", json.dumps(stated)]
+    command = worker_command("timing.worker", [json.dumps(stated)])
     try:
         follow(command, partial(take, job=job, record=record, doing=doing))
     except WorkerError as error:

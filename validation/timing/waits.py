@@ -17,6 +17,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
 
+from symofros.harness import worker_command
+
 from ..inputs.cases import robot_file
 from .record import Wait
 
@@ -111,7 +113,7 @@ def _robot_waits(robot: Robot, cache: Path, doing: Callable[[str], None]) -> Ite
         seconds = process_time(arguments, folder, RUNS_ANEW if folder is None else RUNS)
         yield Wait(what, robot.label, seconds, robot.asked.get(what))
     doing(f"{robot.label}: {CALL}")
-    arguments = ("-m", "validation.timing.calls", path, str(int(robot.floating)))
+    arguments = worker_command("timing.calls", [path, str(int(robot.floating))])[1:]
     times = json.loads(_process(arguments, cache)[1].splitlines()[-1])
     yield Wait(CALL, robot.label, times["call"], robot.asked.get(CALL))
     if "pinocchio" in times:

@@ -9,13 +9,12 @@ from typing import Annotated
 
 import typer
 
-import reference_models
-
+from .. import references
 from ..reporting.command import Exit, known
 from .catalogue import models
 from .dataset import write
 
-FOLDER = Path(reference_models.__file__).parent / "truth"
+FOLDER = references.FOLDER / "truth"
 
 
 def register(app: typer.Typer) -> None:

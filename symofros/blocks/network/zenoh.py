@@ -159,11 +159,11 @@ def _opened(block: _ByZenoh, declare: Callable[[Any], Any]) -> tuple[Any, Any]:
         zenoh = import_module("zenoh")
     except ImportError:
         raise SymofrosError(
-            Problem(
+            Problem.of_extra(
                 f"block '{name}': Zenoh is not installed",
                 "no module zenoh",
                 "network blocks of middleware are an extra",
-                "pip install 'symofros[network]'",
+                "network",
             )
         ) from None
     config = zenoh.Config()

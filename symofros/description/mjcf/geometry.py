@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from symofros.base.rotations import Array, axis_rotation, quaternion_matrix
+from symofros.base.rotations import Array, axis_rotation, nearest_rotation, quaternion_matrix
 from symofros.description.values import IDENTITY, Rotation, Vector
 from symofros.expr.numerics.extended import nearest
 
@@ -56,7 +56,7 @@ class Exact:
 
     def rotation(self, R: Array) -> Rotation:
         """A rotation matrix (3, 3): zeros and ones."""
-        R = self._snapped(R, (0.0, 1.0, -1.0))
+        R = nearest_rotation(self._snapped(R, (0.0, 1.0, -1.0)))
         return IDENTITY if np.array_equal(R, np.eye(3)) else Rotation.matrix(R.tolist())
 
     def placement(self, p: Array, R: Array) -> tuple[Vector, Rotation]:

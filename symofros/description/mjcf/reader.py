@@ -111,11 +111,11 @@ def compiled(document: Document, remarks: Remarks) -> Any:
         import mujoco  # Only those who read MJCF need it.
     except ImportError as error:
         raise DescriptionError(
-            Problem(
+            Problem.of_extra(
                 f"'{document.stated.file}' can't be read: MJCF needs MuJoCo",
                 str(error),
                 "MuJoCo's own compiler reads MJCF files",
-                "pip install 'symofros[mjcf]'",
+                "mjcf",
             )
         ) from None
     try:

@@ -36,11 +36,11 @@ def expanded(path: str | os.PathLike[str], arguments: Mapping[str, str]) -> byte
     answer = _answer(task)
     if "absent" in answer:
         raise DescriptionError(
-            Problem(
+            Problem.of_extra(
                 f"'{path}' can't be read: xacro is not installed",
                 "no module 'xacro'",
                 "xacro expands .xacro files",
-                "pip install 'symofros[xacro]'",
+                "xacro",
             )
         )
     if "text" not in answer:

@@ -30,11 +30,11 @@ def stage_of(path: str | os.PathLike[str]) -> dict[str, Any]:
     answer = _answer(str(resolved(file)))
     if "absent" in answer:
         raise DescriptionError(
-            Problem(
+            Problem.of_extra(
                 f"'{path}' can't be read: usd-core is not installed",
                 "no module 'pxr'",
                 "OpenUSD reads the layers of a stage",
-                "pip install 'symofros[usd]'",
+                "usd",
             )
         )
     if "stage" not in answer:

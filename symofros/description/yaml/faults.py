@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
 from pydantic_core import ErrorDetails
@@ -58,12 +58,13 @@ def line_of(error: ErrorDetails, root: Node) -> int:
     return node.key_line if error["type"] == "extra_forbidden" else node.line
 
 
-def problem_of(error: ErrorDetails, where: str) -> Problem:
+def problem_of(error: ErrorDetails, where: str, data: Any) -> Problem:
     """One of pydantic's errors as a Problem.
 
     Args:
         error: One of ValidationError.errors().
         where: "file:line" of it.
+        data: What was validated.
     """
     path = path_of(error)
     context = error.get("ctx", {})
@@ -78,7 +79,7 @@ def problem_of(error: ErrorDetails, where: str) -> Problem:
             _about(path[:-1], f"unknown entry '{key}'"),
             f"'{key}'",
             f"the entries here are {', '.join(known)}",
-            _where_it_belongs(str(path[-1]), path[:-1], known),
+            _where_it_belongs(str(path[-1]), path[:-1], known, _keys_at(data, path[:-1])),
             where,
         )
     if kind == "missing":
@@ -170,15 +171,33 @@ def _words(path: Path) -> Iterator[str]:
         i += 1
 
 
-def _where_it_belongs(key: str, path: Path, known: list[str]) -> str:
-    """The remedy for an unknown key: the entry here that other formats call so, one level down, or spelt nearly so."""
+def _where_it_belongs(key: str, path: Path, known: list[str], stated: Collection[str]) -> str:
+    """The remedy for an unknown key: the entry here that other formats call so, another level, or one spelt nearly so.
+
+    Args:
+        key: The key.
+        path: Path of the mapping that it stands in.
+        known: Entries that the mapping may have.
+        stated: Entries that it has: of several that would take the key, one that is there.
+    """
     term = _TERMS_OF_OTHERS.get(key.lower())
     if term in known:
         return f"write it as '{term}'"
-    inside = next((entry for entry in known if key in _known_keys((*path, entry))), None)
-    if inside is not None:
-        return f"write it under '{inside}'"
-    return near_name(key, known) or "remove it, or rename it"
+    inside = [entry for entry in known if key in _known_keys((*path, entry))]
+    inside = [entry for entry in inside if entry in stated] or inside
+    if inside:
+        return "write it under " + " or ".join(f"'{entry}'" for entry in inside)
+    near = near_name(key, known)
+    if not near and path and key in _known_keys(path[:-1]):
+        return f"write it one level up, beside '{_short(path[-1])}'"
+    return near or "remove it, or rename it"
+
+
+def _keys_at(data: Any, path: Path) -> Collection[str]:
+    """Keys of the mapping at a path of the data."""
+    for step in path:
+        data = data[step]
+    return tuple(map(str, data)) if isinstance(data, Mapping) else ()
 
 
 def _known_keys(path: Path) -> list[str]:

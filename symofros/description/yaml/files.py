@@ -306,7 +306,7 @@ def _validate(root: Node, shown: str) -> tuple[NativeFile | None, list[Problem],
         return NativeFile.model_validate(data), [], set()
     except ValidationError as error:
         faults = error.errors(include_url=False)
-    problems = first_of(problem_of(fault, f"{shown}:{line_of(fault, root)}") for fault in faults)
+    problems = first_of(problem_of(fault, f"{shown}:{line_of(fault, root)}", data) for fault in faults)
     broken: set[str] = set()
     for path in map(path_of, faults):
         section = path[0] if path else ""

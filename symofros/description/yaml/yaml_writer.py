@@ -102,7 +102,7 @@ def write_yaml(system: System) -> str:
     try:
         NativeFile.model_validate(document)
     except ValidationError as error:
-        raise DescriptionError([problem_of(fault, "") for fault in error.errors(include_url=False)]) from None
+        raise DescriptionError([problem_of(fault, "", document) for fault in error.errors(include_url=False)]) from None
     stream = StringIO()
     yaml = YAML()
     yaml.width = LINE_WIDTH

@@ -42,7 +42,8 @@ def write_c_package(material: Material, folder: Path) -> Exported:
         ExportError: The folder is not ours.
     """
     name, functions = material.c_name, named_functions(material)
-    dynamics = next(signature for signature in material.signatures if signature.name == "dynamics")
+    shown = next((item for item in functions if item.signature.name == "dynamics"), functions[0])
+    arguments = [label for label, _ in (*shown.signature.inputs, *shown.signature.outputs)]
     version = material.generator.rpartition(" ")[2]
     fields = {
         "name": name,
@@ -53,7 +54,7 @@ def write_c_package(material: Material, folder: Path) -> Exported:
         "heading": cell(material.record.name),
         "functions": functions_table(functions),
         "names": names_table(material.record),
-        "example": ", ".join(group for group, _ in dynamics.inputs),
+        "example": f"{shown.symbol}({', '.join(['pre', *arguments, 'work'])})",
     }
     filled = {"main.c": "main.c.in", "CMakeLists.txt": "CMakeLists.txt.in", f"{name}.pc.in": "model.pc.in"}
     filled["README.md"] = "README.md.in"

@@ -13,13 +13,14 @@ from symofros.runtime.build.toolchain import NO_COMPILER, call_compiler, find_to
 FLAGS = ("-O2", "-fno-math-errno", "-std=c99", "-fPIC", "-shared", "-fvisibility=hidden")
 
 
-def shared_library(files: Mapping[str, str], main: str, include: Sequence[Path]) -> bytes:
+def shared_library(files: Mapping[str, str], main: str, include: Sequence[Path], flags: Sequence[str] = ()) -> bytes:
     """The library of one C file that includes the others.
 
     Args:
         files: File name -> text.
         main: Name of the source file to compile.
         include: Folders of further headers.
+        flags: Further flags.
 
     Raises:
         CompileError: There is no compiler, or it failed; with its command and messages.
@@ -31,6 +32,6 @@ def shared_library(files: Mapping[str, str], main: str, include: Sequence[Path])
         for name, text in files.items():
             (Path(private) / name).write_text(text, encoding="utf-8")
         folders = [f"-I{folder}" for folder in include]
-        command = [*toolchain.command, *FLAGS, *folders, main, "-lm"]
+        command = [*toolchain.command, *FLAGS, *flags, *folders, main, "-lm"]
         call_compiler(command, "library", Path(private), "check $CC and the compiler")
         return (Path(private) / "library").read_bytes()

@@ -2,12 +2,27 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
+
+from symofros.native import amalgamated
 
 _HEADERS = ("math.h", "stddef.h", "stdint.h", "stdio.h", "stdlib.h", "string.h")
 
 
-def unity(name: str, title: str, before: Sequence[str], after: Sequence[str], more_headers: Sequence[str] = ()) -> str:
+_LOOP = "stepping/symofros_stepper.c"
+_VISIBLE = re.compile(r"^SYM_EXPORT [^=;{]*?\b(sym_\w+)\(", re.MULTILINE)
+
+
+def unity(
+    name: str,
+    title: str,
+    before: Sequence[str],
+    after: Sequence[str],
+    more_headers: Sequence[str] = (),
+    *,
+    linked: bool = False,
+) -> str:
     """The text of such a file.
 
     Args:
@@ -16,9 +31,13 @@ def unity(name: str, title: str, before: Sequence[str], after: Sequence[str], mo
         before: Lines between the model and the visible part.
         after: Lines of the visible part.
         more_headers: Headers of the environment, in the form `"mex.h"`.
+        linked: Whether the source may be linked with such sources of other models: names of the loop then begin with
+            that of the model.
     """
+    own = sorted(set(_VISIBLE.findall(amalgamated(_LOOP)))) if linked else []
     lines = [
         f"/* {title} */",
+        *(f"#define {function} {name}_{function}" for function in own),
         "#if !defined(_WIN32) && !defined(_POSIX_C_SOURCE)",
         "#define _POSIX_C_SOURCE 199309L",
         "#endif",

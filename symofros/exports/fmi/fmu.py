@@ -10,6 +10,7 @@ import sys
 import zipfile
 from datetime import UTC, datetime
 from pathlib import Path
+from string import Template
 from uuid import UUID
 
 from symofros.errors import ExportError, Problem
@@ -28,6 +29,14 @@ _MACHINES = {"x86_64": "x86_64", "amd64": "x86_64", "aarch64": "aarch64", "arm64
 _SYSTEMS = {"linux": ("linux", ".so"), "darwin": ("darwin", ".dylib"), "win32": ("windows", ".dll")}
 _OLD_NAMES = {("x86_64", "linux"): "linux64", ("x86_64", "darwin"): "darwin64", ("x86_64", "windows"): "win64"}
 _HEADERS = ("symofros_fmu.h", "symofros_fmi.h")
+# As FMI 3 asks of sources; functions of a shared library have no prefix. In FMI 2 importers define FMI2_FUNCTION_PREFIX
+# where sources of several units go into one program.
+_PREFIXED = Template("""\
+#if !defined(FMI3_FUNCTION_PREFIX)
+#define FMI3_FUNCTION_PREFIX ${name}_
+#endif
+""")
+_SHARED = {2: (), 3: ("-DFMI3_OVERRIDE_FUNCTION_PREFIX",)}
 _INTERFACE = {2: ("symofros_fmi2.c",), 3: ("symofros_fmi3.c", "symofros_fmi3_none.c")}
 # The same content gives the same archive, byte for byte.
 _EPOCH = (1980, 1, 1, 0, 0, 0)
@@ -50,7 +59,7 @@ def _write(material: Material, folder: Path, version: int) -> Exported:
     sources[f"{name}_fmi{version}.c"] = _glue(material, version, token)
     for file in (*_HEADERS, *_INTERFACE[version]):
         sources[file] = native_text(f"exports/{file}")
-    library = shared_library(sources, f"{name}_fmi{version}.c", [fmi_headers()])
+    library = shared_library(sources, f"{name}_fmi{version}.c", [fmi_headers()], _SHARED[version])
     place, suffix = _platform(version)
     fmi_variables = variables(material)
     entries: dict[str, str | bytes] = {
@@ -74,11 +83,11 @@ def fmi_headers() -> Path:
     spec = importlib.util.find_spec("fmpy")
     if spec is None or spec.origin is None:
         raise ExportError(
-            Problem(
+            Problem.of_extra(
                 "an FMU needs the headers of the FMI standard",
                 "no package fmpy",
                 "they are read from the package FMPy",
-                "pip install 'symofros[fmi]'",
+                "fmi",
             )
         )
     return Path(spec.origin).parent / "c-code"
@@ -97,7 +106,12 @@ def _glue(material: Material, version: int, token: str) -> str:
             f"static const char *const sym_fmu_frames[] = {{{frames}}};",
             *(f'#include "{file}"' for file in _HEADERS),
         ],
-        [f'#include "fmi{version}Functions.h"', *(f'#include "{file}"' for file in _INTERFACE[version])],
+        [
+            *(_PREFIXED.substitute(name=name).splitlines() if version == 3 else ()),
+            f'#include "fmi{version}Functions.h"',
+            *(f'#include "{file}"' for file in _INTERFACE[version]),
+        ],
+        linked=True,
     )
 
 

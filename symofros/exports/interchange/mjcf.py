@@ -8,12 +8,14 @@ from xml.etree import ElementTree as Tree
 
 import numpy as np
 
+from symofros.base.rotations import matrix_product
 from symofros.description.constraints import Closure
 from symofros.description.forces import Anchor, Damper, Spring
 from symofros.description.joints.joint import Joint
 from symofros.description.system import System
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.interchange.couplings import DEGREE, PolynomialCoupling, polynomial_couplings
+from symofros.exports.interchange.joint_series import GatheredBody, JointPlace, gathered
 from symofros.exports.interchange.rigid import Array, RigidLink, numbers_text, rigid_links
 from symofros.generator.codegen.names import identifier
 from symofros.mechanics.topology.numbers import Numbers
@@ -44,9 +46,14 @@ def write_mjcf(system: System, name: str | None, folder: Path, generator: str) -
         )
     if thin:
         notes.append(f"moments of inertia near zero raised to {_LEAST:g}: " + ", ".join(thin))
-    for link in _parents_first(links[1:], links[0].name):
-        assert link.parent is not None
-        elements[link.name] = _body(elements[link.parent], link, numbers)
+    bodies = gathered(_parents_first(links[1:], links[0].name), _attached(system))
+    for body in bodies:
+        assert body.link.parent is not None
+        elements[body.link.name] = _body(elements[body.link.parent], body, numbers)
+    notes += _of_carriers(bodies)
+    inner = [body.link.name for body in bodies if _is_free(body.link) and body.link.parent != links[0].name]
+    if inner:
+        notes.append("MuJoCo refuses free joints on bodies other than the world: " + ", ".join(inner))
     _equalities(root, system, links, numbers, notes)
     motors = [axis.name for link in links if link.joint is not None and link.joint.actuated for axis in link.axes]
     if motors:
@@ -67,6 +74,41 @@ def _parents_first(links: list[RigidLink], root: str) -> list[RigidLink]:
         ordered += ready
         waiting = [link for link in waiting if link.name not in placed]
     return ordered
+
+
+def _attached(system: System) -> set[str]:
+    """Bodies that constraints hold."""
+    return {
+        anchor[0] for item in system.constraints if isinstance(item, Closure) for anchor in (item.first, item.second)
+    }
+
+
+def _of_carriers(bodies: list[GatheredBody]) -> list[str]:
+    """Notes on bodies without mass: frames of those that are gathered, and those that MuJoCo refuses."""
+    frames = [name for body in bodies for place in body.carriers for name, _, _ in place.link.frames]
+    notes = ["frames of bodies that only carry dropped: " + ", ".join(frames)] if frames else []
+    fixed = {body.link.name: body.link.parent for body in bodies if not _moves(body)}
+    heavy = {body.link.name for body in bodies if body.link.mass}
+    for name in [*heavy]:  # What is fixed to a body moves with it.
+        while name in fixed and fixed[name] is not None:
+            name = str(fixed[name])
+            heavy.add(name)
+    light = [body.link.name for body in bodies if _moves(body) and body.link.name not in heavy]
+    if light:
+        notes.append(
+            "MuJoCo refuses bodies that move and have no mass (its option boundmass gives them some): "
+            + ", ".join(light)
+        )
+    return notes
+
+
+def _is_free(link: RigidLink) -> bool:
+    return link.joint is not None and link.joint.kind == "free"
+
+
+def _moves(body: GatheredBody) -> bool:
+    link = body.link
+    return bool(link.axes or body.carriers or (link.joint is not None and link.joint.traits.mjcf is not None))
 
 
 def _lost(system: System) -> list[str]:
@@ -108,7 +150,8 @@ def _sites(into: Tree.Element, link: RigidLink) -> None:
         Tree.SubElement(into, "site", {"name": name, **_pose(position, rotation)})
 
 
-def _body(into: Tree.Element, link: RigidLink, numbers: Numbers) -> Tree.Element:
+def _body(into: Tree.Element, gathered_body: GatheredBody, numbers: Numbers) -> Tree.Element:
+    link = gathered_body.link
     assert link.joint is not None
     body = Tree.SubElement(into, "body", {"name": link.name, **_pose(link.position, link.rotation)})
     if link.mass != 0.0 or link.inertia.any():
@@ -119,13 +162,24 @@ def _body(into: Tree.Element, link: RigidLink, numbers: Numbers) -> Tree.Element
             "inertial",
             {"pos": numbers_text(link.center), "mass": numbers_text(link.mass), "fullinertia": numbers_text(moments)},
         )
+    for place in gathered_body.carriers:
+        _joints(body, place.link, numbers, place)
     if not link.axes and link.joint.traits.mjcf is not None:
         Tree.SubElement(body, "joint", {"name": link.joint.name, "type": link.joint.traits.mjcf})
-    for i, axis in enumerate(link.axes):
-        stated = {"name": axis.name, "type": "hinge" if axis.turns else "slide", "axis": numbers_text(axis.direction)}
-        Tree.SubElement(body, "joint", stated | _dynamics(link, link.joint, i, numbers))
+    _joints(body, link, numbers, None)
     _sites(body, link)
     return body
+
+
+def _joints(body: Tree.Element, link: RigidLink, numbers: Numbers, place: JointPlace | None) -> None:
+    """The single joints of a link, about its own origin or about that of a body before it."""
+    assert link.joint is not None
+    for i, axis in enumerate(link.axes):
+        direction = axis.direction if place is None else matrix_product(place.rotation, np.array(axis.direction))
+        stated = {"name": axis.name, "type": "hinge" if axis.turns else "slide", "axis": numbers_text(direction)}
+        if place is not None and axis.turns and place.position.any():
+            stated["pos"] = numbers_text(place.position)
+        Tree.SubElement(body, "joint", stated | _dynamics(link, link.joint, i, numbers))
 
 
 def _positive(inertia: Array) -> Array:

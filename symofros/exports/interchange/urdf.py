@@ -78,11 +78,19 @@ def _origin(into: Tree.Element, position: Array, rotation: Array) -> None:
 
 
 def _rpy(R: Array) -> tuple[float, float, float]:
-    """Roll, pitch, yaw of Rz(y) Ry(p) Rx(r)."""
-    pitch = math.atan2(-R[2, 0], math.hypot(R[0, 0], R[1, 0]))
-    if math.hypot(R[0, 0], R[1, 0]) < 1e-9:  # Only yaw -+ roll matters.
-        return math.atan2(-R[1, 2], R[1, 1]), pitch, 0.0
-    return math.atan2(R[2, 1], R[2, 2]), pitch, math.atan2(R[1, 0], R[0, 0])
+    """Roll, pitch, yaw of Rz(y) Ry(p) Rx(r).
+
+    Where the pitch is nearly a right angle, the yaw comes from entries that are noise: roll and pitch are read off what
+    the yaw leaves of R, so that the product is R to rounding.
+    """
+    yaw = math.atan2(R[1, 0], R[0, 0]) if math.hypot(R[0, 0], R[1, 0]) > _ALIGNED else 0.0
+    cosine, sine = math.cos(yaw), math.sin(yaw)
+    left, up = cosine * R[1] - sine * R[0], cosine * R[0, 0] + sine * R[1, 0]
+    return math.atan2(-left[2], left[1]), math.atan2(-R[2, 0], up), yaw
+
+
+# Below this, the axes of roll and yaw are one but for rounding: all of the turn is written as roll.
+_ALIGNED = 1e-15
 
 
 def _link(root: Tree.Element, link: RigidLink) -> None:

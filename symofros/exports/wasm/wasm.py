@@ -84,11 +84,11 @@ def check_compiler() -> None:
     """
     if importlib.util.find_spec("ziglang") is None:
         raise CompileError(
-            Problem(
+            Problem.of_extra(
                 "no compiler for WebAssembly was found",
                 "the package ziglang is not installed",
                 "modules are compiled by the C compiler of ziglang",
-                "pip install 'symofros[zig]'",
+                "zig",
             )
         )
 

@@ -15,6 +15,7 @@ from symofros.mechanics.dynamics.derivatives.differentiation import by_configura
 from symofros.mechanics.dynamics.derivatives.recursion import inertia_force_derivatives, is_recursive
 from symofros.mechanics.dynamics.energy import kinetic_energy, potential_energy
 from symofros.mechanics.dynamics.equations_of_motion import EquationsOfMotion
+from symofros.mechanics.dynamics.forward.articulated import articulated_response, balances_by_link
 from symofros.mechanics.dynamics.jourdain import inertia_forces
 from symofros.mechanics.dynamics.mass_matrix import Matrix
 from symofros.mechanics.dynamics.momentum import coadjoint, momentum_rate
@@ -75,19 +76,14 @@ class Equations(EquationsOfMotion):
         """Derivative of the residual by v (nv + nc x nv)."""
         return self._residual_slopes[1]
 
-    @cached_property
-    def _slopes_in_motion(self) -> tuple[Matrix, Matrix]:
-        """Derivatives of M a + h - Q by q and v, with a the acceleration that the forces make."""
-        return self._slopes(self._less_applied, self._held_acceleration)
-
-    @cached_property
-    def _held_acceleration(self) -> list[Edge]:
-        """The acceleration, which derivatives take for a constant (nv)."""
-        return self._held(self.acceleration)
-
     def _held(self, edges: Sequence[Edge]) -> list[Edge]:
         """Edges that derivatives take for constants."""
         return [self.g.call(STOP_GRADIENT, edge) for edge in edges]
+
+    @cached_property
+    def _slopes_in_motion(self) -> tuple[Matrix, Matrix]:
+        """Derivatives of M a + h - Q by q and v, with a the acceleration that the forces make."""
+        return self._slopes(self._less_applied, self._held(self.acceleration))
 
     def slopes_in_motion(self, name: str) -> Matrix:
         """Derivative "by_q", "by_v", "by_u" or "by_par" of M a + h - Q at the acceleration that the forces make."""
@@ -99,6 +95,16 @@ class Equations(EquationsOfMotion):
     def balance(self, a: Sequence[Edge]) -> list[Edge]:
         """Balance M a + h - Q, whose derivatives take a for a constant (nv)."""
         return self._less_applied(self.inertia_forces(self._held(a)))
+
+    @cached_property
+    def balances_by_link(self) -> list[Edge]:
+        """Balances of links and speeds in the motion that the forces make, for `articulated_response`."""
+        a, links = self._held(self.articulated), self._bare_inertias
+        return balances_by_link(self.kinematics, links, self.rotors, self.gravity, self.Q, a, self._held)
+
+    def articulated_response(self, change: Sequence[Edge]) -> list[Edge]:
+        """Change of the acceleration where `balances_by_link` changes by so much (nv)."""
+        return articulated_response(self.kinematics, self._bare_inertias, self.rotors, change)
 
     @cached_property
     def residual_by_u(self) -> Matrix:

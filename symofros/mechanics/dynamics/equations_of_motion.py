@@ -57,13 +57,17 @@ class EquationsOfMotion:
     @cached_property
     def at_rest(self) -> Self:
         """The same in the same graph without speeds, except prescribed ones: what they would multiply is not formed."""
+        still = type(self)(self.tree)
+        still.g, still.kinematics = self.g, self._resting
+        return still
+
+    @cached_property
+    def _resting(self) -> TreeKinematics:
         links = tuple(
             replace(link, speeds=(ZERO,) * len(link.speeds)) if link.rates is None else link
             for link in self.kinematics.links
         )
-        still = type(self)(self.tree)
-        still.g, still.kinematics = self.g, replace(self.kinematics, links=links)
-        return still
+        return replace(self.kinematics, links=links)
 
     @cached_property
     def kinematics(self) -> TreeKinematics:
@@ -97,6 +101,11 @@ class EquationsOfMotion:
     def h(self) -> list[Edge]:
         """Coriolis, centrifugal and gravity terms (nv)."""
         return inertia_forces(self.kinematics, self._inertias[0], self.rotors, [ZERO] * self.nv, self.gravity)
+
+    @cached_property
+    def gravity_force(self) -> list[Edge]:
+        """Bias at rest, h(q, 0) (nv)."""
+        return inertia_forces(self._resting, self._inertias[0], self.rotors, [ZERO] * self.nv, self.gravity)
 
     @cached_property
     def Q(self) -> list[Edge]:

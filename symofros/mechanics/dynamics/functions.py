@@ -39,10 +39,12 @@ class Methods(NamedTuple):
     Attributes:
         constraints: Method under constraints: "multipliers" or "null_space".
         trees: Method for trees: "articulated" or "factors".
+        slopes: Method for the first derivatives of forward dynamics of trees: "articulated" or "factors".
     """
 
     constraints: str = "multipliers"
     trees: str = "factors"
+    slopes: str = "factors"
 
 
 _DEFAULT = Methods()
@@ -192,19 +194,28 @@ def _jacobian(e: Equations) -> Output:
 
 def _forward_slopes(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[str, int]) -> Function:
     """Derivatives of forward dynamics: da/dx = -M^-1 dR/dx at the motion that a = M^-1 (Q - h) makes."""
+    if methods.slopes == "articulated" and not e.constraints:
+        return _articulated_slopes(e, row, known)
     columns = sum(array.sizes(known)[1] for array in row.outputs)
     if e.constraints or e.factors.entries * columns > _MOST_STEPS * WIDTH:
         return _forward_slopes_by_routine(e, row, known)
-    slopes = [_output(array, e.slopes_in_motion(array.name), known) for array in row.outputs]
-    outputs = [_matrix(output.name, (e.nv, output.shape[1]), _solved(e, output)) for output in slopes]
+    outputs = []
+    for array in row.outputs:
+        solved = e.factors.solve_columns(e.slopes_in_motion(array.name))
+        outputs.append(_matrix(array.name, (e.nv, array.sizes(known)[1]), [[-edge for edge in of] for of in solved]))
     return Function(row.name, "", row.inputs, tuple(outputs))
 
 
-def _solved(e: Equations, slopes: Output) -> list[list[Edge]]:
-    """-M^-1 times a matrix."""
-    rows, columns = slopes.shape
-    solved = e.factors.solve_columns([list(slopes.edges[i * columns : (i + 1) * columns]) for i in range(rows)])
-    return [[-edge for edge in row] for row in solved]
+def _articulated_slopes(e: Equations, row: ModelFunction, known: Mapping[str, int]) -> Function:
+    """The same by articulated bodies, whose wrenches are differentiated link by link (linear.md, eqs. 29, 30)."""
+    balances = e.balances_by_link
+    outputs = []
+    for array in row.outputs:
+        slopes = getattr(e, array.name)(balances)
+        columns = [e.articulated_response(column) for column in zip(*slopes, strict=True)]
+        rows = list(zip(*columns, strict=True)) if columns else [()] * e.nv
+        outputs.append(_matrix(array.name, (e.nv, len(columns)), rows))
+    return Function(row.name, "", row.inputs, tuple(outputs))
 
 
 def _forward_slopes_by_routine(e: Equations, row: ModelFunction, known: Mapping[str, int]) -> Function:

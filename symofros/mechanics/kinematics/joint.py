@@ -23,6 +23,7 @@ from symofros.mechanics.kinematics.rotations import (
     MatrixRotation,
     RotationProduct,
     axis_angle_matrix,
+    coordinate_axis,
     unit_vector,
 )
 from symofros.mechanics.topology.coordinates import coordinate_names
@@ -152,10 +153,8 @@ def rotation_about(n: Vec3, angle: Edge, k: int | None, negative: bool) -> Joint
 
 def _rotation_about_any(n: Vec3, angle: Edge) -> JointRotation:
     """Rotation about any unit axis, cheap if it is a coordinate axis."""
-    along = [i for i, edge in enumerate(n) if abs(edge) == ONE]
-    return (
-        rotation_about(n, angle, along[0], tuple(n)[along[0]] < 0) if along else rotation_about(n, angle, None, False)
-    )
+    k, negative = coordinate_axis(n) or (None, False)
+    return rotation_about(n, angle, k, negative)
 
 
 # Displacement p_PD and the rotations that follow it.

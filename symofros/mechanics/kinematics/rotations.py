@@ -7,12 +7,15 @@ A rotation about a coordinate axis costs a vector 4 multiplications and 2 additi
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import permutations, product
 
+import numpy as np
+
+from symofros.base.rotations import nearest_rotation, unit_scale
 from symofros.description.values import Rotation
-from symofros.expr.edges import ONE, Edge
+from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.expression import Expression, lower
 from symofros.expr.graph import Graph
 from symofros.expr.numerics.extended import nearest
@@ -158,8 +161,8 @@ def constant_rotation(R: Mat3) -> RotationProduct:
     """A rotation that does not change with q, in its cheapest factors.
 
     A number matrix with an entry +-1 is an axis permutation times one elementary rotation; any other number matrix is
-    three elementary rotations for tensors. A matrix of parameters stays as it is: operations on it are done once, not
-    per call.
+    three elementary rotations for tensors (`_turns_z_x_z`). A matrix of parameters stays as it is: operations on it
+    are done once, not per call.
     """
     g = R.g
     if not R.is_constant:
@@ -178,14 +181,22 @@ def constant_rotation(R: Mat3) -> RotationProduct:
             if permutation != [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]:
                 factors.insert(0, MatrixRotation(_number_matrix(g, permutation)))
             return RotationProduct(g, tuple(factors))
-    a, c = nearest("atan2", rows[0][2], -rows[1][2]), nearest("atan2", rows[2][0], rows[2][1])
-    tilt = math.sqrt(rows[0][2] * rows[0][2] + rows[1][2] * rows[1][2])
-    b = nearest("atan2", tilt, rows[2][2])  # An arc cosine would lose small tilts.
-    zxz = tuple(
-        AxisRotation(k, g.constant(nearest("cos", x)), g.constant(nearest("sin", x)))
-        for k, x in ((2, a), (0, b), (2, c))
-    )
-    return RotationProduct(g, (MatrixRotation(R),), zxz)
+    return RotationProduct(g, (MatrixRotation(R),), _turns_z_x_z(g, rows))
+
+
+def _turns_z_x_z(g: Graph, R: list[list[float]]) -> tuple[AxisRotation, ...]:
+    """The factors Rz(a) Rx(b) Rz(c) of a rotation matrix of numbers (docs/theory/rigid.md, eq. 12a).
+
+    Where b is nearly 0 or pi, a is taken from entries that are noise, and only a +- c is defined. So b and c are read
+    off what the first turn leaves of R, Rz(a)^T R = Rx(b) Rz(c), whatever a came out as: the product is R to rounding.
+    """
+    a = nearest("atan2", R[0][2], -R[1][2])
+    cos_a, sin_a = nearest("cos", a), nearest("sin", a)
+    first = [cos_a * R[0][n] + sin_a * R[1][n] for n in range(3)]
+    tilt = sin_a * R[0][2] - cos_a * R[1][2]
+    b, c = nearest("atan2", tilt, R[2][2]), nearest("atan2", -first[1], first[0])
+    angles = ((2, cos_a, sin_a), *((k, nearest("cos", x), nearest("sin", x)) for k, x in ((0, b), (2, c))))
+    return tuple(AxisRotation(k, g.constant(cosine), g.constant(sine)) for k, cosine, sine in angles)
 
 
 def _axis_permutation(i: int, j: int, sign: float) -> list[list[float]]:
@@ -230,29 +241,57 @@ def stated_rotation(rotation: Rotation, g: Graph, bindings: Mapping[str, Edge]) 
     """A rotation of the description as a matrix of edges."""
     x = [g.constant(v) if not isinstance(v, Expression) else lower(v, g, bindings) for v in rotation.values]
     if rotation.kind == "matrix":
-        return snapped(Mat3(g, tuple(x)))
+        return snapped(_orthonormal(Mat3(g, tuple(x))))
     if rotation.kind == "rpy" and not any(x):
         return Mat3.identity(g)
     if rotation.kind == "rpy":
         factors = [AxisRotation(k, g.call("cos", x[k]), g.call("sin", x[k])).matrix(g) for k in (2, 1, 0)]
         return snapped(snapped(factors[0]) @ snapped(factors[1]) @ snapped(factors[2]))
     if rotation.kind == "quaternion":
-        return snapped(Quaternion.of(g, *x).normalized.matrix)
+        return snapped(Quaternion.of(g, *_scaled(g, x)).normalized.matrix)
     axis = unit_vector(Vec3(g, *x[:3]))
     return snapped(axis_angle_matrix(axis, g.call("cos", x[3]), g.call("sin", x[3])))
 
 
+def _orthonormal(R: Mat3) -> Mat3:
+    """The rotation nearest to a stated matrix of numbers; one of formulas is taken at its word."""
+    if not R.is_constant:
+        return R
+    rows = nearest_rotation(np.array(R.numbers()))
+    return Mat3(R.g, tuple(R.g.constant(float(entry)) for entry in rows.flat))
+
+
+def _scaled(g: Graph, x: Sequence[Edge]) -> list[Edge]:
+    """Numbers times the power of two that lets their squares keep their digits; others as they are."""
+    numbers = [g.number(edge) for edge in x]
+    stated = [number for number in numbers if number is not None]
+    if len(stated) < len(x) or not any(stated):
+        return list(x)
+    return [g.constant(float(number)) for number in unit_scale(np.array(stated))]
+
+
 def unit_vector(v: Vec3) -> Vec3:
-    """Vector v divided by its length; exact along a coordinate axis."""
+    """Vector v divided by its length; exact along a coordinate axis, and where it is one but for rounding."""
     g = v.g
-    along = [i for i, edge in enumerate(v) if edge]
-    if len(along) == 1 and v.is_constant:
-        number = g.number(tuple(v)[along[0]])
-        assert number is not None
-        unit = Vec3.unit(g, along[0])
-        return unit if number > 0.0 else -unit
+    v = Vec3(g, *_scaled(g, tuple(v)))
     length = g.sqrt(v.dot(v))
-    return Vec3(g, *(g.div(edge, length) for edge in v))
+    unit = Vec3(g, *(g.div(edge, length) for edge in v))
+    if not unit.is_constant:
+        return unit
+    x = [g.number(edge) or 0.0 for edge in unit]
+    # An entry rounds to 1 long before the others round to 0, which alone says that the vector is a coordinate axis.
+    x = [number if abs(number) > EXACT else 0.0 for number in x]
+    if sum(map(bool, x)) == 1:
+        x = [math.copysign(1.0, number) if number else 0.0 for number in x]
+    return Vec3(g, *map(g.constant, x))
+
+
+def coordinate_axis(n: Vec3) -> tuple[int, bool] | None:
+    """The coordinate axis that a unit vector lies along, and whether it points against it; None if along none."""
+    along = [i for i, edge in enumerate(n) if edge != ZERO]
+    if len(along) != 1 or abs(tuple(n)[along[0]]) != ONE:
+        return None
+    return along[0], tuple(n)[along[0]] < 0
 
 
 def axis_angle_matrix(n: Vec3, c: Edge, s: Edge) -> Mat3:
@@ -279,10 +318,10 @@ def frame_with_axis(n: Vec3) -> tuple[Mat3, int, bool] | None:
     g = n.g
     if not n.is_constant:
         return None
+    along = coordinate_axis(n)
+    if along is not None:
+        return Mat3.identity(g), *along
     x = [g.number(edge) or 0.0 for edge in n]
-    for k in range(3):
-        if abs(x[k]) == 1.0 and abs(x[(k + 1) % 3]) <= EXACT and abs(x[(k + 2) % 3]) <= EXACT:
-            return Mat3.identity(g), k, x[k] < 0.0
     # Column 2 is n; the first column is the coordinate axis least along n, made orthogonal to it.
     least = min(range(3), key=lambda i: abs(x[i]))
     first = [float(i == least) - x[least] * x[i] for i in range(3)]

@@ -8,7 +8,7 @@ from typing import Literal, NamedTuple
 
 from symofros.description.beams.beam import MATRIX_ORDER, STATION, STRAINS, Beam, BeamLoad, Samples
 from symofros.description.constraints import Constraint, Coupling, Nonholonomic
-from symofros.description.entries import units_of
+from symofros.description.entry_units import units_of
 from symofros.description.forces import Connection, Load, Rotor
 from symofros.description.frames import Frame
 from symofros.description.joints.joint import Joint
@@ -34,6 +34,7 @@ class Stated(NamedTuple):
         scope: Names that the value may depend on.
         joint: The joint whose coordinates it may use, with scope "joint".
         units: Units that it may have; none where any will do.
+        remedy: What to do in place of what the scope forbids, where that is more than the scope's own remedy.
     """
 
     what: str
@@ -42,6 +43,15 @@ class Stated(NamedTuple):
     scope: Scope = "parameters"
     joint: Joint | None = None
     units: tuple[str, ...] = ()
+    remedy: str = ""
+
+
+# A force along a line, one-sided or with a length that changes, has no noun; formulas have it.
+_LINE_BY_FORMULA = (
+    "state the force by formula: that of a cable which only pulls and is wound up is T = max(0, k*(d - length)), d the "
+    "distance of its ends in terms of coordinates; as a load, (-T*x/d, -T*y/d, -T*z/d) in world axes on a body at "
+    "(x, y, z) from the winch, or as virtual power, -T times the derivative of d by a coordinate on its speed"
+)
 
 
 def stated_values(system: System) -> Iterator[Stated]:
@@ -56,7 +66,8 @@ def stated_values(system: System) -> Iterator[Stated]:
         for label in ("stiffness", "length", "damping"):
             key = ("connection", connection.name)
             units = units_of(Connection, label)
-            yield Stated(f"connection '{connection.name}': {label}", getattr(connection, label), key, units=units)
+            what, value = f"connection '{connection.name}': {label}", getattr(connection, label)
+            yield Stated(what, value, key, units=units, remedy=_LINE_BY_FORMULA)
     for power in system.virtual_power:
         for speed, value in power.forces:
             key = ("virtual_power", power.name)
@@ -107,7 +118,7 @@ def _joint_values(joint: Joint) -> Iterator[Stated]:
 
 
 def _of_coordinate(joint: Joint, number: int, units: tuple[str, ...]) -> tuple[str, ...]:
-    """Of units for a turn and for a translation, as docstrings state them, those of a coordinate."""
+    """Of units for a turn and for a translation, those of a coordinate."""
     known = joint_units(joint)
     if len(units) != 2 or not 0 <= number < len(known):
         return units
@@ -234,7 +245,7 @@ def formula_problems(system: System, broken: frozenset[str]) -> Iterator[Problem
                     f"{stated.what}: '{name}' may not be used here",
                     f"'{stated.value}'",
                     _RULES[stated.scope],
-                    _REMEDIES[stated.scope],
+                    stated.remedy or _REMEDIES[stated.scope],
                     where,
                 )
             else:

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from symofros.base.rotations import Array, axis_rotation, quaternion_matrix
+from symofros.base.rotations import Array, axis_rotation, nearest_rotation, quaternion_matrix, unit_scale
 from symofros.description.joints.joint import Joint
 from symofros.description.system import System
-from symofros.description.values import Rotation, Value
+from symofros.description.values import Rotation, Value, symbols
 from symofros.errors import Problem
 from symofros.expr.expression import evaluate
 
@@ -52,17 +52,16 @@ class Numbers:
         if not np.all(np.isfinite(x)):
             return np.full((3, 3), math.nan)
         if rotation.kind == "matrix":
-            return x.reshape(3, 3)
+            R = x.reshape(3, 3)
+            return nearest_rotation(R) if _defect(R) <= ROTATION_TOLERANCE else R
         if rotation.kind == "rpy":
             roll, pitch, yaw = (_about(axis, angle) for axis, angle in zip(np.eye(3), x, strict=True))
             return np.asarray(yaw @ pitch @ roll)
-        direction = x if rotation.kind == "quaternion" else x[:3]
-        norm = float(np.linalg.norm(direction))
-        if not 0.0 < norm < math.inf:
+        direction = unit_scale(x if rotation.kind == "quaternion" else x[:3])
+        if not direction.any():
             return np.full((3, 3), math.nan)
-        if rotation.kind == "quaternion":
-            return quaternion_matrix(x / norm)
-        return _about(direction / norm, x[3])
+        direction = direction / np.linalg.norm(direction)
+        return quaternion_matrix(direction) if rotation.kind == "quaternion" else _about(direction, x[3])
 
     def rotation_problems(self, what: str, rotation: Any, where: str) -> Iterator[Problem]:
         """A rotation that is none."""
@@ -80,7 +79,7 @@ class Numbers:
                 where,
             )
             return
-        error = float(np.abs(R @ R.T - np.eye(3)).max())
+        error = _defect(R)
         if error > ROTATION_TOLERANCE or np.linalg.det(R) < 0.0:
             yield Problem(
                 f"{what}: the matrix is not a rotation",
@@ -89,6 +88,12 @@ class Numbers:
                 "give more digits, or state it as rpy, axis_angle or quaternion",
                 where,
             )
+
+    def rounded(self, rotation: Rotation) -> float:
+        """How far a matrix of numbers, stated with few digits, is from the rotation that is used: |R R^T - 1|."""
+        if rotation.kind != "matrix" or any(map(symbols, rotation)):
+            return 0.0
+        return _defect(self.values(rotation).reshape(3, 3))
 
     def axis_problems(self, joint: Joint, where: str) -> Iterator[Problem]:
         """An axis of no length, or of one that overflows."""
@@ -100,6 +105,11 @@ class Numbers:
                 "give a direction such as [0, 0, 1]",
                 where,
             )
+
+
+def _defect(R: Array) -> float:
+    """|R R^T - 1|, by its largest entry."""
+    return float(np.abs(R @ R.T - np.eye(3)).max())
 
 
 def _about(axis: Array, angle: float) -> Array:

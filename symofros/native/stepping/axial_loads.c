@@ -81,7 +81,7 @@ static void sym_thin_beam_states(sym_run *r) {
     int32_t k;
     r->beam_states /= 2, r->beam_stride *= 2;
     for (k = 1; k < r->beam_states; ++k)
-        memcpy(r->beam_works + (size_t)k * row, r->beam_works + 2 * (size_t)k * row, row * sizeof(double));
+        memcpy(r->beam_works + (size_t)k * (size_t)row, r->beam_works + 2 * (size_t)k * (size_t)row, row * sizeof(double));
 }
 
 /* Look at the axial loads of the present state, after its bending was judged. Returns 0 or SYM_BEYOND_THEORY. */

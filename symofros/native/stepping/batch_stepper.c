@@ -64,13 +64,13 @@ SYM_EXPORT int32_t sym_batch_start(sym_batch *b, double *memory) {
         sym_run *r = b->runs + i;
         *s = *prototype;
         *r = *b->prototype;
-        s->q = b->q + (size_t)i * s->nq, s->v = b->v + (size_t)i * s->nv;
-        s->u = b->u + (size_t)i * s->nu, s->t = b->t + i;
-        s->a = b->forward_dynamics.out[0] + (size_t)i * s->nv;
-        s->lam = b->forward_dynamics.out[1] + (size_t)i * s->nc, s->rank = b->forward_dynamics.out[2] + i;
+        s->q = b->q + (size_t)i * (size_t)s->nq, s->v = b->v + (size_t)i * (size_t)s->nv;
+        s->u = b->u + (size_t)i * (size_t)s->nu, s->t = b->t + i;
+        s->a = b->forward_dynamics.out[0] + (size_t)i * (size_t)s->nv;
+        s->lam = b->forward_dynamics.out[1] + (size_t)i * (size_t)s->nc, s->rank = b->forward_dynamics.out[2] + i;
         s->forward_dynamics.out[0] = s->a, s->forward_dynamics.out[1] = s->lam, s->forward_dynamics.out[2] = s->rank;
-        s->signals = b->signals + (size_t)i * s->n_signals;
-        memcpy(b->signals + (size_t)i * s->n_signals, prototype->signals, (size_t)s->n_signals * sizeof *b->signals);
+        s->signals = b->signals + (size_t)i * (size_t)s->n_signals;
+        memcpy(b->signals + (size_t)i * (size_t)s->n_signals, prototype->signals, (size_t)s->n_signals * sizeof *b->signals);
         r->system = s;
         r->q = b->states + (size_t)i * ((size_t)s->nq + (size_t)s->nv), r->v = r->q + s->nq;
     }
@@ -80,11 +80,11 @@ SYM_EXPORT int32_t sym_batch_start(sym_batch *b, double *memory) {
 
 /* Working memory of one slot. */
 static sym_workspace sym_batch_workspace(const sym_batch *b, int32_t slot) {
-    const size_t m = 2 * (size_t)b->prototype->system->nv, at = (size_t)slot * m;
+    const size_t m = 2 * (size_t)b->prototype->system->nv, at = (size_t)slot * (size_t)m;
     sym_workspace w;
     w.y1 = b->y1 + at, w.stage = b->stage + at, w.magnitude = b->magnitude + at, w.end_slope = b->end_slope + at;
     w.end_state = b->end_state;
-    w.k = b->k + at, w.stage_stride = (size_t)b->slots * m;
+    w.k = b->k + at, w.stage_stride = (size_t)b->slots * (size_t)m;
     memset(&w.implicit, 0, sizeof w.implicit);
     return w;
 }
@@ -103,7 +103,7 @@ static void sym_batch_set_parameters(sym_batch_function *f, sym_system *system, 
 static void sym_batch_assign(sym_batch *b, int32_t slot, int64_t trajectory) {
     const sym_system *prototype = b->prototype->system;
     sym_system *s = b->systems + slot;
-    sym_signal *signals = b->signals + (size_t)slot * prototype->n_signals;
+    sym_signal *signals = b->signals + (size_t)slot * (size_t)prototype->n_signals;
     int32_t k;
     b->trajectory_of_slot[slot] = trajectory;
     s->u_constant = b->u_constant.at + trajectory * b->u_constant.stride;
@@ -200,7 +200,7 @@ static void sym_batch_evaluate_acceleration(sym_batch *b) {
         const int32_t n = b->systems->n_law;
         sym_batch_evaluate(b, &b->law);
         for (i = 0; i < b->n_active; ++i)
-            for (k = 0; k < n; ++k) b->systems[i].u[b->systems->law_inputs[k]] = b->law.out[0][(size_t)i * n + k];
+            for (k = 0; k < n; ++k) b->systems[i].u[b->systems->law_inputs[k]] = b->law.out[0][SYM_AT(i, n, k)];
     }
     sym_batch_evaluate(b, &b->forward_dynamics);
 }
@@ -231,7 +231,7 @@ static void sym_batch_begin_step(sym_batch *b) {
     const int32_t nv = b->prototype->system->nv, m = 2 * nv;
     int32_t i, l;
     for (i = 0; i < b->n_active; ++i) {
-        double *y0 = b->y0 + (size_t)i * m, *length = b->length + (size_t)i * m;
+        double *y0 = b->y0 + (size_t)i * (size_t)m, *length = b->length + (size_t)i * (size_t)m;
         for (l = 0; l < nv; ++l) y0[l] = 0.0, y0[nv + l] = b->runs[i].v[l];
         for (l = 0; l < m; ++l) length[l] = b->h[i];
     }
@@ -239,10 +239,10 @@ static void sym_batch_begin_step(sym_batch *b) {
 
 /* y = (0, v) + h times the weighted sum of slopes, of all active trajectories: sym_combine_slopes. */
 static void sym_batch_combine_slopes(const sym_batch *b, int32_t stages, const double *weights, double *restrict y) {
-    const size_t m = 2 * (size_t)b->prototype->system->nv, size = (size_t)b->n_active * m;
+    const size_t m = 2 * (size_t)b->prototype->system->nv, size = (size_t)b->n_active * (size_t)m;
     const double *restrict y0 = b->y0, *restrict length = b->length;
     size_t l;
-    sym_weighted_sum(size, stages, weights, b->k, (size_t)b->slots * m, y);
+    sym_weighted_sum(size, stages, weights, b->k, (size_t)b->slots * (size_t)m, y);
     for (l = 0; l < size; ++l) y[l] = length[l] * y[l] + y0[l];
 }
 
@@ -250,7 +250,7 @@ static void sym_batch_combine_slopes(const sym_batch *b, int32_t stages, const d
 static void sym_batch_evaluate_stage(sym_batch *b, int32_t stage) {
     const sym_tableau *method = &b->prototype->tableau;
     int32_t i;
-    sym_batch_combine_slopes(b, stage, method->a + (size_t)stage * method->dense_stages, b->stage);
+    sym_batch_combine_slopes(b, stage, method->a + (size_t)stage * (size_t)method->dense_stages, b->stage);
     for (i = 0; i < b->n_active; ++i) {
         sym_run *r = b->runs + i;
         sym_load_chart_state(r, r->t + method->c[stage] * b->h[i], sym_batch_workspace(b, i).stage);
@@ -261,7 +261,7 @@ static void sym_batch_evaluate_stage(sym_batch *b, int32_t stage) {
         const sym_workspace w = sym_batch_workspace(b, i);
         const int32_t status = sym_check_acceleration(r);
         if (b->status[i] == 0) b->status[i] = status;
-        sym_slope_of_acceleration(r->system, w.stage, w.k + (size_t)stage * w.stage_stride);
+        sym_slope_of_acceleration(r->system, w.stage, w.k + (size_t)stage * (size_t)w.stage_stride);
     }
 }
 

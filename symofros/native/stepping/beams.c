@@ -45,7 +45,7 @@ static void sym_square_angles(int32_t n, const double *angles, const double *x, 
 /* Squares of the largest angles of a beam: yaw, pitch, slope, twist. */
 static void sym_beam_angles(const sym_beam *beam, const double *x, double largest[4]) {
     const int32_t n_y = beam->n_y, n_z = beam->n_z, n_twist = beam->n_twist;
-    const double *angles = beam->angles, *end = angles + (size_t)beam->blocks * SYM_BEAM_BLOCK * beam->n;
+    const double *angles = beam->angles, *end = angles + (size_t)beam->blocks * SYM_BEAM_BLOCK * (size_t)beam->n;
     int32_t l;
     largest[0] = largest[1] = largest[2] = largest[3] = 0.0;
     while (angles < end) {

@@ -7,7 +7,7 @@ static void sym_weighted_sum(size_t n, int32_t stages, const double *weights, co
     size_t l;
     memset(sum, 0, n * sizeof *sum);
     for (j = 0; j < stages; ++j) {
-        const double weight = weights[j], *restrict kj = k + (size_t)j * stride;
+        const double weight = weights[j], *restrict kj = k + (size_t)j * (size_t)stride;
         if (weight != 0.0)
             for (l = 0; l < n; ++l) sum[l] += weight * kj[l];
     }
@@ -30,8 +30,8 @@ static int32_t sym_evaluate_stages(sym_run *r, const sym_workspace *w, double h,
     const sym_tableau *method = &r->tableau;
     int32_t i, status;
     for (i = first; i < end; ++i) {
-        sym_combine_slopes(r, w, h, i, method->a + (size_t)i * method->dense_stages, w->stage);
-        status = sym_evaluate_slope(r, r->t + method->c[i] * h, w->stage, w->k + (size_t)i * w->stage_stride);
+        sym_combine_slopes(r, w, h, i, method->a + (size_t)i * (size_t)method->dense_stages, w->stage);
+        status = sym_evaluate_slope(r, r->t + method->c[i] * h, w->stage, w->k + (size_t)i * (size_t)w->stage_stride);
         if (status != 0) return status;
     }
     return 0;

@@ -137,17 +137,17 @@ static int32_t sym_alpha_factor(sym_run *r, sym_workspace *memory, double h) {
     if (status != 0) return status;
     for (i = 0; i < nv; ++i) {
         for (j = 0; j < nv; ++j) {
-            const size_t at = (size_t)i * nv + j;
-            w.matrix[(size_t)i * n + j] = M[at] + c.by_v * R_v[at] + c.by_q * R_q[at];
+            const size_t at = SYM_AT(i, nv, j);
+            w.matrix[SYM_AT(i, n, j)] = M[at] + c.by_v * R_v[at] + c.by_q * R_q[at];
         }
-        for (j = 0; j < nc; ++j) w.matrix[(size_t)i * n + nv + j] = -G[(size_t)j * nv + i];
+        for (j = 0; j < nc; ++j) w.matrix[SYM_AT(i, n, nv + j)] = -G[SYM_AT(j, nv, i)];
     }
     for (i = 0; i < nc; ++i) {
         for (j = 0; j < nv; ++j) {
-            const double g = G[(size_t)i * nv + j], by_rate = c.by_q / c.by_v * rate_q[(size_t)i * nv + j];
-            w.matrix[(size_t)(nv + i) * n + j] = s->on_speeds[i] ? g + by_rate : g;
+            const double g = G[SYM_AT(i, nv, j)], by_rate = c.by_q / c.by_v * rate_q[SYM_AT(i, nv, j)];
+            w.matrix[SYM_AT(nv + i, n, j)] = s->on_speeds[i] ? g + by_rate : g;
         }
-        for (j = 0; j < nc; ++j) w.matrix[(size_t)(nv + i) * n + nv + j] = 0.0;
+        for (j = 0; j < nc; ++j) w.matrix[SYM_AT(nv + i, n, nv + j)] = 0.0;
     }
     return sym_eliminate(nv, n, w.matrix, w.scale, r->pivots, r->pivots + n);
 }
@@ -341,7 +341,7 @@ static int32_t sym_variational_step(sym_run *r, sym_workspace *memory, double h)
     sym_retract(s, r->q, y1, s->q);
     *s->t = r->t + h;
     sym_evaluate(&s->momentum); /* for M at the end of the step */
-    memcpy(w.matrix, s->momentum.out[2], (size_t)nv * nv * sizeof(double));
+    memcpy(w.matrix, s->momentum.out[2], (size_t)nv * (size_t)nv * sizeof(double));
     rank = sym_eliminate(nv, nv, w.matrix, w.scale, r->pivots, r->pivots + nv);
     if (rank < nv) return SYM_SINGULAR;
     sym_solve(nv, rank, w.matrix, w.scale, r->pivots, r->pivots + nv, end, y1 + nv, w.scratch);

@@ -18,7 +18,7 @@ static void sym_orthogonalize(int32_t n, int32_t rows, const double *basis, doub
     for (i = 0; i < rows; ++i) components[i] = 0.0;
     for (pass = 0; pass < 2; ++pass)
         for (i = 0; i < rows; ++i) {
-            const double *b = basis + (size_t)i * n;
+            const double *b = basis + (size_t)i * (size_t)n;
             double s = 0.0;
             for (l = 0; l < n; ++l) s += b[l] * x[l];
             for (l = 0; l < n; ++l) x[l] -= s * b[l];
@@ -59,23 +59,23 @@ static double sym_first_direction(const sym_run *r, int32_t n, const double *slo
 
 SYM_EXPORT int32_t sym_run_spectrum(sym_run *r, double h, int32_t dimension, double *basis, double *matrix, double *motion) {
     const int32_t n = 2 * r->system->nv;
-    double *slope = basis + (size_t)dimension * n, *x = slope + n, *next = x + n, *y = next + n, change, length;
+    double *slope = basis + (size_t)dimension * (size_t)n, *x = slope + n, *next = x + n, *y = next + n, change, length;
     int32_t i, j, k, status;
-    memset(matrix, 0, (size_t)dimension * dimension * sizeof *matrix);
+    memset(matrix, 0, (size_t)dimension * (size_t)dimension * sizeof *matrix);
     memset(x, 0, (size_t)n * sizeof *x);
     status = sym_scaled_slope(r, h, x, y, slope);
     if (status != 0) return status;
     change = sym_first_direction(r, n, slope, basis);
     for (j = 0; j < dimension; ++j) {
-        for (i = 0; i < n; ++i) x[i] = change * basis[(size_t)j * n + i];
+        for (i = 0; i < n; ++i) x[i] = change * basis[SYM_AT(j, n, i)];
         status = sym_scaled_slope(r, h, x, y, next);
         if (status != 0) return status;
         for (i = 0; i < n; ++i) next[i] = (next[i] - slope[i]) / change;
         sym_orthogonalize(n, j + 1, basis, next, motion); /* motion: work until the end */
-        for (k = 0; k <= j; ++k) matrix[(size_t)k * dimension + j] = motion[k];
+        for (k = 0; k <= j; ++k) matrix[SYM_AT(k, dimension, j)] = motion[k];
         length = sym_normalize(n, next);
         if (j + 1 == dimension || !(length > 0.0)) break; /* at 0 the subspace is invariant, and the rest of matrix 0 */
-        matrix[(size_t)(j + 1) * dimension + j] = length;
+        matrix[SYM_AT(j + 1, dimension, j)] = length;
         memcpy(basis + (size_t)(j + 1) * n, next, (size_t)n * sizeof *next);
     }
     dimension = j + 1 < dimension ? j + 1 : dimension;

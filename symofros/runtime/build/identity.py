@@ -4,20 +4,30 @@ from __future__ import annotations
 
 import hashlib
 import os
+from collections.abc import Collection
 from pathlib import Path
 
 _SUFFIXES = (".py", ".in", ".h", ".c")
 _BUILT = ("__pycache__", "node_modules")
 
 
-def source_digest(package: Path) -> str:
+# What a wheel installs within the package and has no part in what it generates.
+_INSTALLED_WITHIN = ("validation", "reference_models")
+
+
+def source_digest(package: Path, apart: Collection[str] = ()) -> str:
     """Digest of all source files of a package, Python and C, and of their places in its folder.
 
     What is built beside them while a process runs, caches of bytecode and packages of Node, is none of them.
+
+    Args:
+        package: Folder of the package.
+        apart: Names of folders in it that are left out.
     """
     digest = hashlib.sha256()
     for folder, folders, files in os.walk(package):
-        folders[:] = sorted(name for name in folders if name not in _BUILT)
+        left_out = (*_BUILT, *apart) if Path(folder) == package else _BUILT
+        folders[:] = sorted(name for name in folders if name not in left_out)
         sources = sorted(name for name in files if name.endswith(_SUFFIXES))
         if sources:
             digest.update(f"{os.path.relpath(folder, package)}\0".encode())
@@ -30,4 +40,4 @@ def source_digest(package: Path) -> str:
 
 
 # Taken at import (5 ms): later, a file might have been edited whose older text this process runs.
-CODE_IDENTITY = source_digest(Path(__file__).parents[2])
+CODE_IDENTITY = source_digest(Path(__file__).parents[2], _INSTALLED_WITHIN)

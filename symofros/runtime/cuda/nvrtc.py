@@ -131,11 +131,11 @@ def _library() -> ctypes.CDLL:
         except OSError:
             continue
     raise CompileError(
-        Problem(
+        Problem.of_extra(
             "CUDA: no compiler",
             f"no package of NVIDIA that has NVRTC, nor libnvrtc.so of CUDA {' or '.join(map(str, _VERSIONS))}",
             "kernels are compiled by NVRTC, which needs no graphics processor",
-            "pip install 'symofros[cuda]'",
+            "cuda",
         )
     )
 

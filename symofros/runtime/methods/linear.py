@@ -41,6 +41,24 @@ class StateMatrices(NamedTuple):
     D: Array
 
 
+def state_matrices(segments: Sequence[Segment], slopes: Sequence[Array], v: Array) -> tuple[Array, Array]:
+    """A (..., 2 nv, 2 nv) and B (..., 2 nv, nu) of small changes (along q, of v) (linear.md, eqs. 3, 4).
+
+    Args:
+        segments: Segments of the configuration.
+        slopes: The derivatives of (v'; lam) by q, v and u.
+        v: Speeds (..., nv).
+    """
+    by_q, by_v, by_u = slopes
+    nv, nu = by_v.shape[-1], by_u.shape[-1]
+    A, B = np.zeros((*by_q.shape[:-2], 2 * nv, 2 * nv)), np.zeros((*by_q.shape[:-2], 2 * nv, nu))
+    A[..., nv:, :nv], A[..., nv:, nv:], B[..., nv:, :] = by_q[..., :nv, :], by_v[..., :nv, :], by_u[..., :nv, :]
+    A[..., :nv, nv:] = np.eye(nv)
+    if any(segment.kind != "linear" for segment in segments):
+        A[..., :nv, :nv] = _turning(segments, np.broadcast_to(v, (*by_q.shape[:-2], nv)))
+    return A, B
+
+
 def linearize(
     segments: Sequence[Segment],
     slopes: Sequence[Array],
@@ -58,15 +76,11 @@ def linearize(
         frame_derivatives: The derivatives of a frame's motion by its name, at the state and its accelerations.
     """
     check_argument("linearize: outputs", outputs, Sequence[Output])
+    A, B = state_matrices(segments, slopes, v)
     nv, nu = slopes[1].shape[-1], slopes[2].shape[-1]
     batch = slopes[0].shape[:-2]
     both = np.concatenate(slopes, axis=-1)
-    x_rows = np.zeros((*batch, 2 * nv, 2 * nv + nu))
-    x_rows[..., :] = np.eye(2 * nv, 2 * nv + nu)
-    rate = x_rows.copy()
-    rate[..., :nv, :] = x_rows[..., nv:, :]
-    rate[..., :nv, :nv] = _turning(segments, np.broadcast_to(v, (*batch, nv)))
-    rate[..., nv:, :] = both[..., :nv, :]
+    x_rows = np.broadcast_to(np.eye(2 * nv, 2 * nv + nu), (*batch, 2 * nv, 2 * nv + nu))
     known = {"q": x_rows[..., :nv, :], "v": x_rows[..., nv:, :], "a": both[..., :nv, :], "lam": both[..., nv:, :]}
     rows = [np.zeros((*batch, 0, 2 * nv + nu))]
     for output in outputs:
@@ -77,7 +91,7 @@ def linearize(
         else:
             raise _unknown(output)
     matrix = np.concatenate([np.broadcast_to(row, (*batch, *row.shape[-2:])) for row in rows], axis=-2)
-    return StateMatrices(rate[..., : 2 * nv], rate[..., 2 * nv :], matrix[..., : 2 * nv], matrix[..., 2 * nv :])
+    return StateMatrices(A, B, matrix[..., : 2 * nv], matrix[..., 2 * nv :])
 
 
 def _unknown(output: Output) -> UnknownNameError:

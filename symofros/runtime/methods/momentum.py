@@ -1,4 +1,4 @@
-"""Momentum of a model about its mass centre, the matrix of its Coriolis terms, and its mass matrix by entries."""
+"""Momentum of a model about its mass centre, the parts of its bias, and its mass matrix by entries."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from symofros.runtime.functions import ArrayLike, Functions
 
 
 class MomentumFunctions(Functions):
-    """Methods of a model that tell of its momentum; arguments as in `Model`.
+    """Methods of a model that tell of its momentum and bias; arguments as in `Model`.
 
     All that joints carry counts, beams and rotors included; what is fixed to the world does not.
     """
@@ -50,6 +50,13 @@ class MomentumFunctions(Functions):
         at rest (docs/theory/rigid.md, section 13).
         """
         return self._one("coriolis_matrix", {"q": q, "v": v, "u": u}, par)
+
+    def gravity_force(self, q: ArrayLike, *, u: ArrayLike | None = None, par: ArrayLike | None = None) -> Array:
+        """Bias at rest g(q) = h(q, 0) (..., nv): the efforts that hold the weight; springs and inputs do not count.
+
+        Not named `gravity`, which is the acceleration that a `System` states.
+        """
+        return self._one("gravity_force", {"q": q, "u": u}, par)
 
     def mass_matrix_values(self, q: ArrayLike, *, u: ArrayLike | None = None, par: ArrayLike | None = None) -> Array:
         """Entries of the lower triangle of M(q) that may differ from zero (..., nz), where `mass_matrix_pattern` says.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from symofros.base.arguments import checked
 from symofros.errors import ArgumentError, Problem
 from symofros.runtime.calls.kernel import Array
+from symofros.runtime.methods.identification import JointTerm
 from symofros.runtime.model import Model
 
 # Of the largest pivot: what is left of a column that others determine.
@@ -25,21 +27,52 @@ class BaseParameters:
 
     Attributes:
         independent: Columns of Y that are linearly independent (b).
-        combine: The base parameters from all parameters (b, 10 links).
+        combine: The base parameters from all parameters (b, columns).
+        columns: Names of all parameters, in the order of the columns of Y: `Model.regressor_columns`.
     """
 
     independent: tuple[int, ...]
     combine: Array
+    columns: tuple[str, ...]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Each base parameter as a sum of parameters (b): "mx(upper) + 0.4 m(lower)", the independent one first.
+
+        Coefficients carry units: 0.4 m before a mass is a first moment.
+        """
+        return tuple(self._sum(row, first) for row, first in zip(self.combine, self.independent, strict=True))
+
+    def _sum(self, row: Array, first: int) -> str:
+        others = (int(k) for k in np.flatnonzero(row) if k != first)
+        text = ""
+        for k in (first, *others):
+            size = f"{abs(row[k]):.6g}"
+            term = self.columns[k] if size == "1" else f"{size} {self.columns[k]}"
+            sign = "-" if row[k] < 0.0 else "+"
+            text += f" {sign} {term}" if text else term if sign == "+" else f"-{term}"
+        return text
+
+    def __str__(self) -> str:
+        """One line a base parameter."""
+        return "\n".join(self.names)
 
 
 @checked
-def base_parameters(model: Model, samples: int | None = None, seed: int = 0) -> BaseParameters:
+def base_parameters(
+    model: Model, samples: int | None = None, seed: int = 0, joint_terms: Sequence[JointTerm] = ()
+) -> BaseParameters:
     """Find the base parameters of a rigid tree by a pivoted factorisation of its regressor at random states.
+
+    `print(sf.base_parameters(model))` names them: the combinations of masses, first and second moments that motions and
+    efforts of the joints reveal, which are all that an experiment can identify.
 
     Args:
         model: Model that has the function `regressor`.
         samples: Random states; by default three equations for each parameter.
         seed: Seed of the random states.
+        joint_terms: Terms of the joints that are parameters as well: "viscous", "coulomb", "armature" of
+            `Model.regressor`.
     """
     model = model.with_precision("double")
     for name, value, least in (("samples", samples, 1), ("seed", seed, 0)):
@@ -47,18 +80,18 @@ def base_parameters(model: Model, samples: int | None = None, seed: int = 0) -> 
             what, rule = f"base_parameters: {name} is out of range", f"{least} <= {name} <= {_MOST}"
             raise ArgumentError(Problem(what, f"{value:g}" if value < _MOST else "more", rule, "leave it out"))
     rng = np.random.default_rng(seed)
-    columns = 10 * (model.regressor(model.neutral(), np.zeros(model.nv), np.zeros(model.nv)).shape[-1] // 10)
-    count = samples or max(20, 3 * columns // model.nv)
+    columns = model.regressor_columns(joint_terms)
+    count = samples or max(20, 3 * len(columns) // model.nv)
     states = [model.random_state(rng) for _ in range(count)]
     q, v = (np.array(x) for x in zip(*states, strict=True))
-    Y = model.regressor(q, v, rng.normal(size=v.shape)).reshape(-1, columns)
+    Y = model.regressor(q, v, rng.normal(size=v.shape), joint_terms=joint_terms).reshape(-1, len(columns))
     scale = np.abs(Y).max(axis=0)
     seen = np.flatnonzero(scale > _ROUNDING * scale.max(initial=0.0))
     order = _independent(Y[:, seen] / scale[seen])
     independent = sorted(int(seen[i]) for i in order)
     combine, *_ = np.linalg.lstsq(Y[:, independent], Y, rcond=None)
     combine[np.abs(combine) < _RANK] = 0.0
-    return BaseParameters(tuple(independent), np.asarray(combine, dtype=np.float64))
+    return BaseParameters(tuple(independent), np.asarray(combine, dtype=np.float64), columns)
 
 
 def _independent(Y: Array) -> list[int]:

@@ -15,6 +15,7 @@ from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.beam_theory import bendings_in_motion, refuse_beyond
 from symofros.simulation.analysis.input_rotations import given_inputs
 from symofros.simulation.analysis.rest_linearisation import matrix_at_rest
+from symofros.simulation.analysis.rigid_motions import rigid_motions
 from symofros.simulation.analysis.state_space import state_space
 
 Complex = npt.NDArray[np.complex128]
@@ -22,10 +23,13 @@ Complex = npt.NDArray[np.complex128]
 
 @dataclass(frozen=True)
 class Modes:
-    """Modes in the order of their frequencies; pairs of conjugate eigenvalues count once.
+    """Modes in the order of their frequencies; conjugate eigenvalues count once, as the two of a rigid motion do.
+
+    A motion that is damped more than critically has two real eigenvalues, and two entries here; without such there are
+    at most nv.
 
     Attributes:
-        eigenvalues: s of each mode, with Im(s) >= 0 [1/s] (k).
+        eigenvalues: s of each mode, with Im(s) >= 0 [1/s] (k); exactly 0 of rigid motions, which come first.
         frequencies: |s| [rad/s] (k).
         damping: -Re(s)/|s|: positive decays, negative grows; a rigid motion (s = 0) counts 0 (k).
         shapes: Coordinates of each mode, scaled to a largest entry of 1 (nv, k).
@@ -77,16 +81,26 @@ def modes(
     slopes = None if model.nc else A[model.nv :, : model.nv]
     bendings = bendings_in_motion(model, *state, par, t, slopes)
     refuse_beyond(model, bendings, beam_limit, "the state of the modes")
-    s, X = np.linalg.eig(A)
-    kept = s.imag >= 0.0
-    s, X = s[kept], (basis @ X[:, kept])[: model.nv]
-    order = np.argsort(np.abs(s), kind="stable")
-    s, X = s[order], X[:, order]
+    s, vectors = np.linalg.eig(A)
+    states = basis @ vectors
+    zeros, rigid = rigid_motions(A, basis, s, states, _inertia(model, state[0], state[2], par))
+    s = np.where(zeros, 0.0, s)
+    others = np.flatnonzero(~zeros & (s.imag >= 0.0))
+    order = [*rigid, *others[np.argsort(np.abs(s[others]), kind="stable")]]
+    s, X = s[order], states[: model.nv, order]
     size = np.abs(s)
     damping = np.where(size > 0.0, -s.real / np.where(size > 0.0, size, 1.0), 0.0)
     largest = np.take_along_axis(X, np.abs(X).argmax(axis=0)[None], axis=0)
     shapes = X / np.where(largest == 0.0, 1.0, largest)
     return Modes(s, size, damping, shapes, bendings, bending_notes(bendings))
+
+
+def _inertia(model: Model, q: Array, u: Array, par: ArrayLike | None) -> Array:
+    """Diagonal of the mass matrix; ones where it was not generated, or is not positive."""
+    if not model.has("mass_matrix"):
+        return np.ones(model.nv)
+    diagonal = np.asarray(np.diagonal(model.mass_matrix(q, u=u, par=par)), dtype=np.float64)
+    return np.where(diagonal > 0.0, diagonal, 1.0)
 
 
 def _linearised(model: Model, q: Array, v: Array, u: Array, par: ArrayLike | None, t: float) -> tuple[Array, Array]:

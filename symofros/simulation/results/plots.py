@@ -21,13 +21,10 @@ def figure_class() -> Any:
     try:
         return import_module("symofros.simulation.results.notebook_figure").NotebookFigure
     except ImportError:
-        missing = Problem(
-            "plot: Matplotlib is not installed",
-            "no module matplotlib",
-            "pictures are an extra",
-            "pip install 'symofros[plots]'",
+        missing = Problem.of_extra(
+            "plot: Matplotlib is not installed", "no module matplotlib", "pictures are an extra", "plots"
         )
-        raise SymofrosError(str(missing)) from None
+        raise SymofrosError(missing) from None
 
 
 def draw(t: Array, panels: Mapping[str, Mapping[str, Array]], title: str) -> Any:

@@ -41,11 +41,12 @@ def _solver(module: str, name: str) -> Callable[..., Any]:
         solver: Callable[..., Any] = getattr(import_module(f"sksundae.{module}"), name)
     except (ImportError, OSError, AttributeError) as error:
         raise SymofrosError(
-            Problem(
+            Problem.of_extra(
                 f"simulation: {name} is not installed",
                 str(error),
                 "SUNDIALS comes with the package scikit-sundae",
-                "pip install 'symofros[sundials]', or use rodas4 or dop853",
+                "sundials",
+                "use rodas4 or dop853",
             )
         ) from None
     return solver

@@ -9,6 +9,7 @@ import symofros as sf
 from symofros.blocks import Join, Sine
 from symofros.diagrams.settings import Plot, RunSettings
 from symofros.errors import DescriptionError
+from tests.late import require
 
 
 def circle(plot: Plot) -> sf.Diagram:
@@ -20,7 +21,7 @@ def circle(plot: Plot) -> sf.Diagram:
 
 
 def test_a_plot_over_a_plane_draws_the_second_entry_over_the_first_at_one_scale() -> None:
-    pytest.importorskip("matplotlib")
+    require("matplotlib", "plots")
     run = sf.Simulation(circle(Plot("path", ("both",), xy=True))).run(dt=0.01, record=0.05)
     (axis,) = run.plot().axes
     (line,) = axis.get_lines()

@@ -74,6 +74,31 @@ def test_the_pace_is_kept(four_bar: Path) -> None:
     assert re.search(r"20 periods of 0\.01 s; \d+ late, at worst by [\d.]+ us", text)
 
 
+def test_chosen_functions_are_the_only_ones_beside_those_of_stepping(tmp_path: Path) -> None:
+    """A fraction of the text, which builds, checks itself and moves as the whole package does."""
+    asked = ("gravity_force", "inverse_dynamics", "frame_pose")
+    system = system_of("four_bar")
+    whole = sf.export(system, "c", tmp_path / "whole").folder
+    done = sf.export(system, "c", tmp_path / "c", functions=asked)
+    text = (done.folder / "four_bar.c").read_text()
+    written = set(re.findall(r'^    \{"(\w+)", (?:NULL|"\w+"), \d', text, re.MULTILINE))
+    assert written == {*asked, "forward_dynamics", "project"}
+    assert len(text) < 0.7 * len((whole / "four_bar.c").read_text())
+    assert "four_bar_gravity_force" in (done.folder / "README.md").read_text()
+    build(done.folder, "example")
+    assert last_state(run("./example", "0.2", "0.001", "--fast", cwd=done.folder))["selftest"][0] < 1e-9
+    with pytest.raises(sf.UnknownNameError, match=r"no function 'gravity'.*\n.*\n.*\n.*gravity_force"):
+        sf.export(system, "c", tmp_path / "other", functions=["gravity"])
+
+
+def test_arguments_that_say_nothing_are_refused(four_bar: Path) -> None:
+    build(four_bar, "example")
+    for arguments in (["x"], ["1", "0.1x"], ["1", "0.1", "2"], ["--quick"], ["nan"], ["1", "0"], ["-1"]):
+        done = subprocess.run(["./example", *arguments], cwd=four_bar, capture_output=True, text=True)
+        assert done.returncode == 2, arguments
+        assert done.stderr == "usage: four_bar_example [SECONDS [PERIOD]] [--fast]\n"
+
+
 def test_a_wrong_selftest_fails(four_bar: Path) -> None:
     """One sign in the equations, and the package says so."""
     text = (four_bar / "four_bar.c").read_text()

@@ -11,6 +11,7 @@ import pytest
 
 import symofros as sf
 from tests.exports.cases import STRICT, run
+from tests.late import needs_extra
 from tests.models import GUESSES, model, system
 
 NAMES = ("double_pendulum", "four_bar")
@@ -96,7 +97,7 @@ def test_cpp_gets_maps_of_eigen(package: tuple[str, Path]) -> None:
     spec = importlib.util.find_spec("cmeel")
     eigen = Path(spec.origin or "").parents[1] / "cmeel.prefix/include/eigen3" if spec else Path("/none")
     if not (eigen / "Eigen").is_dir():
-        pytest.skip("no Eigen: the extra validation brings it with Pinocchio")
+        pytest.skip(needs_extra("timing", "cmeel-eigen"))
     q = configuration(name)
     program(CPP, name, folder, q, "main.cpp")
     run("gcc", "-std=c99", "-O0", "-c", folder / f"{name}.c", "-o", "model.o", cwd=folder.parent)

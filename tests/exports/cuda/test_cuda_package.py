@@ -11,6 +11,7 @@ import symofros as sf
 from symofros.errors import ExportError, UnknownNameError
 from tests.cuda_on_host import SHIM
 from tests.exports.cases import STRICT, run
+from tests.late import require
 from tests.models import system
 
 HERE = Path(__file__).parent
@@ -49,7 +50,7 @@ def test_the_header_is_c_and_cpp(package: Path, language: str) -> None:
 
 
 def test_files_compile_without_any_header(package: Path) -> None:
-    pytest.importorskip("nvidia.cuda_nvrtc", reason="the extra cuda is not installed: pip install 'symofros[cuda]'")
+    require("nvidia.cuda_nvrtc", "cuda")
     from symofros.runtime.cuda.nvrtc import usage_of
 
     usage = usage_of((package / "double_pendulum_single.cu").read_text(), "sm_90")

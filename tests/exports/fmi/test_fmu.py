@@ -23,7 +23,7 @@ from fmpy.validation import validate_fmu
 import symofros as sf
 from reference_models import MODELS as REFERENCE
 from symofros.exports.c import compiling
-from tests.exports.cases import MODELS, PLANAR, STARTS, STEP, first_state, relative, run, system_of, trajectory
+from tests.exports.cases import MODELS, PLANAR, STARTS, STEP, STRICT, first_state, relative, run, system_of, trajectory
 from tests.models import sampled
 from tests.simulation.beam_models import at_rest, cantilever_system
 
@@ -181,15 +181,28 @@ def test_sources_compile_elsewhere(made: Any, version: int, tmp_path: Path) -> N
     headers = Path(fmpy.__file__).parent / "c-code"
     run(
         "gcc",
-        "-std=c99",
-        "-Wall",
-        "-Wextra",
-        "-Werror",
+        *STRICT,
         "-fsyntax-only",
-        f"-I{headers}",
+        "-isystem",  # The headers of FMI are not ours.
+        headers,
         f"four_bar_fmi{version}.c",
         cwd=tmp_path / "sources",
     )
+
+
+def test_sources_of_two_share_no_name(made: Any, version: int, tmp_path: Path) -> None:
+    """FMI 3 asks sources to prefix their functions; FMPy's header of FMI 2 knows no prefix."""
+    headers = Path(fmpy.__file__).parent / "c-code"
+    defined = []
+    for name in ("planar", "four_bar"):
+        fmpy.extract(str(made(name, version)), tmp_path / name)
+        source = tmp_path / name / "sources" / f"{name}_fmi{version}.c"
+        run("gcc", "-std=c99", "-O0", f"-I{headers}", "-c", source, "-o", f"{name}.o", cwd=tmp_path)
+        symbols = run("nm", "--defined-only", "--extern-only", f"{name}.o", cwd=tmp_path).split()[2::3]
+        defined.append({symbol for symbol in symbols if not symbol.startswith("fmi2")})
+    assert all(symbol.startswith("planar_") for symbol in defined[0])
+    assert not defined[0] & defined[1]
+    assert ("planar_fmi3GetVersion" in defined[0]) == (version == 3)
 
 
 def test_only_the_interface_is_visible(made: Any, version: int, tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from pathlib import Path
 
 import mujoco
@@ -11,6 +12,8 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from symofros.exports.interchange.urdf import _rpy
+from symofros.mechanics.topology.numbers import Numbers
 from tests.exports.cases import system_of
 
 SAME = 1e-12
@@ -223,3 +226,12 @@ def test_what_mimics_has_no_place_for_stays_dropped(tmp_path: Path) -> None:
     done = sf.export(system, "urdf", tmp_path)
     assert "constraints dropped, loops are open: c1, c2, c3, c4" in done.notes
     assert done.files[0].read_text().count("<mimic") == 1
+
+
+@pytest.mark.parametrize("noise", [0.0, 1e-16, 1e-12, 1e-9, 1e-8, 1e-7])
+def test_angles_near_right_angles_are_those_of_the_rotation(noise: float) -> None:
+    """Near a pitch of a right angle, roll and yaw are defined by noise, but for their sum."""
+    rng, numbers = np.random.default_rng(1), Numbers(sf.System("s"))
+    for quarters in product(range(4), repeat=3):
+        R = numbers.rotation(sf.Rotation.rpy(*(np.array(quarters) * np.pi / 2 + noise * rng.standard_normal(3))))
+        np.testing.assert_allclose(numbers.rotation(sf.Rotation.rpy(*_rpy(R))), R, rtol=0, atol=1e-14)

@@ -10,6 +10,7 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from tests.late import require
 from tests.models import SAMPLE, model
 from validation.adapters.pinocchio import tree as trees
 from validation.contract.interface import Subject
@@ -71,7 +72,7 @@ def test_what_floats_has_the_momentum_that_its_weight_gives(
 
 @pytest.mark.parametrize("name", IN_PINOCCHIO)
 def test_pinocchio_has_the_same_momentum_and_rate(name: str, rng: np.random.Generator) -> None:
-    pin = pytest.importorskip("pinocchio")
+    pin = require("pinocchio", "validation")
     engine = trees.build(Subject(name, MODELS[name]))
     assert isinstance(engine, trees.PinocchioEngine)
     m = model(name, "interpreter")

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from typing import Any, Literal
+
+import numpy as np
 import pytest
 
 import symofros as sf
@@ -115,6 +118,43 @@ def test_geometry_may_not_move() -> None:
     assert "'q1' may not be used here" in problem.what and "parameters only" in problem.rule
 
 
+def winch(**cable: Any) -> sf.System:
+    """A free body below a point 2 m up, and what is between them."""
+    bob = sf.RigidBody(
+        "bob", sf.Joint("m", "free"), sf.Inertia(3.0, moments=(0.1, 0.1, 0.1)), loads=cable.pop("loads", ())
+    )
+    base = sf.RigidBody("base", None, None, [sf.Frame("top", (0, 0, 2))])
+    return sf.System("winch", [base, bob], [sf.Parameter("k", 1e4)], [sf.Input("length")], **cable)
+
+
+def test_a_cable_that_a_winch_draws_in_is_refused_with_what_states_it() -> None:
+    cable = sf.Connection("cable", ("base", "top"), ("bob", None), stiffness="k", length="length")
+    problem = only(winch(connections=[cable]))
+    assert "cable" in problem.what and "'length' may not be used here" in problem.what
+    assert "max(0, k*(d - length))" in problem.remedy and "virtual power" in problem.remedy
+
+
+@pytest.mark.parametrize("length", [1.0, 2.0])
+def test_that_remedy_pulls_and_does_not_push(length: float) -> None:
+    """As a load on a free body, and as virtual power on a slide 1 m beside the winch."""
+    d = "sqrt(m.px^2 + m.py^2 + (m.pz - 2)^2)"
+    pull = f"max(0, k*({d} - length))/{d}"
+    load = sf.Load((f"-{pull}*m.px", f"-{pull}*m.py", f"-{pull}*(m.pz - 2)"), axes="world")
+    m = sf.compile(winch(loads=[load]), sf.Options(backend="interpreter"))
+    line = np.array([0.3, 0.0, -1.5])
+    distance = float(np.linalg.norm(line))
+    Q = m.generalized_force([0.3, 0.0, 0.5, 0.0, 0.0, 0.0, 1.0], np.zeros(6), [length])
+    right = -1e4 * max(0.0, distance - length) / distance * line
+    np.testing.assert_allclose(Q, [*right, 0.0, 0.0, 0.0], rtol=1e-12, atol=1e-9)
+
+    power = sf.VirtualPower("cable", {"dx": "-max(0, k*(sqrt(x^2 + 1) - length))*x/sqrt(x^2 + 1)"})
+    slide = sf.RigidBody("slide", sf.Joint("x", "prismatic", axis=(1, 0, 0)), sf.Inertia(3.0))
+    system = sf.System("s", [slide], [sf.Parameter("k", 1e4)], [sf.Input("length")], virtual_power=[power])
+    Q = sf.compile(system, sf.Options(backend="interpreter")).generalized_force([1.2], [0.0], [length])
+    distance = float(np.hypot(1.2, 1.0))
+    np.testing.assert_allclose(Q, [-1e4 * max(0.0, distance - length) * 1.2 / distance], rtol=1e-12, atol=1e-9)
+
+
 def test_efforts_may_use_the_state() -> None:
     spring = body("arm2", sf.Joint("q2", "revolute", "arm1", effort=("-L1*q2 - 0.1*dq2 + u1*sin(t)",)))
     assert find_problems(arm(inputs=[sf.Input("u1")]).with_bodies(spring)) == []
@@ -162,10 +202,14 @@ def test_a_rotation_by_no_finite_angle_is_refused(rotation: tuple[str, int, int]
 
 @pytest.mark.parametrize("size", [0.0, 1e308])
 def test_directions_without_length_are_refused(size: float) -> None:
-    """Zero, or so long that the length overflows: the mechanism would be NaN."""
+    """Zero, or so long that the length overflows."""
     axis = (size, size, size)
     assert "has no direction" in only(arm().with_bodies(body("b", sf.Joint("q3", "revolute", axis=axis)))).what
-    turned = sf.Joint("q3", "revolute", rotation=sf.Rotation("quaternion", (*axis, size)))
+
+
+@pytest.mark.parametrize("rotation", [("quaternion", (0, 0, 0, 0)), ("axis_angle", (0, 0, 0, 1))])
+def test_rotations_without_direction_are_refused(rotation: tuple[Literal["quaternion", "axis_angle"], Any]) -> None:
+    turned = sf.Joint("q3", "revolute", rotation=sf.Rotation(*rotation))
     assert "has no direction" in only(arm().with_bodies(body("b", turned))).what
 
 

@@ -19,6 +19,7 @@ from symofros.runtime.build import toolchain
 from symofros.runtime.build.build import build_library
 from symofros.runtime.build.cache import install
 from symofros.runtime.build.toolchain import find_toolchain
+from tests.late import require
 
 SCRIPT = """
 import sys, numpy as np, symofros as sf
@@ -147,7 +148,7 @@ def test_without_any_compiler_the_interpreter_serves(
 def test_the_ziglang_package_serves_as_compiler(
     cache: Path, without_compilers: pytest.MonkeyPatch, rng: np.random.Generator
 ) -> None:
-    pytest.importorskip("ziglang", reason="needs the extra 'zig', which 'dev' brings")
+    require("ziglang", "zig")
     try:
         with pytest.warns(sf.CompilerMissingWarning, match="ziglang"):
             m = compiled(random_tree(33))

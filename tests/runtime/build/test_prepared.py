@@ -17,6 +17,7 @@ from symofros.base.sources import Source
 from symofros.commands import compilation
 from symofros.runtime.build import build, prepared
 from symofros.runtime.build.toolchain import find_toolchain
+from tests.late import require
 
 PART = """symofros: 1
 bodies:
@@ -285,7 +286,7 @@ def test_what_a_package_reads_is_read_each_time(compiling: Compiling, tmp_path: 
     """It does not tell which files it has opened."""
     path = tmp_path / "model.xml"
     path.write_text('<mujoco><worldbody><body><joint name="q"/><geom size="0.1"/></body></worldbody></mujoco>')
-    pytest.importorskip("mujoco")
+    require("mujoco", "mjcf")
     for _ in range(2):
         compiling(path)
     assert compiling.read == 2

@@ -16,9 +16,10 @@ from symofros.runtime.cuda import nvrtc
 from symofros.runtime.cuda.device_code import DeviceCode
 from symofros.runtime.cuda.nvrtc import compile_cuda, usage_of
 from tests.exports.cases import system_of
+from tests.late import require
 from tests.models import system
 
-pytest.importorskip("nvidia.cuda_nvrtc", reason="the extra cuda is not installed: pip install 'symofros[cuda]'")
+require("nvidia.cuda_nvrtc", "cuda")
 
 ARCHITECTURES = ("sm_80", "sm_90")
 # Most registers and bytes of spills (stores + loads) a kernel, with room for what versions of NVRTC differ by: that of

@@ -10,11 +10,12 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from tests.late import require
 from tests.models import sampled
 from validation.adapters.pinocchio import tree as pin_adapter
 from validation.contract.interface import Subject
 
-pin = pytest.importorskip("pinocchio")
+pin = require("pinocchio", "validation")
 MODEL_NAMES = ("pendulum", "double_pendulum", "cart_pole", "rx90", "space_arm", "flexible_pendulum", "planar_robot")
 CLOSED = {"four_bar": [1.2, -1.2, 1.2], "parallelogram": [1.0, -1.0, 1.0, 1.0], "bricard": [0.0] * 5}
 # With friction and inputs, on a floating base, elastic, closed, with conditions that repeat each other.

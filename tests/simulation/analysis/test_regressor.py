@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from tests.late import require
 from tests.models import sampled
 from validation.adapters.pinocchio import tree as pin_adapter
 from validation.contract.interface import Subject
 
-pin = pytest.importorskip("pinocchio")
+pin = require("pinocchio", "validation")
 FUNCTIONS = sf.Options(functions=("regressor", "bias", "mass_matrix"))
 
 
@@ -43,3 +46,66 @@ def test_base_parameters(name: str, count: int) -> None:
     Y = m.regressor(q, v, a)
     assert Y[:, base.independent] @ (base.combine @ pi) == pytest.approx(Y @ pi, rel=1e-9, abs=1e-9)
     assert len(base.independent) == count
+
+
+def test_base_parameters_bear_the_names_of_masses_and_moments() -> None:
+    """By hand: the lower rod's mass counts with the upper rod as a point at their joint, 0.5 m away."""
+    base = sf.base_parameters(sf.compile(MODELS["double_pendulum"], FUNCTIONS))
+    assert base.names == (
+        "mx(upper) + 0.5 m(lower)",
+        "mz(upper)",
+        "Iyy(upper) + 0.25 m(lower)",
+        "mx(lower)",
+        "mz(lower)",
+        "Iyy(lower)",
+    )
+    assert str(base).splitlines() == list(base.names)
+
+
+def test_terms_of_joints_complete_inverse_dynamics(rng: np.random.Generator) -> None:
+    """Y pi with viscous and Coulomb friction and armatures is what the motion takes, M a + h - Q."""
+    inertia = sf.Inertia(1.3, (0.1, 0.2, -0.1), (0.3, 0.4, 0.5))
+    elements = [[sf.Damper(0.7), sf.Friction(0.1)], [sf.Friction(0.4, minimum_velocity=0.02, viscous=0.3)]]
+    bodies = [
+        sf.RigidBody(name, sf.Joint(f"q{k}", "revolute", parent, axis=axis, elements=each, armature=0.2 * k), inertia)
+        for k, (name, parent, axis, each) in enumerate(
+            zip(("a", "b"), ("world", "a"), ((0, 1, 0), (1, 0, 0)), elements, strict=True)
+        )
+    ]
+    m = sf.compile(sf.System("braked", bodies))
+    q, v, a = rng.normal(size=(3, 50, 2))
+    v[:10] *= 1e-3  # Where the sign is smoothed.
+    second = np.diag([0.3, 0.4, 0.5]) + 1.3 * (0.06 * np.eye(3) - np.outer(*2 * [[0.1, 0.2, -0.1]]))
+    Ixx, Ixy, Ixz, Iyy, Iyz, Izz = second[np.triu_indices(3)]
+    link = [1.3, 0.13, 0.26, -0.13, Ixx, Ixy, Iyy, Ixz, Iyz, Izz]
+    pi = [*link, *link, 0.7, 0.3, 0.1, 0.4, 0.0, 0.2]
+    terms = ("viscous", "coulomb", "armature")
+    Y = m.regressor(q, v, a, joint_terms=terms, minimum_velocity=[1e-3, 0.02])
+    np.testing.assert_allclose(Y @ pi, m.inverse_dynamics(q, v, a), rtol=1e-12, atol=1e-12)
+    columns = m.regressor_columns(terms)
+    assert len(columns) == Y.shape[-1]
+    assert columns[9:12] == ("Izz(a)", "m(b)", "mx(b)")
+    assert columns[20:22] == ("viscous(q0)", "viscous(q1)")
+    assert Y[0, :, 20:22].tolist() == np.diag(v[0]).tolist()
+
+
+def test_an_armature_is_told_from_the_link_only_where_another_axis_carries_it() -> None:
+    m = sf.compile(MODELS["double_pendulum"], FUNCTIONS)
+    names = sf.base_parameters(m, joint_terms=("armature", "viscous")).names
+    assert "Iyy(upper) + 0.25 m(lower) + armature(q1)" in names
+    assert {"armature(q2)", "viscous(q1)", "viscous(q2)"} < set(names)
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"joint_terms": "viscous"}, "one alone"),
+        ({"joint_terms": ("stiction",)}, "viscous, coulomb, armature"),
+        ({"joint_terms": ("coulomb",), "minimum_velocity": 0.0}, "above zero"),
+        ({"joint_terms": ("coulomb",), "minimum_velocity": [1.0, 1.0, 1.0]}, "each of 2 speeds"),
+    ],
+)
+def test_wrong_terms_are_refused_in_words(given: dict[str, Any], words: str) -> None:
+    m = sf.compile(MODELS["double_pendulum"], FUNCTIONS)
+    with pytest.raises(sf.SymofrosError, match=words):
+        m.regressor([0.1, 0.2], [0.0, 0.0], [0.0, 0.0], **given)

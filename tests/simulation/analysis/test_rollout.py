@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
 import symofros as sf
+from symofros.runtime import manifold
+from symofros.runtime.record import ModelRecord, Segment
+from symofros.simulation.analysis.chart_derivatives import chart_slopes
 from tests.models import model
 
 METHODS = ("euler", "semi_implicit_euler", "rk4")
@@ -64,11 +69,16 @@ def test_the_gradient_is_that_of_a_complex_step(method: str, rng: np.random.Gene
     np.testing.assert_allclose(got, expected, rtol=1e-12, atol=1e-12 * np.abs(expected).max())
 
 
-@pytest.mark.parametrize("case", ["double_pendulum", "friction_arm"])
+# Trees with balls and free joints: at the base, alone, and beyond other joints.
+FLOATING = ("heavy_top", "torque_free_body", "parametrised1")
+
+
+@pytest.mark.parametrize("case", ["double_pendulum", "friction_arm", *FLOATING])
 def test_adjoint_and_forward_sensitivities_are_transposes(method: str, case: str, rng: np.random.Generator) -> None:
     m = model(case, "c")
     u = rng.normal(size=(N, m.nu))
-    run = sf.rollout(m, 0.3 * rng.normal(size=m.nq), 0.1 * rng.normal(size=m.nv), u, 0.005, method=method)
+    q0 = m.integrate(m.neutral(), 0.3 * rng.normal(size=m.nv))
+    run = sf.rollout(m, q0, 0.1 * rng.normal(size=m.nv), u, 0.005, method=method)
     sizes = {"dq0": (m.nv, 2), "dv0": (m.nv, 2), "du": (N, m.nu, 2), "dpar": (m.npar, 2)}
     d = {name: rng.normal(size=shape) for name, shape in sizes.items()}
     q_bar, v_bar = rng.normal(size=(2, N + 1, m.nv))
@@ -80,14 +90,77 @@ def test_adjoint_and_forward_sensitivities_are_transposes(method: str, case: str
     np.testing.assert_allclose(backward, forward, rtol=1e-12, atol=1e-12 * terms)
 
 
-def test_the_steps_are_those_of_simulate(method: str, rng: np.random.Generator) -> None:
-    m = model("double_pendulum", "c")
+@pytest.mark.parametrize("case", FLOATING)
+def test_the_gradient_of_turning_bodies_is_that_of_differences(
+    method: str, case: str, rng: np.random.Generator
+) -> None:
+    """With weights of the quaternions' coordinates, along a random change of start, speeds, inputs and parameters."""
+    m, n = model(case, "c"), 15
+    q0, v0 = m.random_state(rng)
+    u, par = rng.normal(size=(n, m.nu)), m.parameter_values
+    q_bar, v_bar = rng.normal(size=(n + 1, m.nq)), rng.normal(size=(n + 1, m.nv))
+    d = [rng.normal(size=size) for size in (m.nv, m.nv, (n, m.nu), m.npar)]
+    d[3] *= 0.01
+
+    def weighed(s: float) -> float:
+        moved = m.integrate(q0, s * d[0]), v0 + s * d[1], u + s * d[2]
+        run = sf.rollout(m, *moved, H, method=method, par=par + s * d[3])
+        return float((q_bar * run.q).sum() + (v_bar * run.v).sum())
+
+    g = sf.rollout(m, q0, v0, u, H, method=method).gradient(q_bar, v_bar)
+    slope = sum(float((part * change).sum()) for part, change in zip(g, d, strict=True))
+    coarse, fine = ((weighed(h) - weighed(-h)) / (2 * h) for h in (4e-4, 2e-4))
+    terms = sum(float(np.abs(part * change).sum()) for part, change in zip(g, d, strict=True))
+    # Errors of second order cancel; those of fourth and the rounding of differences remain.
+    assert (4 * fine - coarse) / 3 == pytest.approx(slope, abs=1e-8 * terms)
+
+
+@pytest.mark.parametrize("scale", [1e-3, 0.05, 1.0])
+def test_slopes_of_charts_are_those_of_differences(scale: float, rng: np.random.Generator) -> None:
+    """On both sides of the angle where a series takes over."""
+    segments = (Segment("linear", 0, 0, 1), Segment("pose", 1, 1, 7), Segment("quaternion", 8, 7, 4))
+    nv, h = 10, 1e-5
+    q0, _ = manifold.random_state(record_of(segments), rng)
+    theta, v = scale * rng.normal(size=nv), rng.normal(size=nv)
+    q = manifold.retract(segments, q0, theta)
+
+    def moved(start: np.ndarray, chart: np.ndarray) -> np.ndarray:
+        return manifold.difference(
+            segments, q, manifold.retract(segments, manifold.integrate(segments, q0, start), theta + chart)
+        )
+
+    zero = np.zeros(nv)
+    functions = (
+        lambda x: moved(x, zero),
+        lambda x: moved(zero, x),
+        lambda x: manifold.chart_rate(segments, theta + x, v),
+        lambda x: manifold.chart_rate(segments, theta, v + x),
+    )
+    for found, f in zip(chart_slopes(segments, theta, v), functions, strict=True):
+        right = np.column_stack([(f(h * e) - f(-h * e)) / (2 * h) for e in np.eye(nv)])
+        np.testing.assert_allclose(found.times((), np.eye(nv)), right, atol=1e-9)
+        x = rng.normal(size=nv)
+        np.testing.assert_allclose(found.transposed_times((), x), found.times((), np.eye(nv)).T @ x, atol=1e-13)
+
+
+def record_of(segments: tuple[Segment, ...]) -> ModelRecord:
+    """The record of a model with a given manifold, and nothing else."""
+    q, v = (("",) * sum(each) for each in ((s.size for s in segments), (s.speeds for s in segments)))
+    free = (math.inf,) * len(q)
+    lower = tuple(-x for x in free)
+    return ModelRecord("m", "", q, v, (), (), (), {}, (), (), (0.0,) * len(q), lower, free, segments, (False,) * len(q))
+
+
+@pytest.mark.parametrize("case", ["double_pendulum", *FLOATING])
+def test_the_steps_are_those_of_simulate(method: str, case: str, rng: np.random.Generator) -> None:
+    m = model(case, "c")
     u = rng.normal(size=(N, m.nu))
     if method == "rk4":  # Its last stage stands at the end of the step, where the next sample of a signal holds.
         u[:] = u[0]
-    run = sf.rollout(m, [0.3, -0.2], [0.1, 0.4], u, 0.005, method=method)
+    q0, v0 = m.integrate(m.neutral(), 0.3 * rng.normal(size=m.nv)), rng.normal(size=m.nv)
+    run = sf.rollout(m, q0, v0, u, 0.005, method=method)
     signal = sf.Signal(run.t[:-1], u, "hold") if m.nu else None
-    other = sf.simulate(m, [0.3, -0.2], [0.1, 0.4], float(run.t[-1]), u=signal, method=method, dt=0.005)
+    other = sf.simulate(m, q0, v0, float(run.t[-1]), u=signal, method=method, dt=0.005)
     np.testing.assert_allclose(run.q[-1], other.q[-1], rtol=1e-11, atol=1e-12)
     np.testing.assert_allclose(run.v[-1], other.v[-1], rtol=1e-11, atol=1e-12)
 
@@ -98,7 +171,7 @@ def test_the_steps_are_those_of_simulate(method: str, rng: np.random.Generator) 
         ("double_pendulum", {"method": "dopri5"}, "method 'dopri5'"),
         ("double_pendulum", {"dt": 0.0}, "dt = 0.0"),
         ("slider_crank", {}, "constraints"),
-        ("heavy_top", {}, "a ball or free joint"),
+        ("heavy_top", {"q0": [0.0, 0.0, 0.0, 2.0]}, "length 2"),
         ("double_pendulum", {"u": [1.0]}, "u does not fit"),
         ("double_pendulum", {"v0": [1e200, 1e200]}, "leaves the finite numbers"),
     ],

@@ -11,6 +11,7 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from tests.late import require
 
 
 @pytest.fixture(scope="module")
@@ -95,7 +96,7 @@ def test_section_forces_of_a_swing_start_with_what_the_joint_transmits(tmp_path:
     low, high = forces.envelope
     assert np.all(low[:, 1] <= forces.at(0.0123)[:, 1]) and np.all(forces.at(0.0123)[:, 1] <= high[:, 1])
     np.testing.assert_allclose(forces.at(0.01), forces.values[10], atol=1e-9)
-    pytest.importorskip("matplotlib")
+    require("matplotlib", "plots")
     forces.plot(0.02).savefig(tmp_path / "forces.png")
     with pytest.raises(sf.UnknownNameError, match="did you mean 'Mz'"):
         forces["mz"]

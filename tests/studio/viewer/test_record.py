@@ -18,6 +18,7 @@ from symofros.studio.viewer.drawing.poses import Mechanism
 from symofros.studio.viewer.page.replay import replay_page
 from symofros.studio.viewer.render.camera import Camera
 from symofros.studio.viewer.render.scale_bar import scale_bar
+from tests.late import require
 
 SYSTEM = MODELS["planar_robot"]
 NQ = 10
@@ -48,7 +49,7 @@ def test_the_pictures_of_a_gif_last_whole_hundredths(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_a_film_is_as_long_as_the_motion(tmp_path: Path) -> None:
-    ffmpeg = pytest.importorskip("imageio_ffmpeg", reason="needs the extra 'video', which 'dev' brings")
+    ffmpeg = require("imageio_ffmpeg", "video")
     file = sf.record(SYSTEM, swing(1.0), tmp_path / "m.mp4", rate=20, size=(160, 120))
     frames, seconds = ffmpeg.count_frames_and_secs(str(file))
     assert frames == 21 and seconds == pytest.approx(21 / 20, abs=0.03)

@@ -7,7 +7,7 @@ from tests.models import sampled
 from tests.validation.subjects import UNIT, every_kind, pendulum, states_of, subject_of, tree
 from validation.adapters.mujoco import tree as mujoco
 from validation.adapters.pinocchio import tree as pinocchio
-from validation.check import Settings, check
+from validation.checking import Settings, check
 from validation.comparison.errors import compute, state_errors, typical_scales
 from validation.contract.interface import Subject, Unsupported
 from validation.contract.quantities import CONSTRAINED, LOOPS, QUANTITIES, TREE_QUANTITIES

@@ -16,7 +16,7 @@ from reference_models.closed.spatial import delta
 from tests.models import sampled
 from validation.adapters.exudyn import loops as exudyn_loops
 from validation.adapters.pinocchio import loops as pinocchio_loops
-from validation.check import ModelResult, Settings, check
+from validation.checking import ModelResult, Settings, check
 from validation.comparison.errors import Comparison
 from validation.comparison.loops import FUNCTIONS, assembled_states
 from validation.contract.interface import Engine, Subject, Unsupported

@@ -29,8 +29,9 @@ STATES = 12
 KINDS = ("revolute", "prismatic", "ball", "free", "fixed", "universal", "cylindrical", "planar", "screw", "euler")
 
 small = st.sampled_from([0.0, 0.25, -0.5, 1.0])
-angle = st.sampled_from([0.0, np.pi / 2, -np.pi / 2, np.pi, 0.3])
-axis = st.sampled_from([(1.0, 0, 0), (0, 1.0, 0), (0, 0, -1.0), (1.0, 2.0, -0.5)])
+# As files write them: right angles of few decimals, axes with the noise of a product in single precision.
+angle = st.sampled_from([0.0, np.pi / 2, -np.pi / 2, np.pi, 0.3, 3.1415926536, 1.5707, 1e-9])
+axis = st.sampled_from([(1.0, 0, 0), (0, 1.0, 0), (0, 0, -1.0), (1.0, 2.0, -0.5), (1.0, 6e-9, 0), (1e-7, 0, 2.0)])
 rotation = st.builds(sf.Rotation.rpy, angle, angle, angle)
 vector = st.tuples(small, small, small)
 

@@ -12,7 +12,7 @@ from reference_models.rigid.random_tree import random_tree
 from tests.models import sampled
 from tests.validation.subjects import subject_of
 from validation.adapters import rotors
-from validation.check import Settings, check
+from validation.checking import Settings, check
 
 FEW = Settings(states=20, engines=("pinocchio", "mujoco"))
 

@@ -20,7 +20,7 @@ def test_a_check_with_one_engine_imports_no_other(name: str) -> None:
     """Each takes seconds to load, and need not be installed."""
     code = f"""
 import sys
-from validation.check import Settings
+from validation.checking import Settings
 from validation.inputs.cases import named
 from validation.worker_pool import run_case
 result = run_case(named(["double_pendulum"], False)[0], Settings(5, engines=({name!r},)))

@@ -11,7 +11,7 @@ from validation.adapters import ROUTES, Missing
 from validation.adapters.mujoco import tree as mujoco
 from validation.adapters.mujoco import urdf as mujoco_urdf
 from validation.adapters.pinocchio import urdf as pinocchio_urdf
-from validation.check import Settings, check
+from validation.checking import Settings, check
 from validation.contract.interface import Subject, Unsupported, UrdfSource
 
 FEW = Settings(states=10)

@@ -8,12 +8,11 @@ import sys
 from pathlib import Path
 
 import pytest
-import typer
 from ruamel.yaml import YAML
 
 from tests.validation.ci.test_plugin import ROOT, cases
 from tests.validation.subjects import URDF
-from validation.__main__ import app
+from validation.__main__ import command
 
 
 def template(name: str) -> dict:
@@ -38,7 +37,7 @@ def project(tmp_path: Path) -> Path:
     (tmp_path / "robot.urdf").write_text(URDF)
     (tmp_path / "bin").mkdir()
     python = tmp_path / "bin/python"
-    plugin = "-p validation.ci.plugin" if not _installed() else ""
+    plugin = "-p symofros.pytest_plugin" if not _installed() else ""
     python.write_text(
         f"""#!/bin/sh
 case "$2" in
@@ -74,10 +73,10 @@ def test_the_steps_of_a_template_ask_for_what_there_is(server) -> None:
     _, (install, check, compare) = server()
     assert "symofros[validation]" in install
     asked = re.findall(r"--symofros-[a-z-]+", check)
-    plugin = (ROOT / "validation/ci/plugin.py").read_text()
+    plugin = (ROOT / "symofros/pytest_plugin.py").read_text()
     assert "--symofros-model" in asked and all(f'"{option}"' in plugin for option in asked)
     asked = re.findall(r"--[a-z-]+", compare)
-    known = {name for option in typer.main.get_group(app).commands["check"].params for name in option.opts}
+    known = {name for option in command("check").params for name in option.opts}
     assert "--baseline" in asked and set(asked) <= known
 
 

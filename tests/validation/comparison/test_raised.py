@@ -9,7 +9,7 @@ import pytest
 
 from reference_models import MODELS
 from validation.adapters import ROUTES, Missing
-from validation.check import Settings, check
+from validation.checking import Settings, check
 from validation.comparison.errors import raised
 from validation.contract.interface import Engine, Subject
 from validation.contract.raised import Raised, attempted

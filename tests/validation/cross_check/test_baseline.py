@@ -12,7 +12,7 @@ from typer.testing import CliRunner, Result
 
 from tests.validation.subjects import pendulum
 from validation.__main__ import app
-from validation.check import ModelResult, Settings, check
+from validation.checking import ModelResult, Settings, check
 from validation.comparison.errors import Comparison
 from validation.contract.interface import Subject
 from validation.cross_check import measure, speed

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from tests.validation.subjects import URDF, pendulum
 from validation.__main__ import app
-from validation.check import ModelResult, Settings, check, failed
+from validation.checking import ModelResult, Settings, check, failed
 from validation.comparison.errors import Comparison
 from validation.contract.interface import Subject
 from validation.cross_check.baseline import Regression

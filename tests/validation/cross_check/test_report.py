@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from tests.validation.subjects import pendulum
-from validation.check import ModelResult, Settings, check, failed
+from validation.checking import ModelResult, Settings, check, failed
 from validation.comparison.errors import Comparison
 from validation.contract.interface import Subject
 from validation.cross_check.record import Record, as_data

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.late import require
 from validation.engines.interface import Unsupported
 from validation.engines.matrix import SEED, Truths, asked, cells, judged
 from validation.engines.models.hostile import trees
@@ -17,7 +18,7 @@ from validation.engines.verdicts import Expected, expected, judge
 from validation.engines.workers import Job, answered
 
 PLUGIN = OWN["exudyn-joints"]
-pytest.importorskip("exudyn")
+require("exudyn", "validation")
 
 
 @pytest.mark.parametrize("kind", ["revolute oblique", "prismatic oblique", "ball", "universal", "free between links"])

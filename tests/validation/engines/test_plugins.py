@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
 
+from tests.late import needs_extra
 from validation.engines.interface import Joint, Link, Tree, Unsupported
 from validation.engines.matrix import cells
 from validation.engines.models.kinds import tree_of
@@ -28,7 +30,8 @@ EXTRAS = (
 
 def _installed(engine: str) -> None:
     if not OWN[engine].version():
-        pytest.skip(f"{engine} is not installed: {OWN[engine].extra}")
+        extra = re.search(r"symofros\[([\w-]+)\]", OWN[engine].extra)
+        pytest.skip(needs_extra(extra[1], engine) if extra else f"{engine} is not installed: {OWN[engine].extra}")
 
 
 @pytest.mark.parametrize("engine", EXTRAS)

@@ -13,6 +13,7 @@ import pytest
 from typer.testing import CliRunner
 
 import symofros as sf
+from tests.late import require
 from validation.__main__ import app
 from validation.studies import fuzz
 from validation.studies.fuzz import KINDS, TEXT_KINDS
@@ -53,7 +54,7 @@ def test_parameters_that_a_model_refuses_are_a_fault_of_the_diagram(tmp_path: Pa
 @pytest.mark.parametrize("kind", FILE_KINDS)
 def test_the_files_that_mutations_start_from_are_sound(kind: str, tmp_path: Path) -> None:
     if kind in ("stl", "obj", "ply", "off", "dae"):
-        pytest.importorskip("trimesh")
+        require("trimesh", "view")
     for data in sound_files(kind):
         feed_file(kind, tmp_path, data, 1)
 

@@ -61,7 +61,7 @@ def test_a_worker_ends_with_the_process_that_started_it() -> None:
 
 def test_a_model_that_is_timed_again_has_failed_no_longer(monkeypatch: pytest.MonkeyPatch) -> None:
     record = Record(failed=[("panda", run.LEFT, "symofros", "it died"), ("ur5", run.LEFT, "symofros", "it died")])
-    monkeypatch.setattr(run.sys, "executable", shutil.which("true"))
+    monkeypatch.setattr(sys, "executable", shutil.which("true"))
     run.run_job(JOB, record)
     assert [model for model, *_ in record.failed] == ["ur5"]
 

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-import reference_models
 import symofros as sf
 
+from ... import references
 from ...reporting.figures import Chart, Figure, Mark, curves
 from ...reporting.findings import Finding, Study
 from ..beams import motion
@@ -46,7 +46,7 @@ def spun_up(functions: int, end: float) -> float:
 
 def swing(end: float) -> tuple[float, float]:
     """Change of the energy of the undamped soft pendulum over what its weight exchanges, and its largest bend [rad]."""
-    stated = reference_models.MODELS["soft_pendulum"]
+    stated = references.MODELS["soft_pendulum"]
     bodies = [replace(body, damping=0.0) if isinstance(body, sf.Beam) else body for body in stated.bodies]
     functions = ("forward_dynamics", "kinetic_energy", "potential_energy")
     m = sf.compile(replace(stated, bodies=tuple(bodies)), sf.Options(functions))

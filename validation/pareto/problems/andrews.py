@@ -7,10 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-import reference_models
 import symofros as sf
 
-from ... import studies
+from ... import references, studies
 from ...adapters.exudyn.steps import Solver
 from ...adapters.exudyn.timed_systems import joint_angles, looped
 from ...mechanics.geometry import Array
@@ -34,7 +33,7 @@ def known() -> dict[str, dict[str, float]]:
 
 def system() -> sf.System:
     """The mechanism."""
-    return reference_models.MODELS["andrews_squeezer"]
+    return references.MODELS["andrews_squeezer"]
 
 
 def far(q: Array, names: tuple[str, ...]) -> float:

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-import reference_models
 import symofros as sf
 
+from ... import references
 from ...adapters.exudyn.planar import Cable
 from ...adapters.exudyn.steps import Solver
 from ...adapters.exudyn.timed_systems import planar
@@ -33,7 +33,7 @@ FINE, FINE_STEP = 12, 2.5e-4
 
 def system(count: int, **changed: Any) -> sf.System:
     """The robot with so many functions a strip, and control in place of friction, which engines have each its own."""
-    stated = reference_models.MODELS["planar_robot"]
+    stated = references.MODELS["planar_robot"]
     return replace(stated, bodies=tuple(_body(body, count, changed) for body in stated.bodies))
 
 

@@ -8,8 +8,8 @@ from functools import cache
 import numpy as np
 
 import symofros as sf
-from reference_models import MODELS
 
+from ...references import MODELS
 from ...reporting.findings import Finding
 from ..reference import data, source
 from ..study import (

@@ -104,7 +104,7 @@ def source(name: str) -> str:
     """Text of a file of validation/native, or of the header of generated models."""
     if name == "symofros_model.h":
         return (files("symofros") / "native/model/symofros_model.h").read_text(encoding="utf-8")
-    return (files("validation") / "native" / name).read_text(encoding="utf-8")
+    return (Path(__file__).parents[2] / "native" / name).read_text(encoding="utf-8")
 
 
 def declared(name: str) -> str:

@@ -11,9 +11,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-import reference_models
 import symofros as sf
 
+from ... import references
 from ...adapters.exudyn.planar import Cable, PlanarTree, planar_tree
 from ...mechanics.geometry import Array
 from .race import LABEL
@@ -53,7 +53,7 @@ class Pair:
 
 def robot(functions: int) -> sf.System:
     """The robot with so many shape functions a strip; three are what its file states."""
-    stated = reference_models.MODELS[LABEL]
+    stated = references.MODELS[LABEL]
     bodies = [replace(body, bend_y=functions) if isinstance(body, sf.Beam) else body for body in stated.bodies]
     return replace(stated, bodies=tuple(bodies))
 
@@ -61,7 +61,7 @@ def robot(functions: int) -> sf.System:
 def exudyn_robot(elements: int) -> PlanarTree:
     """The robot with so many elements a strip."""
     cables = {name: Cable(elements, stiffness) for name, stiffness in EA.items()}
-    return planar_tree(reference_models.MODELS[LABEL], POSTURE, cables)
+    return planar_tree(references.MODELS[LABEL], POSTURE, cables)
 
 
 def generated_frequencies(functions: int) -> Array:

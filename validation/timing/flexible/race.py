@@ -9,10 +9,11 @@ from __future__ import annotations
 import json
 import os
 import subprocess
-import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, Self
+
+from symofros.harness import worker_command
 
 from ..contestants.programs import BuildError
 
@@ -20,7 +21,7 @@ LABEL = "planar_robot"
 # Shape functions a strip: as the model states it, and finer.
 COUNTS = (3, 4, 6)
 CALLS = 1000
-_WORKER = "validation.timing.flexible.worker"
+_WORKER = "timing.flexible.worker"
 
 
 @dataclass(frozen=True)
@@ -70,7 +71,7 @@ def run_flexible(repeats: int, counts: Sequence[int] = COUNTS, calls: int = CALL
     Raises:
         BuildError: It failed; with its last words.
     """
-    command = [sys.executable, "-m", _WORKER, str(repeats), str(calls), *map(str, counts)]
+    command = worker_command(_WORKER, [str(repeats), str(calls), *map(str, counts)])
     environment = {**os.environ, "EXUDYN_MODULE": "fast"}
     done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
     if done.returncode != 0:

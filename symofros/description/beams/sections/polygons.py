@@ -133,7 +133,8 @@ def _geometry(rings: tuple[tuple[Point, ...], ...], poisson: float) -> _Geometry
         from sectionproperties.pre import Material as Elastic
         from shapely import Polygon
     except ImportError:
-        raise ImportError("sections of this outline need sectionproperties: pip install 'symofros[sections]'") from None
+        found, rule = "no module sectionproperties", "sections of this outline are meshed"
+        raise DescriptionError(Problem.of_extra("section: no mesher is installed", found, rule, "sections")) from None
     region = Polygon(rings[0], rings[1:])
     if not region.is_valid or not region.area > 0.0:
         raise DescriptionError(_unusable(f"area {region.area:g}", "outlines enclose an area and do not cross"))

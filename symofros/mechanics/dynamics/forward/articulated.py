@@ -6,14 +6,14 @@ link, not among sums over all of them.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Vec3
-from symofros.mechanics.dynamics.acceleration import Acceleration, Wrench, no_wrench, velocities
+from symofros.mechanics.dynamics.acceleration import Acceleration, Wrench, base_to_tip, no_wrench, velocities
 from symofros.mechanics.dynamics.bodies.beams import added_momentum, modal_mass
 from symofros.mechanics.dynamics.bodies.inertia import LinkInertia, deformed
 from symofros.mechanics.dynamics.bodies.rotors import MovingRotor
@@ -24,7 +24,7 @@ from symofros.mechanics.dynamics.forward.articulated_inertia import (
     wrench_in_parent,
 )
 from symofros.mechanics.dynamics.forward.factors import SingularMassMatrixError
-from symofros.mechanics.dynamics.jourdain import link_wrenches
+from symofros.mechanics.dynamics.jourdain import link_wrenches, subtree_wrenches
 from symofros.mechanics.kinematics.joint import PartialVelocity
 from symofros.mechanics.kinematics.links import MovingLink, TreeKinematics
 from symofros.mechanics.topology.tree import BASE
@@ -81,6 +81,56 @@ def articulated_solution(
     still = [Acceleration(zero, zero) for _ in kinematics.links]
     wrenches = [no_wrench(g) for _ in kinematics.links]
     return _rates(kinematics, inertias, rotors, _Driven(wrenches, still, [-edge for edge in right], still[0]))
+
+
+def balances_by_link(
+    kinematics: TreeKinematics,
+    inertias: list[LinkInertia],
+    rotors: list[MovingRotor],
+    gravity: Vec3,
+    Q: Sequence[Edge],
+    a: Sequence[Edge],
+    hold: Callable[[Sequence[Edge]], list[Edge]],
+) -> list[Edge]:
+    """What drives the derivatives of the acceleration once it is differentiated (linear.md, eq. 29).
+
+    Args:
+        kinematics: Kinematics of the tree.
+        inertias: Inertia of each link, as of `articulated_acceleration`, like the rotors.
+        rotors: Rotors that spin in links.
+        gravity: Acceleration of gravity in the world.
+        Q: Generalized forces (nv).
+        a: Acceleration v' that the forces make, which derivatives take for a constant (nv).
+        hold: Makes constants for derivatives of edges.
+
+    Returns:
+        Of each link the wrench of its own inertia and of what it carries, f then n (6); then the forces on the speeds
+        (nv). The wrenches that joints transmit, and a, are held.
+    """
+    g = kinematics.g
+    own, forces = link_wrenches(kinematics, inertias, rotors, base_to_tip(kinematics, a, gravity), a)
+    beyond = dict(subtree_wrenches(kinematics, own))
+    for i, link in enumerate(kinematics.links):
+        f_x, f_y, f_z, *n = hold([*beyond[i].f, *beyond[i].n])
+        held = Wrench(Vec3(g, f_x, f_y, f_z), Vec3(g, *n))
+        if link.parent != BASE:
+            own[link.parent] = own[link.parent] + wrench_in_parent(link, held)
+        for k, partial in enumerate(link.free_partial_velocities, link.first_speed):
+            forces[k] = g.add(forces[k], _power(partial, held))
+    wrenches = [edge for wrench in own for edge in (*wrench.f, *wrench.n)]
+    return wrenches + [g.sub(force, applied) for force, applied in zip(forces, Q, strict=True)]
+
+
+def articulated_response(
+    kinematics: TreeKinematics, inertias: list[LinkInertia], rotors: list[MovingRotor], change: Sequence[Edge]
+) -> list[Edge]:
+    """Change of v' where the balances of `balances_by_link` change by so much (nv; linear.md, eq. 30)."""
+    g, links = kinematics.g, len(kinematics.links)
+    still = Acceleration(Vec3(g), Vec3(g))
+    wrenches = [
+        Wrench(Vec3(g, *change[at : at + 3]), Vec3(g, *change[at + 3 : at + 6])) for at in range(0, 6 * links, 6)
+    ]
+    return _rates(kinematics, inertias, rotors, _Driven(wrenches, [still] * links, change[6 * links :], still))
 
 
 class _Driven(NamedTuple):

@@ -43,7 +43,9 @@ def schema_problems(source: YamlText, file: str) -> dict[Problem, Path]:
         NativeFile.model_validate(source.data)
     except ValidationError as error:
         faults = error.errors(include_url=False)
-        placed = {problem_of(fault, f"{file}:{line_of(fault, source.root)}"): path_of(fault) for fault in faults}
+        placed = {
+            problem_of(fault, f"{file}:{line_of(fault, source.root)}", source.data): path_of(fault) for fault in faults
+        }
         return {problem: placed.get(problem, ()) for problem in first_of(placed)}
     return {}
 

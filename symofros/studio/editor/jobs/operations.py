@@ -6,11 +6,9 @@ import json
 import math
 import os
 import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Callable
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +20,7 @@ from symofros.compiler import Compilation, compile_system
 from symofros.description.yaml.files import write_yaml
 from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
 from symofros.generator.passes.count import count_program
+from symofros.harness import command_line
 from symofros.mechanics.topology.tree import SpanningTree, build_tree
 from symofros.studio.editor.jobs.bent_beams import bent_beams
 from symofros.studio.editor.jobs.request import Json, Tell, diagram_of, system_of
@@ -75,22 +74,14 @@ def cross_check(request: Json, tell: Tell) -> Json:
     """Compare the compiled model with every engine that can represent it: the command of the harness does it."""
     tell(0, 3, "reading")
     system = system_of(request)
-    if find_spec("validation") is None:
-        raise SymofrosError(
-            Problem(
-                "cross-check: the harness is not installed",
-                "no package 'validation'",
-                "independent engines come with the extra 'validation'",
-                "pip install 'symofros[validation]'",
-            )
-        )
     options = request.get("options", {})
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "model.yaml"
         file.write_text(write_yaml(system), encoding="utf-8")
-        command = [sys.executable, "-P", "-m", "validation", "check", str(file), "--json", "--report", folder]
-        command += ["--workers", "1", "--states", str(_whole(options.get("states"), 1, 10_000, 20))]
+        arguments = ["check", str(file), "--json", "--report", folder, "--workers", "1"]
+        arguments += ["--states", str(_whole(options.get("states"), 1, 10_000, 20))]
         tell(1, 3, "engines at work")
+        command = command_line(arguments)
         run = subprocess.run(command, capture_output=True, text=True, cwd=folder, env=os.environ, check=False)
     tell(2, 3, "reading the verdict")
     try:
@@ -101,7 +92,7 @@ def cross_check(request: Json, tell: Tell) -> Json:
                 "cross-check: the harness gave no verdict",
                 run.stderr.strip()[-1000:],
                 "it prints its comparisons as JSON",
-                "run `python -m validation check` on the saved file",
+                "run `symofros check` on the saved file",
             )
         ) from None
     rows = [

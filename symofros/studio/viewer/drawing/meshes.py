@@ -83,11 +83,8 @@ def _creation() -> Any:
     try:
         return import_module("trimesh.creation")
     except ImportError:
-        missing = Problem(
-            "view: trimesh is not installed",
-            "no module trimesh",
-            "the viewer is an extra",
-            "pip install 'symofros[view]'",
+        missing = Problem.of_extra(
+            "view: trimesh is not installed", "no module trimesh", "the viewer is an extra", "view"
         )
         raise SymofrosError(missing) from None
 

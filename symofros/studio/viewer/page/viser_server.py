@@ -27,9 +27,7 @@ def load_viser() -> Any:
     try:
         return import_module("viser")
     except ImportError:
-        missing = Problem(
-            "view: viser is not installed", "no module viser", "the viewer is an extra", "pip install 'symofros[view]'"
-        )
+        missing = Problem.of_extra("view: viser is not installed", "no module viser", "the viewer is an extra", "view")
         raise SymofrosError(missing) from None
 
 
@@ -71,7 +69,7 @@ def start_server(
     if not guard.is_asked:
         stop_server(server)
         what, rule = "view: viser can't be guarded", "its server asks before it answers, by `websockets`"
-        raise SymofrosError(Problem(what, f"viser {viser.__version__}", rule, "pip install 'symofros[view]'"))
+        raise SymofrosError(Problem.of_extra(what, f"viser {viser.__version__}", rule, "view"))
     return server
 
 

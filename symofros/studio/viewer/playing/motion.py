@@ -198,11 +198,12 @@ def _read_parquet(file: Path, model: Model) -> PlayedMotion:
         parquet = import_module("pyarrow.parquet")
     except ImportError:
         raise SymofrosError(
-            Problem(
+            Problem.of_extra(
                 "trajectory: Parquet needs pyarrow",
                 "it is not installed",
                 "pyarrow reads Parquet",
-                "pip install 'symofros[parquet]', or use .npz",
+                "parquet",
+                "use .npz",
             )
         ) from None
     with parquet.ParquetFile(file) as stored:

@@ -15,9 +15,12 @@ import symofros as sf
 from symofros.description.beams import sections
 from symofros.description.beams.sections import Material, Section
 from symofros.errors import DescriptionError
+from tests.late import needs_extra
 
 STEEL = Material(E=2.6, G=1.0, rho=3.0)  # Poisson's ratio 0.3.
-elements = pytest.mark.skipif(find_spec("sectionproperties") is None, reason="needs the extra sections")
+elements = pytest.mark.skipif(
+    find_spec("sectionproperties") is None, reason=needs_extra("sections", "sectionproperties")
+)
 
 
 def number(value: Any, **values: float) -> float:

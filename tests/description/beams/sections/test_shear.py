@@ -12,6 +12,7 @@ import pytest
 import symofros as sf
 from symofros.description.beams import sections
 from symofros.description.beams.sections import Material, Section
+from tests.late import needs_extra
 
 STEEL = Material(E=210e9, G=80e9, rho=7850.0)
 SHAPES = {
@@ -180,7 +181,7 @@ def test_what_is_not_known_is_said() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(find_spec("sectionproperties") is None, reason="needs the extra sections")
+@pytest.mark.skipif(find_spec("sectionproperties") is None, reason=needs_extra("sections", "sectionproperties"))
 def test_finite_elements_have_the_same_stress() -> None:
     from sectionproperties.analysis import Section as Mesh
     from sectionproperties.pre import Material as Isotropic

@@ -9,7 +9,7 @@ import pytest
 
 import symofros as sf
 from symofros.description.yaml.files import read_yaml
-from validation.check import Settings, check
+from validation.checking import Settings, check
 from validation.contract.interface import Subject
 
 LEVER = sf.Inertia(1.5, (0.3, 0.1, 0.0), (0.1, 0.2, 0.25))

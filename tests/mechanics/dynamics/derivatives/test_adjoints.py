@@ -145,3 +145,20 @@ def test_a_transposed_cotangent_is_refused_though_it_has_as_many_entries(rng: np
     m.vjp("frame_jacobian", frame, q=q, **{group: J_bar})
     with pytest.raises(sf.ShapeError, match=r"\(\.\.\., 6, nv\)"):
         m.vjp("frame_jacobian", frame, q=q, **{group: J_bar.T})
+
+
+def test_inputs_of_no_entries_may_be_left_out(rng: np.random.Generator) -> None:
+    """A tree has no multipliers: `lam_bar`, or `lam`, is empty, and says nothing."""
+    m = model("double_pendulum")
+    given = {"q": rng.normal(size=2), "v": rng.normal(size=2), "u": np.zeros(m.nu)}
+    named = m.vjp("forward_dynamics", a_bar=np.ones(2), **given)
+    for arrays in ({}, {"lam_bar": []}):
+        by_q, *_ = m.evaluate("forward_dynamics_vjp", a_bar=np.ones(2), **given, **arrays)
+        np.testing.assert_array_equal(by_q, named["q"])
+    M = m.evaluate("implicit_terms", a=np.zeros(2), **given)[0]
+    np.testing.assert_array_equal(M, m.mass_matrix(given["q"]))
+    with pytest.raises(sf.ShapeError, match="no a_bar"):
+        m.evaluate("forward_dynamics_vjp", **given)
+    loop = model("slider_crank")
+    with pytest.raises(sf.ShapeError, match="no lam_bar"):
+        loop.evaluate("forward_dynamics_vjp", q=loop.neutral(), v=np.zeros(loop.nv), a_bar=np.ones(loop.nv))

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Page, expect
 
+from tests.late import require
 from tests.studio.editor.browser import steps
 from tests.studio.editor.browser.conftest import Server
 
@@ -21,7 +22,7 @@ JOB = 300_000
 def test_the_flexible_robot_moves_on_without_the_server(
     serve: Callable[..., Server], page: Page, picture: Callable[[str], None]
 ) -> None:
-    pytest.importorskip("ziglang", reason="the extra zig is not installed: pip install 'symofros[zig]'")
+    require("ziglang", "zig")
     server = serve("robot.yaml", source=ROBOT)
     steps.open_editor(page, server.url)
     steps.run(page, "Simulate…")

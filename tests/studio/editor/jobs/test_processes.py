@@ -146,11 +146,13 @@ def test_import(client: TestClient, folder: Path) -> None:
     assert client.get("/api/document").json()["path"] == "r.yaml"
 
 
-def test_a_cross_check_needs_the_harness_and_says_so(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_cross_check_needs_the_harness_and_says_so(
+    client: TestClient, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """In this process: the worker's finds it."""
-    monkeypatch.setattr(operations, "find_spec", lambda name: None)
+    monkeypatch.setattr("symofros.harness._PACKAGE", folder / "symofros")
     request = {"file": "x.yaml", "text": client.get("/api/document").json()["text"]}
-    with pytest.raises(Exception, match="not installed") as caught:
+    with pytest.raises(Exception, match="no package 'validation'") as caught:
         operations.cross_check(request, lambda *_: None)
     assert "pip install 'symofros[validation]'" in error_of(caught.value)["remedy"]
 

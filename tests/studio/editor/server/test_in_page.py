@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import pytest
 from starlette.testclient import TestClient
 
+from tests.late import require
 from tests.studio.editor.conftest import TOKEN, finished
 
-pytest.importorskip("ziglang", reason="the extra zig is not installed: pip install 'symofros[zig]'")
+require("ziglang", "zig")
 
 
 def test_the_page_is_kept_apart_and_its_address_has_a_token_of_its_own(client: TestClient) -> None:

@@ -14,6 +14,7 @@ from symofros.errors import ShapeError, SymofrosError
 from symofros.studio.viewer.playing import motion as motion_module
 from symofros.studio.viewer.playing.motion import PlayedMotion, motion_of, read_motion
 from symofros.studio.viewer.playing.player import Player
+from tests.late import require
 
 
 @pytest.fixture(scope="module")
@@ -112,7 +113,7 @@ def test_quaternions_of_no_direction_and_sizes_that_overflow_end_a_motion() -> N
 
 
 def test_tables_of_dates_and_texts_are_refused(pendulum: sf.Model, tmp_path: Path) -> None:
-    pa = pytest.importorskip("pyarrow")
+    pa = require("pyarrow", "parquet")
     for odd in (np.arange(2).astype("datetime64[s]"), ["a", "b"], [None, None]):
         table = pa.table({"t": np.zeros(2), "q1": odd, "q2": np.zeros(2)})
         importlib.import_module("pyarrow.parquet").write_table(table, tmp_path / "m.parquet")
@@ -155,7 +156,7 @@ def test_archives_are_not_unpacked_beyond_what_is_shown(
     elif suffix == ".csv":
         (tmp_path / "m.csv").write_text("t,q1,q2\n" + "0,0,0\n" * 100)
     else:
-        pa = pytest.importorskip("pyarrow")
+        pa = require("pyarrow", "parquet")
         importlib.import_module("pyarrow.parquet").write_table(pa.table(columns), tmp_path / "m.parquet")
     with pytest.raises(SymofrosError, match=f"'m{suffix}' is too large") as caught:
         read_motion(tmp_path / f"m{suffix}", pendulum)

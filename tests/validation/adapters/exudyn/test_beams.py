@@ -12,7 +12,7 @@ import symofros as sf
 from tests.reference.beams import data
 from validation.adapters.exudyn import frf as exudyn_frf
 from validation.adapters.exudyn.ancf import Hub, Strip, princeton, spin_up, spinning_frequencies, static_tip
-from validation.check import Settings, check
+from validation.checking import Settings, check
 from validation.comparison.errors import compute, state_errors, typical_scales
 from validation.contract.interface import States, Subject, Unsupported
 from validation.contract.quantities import QUANTITIES

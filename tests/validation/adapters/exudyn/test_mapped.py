@@ -15,7 +15,7 @@ from tests.models import sampled
 from tests.validation.adapters.lagrangian.test_engine import beam
 from tests.validation.subjects import UNIT
 from validation.adapters.exudyn import mapped
-from validation.check import ModelResult, Settings, check
+from validation.checking import ModelResult, Settings, check
 from validation.contract.interface import Subject, Unsupported
 from validation.contract.quantities import FRAME_QUANTITIES, TREE_QUANTITIES
 from validation.inputs.sampling import sample

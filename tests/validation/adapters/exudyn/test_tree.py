@@ -15,7 +15,7 @@ from validation.adapters.exudyn import tree as exudyn
 from validation.adapters.exudyn.mapped import MappedEngine
 from validation.adapters.exudyn.tree import KinematicTreeEngine
 from validation.adapters.pinocchio import tree as pinocchio
-from validation.check import Settings, check
+from validation.checking import Settings, check
 from validation.comparison.errors import compute, state_errors, typical_scales
 from validation.contract.interface import Subject, Unsupported
 from validation.contract.quantities import QUANTITIES, TREE_QUANTITIES

@@ -19,7 +19,7 @@ from validation.adapters import compiled
 from validation.adapters.compiled import SymofrosEngine, untruncated
 from validation.adapters.lagrangian import engine as lagrangian
 from validation.adapters.pinocchio import tree as pinocchio
-from validation.check import ModelResult, Settings, check
+from validation.checking import ModelResult, Settings, check
 from validation.comparison.errors import state_errors, typical_scales
 from validation.comparison.retained import judge_order
 from validation.contract.interface import States, Subject, Unsupported

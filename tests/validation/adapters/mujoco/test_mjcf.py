@@ -16,7 +16,7 @@ from tests.models import sampled
 from tests.validation.subjects import subject_of
 from validation.__main__ import app
 from validation.adapters.mujoco import mjcf as mujoco_mjcf
-from validation.check import ModelResult, Settings, check
+from validation.checking import ModelResult, Settings, check
 from validation.contract.interface import Subject, Unsupported
 from validation.contract.quantities import MJCF_ROUTE
 from validation.inputs.cases import Case, named

@@ -19,6 +19,7 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from symofros.tools import evaluate_precisely
+from tests.late import require
 from tests.models import sampled
 from validation.adapters.compiled import SymofrosEngine
 from validation.adapters.pinocchio import loops as pinocchio_loops
@@ -29,7 +30,7 @@ from validation.contract.interface import States, Subject, Unsupported
 from validation.inputs.sampling import sample
 from validation.mechanics.assembly import assemble
 
-pin = pytest.importorskip("pinocchio")
+pin = require("pinocchio", "validation")
 Array = np.ndarray
 TOLERANCE = 1e-10
 FUNCTIONS = ("inverse_dynamics_derivatives", "forward_dynamics_derivatives")

@@ -48,11 +48,11 @@ class Described:
 
 
 def rpy(R: Rows) -> Vector:
-    """Angles of R = Rz(yaw) Ry(pitch) Rx(roll)."""
-    pitch = math.atan2(-R[2][0], math.hypot(R[0][0], R[1][0]))
-    if math.hypot(R[0][0], R[1][0]) < 1e-9:
-        return (math.atan2(-R[1][2], R[1][1]), pitch, 0.0)
-    return (math.atan2(R[2][1], R[2][2]), pitch, math.atan2(R[1][0], R[0][0]))
+    """Angles of R = Rz(yaw) Ry(pitch) Rx(roll); roll and pitch are those of Rz(yaw)^T R."""
+    yaw = math.atan2(R[1][0], R[0][0]) if max(abs(R[0][0]), abs(R[1][0])) > 1e-15 else 0.0
+    c, s = math.cos(yaw), math.sin(yaw)
+    second = [c * y - s * x for x, y in zip(R[0], R[1], strict=True)]
+    return (math.atan2(-second[2], second[1]), math.atan2(-R[2][0], c * R[0][0] + s * R[1][0]), yaw)
 
 
 def numbers(values: Vector) -> str:

@@ -9,9 +9,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from importlib import import_module
 
-import reference_models
 import symofros as sf
 
+from . import references
 from .adapters import ROUTES, compiled, has_beams
 from .comparison.elements import judge_elements
 from .comparison.errors import NOBODY, Comparison, Scales, compute, judge, raised, scaled_errors, typical_scales
@@ -153,6 +153,11 @@ def broken(label: str, error: BaseException) -> ModelResult:
     return failed(label, "check", words(error))
 
 
+def absent(label: str, stage: str, reason: str) -> ModelResult:
+    """The result of a model that needs a package which is not installed."""
+    return ModelResult(label, (Comparison(label, "symofros", stage, "unsupported", note=reason),))
+
+
 def check(subject: Subject, settings: Settings, factories: Factories | None = None) -> ModelResult:
     """Compare our C of a subject with every engine.
 
@@ -210,11 +215,16 @@ def _comparisons(bench: _Bench) -> Iterator[Comparison]:
         for one in bench.engines:
             rows = attempted(lambda one: list(judge_elements(one, bench.assembly, bench.variants)), one)
             yield from [raised(bench.label, one.name, "elements", rows)] if isinstance(rows, Raised) else rows
-        if bench.settings.engines is None and bench.subject.system is reference_models.MODELS.get(bench.label):
+        if bench.settings.engines is None and bench.subject.system is references.MODELS.get(bench.label):
             start = time.perf_counter()
             # Others have none, and their checks do without SciPy's integrators, which take half a second to import.
-            judge_procedures = import_module("validation.procedures.catalogue").judge_procedures
-            yield from judge_procedures(bench.label, bench.subject.system, bench.assembly)
+            try:
+                judge_procedures = import_module(".procedures.catalogue", __package__).judge_procedures
+            except ModuleNotFoundError as error:
+                note = f"{error}; pip install 'symofros[validation]'"
+                yield Comparison(bench.label, "symofros", "procedures", "unsupported", note=note)
+            else:
+                yield from judge_procedures(bench.label, bench.subject.system, bench.assembly)
             bench.seconds["procedures"] = time.perf_counter() - start
 
 

@@ -11,6 +11,9 @@ from typing import Any
 
 import pytest
 
+from symofros.errors import SymofrosError
+from symofros.harness import harness_module
+
 TIERS = ("smoke", "standard", "full")
 
 
@@ -50,14 +53,14 @@ def pytest_configure(config: Any) -> None:
 def pytest_collection_modifyitems(session: Any, config: Any, items: list[Any]) -> None:
     """Add the cross-checks that are asked for; -k and -m choose among them as among other tests."""
     if config.getoption("--symofros-model") or config.getoption("--symofros-engine"):
-        from .items import cross_checks
-
-        items += cross_checks(session, config)
+        try:
+            checks = harness_module("ci.items").cross_checks
+        except SymofrosError as error:
+            raise pytest.UsageError(str(error)) from None
+        items += checks(session, config)
 
 
 def pytest_unconfigure(config: Any) -> None:
     """End the processes that engines ran in."""
     if config.getoption("--symofros-engine", None):
-        from .engines import finish
-
-        finish()
+        harness_module("ci.engines").finish()

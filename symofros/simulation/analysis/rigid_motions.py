@@ -1,0 +1,82 @@
+"""Which eigenvalues are rigid motions: zeros but for rounding, two of each that nothing damps (linear.md, 4)."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from symofros.runtime.calls.kernel import Array
+
+Complex = npt.NDArray[np.complex128]
+
+# Rounding of the entries of A^2, relative to the sum of the sizes of their terms: A itself has passed through M^-1 and,
+# with constraints, through projections.
+_ROUNDING = 1e4 * np.finfo(np.float64).eps
+# Share of a direction that others do not have, above which it is a motion of its own: eigenvectors of one motion agree
+# to the root of rounding, those of different motions are seldom closer than a thousandth.
+_INDEPENDENT = 1e-5
+
+
+class RigidMotions(NamedTuple):
+    """Rigid motions among eigenvalues.
+
+    Attributes:
+        zeros: Whether an eigenvalue is zero but for rounding (k).
+        chosen: Indices of eigenvectors, one for each rigid motion.
+    """
+
+    zeros: npt.NDArray[np.bool_]
+    chosen: list[int]
+
+
+def rigid_motions(A: Array, basis: Array, s: Complex, states: Complex, inertia: Array) -> RigidMotions:
+    """Rigid motions of x = basis y, y' = A y.
+
+    The s of a motion that nothing drives back is zero, and twice so if nothing damps it; rounding makes a pair of it
+    that is real, imaginary or zero. s^2 is an eigenvalue of A^2, whose entries err by rounding of the terms they are
+    sums of, eq. (7d). So a soft mode beside stiff ones is none as long as its own stiffness is no small difference.
+
+    Args:
+        A: Matrix of the independent changes (k x k).
+        basis: Changes of the state of each of them (2 nv x k).
+        s: Its eigenvalues [1/s] (k).
+        states: Changes of the state by the eigenvectors (2 nv x k).
+        inertia: Diagonal of the mass matrix (nv), in which coordinates of different units are compared.
+    """
+    nv = len(inertia)
+    fastest = np.abs(s).max(initial=0.0)
+    if fastest == 0.0:
+        return RigidMotions(np.ones(len(s), bool), _independent(_weighted(states[:nv], inertia)))
+    scale = np.sqrt(np.concatenate([inertia, inertia]))[:, None]
+    scale[nv:] /= fastest
+    size = np.abs(basis.T) @ np.abs(basis @ A @ basis.T) @ np.abs(basis)
+    terms = np.abs(basis) @ (size @ (size @ np.abs(basis.T @ states)))
+    error = _ROUNDING * np.linalg.norm(scale * terms, axis=0) / np.linalg.norm(scale * states, axis=0)
+    zeros = np.abs(s) ** 2 <= error
+    of_zeros = np.flatnonzero(zeros)
+    return RigidMotions(zeros, [int(of_zeros[i]) for i in _independent(_weighted(states[:nv, zeros], inertia))])
+
+
+def _weighted(directions: Complex, inertia: Array) -> Complex:
+    """Directions of unit length, coordinates weighted by their inertia."""
+    weighted = np.sqrt(inertia)[:, None] * directions
+    lengths = np.linalg.norm(weighted, axis=0)
+    unit: Complex = weighted / np.where(lengths > 0.0, lengths, 1.0)
+    return unit
+
+
+def _independent(directions: Complex) -> list[int]:
+    """Indices of directions that span all of them: again and again the first of those farthest from the ones before."""
+    rest, chosen = directions.copy(), list[int]()
+    while rest.size:
+        lengths = np.linalg.norm(rest, axis=0)
+        farthest = int(np.argmax(lengths >= 0.5 * lengths.max()))
+        if lengths.max() <= _INDEPENDENT:
+            break
+        chosen.append(farthest)
+        unit = rest[:, farthest] / lengths[farthest]
+        for _ in range(2):  # Twice, for orthogonality.
+            rest -= np.outer(unit, unit.conj() @ rest)
+    return chosen

@@ -1,0 +1,37 @@
+"""The closing line of a run: what was left out, and for which option or extra."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+
+import pytest
+
+from tests.absent import by_need, summary
+from tests.docs.pages import ROOT
+from tests.late import needs_extra, require
+
+
+def test_what_was_left_out_is_counted_by_what_it_takes() -> None:
+    slow, browser = "left out for its time; run with --slow", "needs Chromium; run with --browser"
+    skipped = [("a", slow), ("b", slow), ("c", browser), ("d", needs_extra("jax", "jax")), ("e", "no /proc here")]
+    needs = by_need(skipped)
+    assert needs == {"--slow": ["a", "b"], "--browser": ["c"], "extra jax": ["d"], "": ["e"]}
+    assert summary(needs) == "left out: 2 for --slow, 1 for --browser, 1 for extra jax, 1 that this machine can't run"
+    assert summary({}) == ""
+
+
+def test_files_that_are_skipped_by_each_worker_count_once() -> None:
+    assert summary({"extra usd": ["tests/description/test_usd.py"] * 2}) == "left out: 1 for extra usd"
+
+
+def test_a_package_that_is_not_there_skips_by_its_extra() -> None:
+    with pytest.raises(pytest.skip.Exception, match="needs the extra 'network': the package no_such is not installed"):
+        require("no_such", "network")
+
+
+def test_extras_that_tests_name_are_those_of_the_distribution() -> None:
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
+    asks = re.compile(r'(?<![\w.])(?:require|late)\("[\w.]+", "([\w-]+)"\)')
+    named = {extra for path in (ROOT / "tests").rglob("*.py") for extra in asks.findall(path.read_text())}
+    assert len(named) > 10 and named <= set(extras)
