@@ -200,8 +200,9 @@ def make_all(
 ) -> None:
     """Make every report that this machine can make of the code as it is: hours.
 
-    --resume goes on after an end of any kind. Each is made in a process of its own, one after the other. What this machine lacks something for is named, with the
-    age of the report that there is, which stays: its own command, which --list shows, makes what can be made of it.
+    Each is made in a process of its own, one after the other; --resume goes on after an end of any kind. What this
+    machine lacks something for is named, with the age of the report that there is, which stays: its own command, which
+    --list shows, makes what can be made of it.
 
     Exit code: 0 all were made and miss nothing, 1 one was not or does, 2 bad input, 130 interrupted.
     """
