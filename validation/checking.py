@@ -148,14 +148,14 @@ def failed(label: str, stage: str, reason: str) -> ModelResult:
     return ModelResult(label, (Comparison(label, "symofros", stage, "failed", note=reason),))
 
 
-def absent(label: str, stage: str, reason: str) -> ModelResult:
-    """The result of a model that needs a package which is not installed."""
-    return ModelResult(label, (Comparison(label, "symofros", stage, "unsupported", note=reason),))
-
-
 def broken(label: str, error: BaseException) -> ModelResult:
     """The result of a model whose check raised what nothing accounts for."""
     return failed(label, "check", words(error))
+
+
+def absent(label: str, stage: str, reason: str) -> ModelResult:
+    """The result of a model that needs a package which is not installed."""
+    return ModelResult(label, (Comparison(label, "symofros", stage, "unsupported", note=reason),))
 
 
 def check(subject: Subject, settings: Settings, factories: Factories | None = None) -> ModelResult:

@@ -82,6 +82,7 @@ COMMANDS = {
         "Make every report that this machine can make of the code as it is: hours; --resume goes on.",
     ),
     "dashboard": Command("dashboard.command", "Gather the reports on one page."),
+    "all": Command("dashboard.command", "Make every report that this machine can make of the code as it is: hours."),
     "render": Command(
         "dashboard.command",
         "Write the HTML and Markdown of reports anew from their JSON, without measuring anything.",

@@ -26,10 +26,12 @@ class Raised:
 
 
 def attempted(function: Callable[P, T], *arguments: P.args, **named: P.kwargs) -> T | Raised:
-    """What a function returns, or what it raises; KeyboardInterrupt goes through."""
+    """What a function returns, or what it raises; KeyboardInterrupt goes through, and that an extra is missing."""
     try:
         return function(*arguments, **named)
     except ANY as error:
+        if getattr(error, "extra", ""):  # Of a SymofrosError: nobody's fault, and said of the whole model.
+            raise
         return Raised(words(error))
 
 

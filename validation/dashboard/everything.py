@@ -98,19 +98,20 @@ class Job:
         except (OSError, ValueError, LookupError, TypeError, AttributeError, ArithmeticError):
             return False
 
+    def command(self, topic: Topic) -> list[str]:
+        """The process that makes a report."""
+        return worker_command("__main__", self.arguments(topic))
+
     def arguments(self, topic: Topic) -> list[str]:
-        """What the harness is told to make a report; what takes days keeps its own state, one for each of the code."""
+        """What makes a report; what takes days keeps its own state, one for each state of the code."""
         own = self.work / f"{topic.name}-{present(topic)[:8]}"
         if topic.name == "campaign":
             arguments = ["campaign", "run", "--models", "all", "--report", str(self.output), "-o", str(own)]
         else:
             arguments = [*topic.command.removeprefix(PROGRAM).split(), "--output", str(self.output)]
         arguments += ["--work", str(own)] if topic.name == "mutants" else []
-        return arguments + (["--quick"] if self.quick and has_quick(topic) else [])
-
-    def command(self, topic: Topic) -> list[str]:
-        """The command of a process that makes a report."""
-        return worker_command("__main__", self.arguments(topic))
+        arguments += ["--quick"] if self.quick and has_quick(topic) else []
+        return arguments
 
     def make(self, topic: Topic, doing: Any = id) -> tuple[int, str]:
         """Make one report: its exit code, and how it ended in words.
@@ -197,10 +198,11 @@ def make_all(
     output: Output = REPORTS,
     work: Annotated[Path, typer.Option(help="Folder of what is made so far, and of logs.")] = WORK,
 ) -> None:
-    """Make every report that this machine can make of the code as it is: hours; --resume goes on.
+    """Make every report that this machine can make of the code as it is: hours.
 
-    Each is made in a process of its own, one after the other. What this machine lacks something for is named, with the
-    age of the report that there is, which stays: its own command, which --list shows, makes what can be made of it.
+    Each is made in a process of its own, one after the other; --resume goes on after an end of any kind. What this
+    machine lacks something for is named, with the age of the report that there is, which stays: its own command, which
+    --list shows, makes what can be made of it.
 
     Exit code: 0 all were made and miss nothing, 1 one was not or does, 2 bad input, 130 interrupted.
     """

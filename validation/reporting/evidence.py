@@ -26,7 +26,7 @@ _LOOKED_AT = ("studio/editor/", "studio/viewer/")
 # Folders and files of the harness that only say what was found.
 _SAYING = frozenset({"reporting", "dashboard", "ci", "report.py", "reports", "figures.py"})
 # Folders that are read as files, or imported by name, wherever the harness is used.
-_BY_NAME = ("native", "corpus", "adapters", "procedures", "check.py", "checking.py")
+_BY_NAME = ("native", "corpus", "adapters", "procedures", "checking.py")
 OLDER = "older than the code it judges"
 UNKNOWN = "made before digests were kept"
 MIXED = "made while the code changed"

@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from validation.check import Settings, check
 
 import symofros as sf
 from symofros.expr.ops import FUNCTIONS
 from validation.adapters import ROUTES, Missing
 from validation.adapters.by_formula import _OPERATIONS, Series, motion
 from validation.adapters.description import evaluate
+from validation.checking import Settings, check
 from validation.comparison.participants import _built
 from validation.contract.interface import Engine, Subject, Unsupported
 from validation.contract.quantities import CONSTRAINED, QUANTITIES

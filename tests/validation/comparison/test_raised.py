@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import pytest
-from validation.check import Settings, check
 
 from reference_models import MODELS
 from validation.adapters import ROUTES, Missing
+from validation.checking import Settings, check
 from validation.comparison.errors import raised
 from validation.contract.interface import Engine, Subject
 from validation.contract.raised import Raised, attempted
