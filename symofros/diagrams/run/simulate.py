@@ -21,9 +21,10 @@ from symofros.diagrams.run.examination.remarks import Examined, remarks
 from symofros.diagrams.run.examination.rotations import refuse_no_rotation
 from symofros.diagrams.run.loop import RECORD, Loop, Task
 from symofros.diagrams.run.options import DiagramOptions
-from symofros.diagrams.run.parts import Start, place_parts, start_parts
+from symofros.diagrams.run.parts import place_parts, start_parts
 from symofros.diagrams.run.python_blocks import Called, CalledBefore, ExternalCalls, NotKeptError, begun
 from symofros.diagrams.run.recording import Cost, Crossed, Records
+from symofros.diagrams.run.starts import Start
 from symofros.diagrams.run.values import parameter_values, record_interval
 from symofros.errors import SymofrosError
 from symofros.runtime.beams import BeamBending
@@ -74,6 +75,7 @@ def run_compiled(
         kept = called.kept()
     bendings = ended.bendings
     outcome, modes = diagnose(ended, bendings)
+    outcome = replace(outcome, notes=(*ended.start_notes, *outcome.notes))
     if outcome.kind == "finished" and not options.realtime:
         notes = remarks(_examined(task, ended, called.given), modes)
         outcome = replace(outcome, notes=(*outcome.notes, *notes))
@@ -238,7 +240,8 @@ def _drive(
     interrupted = interrupted or isinstance(loop.failure, KeyboardInterrupt)
     states = [np.concatenate(columns) for columns in zip(*portions, strict=True)]
     settings = [task.settings(part.model) for part in loop.parts]
-    return Ended(loop, resolved, par, settings, plan.spacing, states, tuple(met), spent, status, interrupted)
+    notes = tuple(note for part in parts for note in part.notes)
+    return Ended(loop, resolved, par, settings, plan.spacing, states, tuple(met), spent, status, interrupted, notes)
 
 
 def _recorded(

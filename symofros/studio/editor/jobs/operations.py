@@ -10,6 +10,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -23,6 +24,7 @@ from symofros.description.yaml.files import write_yaml
 from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
 from symofros.generator.passes.count import count_program
 from symofros.mechanics.topology.tree import SpanningTree, build_tree
+from symofros.simulation.analysis.kinematics.starts import closed_start
 from symofros.studio.editor.jobs.bent_beams import bent_beams
 from symofros.studio.editor.jobs.request import Json, Tell, diagram_of, system_of
 from symofros.studio.viewer.playing.coordinate_units import coordinate_units
@@ -137,8 +139,9 @@ def simulate(request: Json, tell: Tell) -> Json:
     v = _vector(model.names.v, options.get("v0"), np.zeros(model.nv), "speed")
     if model.nc:
         tell(0, 100, "closing the loops")
-        closed = sf.assemble(model, q, v, par=par)
-        q, v = closed.q, closed.v
+    stated = [_plain(name, model.names.q) for name in options.get("q0") or {}]
+    moved = [_plain(name, model.names.v) for name in options.get("v0") or {}]
+    start = closed_start(model, q, v, stated, moved, par=par)
     points = _whole(options.get("points"), 2, MAX_POINTS, POINTS)
     chosen: Json = {key: options[key] for key in ("method", "stabilisation") if options.get(key)}
     chosen |= {key: _number(options[key], key) for key in ("dt", "rtol", "atol") if options.get(key) is not None}
@@ -157,8 +160,8 @@ def simulate(request: Json, tell: Tell) -> Json:
     began = time.perf_counter()
     run = sf.simulate(
         model,
-        q,
-        v,
+        start.q,
+        start.v,
         t_end,
         u=inputs or None,
         par=par,
@@ -166,6 +169,7 @@ def simulate(request: Json, tell: Tell) -> Json:
         progress=progress,
         **chosen,
     )
+    run = replace(run, outcome=replace(run.outcome, notes=(*start.notes, *run.outcome.notes)))
     return {**_motion(run, build_tree(system)), "par": par.tolist(), "wall_s": time.perf_counter() - began}
 
 
@@ -260,7 +264,7 @@ def _vector(names: tuple[str, ...], given: Any, default: Any, what: str) -> Any:
     """Values by name over defaults; a speed may bear its coordinate's d."""
     values = np.array(default, dtype=np.float64)
     for name, number in (given or {}).items():
-        plain = name if name in names else name.removeprefix("d")
+        plain = _plain(name, names)
         if plain not in names:
             raise UnknownNameError(
                 Problem(
@@ -269,6 +273,11 @@ def _vector(names: tuple[str, ...], given: Any, default: Any, what: str) -> Any:
             )
         values[names.index(plain)] = _number(number, name)
     return values
+
+
+def _plain(name: str, names: tuple[str, ...]) -> str:
+    """The name of a value that may bear a d."""
+    return name if name in names else name.removeprefix("d")
 
 
 def _numbers(values: Any) -> list[float | None]:
