@@ -22,6 +22,8 @@ from symofros.base.functions import exported
 from symofros.compiler import Compilation, compile_system
 from symofros.description.yaml.files import write_yaml
 from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
+from symofros.exports.folder import check_same
+from symofros.generator.codegen.names import identifier
 from symofros.generator.passes.count import count_program
 from symofros.mechanics.topology.tree import SpanningTree, build_tree
 from symofros.simulation.analysis.kinematics.starts import closed_start
@@ -214,8 +216,10 @@ def export(request: Json, tell: Tell) -> Json:
     tell(0, 2, "reading")
     options, target, folder = request["options"], request["options"]["target"], request["folder"]
     stated = diagram_of(request) if request["is_diagram"] else system_of(request)
+    name = options.get("name") or None
+    check_same(Path(folder), target, identifier(name if name and not request["is_diagram"] else stated.name))
     tell(1, 2, f"writing {target}")
-    done = sf.export(stated, target, folder, name=options.get("name") or None)
+    done = sf.export(stated, target, folder, name=name)
     root = Path(request["root"])
     files = [os.path.relpath(file.resolve(), root) for file in done.files]
     return {"files": files, "notes": list(done.notes), "target": done.target}

@@ -306,7 +306,7 @@ def test_a_frame_and_a_coordinate_are_renamed_everywhere(serve: Callable[..., Se
     server = serve("arm.yaml", source=PENDULUM)
     steps.open_editor(page, server.url)
     steps.open_window(page, "bodies/upper")
-    steps.window(page).get_by_label("Name", exact=True).nth(1).fill("shoulder")
+    steps.window(page).get_by_label("Joint name", exact=True).fill("shoulder")
     steps.tab(page, "Frames")
     steps.fill(page, "Name of frames elbow", "joint2")
     steps.accept(page)

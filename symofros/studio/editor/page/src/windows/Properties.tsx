@@ -54,6 +54,8 @@ export function Properties({ path, entry }: { path: Path; entry: Path }) {
     (place: Path, to: string) => setRenames((all) => ({ ...all, [keyOf(place)]: to.trim() })),
     [],
   );
+  const newest = useRef(draft);
+  newest.current = draft;
   const context = useMemo<FormContext>(
     () => ({
       root: schema ?? {},
@@ -63,13 +65,18 @@ export function Properties({ path, entry }: { path: Path; entry: Path }) {
       rename,
       type,
       hint: setHint,
+      draft: (place) => {
+        const whole = isSystem ? place.slice(0, 1) : path;
+        const value = isSystem ? at(newest.current, whole) : newest.current;
+        return value === undefined ? null : { path: whole, value };
+      },
       choices: (key, record) => {
         if (diagram === null) return null;
         if (key === "model") return Object.keys(diagram.models);
         return key === "frame" ? (diagram.models[textAt(record, ["model"]) ?? ""]?.frames ?? null) : null;
       },
     }),
-    [schema, data, diagram, section, path, renames, rename, type],
+    [schema, data, diagram, section, path, isSystem, renames, rename, type],
   );
   const accept = async (): Promise<void> => {
     const edits = isSystem
