@@ -70,6 +70,38 @@ export function startNumbers(data: JsonMap, typed: Texts): Record<string, number
   return numbers;
 }
 
+/** Roll, pitch, yaw of a rotation vector: what `quaternion` takes. */
+export function anglesOfTurn(turn: readonly [number, number, number]): [number, number, number] {
+  const angle = Math.hypot(...turn);
+  const share = angle === 0 ? 0 : Math.sin(angle / 2) / angle;
+  const [x, y, z] = [share * turn[0], share * turn[1], share * turn[2]];
+  const w = Math.cos(angle / 2);
+  return [
+    Math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)),
+    Math.asin(Math.max(-1, Math.min(1, 2 * (w * y - z * x)))),
+    Math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)),
+  ];
+}
+
+// Rounding below what a start that is kept may be off.
+const START_DIGITS = 10;
+
+/** The texts of a start at what the sliders of the 3-D view say, whose turns are rotation vectors. */
+export function startTexts(data: JsonMap, shown: Readonly<Record<string, number>>): Texts {
+  const values: Record<string, number> = { ...shown };
+  for (const { name, entry } of moving(data)) {
+    if (!turnsFreely(entry)) continue;
+    const [x, y, z] = ["x", "y", "z"].map((axis) => shown[`${name}.turn_${axis}`] ?? 0);
+    anglesOfTurn([x ?? 0, y ?? 0, z ?? 0]).forEach((angle, i) => (values[`${name}.${ANGLES[i] ?? ""}`] = angle));
+  }
+  return Object.fromEntries(
+    starts(data).flatMap(({ name }) => {
+      const value = values[name];
+      return value === undefined ? [] : [[name, String(Number(value.toPrecision(START_DIGITS)))]];
+    }),
+  );
+}
+
 /** An input, and what it is where nothing is given. */
 export interface InputRow {
   name: string;
