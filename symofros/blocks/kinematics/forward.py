@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from symofros.blocks.checks import refuse
-from symofros.blocks.quantities import joint_units
+from symofros.blocks.quantities import ACCELERATION, NO_UNIT, VELOCITY, motion_port
 from symofros.blocks.rotations import quaternion_of_matrix
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.tensor import Tensor, stacked
@@ -15,19 +15,17 @@ from symofros.diagrams.tensor import Tensor, stacked
 def _motion_ports(environment: Environment, model: str, names: str) -> tuple[Port, ...]:
     """Inputs q, v, a of a model, rates zero where nothing is connected."""
     record = environment.model(model)
-    units = dict(zip("qva", joint_units(record)[:3], strict=True))
-    sizes = {"q": len(record.q_names), "v": len(record.v_names), "a": len(record.v_names)}
-    return tuple(Port(name, (sizes[name],), units[name], None if name == "q" else 0.0) for name in names)
+    return tuple(motion_port(name, record, name, None if name == "q" else 0.0) for name in names)
 
 
 def _frame_ports(*count: int) -> tuple[Port, ...]:
     """Outputs of `_frame_motion`, of one frame or of a count of them."""
     return (
         Port("p", (*count, 3), "m"),
-        Port("R", (*count, 3, 3)),
-        Port("quaternion", (*count, 4)),
-        Port("velocity", (*count, 6)),
-        Port("acceleration", (*count, 6)),
+        Port("R", (*count, 3, 3), NO_UNIT),
+        Port("quaternion", (*count, 4), NO_UNIT),
+        Port("velocity", (*count, 6), units=VELOCITY),
+        Port("acceleration", (*count, 6), units=ACCELERATION),
     )
 
 
