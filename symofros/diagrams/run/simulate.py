@@ -15,6 +15,7 @@ from symofros.diagrams.program.compiled import CompiledDiagram, rates_of
 from symofros.diagrams.program.lowered_block import watched
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.result import DiagramRun
+from symofros.diagrams.run.examination.controllers import Again, blamed
 from symofros.diagrams.run.examination.diagnosis import Ended, diagnose
 from symofros.diagrams.run.examination.energy_balance import Energies
 from symofros.diagrams.run.examination.remarks import Examined, remarks
@@ -79,6 +80,7 @@ def run_compiled(
     if outcome.kind == "finished" and not options.realtime:
         notes = remarks(_examined(task, ended, called.given), modes)
         outcome = replace(outcome, notes=(*outcome.notes, *notes))
+    outcome = blamed(outcome, resolved, _end_again(task, ended.states, called.given))
     t, q, v, u = ended.states
     records = Records(compiled, t, q, v, u, par)
     outcome = refuse_no_rotation(outcome, resolved, records.t, lambda source: records[".".join(source)])
@@ -132,6 +134,30 @@ def _examined(task: _Run, ended: Ended, given: dict[tuple[str, float], dict[str,
     steps = int(ended.loop.diagram.steps) // max(1, len(parts))
     energies = Energies(ended.resolved, par, task.compiled.energies)
     return Examined(energies, states, h, task.options.atol, steps, repeat, accelerations)
+
+
+def _end_again(task: _Run, states: Sequence[Array], given: dict[tuple[str, float], dict[str, Array]]) -> Again:
+    """Repeats the end of a run, with other records and steps."""
+    wired = task.compiled.resolved.wired
+
+    def again(start: float, end: float, interval: float, dt: float) -> Sequence[Array] | None:
+        t = states[0]
+        if not len(t):
+            return None
+        i = max(0, int(np.searchsorted(t, start, "right")) - 1)
+        if not t[i] < end:
+            return None
+        plan = schedule([*rates_of(task.compiled.resolved.pieces), (RECORD, interval, 0.0)], wired.name)
+        options = replace(task.options, realtime=False, threads=1, dt=dt)
+        begin = Start(float(t[i]), *(array[i].copy() for array in states[1:]))
+        finer = replace(task, options=options, plan=plan, t_end=end)
+        try:
+            ended = _drive(finer, begin, CalledBefore(wired, given), resumed=True)
+        except SymofrosError:
+            return None
+        return [np.concatenate([x[i : i + 1], y]) for x, y in zip(states, ended.states, strict=True)]
+
+    return again
 
 
 def _resumed(
