@@ -37,7 +37,9 @@ def blamed(outcome: Outcome, resolved: Resolved, again: Again) -> Outcome:
         block = resolved.wired.blocks[name]
         period = block.period or 0.0
         states = again(outcome.t - WINDOW * period, outcome.t, period, period / FINER)
-        grown = 0.0 if states is None else max(_growth(values) for values in _outputs(resolved, name, states[3]))
+        if states is None:
+            continue
+        grown = max((_growth(values) for values in _outputs(resolved, name, states[3])), default=0.0)
         if grown >= GROWTH:
             reason = (
                 f"block '{name}', sampled every {period:g} s, drives the motion apart: within {len(states[0])} samples"
@@ -84,7 +86,7 @@ def _outputs(resolved: Resolved, name: str, u: Array) -> Iterator[Array]:
 
 
 def _growth(values: Array) -> float:
-    """By how much the amplitude of a signal (n) grows from one half to the next; 0 where it does not go back and forth."""
+    """Growth of the amplitude of a signal (n) from half to half; 0 where it does not go back and forth."""
     finite = values[np.isfinite(values)]
     if len(finite) < 3:
         return 0.0

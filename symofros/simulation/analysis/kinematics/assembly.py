@@ -111,7 +111,7 @@ def assemble(
     G = conditions.jacobian(found.q)
     speeds = _consistent_speeds(conditions, found.q, wished, free, tolerance)
     rank = eliminate(G, model.record.measures, np.ones(model.nv)).rank
-    return Assembled(found.q, speeds, float(np.abs(found.phi).max(initial=0.0)), found.count, rank)
+    return Assembled(found.q, speeds, float(np.abs(found.phi).max(initial=0.0)), found.steps, rank)
 
 
 class _Conditions(NamedTuple):
@@ -141,7 +141,7 @@ class _Attempt(NamedTuple):
     q: Array
     phi: Array
     bounds: Array
-    count: int
+    steps: int
 
     @property
     def closes(self) -> bool:
@@ -331,7 +331,7 @@ def _refuse(model: Model, first: _Attempt, held: Collection[str]) -> NoReturn:
     raise AssemblyError(
         Problem(
             f"model '{model.record.name}': can't be assembled from this guess",
-            f"after {first.count} steps phi = {first.phi[worst]:.3g} at '{model.names.constraints[worst]}'{also};"
+            f"after {first.steps} steps phi = {first.phi[worst]:.3g} at '{model.names.constraints[worst]}'{also};"
             f" {len(SHIFTS) * ATTEMPTS} guesses near it close it neither",
             f"|phi| <= {first.bounds[worst]:.2g}; either no configuration closes it, or the guess leads to none",
             "start nearer, hold fewer coordinates, or check lengths",

@@ -89,7 +89,8 @@ def _holding(model: Model, coordinates: Collection[str]) -> tuple[tuple[str, ...
 
     An entry of a quaternion can't be held alone: its whole rotation is, and of a pose all translations.
     """
-    linear, others = [], []
+    linear: list[str] = []
+    others: list[str] = []
     for segment in model.record.segments:
         ends = (segment.q, segment.q + segment.translations, segment.q + segment.size)
         speeds = model.names.v[segment.v : segment.v + segment.speeds]
