@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import reference_models
 import symofros as sf
 from reference_models import MODELS
 from symofros.generator import programs
@@ -19,7 +20,7 @@ from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.topology import graph
 from symofros.runtime.build import build
 from symofros.runtime.calls import binding, extension
-from symofros.studio.editor.jobs.operations import compile_model
+from symofros.studio.editor.jobs.operations import compile_model, simulate
 
 
 @pytest.fixture
@@ -64,15 +65,21 @@ def test_a_model_that_is_known_is_not_derived(work: Counter[str]) -> None:
     assert work["derivations"] == work["programs"] == work["compilations"] == 0
 
 
-def test_a_click_on_compile_derives_once(work: Counter[str]) -> None:
-    """Forward dynamics is formed by both methods, to be counted, and among the other functions."""
-    request = {"file": "arm.yaml", "text": ARM}
+@pytest.mark.parametrize("kind", ["tree", "loop"])
+def test_a_simulation_after_a_click_on_compile_derives_and_compiles_nothing(work: Counter[str], kind: str) -> None:
+    """One derivation for what is counted and for what is compiled; units of functions as a run calls them."""
+    text = ARM if kind == "tree" else FOUR_BAR.read_text()
+    request: dict[str, Any] = {"file": "arm.yaml", "text": text}
     result = compile_model(request, lambda *_: None)
-    assert result["nq"] == 1
-    assert work["derivations"] == work["compilations"] == work["checks"] == 1
-    assert work["programs"] == 3
+    assert result["nq"] == (1 if kind == "tree" else 3) and "mass_matrix" in result["operations"]
+    assert work["derivations"] == work["checks"] == 1
+    work.clear()
+    found = simulate(request | {"options": {"t_end": 0.01}}, lambda *_: None)
+    assert found["outcome"]["ok"]
+    assert work["derivations"] == work["programs"] == work["compilations"] == 0
 
 
+FOUR_BAR = Path(reference_models.__file__).parent / "closed" / "four_bar.yaml"
 ARM = """\
 symofros: 1
 bodies:

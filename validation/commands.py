@@ -77,10 +77,6 @@ COMMANDS = {
         "pareto.report",
         "Compare speed at equal accuracy: our models and methods, and engines with their own integrators.",
     ),
-    "all": Command(
-        "dashboard.command",
-        "Make every report that this machine can make of the code as it is: hours; --resume goes on.",
-    ),
     "dashboard": Command("dashboard.command", "Gather the reports on one page."),
     "all": Command("dashboard.command", "Make every report that this machine can make of the code as it is: hours."),
     "render": Command(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from symofros.blocks.quantities import frame_ports, joint_units
+from symofros.blocks.quantities import WRENCH, frame_ports, motion_port
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Terms, Values
 from symofros.diagrams.program.variants import FRICTION
 from symofros.diagrams.tensor import Tensor, joined
@@ -38,12 +38,10 @@ class ForwardDynamics(Block):
     def ports(self, environment: Environment) -> Ports:
         """Efforts and prescribed motions u (nu); q, v, a, friction (nv), under constraints lam (nc)."""
         record = environment.model(self.model)
-        q, v, a, effort = joint_units(record)
-        nv = len(record.v_names)
-        inputs = [Port("u", (len(record.u_names),), effort, record.u_default)]
+        inputs = [motion_port("u", record, "u", record.u_default)]
         for port, frame in frame_ports(self.name, "wrench_", self.perturbed).items():
             environment.frame(self.model, frame)
-            inputs.append(Port(port, (6,), "", 0.0))
+            inputs.append(Port(port, (6,), "", 0.0, WRENCH))
         names = _constraints(record.constraint_names)
         if self.engaged:
             if not names:
@@ -57,10 +55,10 @@ class ForwardDynamics(Block):
                 )
             inputs.append(Port("engaged", (len(dict.fromkeys(names)),)))
         outputs = [
-            Port("q", (len(record.q_names),), q),
-            Port("v", (nv,), v),
-            Port("a", (nv,), a),
-            Port("friction", (nv,), effort),
+            motion_port("q", record, "q"),
+            motion_port("v", record, "v"),
+            motion_port("a", record, "a"),
+            motion_port("friction", record, "effort"),
         ]
         return Ports(tuple(inputs), (*outputs, Port("lam", (record.nc,))) if record.nc else tuple(outputs))
 
@@ -128,12 +126,8 @@ class InverseDynamics(Block):
     def ports(self, environment: Environment) -> Ports:
         """Motion in: q (nq), v and a (nv). Efforts out: tau (nv)."""
         record = environment.model(self.model)
-        q, v, a, effort = joint_units(record)
-        nv = len(record.v_names)
-        return Ports(
-            (Port("q", (len(record.q_names),), q), Port("v", (nv,), v), Port("a", (nv,), a)),
-            (Port("tau", (nv,), effort),),
-        )
+        motion = (motion_port(name, record, name) for name in ("q", "v", "a"))
+        return Ports(tuple(motion), (motion_port("tau", record, "effort"),))
 
     def compute(self, context: EvaluationContext) -> Values:
         """By the model's own inverse dynamics."""

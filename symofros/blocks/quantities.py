@@ -4,17 +4,70 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any, Literal
 
+from symofros.base.measures import OTHER, ROTATION, TRANSLATION
 from symofros.blocks.checks import refuse
-from symofros.diagrams.block import Environment, Shape
+from symofros.diagrams.block import Environment, Port, Ports, Shape
 from symofros.runtime.record import ModelRecord
 
+# Of q, v, a and the effort, by the kind of a speed; elastic coordinates and those of the user's own joints have units
+# of their own, which are not known here.
+_UNITS = {
+    ROTATION: ("rad", "rad/s", "rad/s^2", "N m"),
+    TRANSLATION: ("m", "m/s", "m/s^2", "N"),
+    OTHER: ("", "", "", ""),
+}
+NO_UNIT = "1"
+# Of (linear; angular) vectors.
+WRENCH = ("N",) * 3 + ("N m",) * 3
+VELOCITY = ("m/s",) * 3 + ("rad/s",) * 3
+ACCELERATION = ("m/s^2",) * 3 + ("rad/s^2",) * 3
+Quantity = Literal["q", "v", "a", "effort", "u"]
 
-def joint_units(record: ModelRecord) -> tuple[str, str, str, str]:
-    """Of q, v, a and efforts; all angles, or else left open, since a vector has one unit."""
-    turns = len(record.q_names) == len(record.v_names) and all(record.periodic) and bool(record.periodic)
-    efforts = set(record.u_names) <= set(record.v_names)
-    return ("rad", "rad/s", "rad/s^2", "N m" if efforts else "") if turns else ("", "", "", "")
+
+def entry_units(record: ModelRecord, quantity: Quantity) -> tuple[str, ...]:
+    """Units of the entries of a model's q (nq), v, a, efforts (nv) or inputs u (nu); "" where they are not known."""
+    kinds = (*record.measures.speed, *(OTHER,) * len(record.v_names))[: len(record.v_names)]
+    if quantity == "u":
+        efforts = dict(zip(record.v_names, entry_units(record, "effort"), strict=True))
+        return tuple("" if record.driven else efforts.get(name, "") for name in record.u_names)
+    column = ("q", "v", "a", "effort").index(quantity)
+    if quantity != "q":
+        return tuple(_UNITS[kind][column] for kind in kinds)
+    units: list[str] = []
+    for segment in record.segments:
+        along = segment.size if segment.kind == "linear" else segment.translations
+        units += [_UNITS[kinds[segment.v + i]][column] for i in range(along)]
+        units += [NO_UNIT] * (segment.size - along)
+    return tuple(units)
+
+
+def of_units(port: Port, units: Sequence[str]) -> Port:
+    """A port whose entries have these units: one unit where they are all alike."""
+    if len(set(units)) <= 1:
+        return replace(port, unit=units[0] if units else "", units=())
+    return replace(port, unit="", units=tuple(units))
+
+
+def motion_port(name: str, record: ModelRecord, quantity: Quantity, default: Any = None) -> Port:
+    """A port for a model's q (nq), v, a, efforts (nv) or inputs u (nu), with the units of their entries."""
+    units = entry_units(record, quantity)
+    return of_units(Port(name, (len(units),), "", default), units)
+
+
+def passed_units(environment: Environment, stated: str, names: Sequence[str]) -> tuple[str, ...]:
+    """Units of a signal that goes through a block: the stated one, or else that of the first input that has one."""
+    if stated:
+        return (stated,)
+    return next((environment.units[name] for name in names if name in environment.units), ("",))
+
+
+def passing(environment: Environment, shape: Shape | None, stated: str) -> Ports:
+    """An input u and an output y of one shape and one unit: the stated one, or else that of what is connected."""
+    units = passed_units(environment, stated, ("u",))
+    return Ports((of_units(Port("u", shape), units),), (of_units(Port("y", shape), units),))
 
 
 def common_shape(environment: Environment, names: Sequence[str]) -> Shape | None:

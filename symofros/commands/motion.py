@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -31,6 +31,7 @@ from symofros.compiler import compile_system
 from symofros.description.system import System
 from symofros.diagrams.files import command as diagrams
 from symofros.diagrams.files.kind import is_diagram
+from symofros.simulation.analysis.kinematics.starts import closed_start, stated_names
 from symofros.simulation.progress import pace_of
 from symofros.simulation.results.plots import MOST_CURVES
 from symofros.simulation.stepping.methods import METHODS
@@ -155,14 +156,13 @@ def _simulated(
     progress: bool,
 ) -> sf.Trajectory:
     """The run of one model."""
-    compiled, q, v = stated_state(compile_system(system), assignments(given, "--set"))
-    if compiled.nc:
-        closed = sf.assemble(compiled, q, v)
-        q, v = closed.q, closed.v
-    return sf.simulate(
+    stated = assignments(given, "--set")
+    compiled, q, v = stated_state(compile_system(system), stated)
+    start = closed_start(compiled, q, v, *stated_names(compiled.names.q, compiled.names.v, stated))
+    run = sf.simulate(
         compiled,
-        q,
-        v,
+        start.q,
+        start.v,
         1.0 if t_end is None else t_end,
         u=assignments(inputs, "--input") or None,
         output=every,
@@ -170,6 +170,7 @@ def _simulated(
         progress=progress,
         **settings,
     )
+    return replace(run, outcome=replace(run.outcome, notes=(*start.notes, *run.outcome.notes)))
 
 
 def _drawn(run: sf.Trajectory, names: list[str], picture: str) -> str:

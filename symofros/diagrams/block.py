@@ -36,12 +36,19 @@ class Port(metaclass=CheckedCalls):
         shape: Shape of the signal; None as long as nothing that is connected tells.
         unit: Such as "rad/s"; "" where any will do.
         default: Value of an input where nothing is connected, a number for all entries; None: it must be connected.
+        units: Units along the last axis of a signal whose entries have not all the same one, in place of `unit`.
     """
 
     name: str
     shape: Shape | None = ()
     unit: str = ""
     default: Any = None
+    units: tuple[str, ...] = ()
+
+    @property
+    def entry_units(self) -> tuple[str, ...]:
+        """Units along the last axis; one, of a signal whose entries have all the same."""
+        return self.units or (self.unit,)
 
 
 @dataclass(frozen=True)
@@ -58,6 +65,11 @@ class Environment(Protocol):
     @property
     def inputs(self) -> Mapping[str, Shape]:
         """Shapes of the signals at its inputs, as far as they are known."""
+        ...
+
+    @property
+    def units(self) -> Mapping[str, tuple[str, ...]]:
+        """Units of the signals at its inputs, as far as they are known: `entry_units` of the sources."""
         ...
 
     def model(self, name: str) -> ModelRecord:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from symofros.base.units import agree, parse
-from symofros.diagrams.block import Ports
+from symofros.diagrams.block import Port, Ports, Shape
 from symofros.diagrams.diagram import Diagram
 from symofros.errors import DescriptionError, Problem
 
@@ -28,14 +28,15 @@ def check_fit(
     outputs = {(block, item.name): item for block, block_ports in ports.items() for item in block_ports.outputs}
     odd: set[str] = set()  # Texts that are no units.
     for block, block_ports in ports.items():
-        for item in (*block_ports.inputs, *block_ports.outputs):
+        stated = [(port, unit) for port in (*block_ports.inputs, *block_ports.outputs) for unit in port.entry_units]
+        for item, unit in stated:
             try:
-                parse(item.unit)
+                parse(unit)
             except DescriptionError as error:
                 one = error.problems[0]
                 what = f"diagram '{diagram.name}': '{block}.{item.name}': {one.what}"
                 problems.append(replace(one, what=what, where=diagram.where(block, item.name)))
-                odd.add(item.unit)
+                odd.add(unit)
         unknown = [item.name for item in block_ports.outputs if item.shape is None]
         if unknown and not problems:  # Shapes that faults leave open are no faults of their own.
             problems.append(
@@ -53,7 +54,7 @@ def check_fit(
             continue
         item = taking[0]
         wire = f"diagram '{diagram.name}': {'.'.join(source)} -> {block}.{port}"
-        if item.shape != given.shape and None not in (item.shape, given.shape):
+        if None not in (item.shape, given.shape) and not fits(given.shape, item.shape):
             problems.append(
                 Problem(
                     f"{wire}: shapes differ",
@@ -63,13 +64,36 @@ def check_fit(
                     diagram.where(block, port),
                 )
             )
-        if not odd & {given.unit, item.unit} and not agree(given.unit, item.unit):
+        differing = _differing(given, item, odd)
+        if differing is not None:
+            entry, unit, wanted = differing
             problems.append(
                 Problem(
-                    f"{wire}: units differ",
-                    f"{given.unit}",
-                    f"the input takes {item.unit}",
+                    f"{wire}: units differ{entry}",
+                    unit,
+                    f"the input takes {wanted}",
                     "convert by a gain with units",
                     diagram.where(block, port),
                 )
             )
+
+
+# One number: alone, and as a vector of one.
+_ONE_NUMBER = ((), (1,))
+
+
+def fits(given: Shape | None, taken: Shape | None) -> bool:
+    """Whether a signal of a shape can go where another one is taken: one number is one, alone or as a vector of one."""
+    return given == taken or (given in _ONE_NUMBER and taken in _ONE_NUMBER)
+
+
+def _differing(given: Port, taken: Port, odd: set[str]) -> tuple[str, str, str] | None:
+    """Of the first entry whose units differ: which it is, where there are several, its unit, and the one taken."""
+    own, other = given.entry_units, taken.entry_units
+    count = max(len(own), len(other))
+    if {len(own), len(other)} - {1, count}:
+        return None  # Shapes differ, and that is said.
+    for i, (a, b) in enumerate(zip(own * (count // len(own)), other * (count // len(other)), strict=True)):
+        if not odd & {a, b} and not agree(a, b):
+            return (f" at entry {i}" if count > 1 else ""), a, b
+    return None

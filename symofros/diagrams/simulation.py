@@ -133,6 +133,7 @@ class Simulation:
         instants = list(_instants(plan, t0, t_end))
         course = Course(instants, t_end, dt, plan.spacing, METHODS[method].tableau, gains is None)
         blocks = Blocks(resolved, par, gains or (0.0, 0.0), toolchain)
+        closing = () if gains else blocks.close_loops()
         watch = BeamWatch(resolved, par, beam_limit)
         with begun(resolved.wired) as called, bar(progress, t0, t_end) as show:
             run = run_interpreted(blocks, called, course, watch, show, observer)
@@ -140,7 +141,7 @@ class Simulation:
         notes = joint_limit_notes(resolved, run.t, run.q, run.v)
         if run.outcome.ok:
             notes += notes_on_steps(run, blocks, course, called, METHODS[method])
-        return replace(run, outcome=replace(run.outcome, notes=(*run.outcome.notes, *notes)))
+        return replace(run, outcome=replace(run.outcome, notes=(*closing, *run.outcome.notes, *notes)))
 
 
 def _end(diagram: Diagram, t_end: float | None) -> float:

@@ -89,12 +89,16 @@ class Wired:
 class _Surroundings:
     """Surroundings of a block while its ports are determined."""
 
-    def __init__(self, models: Models, inputs: Mapping[str, Shape]) -> None:
-        self._models, self._inputs = models, inputs
+    def __init__(self, models: Models, inputs: Mapping[str, Shape], units: Mapping[str, tuple[str, ...]]) -> None:
+        self._models, self._inputs, self._units = models, inputs, units
 
     @property
     def inputs(self) -> Mapping[str, Shape]:
         return self._inputs
+
+    @property
+    def units(self) -> Mapping[str, tuple[str, ...]]:
+        return self._units
 
     def model(self, name: str) -> ModelRecord:
         return self._models.record(name)
@@ -124,7 +128,8 @@ class _Surroundings:
 def surroundings(wired: Wired, block: str) -> _Surroundings:
     """What a block of a wired diagram knows."""
     shapes = {port.name: port.shape or () for port in wired.ports[block].inputs}
-    return _Surroundings(wired.models, shapes)
+    units = {port.name: port.entry_units for port in wired.ports[block].inputs}
+    return _Surroundings(wired.models, shapes, units)
 
 
 @dataclass(frozen=True)
@@ -254,7 +259,7 @@ def _first_ports(diagram: Diagram, models: Models, problems: list[Problem]) -> d
     ports = {}
     for name, block in diagram.blocks.items():
         try:
-            ports[name] = block.ports(_Surroundings(models, {}))
+            ports[name] = block.ports(_Surroundings(models, {}, {}))
         except DescriptionError as error:
             problems += located(error.problems, diagram.where(name))
     return ports
@@ -372,19 +377,20 @@ def _settle(
 ) -> dict[str, Ports]:
     """Carry shapes along the wires until nothing changes."""
     for _ in range(len(ports) + 1):
-        shapes = {
-            (block, item.name): item.shape for block, stated_ports in ports.items() for item in stated_ports.outputs
-        }
+        outputs = {(block, item.name): item for block, known in ports.items() for item in known.outputs}
         now = {}
         for name, stated in ports.items():
-            inputs = {}
+            inputs, units = {}, {}
             for item in stated.inputs:
                 source = sources.get((name, item.name))
-                shape = shapes.get(source) if source else np.shape(item.default) or item.shape
+                given = outputs.get(source) if source else None
+                shape = (given.shape if given else None) if source else np.shape(item.default) or item.shape
                 if shape is not None:
                     inputs[item.name] = shape
+                if given is not None and any(given.entry_units):
+                    units[item.name] = given.entry_units
             try:
-                stated_ports = diagram.blocks[name].ports(_Surroundings(models, inputs))
+                stated_ports = diagram.blocks[name].ports(_Surroundings(models, inputs, units))
             except DescriptionError as error:
                 problems += located(error.problems, diagram.where(name))
                 return ports

@@ -18,7 +18,7 @@ from symofros.description.beams.beam import Beam
 from symofros.description.system import System
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.program.compiled import resolve
-from symofros.errors import AssemblyError, ExportError, Problem, UnknownNameError, did_you_mean
+from symofros.errors import ExportError, Problem, UnknownNameError, did_you_mean
 from symofros.exports.c.c_package import write_c_package
 from symofros.exports.c.mex import write_mex
 from symofros.exports.c.reference import POINTS, checks
@@ -38,9 +38,9 @@ from symofros.generator.codegen.names import identifier
 from symofros.loading import load
 from symofros.mechanics.topology.tree import build_tree
 from symofros.runtime.beams import BEAM_LIMIT
-from symofros.runtime.calls.kernel import Array, LaneOptions
+from symofros.runtime.calls.kernel import LaneOptions
 from symofros.runtime.model import Model
-from symofros.simulation.analysis.kinematics.assembly import assemble
+from symofros.simulation.analysis.kinematics.starts import ClosedStart, closed_start, stated_names
 from symofros.simulation.stepping.methods import METHODS, method_meant
 
 Target = Literal["c", "cuda", "mex", "sfunction", "fmu2", "fmu3", "wasm", "urdf", "mjcf"]
@@ -213,7 +213,7 @@ def _material(
     if target in _DIFFERENTIATED and record.driven and shown:
         compilation.request(("frame_derivatives",), shown)
     interpreted = compile_system(system, Options(backend="interpreter"))
-    q, v = _start(interpreted, start)
+    first = _start(interpreted, start)
     kernels = InterpretedUnit(compilation.program).kernels
     order = tuple((request.name, request.frame) for request in compilation.requests)
     return Material(
@@ -223,16 +223,16 @@ def _material(
         compilation.source(c_name, LaneOptions(in_rows=True) if target == "wasm" else None),
         order,
         tuple(kernels[key].signature for key in order),
-        checks(record, kernels, order, q),
+        checks(record, kernels, order, first.q),
         POINTS,
-        tuple(q.tolist()),
-        tuple(v.tolist()),
+        tuple(first.q.tolist()),
+        tuple(first.v.tolist()),
         stepping,
         interpreted.beams(),
         shown,
         GENERATOR,
         target == "c",
-        system.notes,
+        (*system.notes, *first.notes),
     )
 
 
@@ -273,10 +273,9 @@ def _outputs(known: Sequence[str], generated: Sequence[str], wanted: Sequence[st
     return tuple(wanted)
 
 
-def _start(model: Model, given: Mapping[str, float]) -> tuple[Array, Array]:
-    """The first state, on the constraints; coordinates that were given keep their values where that is possible."""
+def _start(model: Model, given: Mapping[str, float]) -> ClosedStart:
+    """The first state, on the constraints; what was given keeps its values."""
     q, v = model.neutral(), np.zeros(model.nv)
-    held: list[str] = []
     for label, value in given.items():
         coordinate, speed = coordinate_of(label, model.names.q), speed_of(label, model.names.v)
         if coordinate:
@@ -292,11 +291,4 @@ def _start(model: Model, given: Mapping[str, float]) -> tuple[Array, Array]:
                     did_you_mean(label, [*model.names.q, *(f"d{speed}" for speed in model.names.v)]),
                 )
             )
-        held += [name for name in (coordinate, speed) if name in model.names.v]
-    if not model.nc:
-        return q, v
-    try:
-        closed = assemble(model, q, v, held=held)
-    except AssemblyError:
-        closed = assemble(model, q, v)
-    return closed.q, closed.v
+    return closed_start(model, q, v, *stated_names(model.names.q, model.names.v, given))

@@ -60,6 +60,31 @@ def check_folder(folder: Path) -> dict[str, str]:
     return {name: digest for name, digest in known.items() if Path(name).name == name}
 
 
+def check_same(folder: Path, target: str, name: str) -> None:
+    """Refuse a folder with an export of another kind or of another model, whose files a new export would remove.
+
+    Args:
+        folder: Folder that an export is to be written to.
+        target: Kind of export.
+        name: Name of the model in C.
+
+    Raises:
+        ExportError: It holds another export, or something that is none of ours.
+    """
+    if not check_folder(folder):
+        return
+    stated = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
+    if (stated.get("target"), stated.get("name")) != (target, name):
+        raise ExportError(
+            Problem(
+                f"'{folder.name}' holds another export, which would be removed",
+                f"'{stated.get('target')}' of '{stated.get('name')}', where '{target}' of '{name}' is to be written",
+                "a folder has one export; writing it anew replaces its files",
+                "choose another folder",
+            )
+        )
+
+
 def _not_ours(folder: Path, found: str) -> ExportError:
     return ExportError(
         Problem(

@@ -37,6 +37,10 @@ from symofros.runtime.functions import Key, Rate
 from symofros.runtime.record import ModelRecord
 
 
+class _SolverError(Exception):
+    """A function that a solver finishes has no code by vectors."""
+
+
 class UnitCompiler:
     """Units of one model.
 
@@ -181,12 +185,19 @@ class UnitCompiler:
         """Compiles one function of a unit by vectors when asked for; None for a function that a solver finishes."""
 
         def compile_in_lanes(key: Key, lanes: LaneOptions) -> CompiledKernel | None:
-            function = next(f for f in program().functions if (f.name, f.frame) == key)
-            if function.solver is not None or self._toolchain is None:
+            def alone() -> Program:
+                function = next(f for f in program().functions if (f.name, f.frame) == key)
+                if function.solver is not None:
+                    raise _SolverError
+                return replace(program(), functions=(function,))
+
+            if self._toolchain is None:
                 return None
-            alone = replace(program(), functions=(function,))
             names = f"{key[0]} by vectors"
-            return self._compile((request, lanes, key), names, lambda: alone, self._toolchain, lanes).compiled[key]
+            try:  # The program is formed only where no library is known.
+                return self._compile((request, lanes, key), names, alone, self._toolchain, lanes).compiled[key]
+            except _SolverError:
+                return None
 
         return compile_in_lanes
 

@@ -77,7 +77,7 @@ def simulate(
     looked_for = named_events(events)
     inputs = plan_inputs(model, u)
     check_fit(model, settings, inputs)
-    _prepare(model, settings)
+    prepare_run(model, settings)
     stepper = Stepper(model, settings.method, inputs, looked_for, values)
     settings.apply(stepper)
     check_start(model, settings, q, v, stepper.inputs_at(settings.t0, q, v), np.asarray(values))
@@ -94,8 +94,14 @@ def simulate(
     return Trajectory(model, t, q_all, v_all, u_all, np.array(values), outcome, met, statistics, bendings)
 
 
-def _prepare(model: Model, settings: Settings) -> None:
-    """Compile what a run and its diagnosis call, all at the same time; the integrator is compiled once a machine."""
+def prepare_run(model: Model, settings: Settings | None = None) -> None:
+    """Compile what a run and its diagnosis call, all at the same time; the integrator is compiled once a machine.
+
+    Args:
+        model: Model.
+        settings: Settings of the run; those by default if not given.
+    """
+    settings = settings or Settings.of(model, SimulationOptions(), 1.0)
     names = ["forward_dynamics", *settings.method.family.functions, "kinetic_energy"]
     names += ["project", "constraint"] if model.nc else []
     names += ["dynamics"] if settings.judged else []

@@ -54,6 +54,14 @@ def test_loops_are_closed_first() -> None:
     assert found.exit_code == 0 and json.loads(found.stdout)["ok"]
 
 
+def test_what_is_set_of_a_loop_is_held_or_refused() -> None:
+    found = run(FOUR_BAR, "0.01", "--set", "q1=1", "--set", "dq1=1", "--every", "0.01", "--json")
+    assert found.exit_code == 0 and not json.loads(found.stdout)["outcome"]["notes"]
+    assert json.loads(found.stdout)["last"]["q1"] == pytest.approx(1.01, abs=1e-3)
+    found = run(FOUR_BAR, "0.01", "--set", "q1=1", "--set", "q2=-0.5", "--set", "q3=0.3")
+    assert found.exit_code != 0 and "q2 = -0.5 would be -" in " ".join(found.output.split())
+
+
 def test_a_run_that_fails_ends_with_1() -> None:
     found = run(PENDULUM, "1", "--method", "euler", "--dt", "0.5", "--input", "q1=exp(q1^2+100)*1e200")
     assert found.exit_code == 1 and "try:" in found.stdout

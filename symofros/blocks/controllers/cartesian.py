@@ -9,8 +9,8 @@ import numpy as np
 
 from symofros.blocks.checks import number, numbers, refuse
 from symofros.blocks.kinematics.tasks import Task, near_singular, rows_of
-from symofros.blocks.quantities import joint_units
-from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
+from symofros.blocks.quantities import motion_port
+from symofros.diagrams.block import Block, Environment, EvaluationContext, Ports, Values
 from symofros.diagrams.tensor import Tensor, solved, stacked
 
 
@@ -36,9 +36,9 @@ class _Cartesian(Block):
 
     def _ports(self, environment: Environment, result: str) -> Ports:
         record, task = environment.model(self.model), self._task(environment)
-        units, nv, m = joint_units(record), len(record.v_names), len(task.rows)
-        inputs = (*task.ports(), Port("q", (len(record.q_names),), units[0]), Port("v", (nv,), units[1]))
-        return Ports(inputs, (Port(result, (nv,), units[3]), Port("wrench", (m,)), Port("error", (m,))))
+        inputs = (*task.ports(), motion_port("q", record, "q"), motion_port("v", record, "v"))
+        wrench, error = task.row_port("wrench", "N", "N m"), task.row_port("error", "m", "rad")
+        return Ports(inputs, (motion_port(result, record, "effort"), wrench, error))
 
 
 @dataclass(frozen=True, kw_only=True)

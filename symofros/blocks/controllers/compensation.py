@@ -9,8 +9,8 @@ import numpy as np
 
 from symofros.blocks.checks import numbers
 from symofros.blocks.dynamics import friction
-from symofros.blocks.quantities import joint_units
-from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
+from symofros.blocks.quantities import motion_port
+from symofros.diagrams.block import Block, Environment, EvaluationContext, Ports, Values
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,12 +32,12 @@ class FrictionCompensation(Block):
 
     def ports(self, environment: Environment) -> Ports:
         """Motion q, v in; effort (nv) out, zero where there is no friction."""
-        q, v, _, effort = joint_units(environment.model(self.model))
         record = environment.model(self.model)
         nv = len(record.v_names)
         if np.ndim(self.factor):
             numbers(self.name, "factor", self.factor, (nv,))
-        return Ports((Port("q", (len(record.q_names),), q), Port("v", (nv,), v)), (Port("effort", (nv,), effort),))
+        inputs = motion_port("q", record, "q"), motion_port("v", record, "v")
+        return Ports(inputs, (motion_port("effort", record, "effort"),))
 
     def compute(self, context: EvaluationContext) -> Values:
         """The opposite of the friction."""
@@ -58,8 +58,7 @@ class GravityCompensation(Block):
     def ports(self, environment: Environment) -> Ports:
         """Configuration q in; effort (nv) out."""
         record = environment.model(self.model)
-        q, _, _, effort = joint_units(record)
-        return Ports((Port("q", (len(record.q_names),), q),), (Port("effort", (len(record.v_names),), effort),))
+        return Ports((motion_port("q", record, "q"),), (motion_port("effort", record, "effort"),))
 
     def compute(self, context: EvaluationContext) -> Values:
         """Inverse dynamics at rest."""

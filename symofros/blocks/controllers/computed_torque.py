@@ -9,7 +9,7 @@ import numpy as np
 
 from symofros.blocks.checks import numbers
 from symofros.blocks.manifold import difference
-from symofros.blocks.quantities import joint_units
+from symofros.blocks.quantities import entry_units, motion_port, of_units
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 
 
@@ -39,19 +39,19 @@ class ComputedTorque(Block):
     def ports(self, environment: Environment) -> Ports:
         """Desired q, v, a and actual q, v in; tau (nv) and the error (nv) out."""
         record = environment.model(self.model)
-        q, v, a, effort = joint_units(record)
-        nq, nv = len(record.q_names), len(record.v_names)
+        nv = len(record.v_names)
         for field in ("kp", "kd"):
             if np.ndim(getattr(self, field)):
                 numbers(self.name, field, getattr(self, field), (nv,))
         inputs = (
-            Port("q_desired", (nq,), q),
-            Port("v_desired", (nv,), v, 0.0),
-            Port("a_desired", (nv,), a, 0.0),
-            Port("q", (nq,), q),
-            Port("v", (nv,), v),
+            motion_port("q_desired", record, "q"),
+            motion_port("v_desired", record, "v", 0.0),
+            motion_port("a_desired", record, "a", 0.0),
+            motion_port("q", record, "q"),
+            motion_port("v", record, "v"),
         )
-        return Ports(inputs, (Port("tau", (nv,), effort), Port("error", (nv,), q)))
+        turns = tuple(unit.removesuffix("/s") for unit in entry_units(record, "v"))
+        return Ports(inputs, (motion_port("tau", record, "effort"), of_units(Port("error", (nv,)), turns)))
 
     def compute(self, context: EvaluationContext) -> Values:
         """Inverse dynamics at the acceleration that the errors ask for."""

@@ -8,9 +8,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from symofros.base.units import parse
 from symofros.blocks.checks import number, numbers, refuse
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Shape, Values
 from symofros.diagrams.tensor import Tensor
+from symofros.errors import DescriptionError
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -18,8 +20,8 @@ class JointPD(Block):
     """Efforts kp (q_d - q) + kd (v_d - v), entry by entry.
 
     Attributes:
-        kp: Proportional gain of each joint, or one for all [N m/rad].
-        kd: Derivative gain of each joint, or one for all [N m s/rad].
+        kp: Proportional gain of each joint, or one for all [N m/rad, N/m].
+        kd: Derivative gain of each joint, or one for all [N m s/rad, N s/m].
     """
 
     kp: Any
@@ -124,12 +126,49 @@ def _joint_ports(block: Block, environment: Environment) -> Ports:
     size: Shape | None = environment.inputs.get("q", environment.inputs.get("q_desired"))
     for field in block.tunable:
         own = np.shape(getattr(block, field))
+        if own == (1,) and size == ():
+            size = own
         if own and size is not None and own != size:
             raise refuse(
                 block.name, f"{field} does not fit the joints", own, f"one number, or shape {size}", "give one a joint"
             )
-    inputs = (Port("q_desired", size), Port("v_desired", size, "", 0.0), Port("q", size), Port("v", size))
-    return Ports(inputs, (Port("effort", size),))
+    position, effort = _units(environment)
+    speed = position and f"{position}/s"
+    inputs = (
+        Port("q_desired", size, position),
+        Port("v_desired", size, speed, 0.0),
+        Port("q", size, position),
+        Port("v", size, speed),
+    )
+    return Ports(inputs, (Port("effort", size, effort),))
+
+
+def _units(environment: Environment) -> tuple[str, str]:
+    """Units of the coordinates and of the efforts, by what is connected: joints turn or slide, all of a block alike.
+
+    Units of different joints in one vector are left open. Where something is connected that is neither a motion of
+    joints that turn nor of those that slide, they turn, and it is refused.
+    """
+    connected = {name: units for name, units in environment.units.items() if len(units) == 1}
+    of_turn, of_slide, per_second = parse("rad"), parse("m"), parse("1/s")
+    for quantity, effort in ((of_turn, "N m"), (of_slide, "N")):
+        for name in ("q", "q_desired", "v", "v_desired"):
+            for (unit,) in [connected[name]] if name in connected else []:
+                powers = _powers(unit)
+                if powers == quantity.powers and name.startswith("q"):
+                    return unit, effort
+                if powers in (quantity.powers, (quantity * per_second).powers):
+                    return ("rad" if quantity is of_turn else "m"), effort
+    if connected and len(connected) == len(environment.units):
+        return "rad", "N m"
+    return "", ""
+
+
+def _powers(unit: str) -> tuple[int, ...]:
+    try:
+        return parse(unit).powers
+    except DescriptionError:  # It is said where the unit is stated.
+        return ()
 
 
 def _errors(context: EvaluationContext) -> tuple[Tensor, Tensor]:

@@ -10,7 +10,7 @@ import numpy as np
 from symofros.blocks.checks import numbers, refuse
 from symofros.blocks.controllers.riccati import continuous_gain, held_inputs, sampled_gain
 from symofros.blocks.manifold import difference
-from symofros.blocks.quantities import joint_units
+from symofros.blocks.quantities import entry_units, motion_port, of_units
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.tensor import joined
 from symofros.runtime.calls.kernel import Array
@@ -39,8 +39,7 @@ class LQR(Block):
     def ports(self, environment: Environment) -> Ports:
         """Actual q, v, and desired ones, the first state by default, in; u (nu) and x (2 nv) out."""
         record = environment.model(self.model)
-        q, v, _, effort = joint_units(record)
-        nq, nv, nu = len(record.q_names), len(record.v_names), len(record.u_names)
+        nv, nu = len(record.v_names), len(record.u_names)
         if not nu:
             raise refuse(
                 self.name,
@@ -55,12 +54,15 @@ class LQR(Block):
         self._weights("input_weights", nu)
         q0, v0 = environment.start(self.model)
         inputs = (
-            Port("q", (nq,), q),
-            Port("v", (nv,), v),
-            Port("q_desired", (nq,), q, tuple(q0)),
-            Port("v_desired", (nv,), v, tuple(v0)),
+            motion_port("q", record, "q"),
+            motion_port("v", record, "v"),
+            motion_port("q_desired", record, "q", tuple(q0)),
+            motion_port("v_desired", record, "v", tuple(v0)),
         )
-        return Ports(inputs, (Port("u", (nu,), effort), Port("x", (2 * nv,))))
+        # Differences of configurations: of rotations, rotation vectors.
+        turns = tuple(unit.removesuffix("/s") for unit in entry_units(record, "v"))
+        x = of_units(Port("x", (2 * nv,)), (*turns, *entry_units(record, "v")))
+        return Ports(inputs, (motion_port("u", record, "u"), x))
 
     def _weights(self, field: str, size: int) -> Array:
         given = np.asarray(getattr(self, field), dtype=np.float64)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from symofros.blocks.checks import choice
-from symofros.blocks.quantities import joint_units
+from symofros.blocks.quantities import NO_UNIT, VELOCITY, WRENCH, motion_port, of_units, passed_units
 from symofros.blocks.rotations import (
     EULER,
     error_vector,
@@ -48,6 +48,12 @@ def _size(quantity: str) -> Shape:
     return (3,) if quantity in ("point", "vector") else (6,)
 
 
+def _units(environment: Environment, quantity: str) -> tuple[str, ...]:
+    """Units of a point, velocity or wrench; a vector keeps its own."""
+    known = {"point": ("m",), "velocity": VELOCITY, "wrench": WRENCH}
+    return known.get(quantity) or passed_units(environment, "", ["u"])
+
+
 @dataclass(frozen=True, kw_only=True)
 class Transform(Block):
     """A point, vector, velocity or wrench of frame B in the axes, and about the origin, of A; or back.
@@ -66,8 +72,10 @@ class Transform(Block):
 
     def ports(self, environment: Environment) -> Ports:
         """Inputs p (3), the origin of B in A, R_AB (3, 3), u; output y."""
+        of = _units(environment, self.quantity)
         size = _size(self.quantity)
-        return Ports((Port("p", (3,), "m", 0.0), Port("R", (3, 3)), Port("u", size)), (Port("y", size),))
+        pose = Port("p", (3,), "m", 0.0), Port("R", (3, 3), NO_UNIT)
+        return Ports((*pose, of_units(Port("u", size), of)), (of_units(Port("y", size), of),))
 
     def compute(self, context: EvaluationContext) -> Values:
         """By the pose."""
@@ -102,8 +110,9 @@ class FrameTransform(Block):
         for frame in (self.source, self.target):
             environment.frame(self.model, frame)
         record, size = environment.model(self.model), _size(self.quantity)
-        inputs = (Port("q", (len(record.q_names),), joint_units(record)[0]), Port("u", size, "", 0.0))
-        return Ports(inputs, (Port("y", size), Port("p", (3,), "m"), Port("R", (3, 3))))
+        of = _units(environment, self.quantity)
+        inputs = (motion_port("q", record, "q"), of_units(Port("u", size, "", 0.0), of))
+        return Ports(inputs, (of_units(Port("y", size), of), Port("p", (3,), "m"), Port("R", (3, 3), NO_UNIT)))
 
     def compute(self, context: EvaluationContext) -> Values:
         """By both poses in the world."""
@@ -146,6 +155,13 @@ def _euler_form(sequence: str) -> _Form:
 FORMS |= {f"euler_{sequence}": _euler_form(sequence) for sequence in EULER}
 
 
+def _form_units(form: str) -> tuple[str, ...]:
+    """Units of the numbers of an orientation."""
+    if form in ("matrix", "quaternion"):
+        return (NO_UNIT,)
+    return (*(NO_UNIT,) * 3, "rad") if form == "axis_angle" else ("rad",)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Orientation(Block):
     """An orientation in another form.
@@ -168,7 +184,8 @@ class Orientation(Block):
 
     def ports(self, environment: Environment) -> Ports:
         """Input u, output y."""
-        return Ports((Port("u", FORMS[self.source][0]),), (Port("y", FORMS[self.target][0]),))
+        source, target = (Port(name, FORMS[form][0]) for name, form in (("u", self.source), ("y", self.target)))
+        return Ports((of_units(source, _form_units(self.source)),), (of_units(target, _form_units(self.target)),))
 
     def compute(self, context: EvaluationContext) -> Values:
         """By way of the matrix."""
@@ -195,7 +212,8 @@ class OrientationError(Block):
     def ports(self, environment: Environment) -> Ports:
         """Inputs desired and actual; output error (3)."""
         shape = FORMS[self.kind][0]
-        return Ports((Port("desired", shape), Port("actual", shape)), (Port("error", (3,), "rad"),))
+        inputs = (of_units(Port(name, shape), _form_units(self.kind)) for name in ("desired", "actual"))
+        return Ports(tuple(inputs), (Port("error", (3,), "rad"),))
 
     def compute(self, context: EvaluationContext) -> Values:
         """The logarithm of R_d R^T."""

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from symofros.blocks.checks import choice, increasing, numbers, refuse
-from symofros.blocks.quantities import common_shape
+from symofros.blocks.quantities import common_shape, of_units, passed_units, passing
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Shape, Values
 
 # Of a table, whose formula grows with its points.
@@ -40,7 +40,7 @@ class _OneToOne(Block):
                     "give one an entry",
                 )
             shape = shape if shape is not None else own or None
-        return Ports((Port("u", shape, self.unit),), (Port("y", shape, self.unit),))
+        return passing(environment, shape, self.unit)
 
 
 def ordered(block: Block, low: str, high: str) -> None:
@@ -143,8 +143,9 @@ class Switch(Block):
     def ports(self, environment: Environment) -> Ports:
         """Inputs u1, u2 of one shape, by (scalar); output y."""
         shape = common_shape(environment, ("u1", "u2"))
-        inputs = (Port("u1", shape, self.unit), Port("u2", shape, self.unit), Port("by", ()))
-        return Ports(inputs, (Port("y", shape, self.unit),))
+        units = passed_units(environment, self.unit, ("u1", "u2"))
+        u1, u2, y = (of_units(Port(name, shape), units) for name in ("u1", "u2", "y"))
+        return Ports((u1, u2, Port("by", ())), (y,))
 
     def compute(self, context: EvaluationContext) -> Values:
         """One of the two; both must be finite."""

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from symofros.blocks.checks import numbers, refuse
-from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
+from symofros.blocks.quantities import passing
+from symofros.diagrams.block import Block, Environment, EvaluationContext, Ports, Values
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,7 +32,7 @@ class UnitDelay(Block):
     def ports(self, environment: Environment) -> Ports:
         """Input u, output y."""
         shape = np.shape(self.start) or environment.inputs.get("u")
-        return Ports((Port("u", shape, self.unit),), (Port("y", shape, self.unit),))
+        return passing(environment, shape, self.unit)
 
     def memory(self, environment: Environment) -> dict[str, Any]:
         """The input of the sample before."""
@@ -63,7 +64,7 @@ class Hold(Block):
     def ports(self, environment: Environment) -> Ports:
         """Input u, output y."""
         shape = environment.inputs.get("u")
-        return Ports((Port("u", shape, self.unit),), (Port("y", shape, self.unit),))
+        return passing(environment, shape, self.unit)
 
     def compute(self, context: EvaluationContext) -> Values:
         """The input."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from symofros.base.units import parse
 from symofros.blocks.checks import known_name, numbers, refuse, whole
-from symofros.blocks.quantities import actuated_names, common_shape
+from symofros.blocks.quantities import actuated_names, common_shape, entry_units, of_units, passed_units
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.tensor import joined
 
@@ -103,7 +103,7 @@ class Sum(Block):
 
     Attributes:
         signs: One sign an input, such as "+-".
-        unit: Unit of all signals.
+        unit: Unit of all signals; "" takes that of what is connected.
     """
 
     signs: str = "++"
@@ -123,8 +123,9 @@ class Sum(Block):
     def ports(self, environment: Environment) -> Ports:
         """Inputs u1, u2, ..., output y, all of one shape."""
         names = [f"u{i + 1}" for i in range(len(self.signs))]
-        shape = common_shape(environment, names)
-        return Ports(tuple(Port(name, shape, self.unit) for name in names), (Port("y", shape, self.unit),))
+        shape, units = common_shape(environment, names), passed_units(environment, self.unit, names)
+        ports = [of_units(Port(name, shape), units) for name in (*names, "y")]
+        return Ports(tuple(ports[:-1]), (ports[-1],))
 
     def compute(self, context: EvaluationContext) -> Values:
         """The sum, left to right."""
@@ -180,7 +181,7 @@ class Pick(Block):
             order of its inputs.
         model: Model whose names they are; "" where entries are numbers.
         of: Vector of the model that the input is: q, v (also a, tau) or u.
-        unit: Unit of the entries.
+        unit: Unit of the entries; "" takes those of what is connected.
     """
 
     entries: Any
@@ -239,6 +240,8 @@ class Pick(Block):
         """Input u, a vector; output y (number of entries)."""
         indices, size = self._indices(environment)
         into = (size,) if size is not None else environment.inputs.get("u")
+        if into == ():  # One number, as a vector of one.
+            into = (1,)
         if into is not None and (len(into) != 1 or max(indices) >= into[0]):
             raise refuse(
                 self.name,
@@ -247,7 +250,16 @@ class Pick(Block):
                 "entries count from 0 along a vector",
                 "choose smaller numbers",
             )
-        return Ports((Port("u", into, self.unit),), (Port("y", (len(indices),), self.unit),))
+        units = self._units(environment)
+        picked = [units[i] if len(units) > 1 else units[0] for i in indices]
+        return Ports((of_units(Port("u", into), units),), (of_units(Port("y", (len(indices),)), picked),))
+
+    def _units(self, environment: Environment) -> tuple[str, ...]:
+        """Units of the input: the stated one, those that it has, or of a model's q and u those that they have."""
+        units = passed_units(environment, self.unit, ["u"])
+        if any(units) or not self.model or self.of == "v":
+            return units
+        return entry_units(environment.model(self.model), "q" if self.of == "q" else "u")
 
     def compute(self, context: EvaluationContext) -> Values:
         """The entries."""
@@ -260,7 +272,7 @@ class Join(Block):
 
     Attributes:
         count: Number of inputs.
-        unit: Unit of all signals.
+        unit: Unit of all signals; "" takes those of what is connected.
     """
 
     count: int = 2
@@ -276,8 +288,11 @@ class Join(Block):
         shapes = [environment.inputs.get(name) for name in names]
         sizes = [int(np.prod(shape)) for shape in shapes if shape is not None]
         out = (sum(sizes),) if len(sizes) == self.count else None
-        inputs = (Port(name, shape, self.unit) for name, shape in zip(names, shapes, strict=True))
-        return Ports(tuple(inputs), (Port("y", out, self.unit),))
+        units = [passed_units(environment, self.unit, [name]) for name in names]
+        inputs = (of_units(Port(name, shape), own) for name, shape, own in zip(names, shapes, units, strict=True))
+        counts = [(own * size)[:size] for own, size in zip(units, sizes, strict=False)]
+        joint = [unit for own in counts for unit in own] if out is not None else [self.unit]
+        return Ports(tuple(inputs), (of_units(Port("y", out), joint),))
 
     def compute(self, context: EvaluationContext) -> Values:
         """All entries, row by row."""

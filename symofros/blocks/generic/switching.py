@@ -9,6 +9,7 @@ import numpy as np
 
 from symofros.blocks.checks import number, numbers, refuse
 from symofros.blocks.generic.sampling import needs_period
+from symofros.blocks.quantities import passing
 from symofros.diagrams.block import Block, Crossing, Environment, EvaluationContext, Port, Ports, Values
 
 
@@ -108,7 +109,7 @@ class RateLimit(Block):
     def ports(self, environment: Environment) -> Ports:
         """Input u, output y."""
         shape = environment.inputs.get("u")
-        return Ports((Port("u", shape, self.unit),), (Port("y", shape, self.unit),))
+        return passing(environment, shape, self.unit)
 
     def memory(self, environment: Environment) -> dict[str, Any]:
         """The output before, and whether there was one."""

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from symofros.blocks.quantities import frame_ports, joint_units
+from symofros.blocks.quantities import frame_ports, motion_port
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.external_block import ExternalBlock, Running
 from symofros.diagrams.settings import Plot
@@ -115,8 +115,7 @@ class StatePlot(Block):
     def ports(self, environment: Environment) -> Ports:
         """Coordinates q (nq) and speeds v (nv)."""
         record = environment.model(self.model)
-        q, v, _, _ = joint_units(record)
-        return Ports((Port("q", (len(record.q_names),), q), Port("v", (len(record.v_names),), v)))
+        return Ports((motion_port("q", record, "q"), motion_port("v", record, "v")))
 
     def shown(self) -> tuple[Plot, ...]:
         """Two pictures."""
@@ -141,7 +140,7 @@ class ExtremityPlot(Block):
         for frame in self.frames:
             environment.frame(self.model, frame)
         outputs = tuple(Port(port, (3,), "m") for port in self._frames())
-        return Ports((Port("q", (len(record.q_names),), joint_units(record)[0]),), outputs)
+        return Ports((motion_port("q", record, "q"),), outputs)
 
     def compute(self, context: EvaluationContext) -> Values:
         """Positions by the model's own kinematics."""

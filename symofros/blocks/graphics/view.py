@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from symofros.blocks.quantities import joint_units
+from symofros.blocks.quantities import motion_port
 from symofros.blocks.turns import Turn
 from symofros.description.system import System
-from symofros.diagrams.block import Environment, Port, Ports
+from symofros.diagrams.block import Environment, Ports
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.external_block import ExternalBlock, Running
 from symofros.errors import DescriptionError, Problem
@@ -64,10 +64,7 @@ class View3D(ExternalBlock):
                 )
             )
         record = environment.model(self.model)
-        q, _, _, effort = joint_units(record)
-        return Ports(
-            (Port("q", (len(record.q_names),), q), Port("u", (len(record.u_names),), effort, record.u_default))
-        )
+        return Ports((motion_port("q", record, "q"), motion_port("u", record, "u", record.u_default)))
 
     def begin(self, environment: Environment) -> Running:
         """Serve the page, or take over that of the run before.

@@ -11,6 +11,7 @@ import numpy as np
 from symofros.base.units import parse
 from symofros.blocks.checks import choice, increasing, number, numbers, refuse
 from symofros.blocks.inputs.laws import LAWS, Share, moves, spline
+from symofros.blocks.quantities import ACCELERATION, NO_UNIT, VELOCITY
 from symofros.blocks.rotations import matrix_of_quaternion, matrix_of_vector, quaternion_of_matrix, vector_of_matrix
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.tensor import Tensor, joined
@@ -93,7 +94,14 @@ class CartesianTrajectory(Block):
         if self.quaternions is None:
             return Ports((), (Port("p", (n,), "m"), Port("v", (n,), "m/s"), Port("a", (n,), "m/s^2")))
         return Ports(
-            (), (Port("p", (3,), "m"), Port("R", (3, 3)), Port("quaternion", (4,)), Port("v", (6,)), Port("a", (6,)))
+            (),
+            (
+                Port("p", (3,), "m"),
+                Port("R", (3, 3), NO_UNIT),
+                Port("quaternion", (4,), NO_UNIT),
+                Port("v", (6,), units=VELOCITY),
+                Port("a", (6,), units=ACCELERATION),
+            ),
         )
 
     def compute(self, context: EvaluationContext) -> Values:

@@ -2,32 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from symofros.blocks.checks import refuse
-from symofros.blocks.quantities import joint_units
+from symofros.blocks.quantities import ACCELERATION, NO_UNIT, VELOCITY, Quantity, motion_port
 from symofros.blocks.rotations import quaternion_of_matrix
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.tensor import Tensor, stacked
 
 
-def _motion_ports(environment: Environment, model: str, names: str) -> tuple[Port, ...]:
+def _motion_ports(environment: Environment, model: str, names: Sequence[Quantity]) -> tuple[Port, ...]:
     """Inputs q, v, a of a model, rates zero where nothing is connected."""
     record = environment.model(model)
-    units = dict(zip("qva", joint_units(record)[:3], strict=True))
-    sizes = {"q": len(record.q_names), "v": len(record.v_names), "a": len(record.v_names)}
-    return tuple(Port(name, (sizes[name],), units[name], None if name == "q" else 0.0) for name in names)
+    return tuple(motion_port(name, record, name, None if name == "q" else 0.0) for name in names)
 
 
 def _frame_ports(*count: int) -> tuple[Port, ...]:
     """Outputs of `_frame_motion`, of one frame or of a count of them."""
     return (
         Port("p", (*count, 3), "m"),
-        Port("R", (*count, 3, 3)),
-        Port("quaternion", (*count, 4)),
-        Port("velocity", (*count, 6)),
-        Port("acceleration", (*count, 6)),
+        Port("R", (*count, 3, 3), NO_UNIT),
+        Port("quaternion", (*count, 4), NO_UNIT),
+        Port("velocity", (*count, 6), units=VELOCITY),
+        Port("acceleration", (*count, 6), units=ACCELERATION),
     )
 
 
@@ -60,7 +59,7 @@ class ForwardKinematics(Block):
     def ports(self, environment: Environment) -> Ports:
         """Motion q, v, a in; p (3), R (3, 3), quaternion (4), velocity and acceleration (6), linear first, out."""
         environment.frame(self.model, self.frame)
-        return Ports(_motion_ports(environment, self.model, "qva"), _frame_ports())
+        return Ports(_motion_ports(environment, self.model, ("q", "v", "a")), _frame_ports())
 
     def compute(self, context: EvaluationContext) -> Values:
         """By the model's own functions."""
@@ -88,7 +87,7 @@ class Extremities(Block):
     def ports(self, environment: Environment) -> Ports:
         """Motion in; p (k, 3), R (k, 3, 3), quaternion (k, 4), velocity and acceleration (k, 6) out."""
         k = len(self._frames(environment))
-        return Ports(_motion_ports(environment, self.model, "qva"), _frame_ports(k))
+        return Ports(_motion_ports(environment, self.model, ("q", "v", "a")), _frame_ports(k))
 
     def compute(self, context: EvaluationContext) -> Values:
         """Frame by frame; what they share is computed once."""
@@ -113,7 +112,7 @@ class Jacobian(Block):
         environment.frame(self.model, self.frame)
         nv = len(environment.model(self.model).v_names)
         return Ports(
-            _motion_ports(environment, self.model, "qv"),
+            _motion_ports(environment, self.model, ("q", "v")),
             (
                 Port("J", (6, nv)),
                 Port("rate", (6, nv)),

@@ -7,8 +7,8 @@ from typing import Any
 
 from symofros.blocks.checks import number, whole
 from symofros.blocks.kinematics.tasks import Chosen, Task, damped, resolved, rows_of
-from symofros.blocks.quantities import joint_units
-from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
+from symofros.blocks.quantities import motion_port
+from symofros.diagrams.block import Block, Environment, EvaluationContext, Ports, Values
 from symofros.diagrams.tensor import Tensor
 
 
@@ -66,16 +66,8 @@ class InverseKinematics(Block):
     def ports(self, environment: Environment) -> Ports:
         """Desired p, angle or R as the rows ask, v and a of the rows; out q (nq), v, a (nv), error of the rows."""
         task, record = self._task(environment), environment.model(self.model)
-        units, nv = joint_units(record), len(record.v_names)
-        return Ports(
-            tuple(task.ports()),
-            (
-                Port("q", (len(record.q_names),), units[0]),
-                Port("v", (nv,), units[1]),
-                Port("a", (nv,), units[2]),
-                Port("error", (len(task.rows),)),
-            ),
-        )
+        motion = (motion_port(name, record, name) for name in ("q", "v", "a"))
+        return Ports(tuple(task.ports()), (*motion, task.row_port("error", "m", "rad")))
 
     def _first(self, environment: Environment) -> dict[str, Any]:
         chosen = self._chosen(environment)

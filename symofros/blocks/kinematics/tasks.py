@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from symofros.blocks.checks import known_name, refuse
-from symofros.blocks.quantities import actuated_names, scalar_coordinates
+from symofros.blocks.quantities import NO_UNIT, actuated_names, of_units, scalar_coordinates
 from symofros.blocks.rotations import error_vector
 from symofros.diagrams.block import Environment, EvaluationContext, Port
 from symofros.diagrams.tensor import Tensor, joined, solved, stacked
@@ -121,12 +122,17 @@ class Task:
 
     def ports(self) -> list[Port]:
         """Inputs for a desired motion: p, angle or R as the rows ask, v and a."""
-        linear, turns, m = sum(row < 3 for row in self.rows), len(self.turns), len(self.rows)
+        linear, turns = sum(row < 3 for row in self.rows), len(self.turns)
         ports = [Port("p", (linear,), "m")] if linear else []
-        ports += [Port("angle", (), "rad")] if turns == 1 else [Port("R", (3, 3))] if turns else []
-        v, a = ("m/s", "m/s^2") if not turns else ("", "")
-        ports += [Port("v", (m,), v, 0.0), Port("a", (m,), a, 0.0)]
+        ports += [Port("angle", (), "rad")] if turns == 1 else [Port("R", (3, 3), NO_UNIT)] if turns else []
+        ports += [self.row_port("v", "m/s", "rad/s", 0.0), self.row_port("a", "m/s^2", "rad/s^2", 0.0)]
         return [replace(port, name=port.name + self.suffix) for port in ports]
+
+    def row_port(self, name: str, linear: str, angular: str, default: Any = None) -> Port:
+        """A port of one entry a row, in one unit along axes and in another one about them."""
+        return of_units(
+            Port(name, (len(self.rows),), "", default), [linear if row < 3 else angular for row in self.rows]
+        )
 
     def given(self, context: EvaluationContext, name: str) -> Tensor | None:
         """A desired quantity; None where the rows don't ask for it."""

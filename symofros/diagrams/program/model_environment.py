@@ -33,7 +33,7 @@ from symofros.mechanics.topology.tree import SpanningTree, build_tree
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord
-from symofros.simulation.analysis.kinematics.assembly import assemble
+from symofros.simulation.analysis.kinematics.starts import closed_start, stated_names
 from symofros.simulation.analysis.state_space import StateSpace, state_space
 
 
@@ -58,6 +58,7 @@ class Models:
         self._builders: dict[str, ProgramBuilder] = {}
         self._equations: dict[str, Equations] = {}
         self._energies: dict[tuple[str, str], Model] = {}
+        self._constraints: dict[str, Model] = {}
         self._programs: dict[tuple[str, str, str], Program] = {}
 
     @property
@@ -151,6 +152,13 @@ class Models:
             self._energies[key] = compile_system(self.system(name), replace(options, functions=functions))
         return self._energies[key]
 
+    def constraints(self, name: str) -> Model:
+        """A model of a mechanism that can close its loops; interpreted, because a start needs no compiler."""
+        if name not in self._constraints:
+            functions = "constraint", "constraint_rate", "constraint_jacobian", "frame_pose"
+            self._constraints[name] = compile_system(self.system(name), Options(functions, backend="interpreter"))
+        return self._constraints[name]
+
     def linear(self, name: str, u: Array) -> StateSpace:
         """A model linearised about its first state and inputs u (nu), on its constraints, which are closed first.
 
@@ -160,10 +168,9 @@ class Models:
         # Evaluated once: interpreted, it needs no compiler.
         model = compile_system(self.system(name), Options(backend="interpreter"))
         (q, v), par = self.start(name), self.parameters(name)
-        if model.nc:
-            closed = assemble(model, q, v, u=u, par=par)
-            q, v = closed.q, closed.v
-        return state_space(model, q, v, u, par=par)
+        stated = stated_names(model.names.q, model.names.v, self.setup(name).start)
+        start = closed_start(model, q, v, *stated, u=u, par=par)
+        return state_space(model, start.q, start.v, u, par=par)
 
     def _index(self, model: str, what: str, name: str, known: tuple[str, ...]) -> int:
         if name not in known:

@@ -12,6 +12,7 @@ from symofros.diagrams.program.compiled import Resolved, bare_record, unit_of
 from symofros.diagrams.program.lowered_block import INPUT, MEMORY, PARAMETER, STATE, Piece
 from symofros.diagrams.program.model_environment import parameter_group
 from symofros.diagrams.run.python_blocks import Called
+from symofros.diagrams.run.starts import Start, close_loops
 from symofros.diagrams.wiring import Source
 from symofros.expr.program import Function, Output, Program
 from symofros.generator.passes import run_passes
@@ -50,6 +51,15 @@ class Blocks:
         self._bound: list[tuple[Kernel, Array, list[Array]]] = []  # What calls have addresses of.
         for piece in resolved.pieces.values():
             self._make(piece)
+
+    def close_loops(self) -> tuple[str, ...]:
+        """Bring the first state onto the constraints; says what of a stated start changed in its last digits.
+
+        Raises:
+            AssemblyError: No state on the constraints keeps what is stated.
+        """
+        begin = Start(float(self.t[0]), self.q, self.v, np.zeros(0))
+        return close_loops(self.resolved, self.resolved.layout.whole, begin, self.par)
 
     def _make(self, piece: Piece) -> None:
         """The functions of one block: each output, rates, updates, the terms of its motion."""

@@ -9,8 +9,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from symofros.diagrams.program.compiled import CompiledDiagram, Resolved
+from symofros.diagrams.program.layout import Part
 from symofros.diagrams.program.lowered_block import watched
 from symofros.diagrams.run.examination.faults import fault_at
+from symofros.diagrams.run.starts import Start, changes_of_driven, close_loops, stated_entries
 from symofros.errors import AssemblyError, Problem, SymofrosError
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
@@ -23,29 +25,6 @@ from symofros.simulation.stepping.stepper import Stepper
 
 
 @dataclass(frozen=True)
-class Start:
-    """The state that a run begins with, or goes on from.
-
-    Attributes:
-        t: Time [s].
-        q: Configuration (nq).
-        v: Speeds and continuous states (nv).
-        u: Inputs, with all that is held between samples (nu).
-    """
-
-    t: float
-    q: Array
-    v: Array
-    u: Array
-
-    @classmethod
-    def of(cls, resolved: Resolved, t0: float) -> Start:
-        """The first state of a diagram."""
-        layout = resolved.layout
-        return cls(t0, *(np.array(values, dtype=np.float64) for values in (layout.q0, layout.v0, layout.u0)))
-
-
-@dataclass(frozen=True)
 class Placed:
     """A part that is ready to move.
 
@@ -53,11 +32,13 @@ class Placed:
         stepper: Stepper of the part.
         q: First configuration, on the constraints.
         v: First speeds.
+        notes: What of a stated start changed in its last digits.
     """
 
     stepper: Stepper
     q: Array
     v: Array
+    notes: tuple[str, ...] = ()
 
 
 def place_parts(
@@ -100,7 +81,7 @@ def place_parts(
         stepper.run.record_every = 0  # Instants are recorded by the diagram's own loop.
         placed.append(Placed(stepper, begin.q[part.q], begin.v[part.v]))
         if model.nc and settings.stabilisation != "baumgarte":
-            placed[-1] = Placed(stepper, *_close(model, name, begin.t, placed[-1], begin.u, par))
+            placed[-1] = _closed(resolved, part, stepper, begin, par)
     return placed
 
 
@@ -133,19 +114,42 @@ def start_parts(parts: list[Placed], resolved: Resolved, par: Array, begin: Star
             )
 
 
-def _close(model: Model, name: str, t0: float, placed: Placed, u: Array, par: Array) -> tuple[Array, Array]:
-    """The nearest state on the constraints."""
-    kernel = model.kernel("project")
-    given = {"q": placed.q, "v": placed.v, "u": u, "t": np.array([t0])}
-    inputs = [np.ascontiguousarray(given[group]).reshape(1, -1) for group, _ in kernel.signature.inputs]
-    q_on, v_on, residual, *_ = kernel.run(1, kernel.prepare(par.reshape(1, -1)), inputs)
-    if not residual[0] <= CLOSED:
+def _closed(resolved: Resolved, part: Part, stepper: Stepper, begin: Start, par: Array) -> Placed:
+    """A part on its constraints, with what is stated of its start.
+
+    Raises:
+        AssemblyError: There is no such state.
+    """
+    coordinates, speeds = stated_entries(resolved, part)
+    q, v, residual = _projected(stepper.model, part, begin, par)
+    on = begin.q.copy(), begin.v.copy()
+    on[0][part.q], on[1][part.v] = q, v
+    moved = [
+        np.abs(found[stated] - asked[stated]) > CLOSED * np.maximum(1.0, np.abs(asked[stated]))
+        for stated, found, asked in ((coordinates, on[0], begin.q), (speeds, on[1], begin.v))
+    ]
+    if residual <= CLOSED and not any(map(np.any, moved)):
+        return Placed(stepper, q, v)  # Nothing is formed anew for what the projection keeps.
+    near = Start(begin.t, begin.q.copy(), begin.v.copy(), begin.u)
+    notes = close_loops(resolved, part, near, par)
+    q, v, residual = _projected(stepper.model, part, near, par)
+    if not residual <= CLOSED:
         raise AssemblyError(
             Problem(
-                f"diagram '{name}': the first state does not close the loops",
-                f"|phi| = {residual[0]:.3g}",
+                f"diagram '{resolved.wired.name}': the first state does not close the loops",
+                f"|phi| = {residual:.3g}",
                 f"at most {CLOSED:g} after projection",
                 "start nearer: see sf.assemble",
             )
         )
-    return q_on[0], v_on[0]
+    on[0][part.q], on[1][part.v] = q, v
+    return Placed(stepper, q, v, notes + changes_of_driven(resolved, part, begin, Start(begin.t, *on, begin.u)))
+
+
+def _projected(model: Model, part: Part, begin: Start, par: Array) -> tuple[Array, Array, float]:
+    """The nearest state of a part on its constraints, and the largest |phi| that is left."""
+    kernel = model.kernel("project")
+    given = {"q": begin.q[part.q], "v": begin.v[part.v], "u": begin.u, "t": np.array([begin.t])}
+    inputs = [np.ascontiguousarray(given[group]).reshape(1, -1) for group, _ in kernel.signature.inputs]
+    q_on, v_on, residual, *_ = kernel.run(1, kernel.prepare(par.reshape(1, -1)), inputs)
+    return q_on[0], v_on[0], float(residual[0])

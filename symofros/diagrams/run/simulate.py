@@ -15,15 +15,17 @@ from symofros.diagrams.program.compiled import CompiledDiagram, rates_of
 from symofros.diagrams.program.lowered_block import watched
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.result import DiagramRun
+from symofros.diagrams.run.examination.controllers import Again, blamed
 from symofros.diagrams.run.examination.diagnosis import Ended, diagnose
 from symofros.diagrams.run.examination.energy_balance import Energies
 from symofros.diagrams.run.examination.remarks import Examined, remarks
 from symofros.diagrams.run.examination.rotations import refuse_no_rotation
 from symofros.diagrams.run.loop import RECORD, Loop, Task
 from symofros.diagrams.run.options import DiagramOptions
-from symofros.diagrams.run.parts import Start, place_parts, start_parts
+from symofros.diagrams.run.parts import place_parts, start_parts
 from symofros.diagrams.run.python_blocks import Called, CalledBefore, ExternalCalls, NotKeptError, begun
 from symofros.diagrams.run.recording import Cost, Crossed, Records
+from symofros.diagrams.run.starts import Start
 from symofros.diagrams.run.values import parameter_values, record_interval
 from symofros.errors import SymofrosError
 from symofros.runtime.beams import BeamBending
@@ -74,9 +76,11 @@ def run_compiled(
         kept = called.kept()
     bendings = ended.bendings
     outcome, modes = diagnose(ended, bendings)
+    outcome = replace(outcome, notes=(*ended.start_notes, *outcome.notes))
     if outcome.kind == "finished" and not options.realtime:
         notes = remarks(_examined(task, ended, called.given), modes)
         outcome = replace(outcome, notes=(*outcome.notes, *notes))
+    outcome = blamed(outcome, resolved, _end_again(task, ended.states, called.given))
     t, q, v, u = ended.states
     records = Records(compiled, t, q, v, u, par)
     outcome = refuse_no_rotation(outcome, resolved, records.t, lambda source: records[".".join(source)])
@@ -130,6 +134,30 @@ def _examined(task: _Run, ended: Ended, given: dict[tuple[str, float], dict[str,
     steps = int(ended.loop.diagram.steps) // max(1, len(parts))
     energies = Energies(ended.resolved, par, task.compiled.energies)
     return Examined(energies, states, h, task.options.atol, steps, repeat, accelerations)
+
+
+def _end_again(task: _Run, states: Sequence[Array], given: dict[tuple[str, float], dict[str, Array]]) -> Again:
+    """Repeats the end of a run, with other records and steps."""
+    wired = task.compiled.resolved.wired
+
+    def again(start: float, end: float, interval: float, dt: float) -> Sequence[Array] | None:
+        t = states[0]
+        if not len(t):
+            return None
+        i = max(0, int(np.searchsorted(t, start, "right")) - 1)
+        if not t[i] < end:
+            return None
+        plan = schedule([*rates_of(task.compiled.resolved.pieces), (RECORD, interval, 0.0)], wired.name)
+        options = replace(task.options, realtime=False, threads=1, dt=dt)
+        begin = Start(float(t[i]), *(array[i].copy() for array in states[1:]))
+        finer = replace(task, options=options, plan=plan, t_end=end)
+        try:
+            ended = _drive(finer, begin, CalledBefore(wired, given), resumed=True)
+        except SymofrosError:
+            return None
+        return [np.concatenate([x[i : i + 1], y]) for x, y in zip(states, ended.states, strict=True)]
+
+    return again
 
 
 def _resumed(
@@ -238,7 +266,8 @@ def _drive(
     interrupted = interrupted or isinstance(loop.failure, KeyboardInterrupt)
     states = [np.concatenate(columns) for columns in zip(*portions, strict=True)]
     settings = [task.settings(part.model) for part in loop.parts]
-    return Ended(loop, resolved, par, settings, plan.spacing, states, tuple(met), spent, status, interrupted)
+    notes = tuple(note for part in parts for note in part.notes)
+    return Ended(loop, resolved, par, settings, plan.spacing, states, tuple(met), spent, status, interrupted, notes)
 
 
 def _recorded(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import importlib.util
 import json
+import re
 import sys
 import tempfile
 from html import escape
@@ -128,6 +129,7 @@ def _script(material: Material, module: bytes) -> str:
     lines = [
         f"// {_comment(record.name)}: written by {material.generator}; hash {record.hash}.",
         native_text("exports/symofros_wasm.mjs"),
+        f"const STATUSES = {_json(_statuses())};",
         f"export const names = {_json(names)};",
         f"export const sizes = {json.dumps({key: len(each) for key, each in sizes.items()} | {'nc': record.nc})};",
         f'const BYTES = "{base64.b64encode(module).decode()}";',
@@ -140,6 +142,11 @@ def _script(material: Material, module: bytes) -> str:
         "",
     ]
     return "\n".join(lines)
+
+
+def _statuses() -> dict[str, str]:
+    """Negative status of the stepping loop -> what it means, as its header says."""
+    return dict(re.findall(r"SYM_\w+ = (-\d+),?\s*/\* (.*?) \*/", native_text("stepping/symofros_stepper.h")))
 
 
 def _types(material: Material) -> str:

@@ -233,6 +233,6 @@ export class Instance {
   #array(what) { return this.model.view(this.model.wasm.js_array(this.at, what), this.sizes[what]); }
 
   #check(status, what) {
-    if (status < 0) throw new Error(`${what} ended at t = ${this.t} s with status ${status} (symofros_stepper.h)`);
+    if (status < 0) throw new Error(`${what} ended at t = ${this.t} s: ${STATUSES[status]} (status ${status})`);
   }
 }

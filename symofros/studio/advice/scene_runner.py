@@ -27,7 +27,7 @@ from symofros.generator.passes.count import count_program
 from symofros.runtime.beams import BeamBending, largest_bending
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
-from symofros.simulation.analysis.kinematics.assembly import assemble
+from symofros.simulation.analysis.kinematics.starts import closed_start, stated_names
 from symofros.simulation.results.trajectory import Trajectory
 from symofros.simulation.simulate import simulate
 from symofros.simulation.stepping.methods import METHODS
@@ -159,10 +159,8 @@ class SceneRunner:
                         near(name, known),
                     )
                 )
-        if not model.nc:
-            return q, v
-        closed = assemble(model, q, v)
-        return closed.q, closed.v
+        start = closed_start(model, q, v, *stated_names(names.q, names.v, self.scene.start))
+        return start.q, start.v
 
     def trial(self, system: System, stepping: Stepping, most_steps: int = MOST_STEPS) -> Trial:
         """Run the scene; a model that can't be compiled, or does not get to the end, fails with the reason."""

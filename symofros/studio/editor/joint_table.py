@@ -14,10 +14,12 @@ PAGE_FILE = Path(__file__).with_name("page") / "src" / "model" / "joint_kinds.js
 
 
 def joint_table() -> str:
-    """The file's text: kind -> number of speeds, entries of the description, glyph."""
+    """The file's text: kind -> speeds and coordinates by suffix and unit, entries of the description, glyph."""
     rows = []
     for name, kind in KINDS.items():
-        facts = {"speeds": kind.nv, "entries": kind.entries, "glyph": kind.glyph}
+        coordinates = {item.suffix: item.unit for item in kind.coordinates}
+        facts = {"speeds": kind.nv, "coordinates": coordinates, "quasi_velocities": kind.speed_suffixes}
+        facts |= {"entries": kind.entries, "glyph": kind.glyph}
         lines = ",\n".join(f'    "{key}": {json.dumps(fact)}' for key, fact in facts.items())
         rows.append(f'  "{name}": {{\n{lines}\n  }}')
     return "{\n" + ",\n".join(rows) + "\n}\n"

@@ -94,10 +94,10 @@ def test_a_delay_breaks_a_loop() -> None:
     diagram = sf.Diagram("counter")
     diagram.add(Constant(name="one", value=1.0))
     diagram.add(Sum(name="next"), u1="one.y", u2="count.y")
-    diagram.add(UnitDelay(name="count", period=0.1, start=[5.0]), u="more.y")
-    diagram.add(Reshape(name="more", shape=[1]), u="total.y")
+    diagram.add(UnitDelay(name="count", period=0.1, start=[5.0, 5.0]), u="more.y")
+    diagram.add(Join(name="more", count=2), u1="total.y", u2="total.y")
     diagram.add(Reshape(name="total"), u="next.y")
-    # The sum is of scalars, the delay's start tells a vector: shapes that don't meet are refused.
+    # The sum is of scalars, the delay's start tells a vector of two: shapes that don't meet are refused.
     with pytest.raises(sf.DescriptionError, match="shapes differ"):
         sf.Simulation(diagram)
     diagram = sf.Diagram("counter")

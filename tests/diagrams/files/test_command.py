@@ -32,7 +32,7 @@ def test_it_says_how_the_run_went_and_writes_it(tmp_path: Path) -> None:
     said = json.loads(found.stdout)
     assert said["ok"] and said["outcome"]["t"] == 0.2 and said["files"] == [str(table), str(picture)]
     rows = list(csv.reader(table.open()))
-    assert rows[0] == ["t [s]", "plant.q[0] [rad]", "plant.q[1] [rad]", "pd.effort[1]"] and len(rows) == 22
+    assert rows[0] == ["t [s]", "plant.q[0] [rad]", "plant.q[1] [rad]", "pd.effort[1] [N m]"] and len(rows) == 22
     assert picture.stat().st_size > 10_000
 
 

@@ -323,6 +323,26 @@ def test_two_inputs_of_a_block_are_told_apart() -> None:
     assert run["sum"][-1] == 3.0 and run["alone"][-1] == 2.0
 
 
+def loop_from(**stated: float) -> sf.Diagram:
+    """A four-bar from a stated start."""
+    diagram = sf.Diagram("loop")
+    diagram.add_model("bar", sf.load(MODELS / "closed" / "four_bar.yaml"), start=stated)
+    diagram.add(blocks.ForwardDynamics(name="plant", model="bar"))
+    return diagram
+
+
+@pytest.mark.parametrize("how", ["run", "interpret"])
+def test_what_is_stated_of_a_loop_s_start_is_kept_or_refused(how: str) -> None:
+    """It was projected with all else: q1 = 1 and dq1 = 1 became other numbers without a word."""
+    run = getattr(sf.Simulation(loop_from(q1=1.0, dq1=1.0)), how)(0.002, dt=1e-3, record=1e-3)
+    assert run["plant.q"][0][0] == pytest.approx(1.0, abs=1e-9) and run["plant.v"][0][0] == pytest.approx(1.0, abs=1e-9)
+    assert np.abs(run["plant.q"][0] - [1.0, -1.0, 1.0]).max() < 1e-9 and not run.outcome.notes
+    with pytest.raises(sf.AssemblyError, match=r"model 'four_bar'.*\n.*q2 = -0\.5 would be -"):
+        getattr(sf.Simulation(loop_from(q1=1.0, q2=-0.5, q3=0.3)), how)(0.002, dt=1e-3)
+    run = getattr(sf.Simulation(loop_from(q1=1.2, q2=-1.2004, q3=1.2)), how)(0.002, dt=1e-3)
+    assert any("model 'bar': start: q2 = -1.2004 was taken as -1.2001" in note for note in run.outcome.notes)
+
+
 @pytest.mark.slow
 def test_a_constraint_that_engages_is_a_plastic_impact() -> None:
     """Open, the loop is the tree; as it closes, the energy lost is that of the speeds lost: a projection by M."""

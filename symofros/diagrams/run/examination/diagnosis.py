@@ -50,6 +50,7 @@ class Ended:
         spent: Wall time in the loop, processor time by the calling thread [s].
         status: Last status.
         interrupted: Whether Ctrl-C ended the run.
+        start_notes: What of a stated start changed in its last digits.
     """
 
     loop: Loop
@@ -62,6 +63,7 @@ class Ended:
     spent: tuple[float, float]
     status: int
     interrupted: bool
+    start_notes: tuple[str, ...] = ()
 
     @property
     def layout(self) -> Layout:

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection
 from dataclasses import dataclass
+from typing import NamedTuple, NoReturn
 
 import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arguments import checked
 from symofros.base.arrays import numeric
+from symofros.base.measures import LENGTH, ROTATION, TRANSLATION
 from symofros.errors import AssemblyError, Problem, UnknownNameError, did_you_mean
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import (
     LARGEST_STEP,
+    LEAST_SIZE,
     RESIDUAL_ROUNDING,
     eliminate,
+    natural_sizes,
     pseudo_inverse,
     residual_rounding,
     residual_weights,
@@ -48,6 +53,15 @@ class Assembled:
     rank: int
 
 
+# Where a guess leads to no closed posture, shifted ones are tried: rotations by so many radians at most, translations
+# by as large a share of the largest reach, ATTEMPTS of each size. Links that lie in one line, as those of a loop that
+# was just drawn, hold no direction that closes it; any shift off the line does.
+SHIFTS, ATTEMPTS = (0.03, 0.1, 0.3, 1.0), 2
+# Damped steps from a shifted guess, their damping a share of the squared residual over the reach: they end at a
+# residual of NEAR the reach, where Gauss-Newton steps take over, or where STALLED of them do not take a tenth of it.
+DAMPED_STEPS, STALLED, DAMPING, NEAR = 80, 20, 0.1, 0.05
+
+
 @checked
 def assemble(
     model: Model,
@@ -63,6 +77,10 @@ def assemble(
 ) -> Assembled:
     """Solve phi(q) = 0 and G v = b by damped Gauss-Newton steps of least norm.
 
+    Where the guess leads to no closed posture, as that of links in one line, guesses near it are tried: shifted at
+    random by more and more, the same for the same model and guess. Of those of one size the closed posture nearest to
+    the guess is taken (docs/theory/constraints.md, section 5).
+
     Args:
         model: Model with constraints.
         q: Guess (nq); the neutral configuration if not given.
@@ -73,7 +91,7 @@ def assemble(
         t: Time.
         tolerance: Bound of the largest |phi| [m, rad]; mechanisms of a millimetre and less close to their own measure,
             large ones to their rounding.
-        iterations: Most steps to take.
+        iterations: Most steps to take from a guess.
 
     Raises:
         AssemblyError: No such configuration was found; names the constraint that is worst.
@@ -84,38 +102,172 @@ def assemble(
     model = model.with_precision("double")
     q = model.neutral() if q is None else numeric("q", model.by_name("q", q))
     refuse_lengths(model, q)
-    u = given_inputs(model, u)
     speeds = np.zeros(model.nv) if v is None else model.by_name("v", v)
     wished = finite_array("assemble: v", speeds, (model.nv,), "give one number a speed")
-
-    def residual(at: Array) -> Array:
-        return model.constraint(at, u=u, par=par, t=t)
-
-    phi, count = residual(q), 0
+    conditions = _Conditions(model, given_inputs(model, u), par, t)
     if model.nc:  # A small mechanism closes to its own measure.
-        G = model.constraint_jacobian(q, u=u, par=par, t=t)
-        tolerance /= float(residual_weights(G, model.record.measures).max())
+        tolerance /= float(residual_weights(conditions.jacobian(q), model.record.measures).max())
+    found = _closed(conditions, q, free, tolerance, iterations, held)
+    G = conditions.jacobian(found.q)
+    speeds = _consistent_speeds(conditions, found.q, wished, free, tolerance)
+    rank = eliminate(G, model.record.measures, np.ones(model.nv)).rank
+    return Assembled(found.q, speeds, float(np.abs(found.phi).max(initial=0.0)), found.steps, rank)
+
+
+class _Conditions(NamedTuple):
+    """The constraints of a model at an instant."""
+
+    model: Model
+    u: ArrayLike | None
+    par: ArrayLike | None
+    t: float
+
+    def residual(self, q: Array) -> Array:
+        """Phi (nc)."""
+        return self.model.constraint(q, u=self.u, par=self.par, t=self.t)
+
+    def jacobian(self, q: Array) -> Array:
+        """G (nc, nv)."""
+        return self.model.constraint_jacobian(q, u=self.u, par=self.par, t=self.t)
+
+    def rate(self, q: Array, v: Array) -> Array:
+        """G v - b (nc)."""
+        return self.model.constraint_rate(q, v, u=self.u, par=self.par, t=self.t)
+
+
+class _Attempt(NamedTuple):
+    """Where the steps from a guess end, with the bounds (nc) below which |phi| counts as closed."""
+
+    q: Array
+    phi: Array
+    bounds: Array
+    steps: int
+
+    @property
+    def closes(self) -> bool:
+        """Whether every condition is met."""
+        return bool(np.all(np.abs(self.phi) <= self.bounds))
+
+
+def _closed(
+    at: _Conditions, q: Array, free: Indices, tolerance: float, iterations: int, held: Collection[str]
+) -> _Attempt:
+    """The closed posture that the guess leads to, or else one of the shifted guesses.
+
+    Raises:
+        AssemblyError: None of them leads to one.
+    """
+    first = _attempt(at, q, free, tolerance, iterations)
+    if not first.closes:
+        others = _shifted(at, q, free, tolerance, iterations)
+        if others is None:
+            _refuse(at.model, first, held)
+        first = others
+    _check_rotations(at.model, first.q, at.u, at.par)
+    return first
+
+
+def _attempt(at: _Conditions, q: Array, free: Indices, tolerance: float, iterations: int) -> _Attempt:
+    """Gauss-Newton steps from a guess, until it is closed or no step improves on it."""
+    model, phi, count = at.model, at.residual(q), 0
     while np.abs(phi).max(initial=0.0) > tolerance and count < iterations:
-        G = model.constraint_jacobian(q, u=u, par=par, t=t)
+        G = at.jacobian(q)
         step = np.zeros(model.nv)
         step[free] = -_inverse(model, G[:, free], free) @ phi
         step *= step_factor(G, model.record.measures, step, LARGEST_STEP)
         for _ in range(30):
             tried = model.integrate(q, step)
-            phi_tried = residual(tried)
+            phi_tried = at.residual(tried)
             if np.linalg.norm(phi_tried) < np.linalg.norm(phi):
                 break
             step *= 0.5
         else:
             break
         q, phi, count = tried, phi_tried, count + 1
-    G = model.constraint_jacobian(q, u=u, par=par, t=t)
-    _accept(model, phi, _bounds(model, q, G, tolerance), count, held)
-    _check_rotations(model, q, u, par)
-    speeds, inverse = wished.copy(), _inverse(model, G[:, free], free)
+    return _Attempt(q, phi, _bounds(model, q, at.jacobian(q), tolerance), count)
+
+
+def _shifted(at: _Conditions, q: Array, free: Indices, tolerance: float, iterations: int) -> _Attempt | None:
+    """The nearest closed posture that shifted guesses lead to, of the smallest size that leads to any."""
+    model, random = at.model, np.random.default_rng(0)
+    scales = _shift_scales(model, at.jacobian(q))
+    movable = np.zeros(model.nv)
+    movable[free] = scales[free]
+    if not movable.any():
+        return None
+    for size in SHIFTS:
+        closed = []
+        for _ in range(ATTEMPTS):
+            guess = model.integrate(q, size * movable * random.uniform(-1.0, 1.0, model.nv))
+            try:
+                near = _drawn_near(at, guess, movable)
+                attempt = None if near is None else _attempt(at, near, free, tolerance, iterations)
+            except AssemblyError:  # Not smooth there.
+                continue
+            if attempt is not None and attempt.closes:
+                closed.append(attempt)
+        if closed:
+            unit = np.where(scales > 0.0, scales, 1.0)
+            return min(closed, key=lambda attempt: float(np.linalg.norm(model.difference(q, attempt.q) / unit)))
+    return None
+
+
+def _drawn_near(at: _Conditions, q: Array, scales: Array) -> Array | None:
+    """The end of damped steps (Levenberg, Marquardt) from a guess beside a singular posture; None where it is not near.
+
+    Args:
+        at: The conditions.
+        q: The guess.
+        scales: What counts as a change of one for each speed (nv); 0 for those that do not move.
+    """
+    model, measures = at.model, at.model.record.measures
+    phi, judged = at.residual(q), math.inf
+    for count in range(DAMPED_STEPS):
+        G = at.jacobian(q)
+        sizes = np.maximum(natural_sizes(G, measures).max(axis=1, initial=0.0), LEAST_SIZE)
+        r, J = phi / sizes, G * scales / sizes[:, None]
+        norm = float(np.linalg.norm(r))
+        if norm <= NEAR:
+            return q
+        if not np.all(np.isfinite(J)):
+            return None
+        if count % STALLED == 0:
+            if norm > 0.9 * judged:
+                return None
+            judged = norm
+        step = -scales * (J.T @ np.linalg.solve(J @ J.T + DAMPING * norm**2 * np.eye(len(r)), r))
+        for _ in range(10):
+            tried = model.integrate(q, step)
+            phi_tried = at.residual(tried)
+            if np.linalg.norm(phi_tried / sizes) < norm:
+                break
+            step *= 0.5
+        else:
+            return None
+        q, phi = tried, phi_tried
+    return None
+
+
+def _shift_scales(model: Model, G: Array) -> Array:
+    """What a shift of one is for each speed (nv): a radian, the largest reach; none of elastic coordinates."""
+    measures = model.record.measures
+    kinds = np.array(measures.speed, dtype=np.intp)
+    lengths = np.array(measures.unit, dtype=np.intp) == LENGTH
+    reach = float(natural_sizes(G, measures)[np.ix_(lengths, kinds == ROTATION)].max(initial=0.0)) or 1.0
+    return np.where(kinds == ROTATION, 1.0, np.where(kinds == TRANSLATION, reach, 0.0))
+
+
+def _consistent_speeds(at: _Conditions, q: Array, wished: Array, free: Indices, tolerance: float) -> Array:
+    """The speeds (nv) nearest to the wished ones that keep the loops closed.
+
+    Raises:
+        AssemblyError: Those that are held allow none.
+    """
+    model, G, speeds = at.model, at.jacobian(q), wished.copy()
+    inverse = _inverse(model, G[:, free], free)
     for _ in range(2):  # The second time against the rounding of columns of unlike sizes.
-        speeds[free] -= inverse @ model.constraint_rate(q, speeds, u=u, par=par, t=t)
-    left = model.constraint_rate(q, speeds, u=u, par=par, t=t)
+        speeds[free] -= inverse @ at.rate(q, speeds)
+    left = at.rate(q, speeds)
     bounds = _bounds(model, q, G, tolerance) * (1.0 + float(np.abs(wished).max(initial=0.0)))
     if np.any(np.abs(left) > 1e3 * bounds):
         worst = int(np.argmax(np.abs(left) / bounds))
@@ -127,8 +279,7 @@ def assemble(
                 "hold fewer speeds",
             )
         )
-    rank = eliminate(G, model.record.measures, np.ones(model.nv)).rank
-    return Assembled(q, speeds, float(np.abs(phi).max(initial=0.0)), count, rank)
+    return speeds
 
 
 def _inverse(model: Model, G: Array, free: Indices) -> Array:
@@ -174,16 +325,15 @@ def _bounds(model: Model, q: Array, G: Array, tolerance: float) -> Array:
     return np.asarray(np.maximum(tolerance, rounding), dtype=np.float64)
 
 
-def _accept(model: Model, phi: Array, bounds: Array, count: int, held: Collection[str]) -> None:
-    if np.all(np.abs(phi) <= bounds):
-        return
-    worst = int(np.argmax(np.abs(phi) / bounds))
+def _refuse(model: Model, first: _Attempt, held: Collection[str]) -> NoReturn:
+    worst = int(np.argmax(np.abs(first.phi) / first.bounds))
     also = f"; held: {', '.join(held)}" if held else ""
     raise AssemblyError(
         Problem(
             f"model '{model.record.name}': can't be assembled from this guess",
-            f"after {count} steps phi = {phi[worst]:.3g} at '{model.names.constraints[worst]}'{also}",
-            f"|phi| <= {bounds[worst]:.2g}; either no configuration closes it, or the guess leads to none",
+            f"after {first.steps} steps phi = {first.phi[worst]:.3g} at '{model.names.constraints[worst]}'{also};"
+            f" {len(SHIFTS) * ATTEMPTS} guesses near it close it neither",
+            f"|phi| <= {first.bounds[worst]:.2g}; either no configuration closes it, or the guess leads to none",
             "start nearer, hold fewer coordinates, or check lengths",
         )
     )

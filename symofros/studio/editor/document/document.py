@@ -122,7 +122,7 @@ class EditedDocument:
             kept -= len(self._undo.pop(0).text)
 
     def as_json(self) -> dict[str, Any]:
-        """What the page shows of it."""
+        """What the page shows of it; its data are a mapping, whatever the text is."""
         now = self.analysis
         readable = now if now.readable else self._readable or now
         return {
@@ -135,7 +135,7 @@ class EditedDocument:
             "undo_label": self._undo[-1].label if self._undo else "",
             "redo_label": self._redo[-1].label if self._redo else "",
             "text": self.text,
-            "data": readable.data,
+            "data": readable.data if isinstance(readable.data, dict) else {},
             "graph": readable.graph,
             "diagram": readable.diagram,
             "problems": now.problems,

@@ -19,7 +19,7 @@ from symofros.studio.editor.editing.yaml_edits import apply
 Json = dict[str, Any]
 
 
-def check_field(file: File, text: str, now: Analysis, path: Path, typed: Any) -> Json:
+def check_field(file: File, text: str, now: Analysis, path: Path, typed: Any, draft: Edit | None = None) -> Json:
     """What is to say about a formula in a field.
 
     Args:
@@ -28,6 +28,7 @@ def check_field(file: File, text: str, now: Analysis, path: Path, typed: Any) ->
         now: Present text of the field.
         path: Path of the field; it need not exist yet. Empty: the formula alone is checked.
         typed: Text that was typed.
+        draft: Edit that puts the entry which is being filled in into the document, with the field.
 
     Returns:
         `ok`, `names`, `value` where parameters suffice for one, otherwise `error` with `column` (from 1; 0: the
@@ -41,7 +42,7 @@ def check_field(file: File, text: str, now: Analysis, path: Path, typed: Any) ->
     value = as_value(formula)
     names = sorted(symbols(value))
     answer: Json = {"ok": True, "names": names}
-    refused = _in_place(file, text, now, path, typed) if path else None
+    refused = _in_place(file, text, now, path, typed, draft) if path else None
     if refused is not None:
         at = next((typed.find(name) + 1 for name in names if f"'{name}'" in refused["object"]), 0)
         shown = {"found": refused["object"], "rule": refused["rule"], "remedy": refused["remedy"], "column": at}
@@ -61,14 +62,14 @@ def check_field(file: File, text: str, now: Analysis, path: Path, typed: Any) ->
     return answer
 
 
-def _in_place(file: File, text: str, now: Analysis, path: Path, typed: str) -> Json | None:
+def _in_place(file: File, text: str, now: Analysis, path: Path, typed: str, draft: Edit | None) -> Json | None:
     """The first problem of the field in the document that has the text there."""
     wanted = scalar_of(typed.strip())
     if now.readable and same(_present(now.data, path), wanted):
         tried = now  # A window asks for each of its fields when it opens; reading takes half a second.
     else:
         try:
-            tried = analyse(file, apply(text, Edit("set", path, wanted)))
+            tried = analyse(file, apply(text, draft or Edit("set", path, wanted)))
         except (EditError, YamlFault):
             return None  # The field is not in this document: its formula alone can be judged.
     here = list(path)

@@ -9,7 +9,7 @@ from typing import Any
 
 from symofros.description.reading import MODEL_SUFFIXES
 from symofros.description.system import System
-from symofros.studio.editor.document.document import EditedDocument, refuse_text
+from symofros.studio.editor.document.document import EditedDocument, StaleError, refuse_text
 from symofros.studio.editor.document.expressions import check_field
 from symofros.studio.editor.document.figures.beam_figures import beam_figures
 from symofros.studio.editor.document.figures.inertia_figures import inertia_figures
@@ -190,7 +190,14 @@ class Session:
     # Beside the document.
 
     def place(self, body: Json) -> None:
-        """Remember where blocks are; of those that are named."""
+        """Remember where blocks are; of those that are named.
+
+        Raises:
+            StaleError: They are of another document than the one that is open: blocks there may have the same names.
+        """
+        path, here = text_of(body, "path"), self.workspace.shown(self.document.file)
+        if path not in ("", here):
+            raise StaleError(f"places of blocks of '{path[:100]}'; '{here}' is open")
         self.storage.place(body.get("positions"))
 
     def keep_part(self, body: Json) -> None:
@@ -207,8 +214,8 @@ class Session:
         """
         document = self.document
         checks = [
-            partial(check_field, document.file, document.text, document.analysis, path, typed)
-            for path, typed in fields_of(body.get("fields"))
+            partial(check_field, document.file, document.text, document.analysis, field.path, field.text, field.draft)
+            for field in fields_of(body.get("fields"))
         ]
         return lambda: {"checks": [check() for check in checks]}
 

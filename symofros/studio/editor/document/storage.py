@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from symofros.errors import Problem, SymofrosError
 from symofros.studio.editor.document.document import BOM, MAX_TEXT, EditedDocument, too_large
+from symofros.studio.editor.document.unsaved_work import UnsavedWork
 from symofros.studio.editor.document.workspace import (
     FileError,
     Workspace,
@@ -18,7 +18,6 @@ from symofros.studio.editor.document.workspace import (
     layout_of,
     positions,
     read_layout,
-    read_own,
     read_text,
     signature,
     write,
@@ -70,7 +69,8 @@ class Storage:
         self.layout: dict[str, list[float]] = {}
         self.recovered = False
         self.unkept: Problem | None = None
-        self._on_disk = ""  # Digest of the file when it was last read or written; "" where there was none.
+        self._seen = ""  # Digest of the file when it was last read or written; "" where there was none.
+        self._base = ""  # Digest of the file that the text is based on: that of recovered work may be an older one.
         self._signature = ""
         self._revision = revision
         if file is None:
@@ -118,16 +118,14 @@ class Storage:
         self.document.change("import", lambda _: text)
         self.autosave()
 
-    def _become(self, document: EditedDocument, on_disk: str) -> None:
-        self.document, self._on_disk, self.recovered = document, on_disk, False
+    def _become(self, document: EditedDocument, seen: str) -> None:
+        self.document, self._seen, self._base, self.recovered = document, seen, seen, False
         self._signature, self.layout = signature(document.file), read_layout(document.file)
-        try:
-            text = read_own(autosave_of(document.file))
-        except FileError:
-            text = document.text
-        if text != document.text:
-            document.change("recovered work", lambda _: text)
-            self.recovered = True
+        self._unsaved = UnsavedWork(document.file)
+        found = self._unsaved.recover()
+        if found is not None and found.text != document.text:
+            document.change("recovered work", lambda _: found.text)
+            self.recovered, self._base, self._signature = True, found.base, ""
         self.note_revision()
 
     @property
@@ -162,8 +160,9 @@ class Storage:
         self.unkept = None
         try:
             if self.document.dirty:
-                write(autosave_of(self.document.file), self.document.text)
+                self._unsaved.keep(self.document.text, self._base)
             else:
+                self._base = self._seen  # Undone as far as the text that was read: the user has seen it.
                 self.forget()
         except FileError as error:
             self.unkept = error.problem
@@ -186,7 +185,7 @@ class Storage:
         if now == self._signature:
             return False
         try:
-            same = digest(read_text(self.document.file)[1]) == self._on_disk
+            same = digest(read_text(self.document.file)[1]) == self._base
         except FileError:
             same = now == ""  # What was removed can't be in conflict.
         if same:
@@ -210,14 +209,13 @@ class Storage:
         kind = "mechanism" if self.document.analysis.diagram is None else "diagram"
         empty = EMPTY[kind].format(name=identifier(self.document.file.stem))
         self.document.change("discard", lambda _: empty if saved is None else saved)
-        self.recovered = False
+        self.recovered, self._base = False, self._seen
         self.forget()
         self.note_revision()
 
     def forget(self) -> None:
         """Drop what is kept of unsaved work."""
-        with suppress(OSError):  # It is not there, or can't be removed; then it is offered again, and can be discarded.
-            autosave_of(self.document.file).unlink()
+        self._unsaved.forget()
 
     # Saving.
 
@@ -230,22 +228,27 @@ class Storage:
 
         Raises:
             ConflictError: The file is in another state.
-            FileError: It can't be written.
+            FileError: It can't be written, or there is unsaved work on that other file.
         """
         before = self.document.file
         file = self.workspace.inside(path) if path else before
-        self._refuse_conflict(file, self._on_disk if file == before else "", over)
+        self._refuse_conflict(file, self._base if file == before else "", over)
+        if file != before:
+            self._refuse_unsaved(file)
         content = self.document.content
         write(file, content)
         self.forget()
         self.document.file = file
+        if file != before:
+            self._unsaved = UnsavedWork(file)
         self._saved(content)
         if self.layout:
             self._write_layout()
 
     def _saved(self, content: bytes) -> None:
         self.document.saved = self.document.text
-        self._on_disk, self.recovered = digest(content), False
+        self._seen = self._base = digest(content)
+        self.recovered = False
         self._signature = signature(self.document.file)
 
     def _refuse_conflict(self, file: Path, known: str, over: str) -> None:
@@ -255,13 +258,28 @@ class Storage:
         there = digest(data)
         if there in (known, over) or data == self.document.content:
             return
+        begun = " than the recovered work began with" if self.recovered and file == self.document.file else ""
         raise ConflictError(
             Problem(
                 f"'{file.name}' has changed on disk" if known else f"'{file.name}' is there already",
-                "another text",
+                f"another text{begun}",
                 "a file is overwritten only in the state that you saw",
                 "compare the two texts; overwrite, or take the other",
             ),
             disk,
             there,
+        )
+
+    def _refuse_unsaved(self, file: Path) -> None:
+        """Refuse another file that somebody has unsaved work on: it would be offered on top of this document."""
+        found = UnsavedWork(file).recover()
+        if found is None or found.text == self.document.text:
+            return
+        raise FileError(
+            Problem(
+                f"'{file.name}' has unsaved work of its own",
+                f"'{autosave_of(file).name}'",
+                "a document is saved over no unsaved work on another file",
+                f"choose another name, or open '{file.name}' and save or discard that work",
+            )
         )

@@ -185,6 +185,11 @@ def autosave_of(path: Path) -> Path:
     return path.with_name(f".{path.stem}.autosave.yaml")
 
 
+def base_of(path: Path) -> Path:
+    """Where it is kept which state of a file unsaved work was based on."""
+    return path.with_name(f".{path.stem}.autosave.json")
+
+
 def layout_of(path: Path) -> Path:
     """Where the positions of a file's blocks are kept."""
     return path.with_name(f".{path.stem}.editor.json")

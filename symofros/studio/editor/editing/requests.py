@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, get_args
+from typing import Any, NamedTuple, get_args
 
 from symofros.description.yaml.yaml_nodes import MAX_DEPTH, scalar_of
 from symofros.errors import Problem
@@ -35,15 +35,37 @@ def path_of(given: Any) -> Path:
     return tuple(given)
 
 
-def fields_of(given: Any) -> list[tuple[Path, Any]]:
-    """Path and text of each field of a request.
+class Field(NamedTuple):
+    """A field that is asked about.
+
+    Attributes:
+        path: Path of the field.
+        text: What was typed into it.
+        draft: Edit that puts the entry that the window shows into the document; None where the document has it.
+    """
+
+    path: Path
+    text: Any
+    draft: Edit | None
+
+
+def fields_of(given: Any) -> list[Field]:
+    """The fields of a request.
 
     Raises:
         EditError: They are not what the contract says.
     """
     if not isinstance(given, list) or len(given) > MAX_EDITS or not all(isinstance(item, dict) for item in given):
         raise _malformed("fields", given, f"a list of at most {MAX_EDITS} mappings")
-    return [(path_of(item.get("path", [])), item.get("text")) for item in given]
+    return [Field(path_of(item.get("path", [])), item.get("text"), _draft(item.get("draft"))) for item in given]
+
+
+def _draft(given: Any) -> Edit | None:
+    if given is None:
+        return None
+    if not isinstance(given, dict):
+        raise _malformed("draft", given, "a mapping of path and value")
+    return Edit("set", path_of(given.get("path")), _clean(given.get("value")))
 
 
 def text_of(body: dict[str, Any], key: str) -> str:

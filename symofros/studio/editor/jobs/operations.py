@@ -9,6 +9,7 @@ import subprocess
 import tempfile
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -20,9 +21,13 @@ from symofros.base.names import quoted, speed_column, speed_of, symbol_of
 from symofros.compiler import Compilation, compile_system
 from symofros.description.yaml.files import write_yaml
 from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
+from symofros.exports.folder import check_same
+from symofros.generator.codegen.names import identifier
 from symofros.generator.passes.count import count_program
 from symofros.harness import command_line
 from symofros.mechanics.topology.tree import SpanningTree, build_tree
+from symofros.simulation.analysis.kinematics.starts import closed_start
+from symofros.simulation.simulate import prepare_run
 from symofros.studio.editor.jobs.bent_beams import bent_beams
 from symofros.studio.editor.jobs.request import Json, Tell, diagram_of, system_of
 from symofros.studio.viewer.playing.coordinate_units import coordinate_units
@@ -31,12 +36,12 @@ POINTS, MAX_POINTS = 1000, 5000
 
 
 def compile_model(request: Json, tell: Tell) -> Json:
-    """Derive, generate, compile; how much of each."""
+    """Derive, generate, compile; how much of each. A simulation of the same model finds all that it calls compiled."""
     tell(0, 4, "reading")
     system = system_of(request)
     start = time.perf_counter()
-    shown = exported(bool(system.constraints), ("dynamics", "constraints"))
-    compilation = Compilation(system, sf.Options(shown))
+    compilation = Compilation(system)
+    compilation.request(exported(bool(system.constraints), ("dynamics", "constraints")))
     tell(1, 4, "deriving the equations")
     program = compilation.program
     tell(2, 4, "writing C")
@@ -44,6 +49,9 @@ def compile_model(request: Json, tell: Tell) -> Json:
     generated = time.perf_counter()
     tell(3, 4, "compiling C")
     model = compilation.model()
+    prepare_run(model)
+    _prepare_start(model)
+    _prepare_energies(model)
     done = time.perf_counter()
     counts = {
         key[0]: {"mul": n.mul, "add": n.add, "div": n.div, "call": n.call, "total": n.total}
@@ -69,6 +77,18 @@ def compile_model(request: Json, tell: Tell) -> Json:
         "frames": list(names.frames),
         "notes": list(system.notes),
     }
+
+
+def _prepare_start(model: sf.Model) -> None:
+    """Compile what closes loops before a simulation."""
+    if model.nc:
+        model.prepare("constraint", "constraint_rate", "constraint_jacobian")
+
+
+def _prepare_energies(model: sf.Model) -> None:
+    """Compile what is evaluated of a simulation's records, for many states at a time."""
+    q, v = np.tile(model.neutral(), (POINTS + 1, 1)), np.zeros((POINTS + 1, model.nv))
+    model.kinetic_energy(q, v), model.potential_energy(q)
 
 
 def cross_check(request: Json, tell: Tell) -> Json:
@@ -129,8 +149,9 @@ def simulate(request: Json, tell: Tell) -> Json:
     v = _vector(model.names.v, options.get("v0"), np.zeros(model.nv), "speed")
     if model.nc:
         tell(0, 100, "closing the loops")
-        closed = sf.assemble(model, q, v, par=par)
-        q, v = closed.q, closed.v
+    stated = [speed_of(str(name), model.names.q) for name in options.get("q0") or {}]
+    moved = [speed_of(str(name), model.names.v) for name in options.get("v0") or {}]
+    start = closed_start(model, q, v, stated, moved, par=par)
     points = _whole(options.get("points"), 2, MAX_POINTS, POINTS)
     chosen: Json = {key: options[key] for key in ("method", "stabilisation") if options.get(key)}
     chosen |= {key: _number(options[key], key) for key in ("dt", "rtol", "atol") if options.get(key) is not None}
@@ -149,8 +170,8 @@ def simulate(request: Json, tell: Tell) -> Json:
     began = time.perf_counter()
     run = sf.simulate(
         model,
-        q,
-        v,
+        start.q,
+        start.v,
         t_end,
         u=inputs or None,
         par=par,
@@ -158,6 +179,7 @@ def simulate(request: Json, tell: Tell) -> Json:
         progress=progress,
         **chosen,
     )
+    run = replace(run, outcome=replace(run.outcome, notes=(*start.notes, *run.outcome.notes)))
     return {**_motion(run, build_tree(system)), "par": par.tolist(), "wall_s": time.perf_counter() - began}
 
 
@@ -203,8 +225,10 @@ def export(request: Json, tell: Tell) -> Json:
     tell(0, 2, "reading")
     options, target, folder = request["options"], request["options"]["target"], request["folder"]
     stated = diagram_of(request) if request["is_diagram"] else system_of(request)
+    name = options.get("name") or None
+    check_same(Path(folder), target, identifier(name if name and not request["is_diagram"] else stated.name))
     tell(1, 2, f"writing {target}")
-    done = sf.export(stated, target, folder, name=options.get("name") or None)
+    done = sf.export(stated, target, folder, name=name)
     root = Path(request["root"])
     files = [os.path.relpath(file.resolve(), root) for file in done.files]
     return {"files": files, "notes": list(done.notes), "target": done.target}

@@ -11,6 +11,7 @@ from urllib.request import urlopen
 
 import numpy as np
 
+from symofros.base.measures import ANGLE, LENGTH
 from symofros.description.system import System
 from symofros.errors import Problem, SymofrosError
 from symofros.studio.editor.editing.data_edits import EditError, four_parts, refusal
@@ -23,6 +24,7 @@ from symofros.studio.viewer.viewer import Viewer
 Json = dict[str, Any]
 
 MOST_EXAGGERATION = 1000.0
+GAP_UNITS = {LENGTH: "m", ANGLE: "rad"}
 # Chromium starts no module worker from a blob of a page of no origin, and says so only to the page. Where a blob is
 # refused at once, viser's page takes a data address, and that works.
 NO_BLOB_WORKERS = b"""<script>
@@ -216,15 +218,21 @@ class DocumentViewer:
 def _stand(viewer: Viewer) -> Json:
     """Where everything stands.
 
-    `gap`: largest residual of the loops' conditions [m or rad], None without loops; `beams`: how far each is bent.
+    `gap`: largest residual of the loops' conditions, None without loops, in `gap_unit`, "" of a formula; `beams`: how
+    far each is bent.
     """
     model, state = viewer.mechanism.model, viewer.state
-    gap = float(np.abs(model.constraint(state.q, u=state.u, par=state.par)).max()) if model.nc else None
+    gap, unit = None, ""
+    if model.nc:
+        open_by = np.abs(model.constraint(state.q, u=state.u, par=state.par))
+        worst = int(np.argmax(open_by))
+        gap, unit = float(open_by[worst]), GAP_UNITS.get(model.record.measures.unit[worst], "")
     labels = (slider.label for slider in viewer.sliders)
     return {
         "q": dict(zip(labels, viewer.values.tolist(), strict=True)),
         "exaggeration": viewer.exaggeration,
         "gap": gap,
+        "gap_unit": unit,
         "frames": "frames" in viewer.layers,
         "beams": bent_beams(viewer.bendings),
     }

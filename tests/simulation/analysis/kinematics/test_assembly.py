@@ -52,6 +52,39 @@ def test_what_is_held_stays() -> None:
     assert found.q[0] == 1.2 and found.v[0] == 2.0 and found.v[2] == pytest.approx(2.0)
 
 
+def loop_in_line(lengths: tuple[float, ...], ground: float) -> sf.System:
+    """A planar loop as it is drawn, its links in one line: a chain, and its last link on a pivot of its own."""
+    bodies: list[sf.RigidBody] = []
+    for i, length in enumerate(lengths):
+        last = i == len(lengths) - 1
+        place = {"position": (ground, 0, 0)} if last else {"parent": f"b{i - 1}", "frame": "end"} if i else {}
+        inertia = sf.Inertia(1.0, (length / 2, 0, 0), (0.1, 0.1, 0.1))
+        frames = (sf.Frame("end", (length, 0, 0)),)
+        bodies.append(sf.RigidBody(f"b{i}", sf.Joint(f"q{i}", "revolute", **place), inertia, frames))
+    shut = sf.Closure("shut", (bodies[-1].name, "end"), (bodies[-2].name, "end"), ("x", "y"))
+    return sf.System("drawn", tuple(bodies), constraints=(shut,))
+
+
+@pytest.mark.parametrize("lengths", [(1.0, 1.0, 1.0), (0.4, 1.0, 0.7), (0.2, 0.3), (1.0,) * 5, (5e-3, 8e-3, 4e-3)])
+@pytest.mark.parametrize("share", [0.8, 0.5, 0.3])
+def test_a_loop_that_was_just_drawn_closes(lengths: tuple[float, ...], share: float) -> None:
+    """Links in one line hold no direction that closes the loop; the answer is the same each time."""
+    ground = share * sum(lengths)
+    m = sf.compile(loop_in_line(lengths, ground), sf.Options(FUNCTIONS.functions, backend="interpreter"))
+    found, again = sf.assemble(m), sf.assemble(m)
+    assert np.abs(m.constraint(found.q)).max() <= 1e-12 and found.iterations > 0
+    assert np.array_equal(found.q, again.q)
+    first = found.q[0] + 0.01 if len(lengths) > 2 else found.q[0]
+    held = sf.assemble(m, [first, *m.neutral()[1:]], held=["q0"])
+    assert held.q[0] == first and np.abs(m.constraint(held.q)).max() <= 1e-12
+
+
+def test_a_loop_that_is_too_short_is_refused_from_a_line_too() -> None:
+    m = sf.compile(loop_in_line((0.4, 0.4), 1.0), sf.Options(FUNCTIONS.functions, backend="interpreter"))
+    with pytest.raises(sf.AssemblyError, match=r"phi = .* at 'shut\.x'; 8 guesses near it"):
+        sf.assemble(m)
+
+
 def test_out_of_reach_names_the_condition() -> None:
     m = sf.compile(MODELS["slider_crank"], FUNCTIONS).with_parameters(L2=0.05)
     with pytest.raises(sf.AssemblyError, match=r"phi = .* at 'gudgeon\.y'; held: turn"):

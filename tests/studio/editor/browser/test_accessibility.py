@@ -152,7 +152,7 @@ def test_a_diagram_on_small_pages(
     picture(f"small-diagram-{width}")
     steps.open_window(page, "blocks/slow")
     assert faults() == []
-    for label in ("Name", "Period", "Source of u"):
+    for label in ("Name", "Sample time", "Source of u"):
         steps.window(page).get_by_label(label, exact=True).click(trial=True)  # Nothing lies over it.
     page.keyboard.press("Escape")
     steps.run(page, "Run…")

@@ -24,6 +24,18 @@ blocks:
   source: {kind: sine, unit: rad}
   speed: {kind: gain, unit_in: rad/s, unit_out: "rad/s", inputs: {}}
 """
+# Position and speed of an arm exchanged, a scalar that a vector of one takes.
+EXCHANGED = """symofros_diagram: 1
+models: {arm: {file: arm.yaml}}
+blocks:
+  plant: {kind: forward_dynamics, model: arm, inputs: {u: pd}}
+  place: {kind: pick, entries: [q1, q2], model: arm, of: q, inputs: {u: plant.q}}
+  speed: {kind: pick, entries: [q1, q2], model: arm, of: v, inputs: {u: plant.v}}
+  one: {kind: constant, value: 1, unit: rad}
+  first: {kind: pick, entries: [0], inputs: {u: one}}
+  pd: {kind: joint_pd, kp: 3, kd: 1, inputs: {q_desired: goal, q: speed, v: place}}
+  goal: {kind: constant, value: [0.1, 0.2], unit: rad}
+"""
 HELD = """symofros_diagram: 1
 models: {arm: {file: arm.yaml}}
 blocks:
@@ -180,3 +192,18 @@ def test_a_diagram_is_checked_as_it_is_drawn_and_saved_with_every_other_byte_as_
         "  sum: {kind: sum, inputs: {u1: speed.y, u2: source.y}}\n"
         "  scope: {kind: scope, signals: [y], inputs: {y: speed.y}}\n"
     )
+
+
+def test_states_that_are_exchanged_are_refused_in_units(
+    serve: Callable[..., Server], page: Page, tmp_path: Path
+) -> None:
+    shutil.copy(MODELS / "rigid" / "double_pendulum.yaml", tmp_path / "arm.yaml")
+    server = serve("law.yaml", content=EXCHANGED)
+    steps.open_editor(page, server.url)
+    steps.problems(page, 2)
+    page.get_by_role("banner").get_by_role("button", name="2 problems").click()
+    results = steps.results(page)
+    expect(results).to_contain_text("speed.y -> pd.q: units differ")
+    expect(results).to_contain_text("place.y -> pd.v: units differ")
+    expect(results).to_contain_text("rad/s")
+    expect(results).not_to_contain_text("shapes differ")

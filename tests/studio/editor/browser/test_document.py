@@ -252,6 +252,30 @@ def test_work_survives_a_server_that_is_killed(
     assert "boom:" in again.file.read_text() and "value: 2.5" in again.file.read_text()
 
 
+def test_recovered_work_asks_before_it_overwrites_a_file_that_was_changed_meanwhile(
+    serve: Callable[..., Server], page: Page
+) -> None:
+    server = serve("arm.yaml", source=PENDULUM)
+    steps.open_editor(page, server.url)
+    set_parameter(page, "m1", "2.5")
+    value(page, "m1")("2.5")
+    server.kill()
+    theirs = server.file.read_text().replace("value: 0.5, unit: m", "value: 0.8, unit: m")
+    server.file.write_text(theirs)
+
+    again = serve("arm.yaml")
+    steps.open_editor(page, again.url)
+    expect(page.get_by_text("Unsaved work of an earlier run")).to_be_visible()
+    expect(page.get_by_text("Somebody else has written the file")).to_be_visible()
+    page.get_by_role("button", name="Save it").click()
+    expect(page.get_by_role("dialog", name="The file has changed on disk")).to_be_visible()
+    assert again.file.read_text() == theirs
+    steps.window(page).get_by_role("button", name="Overwrite it").click()
+    expect(steps.window(page)).to_have_count(0)
+    assert "value: 2.5" in again.file.read_text()
+    expect(page.get_by_text("Somebody else has written the file")).to_have_count(0)
+
+
 def test_a_new_token_is_asked_for(serve: Callable[..., Server], page: Page) -> None:
     server = serve("arm.yaml", source=PENDULUM)
     steps.open_editor(page, server.url)
@@ -282,7 +306,7 @@ def test_a_frame_and_a_coordinate_are_renamed_everywhere(serve: Callable[..., Se
     server = serve("arm.yaml", source=PENDULUM)
     steps.open_editor(page, server.url)
     steps.open_window(page, "bodies/upper")
-    steps.window(page).get_by_label("Name", exact=True).nth(1).fill("shoulder")
+    steps.window(page).get_by_label("Joint name", exact=True).fill("shoulder")
     steps.tab(page, "Frames")
     steps.fill(page, "Name of frames elbow", "joint2")
     steps.accept(page)

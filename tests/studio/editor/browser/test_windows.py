@@ -79,3 +79,19 @@ def test_mass_and_moments_follow_what_is_typed(
     picture("inertia")
     steps.fill(page, "Y", "")
     expect(figures).to_contain_text("once every field has a number")
+
+
+@pytest.mark.parametrize("how", ["a base that is a body", "the ground alone"])
+def test_gravity_is_in_the_window_of_the_ground(serve: Callable[..., Server], page: Page, how: str) -> None:
+    server = serve("pair.yaml", source=MODELS / "rigid" / "double_pendulum.yaml")
+    steps.open_editor(page, server.url)
+    if how == "a base that is a body":
+        page.get_by_role("button", name="Base", exact=True).click()
+        expect(steps.block(page, "world")).to_contain_text("ground")
+    steps.open_window(page, "world")
+    steps.fill(page, "Gravity z", "-1.62")
+    steps.accept(page)
+    expect(steps.block(page, "world")).to_contain_text("[0, 0, -1.62]")
+    steps.problems(page, 0)
+    steps.saved(page)
+    assert sf.load(server.file).gravity == (0.0, 0.0, -1.62)

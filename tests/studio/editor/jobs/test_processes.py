@@ -68,6 +68,31 @@ def test_simulate(client: TestClient) -> None:
     assert found["outcome"]["ok"] and found["method"] == "dop853" and found["steps"] > 3
 
 
+def simulated(text: str, **options: Any) -> dict[str, Any]:
+    """In this process."""
+    return operations.simulate({"file": "model.yaml", "text": text, "options": options}, lambda *_: None)
+
+
+def test_what_is_typed_of_a_loop_s_start_is_held_or_refused(client: TestClient) -> None:
+    text = client.get("/api/document").json()["text"]
+    found = simulated(text, t_end=0.01, q0={"q1": 1.0}, v0={"dq1": 1.0})
+    first = {series["name"]: series["values"][0] for series in found["series"]}
+    assert first["q1"] == 1.0 and first["dq1"] == 1.0 and not found["outcome"]["notes"]
+    with pytest.raises(SymofrosError, match=r"q2 = -0\.5 would be -"):
+        simulated(text, t_end=0.01, q0={"q1": 1.0, "q2": -0.5, "q3": 0.3})
+    notes = simulated(text, t_end=0.01, q0={"q1": 1.2, "q2": -1.2004, "q3": 1.2})["outcome"]["notes"]
+    assert any("q2 = -1.2004 was taken as -1.2001" in note for note in notes)
+
+
+def test_a_loop_that_was_just_drawn_is_simulated(client: TestClient) -> None:
+    """Its links lie in one line."""
+    text = (
+        client.get("/api/document").json()["text"].replace("position: [L, 0, 0], axis", "position: [0.7*L, 0, 0], axis")
+    )
+    found = simulated(text, t_end=0.1)
+    assert found["outcome"]["ok"], found["outcome"]
+
+
 @pytest.mark.slow
 def test_simulate_with_inputs_on_prismatic_and_revolute_joints(client: TestClient, folder: Path) -> None:
     client.post("/api/text", json={"revision": 1, "text": SLIDER})

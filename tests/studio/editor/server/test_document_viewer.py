@@ -87,6 +87,24 @@ def test_a_parameter_moves_it_before_the_document_changes(crank: TestClient) -> 
     assert crank.get("/api/document").json()["dirty"] is False
 
 
+def drawn(client: TestClient, ground: str) -> dict[str, Any]:
+    """The view of a four-bar whose links lie in one line, at a distance of its pivots."""
+    text = client.get("/api/document").json()["text"]
+    text = text.replace("position: [L, 0, 0], axis", f"position: [{ground}, 0, 0], axis")
+    assert client.post("/api/text", json={"revision": 1, "text": text}).status_code == 200
+    return look(client)
+
+
+def test_a_loop_that_was_just_drawn_is_shown_closed(client: TestClient) -> None:
+    view = drawn(client, "0.7*L")
+    assert view["gap"] < 1e-9 and any(abs(value) > 0.1 for value in view["q"].values())
+
+
+def test_a_loop_that_can_not_close_says_by_how_much_it_is_open(client: TestClient) -> None:
+    view = drawn(client, "5*L")
+    assert view["gap"] == pytest.approx(4.0) and view["gap_unit"] == "m"
+
+
 def test_where_loops_can_not_be_closed_it_stays(crank: TestClient) -> None:
     view = look(crank)
     found = pose(crank, q={"turn": 1.57}, par={"L2": 0.1})  # The crank's end is 0.15 m above the slider's axis.

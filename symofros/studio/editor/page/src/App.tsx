@@ -7,6 +7,7 @@ import { IMPORTED } from "./files/choose";
 import { Bottom } from "./panels/Bottom";
 import { Right } from "./panels/Right";
 import { Banners, Notices } from "./shell/Banners";
+import { Boundary } from "./shell/Boundary";
 import { DiagramPalette } from "./shell/DiagramPalette";
 import { Palette } from "./shell/Palette";
 import { onKey } from "./shell/shortcuts";
@@ -26,50 +27,71 @@ function dropFile(event: DragEvent): void {
 }
 
 function Editor() {
-  const { name, dirty, path, diagram } = useDocument();
+  const document = useDocument();
+  const { name, dirty, path, diagram } = document;
   const isDiagram = diagram !== null;
   useEffect(() => {
     window.document.title = `${dirty ? "• " : ""}${name} - SYMOFROS`;
   }, [name, dirty]);
   const right = useStore((state) => state.right);
   const bottom = useStore((state) => state.bottom);
+  const dialog = useStore((state) => state.dialog);
   return (
     <ReactFlowProvider>
       <div className="page" onDrop={dropFile} onDragOver={(event) => event.preventDefault()}>
         <Banners />
-        <Toolbar />
+        <Boundary what="The tool bar" attempt={document}>
+          <Toolbar />
+        </Boundary>
         <div className="middle">
-          {isDiagram ? <DiagramPalette /> : <Palette />}
+          <Boundary what="The palette" attempt={document}>
+            {isDiagram ? <DiagramPalette /> : <Palette />}
+          </Boundary>
           <main className="work" aria-label="Diagram">
-            {isDiagram ? <DiagramCanvas key={path} /> : <Canvas key={path} />}
+            <Boundary what="The diagram" attempt={document}>
+              {isDiagram ? <DiagramCanvas key={path} /> : <Canvas key={path} />}
+            </Boundary>
             {bottom === null ? null : <Bottom current={bottom} />}
           </main>
           {right === null ? null : <Right current={right} />}
         </div>
         <Status />
       </div>
-      <Dialogs />
+      <Boundary what="The window" attempt={dialog}>
+        <Dialogs />
+      </Boundary>
       <Notices />
     </ReactFlowProvider>
   );
 }
 
-/** What is shown while there is no document: why. */
+/** What is shown while there is no document: why, and a way on. */
 function Waiting() {
   const link = useStore((state) => state.link);
+  const isRefused = useStore((state) => state.notices.length > 0);
   return (
     <main className="waiting">
-      {link === "ok" ? <p role="status">Loading…</p> : null}
+      {link === "ok" ? <p role="status">{isRefused ? "The document could not be loaded." : "Loading…"}</p> : null}
+      {isRefused ? (
+        <button type="button" onClick={() => window.location.reload()}>
+          Reload the page
+        </button>
+      ) : null}
       <Banners />
+      <Notices />
     </main>
   );
 }
 
 export function App() {
-  const hasDocument = useStore((state) => state.document !== null);
   useEffect(() => {
     window.addEventListener("keydown", onKey);
     return () => window.removeEventListener("keydown", onKey);
   }, []);
-  return hasDocument ? <Editor /> : <Waiting />;
+  const document = useStore((state) => state.document);
+  return (
+    <Boundary what="The page" attempt={document}>
+      {document === null ? <Waiting /> : <Editor />}
+    </Boundary>
+  );
 }

@@ -272,6 +272,8 @@ export interface Stand {
   exaggeration: number;
   /** Largest residual of the conditions that close loops; null where there are none. */
   gap: number | null;
+  /** Its unit; "" of a formula. */
+  gap_unit: string;
   /** Whether frames are drawn. */
   frames: boolean;
   beams: BentBeam[];

@@ -9,6 +9,7 @@ import { frames, hasJoint, jointHeight, portHeight, size } from "../model/geomet
 import type { Summary } from "../model/summary";
 import { Glyph } from "../shell/Glyph";
 import { reveal, toggleFolds } from "../store/folding";
+import { usePorts } from "./usePorts";
 
 export type BlockNode = Node<
   {
@@ -172,6 +173,7 @@ function Condition(data: Props) {
   );
 }
 
-export const Block = memo(function Block({ data }: NodeProps<BlockNode>) {
+export const Block = memo(function Block({ id, data }: NodeProps<BlockNode>) {
+  usePorts(id, [data.node.kind, data.node.ports]);
   return data.node.kind === "nonholonomic" ? <Condition {...data} /> : <Body {...data} />;
 });

@@ -4,6 +4,7 @@ import { memo } from "react";
 import type { SignalNode, SignalPort } from "../api/types";
 import { blockSize, rowHeight } from "../model/diagram_geometry";
 import { Glyph } from "../shell/Glyph";
+import { usePorts } from "./usePorts";
 
 export type SignalBlockNode = Node<{ node: SignalNode; colour: string }, "signal">;
 
@@ -32,7 +33,11 @@ function Ports({ node, side }: { node: SignalNode; side: "inputs" | "outputs" })
 }
 
 /** A block of a diagram: inputs on the left, outputs on the right, the model that it is about at its foot. */
-export const SignalBlock = memo(function SignalBlock({ data: { node, colour } }: NodeProps<SignalBlockNode>) {
+export const SignalBlock = memo(function SignalBlock({ id, data: { node, colour } }: NodeProps<SignalBlockNode>) {
+  usePorts(
+    id,
+    [node.inputs, node.outputs].map((ports) => ports.map(({ name }) => name)),
+  );
   const [width, height] = blockSize(node);
   const kind = node.kind.replaceAll("_", " ");
   return (

@@ -1,5 +1,6 @@
 /** The browser's own dialogs for files: one to take, one to give. */
 
+import type { Document } from "../api/types";
 import { importFile } from "../store/files";
 
 export const IMPORTED = [".yaml", ".yml", ".urdf", ".xml", ".mjcf"];
@@ -19,6 +20,9 @@ export function chooseImport(): void {
   });
   input.click();
 }
+
+/** Hands the text of a document to the browser as a file. */
+export const saveText = ({ text, name }: Document): void => offer(new Blob([text], { type: "text/yaml" }), name);
 
 export function offer(blob: Blob, name: string): void {
   const link = window.document.createElement("a");

@@ -3,7 +3,7 @@ import { at, isMap, replaced, same } from "../model/paths";
 import { useStore } from "../store/store";
 import { useForm } from "./context";
 import { FieldControl } from "./Field";
-import { field, label, type Shape } from "./schema";
+import { field, label, type Shape, unitOfField } from "./schema";
 
 interface Props {
   shape: Shape & { kind: "record" };
@@ -44,7 +44,7 @@ function Row({
   const complaint = useComplaint(place, value);
   if (!isMap(schema)) return null;
   const described = field(root, schema, !shape.required.includes(name));
-  const words = label(name);
+  const words = label(name, shape.name);
   const isFormula = described.shape.kind === "formula" || described.shape.kind === "vector";
   return (
     <div className="row">
@@ -67,7 +67,7 @@ function Row({
           </div>
         )}
       </div>
-      <span className="row-unit">{described.unit}</span>
+      <span className="row-unit">{unitOfField(name, described)}</span>
     </div>
   );
 }

@@ -4,6 +4,7 @@ import { createContext, useContext } from "react";
 
 import type { Json, JsonMap, Path } from "../api/types";
 import type { Renames } from "../model/changes";
+import type { Draft } from "./checks";
 
 export interface FormContext {
   /** The whole JSON Schema. */
@@ -18,6 +19,8 @@ export interface FormContext {
   /** Told of each number as it is typed, so that it can be written so. */
   type(path: Path, text: string): void;
   hint(text: string): void;
+  /** The entry with a field, as it stands in the window: the document may not have the field yet. */
+  draft(path: Path): Draft | null;
   /** What a property of a record can be chosen from; null where it is typed. */
   choices(name: string, record: Json | undefined): readonly string[] | null;
 }
@@ -30,6 +33,7 @@ export const Form = createContext<FormContext>({
   rename: () => undefined,
   type: () => undefined,
   hint: () => undefined,
+  draft: () => null,
   choices: () => null,
 });
 export const useForm = (): FormContext => useContext(Form);

@@ -109,7 +109,8 @@ export function field(root: JsonMap, schema: JsonMap, optional = true): Field {
   const unit = unitOf(help);
   return {
     shape: shapeOf(root, inner),
-    help: help === `[${unit}]` ? "" : help,
+    // Descriptions are of Python's fields: an entry that is None there is left out of the file.
+    help: help === `[${unit}]` ? "" : help.replaceAll("None:", "left out:"),
     unit,
     fallback: schema["default"],
     optional,
@@ -130,11 +131,38 @@ const LABELS: Record<string, string> = {
   shear_z: "Modes of shear along z",
   axis2: "Second axis",
   at: "At",
+  // A signal has a period of its own.
+  period: "Sample time",
+  offset: "First sample",
+  kind_: "Form",
+  t0: "Start",
+  t_end: "End",
+  dt: "Step",
+  record: "Record every",
+  realtime: "Pace",
+  // What a key means in one record alone.
+  "JointEntry.name": "Joint name", // The window has the name of the body, too.
+  "noise.kind_": "Distribution",
+  "sequence.kind_": "Between samples",
+  "chirp.first": "First frequency",
+  "chirp.last": "Last frequency",
+  "square.first": "First side",
+  "square.second": "Second side",
 };
 
-/** A property's name in words; symbols such as EI_z stay as they are. */
-export function label(key: string): string {
-  if (key in LABELS) return LABELS[key] ?? key;
+/** Units that no description states in brackets. */
+const UNITS: Record<string, string> = {
+  ...Object.fromEntries(["period", "every", "t0", "t_end", "dt", "record"].map((key) => [key, "s"])),
+  realtime: "× clock",
+};
+
+/** Unit of a property: what its description says, or what all properties of that name have. */
+export const unitOfField = (key: string, { unit }: Field): string => unit || (UNITS[key] ?? "");
+
+/** A property's name in words, in a record of the schema; symbols such as EI_z stay as they are. */
+export function label(key: string, record = ""): string {
+  const stated = LABELS[`${record}.${key}`] ?? LABELS[key];
+  if (stated !== undefined) return stated;
   if (/[A-Z]/.test(key)) return key;
   const words = key.replaceAll("_", " ");
   return words.charAt(0).toUpperCase() + words.slice(1);

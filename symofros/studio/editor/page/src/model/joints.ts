@@ -5,6 +5,10 @@ import table from "./joint_kinds.json";
 
 interface JointKind {
   speeds: number;
+  /** Suffix of a coordinate's name -> its unit; a suffix "" has no dot before it. */
+  coordinates: Record<string, string>;
+  /** Suffixes of the speeds where these are not the rates of the coordinates: of velocities in axes of the body. */
+  quasi_velocities: string[] | null;
   entries: string[];
   glyph: string;
 }
@@ -16,6 +20,39 @@ export function speeds(joint: JsonMap): number {
   if (joint["kind"] === "general") return Array.isArray(joint["coordinates"]) ? joint["coordinates"].length : 0;
   return JOINT_KINDS[String(joint["kind"])]?.speeds ?? 0;
 }
+
+/** A coordinate or a speed by the name that a run knows it by. */
+export interface Quantity {
+  name: string;
+  unit: string;
+}
+
+const suffixed = (joint: string, suffix: string): string => (suffix === "" ? joint : `${joint}.${suffix}`);
+
+/** The coordinates of a joint of that name. */
+export function coordinatesOf(joint: JsonMap, name: string): Quantity[] {
+  if (joint["kind"] === "general") {
+    const names = Array.isArray(joint["coordinates"]) ? joint["coordinates"] : [];
+    return names.map((each) => ({ name: String(each), unit: "" }));
+  }
+  const kind = JOINT_KINDS[String(joint["kind"])];
+  return Object.entries(kind?.coordinates ?? {}).map(([suffix, unit]) => ({ name: suffixed(name, suffix), unit }));
+}
+
+/** Its speeds: named as the coordinates whose rates they are, or velocities in axes of the body. */
+export function speedsOf(joint: JsonMap, name: string): Quantity[] {
+  const velocities = JOINT_KINDS[String(joint["kind"])]?.quasi_velocities ?? null;
+  if (velocities === null)
+    return coordinatesOf(joint, name).map((each) => ({ ...each, unit: each.unit === "" ? "" : `${each.unit}/s` }));
+  return velocities.map((suffix) => ({
+    name: suffixed(name, suffix),
+    unit: suffix.startsWith("w") ? "rad/s" : "m/s",
+  }));
+}
+
+/** Whether speeds are other than the rates of coordinates: then a quaternion is among these. */
+export const turnsFreely = (joint: JsonMap): boolean =>
+  (JOINT_KINDS[String(joint["kind"])]?.quasi_velocities ?? null) !== null;
 
 const ENTRIES = [...new Set(Object.values(JOINT_KINDS).flatMap((kind) => kind.entries)), "prescribed"];
 

@@ -10,6 +10,7 @@ import type {
   Ran,
   Simulated,
 } from "../api/jobs";
+import { Boundary } from "../shell/Boundary";
 import { Glyph } from "../shell/Glyph";
 import { IconButton } from "../shell/IconButton";
 import { Splitter } from "../shell/Splitter";
@@ -148,7 +149,7 @@ function Outcome({ job }: { job: Job }) {
 /** Problems, and what the jobs returned. */
 export function Bottom({ current }: { current: BottomPane }) {
   const jobs = useStore((state) => state.jobs);
-  const { problems } = useDocument();
+  const { problems, path, revision } = useDocument();
   const begun = useBegun();
   const [height, setHeight] = useState(() => Math.round(window.innerHeight * 0.42));
   const tabs: Tab<BottomPane>[] = [
@@ -175,7 +176,9 @@ export function Bottom({ current }: { current: BottomPane }) {
         onChange={(key) => update({ bottom: key })}
         label="Results"
       >
-        {job === undefined ? <Problems /> : <Outcome job={job} />}
+        <Boundary what="The result" attempt={`${current} ${path} ${revision} ${job?.id} ${job?.state}`}>
+          {job === undefined ? <Problems /> : <Outcome key={job.id} job={job} />}
+        </Boundary>
       </Tabs>
       <IconButton glyph="close" label="Close the results" onClick={() => update({ bottom: null })} />
     </section>

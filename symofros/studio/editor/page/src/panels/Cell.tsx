@@ -1,9 +1,10 @@
-import { useState } from "react";
+import { useUnsent } from "./useUnsent";
 
 interface CellProps {
   value: string;
   label: string;
-  commit(text: string): void;
+  /** Changes the document; true once it is changed. */
+  commit(text: string): Promise<boolean>;
   numeric?: boolean;
   /** Id of a list of what is usual. */
   list?: string;
@@ -13,26 +14,25 @@ interface CellProps {
 
 /** A field that changes the document when it is left, or at Enter; Escape takes it back. */
 export function Cell({ value, label, commit, numeric = false, list, fault = "" }: CellProps) {
-  const [text, setText] = useState<string | null>(null);
-  const finish = (): void => {
-    if (text !== null && text !== value) commit(text);
-    setText(null);
-  };
+  const { typed: text, type, send, isSettled, waits } = useUnsent(value, commit);
+  const wrong = fault !== "" && text === null;
+  const title = waits ? `Not sent: the server does not answer. ${text} is sent when it is back.` : (text ?? value);
   return (
     <input
-      className={numeric ? "cell number" : "cell"}
+      className={`cell${numeric ? " number" : ""}${waits ? " waits" : ""}`}
       value={text ?? value}
       aria-label={label}
-      aria-invalid={fault !== "" && text === null}
-      title={fault !== "" && text === null ? fault : (text ?? value)}
+      aria-invalid={wrong || waits}
+      title={wrong ? fault : title}
       list={list}
+      size={Math.max(3, (text ?? value).length)}
       spellCheck={false}
-      data-settled={text === null}
-      onChange={(event) => setText(event.target.value)}
-      onBlur={finish}
+      data-settled={isSettled}
+      onChange={(event) => type(event.target.value)}
+      onBlur={() => void send()}
       onKeyDown={(event) => {
-        if (event.key === "Enter") finish();
-        if (event.key === "Escape") setText(null);
+        if (event.key === "Enter") void send();
+        if (event.key === "Escape") type(null);
       }}
     />
   );

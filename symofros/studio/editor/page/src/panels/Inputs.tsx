@@ -33,9 +33,7 @@ export function Inputs() {
                 <Cell
                   value={name}
                   label={`Name of ${name}`}
-                  commit={(to) =>
-                    void edit(`rename ${name}`, [{ op: "rename", path: ["inputs", name], to: to.trim() }])
-                  }
+                  commit={(to) => edit(`rename ${name}`, [{ op: "rename", path: ["inputs", name], to: to.trim() }])}
                 />
               </th>
               {["unit", "description"].map((key) => (
@@ -44,9 +42,7 @@ export function Inputs() {
                     value={textAt(inputs, [name, key]) ?? ""}
                     label={`${key} of ${name}`}
                     fault={key === "unit" ? fault(name) : ""}
-                    commit={(text) =>
-                      void edit(`change ${name}`, [{ op: "set", path: ["inputs", name, key], value: text }])
-                    }
+                    commit={(text) => edit(`change ${name}`, [{ op: "set", path: ["inputs", name, key], value: text }])}
                   />
                 </td>
               ))}

@@ -39,7 +39,13 @@ function Functions({ name, model }: { name: string; model: JsonMap }) {
 export function Models() {
   const { data, path } = useDocument();
   const [files, setFiles] = useState<string[]>([]);
-  useEffect(() => void modelFiles().then(setFiles), [path]);
+  useEffect(() => {
+    let isWanted = true;
+    void modelFiles().then((found) => isWanted && setFiles(found));
+    return () => {
+      isWanted = false;
+    };
+  }, [path]);
   const models = mapAt(data, ["models"]);
   return (
     <div className="pane">
@@ -51,7 +57,7 @@ export function Models() {
             <Cell
               value={name}
               label={`Name of ${name}`}
-              commit={(to) => void edit(`rename ${name}`, [{ op: "rename", path: ["models", name], to: to.trim() }])}
+              commit={(to) => edit(`rename ${name}`, [{ op: "rename", path: ["models", name], to: to.trim() }])}
             />
             <label>
               Mechanism

@@ -22,11 +22,11 @@ const PAGE = 50;
 function Row({ parameter }: { parameter: Parameter }) {
   const { data } = useDocument();
   const { name } = parameter;
-  const set = (key: string, value: Json | undefined): void =>
-    void edit(`change ${name}`, parameterChange(data, name, key, value));
-  const setNumber = (text: string): void => {
+  const set = (key: string, value: Json | undefined): Promise<boolean> =>
+    edit(`change ${name}`, parameterChange(data, name, key, value));
+  const setNumber = (text: string): Promise<boolean> => {
     const edits = parameterChange(data, name, "value", typed(text) ?? 0);
-    void edit(
+    return edit(
       `change ${name}`,
       edits.map((each) => asTyped(each, new Map([[keyOf(each.path), text.trim()]]))),
     );
@@ -37,7 +37,7 @@ function Row({ parameter }: { parameter: Parameter }) {
       <Cell
         value={name}
         label={`Name of ${name}`}
-        commit={(to) => void edit(`rename ${name}`, [{ op: "rename", path: ["parameters", name], to: to.trim() }])}
+        commit={(to) => edit(`rename ${name}`, [{ op: "rename", path: ["parameters", name], to: to.trim() }])}
       />
     </th>
   );
@@ -62,7 +62,7 @@ function Row({ parameter }: { parameter: Parameter }) {
           checked={parameter.constant}
           aria-label={`${name} is constant`}
           title="hard-coded in the C code"
-          onChange={(event) => set("constant", event.target.checked ? true : undefined)}
+          onChange={(event) => void set("constant", event.target.checked ? true : undefined)}
         />
       </td>
       <td>

@@ -2,8 +2,10 @@ import { useEffect, useState } from "react";
 
 import type { Coordinate, Fault, View } from "../api/types";
 import { badge } from "../model/bending";
+import { startTexts } from "../model/motion";
 import { scaleBar } from "../model/scale";
-import { update, useDocument, useStore } from "../store/store";
+import { askedSimulation, keepSimulation } from "../store/asked";
+import { show, update, useDocument, useStore } from "../store/store";
 import { useTheme } from "../store/theme";
 import { look, lookAway, move, shownBlock } from "../store/view";
 import { ParameterSlider } from "./ParameterSlider";
@@ -86,10 +88,52 @@ function Bending({ view }: { view: View }) {
   );
 }
 
+// A loop that is open by more is none that rounding or the drift of a run leaves open.
+const OPEN = 1e-6;
+
+/** Whether loops are closed, or how far they are open. */
+function Loops({ view }: { view: View }) {
+  const stuck = useStore((state) => state.stuck);
+  const { gap, gap_unit: unit } = view;
+  const isOpen = gap !== null && gap > OPEN;
+  const said =
+    gap === null
+      ? ""
+      : isOpen
+        ? `A loop is open by ${digits(gap)} ${unit}`
+        : `Loops closed within ${gap.toExponential(0)} ${unit}`;
+  return (
+    <span role="status" className={stuck !== "" || isOpen ? "bad" : "quiet"}>
+      {stuck !== "" ? "The loops can't be closed there." : said}
+    </span>
+  );
+}
+
+/** Opens the window of simulations, with the pose that is shown as the start. */
+function StartHere({ view }: { view: View }) {
+  const { data, diagram } = useDocument();
+  if (diagram !== null) return null;
+  const open = (): void => {
+    keepSimulation({ ...askedSimulation(), q0: startTexts(data, view.q) });
+    show({ kind: "simulate" });
+  };
+  const isClosed = view.gap === null || view.gap <= OPEN;
+  return (
+    <button
+      type="button"
+      className="small"
+      disabled={!isClosed}
+      title="Simulate from the pose that is shown: its coordinates are the starts"
+      onClick={open}
+    >
+      Start here…
+    </button>
+  );
+}
+
 /** Sliders of the coordinates, of how much bending is exaggerated, of parameters. */
 function Controls({ view }: { view: View }) {
   const { parameters } = useDocument();
-  const stuck = useStore((state) => state.stuck);
   const movable = parameters.filter(({ name, number }) => number !== null && view.run_time.includes(name));
   const elastic = view.coordinates.filter((one) => one.elastic);
   return (
@@ -106,13 +150,8 @@ function Controls({ view }: { view: View }) {
           />{" "}
           Frames
         </label>
-        <span role="status" className={stuck === "" ? "quiet" : "bad"}>
-          {stuck !== ""
-            ? "The loops can't be closed there."
-            : view.gap === null
-              ? ""
-              : `Loops closed within ${view.gap.toExponential(0)}`}
-        </span>
+        <StartHere view={view} />
+        <Loops view={view} />
       </div>
       <Bending view={view} />
       <Coordinates view={view} chosen={view.coordinates.filter((one) => !one.elastic)} />

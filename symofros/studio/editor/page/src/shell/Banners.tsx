@@ -13,8 +13,8 @@ export function Banners() {
       {link === "lost" ? (
         <div className="banner bad" role="alert">
           <span>
-            The server does not answer. Changes up to the last one are kept on disk; start it again with `symofros
-            edit`.
+            The server does not answer. Changes up to the last one are kept on disk; what you type now is kept here, and
+            sent when it is back. Start it again with `symofros edit`.
           </span>
           <button type="button" className="small" onClick={() => void refresh()}>
             Try again

@@ -5,7 +5,8 @@ import type { Document, Edit, Json, Path, Point } from "../api/types";
 import { merged } from "../model/merge";
 import { afterEdit, recorded, redoneOne, toRedo, toUndo, undoneOne } from "../model/moves";
 import { at } from "../model/paths";
-import { accept, explain, ordered } from "./requests";
+import { accept, acceptTheirs, explain, ordered } from "./requests";
+import { followRenaming } from "./asked";
 import { notify, now, update } from "./store";
 
 const revision = (): number => now().document?.revision ?? 0;
@@ -19,35 +20,57 @@ function applies(edit: Edit, document: Document): boolean {
 /** What goes back and forth between edits, and makes none. */
 const STEPS = ["api/undo", "api/redo"];
 
-/** A change by request: with the revision it is of; made again on a newer document if it still fits there. */
+/** What is said of a change that is not made. */
+function giveUp(object: string, found: string): void {
+  notify({
+    object,
+    found,
+    rule: "a change is made to the newest state of the document that it was meant for",
+    remedy: "look at what is shown now, and change it again",
+  });
+}
+
+/**
+ * A change by request, with the revision it is of; made again on a newer state if it still fits there.
+ *
+ * It is of the document that is open when it is asked for (`of`): where another one has taken its place, be it while
+ * earlier requests were answered, it is made to none.
+ */
 export async function change(
   address: string,
   body: () => object,
   again?: (document: Document) => boolean,
+  of = now().document?.path,
 ): Promise<boolean> {
+  const isOther = (): boolean => now().document?.path !== of;
   const ask = (): Promise<Document> => post<Document>(address, { revision: revision(), ...body() });
+  const first = async (): Promise<Document | undefined> => {
+    if (!isOther()) return ask();
+    giveUp(of ?? "the document", "another document was opened before this change was made");
+    return undefined;
+  };
   const stale = async (refusal: Refused): Promise<Document | undefined> => {
     const theirs = refusal.body.document;
     if (refusal.status !== 409 || theirs === undefined) {
       explain(refusal);
       return undefined;
     }
-    accept(theirs);
-    if (again?.(theirs) === true) {
+    acceptTheirs(theirs);
+    if (!isOther() && again?.(theirs) === true) {
       return ask().catch((reason: unknown) => {
         explain(reason);
         return undefined;
       });
     }
-    notify({
-      object: theirs.name,
-      found: "the document was changed elsewhere, and your last change does not fit any more",
-      rule: "a change is made to the newest document",
-      remedy: "look at what is shown now, and change it again",
-    });
+    giveUp(
+      of ?? theirs.path,
+      isOther()
+        ? `another page has opened ${theirs.path}; your last change was not made`
+        : "the document was changed elsewhere, and your last change does not fit any more",
+    );
     return undefined;
   };
-  const document = await ordered(ask, stale);
+  const document = await ordered(first, stale);
   if (document === undefined) return false;
   accept(document);
   if (!STEPS.includes(address)) update((state) => ({ moves: afterEdit(state.moves) }));
@@ -59,11 +82,14 @@ export async function edit(label: string, edits: Edit[]): Promise<boolean> {
   if (edits.length === 0) return true;
   const moved = renamedPlaces(edits);
   update((state) => ({ places: { ...state.places, ...moved } }));
-  return change(
+  const before = now().document;
+  const isDone = await change(
     "api/edit",
     () => ({ label, edits }),
     (theirs) => edits.every((each) => applies(each, theirs)),
   );
+  if (isDone && before !== null && edits.some(({ op }) => op === "rename")) followRenaming(before);
+  return isDone;
 }
 
 /** A block that is renamed stays where it is. */
@@ -82,12 +108,13 @@ function renamedPlaces(edits: readonly Edit[]): Record<string, Point> {
 export const setValue = (label: string, path: Path, value: Json): Promise<boolean> =>
   edit(label, [{ op: "set", path, value }]);
 
-/** The whole text, made from `base`; what somebody else changed in it meanwhile is kept. */
-export const setText = (text: string, base: string): Promise<boolean> =>
+/** The whole text, made from `base`, of the document at a path; what somebody else changed in it meanwhile is kept. */
+export const setText = (text: string, base: string, of?: string): Promise<boolean> =>
   change(
     "api/text",
     () => ({ text: merged(base, text, now().document?.text ?? base) }),
     () => true,
+    of,
   );
 
 const step = (): number => now().document?.step ?? 0;
@@ -130,6 +157,8 @@ export async function moveBlocks(places: Record<string, Point>): Promise<void> {
 
 /** Puts blocks where they shall be first seen; not part of undo. */
 export async function place(places: Record<string, Point>): Promise<void> {
+  const path = now().document?.path;
   update((state) => ({ places: { ...state.places, ...places } }));
-  await ordered(() => post("api/layout", { positions: places }));
+  // Blocks of another document may have the same names: where they stand is none of ours.
+  await ordered(async () => now().document?.path === path && post("api/layout", { path, positions: places }));
 }

@@ -2,12 +2,15 @@
 
 import { get, post, type Refused } from "../api/client";
 import type { Document, FileEntry } from "../api/types";
-import { change } from "./edits";
-import { accept, explain, ordered } from "./requests";
+import { change, setText } from "./edits";
+import { followPath } from "./asked";
+import { accept, acceptTheirs, explain, ordered } from "./requests";
+import { settle } from "./unsent";
 import { dismiss, now, show, update } from "./store";
 
 /** Takes what the server answers as the open document; asks first if unsaved work would be lost. */
 async function replace(address: string, body: object): Promise<void> {
+  await settle();
   const change = async (discard: boolean): Promise<void> => {
     const document = await ordered(() => post<Document>(address, { ...body, discard }));
     if (document === undefined) return;
@@ -22,16 +25,21 @@ export const open = (path: string): Promise<void> => replace("api/open", { path 
 export const begin = (path: string, kind: "mechanism" | "diagram"): Promise<void> => replace("api/new", { path, kind });
 
 /** Goes into a model or a part of the diagram: its file becomes the open one, until one leaves it again. */
-export const enter = (path: string): Promise<boolean> => change("api/enter", () => ({ path }));
+export async function enter(path: string): Promise<boolean> {
+  await settle();
+  return change("api/enter", () => ({ path }));
+}
 
 /** Back to the diagram that one came from. */
 export async function leave(): Promise<void> {
+  await settle();
   const back = async (discard: boolean): Promise<void> => {
     if (await change("api/leave", () => ({ discard }))) dismiss();
   };
   if (now().document?.dirty === true) show({ kind: "discard", proceed: () => void back(true) });
   else await back(false);
 }
+
 const importText = (name: string, text: string): Promise<void> => replace("api/import", { name, text });
 
 export const importPath = (path: string): Promise<void> => replace("api/import", { path });
@@ -47,6 +55,8 @@ export async function browse(): Promise<void> {
 
 /** Saves; `over` names the state of the file that the user has seen and gives up. */
 export async function save(path: string | null = null, over: string | null = null): Promise<boolean> {
+  await settle();
+  const before = now().document?.path;
   const ask = (): Promise<Document> => post("api/save", { revision: now().document?.revision ?? 0, path, over });
   const conflict = async (refusal: Refused): Promise<undefined> => {
     const { disk, over: state } = refusal.body;
@@ -57,7 +67,9 @@ export async function save(path: string | null = null, over: string | null = nul
   };
   const document = await ordered(ask, conflict);
   if (document === undefined) return false;
-  accept(document);
+  const isMoved = before !== undefined && before !== document.path && before === now().document?.path;
+  if (isMoved) followPath(before, document.path);
+  accept(document, isMoved);
   return true;
 }
 
@@ -67,10 +79,13 @@ export const discard = (): Promise<boolean> => change("api/discard", () => ({}))
 /** Takes the file as somebody else wrote it; undo brings back what was here. */
 export const reload = (): Promise<boolean> => change("api/reload", () => ({}));
 
-/** The newest document, after somebody else changed it or the server came back. */
+/** The newest document, after somebody else changed it or the server came back; what waits for it is sent. */
 export async function refresh(): Promise<void> {
   const document = await ordered(() => get<Document>("api/document"));
   if (document === undefined) return;
-  update({ link: "ok" });
-  accept(document);
+  acceptTheirs(document);
+  // After that: what waits for the server is of the document that is there now, or of none.
+  const { leftText } = now();
+  update({ link: "ok", leftText: null });
+  if (leftText !== null) await setText(leftText.text, leftText.base, document.path);
 }

@@ -6,6 +6,7 @@ import { withRun } from "../model/runs";
 import { setTime } from "./playing";
 import { explain, ordered } from "./requests";
 import { now, update } from "./store";
+import { settle } from "./unsent";
 
 const PERIOD = 1000;
 
@@ -42,7 +43,8 @@ export async function order(kind: JobKind, order: "pause" | "resume" | "stop"): 
 
 async function fetchJob(id: string): Promise<Job | undefined> {
   const job = await get<Job>(`api/jobs/${id}`).catch(explain);
-  if (job !== undefined) take(job);
+  // Of a document that was left meanwhile nothing is shown in another one.
+  if (job !== undefined && now().jobs[job.kind]?.id === id) take(job);
   return job ?? undefined;
 }
 
@@ -65,8 +67,12 @@ async function follow(kind: JobKind, id: string): Promise<void> {
 }
 
 export async function run(kind: JobKind, options: object = {}): Promise<void> {
-  const started = await ordered(() => post<{ id: string }>("api/jobs", { kind, options }));
-  if (started === undefined) return;
+  const path = now().document?.path;
+  await settle();
+  const started = await ordered(async () =>
+    now().document?.path === path ? post<{ id: string }>("api/jobs", { kind, options }) : undefined,
+  );
+  if (started === undefined || now().document?.path !== path) return;
   take({
     id: started.id,
     kind,

@@ -5,40 +5,75 @@ import type { Document } from "../api/types";
 import { completedDiagram } from "../model/diagram_layout";
 import { elementIds } from "../model/elements";
 import { completed } from "../model/layout";
-import { NO_MOVES } from "../model/moves";
-import { notify, now, update } from "./store";
+import { type Dialog, notify, now, OF_NEW_DOCUMENT, type State, update } from "./store";
 
 let queue: Promise<unknown> = Promise.resolve();
 let waiting = 0;
 
-export function accept(document: Document): void {
-  const old = now().document;
-  // Another file, or a new start: what was chosen in the old one means nothing here.
-  const fresh = old === null || old.path !== document.path;
-  const { graph, diagram } = document;
+/** Windows about the open document; the others are about none, such as the list of files. */
+const OF_DOCUMENT: readonly Dialog["kind"][] = [
+  "properties",
+  "save as",
+  "simulate",
+  "run",
+  "export",
+  "save part",
+  "link",
+  "discard",
+  "changed on disk",
+];
+
+const isOfDocument = ({ dialog }: State): boolean => dialog !== null && OF_DOCUMENT.includes(dialog.kind);
+
+/** What is kept when the same document goes on: all that still exists in it. */
+function kept(state: State, document: Document): Partial<State> {
   const ids = elementIds(document);
-  update((state) => ({
-    document,
-    // Blocks that nobody has put stay where they were first shown.
-    places:
-      diagram === null
-        ? completed(graph, fresh ? document.layout : state.places, document.layout)
-        : completedDiagram(diagram, fresh ? document.layout : state.places, document.layout),
-    moves: fresh ? NO_MOVES : state.moves,
-    folded: fresh ? [] : state.folded,
-    filter: fresh ? "" : state.filter,
-    selected: fresh
-      ? []
-      : state.selected.every((id) => ids.has(id))
-        ? state.selected
-        : state.selected.filter((id) => ids.has(id)),
-    jobs: fresh ? {} : state.jobs,
-    live: fresh ? null : state.live,
-    runs: fresh ? [] : state.runs,
-    time: fresh ? null : state.time,
-    playing: fresh ? false : state.playing,
-    bottom: fresh && state.bottom !== "problems" ? null : state.bottom,
-  }));
+  const isGone = !state.selected.every((id) => ids.has(id));
+  return isGone ? { selected: state.selected.filter((id) => ids.has(id)) } : {};
+}
+
+/**
+ * Makes a document the one that is shown.
+ *
+ * Of another document than before nothing is kept that is known of that one: its windows are closed, its runs, its
+ * selection, its picture are gone. `isRenamed`: it is the same one at another path.
+ */
+export function accept(document: Document, isRenamed = false): void {
+  const old = now().document;
+  const fresh = old === null || (old.path !== document.path && !isRenamed);
+  const { graph, diagram } = document;
+  update((state) => {
+    const shown = fresh ? document.layout : state.places;
+    return {
+      ...(fresh ? OF_NEW_DOCUMENT : kept(state, document)),
+      document,
+      // Blocks that nobody has put stay where they were first shown.
+      places:
+        diagram === null ? completed(graph, shown, document.layout) : completedDiagram(diagram, shown, document.layout),
+      ...(fresh && old !== null && isOfDocument(state) ? { dialog: null } : {}),
+      ...(fresh ? panes(state, document) : {}),
+    };
+  });
+}
+
+/** What stands beside a document that was just opened: the text of one of which nothing can be drawn. */
+function panes({ bottom }: State, { problems, data }: Document): Partial<State> {
+  if (problems.length > 0 && Object.keys(data).length === 0) return { right: "text", bottom: "problems" };
+  return { bottom: bottom === "problems" ? bottom : null };
+}
+
+/** As `accept`, of a document that somebody else may have opened: what is closed by it is said. */
+export function acceptTheirs(document: Document): void {
+  const { document: old } = now();
+  const isLost = old !== null && old.path !== document.path && isOfDocument(now());
+  accept(document);
+  if (isLost)
+    notify({
+      object: document.path,
+      found: `another page has opened it while a window of ${old.path} was open here`,
+      rule: "the pages of one server show one document; what is typed for one is not taken for another",
+      remedy: `the window was closed: open ${old.path} again, and repeat what it should change`,
+    });
 }
 
 export const busy = (): boolean => waiting > 0;

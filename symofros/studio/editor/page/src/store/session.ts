@@ -7,7 +7,7 @@ import { fetchParts } from "./clipboard";
 import { refresh } from "./files";
 import { hear, hearSamples } from "./jobs";
 import { busy, explain } from "./requests";
-import { now, update } from "./store";
+import { notify, now, update } from "./store";
 import { pick, zoom } from "./view";
 
 const PAUSE = 1000;
@@ -47,7 +47,18 @@ async function answers(): Promise<boolean> {
   return answer !== undefined || now().link === "expired";
 }
 
+/** Says what went wrong where nobody waits for the answer: it is a fault of the page. */
+function sayUnforeseen(reason: unknown): void {
+  notify({
+    object: "the page met a fault of its own",
+    found: reason instanceof Error ? `${reason.name}: ${reason.message}` : String(reason),
+    rule: "this should not happen; the server keeps the document as it was",
+    remedy: "reload the page; please report it, with what you did",
+  });
+}
+
 export async function begin(): Promise<void> {
+  window.addEventListener("unhandledrejection", ({ reason }) => sayUnforeseen(reason));
   const catalogue = await get<Catalogue>("api/schema").catch(explain);
   if (catalogue !== undefined) update({ catalogue });
   await refresh();

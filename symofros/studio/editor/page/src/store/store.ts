@@ -4,6 +4,7 @@ import { create } from "zustand";
 
 import type { Job, JobKind, RunPlot } from "../api/jobs";
 import type { Catalogue, Document, Fault, FileEntry, Json, LibraryPart, Path, Point, View } from "../api/types";
+import type { AskedRun, AskedSimulation } from "../model/asked";
 import { type Moves, NO_MOVES } from "../model/moves";
 import { isMap } from "../model/paths";
 import type { KeptRun } from "../model/runs";
@@ -45,10 +46,8 @@ export interface Notice {
   fault: Fault;
 }
 
-export interface State {
-  catalogue: Catalogue | null;
-  parts: LibraryPart[];
-  document: Document | null;
+/** What is known of the open document, and means nothing in another one. */
+export interface OfDocument {
   places: Record<string, Point>;
   selected: string[];
   /** Moves of blocks that can be undone and done again. */
@@ -59,7 +58,6 @@ export interface State {
   filter: string;
   /** A block that the canvas shall move into sight; a new object each time. */
   sight: { id: string } | null;
-  dialog: Dialog | null;
   jobs: Partial<Record<JobKind, Job>>;
   live: Live | null;
   /** Runs of this document, the newest last. */
@@ -67,42 +65,65 @@ export interface State {
   /** Where the cursor of the plots and the motion in the 3-D view stand [s]; null before anybody has put it. */
   time: number | null;
   playing: boolean;
-  /** Seconds of the motion a second. */
-  speed: number;
-  link: Link;
-  notices: Notice[];
+  /** The text as it was typed while the server did not answer, once its pane is closed; and what it was made from. */
+  leftText: { text: string; base: string } | null;
   /** The block of a diagram, the mechanism of which the 3-D view shows; "" for the first. */
   block: string;
   /** What the 3-D view shows, while its pane is open; a fault: why it shows nothing. */
   view: View | Fault | null;
   /** Why it did not go where it was moved to. */
   stuck: string;
+}
+
+/** What a window asked last, of each document by its path: it is likely to be asked again. */
+export interface Asked {
+  simulate: Record<string, AskedSimulation>;
+  run: Record<string, AskedRun>;
+}
+
+export interface State extends OfDocument {
+  catalogue: Catalogue | null;
+  parts: LibraryPart[];
+  document: Document | null;
+  asked: Asked;
+  dialog: Dialog | null;
+  /** Seconds of the motion a second. */
+  speed: number;
+  link: Link;
+  notices: Notice[];
   right: RightPane | null;
   bottom: BottomPane | null;
 }
 
-export const useStore = create<State>(() => ({
-  catalogue: null,
-  parts: [],
-  document: null,
+/** What is known of a document that was just opened. */
+export const OF_NEW_DOCUMENT: OfDocument = {
   places: {},
   selected: [],
   moves: NO_MOVES,
   folded: [],
   filter: "",
   sight: null,
-  dialog: null,
   jobs: {},
   live: null,
   runs: [],
   time: null,
   playing: false,
-  speed: 1,
-  link: "ok",
-  notices: [],
+  leftText: null,
   block: "",
   view: null,
   stuck: "",
+};
+
+export const useStore = create<State>(() => ({
+  ...OF_NEW_DOCUMENT,
+  catalogue: null,
+  parts: [],
+  document: null,
+  asked: { simulate: {}, run: {} },
+  dialog: null,
+  speed: 1,
+  link: "ok",
+  notices: [],
   right: "parameters",
   bottom: null,
 }));
@@ -122,7 +143,8 @@ const OF_EMPTY = ["bodies", "system", "symofros", "symofros_diagram", "name"];
 
 /** Whether there is anything yet that could be wrong: a new file is no fault. */
 export function useBegun(): boolean {
-  const { data } = useDocument();
+  const { data, text } = useDocument();
+  if (Object.keys(data).length === 0) return text.trim() !== ""; // There is a text, and nothing can be made of it.
   return Object.keys(data).some((key) => !OF_EMPTY.includes(key) && filled(data[key])) || filled(data["bodies"]);
 }
 

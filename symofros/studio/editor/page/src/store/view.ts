@@ -26,11 +26,13 @@ let asked = 0;
 export async function look(): Promise<void> {
   asked += 1;
   const turn = asked;
+  const path = now().document?.path;
+  const isPast = (): boolean => turn !== asked || now().document?.path !== path;
   try {
     const view = await get<View>(`api/view?block=${encodeURIComponent(shownBlock())}`);
-    if (turn === asked) update({ view, stuck: "" });
+    if (!isPast()) update({ view, stuck: "" });
   } catch (reason) {
-    if (turn !== asked) return;
+    if (isPast()) return;
     if (reason instanceof Refused && reason.status === 422) update({ view: reason.fault });
     else explain(reason);
   }
@@ -53,6 +55,8 @@ export function zoom(height: number | null): void {
 }
 
 let next: Pose | null = null;
+// Path of the document that it is of.
+let of: string | undefined;
 let moving = false;
 
 /** Shows a run's state at a time. */
@@ -64,17 +68,21 @@ export function seek(run: string, t: number): void {
 
 /** Moves the view; while one request is on its way, the newest of each value waits. */
 export async function move(pose: Pose): Promise<void> {
+  if (of !== now().document?.path) next = null;
   const waiting = next?.run === undefined || pose.run !== undefined ? next : null;
   next = { ...waiting, ...pose, q: { ...waiting?.q, ...pose.q }, par: { ...waiting?.par, ...pose.par } };
+  of = now().document?.path;
   if (moving) return;
   moving = true;
   try {
     while (next !== null) {
       const sent: Pose = next;
       next = null;
+      const path = now().document?.path;
+      if (of !== path) break; // A pose of a document that was left since.
       const { why, ...stand } = await post<Posed>("api/pose", sent);
       const view = shownView();
-      if (view !== null) update({ view: { ...view, ...stand }, stuck: why });
+      if (view !== null && now().document?.path === path) update({ view: { ...view, ...stand }, stuck: why });
     }
   } catch (reason) {
     next = null;

@@ -26,7 +26,9 @@ export function ExportForm() {
   // A diagram becomes a program.
   const kinds = diagram === null ? targets : ["c"];
   const [kind, setKind] = useState(kinds[0] ?? "");
-  const [folder, setFolder] = useState(`${stem(name)}_export`);
+  const [typed, setFolder] = useState<string | null>(null);
+  // Each format has a folder of its own: one export takes the place of another in none.
+  const folder = typed ?? `${stem(name)}_${kind}`;
   const start = (): void => {
     dismiss();
     void run("export", { target: kind, folder });

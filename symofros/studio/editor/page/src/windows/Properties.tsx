@@ -4,7 +4,7 @@ import type { Json, Path } from "../api/types";
 import { fileOf } from "../canvas/open";
 import { Form, type FormContext } from "../forms/context";
 import { asTyped, changes, keyOf, type Renames } from "../model/changes";
-import { at, difference, textAt } from "../model/paths";
+import { at, difference, isMap, textAt } from "../model/paths";
 import { Foot } from "../shell/Foot";
 import { TextRow } from "../shell/Row";
 import { Window } from "../shell/Window";
@@ -15,7 +15,7 @@ import { SYSTEM } from "../model/sections";
 import { BodyForm } from "./BodyForm";
 import { DiagramForm } from "./DiagramForm";
 import { EntryForm } from "./EntryForm";
-import { SystemForm } from "./SystemForm";
+import { GravityForm, SystemForm } from "./SystemForm";
 
 const NOUNS: Record<string, string> = {
   bodies: "Body",
@@ -39,21 +39,28 @@ export function Properties({ path, entry }: { path: Path; entry: Path }) {
   const catalogue = useStore((state) => state.catalogue);
   const diagram = document.diagram;
   const schema = diagram === null ? catalogue?.schema : catalogue?.diagram.schema;
-  const isSystem = path[0] === "system";
+  const section = String(path[0]);
+  const isSystem = section === "system";
   // What the window was opened with; changes from elsewhere do not touch what is being typed.
   const [data] = useState(document.data);
   const [before] = useState(() => (isSystem ? data : at(data, path)));
   const [draft, setDraft] = useState<Json | undefined>(before);
+  // The base is the ground, and gravity is what the ground has, whether it is a body or not.
+  const isGround = section === "bodies" && isMap(draft) && draft["joint"] === undefined;
+  const [ground, setGround] = useState<Json | undefined>(() => at(data, ["system"]));
   const [renames, setRenames] = useState<Renames>({});
   const name = renames[keyOf(path)] ?? String(path.at(-1));
   const [hint, setHint] = useState("");
-  const section = String(path[0]);
   const typed = useRef(new Map<string, string>());
   const type = useCallback((place: Path, text: string) => void typed.current.set(keyOf(place), text.trim()), []);
   const rename = useCallback(
     (place: Path, to: string) => setRenames((all) => ({ ...all, [keyOf(place)]: to.trim() })),
     [],
   );
+  const newest = useRef(draft);
+  newest.current = draft;
+  const newestGround = useRef(ground);
+  newestGround.current = ground;
   const context = useMemo<FormContext>(
     () => ({
       root: schema ?? {},
@@ -63,20 +70,29 @@ export function Properties({ path, entry }: { path: Path; entry: Path }) {
       rename,
       type,
       hint: setHint,
+      draft: (place) => {
+        const isOfGround = !isSystem && place[0] === "system";
+        const whole = isSystem || isOfGround ? place.slice(0, 1) : path;
+        const value = isOfGround ? newestGround.current : isSystem ? at(newest.current, whole) : newest.current;
+        return value === undefined ? null : { path: whole, value };
+      },
       choices: (key, record) => {
         if (diagram === null) return null;
         if (key === "model") return Object.keys(diagram.models);
         return key === "frame" ? (diagram.models[textAt(record, ["model"]) ?? ""]?.frames ?? null) : null;
       },
     }),
-    [schema, data, diagram, section, path, renames, rename, type],
+    [schema, data, diagram, section, path, isSystem, renames, rename, type],
   );
   const accept = async (): Promise<void> => {
     const edits = isSystem
       ? SYSTEM.flatMap((key) => difference(at(before, [key]), at(draft, [key]), [key])).map((each) =>
           asTyped(each, typed.current),
         )
-      : changes(path, before, draft, renames, typed.current);
+      : [
+          ...difference(at(data, ["system"]), ground, ["system"]).map((each) => asTyped(each, typed.current)),
+          ...changes(path, before, draft, renames, typed.current),
+        ];
     if (await edit(isSystem ? "change the system" : `change ${name}`, edits)) dismiss();
   };
   const isNamed = path.length > 1;
@@ -113,6 +129,7 @@ export function Properties({ path, entry }: { path: Path; entry: Path }) {
         )}
         {isSystem ? <SystemForm value={draft} onChange={setDraft} /> : null}
         {section === "bodies" ? <BodyForm value={draft} onChange={setDraft} path={path} entry={entry} /> : null}
+        {isGround ? <GravityForm value={ground} onChange={setGround} /> : null}
         {diagram === null ? null : <DiagramForm value={draft} onChange={setDraft} path={path} />}
         {isSystem || section === "bodies" || diagram !== null ? null : (
           <EntryForm section={section} value={draft} onChange={setDraft} path={path} />

@@ -1,17 +1,14 @@
 import { useState } from "react";
 
 import { isNumber } from "../forms/values";
+import type { AskedRun } from "../model/asked";
 import { at } from "../model/paths";
 import { Foot } from "../shell/Foot";
 import { Row } from "../shell/Row";
 import { Window } from "../shell/Window";
+import { askedRun, keepRun } from "../store/asked";
 import { run } from "../store/jobs";
 import { dismiss, useDocument, useStore } from "../store/store";
-
-type Mode = "compiled" | "interpreted";
-
-// What was asked last is what is likely to be asked next; "" leaves it to the file.
-let last = { mode: "compiled" as Mode, end: "", step: "", method: "", pace: "", stops: "" };
 
 const isPositive = (text: string): boolean => text.trim() === "" || (isNumber(text) && Number(text) > 0);
 const times = (text: string): string[] => text.split(/[\s,;]+/).filter(Boolean);
@@ -47,14 +44,14 @@ function NumberRow({ title, unit, text, hint, isRight, onChange }: TextProps) {
 export function RunForm() {
   const { data } = useDocument();
   const methods = useStore((state) => state.catalogue?.methods) ?? [];
-  const [asked, setAsked] = useState(last);
-  const set = (part: Partial<typeof last>): void => setAsked({ ...asked, ...part });
+  const [asked, setAsked] = useState(askedRun);
+  const set = (part: Partial<AskedRun>): void => setAsked({ ...asked, ...part });
   const stated = (key: string, otherwise: string): string => String(at(data, ["simulation", key]) ?? otherwise);
   const areStopsRight = times(asked.stops).every((text) => isNumber(text) && Number(text) >= 0);
   const isFine = [asked.end, asked.step, asked.pace].every(isPositive) && areStopsRight;
   const start = (): void => {
     if (!isFine) return;
-    last = asked;
+    keepRun(asked);
     dismiss();
     const { mode, end, step, method, pace, stops } = asked;
     const given = { t_end: end, dt: step, realtime: mode === "compiled" ? pace : "" };
@@ -70,7 +67,11 @@ export function RunForm() {
     <Window title="Run" onClose={dismiss} onSubmit={start} foot={<Foot word="Run" disabled={!isFine} />}>
       <Row title="How">
         {(id) => (
-          <select id={id} value={asked.mode} onChange={(event) => set({ mode: event.target.value as Mode })}>
+          <select
+            id={id}
+            value={asked.mode}
+            onChange={(event) => set({ mode: event.target.value as AskedRun["mode"] })}
+          >
             <option value="compiled">compiled: the whole diagram as one C program</option>
             <option value="interpreted">interpreted: block by block, some hundred times slower</option>
           </select>

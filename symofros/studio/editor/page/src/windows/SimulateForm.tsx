@@ -1,79 +1,19 @@
 import { useState } from "react";
 
 import { isNumber } from "../forms/values";
-import { coordinates, inputs } from "../model/motion";
+import { type AskedSimulation, known, strangers } from "../model/asked";
+import { inputs, rates, startNumbers, starts } from "../model/motion";
 import { Foot } from "../shell/Foot";
 import { Row } from "../shell/Row";
 import { Window } from "../shell/Window";
+import { askedSimulation, keepSimulation } from "../store/asked";
 import { run } from "../store/jobs";
 import { dismiss, useDocument, useStore } from "../store/store";
+import { LeftOut, NameTable } from "./NameTable";
 
-type Texts = Record<string, string>;
-
-// What was asked last is what is likely to be asked next.
-let last = {
-  end: "5",
-  step: "0.001",
-  tolerance: "1e-8",
-  method: "rk4",
-  q0: {} as Texts,
-  v0: {} as Texts,
-  inputs: {} as Texts,
-};
-
-const given = (texts: Texts): [string, string][] => Object.entries(texts).filter(([, text]) => text.trim() !== "");
-const numbers = (texts: Texts): Record<string, number> =>
-  Object.fromEntries(given(texts).map(([name, text]) => [name, Number(text)]));
 const positive = (text: string): boolean => isNumber(text) && Number(text) > 0;
-
-interface ColumnProps {
-  title: string;
-  texts: Texts;
-  isRight(text: string): boolean;
-  onChange(texts: Texts): void;
-}
-
-/** One row a name, one field a column. */
-function Table({ head, names, columns }: { head: string; names: string[]; columns: ColumnProps[] }) {
-  if (names.length === 0) return null;
-  return (
-    <table className="starts">
-      <thead>
-        <tr>
-          <th scope="col">{head}</th>
-          {columns.map(({ title }) => (
-            <th key={title} scope="col">
-              {title}
-            </th>
-          ))}
-        </tr>
-      </thead>
-      <tbody>
-        {names.map((name) => (
-          <tr key={name}>
-            <th scope="row">{name}</th>
-            {columns.map(({ title, texts, isRight, onChange }) => {
-              const text = texts[name] ?? "";
-              return (
-                <td key={title}>
-                  <input
-                    className="number"
-                    value={text}
-                    placeholder="0"
-                    aria-label={`${title} of ${name}`}
-                    aria-invalid={text.trim() !== "" && !isRight(text)}
-                    spellCheck={false}
-                    onChange={(event) => onChange({ ...texts, [name]: event.target.value })}
-                  />
-                </td>
-              );
-            })}
-          </tr>
-        ))}
-      </tbody>
-    </table>
-  );
-}
+const numbers = (texts: Record<string, string>): Record<string, number> =>
+  Object.fromEntries(Object.entries(texts).map(([name, text]) => [name, Number(text)]));
 
 function NumberRow({
   title,
@@ -101,27 +41,88 @@ function NumberRow({
   );
 }
 
+const unitOf = (unit: string): string => (unit === "" ? "" : ` [${unit}]`);
+
+/** Starts of coordinates and speeds, and laws of inputs; of what is there no more, that it is left out. */
+function Given({ asked, set }: { asked: AskedSimulation; set(part: Partial<AskedSimulation>): void }) {
+  const { data } = useDocument();
+  const [positions, speeds, driven] = [starts(data), rates(data), inputs(data)];
+  const names = { q0: positions, v0: speeds, inputs: driven } as const;
+  const of = (key: keyof typeof names): string[] => names[key].map(({ name }) => name);
+  const keys = Object.keys(names) as (keyof typeof names)[];
+  const rows = [...positions, ...speeds.filter(({ name }) => !of("q0").includes(name))].map(({ name, unit }) => {
+    const speed = speeds.find((each) => each.name === name)?.unit ?? "";
+    return { name, unit, title: `${name}${unitOf(unit)}${speed === "" ? "" : `, speed${unitOf(speed)}`}` };
+  });
+  const isGiven = keys.some((key) => Object.values(asked[key]).some((text) => text.trim() !== ""));
+  return (
+    <>
+      <NameTable
+        head="Coordinate"
+        rows={rows}
+        columns={[
+          { title: "Start", names: of("q0"), texts: asked.q0, isRight: isNumber, onChange: (q0) => set({ q0 }) },
+          { title: "Speed", names: of("v0"), texts: asked.v0, isRight: isNumber, onChange: (v0) => set({ v0 }) },
+        ]}
+      />
+      <NameTable
+        head="Input"
+        rows={driven.map(({ name, fallback }) => ({ name, unit: "", title: name, fallback }))}
+        columns={[
+          {
+            title: "Formula of t",
+            names: of("inputs"),
+            texts: asked.inputs,
+            isRight: () => true,
+            onChange: (texts) => set({ inputs: texts }),
+          },
+        ]}
+      />
+      <LeftOut
+        texts={keys.flatMap((key) => Object.entries(strangers(asked[key], of(key))))}
+        forget={() => set(Object.fromEntries(keys.map((key) => [key, known(asked[key], of(key))])))}
+      />
+      {isGiven ? (
+        <button type="button" className="small" onClick={() => set({ q0: {}, v0: {}, inputs: {} })}>
+          Clear starts and inputs
+        </button>
+      ) : null}
+    </>
+  );
+}
+
 /** What to simulate: from where, driven by what, how long, by which method. */
 export function SimulateForm() {
   const { data } = useDocument();
   const methods = useStore((state) => state.catalogue?.methods) ?? [];
-  const [asked, setAsked] = useState(last);
-  const set = (part: Partial<typeof last>): void => setAsked({ ...asked, ...part });
+  const [asked, setAsked] = useState(askedSimulation);
+  const set = (part: Partial<AskedSimulation>): void => setAsked({ ...asked, ...part });
   const isAdaptive = methods.find(({ name }) => name === asked.method)?.adaptive === true;
-  const starts = [...given(asked.q0), ...given(asked.v0)];
+  const q0 = known(
+    asked.q0,
+    starts(data).map(({ name }) => name),
+  );
+  const v0 = known(
+    asked.v0,
+    rates(data).map(({ name }) => name),
+  );
+  const laws = known(
+    asked.inputs,
+    inputs(data).map(({ name }) => name),
+  );
   const isFine =
     positive(asked.end) &&
     positive(isAdaptive ? asked.tolerance : asked.step) &&
-    starts.every(([, text]) => isNumber(text));
+    [...Object.values(q0), ...Object.values(v0)].every(isNumber);
   const begin = (kind: "simulate" | "page"): void => {
     if (!isFine) return;
-    last = asked;
+    keepSimulation(asked);
     dismiss();
-    const { end, step, tolerance, method, q0, v0 } = asked;
+    const { end, step, tolerance, method } = asked;
     const accuracy = isAdaptive ? { rtol: Number(tolerance) } : { dt: Number(step) };
-    const driven = { t_end: Number(end), inputs: Object.fromEntries(given(asked.inputs)) };
+    const driven = { t_end: Number(end), inputs: laws };
     const more = kind === "simulate" ? driven : {}; // The page goes on and on, and has sliders.
-    void run(kind, { method, ...accuracy, q0: numbers(q0), v0: numbers(v0), ...more });
+    void run(kind, { method, ...accuracy, q0: startNumbers(data, q0), v0: numbers(v0), ...more });
   };
   return (
     <Window
@@ -164,26 +165,7 @@ export function SimulateForm() {
       ) : (
         <NumberRow title="Step" unit="s" text={asked.step} onChange={(step) => set({ step })} />
       )}
-      <Table
-        head="Coordinate"
-        names={coordinates(data)}
-        columns={[
-          { title: "Start", texts: asked.q0, isRight: isNumber, onChange: (q0) => set({ q0 }) },
-          { title: "Speed", texts: asked.v0, isRight: isNumber, onChange: (v0) => set({ v0 }) },
-        ]}
-      />
-      <Table
-        head="Input"
-        names={inputs(data)}
-        columns={[
-          {
-            title: "Formula of t",
-            texts: asked.inputs,
-            isRight: () => true,
-            onChange: (texts) => set({ inputs: texts }),
-          },
-        ]}
-      />
+      <Given asked={asked} set={set} />
     </Window>
   );
 }

@@ -21,6 +21,20 @@ const SECTIONS = [
   { key: "include", title: "Included files", help: "Parts to merge, in the folder of this file." },
 ] as const;
 
+/** Gravity alone, which acts on all bodies: in the window of the ground. */
+export function GravityForm({ value, onChange }: Props) {
+  const { root } = useForm();
+  const { shape } = definition(root, "SystemEntry");
+  if (shape.kind !== "record") return null;
+  return (
+    <section aria-label="Gravity">
+      <h3>Gravity</h3>
+      <p className="quiet">Of the whole system, in axes of the world.</p>
+      <RecordField shape={shape} value={mapAt(value, [])} onChange={onChange} path={["system"]} only={["gravity"]} />
+    </section>
+  );
+}
+
 /** Gravity and name; what concerns several bodies; files that are included. */
 export function SystemForm({ value, onChange }: Props) {
   const { root } = useForm();

@@ -1,0 +1,167 @@
+"""First states as somebody states them, some coordinates and speeds by name, brought onto the constraints."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Sequence
+from contextlib import suppress
+from typing import NamedTuple
+
+from symofros.base.names import coordinate_of, speed_of
+from symofros.errors import AssemblyError, Problem
+from symofros.runtime.calls.kernel import Array
+from symofros.runtime.model import ArrayLike, Model
+from symofros.simulation.analysis.kinematics.assembly import assemble
+from symofros.simulation.settings import CLOSED
+
+# Relative change of a stated number that counts as digits which were not typed; beyond, or of a zero that becomes more
+# than what drift leaves, the start is another one than was asked for.
+DIGITS = 1e-3
+
+
+class ClosedStart(NamedTuple):
+    """A first state on the constraints.
+
+    Attributes:
+        q: Configuration (nq).
+        v: Speeds (nv).
+        notes: What was stated and changed in its last digits, in words.
+    """
+
+    q: Array
+    v: Array
+    notes: tuple[str, ...] = ()
+
+
+def stated_names(
+    q_names: Sequence[str], v_names: Sequence[str], labels: Collection[str]
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Coordinates that labels state, and speeds, these also as rates of their coordinates; others are left out."""
+    coordinates = {label: coordinate_of(label, q_names) for label in labels}
+    speeds = (speed_of(label, v_names) for label, coordinate in coordinates.items() if not coordinate)
+    return tuple(filter(None, coordinates.values())), tuple(filter(None, speeds))
+
+
+def closed_start(
+    model: Model,
+    q: Array,
+    v: Array,
+    coordinates: Collection[str],
+    speeds: Collection[str],
+    *,
+    u: ArrayLike | None = None,
+    par: ArrayLike | None = None,
+    t: float = 0.0,
+) -> ClosedStart:
+    """The state on the constraints near a guess that keeps what was stated of it.
+
+    Args:
+        model: Model; one without constraints keeps the state as it is.
+        q: Guess (nq).
+        v: Wished speeds (nv).
+        coordinates: Names of the coordinates (`model.names.q`) that are stated.
+        speeds: Names of the speeds (`model.names.v`) that are stated.
+        u: Inputs, for prescribed motions.
+        par: Run-time parameters.
+        t: Time.
+
+    Raises:
+        AssemblyError: No state on the constraints keeps what is stated; says by how much the nearest one differs. Or
+            there is none at all.
+    """
+    if not model.nc:
+        return ClosedStart(q, v)
+
+    def posture(held: Collection[str]) -> Array:
+        return assemble(model, q, held=held, u=u, par=par, t=t).q
+
+    on = _kept(posture, _holding(model, coordinates))
+
+    def motion(held: Collection[str]) -> Array:
+        return assemble(model, on, v, held=held, u=u, par=par, t=t).v
+
+    moving = _kept(motion, (tuple(speeds), ()))
+    names, stated = (model.names.q, model.names.v), (coordinates, speeds)
+    return ClosedStart(on, moving, changes(model.record.name, names, stated, (q, v), (on, moving)))
+
+
+def _holding(model: Model, coordinates: Collection[str]) -> tuple[tuple[str, ...], ...]:
+    """Speeds to hold so that coordinates stay, first choice first.
+
+    An entry of a quaternion can't be held alone: its whole rotation is, and of a pose all translations.
+    """
+    linear: list[str] = []
+    others: list[str] = []
+    for segment in model.record.segments:
+        ends = (segment.q, segment.q + segment.translations, segment.q + segment.size)
+        speeds = model.names.v[segment.v : segment.v + segment.speeds]
+        stated = [i for i in range(ends[0], ends[2]) if model.names.q[i] in coordinates]
+        if segment.kind == "linear":
+            linear += [speeds[i - segment.q] for i in stated]
+            continue
+        if any(i < ends[1] for i in stated):
+            others += speeds[: segment.translations]
+        if any(i >= ends[1] for i in stated):
+            others += speeds[segment.translations :]
+    return tuple(dict.fromkeys([(*linear, *others), tuple(linear), ()]))
+
+
+def _kept(find: Callable[[Collection[str]], Array], choices: Sequence[tuple[str, ...]]) -> Array:
+    """What is found with the first choice of held speeds that allows it.
+
+    Raises:
+        AssemblyError: None does.
+    """
+    for held in choices[:-1]:
+        with suppress(AssemblyError):
+            return find(held)
+    return find(choices[-1])
+
+
+def changes(
+    model: str,
+    names: tuple[Sequence[str], Sequence[str]],
+    stated: tuple[Collection[str], Collection[str]],
+    asked: tuple[Array, Array],
+    found: tuple[Array, Array],
+) -> tuple[str, ...]:
+    """What of a stated start changed in its last digits, in words.
+
+    Args:
+        model: Name of the model.
+        names: Names of its coordinates, and of its speeds.
+        stated: Those that are stated.
+        asked: q (nq) and v (nv) as they are stated.
+        found: q and v on the constraints.
+
+    Raises:
+        AssemblyError: More than those digits changed.
+    """
+    pairs = {
+        mark + name: (float(old[known.index(name)]), float(new[known.index(name)]))
+        for mark, known, those, old, new in zip(("", "d"), names, stated, asked, found, strict=True)
+        for name in those
+    }
+    changed = {name: pair for name, pair in pairs.items() if abs(pair[1] - pair[0]) > CLOSED * max(1.0, abs(pair[0]))}
+    if not changed:
+        return ()
+    if all(abs(new - old) <= DIGITS * abs(old) for old, new in changed.values()):
+        return tuple(
+            f"start: {name} = {old:g} was taken as {_shown(new)}, which meets the constraints"
+            for name, (old, new) in changed.items()
+        )
+    found_words = (
+        f"{name} = {old:g} would be {_shown(new)}, {abs(new - old):.3g} off" for name, (old, new) in changed.items()
+    )
+    raise AssemblyError(
+        Problem(
+            f"model '{model}': the stated start does not meet the constraints",
+            "; ".join(found_words),
+            "what is stated of a start is kept; what is not follows from the constraints",
+            "leave out what shall follow, or state what is near: "
+            + ", ".join(f"{name} = {_shown(new)}" for name, (_, new) in changed.items()),
+        )
+    )
+
+
+def _shown(number: float) -> str:
+    return f"{round(number, 9) + 0.0:.9g}"

@@ -1,0 +1,53 @@
+/** What the windows of runs were asked: texts as they were typed, by the names that they are of. */
+
+export type Texts = Readonly<Record<string, string>>;
+
+export interface AskedSimulation {
+  end: string;
+  step: string;
+  tolerance: string;
+  method: string;
+  q0: Texts;
+  v0: Texts;
+  inputs: Texts;
+}
+
+export interface AskedRun {
+  mode: "compiled" | "interpreted";
+  /** "" leaves it to the file; the others too. */
+  end: string;
+  step: string;
+  method: string;
+  pace: string;
+  stops: string;
+}
+
+export const FIRST_SIMULATION: AskedSimulation = {
+  end: "5",
+  step: "0.001",
+  tolerance: "1e-8",
+  method: "rk4",
+  q0: {},
+  v0: {},
+  inputs: {},
+};
+
+export const FIRST_RUN: AskedRun = { mode: "compiled", end: "", step: "", method: "", pace: "", stops: "" };
+
+/** Those that say something. */
+const stated = (texts: Texts): [string, string][] => Object.entries(texts).filter(([, text]) => text.trim() !== "");
+
+/** Texts of names that there are. */
+export const known = (texts: Texts, names: readonly string[]): Record<string, string> =>
+  Object.fromEntries(stated(texts).filter(([name]) => names.includes(name)));
+
+/** Texts of names that there are no more. */
+export const strangers = (texts: Texts, names: readonly string[]): Record<string, string> =>
+  Object.fromEntries(stated(texts).filter(([name]) => !names.includes(name)));
+
+/** Texts under the names that renaming has given them; `before` and `after` are the names in order. */
+export function followed(texts: Texts, before: readonly string[], after: readonly string[]): Texts {
+  if (before.length !== after.length) return texts;
+  const renamed = new Map(before.map((name, i) => [name, after[i] ?? name]));
+  return Object.fromEntries(Object.entries(texts).map(([name, text]) => [renamed.get(name) ?? name, text]));
+}

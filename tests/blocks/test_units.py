@@ -1,0 +1,189 @@
+"""Units of ports: each that has a meaning has a unit or says why not, and a wire between two that differ is refused."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from symofros import blocks as lib
+from symofros.base.units import agree
+from symofros.diagrams.block import Block, Port
+from symofros.diagrams.wiring import draft
+
+# Joints that turn and that slide, so that no two quantities of it have one unit.
+MECHANISM = replace(MODELS["slider_crank"], constraints=())
+MAKE: dict[str, Callable[[], Block]] = {
+    "CartesianFeedback": lambda: lib.CartesianFeedback(
+        name="b", model="m", frame="rod", rows=("x", "y"), kp=1.0, kd=1.0
+    ),
+    "CartesianLinear": lambda: lib.CartesianLinear(
+        name="b", model="m", frame="rod", rows=("x", "y"), stiffness=1.0, damping=1.0
+    ),
+    "CartesianTrajectory": lambda: lib.CartesianTrajectory(
+        name="b", times=[0, 1], points=np.zeros((2, 3)), quaternions=[[0, 0, 0, 1]] * 2
+    ),
+    "ComputedTorque": lambda: lib.ComputedTorque(name="b", model="m", kp=1.0, kd=1.0),
+    "FrictionCompensation": lambda: lib.FrictionCompensation(name="b", model="m"),
+    "GravityCompensation": lambda: lib.GravityCompensation(name="b", model="m"),
+    "InverseDynamics": lambda: lib.InverseDynamics(name="b", model="m"),
+    "ForwardDynamics": lambda: lib.ForwardDynamics(name="b", model="m"),
+    "ForwardKinematics": lambda: lib.ForwardKinematics(name="b", model="m", frame="rod"),
+    "Extremities": lambda: lib.Extremities(name="b", model="m"),
+    "StatePlot": lambda: lib.StatePlot(name="b", model="m"),
+    "ExtremityPlot": lambda: lib.ExtremityPlot(name="b", model="m", frames=["rod"]),
+    "OrientationError": lambda: lib.OrientationError(name="b", kind="rotation_vector"),
+    "Orientation": lambda: lib.Orientation(name="b", source="rotation_vector", target="axis_angle"),
+}
+# Ports of these blocks are of what is connected or of what the user says; no other port may be without a unit.
+OF_THE_USER = {
+    "Chirp", "Constant", "DeadZone", "Derivative", "Formula", "Gain", "Hold", "Integrator", "Join", "LookupTable",
+    "Noise", "Pick", "Product", "Pulse", "PythonBlock", "Quantizer", "Ramp", "RateLimit", "Relay", "Reshape",
+    "Saturation", "Sequence", "Sine", "StateSpace", "Step", "Store", "Sum", "Switch", "TransferFunction", "Transform",
+    "FrameTransform", "UdpReceiver", "UdpTransmitter", "UnitDelay", "ZenohPublisher", "ZenohSubscriber", "Scope",
+    "LivePlot", "JointTrajectory",
+}  # fmt: skip
+# Measured by what is connected: tests below.
+BY_WIRE = {"JointPD", "JointPID"}
+# Needs more than one port can say, or a model of another kind: J has a unit for each row and column.
+ELSEWHERE = {"Jacobian", "LQR", "InverseKinematics", "Square", "View3D"}
+
+
+def library() -> set[str]:
+    members = inspect.getmembers(lib, inspect.isclass)
+    return {name for name, member in members if issubclass(member, Block) and member is not Block}
+
+
+def ports_of(block: Block) -> tuple[Port, ...]:
+    diagram = sf.Diagram("units")
+    diagram.add_model("m", MECHANISM)
+    diagram.add(block)
+    found = draft(diagram).ports[block.name]
+    return (*found.inputs, *found.outputs)
+
+
+def test_every_block_of_the_library_is_spoken_for() -> None:
+    assert library() == set(MAKE) | OF_THE_USER | BY_WIRE | ELSEWHERE
+
+
+@pytest.mark.parametrize("name", MAKE)
+def test_every_port_with_a_meaning_has_a_unit(name: str) -> None:
+    for port in ports_of(MAKE[name]()):
+        assert all(port.entry_units), f"{name}.{port.name}"
+        assert len(port.units) in (0, (port.shape or (0,))[-1])
+
+
+def wired(controller: Block, units: dict[str, str], model: str = "") -> list[str]:
+    """What is wrong with a controller whose inputs have these units."""
+    diagram = sf.Diagram("loop")
+    for port, unit in units.items():
+        diagram.add(lib.Constant(name=port, value=[0.0], unit=unit))
+    diagram.add(controller, **{port: f"{port}.y" for port in units})
+    return [f"{problem.what}; {problem.found}; {problem.rule}" for problem in draft(diagram).problems]
+
+
+CONTROLLERS: list[Callable[[], Block]] = [
+    lambda: lib.JointPD(name="c", kp=1.0, kd=1.0),
+    lambda: lib.JointPID(name="c", kp=1.0, ki=1.0, kd=1.0),
+]
+RIGHT = {
+    "rad": {"q_desired": "rad", "v_desired": "rad/s", "q": "rad", "v": "rad/s"},
+    "deg": {"q_desired": "deg", "v_desired": "deg/s", "q": "deg", "v": "deg/s"},
+    "m": {"q_desired": "m", "v_desired": "m/s", "q": "m", "v": "m/s"},
+    "none": {"q_desired": "", "v_desired": "", "q": "", "v": ""},
+    "some": {"q_desired": "", "q": "", "v": "rad/s"},
+}
+UNITS = ("rad", "deg", "m", "rad/s", "m/s", "N m", "N", "s", "rad/s^2")
+
+
+@pytest.mark.parametrize("make", CONTROLLERS)
+@pytest.mark.parametrize("right", RIGHT)
+def test_a_controller_of_joints_takes_what_fits(make: Callable[[], Block], right: str) -> None:
+    assert not wired(make(), RIGHT[right])
+
+
+@pytest.mark.parametrize("make", CONTROLLERS)
+@pytest.mark.parametrize("right", ["rad", "deg", "m"])
+@pytest.mark.parametrize("port", ["q_desired", "v_desired", "q", "v"])
+def test_one_wrong_wire_of_a_controller_is_refused(make: Callable[[], Block], right: str, port: str) -> None:
+    """Of all units that are not those of the port."""
+    for unit in UNITS:
+        if not agree(unit, RIGHT[right][port]):
+            problems = wired(make(), RIGHT[right] | {port: unit})
+            assert any("units differ" in problem for problem in problems), unit
+            assert any(unit in problem for problem in problems)
+
+
+@pytest.mark.parametrize("make", CONTROLLERS)
+def test_exchanged_states_are_refused(make: Callable[[], Block]) -> None:
+    problems = wired(make(), {"q_desired": "rad", "q": "rad/s", "v": "rad"})
+    assert any("q.y -> c.q: units differ; rad/s; the input takes rad" in problem for problem in problems)
+    assert any("v.y -> c.v: units differ; rad; the input takes rad/s" in problem for problem in problems)
+    assert wired(make(), {"q_desired": "N m", "q": "", "v": ""})
+
+
+def arm() -> sf.Diagram:
+    diagram = sf.Diagram("arm")
+    diagram.add_model("m", MODELS["planar_robot"])
+    diagram.add(lib.ForwardDynamics(name="plant", model="m"))
+    return diagram
+
+
+@pytest.mark.parametrize(("of", "port", "unit"), [("q", "q", "rad"), ("v", "v", "rad/s"), ("v", "a", "rad/s^2")])
+def test_pick_keeps_the_unit_of_its_entries(of: str, port: str, unit: str) -> None:
+    """Of a vector that also holds elastic coordinates, whose units are others."""
+    diagram = arm()
+    diagram.add(lib.Pick(name="p", model="m", of=of, entries=["q1", "q2"]), u=f"plant.{port}")
+    diagram.add(lib.Hold(name="h", period=0.01), u="p.y")
+    drafted = draft(diagram)
+    assert not drafted.problems
+    assert drafted.ports["p"].outputs[0].unit == drafted.ports["h"].outputs[0].unit == unit
+    diagram.add(lib.Pick(name="force", model="m", of="u", entries="actuated"), u="p.y")
+    assert draft(diagram).problems
+
+
+def test_states_that_were_picked_and_exchanged_are_refused() -> None:
+    diagram = arm()
+    for of in "qv":
+        diagram.add(lib.Pick(name=of, model="m", of=of, entries="actuated"), u=f"plant.{of}")
+    diagram.add(lib.Constant(name="goal", value=[0.0, 0.0, 0.0], unit="rad"))
+    diagram.add(lib.JointPD(name="pd", kp=1.0, kd=1.0), q_desired="goal", q="v", v="q")
+    assert len([problem for problem in draft(diagram).problems if "units differ" in problem.what]) == 2
+
+
+def test_entries_of_mixed_vectors_are_compared_one_by_one() -> None:
+    diagram = sf.Diagram("mixed")
+    diagram.add_model("m", MECHANISM)
+    diagram.add(lib.ForwardDynamics(name="plant", model="m"))
+    diagram.add(lib.InverseDynamics(name="id", model="m"), q="plant.v", v="plant.v", a="plant.a")
+    (problem,) = draft(diagram).problems
+    assert "plant.v -> id.q: units differ at entry 0" in problem.what
+    assert (problem.found, problem.rule) == ("rad/s", "the input takes rad")
+
+
+@pytest.mark.parametrize(("given", "taken"), [(1.5, [2.0]), ([1.5], 2.0)])
+def test_one_number_is_one_alone_or_as_a_vector(given: object, taken: object) -> None:
+    diagram = sf.Diagram("one")
+    diagram.add(lib.Constant(name="a", value=taken))
+    diagram.add(lib.Constant(name="b", value=given))
+    diagram.add(lib.Sum(name="s"), u1="a", u2="b")
+    diagram.add(lib.Pick(name="p", entries=[0]), u="b")
+    diagram.add(lib.JointPD(name="pd", kp=[4.0], kd=0.0), q_desired="b", q="a", v="a")
+    simulation = sf.Simulation(diagram)
+    for run in (simulation.run(0.01, dt=0.01), simulation.interpret(0.01, dt=0.01)):
+        last = {name: float(np.ravel(run[name][-1])[0]) for name in ("s", "p", "pd.effort")}
+        assert last == {"s": 3.5, "p": 1.5, "pd.effort": -2.0}
+
+
+def test_more_than_one_number_does_not_fit() -> None:
+    diagram = sf.Diagram("two")
+    diagram.add(lib.Constant(name="a", value=1.0))
+    diagram.add(lib.Constant(name="b", value=[1.0, 2.0]))
+    diagram.add(lib.Sum(name="s"), u1="a", u2="b")
+    with pytest.raises(sf.DescriptionError, match="shapes differ"):
+        sf.Simulation(diagram)
