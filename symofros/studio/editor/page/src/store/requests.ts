@@ -8,7 +8,6 @@ import { completed } from "../model/layout";
 import { type Dialog, notify, now, OF_NEW_DOCUMENT, type State, update } from "./store";
 
 let queue: Promise<unknown> = Promise.resolve();
-let waiting = 0;
 
 /** More blocks than these take a browser minutes to draw, and nobody can read them. */
 export const MOST_DRAWN = 1500;
@@ -95,8 +94,6 @@ export function acceptTheirs(document: Document): void {
     });
 }
 
-export const busy = (): boolean => waiting > 0;
-
 /** Says what went wrong; true if the request is answered. */
 export function explain(reason: unknown): void {
   if (reason instanceof Unreachable) update({ link: "lost" });
@@ -119,10 +116,7 @@ export function ordered<T>(
       return undefined;
     }
   };
-  waiting += 1;
-  const answer = queue.then(attempt).finally(() => {
-    waiting -= 1;
-  });
+  const answer = queue.then(attempt);
   queue = answer.catch(() => undefined);
   return answer;
 }
