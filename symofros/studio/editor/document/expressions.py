@@ -19,9 +19,7 @@ from symofros.studio.editor.editing.yaml_edits import apply
 Json = dict[str, Any]
 
 
-def check_field(
-    file: File, text: str, now: Analysis, path: Path, typed: Any, draft: Edit | None = None
-) -> Json:
+def check_field(file: File, text: str, now: Analysis, path: Path, typed: Any, draft: Edit | None = None) -> Json:
     """What is to say about a formula in a field.
 
     Args:

@@ -107,7 +107,9 @@ def test_laws_and_starts_are_of_one_document_and_of_its_names(
 
 
 def test_a_run_is_asked_for_by_document(serve: Callable[..., Server], page: Page, tmp_path: Path) -> None:
-    source = "symofros_diagram: 1\nblocks: {wave: {kind: sine}, seen: {kind: scope, signals: [y], inputs: {y: wave.y}}}\n"
+    source = (
+        "symofros_diagram: 1\nblocks: {wave: {kind: sine}, seen: {kind: scope, signals: [y], inputs: {y: wave.y}}}\n"
+    )
     (tmp_path / "second.yaml").write_text(source)
     server = serve("first.yaml", content=source)
     steps.open_editor(page, server.url)
@@ -217,9 +219,7 @@ def test_a_change_is_not_made_to_a_document_that_another_page_has_opened(
     other.close()
 
 
-def test_two_servers_share_nothing(
-    server: Server, serve: Callable[..., Server], page: Page, tmp_path: Path
-) -> None:
+def test_two_servers_share_nothing(server: Server, serve: Callable[..., Server], page: Page, tmp_path: Path) -> None:
     """One after the other in one page, and side by side."""
     (tmp_path / "elsewhere").mkdir()
     second = serve("elsewhere/driven.yaml", content=DRIVEN, token="of-the-second")
