@@ -34,7 +34,7 @@ def test_names_that_nobody_gives_are_flagged_in_fields_that_the_file_has_not_yet
     steps.open_editor(page, server.url)
     steps.open_window(page, "bodies/upper")
     steps.tab(page, "Forces")
-    field = steps.fill(page, "Effort", "-tauu*3")
+    field = steps.fill(page, "Effort", "-tauu*3", nth=1)
     alert = steps.window(page).get_by_role("alert")
     expect(alert).to_contain_text("unknown symbol 'tauu'")
     alert.get_by_role("button", name="Add input tauu").click()
