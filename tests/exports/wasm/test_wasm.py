@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from symofros.exports.wasm import wasm
+from symofros.native import native_text
 from tests.docs.pages import blocks
 from tests.exports.cases import PLANAR, STARTS, need, run, system_of
 from tests.studio.waiting import until

@@ -64,7 +64,7 @@ def hostile() -> dict[str, bytes]:
     }
     files |= {f"corpus{i}.yaml": data for i, data in enumerate((*corpus("yaml")[:4], *corpus("diagram")[:2]))}
     for kind in ("yaml", "diagram"):
-        files |= {f"{kind}{i}.yaml": data for i, data in enumerate(islice(mutated(kind, 1), 40))}
+        files |= {f"{kind}{i}.yaml": data for i, data in enumerate(islice(mutated(kind, 1), 16))}
     return files
 
 
