@@ -9,7 +9,7 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from symofros.exports.folder import MANIFEST, write_folder
+from symofros.exports.folder import MANIFEST, check_same, write_folder
 from symofros.generator.codegen.names import identifier
 
 PENDULUM = MODELS["pendulum"]
@@ -107,3 +107,12 @@ def test_a_failing_compiler_is_quoted(tmp_path: Path, monkeypatch: pytest.Monkey
     with pytest.raises(sf.CompileError, match=r"found:  gcc -Dnq=1/0/ -O2[\s\S]*error"):
         sf.export(PENDULUM, "fmu2", tmp_path)
     assert not any(tmp_path.iterdir())
+
+
+def test_an_export_of_another_kind_or_model_is_not_removed(tmp_path: Path) -> None:
+    write_folder(tmp_path / "out", "urdf", "arm", {"arm.urdf": "x"}, "test")
+    check_same(tmp_path / "out", "urdf", "arm")
+    check_same(tmp_path / "new", "c", "arm")
+    for target, name in (("mjcf", "arm"), ("urdf", "leg")):
+        with pytest.raises(sf.ExportError, match="holds another export, which would be removed"):
+            check_same(tmp_path / "out", target, name)

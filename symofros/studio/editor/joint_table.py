@@ -17,9 +17,14 @@ def joint_table() -> str:
     """The file's text: kind -> speeds and coordinates by suffix and unit, entries of the description, glyph."""
     rows = []
     for name, kind in KINDS.items():
-        coordinates = {item.suffix: item.unit for item in kind.coordinates}
-        facts = {"speeds": kind.nv, "coordinates": coordinates, "quasi_velocities": kind.speed_suffixes}
-        facts |= {"entries": kind.entries, "glyph": kind.glyph}
+        facts = {
+            "speeds": kind.nv,
+            "coordinates": kind.coordinate_suffixes,
+            "units": [coordinate.unit for coordinate in kind.coordinates],
+            "quasi_velocities": kind.speed_suffixes,
+            "entries": kind.entries,
+            "glyph": kind.glyph,
+        }
         lines = ",\n".join(f'    "{key}": {json.dumps(fact)}' for key, fact in facts.items())
         rows.append(f'  "{name}": {{\n{lines}\n  }}')
     return "{\n" + ",\n".join(rows) + "\n}\n"

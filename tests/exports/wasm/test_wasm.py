@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from symofros.exports.wasm import wasm
+from symofros.native import native_text
 from tests.docs.pages import blocks
 from tests.exports.cases import PLANAR, STARTS, need, run, system_of
 from tests.late import require
@@ -260,3 +262,12 @@ def test_without_zig_it_is_said_in_words(monkeypatch: pytest.MonkeyPatch, tmp_pa
 
 def test_names_can_not_end_the_script_of_the_page() -> None:
     assert "<" not in wasm._json({"name": "</script><!--<script"})
+
+
+def test_each_failure_of_the_stepping_loop_has_words() -> None:
+    """As the header states them, one for each negative status."""
+    header = native_text("stepping/symofros_stepper.h")
+    codes = re.findall(r"SYM_\w+ = (-\d+)", header)
+    words = wasm._statuses()
+    assert list(words) == codes and words["-7"] == "a beam is bent beyond second-order theory"
+    assert "STATUSES[status]" in native_text("exports/symofros_wasm.mjs")

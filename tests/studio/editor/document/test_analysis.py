@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -11,6 +12,9 @@ from symofros.studio.editor.document.analysis import analyse
 from symofros.studio.editor.document.diagram import diagram
 from symofros.studio.editor.document.expressions import check_field
 from symofros.studio.editor.editing import yaml_spans
+from symofros.studio.editor.editing.data_edits import Edit
+from symofros.studio.editor.editing.formulas import formulas
+from symofros.studio.editor.editing.yaml_edits import apply
 from tests.studio.editor.texts import DATA, FILES, ODD, TEXTS
 
 # A change of the four-bar, the path of the problem that follows, its block.
@@ -208,3 +212,31 @@ def test_keys_that_appear_twice_name_their_file() -> None:
     text = TEXTS["four_bar"] + "bodies: {}\n"
     (problem,) = analyse(FILES["four_bar"], text).problems
     assert problem["object"] == "'bodies' appears twice" and problem["line"] > 0
+
+
+def _with(data: Any, path: tuple[Any, ...], value: Any) -> Any:
+    """Plain data with one value exchanged."""
+    if not path:
+        return value
+    step, rest = path[0], path[1:]
+    if isinstance(data, list):
+        return [_with(item, rest, value) if i == step else item for i, item in enumerate(data)]
+    return {key: _with(item, rest, value) if key == step else item for key, item in data.items()}
+
+
+def test_a_field_that_the_document_lacks_is_judged_in_its_draft() -> None:
+    """Each formula of every body that can be written is asked for as if the window that has it were new."""
+    file = Path(__file__).parents[4] / "validation" / "corpus" / "everything.yaml"
+    text = file.read_text(encoding="utf-8")
+    whole = analyse(file, text)
+    for path, _ in formulas(whole.data):
+        if path[0] != "bodies" or "beam" in path or "solid" in path:
+            continue
+        entry = path[:2]
+        body = whole.data["bodies"][path[1]]
+        draft = Edit("set", entry, _with(body, path[2:], "nobody"))
+        # The field is not there while its window fills it in.
+        lean = apply(text, Edit("remove", path[:3]))
+        now = analyse(file, lean)
+        found = check_field(file, lean, now, path, "nobody", draft)
+        assert not found["ok"] and "unknown symbol 'nobody'" in found["error"]["found"], path

@@ -297,3 +297,18 @@ def test_a_fault_of_the_server_s_own_is_told_and_it_goes_on(session: Session, mo
         assert answer.status_code == 500 and answer.json()["error"]["found"] == "ZeroDivisionError"
         assert client.post("/api/layout", json={}).status_code == 200
         assert client.get("/api/nothing").json()["error"]["object"] == "no such address"
+
+
+def test_data_are_a_mapping_whatever_the_text_is(client: TestClient) -> None:
+    for text in ("", "symofros: 1\n\tbodies: {}", "{", "- 1", "a word", "~"):
+        document = client.get("/api/document").json()
+        answer = client.post("/api/text", json={"revision": document["revision"], "text": text})
+        assert answer.status_code == 200, answer.text
+        assert isinstance(answer.json()["data"], dict) and answer.json()["problems"]
+
+
+def test_places_of_another_document_are_refused(client: TestClient, folder: Path) -> None:
+    answer = client.post("/api/layout", json={"path": "other.yaml", "positions": {"bodies/crank": [1, 2]}})
+    assert answer.status_code == 409 and not (folder / ".four_bar.editor.json").exists()
+    answer = client.post("/api/layout", json={"path": "four_bar.yaml", "positions": {"bodies/crank": [1, 2]}})
+    assert answer.json()["layout"]["bodies/crank"] == [1.0, 2.0]

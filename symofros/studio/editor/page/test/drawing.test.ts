@@ -39,6 +39,7 @@ const document: Document = {
   },
   layout: {},
   diagram: null,
+  undrawn: 0,
   trail: [],
   graph: {
     nodes: [block("a<b"), block("boom")],

@@ -135,6 +135,8 @@ export interface Document {
   text: string;
   data: JsonMap;
   layout: Record<string, Point>;
+  /** How many blocks are too many to be drawn, of the page's own reckoning; 0 where all are drawn. */
+  undrawn: number;
   /** Of a mechanism; empty of a diagram. */
   graph: Graph;
   /** Of a diagram; null of a mechanism. */

@@ -8,6 +8,7 @@ import { loads, standIns } from "../model/folding";
 import { size } from "../model/geometry";
 import { add, mount } from "../store/bodies";
 import { insertPart } from "../store/clipboard";
+import { MOST_DRAWN } from "../store/requests";
 import { now, show, useDocument, useStore } from "../store/store";
 import { Block, type BlockNode, frameOf, JOINT } from "./Block";
 import { Board } from "./Board";
@@ -80,6 +81,13 @@ export function Canvas() {
       extent={extent}
       hasOverview={12}
     >
+      {document.graph.nodes.length === 0 ? (
+        <Panel position="top-center" className="quiet">
+          {document.undrawn > 0
+            ? `${document.undrawn} blocks are more than the ${MOST_DRAWN} that are drawn: the text has them all.`
+            : "Nothing can be drawn of this text: its problems say why, and it can be mended beside."}
+        </Panel>
+      ) : null}
       {document.graph.nodes.length === 1 ? (
         <Panel position="top-center" className="quiet">
           Drag a body from the left onto the canvas, or click it there.

@@ -6,6 +6,7 @@ import { blockSize } from "../model/diagram_geometry";
 import { type Rate, rates } from "../model/rates";
 import { addBlock, link, look } from "../store/diagram";
 import { remove } from "../store/elements";
+import { MOST_DRAWN } from "../store/requests";
 import { now, useDocument, useStore } from "../store/store";
 import { Board } from "./Board";
 import { goInto } from "./open";
@@ -82,7 +83,8 @@ function OfWire({ diagram, selected }: { diagram: Diagram; selected: readonly st
 
 /** A diagram: blocks, and signals between them. */
 export function DiagramCanvas() {
-  const diagram = useDocument().diagram ?? NOTHING;
+  const { diagram: drawing, undrawn } = useDocument();
+  const diagram = drawing ?? NOTHING;
   const places = useStore((state) => state.places);
   const selected = useStore((state) => state.selected);
   const all = useMemo(() => rates(diagram), [diagram]);
@@ -115,7 +117,9 @@ export function DiagramCanvas() {
       <OfWire diagram={diagram} selected={selected} />
       {diagram.nodes.length === 0 ? (
         <Panel position="top-center" className="quiet">
-          Drag a model and blocks from the left onto the canvas, or click them there.
+          {undrawn > 0
+            ? `${undrawn} blocks are more than the ${MOST_DRAWN} that are drawn: the text has them all.`
+            : "Drag a model and blocks from the left onto the canvas, or click them there."}
         </Panel>
       ) : null}
     </Board>

@@ -5,8 +5,9 @@ import table from "./joint_kinds.json";
 
 interface JointKind {
   speeds: number;
-  /** Suffix of a coordinate's name -> its unit; a suffix "" has no dot before it. */
-  coordinates: Record<string, string>;
+  /** Suffixes of the coordinates' names, a dot before each but ""; and units. */
+  coordinates: string[];
+  units: string[];
   /** Suffixes of the speeds where these are not the rates of the coordinates: of velocities in axes of the body. */
   quasi_velocities: string[] | null;
   entries: string[];
@@ -36,7 +37,7 @@ export function coordinatesOf(joint: JsonMap, name: string): Quantity[] {
     return names.map((each) => ({ name: String(each), unit: "" }));
   }
   const kind = JOINT_KINDS[String(joint["kind"])];
-  return Object.entries(kind?.coordinates ?? {}).map(([suffix, unit]) => ({ name: suffixed(name, suffix), unit }));
+  return (kind?.coordinates ?? []).map((suffix, i) => ({ name: suffixed(name, suffix), unit: kind?.units[i] ?? "" }));
 }
 
 /** Its speeds: named as the coordinates whose rates they are, or velocities in axes of the body. */

@@ -24,7 +24,9 @@ function tree(graph: Graph): Tree {
   const children = new Map<string, string[]>();
   const hung = new Set<string>();
   for (const edge of graph.edges.filter((each) => hangs(each) && nodes.has(each.source) && nodes.has(each.target))) {
-    children.set(edge.source, [...(children.get(edge.source) ?? []), edge.target]);
+    const carried = children.get(edge.source) ?? [];
+    carried.push(edge.target);
+    children.set(edge.source, carried);
     hung.add(edge.target);
   }
   return { nodes, roots: [...nodes.keys()].filter((id) => !hung.has(id)), children };

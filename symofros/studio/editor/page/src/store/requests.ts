@@ -8,7 +8,23 @@ import { completed } from "../model/layout";
 import { type Dialog, notify, now, OF_NEW_DOCUMENT, type State, update } from "./store";
 
 let queue: Promise<unknown> = Promise.resolve();
-let waiting = 0;
+
+/** More blocks than these take a browser minutes to draw, and nobody can read them. */
+export const MOST_DRAWN = 1500;
+
+/** The document without blocks where they are too many; `undrawn` is their number. */
+function drawable(document: Document): Document {
+  const { graph, diagram } = document;
+  const count = graph.nodes.length + (diagram?.nodes.length ?? 0);
+  if (count <= MOST_DRAWN) return { ...document, undrawn: 0 };
+  const none = { nodes: [] };
+  return {
+    ...document,
+    undrawn: count,
+    graph: { ...none, edges: [] },
+    diagram: diagram === null ? null : { ...diagram, ...none, wires: [] },
+  };
+}
 
 /** Windows about the open document; the others are about none, such as the list of files. */
 const OF_DOCUMENT: readonly Dialog["kind"][] = [
@@ -38,7 +54,8 @@ function kept(state: State, document: Document): Partial<State> {
  * Of another document than before nothing is kept that is known of that one: its windows are closed, its runs, its
  * selection, its picture are gone. `isRenamed`: it is the same one at another path.
  */
-export function accept(document: Document, isRenamed = false): void {
+export function accept(answered: Document, isRenamed = false): void {
+  const document = drawable(answered);
   const old = now().document;
   const fresh = old === null || (old.path !== document.path && !isRenamed);
   const { graph, diagram } = document;
@@ -57,7 +74,8 @@ export function accept(document: Document, isRenamed = false): void {
 }
 
 /** What stands beside a document that was just opened: the text of one of which nothing can be drawn. */
-function panes({ bottom }: State, { problems, data }: Document): Partial<State> {
+function panes({ bottom }: State, { problems, data, undrawn }: Document): Partial<State> {
+  if (undrawn > 0) return { right: "text", bottom: bottom === "problems" ? bottom : null };
   if (problems.length > 0 && Object.keys(data).length === 0) return { right: "text", bottom: "problems" };
   return { bottom: bottom === "problems" ? bottom : null };
 }
@@ -75,8 +93,6 @@ export function acceptTheirs(document: Document): void {
       remedy: `the window was closed: open ${old.path} again, and repeat what it should change`,
     });
 }
-
-export const busy = (): boolean => waiting > 0;
 
 /** Says what went wrong; true if the request is answered. */
 export function explain(reason: unknown): void {
@@ -100,10 +116,7 @@ export function ordered<T>(
       return undefined;
     }
   };
-  waiting += 1;
-  const answer = queue.then(attempt).finally(() => {
-    waiting -= 1;
-  });
+  const answer = queue.then(attempt);
   queue = answer.catch(() => undefined);
   return answer;
 }

@@ -6,7 +6,7 @@ import type { Catalogue } from "../api/types";
 import { fetchParts } from "./clipboard";
 import { refresh } from "./files";
 import { hear, hearSamples } from "./jobs";
-import { busy, explain } from "./requests";
+import { explain, ordered } from "./requests";
 import { notify, now, update } from "./store";
 import { pick, zoom } from "./view";
 
@@ -17,11 +17,7 @@ async function attend(): Promise<void> {
   for (;;) {
     await new Promise<void>((lost) => {
       listen({
-        document: (revision, name) => {
-          const known = now().document;
-          // Our own changes come back here too, and bring nothing new.
-          if (!busy() && (revision !== known?.revision || name !== known.name)) void refresh();
-        },
+        document: (revision, name) => void heed(revision, name),
         disk: () => void refresh(),
         job: hear,
         samples: hearSamples,
@@ -39,6 +35,14 @@ async function attend(): Promise<void> {
     if (now().link === "expired") return;
     await refresh();
   }
+}
+
+/** Asks for the document where it has changed; our own changes come back here too, and bring nothing new. */
+async function heed(revision: number, name: string): Promise<void> {
+  // The answer to a change of ours may be on its way.
+  await ordered(() => Promise.resolve());
+  const known = now().document;
+  if (known === null || revision > known.revision || name !== known.name) await refresh();
 }
 
 /** Whether the server says anything, be it that we are strangers. */

@@ -1,0 +1,185 @@
+"""Fields: what is typed is judged where it stands, is kept while nobody takes it, and is shown whole."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+from tests.studio.editor.browser import steps
+from tests.studio.editor.browser.conftest import Server
+from tests.studio.waiting import fits, until
+
+pytestmark = pytest.mark.browser
+
+PENDULUM = Path(__file__).parents[4] / "reference_models" / "rigid" / "double_pendulum.yaml"
+JOB = 60_000
+FREE = """symofros: 1
+system: {gravity: [0, 0, 0]}
+bodies:
+  top: {joint: {kind: ball, name: top, actuated: true}, inertia: {mass: 1, moments: [1, 2, 3]}}
+  craft: {joint: {kind: free, name: craft}, inertia: {mass: 1, moments: [1, 2, 3]}}
+  puck: {joint: {kind: planar, name: puck, actuated: true}, inertia: {mass: 1, moments: [1, 2, 3]}}
+  drum: {joint: {kind: revolute, name: drum, prescribed: true}, inertia: {mass: 1, moments: [1, 2, 3]}}
+"""
+WHOLE = "(element) => element.scrollWidth <= element.clientWidth"
+
+
+def test_names_that_nobody_gives_are_flagged_in_fields_that_the_file_has_not_yet(
+    serve: Callable[..., Server], page: Page
+) -> None:
+    server = serve("arm.yaml", source=PENDULUM)
+    steps.open_editor(page, server.url)
+    steps.open_window(page, "bodies/upper")
+    steps.tab(page, "Forces")
+    field = steps.fill(page, "Effort", "-tauu*3", nth=1)
+    alert = steps.window(page).get_by_role("alert")
+    expect(alert).to_contain_text("unknown symbol 'tauu'")
+    alert.get_by_role("button", name="Add input tauu").click()
+    expect(alert).to_have_count(0)
+    field.fill("-kk*q1")
+    expect(alert).to_contain_text("unknown symbol 'kk'")
+    field.fill("-3*q1")
+    expect(alert).to_have_count(0)
+    # A load that is being added.
+    group = steps.window(page).get_by_role("group", name="Loads", exact=True)
+    group.get_by_role("button", name="Add", exact=True).click()
+    force = steps.window(page).get_by_label("Force z", exact=True)
+    force.fill("weight")
+    expect(alert).to_contain_text("unknown symbol 'weight'")
+
+
+def test_what_is_typed_while_the_server_is_gone_stays_and_is_sent(serve: Callable[..., Server], page: Page) -> None:
+    server = serve("arm.yaml", source=PENDULUM)
+    steps.open_editor(page, server.url)
+    page.get_by_role("tab", name="YAML").click()  # The text editor is loaded.
+    expect(page.get_by_label("Text of the file")).to_be_visible()
+    page.get_by_role("tab", name="Parameters").click()
+    server.kill()
+    value = page.get_by_label("Value of m1", exact=True)
+    value.fill("2.5")
+    value.press("Enter")
+    expect(page.get_by_text("The server does not answer")).to_be_visible()
+    expect(value).to_have_value("2.5")
+    expect(value).to_have_attribute("aria-invalid", "true")
+    expect(value).to_have_attribute("title", "Not sent: the server does not answer. 2.5 is sent when it is back.")
+    again = serve("arm.yaml", port=server.port)
+    expect(page.get_by_text("The server does not answer")).to_have_count(0, timeout=20_000)
+    expect(value).to_have_attribute("aria-invalid", "false")
+    expect(value).to_have_value("2.5")
+    # The text, too, and after its pane was closed.
+    for is_closed in (False, True):
+        page.get_by_role("tab", name="YAML").click()
+        again.kill()
+        page.get_by_label("Text of the file").click()
+        page.keyboard.press("Control+Home")
+        page.keyboard.type(f"# typed {is_closed}\n")
+        expect(page.get_by_text("The server does not answer")).to_be_visible()
+        if is_closed:
+            page.get_by_role("tab", name="Tree").click()
+        again = serve("arm.yaml", port=server.port)
+        expect(page.get_by_text("The server does not answer")).to_have_count(0, timeout=20_000)
+        page.get_by_role("tab", name="YAML").click()
+        expect(page.get_by_label("Text of the file")).to_contain_text(f"# typed {is_closed}")
+    steps.saved(page)
+    until(page, lambda: again.file.read_text().startswith("# typed True\n# typed False\n"))
+    assert "value: 2.5" in again.file.read_text()
+
+
+def test_a_pane_that_can_not_be_loaded_leaves_the_page(serve: Callable[..., Server], chromium: Browser) -> None:
+    """The text editor is loaded when it is opened: then the server may be gone."""
+    server = serve("arm.yaml", source=PENDULUM)
+    page = chromium.new_page()
+    steps.open_editor(page, server.url)
+    server.kill()
+    page.get_by_role("tab", name="YAML").click()
+    expect(page.get_by_role("alert").filter(has_text="The pane can't be shown")).to_be_visible()
+    expect(steps.block(page, "bodies/upper")).to_be_visible()
+    page.get_by_role("tab", name="Tree").click()
+    expect(page.get_by_role("tree")).to_be_visible()
+    page.close()
+
+
+def test_units_are_shown_whole(serve: Callable[..., Server], page: Page) -> None:
+    text = PENDULUM.read_text().replace("unit: kg,", "unit: kg m^2/s,").replace("unit: kg}", "unit: kg m^2/s}")
+    server = serve("arm.yaml", content=text)
+    steps.open_editor(page, server.url)
+    for width in (1280, 900, 640, 400):
+        page.set_viewport_size({"width": width, "height": 760})
+        if page.get_by_role("complementary").count() == 0:
+            page.get_by_role("button", name="YAML").click()
+            page.get_by_role("tab", name="Parameters").click()
+        units = page.get_by_label("Unit of ")
+        assert units.count() > 3
+        for unit in units.all():
+            until(page, lambda unit=unit: bool(unit.evaluate(WHOLE)), f"cut off at {width}")
+        fits(page, width)
+
+
+def test_the_sample_time_is_called_so(serve: Callable[..., Server], page: Page) -> None:
+    server = serve("wave.yaml", content="symofros_diagram: 1\nblocks: {wave: {kind: sine}}\n")
+    steps.open_editor(page, server.url)
+    steps.open_window(page, "blocks/wave")
+    field = steps.window(page).get_by_label("Sample time", exact=True)
+    expect(field).to_be_visible()
+    expect(steps.window(page).get_by_text("Period", exact=True)).to_have_count(0)
+    row = steps.window(page).locator(".row").filter(has=page.get_by_label("Sample time", exact=True))
+    expect(row.locator(".row-unit")).to_have_text("s")
+
+
+def test_an_export_goes_to_a_folder_of_its_own(serve: Callable[..., Server], page: Page, tmp_path: Path) -> None:
+    server = serve("arm.yaml", source=PENDULUM)
+    steps.open_editor(page, server.url)
+
+    def export(kind: str, folder: str = "") -> None:
+        steps.run(page, "Export…")
+        steps.window(page).get_by_label(kind, exact=True).check()
+        if folder:
+            steps.fill(page, "Folder", folder)
+        steps.window(page).get_by_role("button", name="Export", exact=True).click()
+
+    export("URDF")
+    expect(steps.results(page)).to_contain_text("arm_urdf/", timeout=JOB)
+    export("MJCF (MuJoCo)")
+    expect(steps.results(page)).to_contain_text("arm_mjcf/", timeout=JOB)
+    export("MJCF (MuJoCo)", "arm_urdf")
+    expect(steps.results(page)).to_contain_text("holds another export, which would be removed", timeout=JOB)
+    assert list((tmp_path / "arm_urdf").glob("*.urdf")) and list((tmp_path / "arm_mjcf").glob("*.xml"))
+    export("URDF", "arm_urdf")  # The same again is written anew.
+    expect(steps.results(page)).to_contain_text(".urdf", timeout=JOB)
+
+
+def test_joints_of_several_coordinates_are_started_and_driven(
+    serve: Callable[..., Server], page: Page, tmp_path: Path
+) -> None:
+    server = serve("free.yaml", content=FREE)
+    steps.open_editor(page, server.url)
+    steps.run(page, "Simulate…")
+    typed = {
+        "Duration": "0.2",
+        "Start of top.yaw": "0.4",
+        "Speed of top.wz": "0.5",
+        "Start of craft.px": "2",
+        "Speed of craft.vx": "3",
+        "Start of craft.roll": "0.1",
+        "Start of puck.x": "0.7",
+        "Speed of puck.angle": "-1",
+        "Formula of t of top.wx": "1",
+        "Formula of t of puck.y": "sin(t)",
+        "Formula of t of drum": "t^2/2",
+        "Formula of t of ddrum": "t",
+        "Formula of t of dddrum": "1",
+    }
+    for label, text in typed.items():
+        steps.fill(page, label, text)
+    with page.expect_request(lambda request: request.url.endswith("/api/jobs")) as asked:
+        steps.window(page).get_by_role("button", name="Simulate", exact=True).click()
+    expect(steps.results(page).get_by_text("s of computing")).to_be_visible(timeout=JOB)
+    expect(steps.results(page).locator(".bad")).to_have_count(0)
+    options = asked.value.post_data_json["options"]
+    assert options["inputs"] == {label.split()[-1]: text for label, text in typed.items() if "Formula" in label}
+    assert options["v0"] == {"top.wz": 0.5, "craft.vx": 3, "puck.angle": -1}
+    for joint in ("top", "craft"):
+        assert sum(options["q0"][f"{joint}.{part}"] ** 2 for part in ("qx", "qy", "qz", "qw")) == pytest.approx(1)

@@ -1,0 +1,82 @@
+"""Ports that appear, move or change their names can be wired by mouse at once."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Locator, Page, expect
+
+from tests.studio.editor.browser import steps
+from tests.studio.editor.browser.conftest import Server
+from tests.studio.waiting import at_rest
+
+pytestmark = pytest.mark.browser
+
+PENDULUM = Path(__file__).parents[4] / "reference_models" / "rigid" / "double_pendulum.yaml"
+PICKED = """symofros_diagram: 1
+models: {arm: {file: arm.yaml}}
+blocks:
+  plant: {kind: forward_dynamics, model: arm}
+  choice: {kind: pick, model: arm, inputs: {u: plant.q}}
+  total: {kind: sum, signs: "+", unit: rad}
+"""
+
+
+def port(page: Page, name: str) -> Locator:
+    return page.locator(f'.react-flow__handle[aria-label^="{name}"]')
+
+
+def wire(page: Page, source: str, target: str) -> None:
+    """Drag from port to port."""
+    at_rest(port(page, source))
+    port(page, source).drag_to(port(page, target))
+
+
+def test_ports_of_blocks_of_a_diagram(serve: Callable[..., Server], page: Page, tmp_path: Path) -> None:
+    shutil.copy(PENDULUM, tmp_path / "arm.yaml")
+    server = serve("picked.yaml", content=PICKED)
+    steps.open_editor(page, server.url)
+    # The block gets its output when it is told which entries it picks.
+    steps.open_window(page, "blocks/choice")
+    steps.fill(page, "Entries", "q1")
+    steps.accept(page)
+    # And the other one a second input.
+    steps.open_window(page, "blocks/total")
+    steps.fill(page, "Signs", "+-")
+    steps.accept(page)
+    wire(page, "output y of choice", "input u2 of total")
+    expect(steps.wire(page, "blocks/total/inputs/u2")).to_have_count(1)
+    # Undo takes wire and input away; the input comes back at its place.
+    page.keyboard.press("Control+z")
+    expect(steps.wire(page, "blocks/total/inputs/u2")).to_have_count(0)
+    page.keyboard.press("Control+z")
+    expect(port(page, "input u2 of total")).to_have_count(0)
+    page.keyboard.press("Control+y")
+    expect(port(page, "input u2 of total")).to_have_count(1)
+    wire(page, "output y of choice", "input u2 of total")
+    expect(steps.wire(page, "blocks/total/inputs/u2")).to_have_count(1)
+
+
+def test_frames_of_bodies(serve: Callable[..., Server], page: Page) -> None:
+    server = serve("arm.yaml", source=PENDULUM)
+    steps.open_editor(page, server.url)
+    page.get_by_role("button", name="Rigid body", exact=True).click()
+    expect(steps.block(page, "bodies/body")).to_be_visible()
+    # A frame that is new, and one that has another name: bodies can be put on both.
+    steps.open_window(page, "bodies/upper")
+    steps.tab(page, "Frames")
+    steps.fill(page, "Name of frames elbow", "knee")
+    steps.fill(page, "Name of a new entry of frames", "side")
+    page.keyboard.press("Enter")
+    steps.accept(page)
+    page.keyboard.press("Escape")
+    page.get_by_role("button", name="Arrange the blocks").click()
+    for frame in ("side", "knee"):
+        wire(page, f"frame {frame} of upper", "joint of body")
+        expect(page.get_by_role("banner").get_by_role("button", name="Undo")).to_be_enabled()
+        steps.open_window(page, "bodies/body")
+        expect(steps.window(page).get_by_label("Frame", exact=True)).to_have_value(frame)
+        page.keyboard.press("Escape")
