@@ -57,8 +57,8 @@ class Problem:
         rule: Rule that must hold.
         remedy: Remedy: the change to make.
         where: "file:line", or "" for an object built in Python.
-        extra: Extra of this distribution whose package is not installed; "" where that is not the fault.
         argument: Argument of `load` that the remedy states as it is written in Python.
+        extra: Extra of this distribution whose package is not installed; "" where that is not the fault.
     """
 
     what: str
@@ -66,8 +66,8 @@ class Problem:
     rule: str = ""
     remedy: str = ""
     where: str = ""
-    extra: str = ""
     argument: Argument | None = None
+    extra: str = ""
 
     @classmethod
     def of_extra(cls, what: str, found: str, rule: str, extra: str, instead: str = "") -> Problem:

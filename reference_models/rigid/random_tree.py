@@ -82,7 +82,8 @@ def noisy_rotation(rng: np.random.Generator) -> sf.Rotation:
         x, y, z, w = quaternion
         K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
         rows = np.eye(3) + 2 * w * K + 2 * K @ K
-        return sf.Rotation.matrix(stated(rows) if rng.random() < 0.5 else rows.astype(np.float32).tolist())
+        noisy = np.array(stated(rows)) if rng.random() < 0.5 else rows.astype(np.float32).astype(float)
+        return sf.Rotation.matrix(noisy.tolist())
     if form == 1:
         return sf.Rotation.quaternion(*stated(quaternion * rng.choice([1.0, -3.0])))
     if form == 2:

@@ -64,7 +64,7 @@ _NEWTON_STEPS = 6
 
 def unit_scale(x: Array) -> Array:
     """A vector times the power of two that brings its largest entry to between 1/2 and 1: squares keep their digits."""
-    return np.ldexp(x, -np.frexp(np.abs(x).max())[1])
+    return np.asarray(np.ldexp(x, -np.frexp(np.abs(x).max())[1]))
 
 
 def axis_rotation(axis: Array, cosine: float, sine: float) -> Array:

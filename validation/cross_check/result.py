@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import symofros as sf
+from symofros.commands.reading import ReadingOptions
 
 from ..adapters import ROUTES
 from ..checking import ModelResult, Settings, check
@@ -73,7 +74,7 @@ def _subject(model: sf.System | str | Path, floating_base: bool) -> Subject:
     if isinstance(model, sf.System):
         return Subject(model.name, model)
     try:
-        (case,) = named([str(model)], floating_base)
+        (case,) = named([str(model)], ReadingOptions(floating_base))
     except LookupError as error:
         stated = f"check: no model '{model}'", str(error.args[0]), "a system, a file, or a model of the standard set"
         raise sf.UnknownNameError(sf.Problem(*stated, "name an existing file")) from None
