@@ -118,8 +118,8 @@ def claim(name: str) -> None:
     folder = folder_of(package)
     loaded = sys.modules.get(name)
     if loaded is not None and not _is_at(loaded.__file__, folder):
-        stated = f"{name} is {loaded.__file__}", f"symofros is {_PACKAGE}, which belongs to {folder}"
-        raise ImportError(str(Problem("two installations are mixed", *stated, f"pip install -e {folder.parent}")))
+        found, rule = f"{name} is {loaded.__file__}", f"symofros is {_PACKAGE}, which belongs to {folder}"
+        raise ImportError(str(Problem("two installations are mixed", found, rule, f"pip install -e {folder.parent}")))
     claimed = any(isinstance(finder, _OtherName) and finder.name == name for finder in sys.meta_path)
     if folder.parent != _PACKAGE and not claimed:  # A wheel has one name only, and `validation` is the user's.
         other = package if name != package else f"symofros.{package}"

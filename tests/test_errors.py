@@ -19,10 +19,10 @@ SOURCES = sorted(path for path in Path(sf.__file__).parent.rglob("*.py") if path
 
 
 def statements() -> Iterator[tuple[str, list[ast.expr]]]:
-    """Every place in the source that states a problem, with its arguments."""
+    """Every place in the source that states a problem, with its arguments; an extra stands for its remedy."""
     for path in SOURCES:
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "Problem":
+            if isinstance(node, ast.Call) and ast.unparse(node.func) in ("Problem", "Problem.of_extra"):
                 yield f"{path.name}:{node.lineno}", node.args
 
 
