@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
-from symofros.base.names import symbol_of
+from symofros.base.names import name_of, symbol_of
 from symofros.description.entries import pairs_of, refuses_unknown_entries
 from symofros.description.forces import Anchor
 from symofros.description.values import Term, Value, as_value, symbols
@@ -255,7 +255,8 @@ class Nonholonomic:
         """Accept a mapping, and convert the formulas."""
         what = f"non-holonomic constraint '{self.name}'"
         pairs = pairs_of(self.coefficients, what)
-        object.__setattr__(self, "coefficients", tuple((k, as_value(x, f"{what}: {k}")) for k, x in pairs))
+        coefficients = tuple((name_of(k), as_value(x, f"{what}: {k}")) for k, x in pairs)
+        object.__setattr__(self, "coefficients", coefficients)
         object.__setattr__(self, "right", as_value(self.right, f"{what}: right"))
         if not self.coefficients:
             raise DescriptionError(

@@ -7,7 +7,7 @@
 
 The library has CasADi's interface of external functions: `dynamics.library`, and the names `dynamics.names`; acados
 takes what `dynamics.write_acados_library` writes. Jacobians, gradients and Hessians are exact and have their structural
-zeros: Ipopt takes its exact Hessian. Quaternions may be of any length: functions are those of the unit ones
+zeros: Ipopt takes its exact Hessian. Quaternions may be of any length but zero: functions are those of the unit ones
 (docs/theory/linear.md, section 9).
 """
 

@@ -6,8 +6,8 @@
     q = dynamics.integrate(q, dt * v)
 
 `jit`, `vmap` (one batch in C), `grad`, `jacfwd`, `jacrev`, `jvp`, `vjp`; XLA calls C without Python in between.
-Derivatives are the model's, exact; they are not differentiated again. Quaternions may be of any length: functions are
-those of the unit ones (docs/theory/linear.md, section 9).
+Derivatives are the model's, exact; they are not differentiated again. Quaternions may be of any length but zero:
+functions are those of the unit ones (docs/theory/linear.md, section 9).
 """
 
 from __future__ import annotations

@@ -5,8 +5,8 @@
     q = dynamics.integrate(q, dt * v)
 
 Reverse and forward mode, `torch.func` (grad, jacrev, jacfwd, jvp, vmap); derivatives are the model's, exact. They are
-not differentiated again. Quaternions may be of any length: functions are those of the unit ones (docs/theory/linear.md,
-section 9).
+not differentiated again. Quaternions may be of any length but zero: functions are those of the unit ones
+(docs/theory/linear.md, section 9).
 """
 
 from __future__ import annotations

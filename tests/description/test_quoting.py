@@ -146,3 +146,13 @@ def test_an_undeclared_symbol_is_to_be_corrected_or_declared() -> None:
     with pytest.raises(sf.DescriptionError) as caught:
         sf.compile(sf.System("s", [body], parameters=[sf.Parameter("m", 1.0), sf.Parameter("p1", 1.0)]))
     assert caught.value.problem.remedy == "did you mean 'p1'? Otherwise declare it under parameters: L1"
+
+
+def test_speeds_of_conditions_and_of_virtual_power_are_written_as_formulas_write_them() -> None:
+    joints = [sf.Joint(name, "revolute") for name in ("oor", "door", "left-hip")]
+    bodies = [sf.RigidBody(f"b{i}", joint, sf.Inertia(1.0, (1, 0, 0))) for i, joint in enumerate(joints)]
+    for key in ("d`oor`", "d`left-hip`"):
+        bound = sf.Nonholonomic("c", ((key, 1.0), ("ddoor", 1.0)))
+        model = sf.compile(sf.System("s", bodies, constraints=(bound,)), sf.Options(backend="interpreter"))
+        G = model.constraint_jacobian(np.zeros(3))[0]
+        assert G.tolist() == [float(key == "d`oor`"), 1.0, float(key == "d`left-hip`")]

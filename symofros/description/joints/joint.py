@@ -21,8 +21,8 @@ class Limits:
     Attributes:
         lower: Least coordinate [rad or m].
         upper: Greatest coordinate [rad or m].
-        velocity: Greatest speed [rad/s or m/s].
-        effort: Greatest effort [N m or N].
+        velocity: Greatest speed [rad/s or m/s]; zero is no limit, as in files that leave it open.
+        effort: Greatest effort [N m or N]; zero is no limit.
     """
 
     lower: float | None = None

@@ -60,7 +60,7 @@ class IdentificationFunctions(Functions):
         Raises:
             ArgumentError: A term is unknown, or a minimum velocity not above zero.
         """
-        check_argument("regressor: joint_terms", joint_terms, Sequence[JointTerm])
+        self._check_terms(joint_terms)
         Y = self._one("regressor", {"q": q, "v": v, "a": a, "u": u}, par)
         if not joint_terms:
             return Y
@@ -74,19 +74,29 @@ class IdentificationFunctions(Functions):
 
     def regressor_columns(self, joint_terms: Sequence[JointTerm] = ()) -> tuple[str, ...]:
         """Names of the columns of `regressor`: "m(arm)", "mx(arm)", ..., "Izz(arm)" of each body, "viscous(q1)", ..."""
-        check_argument("regressor_columns: joint_terms", joint_terms, Sequence[JointTerm])
+        self._check_terms(joint_terms)
         record = self.record
         links = [f"{each}({link})" for link in record.link_names for each in INERTIAL]
         return (*links, *(f"{term}({speed})" for term in joint_terms for speed in record.v_names))
 
+    def _check_terms(self, joint_terms: Sequence[JointTerm]) -> None:
+        check_argument("regressor: joint_terms", joint_terms, Sequence[JointTerm])
+        if len(set(joint_terms)) < len(joint_terms):
+            what, rule = f"model '{self.record.name}': regressor: a term is named twice", "a term has its columns once"
+            raise ArgumentError(Problem(what, ", ".join(joint_terms), rule, "name each term once"))
+
     def _smoothing(self, minimum_velocity: npt.ArrayLike) -> Array:
         given = np.asarray(minimum_velocity)
-        if given.shape not in ((), (self.nv,)) or given.dtype.kind not in "fiu" or not np.all(given > 0.0):
+        if (
+            given.shape not in ((), (self.nv,))
+            or given.dtype.kind not in "fiu"
+            or not np.all((given > 0.0) & (given < np.inf))
+        ):
             raise ArgumentError(
                 Problem(
                     f"model '{self.record.name}': regressor: minimum_velocity can't be taken",
                     f"{minimum_velocity!r:.60}",
-                    f"a number above zero, or one for each of {self.nv} speeds",
+                    f"a finite number above zero, or one for each of {self.nv} speeds",
                     "take that of the joint's Friction; 0.001 is its default",
                 )
             )

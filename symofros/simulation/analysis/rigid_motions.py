@@ -36,7 +36,7 @@ def rigid_motions(A: Array, basis: Array, s: Complex, states: Complex, inertia: 
 
     The s of a motion that nothing drives back is zero, and twice so if nothing damps it; rounding makes a pair of it
     that is real, imaginary or zero. s^2 is an eigenvalue of A^2, whose entries err by rounding of the terms they are
-    sums of, eq. (7d). So a soft mode beside stiff ones is none as long as its own stiffness is no small difference.
+    sums of, eq. (7c). So a soft mode beside stiff ones is none as long as its own stiffness is no small difference.
 
     Args:
         A: Matrix of the independent changes (k x k).

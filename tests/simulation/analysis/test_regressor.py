@@ -109,3 +109,12 @@ def test_wrong_terms_are_refused_in_words(given: dict[str, Any], words: str) -> 
     m = sf.compile(MODELS["double_pendulum"], FUNCTIONS)
     with pytest.raises(sf.SymofrosError, match=words):
         m.regressor([0.1, 0.2], [0.0, 0.0], [0.0, 0.0], **given)
+
+
+def test_a_term_named_twice_and_a_smoothing_without_end_are_refused() -> None:
+    model = sf.compile(MODELS["double_pendulum"], sf.Options(backend="interpreter"))
+    q = np.zeros(2)
+    with pytest.raises(sf.ArgumentError, match="named twice"):
+        model.regressor(q, q, q, joint_terms=("viscous", "viscous"))
+    with pytest.raises(sf.ArgumentError, match="finite number above zero"):
+        model.regressor(q, q, q, joint_terms=("coulomb",), minimum_velocity=np.inf)
