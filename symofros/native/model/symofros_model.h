@@ -32,7 +32,7 @@ extern "C" {
 #define SYM_ABI 1u
 
 /* Index of entry (i, j) of a matrix of n columns, row by row. */
-#define SYM_AT(i, n, j) ((size_t)(i) * (size_t)(n) + (size_t)(j))
+#define SYM_INDEX(i, n, j) ((size_t)(i) * (size_t)(n) + (size_t)(j))
 
 /* cdef begin: what bindings read */
 typedef struct sym_array {

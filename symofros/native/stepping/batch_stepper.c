@@ -200,7 +200,7 @@ static void sym_batch_evaluate_acceleration(sym_batch *b) {
         const int32_t n = b->systems->n_law;
         sym_batch_evaluate(b, &b->law);
         for (i = 0; i < b->n_active; ++i)
-            for (k = 0; k < n; ++k) b->systems[i].u[b->systems->law_inputs[k]] = b->law.out[0][SYM_AT(i, n, k)];
+            for (k = 0; k < n; ++k) b->systems[i].u[b->systems->law_inputs[k]] = b->law.out[0][SYM_INDEX(i, n, k)];
     }
     sym_batch_evaluate(b, &b->forward_dynamics);
 }

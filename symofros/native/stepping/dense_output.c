@@ -18,7 +18,7 @@ static int32_t sym_dense_output(sym_run *r, sym_workspace *w, double h, int32_t 
             double s = 0.0;
             for (j = tableau->dense_degree - 1; j >= 0; --j) s = (s + p[j]) * x;
             if (s != 0.0)
-                for (l = 0; l < n; ++l) y[l] += h * s * w->k[SYM_AT(i, w->stage_stride, l)];
+                for (l = 0; l < n; ++l) y[l] += h * s * w->k[SYM_INDEX(i, w->stage_stride, l)];
         }
         for (l = 0; l < nv; ++l) y[nv + l] += r->v[l];
         return 0;

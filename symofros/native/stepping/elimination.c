@@ -18,8 +18,8 @@ static int32_t sym_condition_is_void(int32_t nv, int32_t n, const double *A, int
     int32_t j, k;
     for (j = 0; j < nv; ++j) {
         double largest = 0.0;
-        for (k = nv; k < n; ++k) largest = fabs(A[SYM_AT(k, n, j)]) > largest ? fabs(A[SYM_AT(k, n, j)]) : largest;
-        if (fabs(A[SYM_AT(i, n, j)]) > SYM_ENTRY_ROUNDING * largest) return 0;
+        for (k = nv; k < n; ++k) largest = fabs(A[SYM_INDEX(k, n, j)]) > largest ? fabs(A[SYM_INDEX(k, n, j)]) : largest;
+        if (fabs(A[SYM_INDEX(i, n, j)]) > SYM_ENTRY_ROUNDING * largest) return 0;
     }
     return 1;
 }
@@ -28,11 +28,11 @@ static int32_t sym_condition_is_void(int32_t nv, int32_t n, const double *A, int
  * (docs/theory/simulation.md, section 3). */
 static void sym_natural_scale(int32_t nv, int32_t n, const double *A, double *scale) {
     int32_t i, j;
-    for (j = 0; j < nv; ++j) scale[j] = sym_inverse_root(fabs(A[SYM_AT(j, n, j)]));
+    for (j = 0; j < nv; ++j) scale[j] = sym_inverse_root(fabs(A[SYM_INDEX(j, n, j)]));
     for (i = nv; i < n; ++i) {
         double size = 0.0;
         for (j = 0; j < nv; ++j) {
-            const double entry = fabs(A[SYM_AT(i, n, j)]) * scale[j];
+            const double entry = fabs(A[SYM_INDEX(i, n, j)]) * scale[j];
             size = entry > size ? entry : size;
         }
         scale[i] = sym_condition_is_void(nv, n, A, i) ? 0.0 : sym_inverse_root(size * size);
@@ -46,7 +46,7 @@ static int32_t sym_eliminate(int32_t nv, int32_t n, double *A, double *scale, in
     double largest = 0.0;
     sym_natural_scale(nv, n, A, scale);
     for (i = 0; i < n; ++i) {
-        for (j = 0; j < n; ++j) A[SYM_AT(i, n, j)] *= scale[i] * scale[j];
+        for (j = 0; j < n; ++j) A[SYM_INDEX(i, n, j)] *= scale[i] * scale[j];
         p[i] = c[i] = i;
     }
     for (k = 0; k < n; ++k) {
@@ -54,21 +54,21 @@ static int32_t sym_eliminate(int32_t nv, int32_t n, double *A, double *scale, in
         double best = -1.0;
         for (i = k; i < n; ++i)
             for (j = k; j < n; ++j)
-                if (fabs(A[SYM_AT(i, n, j)]) > best) best = fabs(A[SYM_AT(i, n, j)]), row = i, column = j;
+                if (fabs(A[SYM_INDEX(i, n, j)]) > best) best = fabs(A[SYM_INDEX(i, n, j)]), row = i, column = j;
         if (k == 0) largest = best;
         if (!(best > SYM_PIVOT_TOLERANCE * largest)) break;
         ++rank;
         if (row != k) {
             for (j = 0; j < n; ++j) {
-                const double s = A[SYM_AT(k, n, j)];
-                A[SYM_AT(k, n, j)] = A[SYM_AT(row, n, j)], A[SYM_AT(row, n, j)] = s;
+                const double s = A[SYM_INDEX(k, n, j)];
+                A[SYM_INDEX(k, n, j)] = A[SYM_INDEX(row, n, j)], A[SYM_INDEX(row, n, j)] = s;
             }
             i = p[k], p[k] = p[row], p[row] = i;
         }
         if (column != k) {
             for (i = 0; i < n; ++i) {
-                const double s = A[SYM_AT(i, n, k)];
-                A[SYM_AT(i, n, k)] = A[SYM_AT(i, n, column)], A[SYM_AT(i, n, column)] = s;
+                const double s = A[SYM_INDEX(i, n, k)];
+                A[SYM_INDEX(i, n, k)] = A[SYM_INDEX(i, n, column)], A[SYM_INDEX(i, n, column)] = s;
             }
             i = c[k], c[k] = c[column], c[column] = i;
         }
@@ -89,13 +89,13 @@ static void sym_solve(int32_t n, int32_t rank, const double *A, const double *sc
     int32_t i, j;
     for (i = 0; i < rank; ++i) {
         double s = scale[p[i]] * b[p[i]];
-        for (j = 0; j < i; ++j) s -= A[SYM_AT(i, n, j)] * work[j];
+        for (j = 0; j < i; ++j) s -= A[SYM_INDEX(i, n, j)] * work[j];
         work[i] = s;
     }
     for (i = rank - 1; i >= 0; --i) {
         double s = work[i];
-        for (j = i + 1; j < rank; ++j) s -= A[SYM_AT(i, n, j)] * work[j];
-        work[i] = s / A[SYM_AT(i, n, i)];
+        for (j = i + 1; j < rank; ++j) s -= A[SYM_INDEX(i, n, j)] * work[j];
+        work[i] = s / A[SYM_INDEX(i, n, i)];
     }
     for (i = 0; i < n; ++i) x[c[i]] = i < rank ? scale[c[i]] * work[i] : 0.0;
 }

@@ -104,19 +104,19 @@ SYM_EXPORT int32_t sym_instance_differentiate(sym_instance *instance, const doub
     sym_evaluate(&s->implicit_terms);
     for (i = 0; i < n; ++i) {
         double sum = 0.0;
-        for (j = 0; j < nv; ++j) sum -= R_q[SYM_AT(i, nv, j)] * w.theta[j] + R_v[SYM_AT(i, nv, j)] * dv[j];
-        for (j = 0; j < nu; ++j) sum -= R_u[SYM_AT(i, nu, j)] * du[j];
+        for (j = 0; j < nv; ++j) sum -= R_q[SYM_INDEX(i, nv, j)] * w.theta[j] + R_v[SYM_INDEX(i, nv, j)] * dv[j];
+        for (j = 0; j < nu; ++j) sum -= R_u[SYM_INDEX(i, nu, j)] * du[j];
         w.right[i] = sum;
         for (j = 0; j < nv; ++j)
-            w.matrix[SYM_AT(i, n, j)] = i < nv ? M[SYM_AT(i, nv, j)] : G[SYM_AT(i - nv, nv, j)];
-        for (j = nv; j < n; ++j) w.matrix[SYM_AT(i, n, j)] = i < nv ? -G[SYM_AT(j - nv, nv, i)] : 0.0;
+            w.matrix[SYM_INDEX(i, n, j)] = i < nv ? M[SYM_INDEX(i, nv, j)] : G[SYM_INDEX(i - nv, nv, j)];
+        for (j = nv; j < n; ++j) w.matrix[SYM_INDEX(i, n, j)] = i < nv ? -G[SYM_INDEX(j - nv, nv, i)] : 0.0;
     }
     for (i = 0; i < nc; ++i) { /* derivatives of Baumgarte's terms */
         const double alpha = s->gains[i], beta = s->gains[nc + i];
         double by_rate = 0.0, by_phi = 0.0;
         for (j = 0; j < nv; ++j) {
-            by_rate += rate_q[SYM_AT(i, nv, j)] * w.theta[j] + G[SYM_AT(i, nv, j)] * dv[j];
-            by_phi += G[SYM_AT(i, nv, j)] * w.theta[j];
+            by_rate += rate_q[SYM_INDEX(i, nv, j)] * w.theta[j] + G[SYM_INDEX(i, nv, j)] * dv[j];
+            by_phi += G[SYM_INDEX(i, nv, j)] * w.theta[j];
         }
         w.right[nv + i] -= 2.0 * alpha * by_rate + (s->on_speeds[i] ? 0.0 : beta * beta * by_phi);
     }

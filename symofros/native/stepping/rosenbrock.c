@@ -19,11 +19,11 @@ static int32_t sym_evaluate_jacobian(sym_run *r) {
         const double *u_q = s->law.out[1], *u_v = s->law.out[2], *R_u = s->implicit_terms.out[SYM_TERM_R_U];
         for (i = 0; i < rows; ++i)
             for (k = 0; k < s->n_law; ++k) {
-                const double by = R_u[SYM_AT(i, s->nu, s->law_inputs[k])];
+                const double by = R_u[SYM_INDEX(i, s->nu, s->law_inputs[k])];
                 if (by == 0.0) continue;
                 for (j = 0; j < nv; ++j) {
-                    R_q[SYM_AT(i, nv, j)] += by * u_q[SYM_AT(k, nv, j)];
-                    R_v[SYM_AT(i, nv, j)] += by * u_v[SYM_AT(k, nv, j)];
+                    R_q[SYM_INDEX(i, nv, j)] += by * u_q[SYM_INDEX(k, nv, j)];
+                    R_v[SYM_INDEX(i, nv, j)] += by * u_v[SYM_INDEX(k, nv, j)];
                 }
             }
     }
@@ -37,7 +37,7 @@ static void sym_apply_rate_jacobian(const sym_run *r, double g, const double *y,
     const double *M = s->implicit_terms.out[SYM_TERM_M], *G = s->implicit_terms.out[SYM_TERM_G], *R_v = s->implicit_terms.out[SYM_TERM_R_V];
     int32_t i, j;
     for (i = 0; i < nv + nc; ++i) {
-        const double *X = i < nv ? M + SYM_AT(i, nv, 0) : G + SYM_AT(i - nv, nv, 0), *V = R_v + SYM_AT(i, nv, 0);
+        const double *X = i < nv ? M + SYM_INDEX(i, nv, 0) : G + SYM_INDEX(i - nv, nv, 0), *V = R_v + SYM_INDEX(i, nv, 0);
         double sum = 0.0;
         for (j = 0; j < nv; ++j) sum += (g * X[j] + V[j]) * y[j];
         out[i] = sum;
@@ -59,12 +59,12 @@ static int32_t sym_rosenbrock_matrix(sym_run *r, double g, sym_implicit_workspac
         sym_chart_rate_jacobian(s, r->v, w->solution, -1.0, w->scratch); /* -T e_j */
         w->scratch[j] += g;
         sym_apply_rate_jacobian(r, g, w->scratch, w->right);
-        for (i = 0; i < n; ++i) w->matrix[SYM_AT(i, n, j)] = (w->right[i] + R_q[SYM_AT(i, nv, j)]) / (g * g);
+        for (i = 0; i < n; ++i) w->matrix[SYM_INDEX(i, n, j)] = (w->right[i] + R_q[SYM_INDEX(i, nv, j)]) / (g * g);
     }
     for (i = 0; i < nv; ++i)
-        for (j = 0; j < nc; ++j) w->matrix[SYM_AT(i, n, nv + j)] = -G[SYM_AT(j, nv, i)];
+        for (j = 0; j < nc; ++j) w->matrix[SYM_INDEX(i, n, nv + j)] = -G[SYM_INDEX(j, nv, i)];
     for (i = nv; i < n; ++i)
-        for (j = nv; j < n; ++j) w->matrix[SYM_AT(i, n, j)] = 0.0;
+        for (j = nv; j < n; ++j) w->matrix[SYM_INDEX(i, n, j)] = 0.0;
     return sym_eliminate(nv, n, w->matrix, w->scale, r->pivots, r->pivots + n);
 }
 
@@ -82,7 +82,7 @@ static void sym_rosenbrock_solve(sym_run *r, double g, int32_t rank, sym_implici
     sym_chart_rate_jacobian(s, r->v, right, 1.0 / g, turned);
     sym_apply_rate_jacobian(r, g, turned, w->right);
     for (i = 0; i < n; ++i) {
-        const double *X = i < nv ? M + SYM_AT(i, nv, 0) : G + SYM_AT(i - nv, nv, 0), *stiff = R_q + SYM_AT(i, nv, 0);
+        const double *X = i < nv ? M + SYM_INDEX(i, nv, 0) : G + SYM_INDEX(i - nv, nv, 0), *stiff = R_q + SYM_INDEX(i, nv, 0);
         for (j = 0; j < nv; ++j) w->right[i] += X[j] * right[nv + j] - stiff[j] * right[j] / g;
         w->right[i] /= g * g;
     }
@@ -125,27 +125,27 @@ static int32_t sym_rosenbrock_step(sym_run *r, sym_workspace *w, double h, doubl
     rank = sym_rosenbrock_matrix(r, g, &w->implicit);
     if (rank < nv) return SYM_NO_CONVERGENCE;
     for (i = 0; i < method->stages; ++i) {
-        const double *a = method->a + SYM_AT(i, method->stages, 0), *c = method->coupling + SYM_AT(i, method->stages, 0);
+        const double *a = method->a + SYM_INDEX(i, method->stages, 0), *c = method->coupling + SYM_INDEX(i, method->stages, 0);
         memset(y, 0, (size_t)nv * sizeof *y);
         memcpy(y + nv, r->v, (size_t)nv * sizeof *y);
         for (j = 0; j < i; ++j)
-            for (l = 0; l < n; ++l) y[l] += a[j] * U[SYM_AT(j, n, l)];
+            for (l = 0; l < n; ++l) y[l] += a[j] * U[SYM_INDEX(j, n, l)];
         if (i == 0) memcpy(y1, k, (size_t)n * sizeof *y1); /* y1 serves as the right side */
         else status = sym_evaluate_slope(r, r->t + method->c[i] * h, y, y1);
         if (status != 0) return status;
         for (l = 0; l < n; ++l) y1[l] += h * method->d[i] * time_slope[l];
         for (j = 0; j < i; ++j)
-            for (l = 0; l < n; ++l) y1[l] += c[j] / h * U[SYM_AT(j, n, l)];
+            for (l = 0; l < n; ++l) y1[l] += c[j] / h * U[SYM_INDEX(j, n, l)];
         sym_rosenbrock_solve(r, g, rank, &w->implicit, y1, U + (size_t)i * (size_t)n);
     }
     memset(y1, 0, (size_t)nv * sizeof *y1);
     memcpy(y1 + nv, r->v, (size_t)nv * sizeof *y1);
     for (i = 0; i < method->stages; ++i)
-        for (l = 0; l < n; ++l) y1[l] += method->b[i] * U[SYM_AT(i, n, l)];
+        for (l = 0; l < n; ++l) y1[l] += method->b[i] * U[SYM_INDEX(i, n, l)];
     if (!r->adaptive) return 0;
     for (l = 0; l < n; ++l) {
         double e = 0.0;
-        for (i = 0; i < method->stages; ++i) e += method->e[i] * U[SYM_AT(i, n, l)];
+        for (i = 0; i < method->stages; ++i) e += method->e[i] * U[SYM_INDEX(i, n, l)];
         e /= sym_error_scale(r, l, w->magnitude, y1);
         sum += e * e;
     }

@@ -148,7 +148,7 @@ static int32_t sym_accept_step(sym_run *r, sym_workspace *w, double h, double t1
     r->slope_valid = 0;
     /* First same as last, but in the chart about the new state, where theta' = v. */
     if (fsal && !r->project && !stopped && !sym_changes_at(s, t1)) {
-        memcpy(w->k + nv, w->k + SYM_AT(r->tableau.fsal_stage, w->stage_stride, nv), (size_t)nv * sizeof(double));
+        memcpy(w->k + nv, w->k + SYM_INDEX(r->tableau.fsal_stage, w->stage_stride, nv), (size_t)nv * sizeof(double));
         memcpy(w->k, r->v, (size_t)nv * sizeof(double));
         r->slope_valid = 1;
     }

@@ -137,17 +137,17 @@ static int32_t sym_alpha_factor(sym_run *r, sym_workspace *memory, double h) {
     if (status != 0) return status;
     for (i = 0; i < nv; ++i) {
         for (j = 0; j < nv; ++j) {
-            const size_t at = SYM_AT(i, nv, j);
-            w.matrix[SYM_AT(i, n, j)] = M[at] + c.by_v * R_v[at] + c.by_q * R_q[at];
+            const size_t at = SYM_INDEX(i, nv, j);
+            w.matrix[SYM_INDEX(i, n, j)] = M[at] + c.by_v * R_v[at] + c.by_q * R_q[at];
         }
-        for (j = 0; j < nc; ++j) w.matrix[SYM_AT(i, n, nv + j)] = -G[SYM_AT(j, nv, i)];
+        for (j = 0; j < nc; ++j) w.matrix[SYM_INDEX(i, n, nv + j)] = -G[SYM_INDEX(j, nv, i)];
     }
     for (i = 0; i < nc; ++i) {
         for (j = 0; j < nv; ++j) {
-            const double g = G[SYM_AT(i, nv, j)], by_rate = c.by_q / c.by_v * rate_q[SYM_AT(i, nv, j)];
-            w.matrix[SYM_AT(nv + i, n, j)] = s->on_speeds[i] ? g + by_rate : g;
+            const double g = G[SYM_INDEX(i, nv, j)], by_rate = c.by_q / c.by_v * rate_q[SYM_INDEX(i, nv, j)];
+            w.matrix[SYM_INDEX(nv + i, n, j)] = s->on_speeds[i] ? g + by_rate : g;
         }
-        for (j = 0; j < nc; ++j) w.matrix[SYM_AT(nv + i, n, nv + j)] = 0.0;
+        for (j = 0; j < nc; ++j) w.matrix[SYM_INDEX(nv + i, n, nv + j)] = 0.0;
     }
     return sym_eliminate(nv, n, w.matrix, w.scale, r->pivots, r->pivots + n);
 }

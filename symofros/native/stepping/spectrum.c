@@ -67,15 +67,15 @@ SYM_EXPORT int32_t sym_run_spectrum(sym_run *r, double h, int32_t dimension, dou
     if (status != 0) return status;
     change = sym_first_direction(r, n, slope, basis);
     for (j = 0; j < dimension; ++j) {
-        for (i = 0; i < n; ++i) x[i] = change * basis[SYM_AT(j, n, i)];
+        for (i = 0; i < n; ++i) x[i] = change * basis[SYM_INDEX(j, n, i)];
         status = sym_scaled_slope(r, h, x, y, next);
         if (status != 0) return status;
         for (i = 0; i < n; ++i) next[i] = (next[i] - slope[i]) / change;
         sym_orthogonalize(n, j + 1, basis, next, motion); /* motion: work until the end */
-        for (k = 0; k <= j; ++k) matrix[SYM_AT(k, dimension, j)] = motion[k];
+        for (k = 0; k <= j; ++k) matrix[SYM_INDEX(k, dimension, j)] = motion[k];
         length = sym_normalize(n, next);
         if (j + 1 == dimension || !(length > 0.0)) break; /* at 0 the subspace is invariant, and the rest of matrix 0 */
-        matrix[SYM_AT(j + 1, dimension, j)] = length;
+        matrix[SYM_INDEX(j + 1, dimension, j)] = length;
         memcpy(basis + (size_t)(j + 1) * n, next, (size_t)n * sizeof *next);
     }
     dimension = j + 1 < dimension ? j + 1 : dimension;

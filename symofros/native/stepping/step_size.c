@@ -28,7 +28,7 @@ static double sym_mean_square_error(const sym_run *r, const sym_workspace *w, co
     int32_t i, l;
     for (l = 0; l < n; ++l) {
         double e = 0.0;
-        for (i = 0; i < r->tableau.stages; ++i) e += weights[i] * w->k[SYM_AT(i, w->stage_stride, l)];
+        for (i = 0; i < r->tableau.stages; ++i) e += weights[i] * w->k[SYM_INDEX(i, w->stage_stride, l)];
         e *= h / sym_error_scale(r, l, w->magnitude, w->y1);
         sum += e * e;
     }
