@@ -20,6 +20,7 @@ from tests.docs.pages import ELSEWHERE, GIVEN, ROOT, TAKEN, Block, blocks, pages
 from tests.docs.shell import commands, try_out
 from tests.late import needs_extra
 from validation.campaigns import plan
+from validation.dashboard.catalogue import TOPICS
 
 # What is not run here: quotations, and code for Node that its test runs.
 LANGUAGES = {"text": "", "js": "tests/exports/wasm/test_wasm.py"}
@@ -110,6 +111,14 @@ def test_the_code_of_a_page_runs(page: str, folder: Path, capsys: pytest.Capture
             assert not test or page in (ROOT / test).read_text(encoding="utf-8"), f"{where}: {test} does not run it"
     if absent:  # All other blocks ran; extras of frameworks are called like their packages.
         pytest.skip(needs_extra(absent, absent))
+
+
+def test_the_commands_of_all_reports_are_understood(tmp_path: Path) -> None:
+    table = (ROOT / "reports/README.md").read_text(encoding="utf-8")
+    stated = re.findall(r"^\| \[\w+\]\(.*?\) \| `(.*?)` \|", table, re.MULTILINE)
+    assert len(stated) == len(TOPICS)
+    for command in stated:
+        try_out(command, tmp_path)
 
 
 @pytest.mark.parametrize("page", sorted(ELSEWHERE))
