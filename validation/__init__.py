@@ -39,7 +39,7 @@ def check(
         floating_base: Whether a URDF file gets a free joint under its root.
 
     Returns:
-        What was compared: true if an independent engine was asked and everything agrees; printed, it is a table.
+        What was compared. It is true if an independent engine was asked and everything agrees; printed, it is a table.
 
     Raises:
         DescriptionError: The model is no legal description.

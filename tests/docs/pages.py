@@ -93,5 +93,5 @@ def unseen(page: str) -> list[str]:
 
 def pages() -> list[str]:
     """All pages that people read, relative to the repository."""
-    listed = [*ROOT.glob("docs/**/*.md"), *ROOT.glob("*.md"), ROOT / "examples/README.md"]
+    listed = [*ROOT.glob("docs/**/*.md"), *ROOT.glob("*.md"), ROOT / "examples/README.md", ROOT / "reports/README.md"]
     return sorted(path.relative_to(ROOT).as_posix() for path in listed)

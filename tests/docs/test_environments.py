@@ -36,4 +36,6 @@ def test_what_shows_an_environment_is_there() -> None:
     files |= set(re.findall(r"(?:validation|examples)/[\w/]+\.(?:py|mjs)", shown))
     assert len(files) >= 3 and all((ROOT / file).is_file() for file in files)
     commands = set(re.findall(r"python -m validation (\w+)", shown))
-    assert commands and commands <= set(re.findall(r"python -m validation (\w+)", (ROOT / "README.md").read_text()))
+    assert commands and commands <= set(
+        re.findall(r"python -m validation (\w+)", (ROOT / "reports/README.md").read_text())
+    )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shlex
 import shutil
 import subprocess
 import tomllib
@@ -12,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import jsonschema
+import numpy as np
 import pytest
 from ruamel.yaml import YAML
 
@@ -20,6 +22,7 @@ from tests.docs.pages import ELSEWHERE, GIVEN, ROOT, TAKEN, Block, blocks, pages
 from tests.docs.shell import commands, try_out
 from tests.late import needs_extra
 from validation.campaigns import plan
+from validation.dashboard.catalogue import TOPICS
 
 # What is not run here: quotations, and code for Node that its test runs.
 LANGUAGES = {"text": "", "js": "tests/exports/wasm/test_wasm.py"}
@@ -60,10 +63,10 @@ def stated(block: Block) -> None:
 
 
 def declared(block: Block) -> None:
-    """Declarations in C are accepted by a compiler, where there is one."""
+    """C is accepted by a compiler, where there is one; the page may have exported the headers to `out`."""
     compiler = shutil.which("cc")
     if compiler is not None:
-        command = [compiler, "-std=c99", "-Wall", "-Werror", "-fsyntax-only", "-x", "c", "-"]
+        command = [compiler, "-std=c99", "-Wall", "-Werror", "-fsyntax-only", "-Iout", "-x", "c", "-"]
         done = subprocess.run(command, input=block.text, capture_output=True, text=True)
         assert done.returncode == 0, f"{block.page}:{block.line}\n{done.stderr}"
 
@@ -112,6 +115,14 @@ def test_the_code_of_a_page_runs(page: str, folder: Path, capsys: pytest.Capture
         pytest.skip(needs_extra(absent, absent))
 
 
+def test_the_commands_of_all_reports_are_understood(tmp_path: Path) -> None:
+    table = (ROOT / "reports/README.md").read_text(encoding="utf-8")
+    stated = re.findall(r"^\| \[\w+\]\(.*?\) \| `(.*?)` \|", table, re.MULTILINE)
+    assert len(stated) == len(TOPICS)
+    for command in stated:
+        try_out(command, tmp_path)
+
+
 @pytest.mark.parametrize("page", sorted(ELSEWHERE))
 def test_pages_that_other_tests_run_are_read_by_those(page: str, folder: Path) -> None:
     assert Path(page).name in (ROOT / ELSEWHERE[page]).read_text(encoding="utf-8")
@@ -119,6 +130,24 @@ def test_pages_that_other_tests_run_are_read_by_those(page: str, folder: Path) -
     for block in blocks(page, "sh"):
         for command in commands(block):
             try_out(command, folder)
+
+
+@pytest.mark.parametrize("page", ["docs/howto/gravity_compensation.md"])
+def test_the_loop_of_the_guide_holds_the_weight(page: str, folder: Path) -> None:
+    if shutil.which("gcc") is None:
+        pytest.skip("needs gcc")
+    names: dict[str, Any] = {}
+    for block in blocks(page, "python"):
+        exec(compile(block.text, page, "exec"), names)
+    (program,) = blocks(page, "c")
+    (folder / program.said("file: ")).write_text(program.text, encoding="utf-8")
+    (lines,) = (block.text.splitlines() for block in blocks(page, "sh"))
+    subprocess.run(shlex.split(lines[0]), check=True)
+    printed = subprocess.run(["./compensate", "3"], check=True, capture_output=True, text=True).stdout.split()
+    assert np.allclose([float(number) for number in printed], names["model"].gravity_force(names["q"]), atol=1e-6)
+    assert " ".join(printed) in lines[1] and f"# {' '.join(printed)} N m" in "".join(
+        b.text for b in blocks(page, "python")
+    )
 
 
 @pytest.mark.parametrize("page", pages())

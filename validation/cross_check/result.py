@@ -37,7 +37,7 @@ class CheckResult:
 
     @property
     def comparisons(self) -> tuple[Comparison, ...]:
-        """All rows: quantity, engine, status, error, tolerance; those that could not be compared have a note."""
+        """All rows with quantity, engine, status, error and tolerance; those that could not be compared have a note."""
         return self.model.comparisons
 
     @property
