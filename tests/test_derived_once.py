@@ -116,4 +116,4 @@ def test_results_do_not_depend_on_what_was_asked_before(work: Counter[str], rng:
 def test_a_changed_system_is_checked_anew() -> None:
     sound = MODELS["puma560"]
     assert graph.find_problems(sound) == []
-    assert graph.find_problems(replace(sound, inputs=(sf.Input("sin"),)))
+    assert graph.find_problems(replace(sound, inputs=(sf.Input("q1"),)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import numbers
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Set
 from dataclasses import fields
 from functools import cache, partial, wraps
 from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
@@ -57,7 +57,9 @@ def _convert(check: Callable[[str, object], None], what: str, value: Any) -> Any
 
 def _collect(check: Callable[[str, object], None] | None, what: str, values: Any) -> tuple[Any, ...]:
     """The entries of a list as a tuple."""
-    listed = entries_of(values)
+    # A set of names, such as checks that are waived, has no order to lose.
+    names = isinstance(values, Set) and all(isinstance(value, str) for value in values)
+    listed = sorted(values) if names else entries_of(values)
     if listed is None:
         raise ArgumentError(Problem(f"{what} is not a list", shown(values), "it is a list", "put it in brackets"))
     if check is not None:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from symofros.base.atomic import write_atomically
 from symofros.errors import ExportError, Problem
+from symofros.generator.codegen.names import identifier
 
 MANIFEST = "symofros-export.json"
 _FORMAT = 1
@@ -66,7 +67,7 @@ def check_same(folder: Path, target: str, name: str) -> None:
     Args:
         folder: Folder that an export is to be written to.
         target: Kind of export.
-        name: Name of the model in C.
+        name: Name of the model.
 
     Raises:
         ExportError: It holds another export, or something that is none of ours.
@@ -74,7 +75,7 @@ def check_same(folder: Path, target: str, name: str) -> None:
     if not check_folder(folder):
         return
     stated = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
-    if (stated.get("target"), stated.get("name")) != (target, name):
+    if (stated.get("target"), stated.get("name")) != (target, identifier(name)):
         raise ExportError(
             Problem(
                 f"'{folder.name}' holds another export, which would be removed",

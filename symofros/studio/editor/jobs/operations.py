@@ -22,7 +22,6 @@ from symofros.compiler import Compilation, compile_system
 from symofros.description.yaml.files import write_yaml
 from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
 from symofros.exports.folder import check_same
-from symofros.generator.codegen.names import identifier
 from symofros.generator.passes.count import count_program
 from symofros.harness import command_line
 from symofros.mechanics.topology.tree import SpanningTree, build_tree
@@ -226,7 +225,7 @@ def export(request: Json, tell: Tell) -> Json:
     options, target, folder = request["options"], request["options"]["target"], request["folder"]
     stated = diagram_of(request) if request["is_diagram"] else system_of(request)
     name = options.get("name") or None
-    check_same(Path(folder), target, identifier(name if name and not request["is_diagram"] else stated.name))
+    check_same(Path(folder), target, name if name and not request["is_diagram"] else stated.name)
     tell(1, 2, f"writing {target}")
     done = sf.export(stated, target, folder, name=name)
     root = Path(request["root"])
