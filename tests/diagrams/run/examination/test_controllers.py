@@ -73,7 +73,7 @@ def two_laws(bad: str) -> sf.Simulation:
     carriage = sf.RigidBody("carriage", slide, sf.Inertia(1.0, (0, 0, 0), (1.0, 1.0, 1.0)))
     link = sf.RigidBody("link", turn, sf.Inertia(1.0, (0, 0.1, 0), (1.0, 1.0, 1.0)))
     diagram = sf.Diagram("law")
-    diagram.add_model("pair", sf.System("pair", (carriage, link), gravity=(0, 0, 0)), start={"x": 0.01, "y": 0.1})
+    diagram.add_model("pair", sf.System("pair", (carriage, link), gravity=(0, 0, 0)), start={"dx": 0.1, "dy": 0.1})
     diagram.add(blocks.ForwardDynamics(name="plant", model="pair"), u="all")
     for name, row in (("x", [1.0, 0.0]), ("y", [0.0, 1.0])):
         gain = 400.0 if name == bad else 1.0
