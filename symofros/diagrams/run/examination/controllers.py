@@ -1,7 +1,7 @@
 """Runs that a sampled controller drives apart: its output grows from sample to sample, and changes sign as it does.
 
-Feedback of any motion that grows does that, too. So the end of the run is made once more with the output held: only where
-the growth then is gone, or half as fast at most, is it the controller's.
+Feedback of any motion that grows does that, too. So the end of the run is made once more with the output held: only
+where the growth then is gone, or half as fast at most, is it the controller's.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from symofros.simulation.results.outcome import Outcome
 # Samples before the end that are looked at, and how often the steps are refined there: with steps so fine, what grows
 # is not what the method makes of a stiff mode.
 WINDOW, FINER = 24, 256
-# Growth of the output, and of the motion, over half the window from which the loop counts as unstable, and the share of samples at which it
-# changes sign: a load that bends a beam, or a law against it, pushes one way.
+# Growth of the output, and of the motion, over half the window from which the loop counts as unstable, and the share
+# of samples at which the output changes sign: a load that bends a beam, or a law against it, pushes one way.
 GROWTH, CHANGES = 10.0, 6
 
 
