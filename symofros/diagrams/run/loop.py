@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 import sys
 from bisect import bisect_left, bisect_right
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from symofros.diagrams.program.layout import Layout
+from symofros.diagrams.program.layout import Layout, Place
 from symofros.diagrams.rates import Schedule
 from symofros.diagrams.run.python_blocks import ExternalCalls
 from symofros.errors import CompileError
@@ -210,6 +210,12 @@ class Loop:
     def held(self) -> Array:
         """The inputs that are held between samples (nu)."""
         return self._memory.view(self.diagram.u, self.diagram.nu).copy()
+
+    def put(self, places: Iterable[Place], values: Array) -> None:
+        """Some entries of the inputs <- those of others (nu)."""
+        u = self._memory.view(self.diagram.u, self.diagram.nu)
+        for place in places:
+            u[place.slice] = values[place.slice]
 
     def take(self) -> tuple[list[Array], list[tuple[float, int]]]:
         """The records since the last call, t (n), q, v, u, and the crossings, (t, index); their rows are free again."""

@@ -12,10 +12,11 @@ import numpy as np
 
 from symofros.diagrams.observer import NoObserver, Observer
 from symofros.diagrams.program.compiled import CompiledDiagram, rates_of
+from symofros.diagrams.program.layout import Place
 from symofros.diagrams.program.lowered_block import watched
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.result import DiagramRun
-from symofros.diagrams.run.examination.controllers import Again, blamed
+from symofros.diagrams.run.examination.controllers import Again, End, blamed
 from symofros.diagrams.run.examination.diagnosis import Ended, diagnose
 from symofros.diagrams.run.examination.energy_balance import Energies
 from symofros.diagrams.run.examination.remarks import Examined, remarks
@@ -97,6 +98,7 @@ class _Run:
         options: Options.
         t_end: End time [s].
         par: Run-time parameters (npar).
+        hold: Entries of u that keep the values they begin with, whatever their blocks give.
     """
 
     compiled: CompiledDiagram
@@ -104,6 +106,7 @@ class _Run:
     options: DiagramOptions
     t_end: float
     par: Array
+    hold: tuple[Place, ...] = ()
 
     def settings(self, model: Model) -> Settings:
         """Settings of a part."""
@@ -140,17 +143,17 @@ def _end_again(task: _Run, states: Sequence[Array], given: dict[tuple[str, float
     """Repeats the end of a run, with other records and steps."""
     wired = task.compiled.resolved.wired
 
-    def again(start: float, end: float, interval: float, dt: float) -> Sequence[Array] | None:
+    def again(end: End) -> Sequence[Array] | None:
         t = states[0]
         if not len(t):
             return None
-        i = max(0, int(np.searchsorted(t, start, "right")) - 1)
-        if not t[i] < end:
+        i = max(0, int(np.searchsorted(t, end.start, "right")) - 1)
+        if not t[i] < end.stop:
             return None
-        plan = schedule([*rates_of(task.compiled.resolved.pieces), (RECORD, interval, 0.0)], wired.name)
-        options = replace(task.options, realtime=False, threads=1, dt=dt)
+        plan = schedule([*rates_of(task.compiled.resolved.pieces), (RECORD, end.interval, 0.0)], wired.name)
+        options = replace(task.options, realtime=False, threads=1, dt=end.dt)
         begin = Start(float(t[i]), *(array[i].copy() for array in states[1:]))
-        finer = replace(task, options=options, plan=plan, t_end=end)
+        finer = replace(task, options=options, plan=plan, t_end=end.stop, hold=end.hold)
         try:
             ended = _drive(finer, begin, CalledBefore(wired, given), resumed=True)
         except SymofrosError:
@@ -253,7 +256,8 @@ def _drive(
             try:
                 while status in (Status.RUNNING, Status.RECORDS_FULL):
                     instants = min(time_slice.steps, loop.instants_until(watcher.stop()))
-                    status = time_slice.measure(loop.advance, instants)
+                    status = time_slice.measure(loop.advance, 1 if task.hold else instants)
+                    loop.put(task.hold, begin.u)
                     states, crossed = loop.take()
                     portions.append(states)
                     met += crossed

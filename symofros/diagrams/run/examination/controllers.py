@@ -1,13 +1,18 @@
-"""Runs that a sampled controller drives apart: its output grows from sample to sample, and changes sign as it does."""
+"""Runs that a sampled controller drives apart: its output grows from sample to sample, and changes sign as it does.
+
+Feedback of any motion that grows does that, too. So the end of the run is made once more with the output held: only
+where the growth then is gone, or half as fast at most, is it the controller's.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from symofros.diagrams.program.compiled import Resolved
+from symofros.diagrams.program.layout import Place
 from symofros.diagrams.wiring import Wired
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.results.outcome import Outcome
@@ -15,12 +20,32 @@ from symofros.simulation.results.outcome import Outcome
 # Samples before the end that are looked at, and how often the steps are refined there: with steps so fine, what grows
 # is not what the method makes of a stiff mode.
 WINDOW, FINER = 24, 256
-# Growth of the output over half the window from which the loop counts as unstable, and the share of samples at which it
-# changes sign: a load that bends a beam, or a law against it, pushes one way.
+# Growth of the output, and of the motion, over half the window from which the loop counts as unstable, and the share
+# of samples at which the output changes sign: a load that bends a beam, or a law against it, pushes one way.
 GROWTH, CHANGES = 10.0, 6
 
-# Repeats the end of the run: (from a time, to a time, period of records, step) -> t (n), q, v, u of its records.
-Again = Callable[[float, float, float, float], Sequence[Array] | None]
+
+@dataclass(frozen=True)
+class End:
+    """The end of a run as it is repeated.
+
+    Attributes:
+        start: Time of its start; it begins with the record before [s].
+        stop: Time of its end [s].
+        interval: Period of the records [s].
+        dt: Step [s].
+        hold: Entries of u that keep the values they begin with.
+    """
+
+    start: float
+    stop: float
+    interval: float
+    dt: float
+    hold: tuple[Place, ...] = ()
+
+
+# Repeats the end of the run -> t (n), q, v, u of its records.
+Again = Callable[[End], Sequence[Array] | None]
 
 
 def blamed(outcome: Outcome, resolved: Resolved, again: Again) -> Outcome:
@@ -36,11 +61,12 @@ def blamed(outcome: Outcome, resolved: Resolved, again: Again) -> Outcome:
     for name in _controllers(resolved.wired):
         block = resolved.wired.blocks[name]
         period = block.period or 0.0
-        states = again(outcome.t - WINDOW * period, outcome.t, period, period / FINER)
+        end = End(outcome.t - WINDOW * period, outcome.t, period, period / FINER)
+        states = again(end)
         if states is None:
             continue
         grown = max((_growth(values) for values in _outputs(resolved, name, states[3])), default=0.0)
-        if grown >= GROWTH:
+        if grown >= GROWTH and _is_its_own(resolved, states, again(_held(resolved, name, end))):
             reason = (
                 f"block '{name}', sampled every {period:g} s, drives the motion apart: within {len(states[0])} samples"
                 f" its output grows {grown:.2g} times, back and forth"
@@ -66,16 +92,52 @@ def _controllers(wired: Wired) -> Iterator[str]:
 
 def _reads_motion(wired: Wired, name: str) -> bool:
     """Whether the motion of a mechanism gets to a block."""
-    seen, open_blocks = set(), [name]
+    return not _behind(wired, name).isdisjoint(wired.mechanisms())
+
+
+def _behind(wired: Wired, name: str) -> set[str]:
+    """The blocks that a block depends on, up to the mechanisms."""
+    seen: set[str] = set()
+    open_blocks = [name]
     while open_blocks:
-        block = open_blocks.pop()
-        if block in wired.mechanisms():
-            return True
-        if block not in seen:
-            seen.add(block)
-            inputs = (port.name for port in wired.ports[block].inputs)
-            open_blocks += [source[0] for source in wired.behind(block, inputs)]
-    return False
+        inputs = (port.name for port in wired.ports[open_blocks[-1]].inputs)
+        new = {source[0] for source in wired.behind(open_blocks.pop(), inputs)} - seen
+        seen |= new
+        open_blocks += new - set(wired.mechanisms())
+    return seen
+
+
+def _held(resolved: Resolved, name: str, end: End) -> End:
+    """The end of a run, with the outputs of a block held, and of the sampled blocks that depend on it."""
+    wired = resolved.wired
+    held = {block for block, _ in resolved.layout.held if block == name or name in _behind(wired, block)}
+    return replace(end, hold=tuple(place for (block, _), place in resolved.layout.held.items() if block in held))
+
+
+def _is_its_own(resolved: Resolved, states: Sequence[Array], held: Sequence[Array] | None) -> bool:
+    """Whether the motion grows, and by at most half of the exponent where the output of a block is held.
+
+    Args:
+        resolved: The diagram.
+        states: Records of the end of the run.
+        held: Records of it with the output held.
+    """
+    if held is None or len(held[0]) < len(states[0]):
+        return False  # It ends sooner without the block.
+    _, grown = _jolts(resolved, states[2])
+    first, left = _jolts(resolved, held[2][: len(states[0])])
+    return bool(grown >= GROWTH * first and left <= np.sqrt(first) * np.sqrt(grown))
+
+
+def _jolts(resolved: Resolved, v: Array) -> tuple[float, float]:
+    """The largest change of a mechanism's speed (n, nv) between two records, in each half of them."""
+    places = [resolved.layout.v[name] for name in resolved.wired.mechanisms()]
+    finite = np.concatenate([v[:, place.slice] for place in places], axis=1)
+    finite = finite[np.isfinite(finite).all(axis=1)]
+    with np.errstate(over="ignore"):  # What has exploded overflows.
+        changes = np.abs(np.diff(finite, axis=0))
+    first, second = (float(half.max(initial=0.0)) for half in np.split(changes, [len(changes) // 2]))
+    return first, second
 
 
 def _outputs(resolved: Resolved, name: str, u: Array) -> Iterator[Array]:

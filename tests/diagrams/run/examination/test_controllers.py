@@ -10,9 +10,16 @@ from symofros import blocks
 PERIOD = 1e-3
 
 
-def arm(kd: float, gravity: float = 0.0, EI: float = 20.0, kp: float = 50.0, hold: bool = False) -> sf.Simulation:
-    """A flexible arm under a law that is sampled; with `hold` the law is continuous, and a hold samples it."""
-    joint = sf.Joint("q", "revolute", axis=(0, 0, 1), actuated=True)
+def arm(
+    kd: float,
+    gravity: float = 0.0,
+    EI: float = 20.0,
+    kp: float = 50.0,
+    hold: bool = False,
+    elements: tuple[sf.Spring | sf.Damper, ...] = (),
+) -> sf.Simulation:
+    """A flexible arm under a sampled law; with `hold` the law is continuous, and a hold samples it."""
+    joint = sf.Joint("q", "revolute", axis=(0, 0, 1), actuated=True, elements=elements)
     beam = sf.Beam("boom", joint, length=1.0, rhoA=0.5, EI_z=EI, bend_y=2)
     diagram = sf.Diagram("law")
     diagram.add_model("arm", sf.System("arm", (beam,), gravity=(0, -gravity, 0)), start={"q": 0.1})
@@ -24,6 +31,56 @@ def arm(kd: float, gravity: float = 0.0, EI: float = 20.0, kp: float = 50.0, hol
     diagram.add(pd, q_desired="goal", q="q", v="v")
     if hold:
         diagram.add(blocks.Hold(name="sampled", period=PERIOD), u="pd")
+    return sf.Simulation(diagram)
+
+
+def driven_apart(elements: tuple[sf.Spring | sf.Damper, ...], kp: float, kd: float) -> sf.Simulation:
+    """A joint that its own elements drive apart, under a law that is sampled."""
+    joint = sf.Joint("q", "revolute", axis=(0, 0, 1), actuated=True, elements=elements)
+    body = sf.RigidBody("a", joint, sf.Inertia(1.0, (0, 0, 0), (1.0, 1.0, 1.0)))
+    diagram = sf.Diagram("law")
+    diagram.add_model("arm", sf.System("arm", (body,), gravity=(0, 0, 0)), start={"q": 0.1})
+    diagram.add(blocks.ForwardDynamics(name="plant", model="arm"), u="pd")
+    diagram.add(blocks.Constant(name="goal", value=[0.0], unit="rad"))
+    pd = blocks.JointPD(name="pd", kp=kp, kd=kd, period=0.02)
+    diagram.add(pd, q_desired="goal", q="plant.q", v="plant.v")
+    return sf.Simulation(diagram)
+
+
+def flutter(kp: float, kd: float) -> sf.Simulation:
+    """Two masses on springs that a circulatory force drives apart; an idle law acts on them."""
+    slides = [
+        sf.Joint(name, "prismatic", on, axis=axis, actuated=True, elements=(sf.Spring(1e4),))
+        for name, on, axis in (("x", "world", (1, 0, 0)), ("y", "carriage", (0, 1, 0)))
+    ]
+    carriage = sf.RigidBody("carriage", slides[0], sf.Inertia(0.01, (0, 0, 0), (1.0, 1.0, 1.0)))
+    load = sf.RigidBody("load", slides[1], sf.Inertia(1.0, (0, 0, 0), (1.0, 1.0, 1.0)))
+    diagram = sf.Diagram("law")
+    diagram.add_model("pair", sf.System("pair", (carriage, load), gravity=(0, 0, 0)), start={"x": 0.1})
+    diagram.add(blocks.ForwardDynamics(name="plant", model="pair"), u="all")
+    diagram.add(blocks.Gain(name="follower", gain=[[0.0, 4000.0], [-4000.0, 0.0]]), u="plant.q")
+    diagram.add(blocks.Constant(name="goal", value=[0.0, 0.0], unit="m"))
+    pd = blocks.JointPD(name="pd", kp=kp, kd=kd, period=0.02)
+    diagram.add(pd, q_desired="goal", q="plant.q", v="plant.v")
+    diagram.add(blocks.Sum(name="all"), u1="follower", u2="pd")
+    return sf.Simulation(diagram)
+
+
+def two_laws(bad: str) -> sf.Simulation:
+    """A carriage and an arm on it, each under a law of its own, one with too high a gain."""
+    slide = sf.Joint("x", "prismatic", axis=(1, 0, 0), actuated=True)
+    turn = sf.Joint("y", "revolute", "carriage", axis=(0, 0, 1), actuated=True)
+    carriage = sf.RigidBody("carriage", slide, sf.Inertia(1.0, (0, 0, 0), (1.0, 1.0, 1.0)))
+    link = sf.RigidBody("link", turn, sf.Inertia(1.0, (0, 0.1, 0), (1.0, 1.0, 1.0)))
+    diagram = sf.Diagram("law")
+    diagram.add_model("pair", sf.System("pair", (carriage, link), gravity=(0, 0, 0)), start={"dx": 0.1, "dy": 0.1})
+    diagram.add(blocks.ForwardDynamics(name="plant", model="pair"), u="all")
+    for name, row in (("x", [1.0, 0.0]), ("y", [0.0, 1.0])):
+        gain = 400.0 if name == bad else 1.0
+        diagram.add(blocks.Gain(name=name, gain=[[-gain * value for value in row]]), u="plant.v")
+        diagram.add(blocks.Hold(name=f"{name}_law", period=0.02), u=name)
+        diagram.add(blocks.Gain(name=f"{name}_force", gain=[[value] for value in row]), u=f"{name}_law")
+    diagram.add(blocks.Sum(name="all"), u1="x_force", u2="y_force")
     return sf.Simulation(diagram)
 
 
@@ -58,3 +115,55 @@ def test_a_step_past_the_limit_of_stability_is_said_of_the_step() -> None:
     outcome = stiff.run(0.5, dt=1e-3).outcome
     assert outcome.kind == "diverged" and "past the limit of stability" in outcome.reason, str(outcome)
     assert stiff.run(0.01, dt=2e-6).outcome.ok
+
+
+@pytest.mark.parametrize(("kp", "kd"), [(0.1, 0.01), (5.0, 0.5), (0.0, 0.0)])
+def test_a_joint_that_drives_itself_apart_is_not_said_of_a_weak_law(kp: float, kd: float) -> None:
+    """With gains of zero it diverges just the same."""
+    outcome = driven_apart((sf.Spring(1e4), sf.Damper(-40.0)), kp, kd).run(400.0).outcome
+    assert outcome.kind == "diverged" and "'pd'" not in str(outcome), str(outcome)
+
+
+def test_a_law_that_drives_the_same_joint_apart_is_named() -> None:
+    outcome = driven_apart((sf.Spring(1e4), sf.Damper(1.0)), 0.0, 2000.0).run(400.0).outcome
+    assert outcome.reason.startswith("block 'pd', sampled every 0.02 s"), str(outcome)
+
+
+@pytest.mark.parametrize("kp", [0.0, 0.1])
+def test_flutter_is_not_said_of_an_idle_law(kp: float) -> None:
+    outcome = flutter(kp, 0.01).run(400.0).outcome
+    assert outcome.kind == "diverged" and "'pd'" not in str(outcome), str(outcome)
+
+
+@pytest.mark.parametrize(("EI", "k"), [(200.0, 10.0), (200.0, 300.0), (1000.0, 10.0)])
+def test_a_loaded_beam_that_its_joint_drives_apart_is_not_said_of_a_weak_law(EI: float, k: float) -> None:
+    weak = arm(1e-3, gravity=1.0, EI=EI, kp=1e-2, elements=(sf.Spring(k), sf.Damper(-2.0)))
+    outcome = weak.run(2.0, dt=2e-5).outcome
+    assert outcome.kind == "beyond theory" and "'pd'" not in str(outcome), str(outcome)
+
+
+@pytest.mark.parametrize("kd", [230.0, 2000.0])
+def test_a_law_in_python_is_named(kd: float) -> None:
+    """What it gave is replayed: it is the motion that says whether it grows without the law."""
+    joint = sf.Joint("q", "revolute", axis=(0, 0, 1), actuated=True)
+    body = sf.RigidBody("a", joint, sf.Inertia(1.0, (0, 0, 0), (1.0, 1.0, 1.0)))
+    diagram = sf.Diagram("law")
+    diagram.add_model("arm", sf.System("arm", (body,), gravity=(0, 0, 0)), start={"dq": 0.1})
+    diagram.add(blocks.ForwardDynamics(name="plant", model="arm"), u="pd.u")
+    law = blocks.PythonBlock(
+        name="pd",
+        function=lambda t, given: {"u": -kd * given["v"]},
+        inputs={"v": None},
+        outputs={"u": (1,)},
+        period=0.02,
+    )
+    diagram.add(law, v="plant.v")
+    outcome = sf.Simulation(diagram).run(100.0).outcome
+    assert outcome.reason.startswith("block 'pd', sampled every 0.02 s"), str(outcome)
+
+
+@pytest.mark.parametrize("bad", ["x", "y"])
+def test_of_two_laws_the_one_that_drives_the_motion_apart_is_named(bad: str) -> None:
+    """Also where the motion reaches the other, whose output grows as well."""
+    outcome = two_laws(bad).run(400.0).outcome
+    assert outcome.reason.startswith(f"block '{bad}_law', sampled every 0.02 s"), str(outcome)
