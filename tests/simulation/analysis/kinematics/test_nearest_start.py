@@ -35,7 +35,9 @@ def reported(m: sf.Model, q: np.ndarray, v: np.ndarray, names: list[str], rates:
     try:
         found = closed_start(m, q, v, names, rates)
     except sf.AssemblyError as error:
-        return {name: float(new) - float(old) for name, old, new in CHANGE.findall(str(error))}
+        said = CHANGE.findall(str(error))
+        assert said, str(error)
+        return {name: float(new) - float(old) for name, old, new in said}
     changed = {name: float((found.q - q)[m.names.q.index(name)]) for name in names}
     return changed | {f"d{name}": float((found.v - v)[m.names.v.index(name)]) for name in rates}
 
