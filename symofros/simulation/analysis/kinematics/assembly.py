@@ -53,6 +53,8 @@ class Assembled:
     rank: int
 
 
+# Bound of the largest |phi| [m, rad], and most steps from a guess.
+TOLERANCE, ITERATIONS = 1e-12, 100
 # Where a guess leads to no closed posture, shifted ones are tried: rotations by so many radians at most, translations
 # by as large a share of the largest reach, ATTEMPTS of each size. Links that lie in one line, as those of a loop that
 # was just drawn, hold no direction that closes it; any shift off the line does.
@@ -72,8 +74,8 @@ def assemble(
     u: ArrayLike | None = None,
     par: ArrayLike | None = None,
     t: float = 0.0,
-    tolerance: float = 1e-12,
-    iterations: int = 100,
+    tolerance: float = TOLERANCE,
+    iterations: int = ITERATIONS,
 ) -> Assembled:
     """Solve phi(q) = 0 and G v = b by damped Gauss-Newton steps of least norm.
 
@@ -105,13 +107,43 @@ def assemble(
     speeds = np.zeros(model.nv) if v is None else model.by_name("v", v)
     wished = finite_array("assemble: v", speeds, (model.nv,), "give one number a speed")
     conditions = _Conditions(model, given_inputs(model, u), par, t)
-    if model.nc:  # A small mechanism closes to its own measure.
-        tolerance /= float(residual_weights(conditions.jacobian(q), model.record.measures).max())
+    tolerance = _own_measure(conditions, q, tolerance)
     found = _closed(conditions, q, free, tolerance, iterations, held)
     G = conditions.jacobian(found.q)
     speeds = _consistent_speeds(conditions, found.q, wished, free, tolerance)
     rank = eliminate(G, model.record.measures, np.ones(model.nv)).rank
     return Assembled(found.q, speeds, float(np.abs(found.phi).max(initial=0.0)), found.steps, rank)
+
+
+def approach(
+    model: Model,
+    q: Array,
+    *,
+    held: Collection[str] = (),
+    u: ArrayLike | None = None,
+    par: ArrayLike | None = None,
+    t: float = 0.0,
+) -> Attempt:
+    """Where Gauss-Newton steps from this very guess end, closed or with a residual left.
+
+    Args:
+        model: Model with constraints.
+        q: Guess (nq).
+        held: Names of speeds whose coordinates stay as they are.
+        u: Inputs, for prescribed motions.
+        par: Run-time parameters.
+        t: Time.
+
+    Raises:
+        AssemblyError: The constraints have no finite derivative there, or it is closed the wrong way round.
+    """
+    free = free_speeds(model, held)
+    model = model.with_precision("double")
+    at = _Conditions(model, given_inputs(model, u), par, t)
+    end = _attempt(at, q, free, _own_measure(at, q, TOLERANCE), ITERATIONS)
+    if end.closes:
+        _check_rotations(model, end.q, at.u, par)
+    return end
 
 
 class _Conditions(NamedTuple):
@@ -135,7 +167,7 @@ class _Conditions(NamedTuple):
         return self.model.constraint_rate(q, v, u=self.u, par=self.par, t=self.t)
 
 
-class _Attempt(NamedTuple):
+class Attempt(NamedTuple):
     """Where the steps from a guess end, with the bounds (nc) below which |phi| counts as closed."""
 
     q: Array
@@ -149,9 +181,16 @@ class _Attempt(NamedTuple):
         return bool(np.all(np.abs(self.phi) <= self.bounds))
 
 
+def _own_measure(at: _Conditions, q: Array, tolerance: float) -> float:
+    """The tolerance of a mechanism: a small one closes to its own measure."""
+    if not at.model.nc:
+        return tolerance
+    return tolerance / float(residual_weights(at.jacobian(q), at.model.record.measures).max())
+
+
 def _closed(
     at: _Conditions, q: Array, free: Indices, tolerance: float, iterations: int, held: Collection[str]
-) -> _Attempt:
+) -> Attempt:
     """The closed posture that the guess leads to, or else one of the shifted guesses.
 
     Raises:
@@ -161,13 +200,13 @@ def _closed(
     if not first.closes:
         others = _shifted(at, q, free, tolerance, iterations)
         if others is None:
-            _refuse(at.model, first, held)
+            _refuse(at.model, first, held, bool(_movable(at, q, free).any()))
         first = others
     _check_rotations(at.model, first.q, at.u, at.par)
     return first
 
 
-def _attempt(at: _Conditions, q: Array, free: Indices, tolerance: float, iterations: int) -> _Attempt:
+def _attempt(at: _Conditions, q: Array, free: Indices, tolerance: float, iterations: int) -> Attempt:
     """Gauss-Newton steps from a guess, until it is closed or no step improves on it."""
     model, phi, count = at.model, at.residual(q), 0
     while np.abs(phi).max(initial=0.0) > tolerance and count < iterations:
@@ -184,15 +223,13 @@ def _attempt(at: _Conditions, q: Array, free: Indices, tolerance: float, iterati
         else:
             break
         q, phi, count = tried, phi_tried, count + 1
-    return _Attempt(q, phi, _bounds(model, q, at.jacobian(q), tolerance), count)
+    return Attempt(q, phi, _bounds(model, q, at.jacobian(q), tolerance), count)
 
 
-def _shifted(at: _Conditions, q: Array, free: Indices, tolerance: float, iterations: int) -> _Attempt | None:
+def _shifted(at: _Conditions, q: Array, free: Indices, tolerance: float, iterations: int) -> Attempt | None:
     """The nearest closed posture that shifted guesses lead to, of the smallest size that leads to any."""
     model, random = at.model, np.random.default_rng(0)
-    scales = _shift_scales(model, at.jacobian(q))
-    movable = np.zeros(model.nv)
-    movable[free] = scales[free]
+    scales, movable = shift_scales(model, at.jacobian(q)), _movable(at, q, free)
     if not movable.any():
         return None
     for size in SHIFTS:
@@ -248,7 +285,14 @@ def _drawn_near(at: _Conditions, q: Array, scales: Array) -> Array | None:
     return None
 
 
-def _shift_scales(model: Model, G: Array) -> Array:
+def _movable(at: _Conditions, q: Array, free: Indices) -> Array:
+    """The scales (nv) by which guesses are shifted, 0 of what does not move."""
+    movable = np.zeros(at.model.nv)
+    movable[free] = shift_scales(at.model, at.jacobian(q))[free]
+    return movable
+
+
+def shift_scales(model: Model, G: Array) -> Array:
     """What a shift of one is for each speed (nv): a radian, the largest reach; none of elastic coordinates."""
     measures = model.record.measures
     kinds = np.array(measures.speed, dtype=np.intp)
@@ -325,14 +369,15 @@ def _bounds(model: Model, q: Array, G: Array, tolerance: float) -> Array:
     return np.asarray(np.maximum(tolerance, rounding), dtype=np.float64)
 
 
-def _refuse(model: Model, first: _Attempt, held: Collection[str]) -> NoReturn:
+def _refuse(model: Model, first: Attempt, held: Collection[str], shifted: bool) -> NoReturn:
     worst = int(np.argmax(np.abs(first.phi) / first.bounds))
     also = f"; held: {', '.join(held)}" if held else ""
+    if shifted:
+        also += f"; {len(SHIFTS) * ATTEMPTS} guesses near it do not close it either"
     raise AssemblyError(
         Problem(
             f"model '{model.record.name}': can't be assembled from this guess",
-            f"after {first.steps} steps phi = {first.phi[worst]:.3g} at '{model.names.constraints[worst]}'{also};"
-            f" {len(SHIFTS) * ATTEMPTS} guesses near it close it neither",
+            f"after {first.steps} steps phi = {first.phi[worst]:.3g} at '{model.names.constraints[worst]}'{also}",
             f"|phi| <= {first.bounds[worst]:.2g}; either no configuration closes it, or the guess leads to none",
             "start nearer, hold fewer coordinates, or check lengths",
         )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from contextlib import suppress
 from typing import NamedTuple
 
@@ -10,7 +10,7 @@ from symofros.base.names import coordinate_of, speed_of
 from symofros.errors import AssemblyError, Problem
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
-from symofros.simulation.analysis.kinematics.assembly import assemble
+from symofros.simulation.analysis.kinematics.nearest_start import Instant, nearest_posture_to, nearest_speeds_to
 from symofros.simulation.settings import CLOSED
 
 # Relative change of a stated number that counts as digits which were not typed; beyond, or of a zero that becomes more
@@ -65,23 +65,43 @@ def closed_start(
         t: Time.
 
     Raises:
-        AssemblyError: No state on the constraints keeps what is stated; says by how much the nearest one differs. Or
-            there is none at all.
+        AssemblyError: No state on the constraints keeps what is stated; says by how much the nearest one that is found
+            differs. Or there is none at all.
     """
     if not model.nc:
         return ClosedStart(q, v)
 
-    def posture(held: Collection[str]) -> Array:
-        return assemble(model, q, held=held, u=u, par=par, t=t).q
-
-    on = _kept(posture, _holding(model, coordinates))
-
-    def motion(held: Collection[str]) -> Array:
-        return assemble(model, on, v, held=held, u=u, par=par, t=t).v
-
-    moving = _kept(motion, (tuple(speeds), ()))
+    at = Instant(model, u, par, t)
+    on = _posture(at, q, coordinates)
+    moving = _speeds(at, on, v, speeds)
     names, stated = (model.names.q, model.names.v), (coordinates, speeds)
     return ClosedStart(on, moving, changes(model.record.name, names, stated, (q, v), (on, moving)))
+
+
+def _posture(at: Instant, q: Array, coordinates: Collection[str]) -> Array:
+    """The closed posture (nq) that keeps the stated coordinates, or the nearest to them that is found."""
+    choices = _holding(at.model, coordinates)
+    if not choices[0]:
+        return at.assembled(q).q
+
+    def accepted(found: Array) -> bool:
+        return _are_digits(_changed(at.model.names.q, coordinates, q, found))
+
+    for held in filter(None, choices):
+        with suppress(AssemblyError):
+            found = at.assembled(q, held=held).q
+            if accepted(found):
+                return found
+    return nearest_posture_to(at, q, choices[0], accepted)
+
+
+def _speeds(at: Instant, q: Array, v: Array, speeds: Collection[str]) -> Array:
+    """The speeds (nv) that keep the stated ones, or the nearest to them."""
+    held = tuple(speeds)
+    with suppress(AssemblyError):
+        return at.assembled(q, v, held).v
+    names = at.model.names.v
+    return nearest_speeds_to(at, q, v, held, lambda found: _are_digits(_changed(names, speeds, v, found)))
 
 
 def _holding(model: Model, coordinates: Collection[str]) -> tuple[tuple[str, ...], ...]:
@@ -102,19 +122,20 @@ def _holding(model: Model, coordinates: Collection[str]) -> tuple[tuple[str, ...
             others += speeds[: segment.translations]
         if any(i >= ends[1] for i in stated):
             others += speeds[segment.translations :]
-    return tuple(dict.fromkeys([(*linear, *others), tuple(linear), ()]))
+    return tuple(dict.fromkeys([(*linear, *others), tuple(linear)]))
 
 
-def _kept(find: Callable[[Collection[str]], Array], choices: Sequence[tuple[str, ...]]) -> Array:
-    """What is found with the first choice of held speeds that allows it.
+def _changed(
+    known: Sequence[str], stated: Collection[str], asked: Array, found: Array
+) -> dict[str, tuple[float, float]]:
+    """Stated numbers that changed by more than what drift leaves, with what they became."""
+    pairs = {name: (float(asked[known.index(name)]), float(found[known.index(name)])) for name in stated}
+    return {name: (old, new) for name, (old, new) in pairs.items() if abs(new - old) > CLOSED * max(1.0, abs(old))}
 
-    Raises:
-        AssemblyError: None does.
-    """
-    for held in choices[:-1]:
-        with suppress(AssemblyError):
-            return find(held)
-    return find(choices[-1])
+
+def _are_digits(changed: Mapping[str, tuple[float, float]]) -> bool:
+    """Whether stated numbers changed in their last digits alone."""
+    return all(abs(new - old) <= DIGITS * abs(old) for old, new in changed.values())
 
 
 def changes(
@@ -136,15 +157,14 @@ def changes(
     Raises:
         AssemblyError: More than those digits changed.
     """
-    pairs = {
-        mark + name: (float(old[known.index(name)]), float(new[known.index(name)]))
+    changed = {
+        mark + name: pair
         for mark, known, those, old, new in zip(("", "d"), names, stated, asked, found, strict=True)
-        for name in those
+        for name, pair in _changed(known, those, old, new).items()
     }
-    changed = {name: pair for name, pair in pairs.items() if abs(pair[1] - pair[0]) > CLOSED * max(1.0, abs(pair[0]))}
     if not changed:
         return ()
-    if all(abs(new - old) <= DIGITS * abs(old) for old, new in changed.values()):
+    if _are_digits(changed):
         return tuple(
             f"start: {name} = {old:g} was taken as {_shown(new)}, which meets the constraints"
             for name, (old, new) in changed.items()
@@ -155,7 +175,7 @@ def changes(
     raise AssemblyError(
         Problem(
             f"model '{model}': the stated start does not meet the constraints",
-            "; ".join(found_words),
+            "nearest found: " + "; ".join(found_words),
             "what is stated of a start is kept; what is not follows from the constraints",
             "leave out what shall follow, or state what is near: "
             + ", ".join(f"{name} = {_shown(new)}" for name, (_, new) in changed.items()),

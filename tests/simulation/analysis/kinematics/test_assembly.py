@@ -81,8 +81,16 @@ def test_a_loop_that_was_just_drawn_closes(lengths: tuple[float, ...], share: fl
 
 def test_a_loop_that_is_too_short_is_refused_from_a_line_too() -> None:
     m = sf.compile(loop_in_line((0.4, 0.4), 1.0), sf.Options(FUNCTIONS.functions, backend="interpreter"))
-    with pytest.raises(sf.AssemblyError, match=r"phi = .* at 'shut\.x'; 8 guesses near it"):
+    with pytest.raises(sf.AssemblyError, match=r"at 'shut\.x'; 8 guesses near it do not close it either\n"):
         sf.assemble(m)
+
+
+def test_guesses_that_were_not_tried_are_not_said() -> None:
+    """All that moves is held, so there is nothing to shift."""
+    m = sf.compile(loop_in_line((0.4, 0.4), 1.0), sf.Options(FUNCTIONS.functions, backend="interpreter"))
+    with pytest.raises(sf.AssemblyError) as refused:
+        sf.assemble(m, held=m.names.v)
+    assert "guesses" not in str(refused.value)
 
 
 def test_out_of_reach_names_the_condition() -> None:

@@ -74,7 +74,7 @@ def test_what_is_near_can_be_stated() -> None:
 
 def test_digits_that_were_not_typed_are_a_note() -> None:
     found = start(model("four_bar"), q1=1.2, q2=-1.2004, q3=1.2)
-    assert "start: q2 = -1.2004 was taken as -1.2001333, which meets the constraints" in found.notes
+    assert "start: q2 = -1.2004 was taken as -1.20013333, which meets the constraints" in found.notes
 
 
 def test_a_model_without_constraints_keeps_all() -> None:
