@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from symofros.description.packages import Packages
+from symofros.description.packages import NEIGHBOURS, Packages, told
 from symofros.description.reading import read_bytes, resolved
 from symofros.description.urdf import xacro_worker
 from symofros.description.workers import answer_of
@@ -37,10 +37,12 @@ def expanded(path: str | os.PathLike[str], arguments: Mapping[str, str], package
     task = {
         "file": str(file),
         "folder": str(packages.own),
-        "packages": {name: str(folder) for name, folder in packages.named.items()},
+        "packages": _texts(packages.at_once),
         "arguments": {k: str(v) for k, v in arguments.items()},
     }
     answer = _answer(task)
+    if answer.get("package"):  # Neighbours are looked at once a file asks for another package than its own.
+        answer = _answer({**task, "packages": _texts(packages.named)})
     if "absent" in answer:
         raise DescriptionError(
             Problem.of_extra(
@@ -51,7 +53,7 @@ def expanded(path: str | os.PathLike[str], arguments: Mapping[str, str], package
             )
         )
     if name := answer.get("package", ""):
-        raise DescriptionError(_unknown_package(f"{name:.60}", packages, path))
+        raise DescriptionError(_unknown_package(name, packages, path))
     if "text" not in answer:
         raise DescriptionError(
             Problem(
@@ -65,13 +67,22 @@ def expanded(path: str | os.PathLike[str], arguments: Mapping[str, str], package
     return str(answer["text"]).encode()
 
 
+def _texts(folders: Mapping[str, Path]) -> dict[str, str]:
+    return {name: str(folder) for name, folder in folders.items()}
+
+
 def _unknown_package(name: str, packages: Packages, path: str | os.PathLike[str]) -> Problem:
-    known = ", ".join(f"'{other}'" for other in [*packages.named][:12])
-    argument = Argument("packages", "FOLDER", name)
+    folders = packages.of(name)
+    known = ", ".join(f"'{other:.60}'" for other in [*packages.named][:12])
+    argument = Argument("packages", "FOLDER", f"{name:.60}")
     return Problem(
-        f"xacro can't expand the file: there is no package '{name}'",
-        f"$(find {name}), with the packages {known}",
-        "packages are that of the file, those beside it by the names in their package.xml, and those that you name",
+        "xacro can't expand the file: "
+        + (f"'{name:.60}' is several packages" if folders else f"there is no package '{name:.60}'"),
+        f"$(find {name:.60}), which is {told(folders)}"
+        if folders
+        else f"$(find {name:.60}), with the packages {known}",
+        f"packages are that of the file, {NEIGHBOURS}, and those that you name"
+        + ("; of several that state one name, that whose folder has it" if folders else ""),
         f"name its folder: {argument.call}",
         os.fspath(path),
         argument,
