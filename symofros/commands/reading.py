@@ -15,7 +15,7 @@ from typing import Annotated, Any, TypeVar
 
 import typer
 
-from symofros.base.names import QUOTED_NAME
+from symofros.base.names import QUOTED_NAME, name_of
 from symofros.errors import Problem, SymofrosError
 
 _Command = TypeVar("_Command", bound=Callable[..., Any])
@@ -115,18 +115,24 @@ def reading_of(
     Raises:
         SymofrosError: A text is no pair.
     """
-    named = pairs(packages, f"{prefix}package", "hand_description=../hand_description")
-    given = pairs(arguments, f"{prefix}argument", "gripper=true")
+    named = _named(pairs(packages, f"{prefix}package", "hand_description=../hand_description"))
+    given = _named(pairs(arguments, f"{prefix}argument", "gripper=true", empty=True))
     return ReadingOptions(floating_base, mimic, tuple(waive), tuple(named.items()), tuple(given.items()), prefix)
 
 
-def pairs(given: Iterable[str], what: str, example: str) -> dict[str, str]:
-    """NAME=TEXT options as a mapping; a name that holds an equals sign stands between backquotes.
+def _named(stated: dict[str, str]) -> dict[str, str]:
+    """Pairs by what they name, without backquotes; those of formulas keep theirs."""
+    return {name_of(name): text for name, text in stated.items()}
+
+
+def pairs(given: Iterable[str], what: str, example: str, *, empty: bool = False) -> dict[str, str]:
+    """NAME=TEXT options as a mapping; a name that holds an equals sign stands between backquotes, which it keeps.
 
     Args:
         given: The texts.
         what: Name of the option, for the problem.
         example: A pair, for the remedy.
+        empty: Whether a text may be empty, as that of an argument of xacro.
 
     Raises:
         SymofrosError: A text is no pair.
@@ -137,7 +143,7 @@ def pairs(given: Iterable[str], what: str, example: str) -> dict[str, str]:
         head = begin.group() if begin else ""
         rest, sign, text = item[len(head) :].partition("=")
         name = head + rest
-        if not sign or not name or not text:
+        if not sign or not name or not (text or empty):
             fault = Problem(f"{what} '{item}'", "no name and value", f"{what} NAME=VALUE", f"for example {example}")
             raise SymofrosError(fault)
         stated[name.strip()] = text.strip()
