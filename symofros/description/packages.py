@@ -24,6 +24,8 @@ _DECLARE_A_MODEL = ("model.config", "model.sdf")
 # Names beside a package that are looked at; bytes of one manifest, and of all together, that are read for their names.
 _MOST_NEIGHBOURS = 1000
 _MOST_OF_ONE, _MOST_BYTES = 64 << 10, 4 << 20
+# Parts of the path of a folder that a remedy may open: / and /etc are everybody's.
+_LEAST_PARTS = 3
 # Characters of a name that a message shows.
 MOST_SHOWN = 200
 NEIGHBOURS = (
@@ -131,16 +133,24 @@ class Packages:
         path = resolved(base / name)
         return path if self.allows(path) else None
 
+    def widening(self, path: Path) -> Argument | None:
+        """The argument that lets a folder be read; None where none is to be proposed.
+
+        It opens no more than the folder of a file, and no folder that others use: none above the folder two levels up.
+
+        Args:
+            path: The folder, or a file in it.
+        """
+        folder = Path(os.path.normpath(path if os.path.isdir(path) else path.parent))
+        shared = len(folder.parts) < _LEAST_PARTS or not folder.is_relative_to(self.folder.parent.parent)
+        if shared or not os.path.isdir(folder) or self.allows(resolved(folder)):
+            return None
+        return Argument("packages", str(folder), folder.name)
+
 
 def told(folders: Iterable[Path]) -> str:
     """Folders as messages name them."""
     return " and ".join(f"'{str(folder):.{MOST_SHOWN}}'" for folder in islice(folders, 2))
-
-
-def widening(path: Path) -> Argument:
-    """The argument that lets a folder be read."""
-    folder = Path(os.path.normpath(path))
-    return Argument("packages", str(folder), folder.name or "root")
 
 
 def _is_plain(name: str) -> bool:
