@@ -89,6 +89,16 @@ def test_a_package_that_is_not_found_is_not_opened(tmp_path: Path) -> None:
     assert sf.load(main).body("finger")
 
 
+def test_relative_includes_of_xacro_open_folders_that_are_named(tmp_path: Path) -> None:
+    pytest.importorskip("xacro")
+    main = package(tmp_path / "arm", "arm", arm='<xacro:include filename="../parts/hand.xacro"/>')
+    package(tmp_path / "parts", "parts", hand=FINGER)
+    error = refused(main)
+    assert "name the folder that it lies in: load(…, packages={'NAME': 'FOLDER'})" in str(error)
+    assert "--package NAME=FOLDER" in error.in_shell()
+    assert sf.load(main, packages={"any": tmp_path / "parts"}).body("finger")
+
+
 def test_a_fault_is_said_once_with_its_place(tmp_path: Path) -> None:
     pytest.importorskip("xacro")
     text = str(refused(package(tmp_path / "arm", "arm", arm='<link name="${unknown * 2}"/>')))

@@ -17,7 +17,7 @@ from symofros.errors import Argument, DescriptionError, Problem
 TIMEOUT = 60
 _RULE = (
     "expressions compute (arithmetic, comparisons, indexing, functions of math and a few of Python); files lie in the "
-    "package of the file or in one that it finds; there is no environment"
+    "package of the file, in one that it finds, or in one that you name; there is no environment"
 )
 
 
@@ -36,7 +36,7 @@ def expanded(path: str | os.PathLike[str], arguments: Mapping[str, str], package
     read_bytes(Path(path), xacro_worker.MAX_BYTES)
     task = {
         "file": str(file),
-        "folder": str(packages.own),
+        "folders": [str(folder) for folder in (packages.own, *packages.stated.values())],
         "packages": _texts(packages.at_once),
         "arguments": {k: str(v) for k, v in arguments.items()},
     }
@@ -55,16 +55,17 @@ def expanded(path: str | os.PathLike[str], arguments: Mapping[str, str], package
     if name := answer.get("package", ""):
         raise DescriptionError(_unknown_package(name, packages, path))
     if "text" not in answer:
-        raise DescriptionError(
-            Problem(
-                "xacro can't expand the file",
-                f"{answer.get('fault', 'nothing'):.500}",
-                _RULE,
-                "mend it; of a file that you trust, `xacro FILE > robot.urdf` (ROS's own) makes a URDF",
-                str(path),
-            )
-        )
+        raise DescriptionError(_not_expanded(f"{answer.get('fault', 'nothing'):.500}", path))
     return str(answer["text"]).encode()
+
+
+def _not_expanded(fault: str, path: str | os.PathLike[str]) -> Problem:
+    trusted = "of a file that you trust, `xacro FILE > robot.urdf` (ROS's own) makes a URDF"
+    argument, remedy = None, f"mend it; {trusted}"
+    if xacro_worker.OUTSIDE in fault:
+        argument = Argument("packages", "FOLDER", "NAME")
+        remedy = f"mend its path, or name the folder that it lies in: {argument.call}; {trusted}"
+    return Problem("xacro can't expand the file", fault, _RULE, remedy, str(path), argument)
 
 
 def _texts(folders: Mapping[str, Path]) -> dict[str, str]:
