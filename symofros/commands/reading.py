@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import inspect
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass, replace
 from functools import wraps
 from pathlib import Path
@@ -21,6 +21,8 @@ from symofros.errors import Problem, SymofrosError
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 # Parameter of a command that takes all options below.
 PARAMETER = "reading"
+# Formats whose files name no packages; stated here, as what reads them is not loaded for a cached answer.
+_OF_ONE_PLACE = (".yaml", ".yml", ".usd", ".usda", ".usdc", ".usdz")
 _QUOTED = re.compile(QUOTED_NAME, re.ASCII)
 
 
@@ -55,7 +57,14 @@ class ReadingOptions:
         """The same for one of several files of different formats: without what its format has not."""
         suffix = path.suffix.lower()
         own = self if suffix == ".xacro" else replace(self, arguments=())
+        if suffix in _OF_ONE_PLACE:
+            own = replace(own, packages=())
         return own if suffix in (".urdf", ".xacro") else replace(own, floating_base=False, mimic=False)
+
+    def without(self, names: Collection[str]) -> ReadingOptions:
+        """The same without options of some names."""
+        default = ReadingOptions()
+        return replace(self, **{name: getattr(default, name) for name in names})
 
     def require_none(self, why: str) -> None:
         """Refuse options where no model is read by them.
