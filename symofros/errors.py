@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import difflib
 import re
+import shlex
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, islice
@@ -44,7 +45,13 @@ class Argument:
     def option(self, prefix: str) -> str:
         """The option of a command, whose name begins with the prefix; one occurrence states one value."""
         name = self.name.removesuffix("s") if self.key else self.name.replace("_", "-")
-        return " ".join(filter(None, (f"{prefix}{name}", f"{self.key}={self.value}" if self.key else self.value)))
+        stated = f"{self._name_of_pair()}={self.value}" if self.key else self.value
+        return " ".join(filter(None, (f"{prefix}{name}", shlex.quote(stated) if stated else "")))
+
+    def _name_of_pair(self) -> str:
+        """The key as a command reads it: between backquotes where it would not be read as it stands."""
+        plain = not {"=", "`"} & set(self.key) and self.key == self.key.strip()
+        return self.key if plain else f"`{self.key.replace('`', '``')}`"
 
 
 @dataclass(frozen=True)

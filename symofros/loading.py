@@ -116,7 +116,12 @@ def _checked(reading: Reading) -> tuple[System, tuple[Source, ...]]:
     return replace(system, notes=(*system.notes, *remarks)) if remarks else system, reading.sources
 
 
-def _waived(reading: Reading, waive: Collection[str]) -> Reading:
+def check_waivers(waive: Collection[str]) -> None:
+    """Refuse checks that do not exist.
+
+    Raises:
+        DescriptionError: There is no such check.
+    """
     for unknown in sorted(set(waive) - WAIVERS.keys()):
         raise DescriptionError(
             Problem(
@@ -126,6 +131,10 @@ def _waived(reading: Reading, waive: Collection[str]) -> Reading:
                 did_you_mean(unknown, WAIVERS),
             )
         )
+
+
+def _waived(reading: Reading, waive: Collection[str]) -> Reading:
+    check_waivers(waive)
     if reading.system is None or not waive:
         return reading
     bodies = tuple(replace(body, waive=(*body.waive, *waive)) for body in reading.system.bodies)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import inspect
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass, replace
 from functools import wraps
 from pathlib import Path
@@ -15,12 +15,14 @@ from typing import Annotated, Any, TypeVar
 
 import typer
 
-from symofros.base.names import QUOTED_NAME
+from symofros.base.names import QUOTED_NAME, name_of
 from symofros.errors import Problem, SymofrosError
 
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 # Parameter of a command that takes all options below.
 PARAMETER = "reading"
+# Formats whose files name no packages; stated here, as what reads them is not loaded for a cached answer.
+_OF_ONE_PLACE = (".yaml", ".yml", ".usd", ".usda", ".usdc", ".usdz")
 _QUOTED = re.compile(QUOTED_NAME, re.ASCII)
 
 
@@ -55,7 +57,14 @@ class ReadingOptions:
         """The same for one of several files of different formats: without what its format has not."""
         suffix = path.suffix.lower()
         own = self if suffix == ".xacro" else replace(self, arguments=())
+        if suffix in _OF_ONE_PLACE:
+            own = replace(own, packages=())
         return own if suffix in (".urdf", ".xacro") else replace(own, floating_base=False, mimic=False)
+
+    def without(self, names: Collection[str]) -> ReadingOptions:
+        """The same without options of some names."""
+        default = ReadingOptions()
+        return replace(self, **{name: getattr(default, name) for name in names})
 
     def require_none(self, why: str) -> None:
         """Refuse options where no model is read by them.
@@ -115,18 +124,24 @@ def reading_of(
     Raises:
         SymofrosError: A text is no pair.
     """
-    named = pairs(packages, f"{prefix}package", "hand_description=../hand_description")
-    given = pairs(arguments, f"{prefix}argument", "gripper=true")
+    named = _named(pairs(packages, f"{prefix}package", "hand_description=../hand_description"))
+    given = _named(pairs(arguments, f"{prefix}argument", "gripper=true", empty=True))
     return ReadingOptions(floating_base, mimic, tuple(waive), tuple(named.items()), tuple(given.items()), prefix)
 
 
-def pairs(given: Iterable[str], what: str, example: str) -> dict[str, str]:
-    """NAME=TEXT options as a mapping; a name that holds an equals sign stands between backquotes.
+def _named(stated: dict[str, str]) -> dict[str, str]:
+    """Pairs by what they name, without backquotes; those of formulas keep theirs."""
+    return {name_of(name): text for name, text in stated.items()}
+
+
+def pairs(given: Iterable[str], what: str, example: str, *, empty: bool = False) -> dict[str, str]:
+    """NAME=TEXT options as a mapping; a name that holds an equals sign stands between backquotes, which it keeps.
 
     Args:
         given: The texts.
         what: Name of the option, for the problem.
         example: A pair, for the remedy.
+        empty: Whether a text may be empty, as that of an argument of xacro.
 
     Raises:
         SymofrosError: A text is no pair.
@@ -137,7 +152,7 @@ def pairs(given: Iterable[str], what: str, example: str) -> dict[str, str]:
         head = begin.group() if begin else ""
         rest, sign, text = item[len(head) :].partition("=")
         name = head + rest
-        if not sign or not name or not text:
+        if not sign or not name or not (text or empty):
             fault = Problem(f"{what} '{item}'", "no name and value", f"{what} NAME=VALUE", f"for example {example}")
             raise SymofrosError(fault)
         stated[name.strip()] = text.strip()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -81,6 +82,22 @@ def test_pairs_are_names_and_texts() -> None:
     assert invoke("info", "x.urdf", "--package", "a").exit_code == 2
 
 
+def test_backquotes_hold_a_name_together_and_are_no_part_of_it() -> None:
+    """But in formulas, where they are; an empty text is one for arguments of xacro alone."""
+    stated = reading_of(packages=["`a=b`=c"], arguments=["`x=y`=z", "prefix=", "d`q`=1"])
+    assert stated.keywords == {"packages": {"a=b": "c"}, "arguments": {"x=y": "z", "prefix": "", "dq": "1"}}
+    assert pairs(["d`a=b`=1"], "--set", "q1=1") == {"d`a=b`": "1"}
+    for option in ({"packages": ["a="]}, {"arguments": ["=a"]}):
+        with pytest.raises(SymofrosError, match="no name and value"):
+            reading_of(**option)  # type: ignore[arg-type]
+
+
+def test_options_of_remedies_are_read_back() -> None:
+    for key in ("a=b", "my dir", "a`b", "`a`", "it's"):
+        option, pair = shlex.split(Argument("packages", "/x y", key).option("--"))
+        assert option == "--package" and reading_of(packages=[pair]).keywords == {"packages": {key: "/x y"}}
+
+
 def test_options_that_a_format_has_not_are_left_out_for_several_files() -> None:
     stated = reading_of(floating_base=True, mimic=True, waive=["massless_tip"], arguments=["a=b"])
     assert stated.fit_for(Path("a.xml")) == ReadingOptions(waive=("massless_tip",))
@@ -114,6 +131,12 @@ PAIRS = (("a", "1"), ("b", "2"), ("c", "3"), ("d", "3"))
     [
         (Argument("waive", "massless_tip"), "load(…, waive=['massless_tip'])", "--waive massless_tip"),
         (Argument("packages", "/a", "b"), "load(…, packages={'b': '/a'})", "--package b=/a"),
+        (
+            Argument("packages", "my dir", "my dir"),
+            "load(…, packages={'my dir': 'my dir'})",
+            "--package 'my dir=my dir'",
+        ),
+        (Argument("packages", "/a", "b=c"), "load(…, packages={'b=c': '/a'})", "--package '`b=c`=/a'"),
         (Argument("floating_base"), "load(…, floating_base=True)", "--floating-base"),
     ],
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 
 import pytest
@@ -88,6 +89,16 @@ def test_a_package_that_is_not_found_is_not_opened(tmp_path: Path) -> None:
     assert sf.load(main).body("finger")
 
 
+def test_relative_includes_of_xacro_open_folders_that_are_named(tmp_path: Path) -> None:
+    pytest.importorskip("xacro")
+    main = package(tmp_path / "arm", "arm", arm='<xacro:include filename="../parts/hand.xacro"/>')
+    package(tmp_path / "parts", "parts", hand=FINGER)
+    error = refused(main)
+    assert "name the folder that it lies in: load(…, packages={'NAME': 'FOLDER'})" in str(error)
+    assert "--package NAME=FOLDER" in error.in_shell()
+    assert sf.load(main, packages={"any": tmp_path / "parts"}).body("finger")
+
+
 def test_a_fault_is_said_once_with_its_place(tmp_path: Path) -> None:
     pytest.importorskip("xacro")
     text = str(refused(package(tmp_path / "arm", "arm", arm='<link name="${unknown * 2}"/>')))
@@ -160,3 +171,61 @@ def test_arguments_that_a_format_has_no_use_for_are_refused(
 ) -> None:
     (tmp_path / name).write_text("")
     assert "files only" in str(refused(tmp_path / name, **given))
+
+
+def test_manifests_are_read_when_a_name_needs_them_and_no_further_than_bounded(tmp_path: Path) -> None:
+    """60 neighbours of 1 MB took a minute of a file that names none."""
+    main = package(tmp_path / "src/arm", "arm_description", arm=FINGER)
+    for i in range(60):
+        package(tmp_path / f"src/n{i:02}", "x")
+        (tmp_path / f"src/n{i:02}/package.xml").write_text("<p>" + "<a/>" * 250_000 + "<name>late</name></p>")
+    package(tmp_path / "src/late", "late")
+    packages = Packages(main)
+    assert packages.of("arm_description") == packages.of("arm") == (packages.own,)
+    assert packages.of("late") == ((tmp_path / "src/late").resolve(),)
+    assert "neighbours" not in vars(packages) and packages._bytes < 1000
+    start = time.perf_counter()
+    assert packages.of("other") == () and packages._bytes <= 4 << 20
+    assert time.perf_counter() - start < 5.0
+
+
+def test_two_neighbours_of_one_name_are_refused_unless_a_folder_has_it(tmp_path: Path) -> None:
+    pytest.importorskip("xacro")
+    main = package(tmp_path / "src/arm", "arm_description", arm=INCLUDE)
+    for folder in ("one", "two"):
+        package(tmp_path / f"src/{folder}", "hand_description", hand=FINGER)
+    text = str(refused(main))
+    assert "'hand_description' is several packages" in text and "packages={'hand_description': 'FOLDER'}" in text
+    assert all(f"'{tmp_path.resolve() / 'src' / folder}'" in text for folder in ("one", "two"))
+    package(tmp_path / "src/hand_description", "hand_description", hand=FINGER.replace("finger", "thumb"))
+    assert sf.load(main).body("thumb")
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ("<package><name> a </name>", "a"),
+        ("<package><x><name>b</name></x><name>a</name>", "a"),
+        ("<!DOCTYPE p><package><name>a</name></package>", ""),
+        ("<package><name>a", ""),
+        ("<?xml version='1.0' encoding='no'?><package><name>a</name></package>", ""),
+        ("<package></name>", ""),
+        ("<name>a</name>", ""),
+    ],
+)
+def test_names_are_read_from_beginnings_of_manifests(tmp_path: Path, text: str, name: str) -> None:
+    package(tmp_path / "arm", "arm_description")
+    package(tmp_path / "folder", "")
+    (tmp_path / "folder/package.xml").write_text(text)
+    assert [*Packages(tmp_path / "arm/arm.xacro").neighbours] == [name] * bool(name)
+
+
+def test_a_mesh_of_one_of_two_packages_is_left_out_in_words(tmp_path: Path) -> None:
+    mesh = '<visual><geometry><mesh filename="package://hand_description/a.stl"/></geometry></visual>'
+    main = package(tmp_path / "src/arm", "arm_description").with_name("arm.urdf")
+    main.write_text(ROBOT.format(FINGER.replace(INERTIAL, INERTIAL + mesh)))
+    for folder in ("one", "two"):
+        package(tmp_path / f"src/{folder}", "hand_description")
+        (tmp_path / f"src/{folder}/a.stl").write_text("solid")
+    system = sf.load(main)
+    assert not system.visuals and any("src/one" in note and "src/two" in note for note in system.notes)

@@ -182,6 +182,46 @@ def test_how_much_is_included_is_bounded(tmp_path: Path, monkeypatch: pytest.Mon
     assert "includes too much" in str(refused(tmp_path / "m0/model.sdf"))
 
 
+def test_refused_includes_count(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(includes, "MAX_INCLUDES", 50)
+    many = "<include><uri>gone</uri></include>" * 51
+    assert "includes too much" in str(
+        refused(write(tmp_path, f'<sdf version="1.9"><model name="m">{many}</model></sdf>'))
+    )
+
+
+@pytest.mark.parametrize(
+    ("uri", "proposed"),
+    [
+        ("../plain/plain.sdf", "plain"),
+        ("../plain", "plain"),
+        ("../../top/plain.sdf", "../top"),
+        ("typo.sdf", None),
+        ("../plain/typo.sdf", None),
+        ("../../../up/plain.sdf", None),
+        ("../" * 40 + "etc/hosts", None),
+        ("link.sdf", None),
+    ],
+)
+def test_what_is_proposed_serves_and_opens_no_more_than_a_folder(
+    tmp_path: Path, uri: str, proposed: str | None
+) -> None:
+    folder = tmp_path.resolve() / "a/b"
+    for place in ("plain", "../top", "../../up"):
+        write(folder / place, WHEEL.format(link("w", "", 1)), "plain.sdf")
+    write(folder / "plain", WHEEL.format(link("w", "", 1)))
+    main = write(folder / "cart", including(f"<uri>{uri}</uri>"), "main.sdf")
+    (folder / "cart/link.sdf").symlink_to(folder / "plain/plain.sdf")
+    error = refused(main)
+    (problem,) = error.problems
+    if proposed is None:
+        assert problem.argument is None and "mend its <uri>" in problem.remedy and "load(" not in str(error)
+        assert ("may not be read" in problem.found) == (uri != "typo.sdf")
+        return
+    assert problem.argument is not None and Path(problem.argument.value) == (folder / proposed).resolve()
+    assert sf.load(main, packages={problem.argument.key: problem.argument.value}).body("wheel::w")
+
+
 def test_lines_of_included_files_are_named(tmp_path: Path) -> None:
     write(tmp_path / "wheel", WHEEL.format('\n<link name="w"><pose>1 2</pose></link>'))
     main = write(tmp_path / "cart", including("<uri>model://wheel</uri>"))

@@ -21,7 +21,7 @@ from ..cross_check.record import Record, as_data
 from ..cross_check.speed import Speed, measure
 from ..cross_check.tables import failure
 from ..engines.workers import registry
-from ..inputs.cases import Case, named, standard_set
+from ..inputs.cases import Case, named
 from ..reporting.numbers import digits
 from ..worker_pool import run_case
 from .cells import CellFailure, CellItem
@@ -154,9 +154,11 @@ def cross_checks(session: Any, config: Any) -> Iterator[pytest.Item]:
         return
     models = named_models or TIERS[tier].models
     try:
-        cases = named(list(models), _reading(config)) if models else standard_set()
+        cases = named(list(models), _reading(config))
     except (LookupError, FileNotFoundError) as error:
         raise pytest.UsageError(f"--symofros-model: {error.args[0]}") from None
+    except sf.SymofrosError as error:
+        raise pytest.UsageError(error.in_shell("--symofros-")) from None
     states = TIERS[tier].states
     stored = _stored(config.getoption("--symofros-baseline"))
 

@@ -17,7 +17,7 @@ from symofros.tools import write_atomically
 
 from ..adapters import ROUTES
 from ..checking import ModelResult, Settings
-from ..inputs.cases import Case, named, standard_set
+from ..inputs.cases import Case, named
 from ..inputs.sampling import DEFAULT_STATES
 from ..reporting.command import Exit, Run, known
 from ..reporting.record import (
@@ -62,14 +62,14 @@ def measure(
     settings = Settings(states, seed, tuple(engine) if engine else None)
     stored = _baseline(baseline, settings)
     try:
-        cases = named(models, reading) if models else standard_set()
+        cases = named(models or [], reading)
         files = [case.path for case in cases if case.path is not None]
         if len(files) == len(cases) and not any(path.exists() for path in files):
             sf.load(files[0])  # Says that it is missing, and what is there; beside others it is one that fails.
     except (LookupError, FileNotFoundError) as error:
         raise typer.BadParameter(str(error.args[0]), param_hint="MODEL") from None
-    except sf.DescriptionError as error:
-        typer.echo(str(error), err=True)
+    except sf.SymofrosError as error:
+        typer.echo(error.in_shell(), err=True)
         raise typer.Exit(Exit.BAD_INPUT) from None
     first = ", ".join(case.label for case in sorted(cases, key=lambda case: -case.weight)[:workers])
     run.expect(len(cases), f"cross-checking {first}")

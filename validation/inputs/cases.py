@@ -9,6 +9,7 @@ from pathlib import Path
 
 import symofros as sf
 from symofros.commands.reading import ReadingOptions
+from symofros.loading import check_waivers
 
 from .. import references
 from ..contract.interface import MjcfSource, Subject, UrdfSource
@@ -150,7 +151,7 @@ def robot_file(name: str) -> Path:
 
 
 def named(names: list[str], reading: ReadingOptions = AS_THEY_ARE) -> list[Case]:
-    """The models that a user named: paths of files, or names of the standard set.
+    """The models that a user named: paths of files, or names of the standard set, all of which none is.
 
     Args:
         names: Names in the order of the report.
@@ -159,8 +160,14 @@ def named(names: list[str], reading: ReadingOptions = AS_THEY_ARE) -> list[Case]
     Raises:
         LookupError: A name is neither.
         FileNotFoundError: A robot's package is not installed.
+        SymofrosError: An option of reading fits none of the files, or waives a check that does not exist.
     """
+    check_waivers(reading.waive)
+    if not names:
+        reading.require_none("the models of the standard set are read as they are")
+        return standard_set()
     cases = list(dict.fromkeys(_named(name, reading) for name in names))
+    _refuse_idle(names, reading)
     labels = [case.label for case in cases]
     return [
         case
@@ -170,9 +177,25 @@ def named(names: list[str], reading: ReadingOptions = AS_THEY_ARE) -> list[Case]
     ]
 
 
+def _refuse_idle(names: list[str], reading: ReadingOptions) -> None:
+    """Refuse options that none of the files has a use for; models of the standard set are read as they are.
+
+    Raises:
+        SymofrosError: There are some.
+    """
+    files = (path for path in map(Path, names) if _is_file(path))
+    used = {option for path in files for option in reading.fit_for(path).keywords}
+    reading.without(used).require_none("none of the models named has a use for them")
+
+
+def _is_file(path: Path) -> bool:
+    """Whether a name is that of a file, there or not."""
+    return bool(path.suffix) or path.exists()
+
+
 def _named(name: str, reading: ReadingOptions) -> Case:
     path = Path(name)
-    if path.suffix or path.exists():
+    if _is_file(path):
         return Case(path.stem, path, reading.fit_for(path))
     if name in ROBOTS:
         return robot_case(name)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
-from symofros.description.packages import Packages, widening
+from symofros.description.packages import Packages
 from symofros.description.reading import read_bytes, resolved
 from symofros.description.xml_nodes import MAX_DEPTH, Element, XmlFault, parse_xml
 from symofros.errors import Argument, DescriptionError, Problem
@@ -171,7 +171,7 @@ class Folder:
         argument = None
         if name is not None:
             there = (base for base in bases if os.path.isfile(base / name))
-            argument = widening((next(there, bases[-1]) / name).parent)
+            argument = self.packages.widening(resolved(next(there, bases[-1])) / PurePosixPath(name).parent)
         widened = f", or, of a file that you trust, name its folder: {argument.call}" if argument else ""
         self.fault(
             user,

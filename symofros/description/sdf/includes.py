@@ -14,7 +14,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from symofros.base.sources import Source
-from symofros.description.packages import Packages, widening
+from symofros.description.packages import MOST_SHOWN, Packages
 from symofros.description.reading import read_bytes, resolved
 from symofros.description.sdf.frames import MODEL
 from symofros.description.sdf.values import SdfValues
@@ -72,6 +72,8 @@ class Includes:
         self, include: Element, element: Element, folder: Path, within: tuple[Path, ...]
     ) -> Iterator[Element]:
         """What takes the place of an <include> in an element of a file in the folder."""
+        self._count += 1  # Also of those that are refused: each takes time, and may be a fault to tell.
+        self._check_bounds(include)
         if not self._is_plain(include, element):
             return
         file = self._file(include, folder)
@@ -85,13 +87,8 @@ class Includes:
         model = self._model(include, file)
         if model is None:
             return
-        self._count += 1
         self._elements += _size(model)
-        if self._count > MAX_INCLUDES or self._elements > MAX_ELEMENTS:
-            stated = f"more than {MAX_INCLUDES} includes, or {MAX_ELEMENTS} elements in them"
-            raise DescriptionError(
-                Problem("the file includes too much", stated, "a mechanism is smaller", "split it", include.where)
-            )
+        self._check_bounds(include)
         copy = _copied(model)
         self._override(copy, include)
         self.expand(copy, file.parent, (*within, file))
@@ -99,6 +96,18 @@ class Includes:
             yield from merged(copy, include)
         else:
             yield copy
+
+    def _check_bounds(self, include: Element) -> None:
+        """Refuse more than anybody uses.
+
+        Raises:
+            DescriptionError: It is more.
+        """
+        if self._count > MAX_INCLUDES or self._elements > MAX_ELEMENTS:
+            stated = f"more than {MAX_INCLUDES} includes, or {MAX_ELEMENTS} elements in them"
+            raise DescriptionError(
+                Problem("the file includes too much", stated, "a mechanism is smaller", "split it", include.where)
+            )
 
     def _is_plain(self, include: Element, within: Element) -> bool:
         """Whether it is placed by its own frame, and merged into a model if at all."""
@@ -122,30 +131,37 @@ class Includes:
         """The file that an <include> names; None after a fault."""
         uri = self.values.text(include, "uri").removeprefix("file://")
         model = _MODEL.match(uri)
-        place: Path | None
+        argument: Argument | None = None
         if model:
             root = self.packages.model(model[1])
             place = None if root is None else self.packages.file(model[2] or ".", root)
-            argument = Argument("packages", "FOLDER", model[1])
+            if root is None:
+                argument = Argument("packages", "FOLDER", f"{model[1]:.{MOST_SHOWN}}")
         elif uri and "://" not in uri and "\0" not in uri and not Path(uri).is_absolute():
-            place, argument = self.packages.file(uri, folder), widening(folder / uri)
+            place, stated = self.packages.file(uri, folder), resolved(folder) / uri
+            if place is None and os.path.exists(stated):
+                argument = self.packages.widening(stated)
         else:
             self.values.fault(include, "<include> names no model", f"<uri> '{uri:.80}'", _RULE, "mend its <uri>")
             return None
         file = None if place is None else self._of_folder(place) if os.path.isdir(place) else place
         if file is not None and os.path.isfile(file):
             return file
-        rule = "included models lie in the folder of the file or below, in a model's folder beside it, or where you say"
-        problem = Problem(
-            f"the included model '{uri:.80}' is not found",
-            "no such file there, or it may not be read",
-            rule,
-            f"name its folder, or the folder of models that it lies in: {argument.call}",
-            self.values.where(include),
-            argument,
-        )
-        self.values.add(problem)
+        self._not_found(include, uri, file is not None, argument)
         return None
+
+    def _not_found(self, include: Element, uri: str, readable: bool, argument: Argument | None) -> None:
+        """Note that an included file is missing, where its place may be read, or that it may not."""
+        if argument is not None:
+            remedy = f"name its folder, or the folder of models that it lies in: {argument.call}"
+        elif readable:
+            remedy = "mend its <uri>, or put the file there"
+        else:
+            remedy = "mend its <uri>, copy the model beside the file, or name its folder as one of packages"
+        found = "no such file there" if readable else "no such file there, or it may not be read"
+        rule = "included models lie in the folder of the file or below, in a model's folder beside it, or where you say"
+        what = f"the included model '{uri:.80}' is not found"
+        self.values.add(Problem(what, found, rule, remedy, self.values.where(include), argument))
 
     def _of_folder(self, folder: Path) -> Path | None:
         """The SDFormat file of a model's folder: what its model.config names, of the latest version, or model.sdf."""

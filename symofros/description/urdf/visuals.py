@@ -9,9 +9,10 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterator, Mapping
+from itertools import chain
 from pathlib import Path, PurePosixPath
 
-from symofros.description.packages import Packages
+from symofros.description.packages import Packages, told
 from symofros.description.reading import resolved
 from symofros.description.remarks import Remarks
 from symofros.description.urdf.values import finite_numbers
@@ -104,15 +105,22 @@ class Visuals:
         if "://" in str(inner) or inner.is_absolute() or ".." in (name, *inner.parts) or "\0" in stated:
             return ""
         above = [root for root in (folder, *folder.parents) if package and root.name == name]
-        known = self.packages.named.get(name) or self.packages.model(name) if package else None
         places = [*((root, root) for root in above), (folder, folder), (folder, folder / name)]
-        places += [(known, known)] if known is not None else []
-        for root, place in places:
+        for root, place in chain(places, self._elsewhere(name) if package else ()):
             # Unlike pathlib's, these are content with names that can't be: too long, links in a circle.
             path = os.path.realpath(place / inner)
             if Path(path).is_relative_to(root) and os.path.isfile(path):
                 return path
         return ""
+
+    def _elsewhere(self, name: str) -> Iterator[tuple[Path, Path]]:
+        """The folder of a package or model that is none of those around the file: looked for only when it is needed."""
+        folders = self.packages.of(name)
+        if len(folders) > 1:
+            self.remarks.add("packages of one name, of which none is taken", "package", f"{name} in {told(folders)}")
+        known = next(iter(folders), None) if len(folders) == 1 else self.packages.model(name)
+        if known is not None:
+            yield known, known
 
 
 def _color(material: Element) -> Color | None:

@@ -2,7 +2,7 @@
 
 xacro gives expressions to Python's `eval` and opens what a file names. Here xacro_expressions evaluates them; files are
 opened inside of the folders that it is given only; XML has no document types; memory, time and environment are bounded.
-It reads {"file", "folder", "packages", "arguments"} as JSON, and writes {"text"}, or {"fault"} with the "package" that
+It reads {"file", "folders", "packages", "arguments"} as JSON, and writes {"text"}, or {"fault"} with the "package" that
 is not known.
 """
 
@@ -23,6 +23,7 @@ from xml.parsers import expat
 MAX_BYTES = 16 << 20
 MAX_FAULT = 2000  # Characters of what went wrong, of which the parent shows fewer.
 MAX_CAUSES = 10
+OUTSIDE = "leaves the folders of the file"
 MEMORY = 2 << 30  # [bytes]
 SECONDS = 20  # of processor time
 
@@ -74,7 +75,7 @@ def guard(folders: Collection[str]) -> None:
             near = any(real == folder or real.startswith(folder + os.sep) for folder in folders)
             inside = near and not isinstance(args[0], int)
             if not inside or set(str(mode or "r")) & set("wax+") or flags & writing:
-                raise expressions.Refusal(f"'{path:.100}' leaves the folders of the file")
+                raise expressions.Refusal(f"'{path:.100}' {OUTSIDE}")
         elif event.startswith(("os.", "subprocess.", "socket.", "shutil.", "ctypes.", "import")):
             raise expressions.Refusal(f"'{event}' is not allowed")
 
@@ -96,12 +97,12 @@ def bound() -> None:
             continue
 
 
-def expanded(file: str, folder: str, packages: Mapping[str, str], arguments: Mapping[str, str]) -> str:
+def expanded(file: str, folders: list[str], packages: Mapping[str, str], arguments: Mapping[str, str]) -> str:
     """The text that xacro makes of a file.
 
     Args:
         file: Path of the file.
-        folder: Folder that it may open files in.
+        folders: Folders that it may open files in.
         packages: Name -> folder that `$(find NAME)` gives, in which files may be opened from then on.
         arguments: Values of <xacro:arg>.
     """
@@ -139,7 +140,7 @@ def expanded(file: str, folder: str, packages: Mapping[str, str], arguments: Map
             xacro.filestack.pop()
             raise xacro.XacroException(f"{error.strerror}: {filename}", exc=error) from None
 
-    folders = [folder]
+    folders = list(folders)
     xacro.safe_eval, xacro.parse = safe_eval, opened
     substitution_args._eval, substitution_args._eval_find = substitution, find
     os.environ.clear()
@@ -186,7 +187,7 @@ def main() -> None:
     task = json.load(sys.stdin)
     out, sys.stdout = sys.stdout, sys.stderr  # What xacro prints is no answer.
     try:
-        answer = {"text": expanded(task["file"], task["folder"], task["packages"], task["arguments"])}
+        answer = {"text": expanded(task["file"], task["folders"], task["packages"], task["arguments"])}
     except ImportError:
         answer = {"absent": "xacro"}
     except BaseException as error:  # Also what is no Exception: the parent says it, whatever it is.

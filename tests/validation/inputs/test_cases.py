@@ -1,10 +1,11 @@
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import reference_models
 import symofros as sf
-from symofros.commands.reading import ReadingOptions
+from symofros.commands.reading import ReadingOptions, reading_of
 from tests.validation.subjects import URDF
 from validation.inputs.cases import FILES, ROBOTS, Case, named, robot_case, standard_set
 
@@ -38,6 +39,23 @@ def test_files_and_names_can_be_mixed(tmp_path: Path) -> None:
     cases = named([str(path), "ur5", "some.yaml"], ReadingOptions(floating_base=True))
     assert [case.label for case in cases] == ["arm", "ur5", "some"]
     assert [case.reading.floating_base for case in cases] == [True, False, False]
+
+
+@pytest.mark.parametrize(
+    ("names", "reading", "said"),
+    [
+        (["pendulum"], {"waive": ["bogus"]}, "no check 'bogus'"),
+        (["pendulum"], {"waive": ["massless_tip"]}, "options of reading"),
+        ([], {"mimic": True}, "options of reading"),
+        (["a.yaml", "ur5"], {"floating_base": True}, "floating_base"),
+        (["a.yaml"], {"packages": ["a=b"]}, "packages"),
+        (["a.urdf"], {"arguments": ["a=b"], "mimic": True}, "found: arguments"),
+    ],
+)
+def test_options_that_fit_no_file_are_refused(names: list[str], reading: dict[str, Any], said: str) -> None:
+    with pytest.raises(sf.SymofrosError) as caught:
+        named(names, reading_of(**reading))
+    assert said in " ".join(str(caught.value).split())
 
 
 def test_files_of_one_name_are_told_apart() -> None:
