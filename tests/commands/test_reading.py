@@ -64,6 +64,25 @@ def test_compile_knows_models_by_how_they_are_read(tmp_path: Path, monkeypatch: 
     assert "ask for other functions, such as frame_pose" in said
 
 
+def test_an_export_which_steps_proposes_no_other_functions(tmp_path: Path) -> None:
+    path = kinematic(tmp_path, 1)
+    told = invoke(
+        "export",
+        path,
+        "--target",
+        "c",
+        "--output",
+        tmp_path / "out",
+        "--functions",
+        "frame_pose",
+        "--waive",
+        "massless_tip",
+    )
+    said = " ".join(told.output.split())
+    assert told.exit_code == 2 and "give it an inertia, or bind it by a constraint" in said
+    assert "other functions" not in said
+
+
 def test_diagrams_and_native_files_have_no_options_of_reading(tmp_path: Path) -> None:
     diagram = tmp_path / "d.yaml"
     diagram.write_text("symofros_diagram: 1\nblocks: {}\n")
