@@ -117,6 +117,13 @@ def test_options_of_remedies_are_read_back() -> None:
         assert option == "--package" and reading_of(packages=[pair]).keywords == {"packages": {key: "/x y"}}
 
 
+def test_a_name_with_an_equals_sign_is_shown_with_its_backquotes(tmp_path: Path) -> None:
+    body = sf.RigidBody("b", sf.Joint("a=b", "revolute", "world"), sf.Inertia(1.0, (1, 0, 0)))
+    sf.save(sf.System("s", (body,)), tmp_path / "s.yaml")
+    told = invoke("equilibrium", tmp_path / "s.yaml", "--set", "a=b=0.2")
+    assert told.exit_code == 2 and "write '`a=b`=0.2'" in told.output
+
+
 def test_options_that_a_format_has_not_are_left_out_for_several_files() -> None:
     stated = reading_of(floating_base=True, mimic=True, waive=["massless_tip"], arguments=["a=b"])
     assert stated.fit_for(Path("a.xml")) == ReadingOptions(waive=("massless_tip",))
