@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 import numpy as np
 
 import symofros as sf
-from symofros.base.names import coordinate_of, speed_of
+from symofros.base.names import coordinate_of, quoted, speed_of
 from symofros.commands.shared import number, refuse
 from symofros.errors import did_you_mean
 from symofros.runtime.calls.kernel import Array
@@ -18,6 +18,7 @@ def stated_state(model: sf.Model, given: Mapping[str, str]) -> tuple[sf.Model, A
 
     A name of a coordinate or a speed comes before that of a parameter; another one is reported, and ends the command.
     """
+    _refuse_split(given, (*model.names.q, *model.names.v, *model.names.par))
     stated = {name: number(name, text) for name, text in given.items()}
     states = (*model.names.q, *model.names.v)
     parameters = {name: parameter for name in stated if (parameter := coordinate_of(name, model.names.par))}
@@ -36,3 +37,14 @@ def stated_state(model: sf.Model, given: Mapping[str, str]) -> tuple[sf.Model, A
             rule = "--set gives first coordinates, speeds (dNAME) and run-time parameters"
             raise refuse(sf.UnknownNameError(sf.Problem(missing, listed, rule, did_you_mean(name, known))))
     return model, q, v
+
+
+def _refuse_split(given: Mapping[str, str], known: Collection[str]) -> None:
+    """Report a known name with an equals sign that lacks its backquotes, and so was taken for its beginning."""
+    for name, text in given.items():
+        whole = f"{name}={text}"
+        meant = next((other for other in known if "=" in other and whole.startswith(f"{other}=")), None)
+        if meant is not None and name not in known:
+            rule = "a name with an equals sign stands between backquotes"
+            remedy = f"write '{quoted(meant)}={whole[len(meant) + 1 :]}'"
+            raise refuse(sf.UnknownNameError(sf.Problem(f"--set: no '{name}'", f"'{whole}'", rule, remedy)))

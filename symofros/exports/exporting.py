@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal, get_args
 
@@ -18,7 +20,7 @@ from symofros.description.beams.beam import Beam
 from symofros.description.system import System
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.program.compiled import resolve
-from symofros.errors import ExportError, Problem, UnknownNameError, did_you_mean
+from symofros.errors import DescriptionError, ExportError, Problem, UnknownNameError, did_you_mean
 from symofros.exports.c.c_package import write_c_package
 from symofros.exports.c.mex import write_mex
 from symofros.exports.c.reference import POINTS, checks
@@ -36,6 +38,7 @@ from symofros.exports.wasm.wasm import write_wasm
 from symofros.generator.codegen.interpreted import InterpretedUnit
 from symofros.generator.codegen.names import identifier
 from symofros.loading import load
+from symofros.mechanics.topology.physics import OTHER_FUNCTIONS
 from symofros.mechanics.topology.tree import build_tree
 from symofros.runtime.beams import BEAM_LIMIT
 from symofros.runtime.calls.kernel import LaneOptions
@@ -138,9 +141,10 @@ def export(
     if target in _DESCRIBED:
         build_tree(system)
         return _DESCRIBED[target](system, name, place, GENERATOR)
-    if target == "cuda":
-        return write_cuda_package(system, name, frames, place)
-    material = _material(system, name, frames, functions, outputs, start or {}, _stepping(given), target)
+    with _with_stepping():
+        if target == "cuda":
+            return write_cuda_package(system, name, frames, place)
+        material = _material(system, name, frames, functions, outputs, start or {}, _stepping(given), target)
     return _COMPILED[target](material, place)
 
 
@@ -182,6 +186,16 @@ def _stepping(given: Mapping[str, Any], stated: Mapping[str, Any] | None = None)
         if not (np.isfinite(value) and value > 0):
             raise ExportError(Problem(f"export: {label} is not positive", str(value), f"{label} > 0", "leave it out"))
     return Stepping(METHODS[method], **{name: float(chosen[name]) for name in ("dt", "rtol", "atol", "beam_limit")})
+
+
+@contextmanager
+def _with_stepping() -> Iterator[None]:
+    """Remedies of an export, which steps whatever functions are asked for, propose no others."""
+    try:
+        yield
+    except DescriptionError as error:
+        told = (replace(problem, remedy=problem.remedy.replace(OTHER_FUNCTIONS, "")) for problem in error.problems)
+        raise DescriptionError([*told]) from None
 
 
 def _material(

@@ -64,6 +64,25 @@ def test_compile_knows_models_by_how_they_are_read(tmp_path: Path, monkeypatch: 
     assert "ask for other functions, such as frame_pose" in said
 
 
+def test_an_export_which_steps_proposes_no_other_functions(tmp_path: Path) -> None:
+    path = kinematic(tmp_path, 1)
+    told = invoke(
+        "export",
+        path,
+        "--target",
+        "c",
+        "--output",
+        tmp_path / "out",
+        "--functions",
+        "frame_pose",
+        "--waive",
+        "massless_tip",
+    )
+    said = " ".join(told.output.split())
+    assert told.exit_code == 2 and "give it an inertia, or bind it by a constraint" in said
+    assert "other functions" not in said
+
+
 def test_diagrams_and_native_files_have_no_options_of_reading(tmp_path: Path) -> None:
     diagram = tmp_path / "d.yaml"
     diagram.write_text("symofros_diagram: 1\nblocks: {}\n")
@@ -96,6 +115,13 @@ def test_options_of_remedies_are_read_back() -> None:
     for key in ("a=b", "my dir", "a`b", "`a`", "it's"):
         option, pair = shlex.split(Argument("packages", "/x y", key).option("--"))
         assert option == "--package" and reading_of(packages=[pair]).keywords == {"packages": {key: "/x y"}}
+
+
+def test_a_name_with_an_equals_sign_is_shown_with_its_backquotes(tmp_path: Path) -> None:
+    body = sf.RigidBody("b", sf.Joint("a=b", "revolute", "world"), sf.Inertia(1.0, (1, 0, 0)))
+    sf.save(sf.System("s", (body,)), tmp_path / "s.yaml")
+    told = invoke("equilibrium", tmp_path / "s.yaml", "--set", "a=b=0.2")
+    assert told.exit_code == 2 and "write '`a=b`=0.2'" in told.output
 
 
 def test_options_that_a_format_has_not_are_left_out_for_several_files() -> None:

@@ -9,6 +9,7 @@ import pinocchio
 import pytest
 
 import symofros as sf
+from symofros.description.closing import closing_remedy
 from tests.late import require
 from validation.inputs.cases import robot_case
 
@@ -207,3 +208,9 @@ def test_mimic_joints_move_as_pinocchio_s(tmp_path: Path) -> None:
 def test_what_can_t_be_mimicked_is_refused(tmp_path: Path, change: tuple[str, str], part: str) -> None:
     assert part in faults(tmp_path, MIMIC.replace(*change), mimic=True)
     assert any("mimic ignored" in note for note in load(tmp_path, MIMIC.replace(*change)).notes)
+
+
+@pytest.mark.parametrize("kind", ["floating", "free", "screw", "", "odd"])
+def test_a_joint_that_no_closure_replaces_is_dropped(kind: str) -> None:
+    """A hinge in the place of a floating joint binds five directions too many."""
+    assert closing_remedy("j", kind, "a", "b").startswith("drop the joint 'j'")

@@ -28,6 +28,7 @@ from symofros.mechanics.dynamics.wrenches.reactions import in_body_frames, presc
 from symofros.mechanics.dynamics.wrenches.section_forces import section_forces
 from symofros.mechanics.kinematics.frames import FrameKinematics
 from symofros.mechanics.kinematics.links import TreeKinematics, tree_kinematics
+from symofros.mechanics.topology.physics import OTHER_FUNCTIONS
 from symofros.mechanics.topology.tree import SpanningTree
 
 _DIVIDES = "forward dynamics divides by the inertia that each speed moves"
@@ -192,7 +193,7 @@ class EquationsOfMotion:
                         f"system '{self.tree.system.name}': speed '{name}' moves no mass",
                         "its row of M is zero",
                         _DIVIDES,
-                        "give it an inertia, bind it by a constraint, or ask for other functions, such as frame_pose",
+                        f"give it an inertia, or bind it by a constraint{OTHER_FUNCTIONS}",
                     )
                 )
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from typing import Literal, NamedTuple
 
-from symofros.base.names import TIME, quoted, symbol_of
+from symofros.base.names import RESERVED, TIME, name_of, quoted, symbol_of
 from symofros.description.beams.beam import MATRIX_ORDER, STATION, STRAINS, Beam, BeamLoad, Samples
 from symofros.description.constraints import Constraint, Coupling, Nonholonomic
 from symofros.description.entry_units import units_of
@@ -271,6 +271,9 @@ def _declared(name: str, stated: Stated, allowed: frozenset[str]) -> str:
     assert isinstance(stated.value, Expression)
     if stated.scope == "shape":
         return _REMEDIES["shape"]
+    if name_of(name) in RESERVED and name != name_of(name):
+        plain = name_of(name)
+        return f"no coordinate is called {plain}; write {plain} without backquotes for what it means in every formula"
     near = unknown_symbol_remedy(name, stated.value.written, allowed) if allowed else ""
     declare = f"declare it under parameters: {name}"
     return f"{near} Otherwise {declare}" if near.endswith("?") else near or declare

@@ -16,6 +16,8 @@ from symofros.errors import Argument, Problem
 from symofros.mechanics.topology.conditions import Condition, Formulas, violations
 from symofros.mechanics.topology.numbers import Numbers
 
+# What the remedy for a speed that moves no mass ends with, where functions are chosen.
+OTHER_FUNCTIONS = "; or ask for other functions, such as frame_pose"
 # A thin rod or plate meets the triangle inequality with equality; its file's digits may miss it by rounding.
 PHYSICAL_TOLERANCE = 1e-6
 # Moments below this are nothing [kg m^2].
