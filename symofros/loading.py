@@ -18,7 +18,7 @@ from symofros.description.remarks import note
 from symofros.description.system import WAIVERS, System
 from symofros.description.urdf.reader import SNAP_TOL, read_urdf
 from symofros.errors import Argument, DescriptionError, Problem, did_you_mean
-from symofros.mechanics.topology.graph import find_problems
+from symofros.mechanics.topology.graph import find_problems, name_problems
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.physics import has_physical_inertia
 from symofros.mechanics.topology.remarks import rounded_rotations
@@ -208,6 +208,8 @@ def save(system: System, path: str | os.PathLike[str]) -> None:
     _refuse_suffix(file, YAML_SUFFIXES, "written")
     from symofros.description.yaml.yaml_writer import write_yaml
 
+    if problems := name_problems(system):
+        raise DescriptionError(problems)
     write_atomically(file, write_yaml(system))
 
 
