@@ -42,11 +42,14 @@ class Argument:
         stated = f"{{{self.key!r}: {self.value!r}}}" if self.key else f"[{self.value!r}]"
         return f"load(…, {self.name}={stated})"
 
+    def flag(self, prefix: str) -> str:
+        """The name of that option."""
+        return prefix + (self.name.removesuffix("s") if self.key else self.name.replace("_", "-"))
+
     def option(self, prefix: str) -> str:
         """The option of a command, whose name begins with the prefix; one occurrence states one value."""
-        name = self.name.removesuffix("s") if self.key else self.name.replace("_", "-")
         stated = f"{self._name_of_pair()}={self.value}" if self.key else self.value
-        return " ".join(filter(None, (f"{prefix}{name}", shlex.quote(stated) if stated else "")))
+        return " ".join(filter(None, (self.flag(prefix), shlex.quote(stated) if stated else "")))
 
     def _name_of_pair(self) -> str:
         """The key as a command reads it: between backquotes where it would not be read as it stands."""
@@ -98,7 +101,10 @@ class Problem:
         """
         if self.argument is None:
             return self
-        return replace(self, remedy=self.remedy.replace(self.argument.call, self.argument.option(prefix)))
+        what, name = self.what, self.argument.name
+        if what.startswith(f"{name} "):
+            what = self.argument.flag(prefix) + what.removeprefix(name)
+        return replace(self, what=what, remedy=self.remedy.replace(self.argument.call, self.argument.option(prefix)))
 
     def __str__(self) -> str:
         """The message: one line, then the parts that are given, indented."""

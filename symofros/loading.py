@@ -17,8 +17,8 @@ from symofros.description.reading import MODEL_SUFFIXES, USD_SUFFIXES, YAML_SUFF
 from symofros.description.remarks import note
 from symofros.description.system import WAIVERS, System
 from symofros.description.urdf.reader import SNAP_TOL, read_urdf
-from symofros.errors import DescriptionError, Problem, did_you_mean
-from symofros.mechanics.topology.graph import find_problems
+from symofros.errors import Argument, DescriptionError, Problem, did_you_mean
+from symofros.mechanics.topology.graph import find_problems, name_problems
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.physics import has_physical_inertia
 from symofros.mechanics.topology.remarks import rounded_rotations
@@ -187,7 +187,9 @@ def _refuse_idle(file: Path, suffix: str, asked: Asked) -> None:
     for name, (formats, suffixes, remedy) in _OF_FORMATS.items():
         if getattr(asked, name) and suffix not in suffixes:
             rule = "other descriptions state it themselves, or have no such thing"
-            raise DescriptionError(Problem(f"{name} applies to {formats} files only", f"'{file}'", rule, remedy))
+            argument = Argument(name, key="NAME" if name in ("arguments", "packages") else "")
+            what = f"{name} applies to {formats} files only"
+            raise DescriptionError(Problem(what, f"'{file}'", rule, remedy, argument=argument))
 
 
 @checked
@@ -206,6 +208,8 @@ def save(system: System, path: str | os.PathLike[str]) -> None:
     _refuse_suffix(file, YAML_SUFFIXES, "written")
     from symofros.description.yaml.yaml_writer import write_yaml
 
+    if problems := name_problems(system):
+        raise DescriptionError(problems)
     write_atomically(file, write_yaml(system))
 
 

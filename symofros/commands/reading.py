@@ -66,6 +66,16 @@ class ReadingOptions:
         default = ReadingOptions()
         return replace(self, **{name: getattr(default, name) for name in names})
 
+    def check_waivers(self) -> None:
+        """Refuse checks that do not exist.
+
+        Raises:
+            DescriptionError: There is one.
+        """
+        from symofros.loading import check_waivers  # What is answered from the cache loads no reader.
+
+        check_waivers(self.waive)
+
     def require_none(self, why: str) -> None:
         """Refuse options where no model is read by them.
 

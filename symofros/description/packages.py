@@ -49,11 +49,22 @@ class Packages:
         self.folder = resolved(file).parent
         self._names: dict[Path, str] = {}
         self._bytes = 0
+        for name, folder in (stated or {}).items():
+            if "\0" in os.fspath(folder):
+                shown, rule = f"{os.fspath(folder)!r:.{MOST_SHOWN}}", "the path of a folder holds no NUL character"
+                raise DescriptionError(
+                    Problem(f"package '{name:.{MOST_SHOWN}}' is not there", shown, rule, "check the path")
+                )
         self.stated = {name: resolved(Path(folder)) for name, folder in (stated or {}).items()}
         for name, folder in self.stated.items():
-            if not folder.is_dir():
+            if not os.path.isdir(folder):
                 raise DescriptionError(
-                    Problem(f"package '{name}' is not there", f"'{folder}'", "a package is a folder", "check the path")
+                    Problem(
+                        f"package '{name:.{MOST_SHOWN}}' is not there",
+                        f"'{str(folder):.{MOST_SHOWN}}'",
+                        "a package is a folder",
+                        "check the path",
+                    )
                 )
 
     @cached_property

@@ -124,6 +124,11 @@ def test_a_name_with_an_equals_sign_is_shown_with_its_backquotes(tmp_path: Path)
     assert told.exit_code == 2 and "write '`a=b`=0.2'" in told.output
 
 
+def test_an_option_without_use_is_named_as_it_is_typed(tmp_path: Path) -> None:
+    path = kinematic(tmp_path, 1)
+    assert "--argument applies to xacro files only" in invoke("info", path, "--argument", "a=b").output
+
+
 def test_options_that_a_format_has_not_are_left_out_for_several_files() -> None:
     stated = reading_of(floating_base=True, mimic=True, waive=["massless_tip"], arguments=["a=b"])
     assert stated.fit_for(Path("a.xml")) == ReadingOptions(waive=("massless_tip",))

@@ -229,3 +229,10 @@ def test_a_mesh_of_one_of_two_packages_is_left_out_in_words(tmp_path: Path) -> N
         (tmp_path / f"src/{folder}/a.stl").write_text("solid")
     system = sf.load(main)
     assert not system.visuals and any("src/one" in note and "src/two" in note for note in system.notes)
+
+
+@pytest.mark.parametrize("folder", ["a\0b", "x" * 5000])
+def test_folders_that_can_not_be_are_refused_in_few_words(tmp_path: Path, folder: str) -> None:
+    (tmp_path / "a.urdf").write_text(ROBOT.format(FINGER))
+    text = str(refused(tmp_path / "a.urdf", packages={"n" * 5000: folder}))
+    assert "is not there" in text and "\0" not in text and len(text) < 1000

@@ -184,3 +184,11 @@ def test_usd_joints_bear_names_that_formulas_reserve(names: list[str], tmp_path:
     file.write_text(usd_models.stage(*bodies, *joints))
     system = same_meaning(sf.load(file), tmp_path)
     assert sf.compile(system, INTERPRETER).names.q == tuple(names)
+
+
+@pytest.mark.parametrize(("name", "body"), [("a\nb", "b"), ("s", "c\nd"), ("s", "")])
+def test_names_that_load_would_refuse_are_not_saved(tmp_path: Path, name: str, body: str) -> None:
+    bodies = (sf.RigidBody(body, sf.Joint("q", "revolute", "world"), sf.Inertia(1.0, (1, 0, 0))),)
+    with pytest.raises(sf.DescriptionError, match="unusable name"):
+        sf.save(sf.System(name, bodies), tmp_path / "s.yaml")
+    assert not (tmp_path / "s.yaml").exists()

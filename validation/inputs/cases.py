@@ -9,7 +9,6 @@ from pathlib import Path
 
 import symofros as sf
 from symofros.commands.reading import ReadingOptions
-from symofros.loading import check_waivers
 
 from .. import references
 from ..contract.interface import MjcfSource, Subject, UrdfSource
@@ -162,7 +161,7 @@ def named(names: list[str], reading: ReadingOptions = AS_THEY_ARE) -> list[Case]
         FileNotFoundError: A robot's package is not installed.
         SymofrosError: An option of reading fits none of the files, or waives a check that does not exist.
     """
-    check_waivers(reading.waive)
+    reading.check_waivers()
     if not names:
         reading.require_none("the models of the standard set are read as they are")
         return standard_set()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
-from symofros.description.packages import Packages
+from symofros.description.packages import MOST_SHOWN, Packages
 from symofros.description.reading import read_bytes, resolved
 from symofros.description.xml_nodes import MAX_DEPTH, Element, XmlFault, parse_xml
 from symofros.errors import Argument, DescriptionError, Problem
@@ -62,7 +62,7 @@ class Folder:
             self.fault(
                 user,
                 f"{what}: its file can't be read",
-                f"'{file}': {reason}",
+                f"'{file:.{MOST_SHOWN}}': {reason}",
                 "a mesh that gives a body its inertia lies in the model's folder",
                 "put the file there, or give the body an <inertial>",
             )
@@ -137,7 +137,7 @@ class Folder:
         if path in self._read:
             self.fault(
                 include,
-                f"'{file}' is included twice",
+                f"'{file:.{MOST_SHOWN}}' is included twice",
                 f"'{path.name}' again",
                 "a file is included once at most, and never by itself",
                 "remove one <include>",
@@ -148,7 +148,11 @@ class Folder:
         except DescriptionError as error:
             refusal = error.problems[0]
             self.fault(
-                include, f"'{file}' can't be included", refusal.found, refusal.rule or "the file exists", refusal.remedy
+                include,
+                f"'{file:.{MOST_SHOWN}}' can't be included",
+                refusal.found,
+                refusal.rule or "the file exists",
+                refusal.remedy,
             )
             return []
         self._expand(root, path.parent, depth)

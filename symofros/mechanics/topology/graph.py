@@ -64,6 +64,11 @@ def find_problems(system: System, broken: Collection[str] = ()) -> list[Problem]
     return problems
 
 
+def name_problems(system: System) -> list[Problem]:
+    """Names that no file holds: of a newline or other characters that can't be printed, empty, or too long."""
+    return first_of(_Checker(system, frozenset()).unusable_names())
+
+
 @np.errstate(all="ignore")  # Numbers that overflow are found as numbers that are not finite.
 def _look_for_problems(system: System, broken: frozenset[str]) -> list[Problem]:
     checker = _Checker(system, broken)
@@ -117,6 +122,10 @@ class _Checker:
                     self.where("body", WORLD),
                 )
         yield from self._symbols_unique()
+        yield from self.unusable_names()
+
+    def unusable_names(self) -> Iterator[Problem]:
+        """Names that no file holds and no message shows."""
         for kind, name in self._all_names():
             if not name or len(name) > _MAX_NAME or not name.isprintable():
                 yield Problem(
