@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shlex
 import subprocess
@@ -59,7 +60,9 @@ def try_out(command: str, folder: Path) -> None:
     elif words[0] == "symofros" or tuple(words[:3]) == HARNESS:
         understood(validation, words[1:] if words[1] == "check" else words[2:] if words[0] == "symofros" else words[3:])
     elif words[0] in RUN:
-        subprocess.run(command, shell=True, cwd=folder, check=True)
+        # Utilities of the system are there, whatever is on the path of this process.
+        path = os.pathsep.join((os.environ["PATH"], os.defpath))
+        subprocess.run(command, shell=True, cwd=folder, check=True, env=os.environ | {"PATH": path})
     else:
         program = words[2] if words[:2] == ["python", "-m"] else words[0]
         assert program in LEFT, f"'{command}': run it, or say in LEFT why not"

@@ -51,7 +51,7 @@ BUILD = (*STRICT, "-O0")
 
 
 def system_of(name: str) -> sf.System:
-    return named([name], False)[0].load().system
+    return named([name])[0].load().system
 
 
 def first_state(model: sf.Model, name: str) -> tuple[np.ndarray, np.ndarray]:
