@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from symofros.runtime.cuda.device_code import DeviceCode
+from tests.late import needs_program, with_utilities
 
 SHIM = Path(__file__).parent / "cuda_shim.h"
 # As the C code is compiled: products and sums are not fused, so that results agree bit for bit.
@@ -44,7 +45,8 @@ def on_host(code: DeviceCode, folder: Path, sources: str = "") -> Path:
     source = folder / f"{code.precision}.cu"
     source.write_text("\n".join([f'#include "{SHIM}"', code.text, *launchers, sources]))
     library = source.with_suffix(".so")
-    subprocess.run(["g++", *FLAGS, source, "-o", library], check=True)
+    needs_program("g++")
+    subprocess.run(["g++", *FLAGS, source, "-o", library], check=True, env=with_utilities())
     return library
 
 

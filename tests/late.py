@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import shutil
 from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
@@ -40,3 +42,21 @@ def needs_extra(extra: str, package: str) -> str:
 def require(package: str, extra: str) -> Any:
     """A package; the test, or the file, that asks for it is skipped where its extra is not installed."""
     return pytest.importorskip(package, reason=needs_extra(extra, package))
+
+
+# Beginning of scripts that stand for other programs, and use the system's utilities.
+SHELL = "#!/bin/sh\nPATH=$PATH:/bin:/usr/bin\n"
+
+
+def with_utilities() -> dict[str, str]:
+    """The environment of a process in which a test itself uses the system's utilities: they are where it has them.
+
+    The path of a run may have no more on it than what SYMOFROS needs.
+    """
+    return os.environ | {"PATH": os.pathsep.join((os.environ["PATH"], os.defpath))}
+
+
+def needs_program(name: str) -> None:
+    """Skip a test that uses a program which the system lacks."""
+    if shutil.which(name, path=with_utilities()["PATH"]) is None:
+        pytest.skip(f"needs a program called {name}")

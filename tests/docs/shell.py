@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import shlex
 import subprocess
@@ -15,6 +14,7 @@ from typer.testing import CliRunner
 
 from symofros.__main__ import app as symofros
 from tests.docs.pages import Block
+from tests.late import with_utilities
 from validation.__main__ import app as validation
 
 # Commands of symofros that are cheap, unless an option asks for more.
@@ -60,9 +60,7 @@ def try_out(command: str, folder: Path) -> None:
     elif words[0] == "symofros" or tuple(words[:3]) == HARNESS:
         understood(validation, words[1:] if words[1] == "check" else words[2:] if words[0] == "symofros" else words[3:])
     elif words[0] in RUN:
-        # Utilities of the system are there, whatever is on the path of this process.
-        path = os.pathsep.join((os.environ["PATH"], os.defpath))
-        subprocess.run(command, shell=True, cwd=folder, check=True, env=os.environ | {"PATH": path})
+        subprocess.run(command, shell=True, cwd=folder, check=True, env=with_utilities())
     else:
         program = words[2] if words[:2] == ["python", "-m"] else words[0]
         assert program in LEFT, f"'{command}': run it, or say in LEFT why not"

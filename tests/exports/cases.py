@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from tests.late import needs_program, with_utilities
 from tests.models import sampled
 from validation.inputs.cases import named
 
@@ -109,7 +110,10 @@ def sanitizers(compiler: str, wanted: str) -> tuple[str, ...]:
 
 
 def run(*command: str | Path, cwd: Path) -> str:
-    done = subprocess.run([str(word) for word in command], cwd=cwd, capture_output=True, text=True)
+    words = [str(word) for word in command]
+    if "/" not in words[0]:
+        needs_program(words[0])
+    done = subprocess.run(words, cwd=cwd, capture_output=True, text=True, env=with_utilities())
     assert done.returncode == 0, f"{' '.join(map(str, command))}\n{done.stdout[-2000:]}\n{done.stderr[-4000:]}"
     return done.stdout
 

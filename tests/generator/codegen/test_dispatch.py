@@ -17,6 +17,7 @@ from symofros.generator.codegen.dispatch import dispatch_source
 from symofros.runtime.build.build import build_library
 from symofros.runtime.build.toolchain import KINDS, Toolchain, cpu_identity, find_toolchain, kinds
 from symofros.runtime.calls import library
+from tests.late import needs_program, with_utilities
 
 X86 = platform.machine().lower() in ("x86_64", "amd64")
 
@@ -41,7 +42,9 @@ def test_the_same_states_as_natively() -> None:
 def test_every_version_is_there_and_the_best_is_chosen() -> None:
     options = sf.Options(functions=("dynamics",), processors="any")
     path, symbol = compile_library(MODELS["pendulum"], options)
-    symbols = subprocess.run(["nm", str(path)], capture_output=True, text=True, check=True).stdout
+    needs_program("nm")
+    command = ["nm", str(path)]
+    symbols = subprocess.run(command, capture_output=True, text=True, check=True, env=with_utilities()).stdout
     assert [name for name, _, _ in KINDS if f"{symbol}_{name}" in symbols] == ["avx512", "avx2", "baseline"]
     has = set(cpu_identity().split())
     best = next(name for name, needs, _ in KINDS if has.issuperset(needs))

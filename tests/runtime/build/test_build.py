@@ -19,7 +19,7 @@ from symofros.runtime.build import toolchain
 from symofros.runtime.build.build import build_library
 from symofros.runtime.build.cache import install
 from symofros.runtime.build.toolchain import find_toolchain
-from tests.late import require
+from tests.late import SHELL, require
 
 SCRIPT = """
 import sys, numpy as np, symofros as sf
@@ -71,7 +71,7 @@ def test_concurrent_processes_agree(cache: Path) -> None:
 
 def test_a_killed_compilation_leaves_nothing_broken(cache: Path, tmp_path: Path) -> None:
     slow = tmp_path / "slowcc"
-    slow.write_text('#!/bin/sh\ncase "$*" in *--version*) echo slow;; *) touch started; sleep 60;; esac\n')
+    slow.write_text(SHELL + 'case "$*" in *--version*) echo slow;; *) touch started; sleep 60;; esac\n')
     slow.chmod(0o755)
     root = Path(__file__).parents[3]
     process = subprocess.Popen(

@@ -17,7 +17,7 @@ from symofros.base.sources import Source
 from symofros.commands import compilation
 from symofros.runtime.build import build, prepared
 from symofros.runtime.build.toolchain import find_toolchain
-from tests.late import require
+from tests.late import SHELL, require
 
 PART = """symofros: 1
 bodies:
@@ -193,7 +193,7 @@ def test_other_compilers_and_stated_flags_are_no_known_ones(
     assert toolchain is not None
     newer = tmp_path / "newer"
     newer.write_text(
-        f'#!/bin/sh\n[ "$1" = --version ] && echo newer 99 && exit\nexec {" ".join(toolchain.command)} "$@"\n'
+        SHELL + f'[ "$1" = --version ] && echo newer 99 && exit\nexec {" ".join(toolchain.command)} "$@"\n'
     )
     newer.chmod(0o755)
     monkeypatch.setenv("CC", str(newer))

@@ -16,6 +16,7 @@ from symofros.exports.c.compiling import shared_library
 from symofros.runtime.build import toolchain
 from symofros.runtime.build.build import build_library
 from symofros.runtime.build.toolchain import GCC_FLAGS, find_toolchain, kinds
+from tests.late import SHELL
 
 
 @pytest.fixture(autouse=True)
@@ -104,7 +105,7 @@ def test_flags_of_gcc_are_given_to_gcc_alone(
     """A compiler that writes down its arguments."""
     told = tmp_path / "told"
     answers = f'case "$*" in *--version*) echo "{says}";; *) echo "$*" >> {told}; for x; do :; done; echo > "$x";; esac'
-    monkeypatch.setenv("CC", str(script(tmp_path, f"#!/bin/sh\n{answers}\n")))
+    monkeypatch.setenv("CC", str(script(tmp_path, SHELL + f"{answers}\n")))
     monkeypatch.delenv("SYMOFROS_CFLAGS", raising=False)
     named = find_toolchain()
     assert named is not None and named.gcc == gcc
@@ -127,12 +128,15 @@ def test_a_program_that_the_machine_can_t_run_is_told(monkeypatch: pytest.Monkey
 def test_a_compiler_that_does_not_end_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, hangs: str) -> None:
     monkeypatch.setattr(toolchain, "VERSION_LIMIT", 0.3)
     monkeypatch.setattr(toolchain, "COMPILATION_LIMIT", 0.3)
-    monkeypatch.setenv("CC", str(script(tmp_path, f"#!/bin/sh\n{hangs}\n")))
+    monkeypatch.setenv("CC", str(script(tmp_path, SHELL + f"{hangs}\n")))
     assert "did not end within 0.3 s" in refused().what
 
 
 def test_a_compiler_does_not_wait_for_input(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setenv("CC", str(script(tmp_path, '#!/bin/sh\ncase "$*" in *--version*) ;; *) exec cat;; esac\n')))
+    monkeypatch.setenv(
+        "CC",
+        str(script(tmp_path, SHELL + 'case "$*" in *--version*) ;; *) exec cat;; esac\n')),
+    )
     assert "wrote nothing" in refused().what
 
 
@@ -147,7 +151,7 @@ def test_what_a_compiler_started_ends_with_it(monkeypatch: pytest.MonkeyPatch, t
     """As a driver's own compiler, which would go on computing."""
     monkeypatch.setattr(toolchain, "COMPILATION_LIMIT", 0.5)
     started = tmp_path / "started"
-    driver = script(tmp_path, f"#!/bin/sh\nsleep 60 & echo $! > {started}\nwait\n")
+    driver = script(tmp_path, SHELL + f"sleep 60 & echo $! > {started}\nwait\n")
     with pytest.raises(sf.CompileError, match="did not end within"):
         toolchain.call_compiler([str(driver)], "out", tmp_path, "another compiler")
     child = int(started.read_text())

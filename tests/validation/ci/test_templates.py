@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from ruamel.yaml import YAML
 
+from tests.late import with_utilities
 from tests.validation.ci.test_plugin import ROOT, cases
 from tests.validation.subjects import URDF
 from validation.__main__ import command
@@ -60,7 +61,7 @@ def _installed() -> bool:
 def run(project: Path, command: str, stated: dict[str, str]) -> subprocess.CompletedProcess[str]:
     given = {name: value for name, value in stated.items() if "$" not in value}
     paths = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH", "")]))
-    path = f"{project / 'bin'}:{os.environ['PATH']}"
+    path = f"{project / 'bin'}:{with_utilities()['PATH']}"
     environment = os.environ | given | {"PATH": path, "PYTHONPATH": paths}
     return subprocess.run(
         ["bash", "-e", "-c", command], cwd=project, env=environment, capture_output=True, text=True, timeout=300
