@@ -171,9 +171,9 @@ def test_a_diagram_is_checked_as_it_is_drawn_and_saved_with_every_other_byte_as_
     page.keyboard.press("Control+z")
     expect(steps.block(page, "blocks/sum2")).to_have_count(0)
 
-    # Fed by another signal, by the keyboard alone; a scope on a signal; then it runs.
+    # Fed by a signal of the same unit, by the keyboard alone; a scope on a signal; then it runs.
     steps.open_window(page, "blocks/sum")
-    steps.window(page).get_by_label("Source of u2").select_option("source.y")
+    steps.window(page).get_by_label("Source of u2").select_option("speed.y")
     steps.accept(page)
     expect(page.locator(".react-flow__edge.loop")).to_have_count(0)
     steps.wire(page, "blocks/sum/inputs/u1").focus()
@@ -189,7 +189,7 @@ def test_a_diagram_is_checked_as_it_is_drawn_and_saved_with_every_other_byte_as_
     assert server.file.read_text() == DRAWN.replace(
         'rad/s, unit_out: "rad/s", inputs: {}', 'rad, unit_out: "rad/s", inputs: {u: source.y}'
     ) + (
-        "  sum: {kind: sum, inputs: {u1: speed.y, u2: source.y}}\n"
+        "  sum: {kind: sum, inputs: {u1: speed.y, u2: speed.y}}\n"
         "  scope: {kind: scope, signals: [y], inputs: {y: speed.y}}\n"
     )
 

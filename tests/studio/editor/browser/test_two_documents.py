@@ -49,6 +49,7 @@ def new_file(page: Page, name: str) -> None:
 
 def simulated(page: Page) -> None:
     steps.window(page).get_by_role("button", name="Simulate", exact=True).click()
+    expect(page.get_by_role("dialog")).to_have_count(0)
     expect(steps.results(page).get_by_text("s of computing")).to_be_visible(timeout=JOB)
 
 

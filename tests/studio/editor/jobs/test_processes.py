@@ -272,13 +272,15 @@ def test_progress_is_told_as_it_comes(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_children_of_a_worker_end_with_it(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     mark = tmp_path / "pid"
     code = f"""if True:
-        import subprocess, time
-        child = subprocess.Popen(['sleep', '600'])
+        import subprocess, sys, time
+        child = subprocess.Popen([sys.executable, '-c', 'import time; time.sleep(600)'])
         open({str(mark)!r}, 'w').write(str(child.pid))
         time.sleep(600)
     """
     jobs, job, _ = run(monkeypatch, code)
-    while not mark.exists() or not mark.read_text():
+    for _ in range(3000):
+        if mark.exists() and mark.read_text():
+            break
         time.sleep(0.02)
     jobs.cancel(job.key)
     child = int(mark.read_text())
