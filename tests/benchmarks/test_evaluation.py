@@ -26,7 +26,7 @@ def test_dynamics(benchmark: BenchmarkFixture, model: str, states: int) -> None:
 
 
 def panda() -> sf.Model:
-    return sf.compile(named(["panda"], False)[0].load().system, sf.Options(functions=("mass_matrix",)))
+    return sf.compile(named(["panda"])[0].load().system, sf.Options(functions=("mass_matrix",)))
 
 
 def test_one_mass_matrix(benchmark: BenchmarkFixture) -> None:

@@ -56,7 +56,7 @@ def spatial() -> sf.System:
 
 def robot() -> sf.System:
     """The paper's planar robot: two flexible links, eleven speeds."""
-    return named(["planar_robot"], False)[0].load().system
+    return named(["planar_robot"])[0].load().system
 
 
 SYSTEMS = {"cantilever": cantilever_system, "strip": spatial, "planar_robot": robot}

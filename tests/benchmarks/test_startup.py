@@ -33,7 +33,7 @@ FUNCTIONS = (
 
 @pytest.fixture(scope="module")
 def panda() -> sf.System:
-    return named(["panda"], False)[0].load().system
+    return named(["panda"])[0].load().system
 
 
 @pytest.fixture(scope="module")

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from tests.late import with_utilities
 from tests.validation.timing.records import cubic, entry, made
 from validation.__main__ import app
 from validation.reporting.command import write
@@ -61,7 +62,7 @@ def test_a_worker_ends_with_the_process_that_started_it() -> None:
 
 def test_a_model_that_is_timed_again_has_failed_no_longer(monkeypatch: pytest.MonkeyPatch) -> None:
     record = Record(failed=[("panda", run.LEFT, "symofros", "it died"), ("ur5", run.LEFT, "symofros", "it died")])
-    monkeypatch.setattr(sys, "executable", shutil.which("true"))
+    monkeypatch.setattr(sys, "executable", shutil.which("true", path=with_utilities()["PATH"]))
     run.run_job(JOB, record)
     assert [model for model, *_ in record.failed] == ["ur5"]
 

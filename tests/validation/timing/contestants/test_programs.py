@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import pytest
@@ -56,4 +57,6 @@ def test_a_program_is_compiled_once_for_its_content_and_anew_where_it_was_damage
     assert len(told) == 2
     other = build(compiler, {"f.c": text}, ("-O3",))
     assert first == again and other.path != first.path
-    assert first.text > 0 and first.constants >= 8 and first.seconds > 0
+    assert first.seconds > 0
+    if shutil.which("size"):  # Which tells sizes, where it is.
+        assert first.text > 0 and first.constants >= 8
