@@ -33,11 +33,11 @@ def folder_of(package: str) -> Path:
         if (folder / "__init__.py").is_file():
             return folder
     raise SymofrosError(
-        Problem(
+        Problem.of_extra(
             f"no package '{package}'",
             f"{_PACKAGE} is installed without it",
             "a wheel of symofros, and a checkout, has it",
-            "pip install 'symofros[validation]'",
+            "validation",
         )
     )
 

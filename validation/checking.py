@@ -36,7 +36,7 @@ from .comparison.retained import judge_order, omitted_orders
 from .comparison.variants import ModelVariants
 from .contract.interface import States, Subject
 from .contract.quantities import CONSTRAINED, FRAME_QUANTITIES, LOOPS, MOTION_ENERGY, QUANTITIES, Quantity
-from .contract.raised import Raised, attempted, words
+from .contract.raised import Raised, attempted, not_installed, words
 from .inputs.frames import chosen_frames
 from .inputs.sampling import DEFAULT_STATES, sample, special_states
 from .mechanics.assembly import Assembly, assemble
@@ -153,9 +153,10 @@ def broken(label: str, error: BaseException) -> ModelResult:
     return failed(label, "check", words(error))
 
 
-def absent(label: str, stage: str, reason: str) -> ModelResult:
-    """The result of a model that needs a package which is not installed."""
-    return ModelResult(label, (Comparison(label, "symofros", stage, "unsupported", note=reason),))
+def absent(label: str, stage: str, error: BaseException) -> ModelResult | None:
+    """The result of a model that needs a package which is not installed; None where the error says something else."""
+    missing = not_installed(error)
+    return ModelResult(label, (Comparison(label, "symofros", stage, "unsupported", note=missing),)) if missing else None
 
 
 def check(subject: Subject, settings: Settings, factories: Factories | None = None) -> ModelResult:

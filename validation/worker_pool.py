@@ -40,8 +40,8 @@ def run_case(case: Case, settings: Settings) -> ModelResult:
         stage = "compile"
         return check(subject, settings)
     except (sf.SymofrosError, OSError, UnicodeDecodeError) as error:
-        if isinstance(error, sf.SymofrosError) and error.extra:
-            return absent(case.label, stage, f"{error.problem.what}; {error.problem.remedy}")
+        if unsupported := absent(case.label, stage, error):
+            return unsupported
         said = error.in_shell(case.reading.prefix) if isinstance(error, sf.SymofrosError) else str(error)
         return failed(case.label, stage, without_folder(said, case.path))
     except Exception as error:  # An engine's or our own fault, of any kind: one row of the table, with its place.

@@ -19,8 +19,9 @@ from pathlib import Path
 from typing import Any
 
 from symofros.errors import CompileError, Problem
-from symofros.interop.coordinates import Coordinates, Operations
-from symofros.interop.rules import RULES, InteropError, check_model, framework, second_derivatives
+from symofros.interop.coordinates import Operations
+from symofros.interop.rules import RULES, InteropError, framework, second_derivatives
+from symofros.interop.wrapped import WrappedDynamics
 from symofros.native import native_text
 from symofros.runtime.build.build import build_library
 from symofros.runtime.build.toolchain import NO_COMPILER, find_toolchain
@@ -41,7 +42,7 @@ _OPERATIONS = Operations(
 _REGISTERED: dict[str, CompiledKernel] = {}
 
 
-class Dynamics:
+class Dynamics(WrappedDynamics):
     """A model's dynamics for JAX.
 
     Args:
@@ -52,30 +53,8 @@ class Dynamics:
     """
 
     def __init__(self, model: Model) -> None:
-        check_model(model)
-        self.model = model.with_precision("double")
-        self.coordinates = Coordinates(model.record.segments, _OPERATIONS)
+        super().__init__(model, _OPERATIONS)
         self._functions = {name: self._differentiable(name) for name in RULES}
-
-    def forward_dynamics(self, q: Any, v: Any, u: Any, par: Any = None) -> Any:
-        """Accelerations (..., nv) of arrays q (..., nq), v (..., nv), u (..., nu), par (..., npar)."""
-        return self._apply("forward_dynamics", q, v, u, par)
-
-    def inverse_dynamics(self, q: Any, v: Any, a: Any, par: Any = None) -> Any:
-        """Efforts M a + h - Q(q, v, 0) (..., nv) of arrays q, v, a (..., nv) and par (..., npar)."""
-        return self._apply("inverse_dynamics", q, v, a, par)
-
-    def coordinate_rates(self, q: Any, v: Any) -> Any:
-        """Rates q' = N(q) v (..., nq) of arrays q (..., nq), v (..., nv): v itself but for balls and free joints."""
-        return self.coordinates.rates(*self._arrays("coordinate_rates", q=q, v=v))
-
-    def integrate(self, q: Any, dq: Any) -> Any:
-        """Move from q (..., nq) along the manifold by dq (..., nv), a velocity times a time: `Model.integrate`."""
-        return self.coordinates.integrate(*self._arrays("integrate", q=q, dq=dq))
-
-    def difference(self, q0: Any, q1: Any) -> Any:
-        """The dq (..., nv) that leads from q0 to q1 (..., nq): `Model.difference`."""
-        return self.coordinates.difference(*self._arrays("difference", q0=q0, q1=q1))
 
     def _apply(self, name: str, *arrays: Any) -> Any:
         *states, par = arrays
@@ -83,31 +62,18 @@ class Dynamics:
             par = self.model.parameter_values
         elif not isinstance(par, jax.core.Tracer):  # What is traced has no values yet.
             self.model.checked_parameters(par)
-        return self._functions[name](*self._arrays(name, **dict(zip(RULES[name].inputs, (*states, par), strict=True))))
+        return self._functions[name](*self._given(name, **dict(zip(RULES[name].inputs, (*states, par), strict=True))))
 
-    def _arrays(self, function: str, **given: Any) -> list[Any]:
+    def _given(self, function: str, **given: Any) -> list[Any]:
         """Arrays of doubles with the same leading dimensions."""
         if not jax.config.jax_enable_x64:
             raise _single(function, "arrays", "jax_enable_x64 is off", 'jax.config.update("jax_enable_x64", True)')
-        sizes = {
-            "q": self.model.nq,
-            "q0": self.model.nq,
-            "q1": self.model.nq,
-            "u": self.model.nu,
-            "par": self.model.npar,
-        }
         arrays = []
         for label, x in given.items():
             x = jnp.asarray(x)
             if jnp.issubdtype(x.dtype, jnp.inexact) and x.dtype != jnp.float64:
                 raise _single(function, f"'{label}'", str(x.dtype), f"{label}.astype(jax.numpy.float64)")
-            size = sizes.get(label, self.model.nv)
-            if x.ndim == 0 or x.shape[-1] != size:
-                raise InteropError(
-                    Problem(
-                        f"{function}: '{label}' has the wrong shape", str(x.shape), f"(..., {size})", "check its size"
-                    )
-                )
+            self._check_shape(function, label, x.shape)
             arrays.append(x.astype(jnp.float64))
         batch = jnp.broadcast_shapes(*(x.shape[:-1] for x in arrays))
         return [jnp.broadcast_to(x, (*batch, x.shape[-1])) for x in arrays]

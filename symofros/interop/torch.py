@@ -17,8 +17,9 @@ from typing import Any
 import numpy as np
 
 from symofros.errors import Problem
-from symofros.interop.coordinates import Coordinates, Operations
-from symofros.interop.rules import RULES, InteropError, check_model, framework, outputs, second_derivatives
+from symofros.interop.coordinates import Operations
+from symofros.interop.rules import RULES, InteropError, framework, outputs, second_derivatives
+from symofros.interop.wrapped import WrappedDynamics
 from symofros.runtime.model import Model
 
 torch = framework("torch", "torch")
@@ -30,7 +31,7 @@ _OPERATIONS = Operations(
 )
 
 
-class Dynamics:
+class Dynamics(WrappedDynamics):
     """A model's dynamics for PyTorch.
 
     Args:
@@ -41,43 +42,14 @@ class Dynamics:
     """
 
     def __init__(self, model: Model) -> None:
-        check_model(model)
-        self.model = model.with_precision("double")
-        self.coordinates = Coordinates(model.record.segments, _OPERATIONS)
-
-    def forward_dynamics(self, q: Any, v: Any, u: Any, par: Any = None) -> Any:
-        """Accelerations (..., nv) of tensors q (..., nq), v (..., nv), u (..., nu), par (..., npar)."""
-        return self._apply("forward_dynamics", q, v, u, par)
-
-    def inverse_dynamics(self, q: Any, v: Any, a: Any, par: Any = None) -> Any:
-        """Efforts M a + h - Q(q, v, 0) (..., nv) of tensors q, v, a (..., nv) and par (..., npar)."""
-        return self._apply("inverse_dynamics", q, v, a, par)
-
-    def coordinate_rates(self, q: Any, v: Any) -> Any:
-        """Rates q' = N(q) v (..., nq) of tensors q (..., nq), v (..., nv): v itself but for balls and free joints."""
-        return self.coordinates.rates(*self._tensors("coordinate_rates", q=q, v=v))
-
-    def integrate(self, q: Any, dq: Any) -> Any:
-        """Move from q (..., nq) along the manifold by dq (..., nv), a velocity times a time: `Model.integrate`."""
-        return self.coordinates.integrate(*self._tensors("integrate", q=q, dq=dq))
-
-    def difference(self, q0: Any, q1: Any) -> Any:
-        """The dq (..., nv) that leads from q0 to q1 (..., nq): `Model.difference`."""
-        return self.coordinates.difference(*self._tensors("difference", q0=q0, q1=q1))
+        super().__init__(model, _OPERATIONS)
 
     def _apply(self, name: str, *tensors: Any) -> Any:
-        given = self._tensors(name, **dict(zip(RULES[name].inputs, tensors, strict=True)))
+        given = self._given(name, **dict(zip(RULES[name].inputs, tensors, strict=True)))
         return _Value.apply(self, name, *given)
 
-    def _tensors(self, function: str, **given: Any) -> list[Any]:
+    def _given(self, function: str, **given: Any) -> list[Any]:
         """Tensors of doubles with the same leading dimensions; None stays."""
-        sizes = {
-            "q": self.model.nq,
-            "q0": self.model.nq,
-            "q1": self.model.nq,
-            "u": self.model.nu,
-            "par": self.model.npar,
-        }
         for label, x in given.items():
             tensor = isinstance(x, torch.Tensor)
             if x is None and label == "par":
@@ -91,12 +63,7 @@ class Dynamics:
                         f"{label}.double().cpu()" if tensor else f"torch.as_tensor({label}, dtype=torch.float64)",
                     )
                 )
-            size = sizes.get(label, self.model.nv)
-            if x.ndim == 0 or x.shape[-1] != size:
-                shape = str(tuple(x.shape))
-                raise InteropError(
-                    Problem(f"{function}: '{label}' has the wrong shape", shape, f"(..., {size})", "check its size")
-                )
+            self._check_shape(function, label, tuple(x.shape))
         batch = torch.broadcast_shapes(*(x.shape[:-1] for x in given.values() if x is not None))
         return [None if x is None else x.expand(*batch, x.shape[-1]) for x in given.values()]
 

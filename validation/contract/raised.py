@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import ParamSpec, TypeVar
 
+import symofros as sf
+
 T = TypeVar("T")
 P = ParamSpec("P")
 # What code from outside may raise in place of an answer: all but an interrupt.
@@ -30,9 +32,16 @@ def attempted(function: Callable[P, T], *arguments: P.args, **named: P.kwargs) -
     try:
         return function(*arguments, **named)
     except ANY as error:
-        if getattr(error, "extra", ""):  # Of a SymofrosError: nobody's fault, and said of the whole model.
+        if not_installed(error):  # Nobody's fault, and said of the whole model.
             raise
         return Raised(words(error))
+
+
+def not_installed(error: BaseException) -> str:
+    """What is missing and how to get it, where an exception says that an extra is not installed; else ""."""
+    if not isinstance(error, sf.SymofrosError) or not error.extra:
+        return ""
+    return f"{error.problem.what}; {error.problem.remedy}"
 
 
 def words(error: BaseException) -> str:

@@ -11,6 +11,7 @@ import symofros as sf
 
 from .. import references
 from ..comparison.errors import Comparison, Status
+from ..contract.raised import not_installed
 from ..mechanics.assembly import Assembly
 from ..mechanics.geometry import Array
 from . import ENGINE, analyses, batches, beams, diagrams, forces, identities, reactions, runs
@@ -147,19 +148,11 @@ def judge_procedures(label: str, system: sf.System, assembly: Assembly) -> Itera
     for procedure in procedures:
         try:
             yield from (row(label, cell) for cell in procedure(scene))
-        except sf.SymofrosError as error:
-            status: Status = "unsupported" if error.extra else "failed"
-            yield Comparison(label, ENGINE, "procedure", status, note=_one_line(error))
         except Exception as error:  # What a defect of ours raises is a row, too.
-            yield Comparison(label, ENGINE, "procedure", "failed", note=f"{type(error).__name__}: {error}")
-
-
-def _one_line(error: sf.SymofrosError) -> str:
-    """An error for a table; of a package that is not installed, what is missing and how to get it."""
-    problem = error.problem
-    if error.extra:
-        return f"{problem.what}; {problem.remedy}"
-    return f"{type(error).__name__}: {error}"
+            missing = not_installed(error)
+            status: Status = "unsupported" if missing else "failed"
+            note = missing or f"{type(error).__name__}: {error}"
+            yield Comparison(label, ENGINE, "procedure", status, note=note)
 
 
 def row(label: str, cell: Cell) -> Comparison:
