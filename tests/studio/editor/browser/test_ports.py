@@ -30,8 +30,9 @@ def port(page: Page, name: str) -> Locator:
 
 
 def wire(page: Page, source: str, target: str) -> None:
-    """Drag from port to port."""
+    """Drag from port to port; blocks that are being arranged move both."""
     at_rest(port(page, source))
+    at_rest(port(page, target))
     port(page, source).drag_to(port(page, target))
 
 
@@ -60,7 +61,8 @@ def test_ports_of_blocks_of_a_diagram(serve: Callable[..., Server], page: Page, 
     expect(steps.wire(page, "blocks/total/inputs/u2")).to_have_count(1)
 
 
-@pytest.mark.xfail(reason="a second wire onto a joint that is placed does not always replace the first", strict=False)
+# Alone it passes; beside another browser it fails three times of four: the second frame's wire is not made.
+@pytest.mark.xfail(reason="a frame's port that was renamed can't always be wired at once", strict=False)
 def test_frames_of_bodies(serve: Callable[..., Server], page: Page) -> None:
     server = serve("arm.yaml", source=PENDULUM)
     steps.open_editor(page, server.url)
