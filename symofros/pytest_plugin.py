@@ -24,7 +24,7 @@ def pytest_addoption(parser: Any) -> None:
         "--symofros-model",
         action="append",
         metavar="MODEL",
-        help="check this model: a URDF, MJCF or YAML file, or a name of the standard set; repeatable",
+        help="check this model: a URDF, MJCF, SDF, USD or YAML file, or a name of the standard set; repeatable",
     )
     group.addoption(
         "--symofros-engine",

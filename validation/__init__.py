@@ -31,8 +31,8 @@ def check(
     """Compare the generated code of one model with every engine that can represent it.
 
     Args:
-        model: A system; or a URDF, MJCF or YAML file, which engines of its format read themselves; or a name of the
-            standard set.
+        model: A system; or a URDF, MJCF, SDF, USD or YAML file, which engines of its format read themselves; or a name
+            of the standard set.
         states: Number of random states.
         seed: Seed of the states.
         engines: Names of the engines to compare with; None: all.

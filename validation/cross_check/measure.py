@@ -41,7 +41,7 @@ def measure(
     run: Run,
     models: Annotated[
         list[str] | None,
-        typer.Argument(help="URDF, MJCF or YAML files, or names of the standard set; none: all of it."),
+        typer.Argument(help="URDF, MJCF, SDF, USD or YAML files, or names of the standard set; none: all of it."),
     ] = None,
     *,
     reading: ReadingOptions,
