@@ -57,7 +57,7 @@ static void sym_program_allocate_part(sym_program_instance *instance, sym_arena 
                       ? p->n_crossings
                       : 0;
     s->event_direction = p->directions, s->event_terminal = p->terminal;
-    r->event_values = sym_allocate(arena, 3 * n), r->event_capacity = p->n_crossings;
+    r->event_values = sym_allocate(arena, SYM_EVENT_ROWS * n), r->event_capacity = p->n_crossings;
     r->event_t = sym_allocate(arena, n), r->event_q = sym_allocate(arena, n * (size_t)model->nq);
     r->event_v = sym_allocate(arena, n * (size_t)model->nv);
     r->event_index = sym_allocate_bytes(arena, n * sizeof *r->event_index);

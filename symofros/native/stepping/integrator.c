@@ -18,6 +18,7 @@
 #include "beams.c"
 #include "axial_loads.c"
 #include "dense_output.c"
+#include "event_search.c"
 #include "events.c"
 #include "diagnostic.c"
 #include "run.c"

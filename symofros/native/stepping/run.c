@@ -78,6 +78,7 @@ SYM_EXPORT int32_t sym_run_start(sym_run *r) {
     r->rank_max = -1, r->rank_min = s->nc + 1;
     r->previous_error = 1.0;
     r->lost_energy = r->kinetic_energy = 0.0;
+    r->terminal_event = r->touched_event = r->unresolved_event = -1;
     r->clock_start = r->realtime_scale > 0.0 ? sym_clock_seconds() : 0.0;
     sym_load_state(r);
     if (r->record_every > 0 || (r->n_grid > 0 && r->grid[0] <= r->t)) {
@@ -122,7 +123,7 @@ static void sym_set_end_state(sym_run *r, const sym_workspace *w, double t1) {
 static int32_t sym_accept_step(sym_run *r, sym_workspace *w, double h, double t1) {
     sym_system *s = r->system;
     const int32_t nv = s->nv, fsal = r->method == SYM_METHOD_EXPLICIT && r->tableau.fsal_stage > 0;
-    int32_t dense_ready = 0, status, beyond, stopped = 0;
+    int32_t dense_ready = 0, status, beyond, cut = 0, ended = 0;
     double stop_x = 2.0;
     status = sym_load_projected_state(r, t1, w->y1);
     if (status == 0 && r->project) status = sym_judge_projection(r);
@@ -131,13 +132,13 @@ static int32_t sym_accept_step(sym_run *r, sym_workspace *w, double h, double t1
     if (s->n_events > 0) {
         status = sym_find_events(r, w, h, &dense_ready, &stop_x);
         if (status != 0) return status;
-        stopped = stop_x <= 1.0;
+        cut = stop_x <= 1.0, ended = r->terminal_event >= 0;
     }
     if (r->record_every == 0) {
-        status = sym_record_grid_within_step(r, w, h, &dense_ready, stopped ? stop_x : 1.0);
+        status = sym_record_grid_within_step(r, w, h, &dense_ready, cut ? stop_x : 1.0);
         if (status != 0) return status;
     }
-    if (stopped) {
+    if (cut) {
         status = sym_load_state_within_step(r, w, h, &dense_ready, stop_x);
         if (status != 0) return status;
         sym_store_end_state(s, w);
@@ -147,13 +148,18 @@ static int32_t sym_accept_step(sym_run *r, sym_workspace *w, double h, double t1
     sym_set_end_state(r, w, t1);
     r->slope_valid = 0;
     /* First same as last, but in the chart about the new state, where theta' = v. */
-    if (fsal && !r->project && !stopped && !sym_changes_at(s, t1)) {
-        memcpy(w->k + nv, w->k + SYM_INDEX(r->tableau.fsal_stage, w->stage_stride, nv), (size_t)nv * sizeof(double));
-        memcpy(w->k, r->v, (size_t)nv * sizeof(double));
-        r->slope_valid = 1;
+    if (!cut && !sym_changes_at(s, t1)) {
+        const double *slope = NULL;
+        if (fsal && !r->project) slope = w->k + SYM_INDEX(r->tableau.fsal_stage, w->stage_stride, 0);
+        else if (!fsal && dense_ready && s->n_events > 0 && r->method <= SYM_METHOD_SEMI_IMPLICIT) slope = w->end_slope;
+        if (slope != NULL) {
+            memcpy(w->k + nv, slope + nv, (size_t)nv * sizeof(double));
+            memcpy(w->k, r->v, (size_t)nv * sizeof(double));
+            r->slope_valid = 1;
+        }
     }
-    ++r->steps;
-    if (s->n_events > 0 && stopped) { /* not the state that sym_find_events evaluated */
+    if (!cut || ended) ++r->steps; /* else a step of fixed length goes on to its end */
+    if (cut) { /* not the state that sym_find_events evaluated */
         sym_load_state(r);
         status = sym_event_values(r, r->event_values);
         if (status != 0) return status;
@@ -161,15 +167,15 @@ static int32_t sym_accept_step(sym_run *r, sym_workspace *w, double h, double t1
     if (r->record_every == 0) {
         status = sym_record_grid_at_end(r, h);
         if (status != 0) return status;
-    } else if (r->steps % r->record_every == 0 || r->t >= r->t_end || stopped || beyond != 0) {
+    } else if (r->steps % r->record_every == 0 || r->t >= r->t_end || ended || beyond != 0) {
         sym_load_state(r);
         status = sym_record(r);
         if (status != 0) return status;
     }
-    sym_keep_diagnostic_state(r, r->t >= r->t_end || stopped);
+    sym_keep_diagnostic_state(r, r->t >= r->t_end || ended);
     if (beyond == 0) beyond = sym_judge_axial_loads(r);
     if (r->realtime_scale > 0.0) sym_wait_for_clock(r);
-    return beyond != 0 ? beyond : stopped ? SYM_TERMINAL_EVENT : 0;
+    return beyond != 0 ? beyond : ended ? SYM_TERMINAL_EVENT : 0;
 }
 
 /* Whether one more step fits into the records. */

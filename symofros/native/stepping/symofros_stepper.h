@@ -125,7 +125,24 @@ typedef struct sym_system {
      * counts from the next step on (docs/theory/simulation.md, section 1). */
     int32_t in_step;
     double step_end;
+    int32_t events_free_of_inputs; /* 1: no event needs the inputs, which cost a call of the caller's */
 } sym_system;
+
+typedef enum sym_event_sizes { SYM_EVENT_NODES = 5, SYM_EVENT_ROWS = 10 } sym_event_sizes;
+
+/* Events along one step, sought between x = 0, its start, and x = 1, its end. */
+typedef struct sym_event_search {
+    int32_t n;                    /* number of events */
+    const int32_t *direction;     /* (n) 1 rising, -1 falling, 0 both */
+    int32_t (*evaluate)(void *data, double x, double *values); /* values of all events (n) at x; returns 0 or a status */
+    void *data;
+    double *memory;               /* (SYM_EVENT_ROWS, n): the values at the end of the step before, then work */
+    double tolerance;             /* share of an event's size nearer to which than zero it is not decided */
+    int32_t start_changes;        /* whether values at x = 0 may differ from those at the end of the step before */
+    int32_t taken;                /* event that was returned last; -1: none */
+    int32_t touched, unresolved;  /* an event that turns undecidedly near to zero, one too fast to follow; -1: none */
+    double touched_x;             /* where it turns */
+} sym_event_search;
 
 /* One integration of a system: method, settings, present state, records. */
 typedef struct sym_run {
@@ -145,7 +162,7 @@ typedef struct sym_run {
     double t, *q, *v;
     double *work;          /* sym_run_work_size doubles */
     int32_t *pivots;       /* 2 (nv + nc) */
-    double *event_values;  /* 3 n_events: at the present state, then work */
+    double *event_values;  /* (SYM_EVENT_ROWS, n_events): at the present state, then work */
     double next_step, previous_error; /* of the step-size controller */
     int64_t steps, rejected, evaluations, jacobians;
     int32_t rank_max, rank_min; /* of the constraints' Jacobian */
@@ -189,6 +206,8 @@ typedef struct sym_run {
     double *event_t, *event_q, *event_v;
     int32_t *event_index;
     int32_t terminal_event; /* index of the event that ended the run */
+    int32_t touched_event, unresolved_event; /* what sym_event_search noted first, and when; -1: nothing */
+    double touched_t, unresolved_t;
 } sym_run;
 
 /* Settings that have a default in one place, whoever fills the rest. */
@@ -215,6 +234,11 @@ int32_t sym_run_set_state(sym_run *run, double t, const double *y);
 int32_t sym_run_rate(sym_run *run, double t, const double *y, double *rate);
 /* Values of the events (n_events) at a state. */
 int32_t sym_run_event_values(sym_run *run, double t, const double *y, double *values);
+/* Begin the search in one step, whose search->memory begins with the values at the end of the step before; the values at its
+ * own end are row SYM_EVENT_NODES - 1 afterwards. Returns 0 or a status. */
+int32_t sym_event_search_begin(sym_event_search *search);
+/* The events in the order of time, one a call: which, and where; -1: there is none any more. Returns 0 or a status. */
+int32_t sym_event_search_next(sym_event_search *search, int32_t *which, double *x);
 /* Rate N(q) w (nq) at the evaluation point, which is at the same configuration q. */
 void sym_run_configuration_rate(const sym_run *run, const double *q, const double *w, double *rate);
 /* Linearise the motion about the present state in the subspace of the first directions that the motion excites, by

@@ -162,6 +162,9 @@ class Stepper:
         system.n_events = len(events)
         system.event_direction = memory.own("int32_t[]", [event.sign for event in events])
         system.event_terminal = memory.own("int32_t[]", [int(event.terminal) for event in events])
+        if self.inputs.callback is not None:  # Each evaluation of the inputs is a call of it.
+            written = [str(event.formula) for event in events]
+            system.events_free_of_inputs = int(not any(name in text for text in written for name in self.model.names.u))
         if events:
             self._bind("events", self.model.formulas([event.formula for event in events], derivatives=False))
 
@@ -218,7 +221,7 @@ class Stepper:
         run.q, run.v = memory.doubles(q), memory.doubles(v)
         run.work = memory.zeros(self.native.sym_run_work_size(run))
         run.pivots = memory.own("int32_t[]", 2 * (model.nv + model.nc))
-        run.event_values = memory.zeros(3 * len(self.events))
+        run.event_values = memory.zeros(constants()["SYM_EVENT_ROWS"] * len(self.events))
         run.capacity, run.event_capacity = capacity, max(_EVENT_ROWS, 2 * len(self.events))
         self._records = memory.table(run, "record_", capacity, t=1, q=model.nq, v=model.nv, u=model.nu)
         self._event_records = memory.table(run, "event_", run.event_capacity, t=1, q=model.nq, v=model.nv)
