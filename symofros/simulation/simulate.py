@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ import numpy as np
 from symofros.base.arguments import checked
 from symofros.runtime.calls.binding import native_library
 from symofros.runtime.model import ArrayLike, Model
-from symofros.simulation.events import named_events
+from symofros.simulation.events import event_notes, named_events
 from symofros.simulation.inputs import Inputs, plan_inputs
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.progress import bar
@@ -88,6 +89,7 @@ def simulate(
     seconds, worked = time.perf_counter() - began, time.thread_time() - worked
     states = recorded.arrays()
     outcome, bendings = diagnose(stepper, recorded, states, settings, (q, v))
+    outcome = replace(outcome, notes=(*outcome.notes, *event_notes(stepper.run, looked_for)))
     met = tuple(Found(looked_for[which].name, when, q_at, v_at) for which, when, q_at, v_at in recorded.events)
     statistics = _statistics(stepper, seconds, worked)
     t, q_all, v_all, u_all = states

@@ -1,30 +1,36 @@
-/* Where functions of x in [0, 1], the events along one step, arrive at zero (docs/theory/simulation.md, section 2). The
- * functions are known by their values alone. */
+/* Where functions of x in [0, 1], the events along one step, arrive at zero: docs/theory/simulation.md, section 2, whose
+ * equations the numbers in parentheses are. The functions are known by their values alone. */
 
 /* Where all events are evaluated in each step: at unequal distances, so that no oscillation has the same value at all. */
 static const double sym_event_nodes[SYM_EVENT_NODES] = {0.0, 0.2319, 0.4876, 0.7541, 1.0};
-/* Zeros that are closer than this share of a step are not told apart. */
+/* Shares of a step: zeros that are closer are not told apart; intervals of an event that is not smooth, or turns often. */
 #define SYM_EVENT_RESOLUTION 1e-9
-/* Evaluations by which one event is followed in one step, beyond those at the nodes. */
-enum { SYM_EVENT_BUDGET = 1000 };
-/* Share of an event's largest value in the step below which what it does is rounding. */
+#define SYM_EVENT_FINE 0.02
+/* Share of the values at four neighbouring nodes that their third difference has at most where an event is smooth. */
+#define SYM_EVENT_SMOOTH 0.05
+/* Shares of an event's largest value in the step: below one, what it does is rounding; turns nearer to zero are noted. */
 #define SYM_EVENT_ROUNDING 1e-14
+#define SYM_EVENT_NEAR 1e-3
+/* Evaluations by which one event is followed between two of its zeros in one step, beyond those at the nodes. */
+enum { SYM_EVENT_BUDGET = 1000, SYM_EVENT_POINTS = 40 };
 
 typedef struct sym_event_rows { /* (n) each, in sym_event_search.memory */
     double *node[SYM_EVENT_NODES]; /* values at the nodes */
     double *work;
-    double *value;                 /* before the next arrival: at the one before, or at the start */
-    double *next_x, *next_value;   /* of the next arrival at zero; beyond 1: there is none */
-    double *size;                  /* its largest value at the nodes */
+    double *before;                /* a value between the last arrival at zero and the next one, or 0 */
+    double *next_x;                /* the next arrival; beyond 1: there is none */
+    double *past, *past_value;     /* a point before it */
+    double *size;                  /* the largest value at the nodes */
 } sym_event_rows;
 
 static sym_event_rows sym_rows_of_search(const sym_event_search *s) {
+    const size_t n = (size_t)s->n;
     double *row = s->memory;
     sym_event_rows rows;
     int32_t k;
-    for (k = 0; k < SYM_EVENT_NODES; ++k, row += s->n) rows.node[k] = row;
-    rows.work = row, rows.value = row + s->n, rows.next_x = row + 2 * s->n;
-    rows.next_value = row + 3 * s->n, rows.size = row + 4 * s->n;
+    for (k = 0; k < SYM_EVENT_NODES; ++k, row += n) rows.node[k] = row;
+    rows.work = row, rows.before = row + n, rows.next_x = row + 2 * n;
+    rows.past = row + 3 * n, rows.past_value = row + 4 * n, rows.size = row + 5 * n;
     return rows;
 }
 
@@ -42,41 +48,13 @@ static int32_t sym_arrives_at_zero(int32_t direction, double before, double afte
     return direction <= 0 && before > 0.0 && after <= 0.0;
 }
 
-/* Second divided difference: half the second derivative of a smooth function. */
-static double sym_bend(double a, double fa, double b, double fb, double c, double fc) {
-    return ((fc - fb) / (c - b) - (fb - fa) / (b - a)) / (c - a);
-}
-
-/* A bound of |second divided difference| between the nodes k and k + 1, by the differences about it and how they vary. */
-static double sym_bend_between_nodes(const sym_event_rows *rows, int32_t i, int32_t k) {
-    double bend[SYM_EVENT_NODES], largest = 0.0, varies = 0.0;
-    int32_t j;
-    for (j = 1; j + 1 < SYM_EVENT_NODES; ++j)
-        bend[j] = sym_bend(sym_event_nodes[j - 1], rows->node[j - 1][i], sym_event_nodes[j], rows->node[j][i],
-                           sym_event_nodes[j + 1], rows->node[j + 1][i]);
-    for (j = 1; j + 1 < SYM_EVENT_NODES; ++j) {
-        if ((j == k || j == k + 1) && fabs(bend[j]) > largest) largest = fabs(bend[j]);
-        if (j > 1 && j - 1 <= k + 1 && j >= k && fabs(bend[j] - bend[j - 1]) > varies) varies = fabs(bend[j] - bend[j - 1]);
-    }
-    return largest + varies;
-}
-
-/* Whether an event with those values at the ends of an interval, its curve departing from the chord by an eighth of
- * `departure` at most where it is as smooth as it looks, has the zeros that its ends show and no others: it is monotonic,
- * (4a), or stays away from zero, (4b). What is no number has none. */
-static int32_t sym_hides_nothing(double fa, double fb, double departure) {
-    if (!(fa == fa) || !(fb == fb) || fabs(fb - fa) >= 2.0 * departure) return 1;
-    return (fa > departure && fb > departure) || (fa < -departure && fb < -departure);
-}
-
 /* The x in (a, b] from which on an event that is monotonic there is at zero or past it, by the Illinois method (regula
- * falsi whose retained end is halved), and its value at x. Returns 0 or a status. */
-static int32_t sym_locate_event(sym_event_search *s, int32_t i, double a, double fa, double b, double fb, double *x,
-                                double *fx) {
+ * falsi whose retained end is halved). Returns 0 or a status. */
+static int32_t sym_locate_event(const sym_event_search *s, int32_t i, double a, double fa, double b, double fb, double *x) {
     const double before = fa;
+    double past = fb;
     int32_t k, side = 0;
-    *fx = fb;
-    for (k = 0; k < 100 && b - a > 4e-16 && *fx != 0.0; ++k) {
+    for (k = 0; k < 100 && b - a > 4e-16 && past != 0.0; ++k) {
         double c = (fa * b - fb * a) / (fa - fb), f;
         int32_t status;
         if (!(c > a && c < b)) c = 0.5 * (a + b);
@@ -88,7 +66,7 @@ static int32_t sym_locate_event(sym_event_search *s, int32_t i, double a, double
             if (side == 1) fb *= 0.5;
             side = 1;
         } else {
-            b = c, fb = *fx = f;
+            b = c, fb = past = f;
             if (side == -1) fa *= 0.5;
             side = -1;
         }
@@ -97,86 +75,136 @@ static int32_t sym_locate_event(sym_event_search *s, int32_t i, double a, double
     return 0;
 }
 
-typedef struct sym_event_interval { /* where one event is followed, from left to right */
-    int32_t event, node; /* the interval lies between this node and the next one */
-    int32_t left;        /* evaluations that may still be made */
-    double past, f_past; /* the point before a; past < 0: there is none */
-    double a, fa, b, fb; /* the interval, and the values at its ends */
-    double bend;         /* bound of |second divided difference| as far as it is known */
-} sym_event_interval;
+typedef struct sym_event_point {
+    double x, f;
+} sym_event_point;
 
-/* The interval <- the next one: up to the next node, or twice as long as the one before. Returns 0 or a status. */
-static int32_t sym_next_interval(sym_event_search *s, const sym_event_rows *rows, sym_event_interval *at) {
-    const double length = at->past < 0.0 ? 1.0 : 2.0 * (at->a - at->past);
-    const int32_t i = at->event;
-    double now;
-    int32_t status;
-    if (at->past < 0.0 || at->a >= sym_event_nodes[at->node + 1]) {
-        while (at->a >= sym_event_nodes[at->node + 1]) ++at->node;
-        at->b = sym_event_nodes[at->node + 1], at->fb = rows->node[at->node + 1][i];
-        at->bend = sym_bend_between_nodes(rows, i, at->node);
-        return 0;
-    }
-    at->b = at->a + length;
-    if (at->b >= sym_event_nodes[at->node + 1]) {
-        at->b = sym_event_nodes[at->node + 1], at->fb = rows->node[at->node + 1][i];
-    } else {
-        status = sym_event_at(s, i, at->b, &at->fb);
+typedef struct sym_event_walk { /* one event, followed from left to right over intervals [a, b] */
+    int32_t event, left;         /* evaluations that may still be made */
+    double longest;              /* interval */
+    int32_t n_before, n;         /* points known before a, of which two are kept; points known behind it */
+    sym_event_point before[2], a;
+    sym_event_point behind[SYM_EVENT_POINTS]; /* the farthest first; the last one is b */
+} sym_event_walk;
+
+/* Second divided difference: half the second derivative of a smooth function. What is no number counts as straight. */
+static double sym_bend(sym_event_point p, sym_event_point q, sym_event_point r) {
+    const double bend = ((r.f - q.f) / (r.x - q.x) - (q.f - p.f) / (q.x - p.x)) / (r.x - p.x);
+    return bend == bend ? bend : 0.0;
+}
+
+/* The four neighbouring points about [a, b] that are known; fewer at the start of a walk in the last interval. */
+static int32_t sym_points_about(const sym_event_walk *w, sym_event_point *points) {
+    int32_t before = w->n_before, n = 0, k;
+    if (before > 1 && w->n > 1) before = 1;
+    for (k = 0; k < before; ++k) points[n++] = w->before[before - 1 - k];
+    points[n++] = w->a;
+    for (k = w->n - 1; k >= 0 && n < 4; --k) points[n++] = w->behind[k];
+    return n;
+}
+
+/* Whether the event has between a and b no zeros but the one that a change of sign shows. Its curve departs from the chord
+ * by an eighth of `departure` at most, (4a), if it is as smooth as the points about it look; then it is monotonic, (4b), or
+ * stays away from zero, (4c). */
+static int32_t sym_hides_nothing(const sym_event_walk *w, double size) {
+    const sym_event_point a = w->a, b = w->behind[w->n - 1];
+    const double length = b.x - a.x;
+    sym_event_point p[4];
+    double bend, other, departure;
+    int32_t n;
+    if (!(a.f == a.f) || !(b.f == b.f)) return 1; /* what is no number has none */
+    if (length > w->longest) return 0;
+    n = sym_points_about(w, p);
+    if (n < 3) return 1;
+    bend = sym_bend(p[0], p[1], p[2]), other = n > 3 ? sym_bend(p[1], p[2], p[3]) : bend;
+    departure = 2.0 * ((fabs(bend) > fabs(other) ? fabs(bend) : fabs(other)) + fabs(other - bend)) * length * length;
+    if (departure <= SYM_EVENT_ROUNDING * size) return 1;
+    if (a.f == 0.0 || b.f == 0.0 || (a.f > 0.0) != (b.f > 0.0)) return fabs(b.f - a.f) >= 2.0 * departure;
+    return fabs(a.f) > departure && fabs(b.f) > departure;
+}
+
+/* Halve the interval until it hides nothing. Returns 0 or a status. */
+static int32_t sym_shorten_interval(sym_event_search *s, sym_event_walk *w, double size) {
+    while (!sym_hides_nothing(w, size)) {
+        const double length = w->behind[w->n - 1].x - w->a.x;
+        sym_event_point m;
+        int32_t status;
+        if (length <= SYM_EVENT_RESOLUTION || w->n == SYM_EVENT_POINTS) return 0;
+        if (w->left-- <= 0) {
+            s->unresolved = w->event;
+            return 0;
+        }
+        m.x = w->a.x + 0.5 * length;
+        status = sym_event_at(s, w->event, m.x, &m.f);
         if (status != 0) return status;
-        --at->left;
+        w->behind[w->n++] = m;
     }
-    now = fabs(sym_bend(at->past, at->f_past, at->a, at->fa, at->b, at->fb));
-    at->bend = now > 0.5 * at->bend ? now : 0.5 * at->bend;
     return 0;
 }
 
-/* Halve the interval until it hides nothing. What was seen of its bend at a distance is forgotten by half each time.
- * Returns 0 or a status. */
-static int32_t sym_shorten_interval(sym_event_search *s, const sym_event_rows *rows, sym_event_interval *at) {
-    const double rounding = SYM_EVENT_ROUNDING * rows->size[at->event];
-    for (;;) {
-        const double length = at->b - at->a, departure = 2.0 * at->bend * length * length, m = at->a + 0.5 * length;
-        double f, now;
-        int32_t status;
-        if (sym_hides_nothing(at->fa, at->fb, departure) || departure <= rounding) return 0;
-        if (length <= SYM_EVENT_RESOLUTION) return 0;
-        if (at->left-- <= 0) {
-            s->unresolved = at->event;
-            return 0;
-        }
-        status = sym_event_at(s, at->event, m, &f);
-        if (status != 0) return status;
-        now = fabs(sym_bend(at->a, at->fa, m, f, at->b, at->fb));
-        at->bend = now > 0.5 * at->bend ? now : 0.5 * at->bend;
-        at->b = m, at->fb = f;
+/* a <- a point behind it, up to which nothing is left to look for. */
+static void sym_walk_to(sym_event_walk *w, sym_event_point to) {
+    w->before[1] = w->before[0], w->before[0] = w->a, w->a = to;
+    if (w->n_before < 2) ++w->n_before;
+    while (w->n > 0 && w->behind[w->n - 1].x <= to.x) --w->n;
+}
+
+/* Note where an event turns at a, if nowhere nearer to zero. */
+static void sym_note_touch(sym_event_search *s, const sym_event_walk *w, double size) {
+    const double f = w->a.f;
+    if (w->n_before == 0 || !((w->before[0].f - f) * (w->behind[w->n - 1].f - f) > 0.0)) return;
+    if (!(fabs(f) < SYM_EVENT_NEAR * size)) return;
+    if (s->touched < 0 || fabs(f) < s->touched_share * size)
+        s->touched = w->event, s->touched_x = w->a.x, s->touched_share = fabs(f) / size;
+}
+
+/* Whether the values of event i at four neighbouring nodes are like those of a cubic. */
+static int32_t sym_is_smooth(const sym_event_rows *rows, int32_t i, int32_t first) {
+    sym_event_point p[4];
+    double largest = 0.0, length;
+    int32_t k;
+    for (k = 0; k < 4; ++k) {
+        p[k].x = sym_event_nodes[first + k], p[k].f = rows->node[first + k][i];
+        if (fabs(p[k].f) > largest) largest = fabs(p[k].f);
     }
+    length = p[3].x - p[0].x;
+    return fabs(sym_bend(p[1], p[2], p[3]) - sym_bend(p[0], p[1], p[2])) * length * length <= 27.0 * SYM_EVENT_SMOOTH * largest;
 }
 
-/* Note that an event turns at a nearer to zero than steps can tell. */
-static void sym_note_touch(sym_event_search *s, const sym_event_rows *rows, const sym_event_interval *at) {
-    if (at->past < 0.0 || !((at->f_past - at->fa) * (at->fb - at->fa) > 0.0)) return;
-    if (fabs(at->fa) <= s->tolerance * rows->size[at->event]) s->touched = at->event, s->touched_x = at->a;
-}
-
-/* The next arrival of event i <- the one after it, or after the start of the step. Returns 0 or a status. */
-static int32_t sym_seek_arrival(sym_event_search *s, int32_t i) {
+/* The next arrival of event i <- the one after it. Where it has arrived its value is zero, whatever rounding made of it.
+ * Returns 0 or a status. */
+static int32_t sym_seek_arrival(sym_event_search *s, int32_t i, double value) {
     const sym_event_rows rows = sym_rows_of_search(s);
-    sym_event_interval at = {i, 0, SYM_EVENT_BUDGET, -1.0, 0.0, rows.next_x[i], rows.next_value[i], 0.0, 0.0, 0.0};
-    rows.value[i] = rows.next_value[i], rows.next_x[i] = 2.0;
-    while (at.a < 1.0) {
-        int32_t status = sym_next_interval(s, &rows, &at), arrives;
-        if (status == 0) status = sym_shorten_interval(s, &rows, &at);
+    const double size = rows.size[i];
+    sym_event_walk w;
+    int32_t k, status;
+    w.event = i, w.left = SYM_EVENT_BUDGET;
+    w.longest = sym_is_smooth(&rows, i, 0) && sym_is_smooth(&rows, i, 1) ? 1.0 : SYM_EVENT_FINE;
+    if (s->longest < w.longest) w.longest = s->longest;
+    w.a.x = rows.next_x[i], w.a.f = value;
+    w.n_before = w.a.x > rows.past[i], w.before[0].x = rows.past[i], w.before[0].f = rows.past_value[i];
+    for (k = SYM_EVENT_NODES - 1, w.n = 0; k > 0 && sym_event_nodes[k] > w.a.x; --k, ++w.n)
+        w.behind[w.n].x = sym_event_nodes[k], w.behind[w.n].f = rows.node[k][i];
+    rows.next_x[i] = 2.0;
+    while (w.n > 0) {
+        sym_event_point to;
+        status = sym_shorten_interval(s, &w, size);
         if (status != 0) return status;
-        sym_note_touch(s, &rows, &at);
-        arrives = sym_arrives_at_zero(s->direction[i], at.fa, at.fb);
-        if (sym_arrives_at_zero(0, at.fa, at.fb)) {
-            status = sym_locate_event(s, i, at.a, at.fa, at.b, at.fb, &at.b, &at.fb);
+        sym_note_touch(s, &w, size);
+        to = w.behind[w.n - 1];
+        if (sym_arrives_at_zero(0, w.a.f, to.f)) {
+            const int32_t counts = sym_arrives_at_zero(s->direction[i], w.a.f, to.f);
+            status = sym_locate_event(s, i, w.a.x, w.a.f, to.x, to.f, &to.x);
             if (status != 0) return status;
+            to.f = 0.0;
+            if (to.x > 1.0 - SYM_EVENT_RESOLUTION) rows.node[SYM_EVENT_NODES - 1][i] = 0.0;
+            if (counts) {
+                rows.next_x[i] = to.x, rows.before[i] = w.a.f;
+                rows.past[i] = w.a.x, rows.past_value[i] = w.a.f;
+                return 0;
+            }
         }
-        at.past = at.a, at.f_past = at.fa, at.a = at.b, at.fa = at.fb;
-        if (!arrives) continue;
-        rows.next_x[i] = at.a, rows.next_value[i] = at.fa;
-        return 0;
+        sym_walk_to(&w, to);
     }
     return 0;
 }
@@ -185,7 +213,7 @@ SYM_EXPORT int32_t sym_event_search_next(sym_event_search *s, int32_t *which, do
     const sym_event_rows rows = sym_rows_of_search(s);
     int32_t i, first = -1;
     if (s->taken >= 0) {
-        const int32_t status = sym_seek_arrival(s, s->taken);
+        const int32_t status = sym_seek_arrival(s, s->taken, 0.0);
         if (status != 0) return status;
     }
     for (i = 0; i < s->n; ++i)
@@ -198,25 +226,25 @@ SYM_EXPORT int32_t sym_event_search_next(sym_event_search *s, int32_t *which, do
 static int32_t sym_event_is_met(const sym_event_search *s, int32_t i, double x, double value) {
     const sym_event_rows rows = sym_rows_of_search(s);
     return rows.next_x[i] > x && rows.next_x[i] <= x + SYM_EVENT_RESOLUTION &&
-           sym_arrives_at_zero(s->direction[i], rows.value[i], value);
+           sym_arrives_at_zero(s->direction[i], rows.before[i], value);
 }
 
 SYM_EXPORT int32_t sym_event_search_begin(sym_event_search *s) {
     const sym_event_rows rows = sym_rows_of_search(s);
     int32_t i, k, status;
     s->taken = s->touched = s->unresolved = -1;
-    memcpy(rows.value, rows.node[0], (size_t)s->n * sizeof(double));
+    memcpy(rows.before, rows.node[0], (size_t)s->n * sizeof(double));
     for (k = s->start_changes ? 0 : 1; k < SYM_EVENT_NODES; ++k) {
         status = s->evaluate(s->data, sym_event_nodes[k], rows.node[k]);
         if (status != 0) return status;
     }
     for (i = 0; i < s->n; ++i) {
-        const int32_t arrives = sym_arrives_at_zero(s->direction[i], rows.value[i], rows.node[0][i]);
-        rows.size[i] = 0.0;
+        const double before = rows.before[i], start = rows.node[0][i];
+        rows.size[i] = rows.next_x[i] = rows.past[i] = rows.past_value[i] = 0.0;
         for (k = 0; k < SYM_EVENT_NODES; ++k)
             if (fabs(rows.node[k][i]) > rows.size[i]) rows.size[i] = fabs(rows.node[k][i]);
-        rows.next_x[i] = 0.0, rows.next_value[i] = rows.node[0][i];
-        status = arrives ? 0 : sym_seek_arrival(s, i);
+        if (sym_arrives_at_zero(s->direction[i], before, start)) continue; /* by an input that changes there: at x = 0 */
+        status = sym_seek_arrival(s, i, sym_arrives_at_zero(0, before, start) || before == 0.0 ? 0.0 : start);
         if (status != 0) return status;
     }
     return 0;

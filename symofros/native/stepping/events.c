@@ -45,17 +45,68 @@ static int32_t sym_record_events_at_cut(sym_run *r, sym_event_search *search, do
     return 0;
 }
 
-/* Keep what was noted of the events of a step: the first of each kind. */
-static void sym_keep_event_notes(sym_run *r, const sym_event_search *search, double h) {
-    if (r->touched_event < 0 && search->touched >= 0)
-        r->touched_event = search->touched, r->touched_t = r->t + search->touched_x * h;
-    if (r->unresolved_event < 0 && search->unresolved >= 0)
-        r->unresolved_event = search->unresolved, r->unresolved_t = r->t;
+/* Errors that a state of fixed steps has at least; those of adaptive steps are rtol and atol. */
+#define SYM_EVENT_RTOL 1e-9
+#define SYM_EVENT_ATOL 1e-12
+
+/* What event i may change by at x where the entries of y have errors of the size that steps allow, their signs alternating
+ * one way or the other. Returns 0 or a status. */
+static int32_t sym_event_error(sym_event_step *step, int32_t i, double x, double value, double *error) {
+    sym_run *r = step->run;
+    sym_workspace *w = step->memory;
+    const double rtol = r->adaptive ? r->rtol : SYM_EVENT_RTOL, atol = r->adaptive ? r->atol : SYM_EVENT_ATOL;
+    double *values = r->event_values + (SYM_EVENT_ROWS - 1) * r->system->n_events;
+    int32_t way, l;
+    *error = 0.0;
+    sym_state_magnitudes(r, w->magnitude);
+    for (way = -1; way <= 1; way += 2) {
+        int32_t sign = way, status = sym_dense_output(r, w, step->h, step->dense_ready, x, w->stage);
+        if (status != 0) return status;
+        for (l = 0; l < 2 * r->system->nv; ++l, sign = -sign) w->stage[l] += sign * (atol + rtol * w->magnitude[l]);
+        sym_load_chart_state(r, r->t + x * step->h, w->stage);
+        status = sym_event_values(r, values);
+        if (status != 0) return status;
+        *error += fabs(values[i] - value);
+    }
+    return 0;
 }
 
-/* Nearer to zero than this share of its largest value in a step of fixed length, what an event does is not decided; of
- * adaptive steps, the share that their errors may have. */
-#define SYM_EVENT_TOLERANCE 1e-9
+/* Keep what was noted of the events of a step, the first of each kind: one that turns at x nearer to zero than the errors of
+ * the state let it be known, one that was not followed. Returns 0 or a status. */
+static int32_t sym_keep_event_notes(sym_event_step *step, const sym_event_search *search) {
+    sym_run *r = step->run;
+    const int32_t i = search->touched;
+    double *values = r->event_values + (SYM_EVENT_ROWS - 1) * r->system->n_events, value, error;
+    int32_t status;
+    if (r->unresolved_event < 0 && search->unresolved >= 0)
+        r->unresolved_event = search->unresolved, r->unresolved_t = r->t;
+    if (r->touched_event >= 0 || i < 0) return 0;
+    status = sym_event_values_within_step(step, search->touched_x, values);
+    if (status != 0) return status;
+    value = values[i];
+    status = sym_event_error(step, i, search->touched_x, value, &error);
+    if (status == 0 && fabs(value) <= error) r->touched_event = i, r->touched_t = r->t + search->touched_x * step->h;
+    return status;
+}
+
+/* Change of a coordinate between two looks at the events, which may be periodic in it [rad or m], and the shortest share of
+ * a step that this may come to. */
+#define SYM_EVENT_TURN 0.7
+#define SYM_EVENT_SHORTEST 0.004
+
+/* The share of the step just made in which no coordinate changes by more than that. */
+static double sym_longest_event_interval(const sym_run *r, const sym_workspace *w, double h) {
+    const int32_t nv = r->system->nv;
+    double largest = SYM_EVENT_TURN;
+    int32_t l;
+    for (l = 0; l < nv; ++l) {
+        const double first = h * fabs(r->v[l]), last = h * fabs(w->y1[nv + l]);
+        if (first > largest) largest = first;
+        if (last > largest) largest = last;
+    }
+    largest = SYM_EVENT_TURN / largest;
+    return largest > SYM_EVENT_SHORTEST ? largest : SYM_EVENT_SHORTEST;
+}
 
 /* Events of the step just made, recorded in the order of time, up to the first terminal one or as many as fit: *stop_x is
  * where the step is cut then, else beyond 1. r->event_values becomes the values at the end, of a step that is not cut.
@@ -68,8 +119,8 @@ static int32_t sym_find_events(sym_run *r, sym_workspace *w, double h, int32_t *
     int32_t status;
     *stop_x = 2.0, r->terminal_event = -1;
     search.n = s->n_events, search.direction = s->event_direction, search.memory = r->event_values;
+    search.longest = sym_longest_event_interval(r, w, h);
     search.evaluate = sym_event_values_within_step, search.data = &step;
-    search.tolerance = r->adaptive ? r->rtol : SYM_EVENT_TOLERANCE;
     search.start_changes = !s->events_free_of_inputs && s->nu > 0;
     status = sym_event_search_begin(&search);
     while (status == 0) {
@@ -86,8 +137,8 @@ static int32_t sym_find_events(sym_run *r, sym_workspace *w, double h, int32_t *
         status = sym_load_state_within_step(r, w, h, dense_ready, x);
         if (status == 0) sym_record_event(r, which);
     }
+    if (status == 0) status = sym_keep_event_notes(&step, &search);
     if (status != 0) return status;
-    sym_keep_event_notes(r, &search, h);
     if (*stop_x > 1.0) {
         memcpy(r->event_values, r->event_values + (SYM_EVENT_NODES - 1) * s->n_events, (size_t)s->n_events * sizeof(double));
         return 0;

@@ -128,7 +128,7 @@ typedef struct sym_system {
     int32_t events_free_of_inputs; /* 1: no event needs the inputs, which cost a call of the caller's */
 } sym_system;
 
-typedef enum sym_event_sizes { SYM_EVENT_NODES = 5, SYM_EVENT_ROWS = 10 } sym_event_sizes;
+typedef enum sym_event_sizes { SYM_EVENT_NODES = 5, SYM_EVENT_ROWS = 11 } sym_event_sizes;
 
 /* Events along one step, sought between x = 0, its start, and x = 1, its end. */
 typedef struct sym_event_search {
@@ -137,11 +137,11 @@ typedef struct sym_event_search {
     int32_t (*evaluate)(void *data, double x, double *values); /* values of all events (n) at x; returns 0 or a status */
     void *data;
     double *memory;               /* (SYM_EVENT_ROWS, n): the values at the end of the step before, then work */
-    double tolerance;             /* share of an event's size nearer to which than zero it is not decided */
+    double longest;               /* interval between two points at which an event is looked at */
     int32_t start_changes;        /* whether values at x = 0 may differ from those at the end of the step before */
     int32_t taken;                /* event that was returned last; -1: none */
-    int32_t touched, unresolved;  /* an event that turns undecidedly near to zero, one too fast to follow; -1: none */
-    double touched_x;             /* where it turns */
+    int32_t touched, unresolved;  /* the event that turns nearest to zero, one too fast to follow; -1: none */
+    double touched_x, touched_share; /* where it turns, and its share there of its largest value in the step */
 } sym_event_search;
 
 /* One integration of a system: method, settings, present state, records. */

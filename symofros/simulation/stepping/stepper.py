@@ -163,8 +163,8 @@ class Stepper:
         system.event_direction = memory.own("int32_t[]", [event.sign for event in events])
         system.event_terminal = memory.own("int32_t[]", [int(event.terminal) for event in events])
         if self.inputs.callback is not None:  # Each evaluation of the inputs is a call of it.
-            written = [str(event.formula) for event in events]
-            system.events_free_of_inputs = int(not any(name in text for text in written for name in self.model.names.u))
+            written, names = " ".join(str(event.formula) for event in events), self.model.names
+            system.events_free_of_inputs = int(not any(name in written for name in {*names.u} - {*names.q}))
         if events:
             self._bind("events", self.model.formulas([event.formula for event in events], derivatives=False))
 

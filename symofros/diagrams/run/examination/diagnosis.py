@@ -16,6 +16,7 @@ from symofros.diagrams.run.loop import Loop
 from symofros.runtime.beams import BeamBending, bending_notes, largest_bending
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.analysis.beam_theory import UNAMPLIFIED, amplifications
+from symofros.simulation.events import event_notes
 from symofros.simulation.results.examination.step_size import examine_steps, remedy, step_size_note
 from symofros.simulation.results.outcome import Kind, Outcome
 from symofros.simulation.settings import Settings
@@ -98,7 +99,8 @@ def diagnose(ended: Ended, bendings: Sequence[BeamBending]) -> tuple[Outcome, Re
     """
     loop, status, t = ended.loop, ended.status, ended.t
     left = joint_limit_notes(ended.resolved, *ended.states[:3])
-    notes = (*bending_notes(bendings), *([loop.fault] if loop.fault else []), *left)
+    undecided = (note for stepper in loop.parts for note in event_notes(stepper.run, stepper.events))
+    notes = (*bending_notes(bendings), *([loop.fault] if loop.fault else []), *left, *undecided)
     if ended.interrupted:
         return Outcome("interrupted", t, "Ctrl-C; the part up to here is kept", notes=notes), Resolution()
     if status == Status.CALLBACK_FAILED:
