@@ -16,12 +16,12 @@ import numpy as np
 
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.calls.kernel import Array
+from symofros.simulation.stepping.event_search import EventSearch, MetEvent
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
 
-# Values of SUNDIALS' return flags, the same for both solvers: an event was reached; error tests or the accuracy asked
-# for fail at the smallest step; Newton's iterations do not converge.
-_ROOT = 2
+# Values of SUNDIALS' return flags, the same for both solvers: error tests or the accuracy asked for fail at the smallest
+# step; Newton's iterations do not converge.
 _STATUS = {-1: Status.STEP_TOO_SMALL, -2: Status.STEP_TOO_SMALL, -3: Status.STEP_TOO_SMALL, -4: Status.NO_CONVERGENCE}
 # Multipliers are no part of the motion: a bound this large takes them out of the error test.
 _UNTESTED = 1e100
@@ -57,15 +57,20 @@ class _InputFailedError(Exception):
 
 
 class _Run(ABC):
-    """One run by SUNDIALS: from step to step, with interpolation at the times that are recorded.
+    """One run by SUNDIALS: from step to step, with interpolation at the times that are recorded, and at events.
 
     Attributes:
         stepper: Model, inputs and events, bound; its own loop stays unused.
         steps: Number of steps so far.
+        met: Events of the last step that are still to be returned.
     """
 
     def __init__(self, stepper: Stepper) -> None:
         self.stepper, self.steps = stepper, 0
+        self.met: list[MetEvent] = []
+        self._events = EventSearch(stepper) if stepper.events else None
+        self._end: Array | None = None  # The state at the end of a step, where it is still to be returned.
+        self._last = np.zeros(0)
         self.size = stepper.model.nq + stepper.model.nv
         self._solver: Any = None
         self._reached = 0.0
@@ -78,8 +83,11 @@ class _Run(ABC):
         if status == Status.RUNNING:
             self._reached = float(self.stepper.run.t0)
             y = np.concatenate([q, v])
+            self._last = y
             self._begin(y)  # The solver evaluates its functions elsewhere, too.
             status = self.stepper.place(self._reached, y)
+            if status == Status.RUNNING and self._events is not None:
+                status = self._events.start(self._reached, y)
         return status
 
     @abstractmethod
@@ -88,55 +96,54 @@ class _Run(ABC):
 
     def _options(self) -> dict[str, Any]:
         """Options that both solvers take."""
-        run, events = self.stepper.run, self.stepper.events
-        options: dict[str, Any] = {
+        run = self.stepper.run
+        return {
             "rtol": float(run.rtol),
             "first_step": float(run.h),
             "max_step": float(run.max_step),
             "max_num_steps": 100_000_000,
         }
-        if events:
-            values = self._event_function()
-            values.direction = [event.sign for event in events]
-            options |= {"eventsfn": values, "num_events": len(events)}
-        return options
-
-    @abstractmethod
-    def _event_function(self) -> Any:
-        """A function of the solver's arguments that evaluates the events; not a method, which takes no attributes."""
-
-    def _evaluate_events(self, t: float, y: Array, values: Array) -> None:
-        if self.stepper.event_values(t, y, values) != Status.RUNNING:
-            raise _InputFailedError
-
-    def advance(self, t: float | None) -> tuple[int, list[int]]:
-        """Advance to a time, or by one step; to the next event at most. Returns a status, and the events met there."""
+    def advance(self, t: float | None) -> tuple[int, int | None]:
+        """Advance to a time, or by one step; to the next event at most. Returns a status, and the event met there."""
         end = float(self.stepper.run.t_end)
         try:
             while True:
+                if self.met and (t is None or self.met[0].t <= t):
+                    event = self.met.pop(0)
+                    return self._placed(event.t, event.y), event.which
+                if t is None and self._end is not None:
+                    y, self._end = self._end, None
+                    return self._placed(self._reached, y), None
                 if t is not None and self._reached >= t:
-                    answer = self._solver.step(t, "normal")  # Interpolates within the last step.
-                    return self._placed(float(answer.t), answer.y), []
-                answer = self._step(end)
-                if not answer.success:
-                    return _STATUS.get(int(answer.status), Status.DIVERGED), []
-                self.steps, self._reached = self.steps + 1, float(answer.t)
-                self.stepper.run.evaluations = int(answer.nfev)
-                self.stepper.run.jacobians = int(answer.njev)
-                if int(answer.status) == _ROOT:
-                    met = [i for i, sign in enumerate(np.atleast_2d(answer.i_events)[-1]) if sign]
-                    return self._placed(self._reached, answer.y), met
-                if t is None:
-                    return self._placed(self._reached, answer.y), []
+                    return self._placed(t, self._state(t)), None
+                status = self._step(end)
+                if status != Status.RUNNING:
+                    return status, None
         except _InputFailedError:
-            return Status.CALLBACK_FAILED, []
+            return Status.CALLBACK_FAILED, None
 
-    def _step(self, end: float) -> Any:
-        """The solver's answer to one step, which ends where a held input changes: no pulse is stepped over."""
-        stop = self.stepper.inputs.next_jump(self._reached, end)
+    def _state(self, t: float) -> Array:
+        """The state within the last step, by the solver's interpolation."""
+        y: Array = self._solver.step(t, "normal").y
+        return y
+
+    def _step(self, end: float) -> int:
+        """Make one step, which ends where a held input changes: no pulse is stepped over. Returns a status."""
+        t0, y0, stop = self._reached, self._last, self.stepper.inputs.next_jump(self._reached, end)
         self.stepper.begin_step(stop)
         try:
-            return self._solver.step(end, "onestep", stop)
+            answer = self._solver.step(end, "onestep", stop)
+            if not answer.success:
+                return _STATUS.get(int(answer.status), Status.DIVERGED)
+            t1, y1 = float(answer.t), np.array(answer.y, dtype=np.float64).reshape(-1)
+            self.steps, self._reached, self._last, self._end = self.steps + 1, t1, y1, y1
+            self.stepper.run.evaluations = int(answer.nfev)
+            self.stepper.run.jacobians = int(answer.njev)
+            status = int(Status.RUNNING)
+            if self._events is not None and np.all(np.isfinite(y1)):
+                ends = {t0: y0, t1: y1}
+                status, self.met = self._events.find(t0, t1, lambda t: ends[t] if t in ends else self._state(t))
+            return status
         finally:
             self.stepper.end_step()
 
@@ -156,9 +163,6 @@ class Cvode(_Run):
         options = self._options() | {"atol": float(self.stepper.run.atol), "method": method}
         self._solver = _solver("cvode", "CVODE")(self._slope, **options)
         self._solver.init_step(float(self.stepper.run.t0), y)
-
-    def _event_function(self) -> Any:
-        return lambda t, y, values: self._evaluate_events(t, y, values)
 
     def _slope(self, t: float, y: Array, rate: Array) -> None:
         if self.stepper.slope(t, y, rate) == Status.CALLBACK_FAILED:
@@ -192,9 +196,6 @@ class Ida(_Run):
         options = self._options() | {"atol": bounds, "algebraic_idx": np.arange(self.size, len(first))}
         self._solver = _solver("ida", "IDA")(self._residuals, **options)
         self._solver.init_step(t, first, rate)
-
-    def _event_function(self) -> Any:
-        return lambda t, y, rate, values: self._evaluate_events(t, y, values)
 
     def _residuals(self, t: float, y: Array, rate: Array, residual: Array) -> None:
         """Residual of (10) at a point."""
