@@ -146,17 +146,20 @@ static void sym_add_counters(sym_diagram *d, sym_run *r) {
     r->steps = r->rejected = r->evaluations = 0;
 }
 
-/* An event stopped a part: record it, and execute its task, which may change inputs and states. Returns 0 or a status. */
+/* Events stopped a part, all at the same time: record them, and execute their tasks, which may change inputs and states, one
+ * after the other. Returns 0 or a status. */
 static int32_t sym_handle_crossing(sym_diagram *d, sym_run *stopped) {
     int32_t i, status;
     sym_gather_states(d, stopped->t);
     sym_diagram_record(d);
-    d->event_t[d->n_event_records] = stopped->t;
-    d->event_index[d->n_event_records++] = stopped->terminal_event;
-    stopped->n_event_records = 0;
     if (d->reads_accelerations && (status = sym_evaluate_parts(d)) != 0) return status;
-    status = sym_execute_tasks(d, &d->crossing_tasks[stopped->terminal_event], 1);
-    if (status != 0) return status;
+    for (i = 0; i < stopped->n_event_records; ++i) {
+        d->event_t[d->n_event_records] = stopped->t;
+        d->event_index[d->n_event_records++] = stopped->event_index[i];
+        status = sym_execute_tasks(d, &d->crossing_tasks[stopped->event_index[i]], 1);
+        if (status != 0) return status;
+    }
+    stopped->n_event_records = 0;
     for (i = 0; i < d->n_parts; ++i) {
         sym_run *r = d->parts[i];
         memcpy(r->q, d->q + d->q_offset[i], (size_t)r->system->nq * sizeof(double));
@@ -181,7 +184,7 @@ static int32_t sym_advance_parts(sym_diagram *d, double t) {
     for (i = 0; i < d->n_parts && status == SYM_FINISHED; ++i) {
         sym_run *r = d->parts[i];
         do {
-            if (d->n_event_records == d->event_capacity || d->capacity - d->n_records < SYM_RECORDS_PER_INSTANT) return SYM_RECORDS_FULL;
+            if (d->event_capacity - d->n_event_records < d->n_crossings || d->capacity - d->n_records < SYM_RECORDS_PER_INSTANT) return SYM_RECORDS_FULL;
             status = sym_advance_part(r, t);
             sym_add_counters(d, r);
             if (status == SYM_TERMINAL_EVENT) {
