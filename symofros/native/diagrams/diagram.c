@@ -169,8 +169,7 @@ static int32_t sym_handle_crossing(sym_diagram *d, sym_run *stopped) {
             d->failed_part = i;
             return status;
         }
-        sym_load_state(r);
-        if (r->system->n_events > 0 && (status = sym_event_values(r, r->event_values)) != 0) return status;
+        if ((status = sym_restart_events(r)) != 0) return status;
     }
     sym_gather_states(d, stopped->t);
     sym_diagram_record(d);

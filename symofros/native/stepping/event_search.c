@@ -21,6 +21,7 @@ typedef struct sym_event_rows { /* (n) each, in sym_event_search.memory */
     double *next_x;                /* the next arrival; beyond 1: there is none */
     double *past, *past_value;     /* a point before it */
     double *size;                  /* the largest value at the nodes */
+    double *earlier;               /* values at the start of the step before; NaN: they are unknown */
 } sym_event_rows;
 
 static sym_event_rows sym_rows_of_search(const sym_event_search *s) {
@@ -31,6 +32,7 @@ static sym_event_rows sym_rows_of_search(const sym_event_search *s) {
     for (k = 0; k < SYM_EVENT_NODES; ++k, row += n) rows.node[k] = row;
     rows.work = row, rows.before = row + n, rows.next_x = row + 2 * n;
     rows.past = row + 3 * n, rows.past_value = row + 4 * n, rows.size = row + 5 * n;
+    rows.earlier = row + (SYM_EVENT_EARLIER - SYM_EVENT_NODES) * n;
     return rows;
 }
 
@@ -229,12 +231,45 @@ static int32_t sym_event_is_met(const sym_event_search *s, int32_t i, double x, 
            sym_arrives_at_zero(s->direction[i], rows.before[i], value);
 }
 
+/* Steps that are short: shares of a second, and changes of a coordinate [rad or m]. */
+#define SYM_EVENT_SHORT_TIME 0.02
+#define SYM_EVENT_SHORT_WAY 0.05
+/* How many times farther from zero than it changes in two short steps an event has to be where it is not looked at within. */
+#define SYM_EVENT_FAR 8.0
+/* Change of a coordinate between two looks at the events, which may be periodic in it [rad or m], and the shortest share of
+ * a step that this may come to. */
+#define SYM_EVENT_TURN 0.7
+#define SYM_EVENT_SHORTEST 0.004
+
+SYM_EXPORT void sym_event_search_set_step(sym_event_search *s, double h, double way) {
+    const double longest = way > SYM_EVENT_TURN ? SYM_EVENT_TURN / way : 1.0;
+    s->short_step = h <= SYM_EVENT_SHORT_TIME && way <= SYM_EVENT_SHORT_WAY;
+    s->longest = longest > SYM_EVENT_SHORTEST ? longest : SYM_EVENT_SHORTEST;
+}
+
+/* Whether all events are so far from zero, at the ends of this step and of the one before, that they need no look within. */
+static int32_t sym_all_events_are_far(const sym_event_search *s, const sym_event_rows *rows) {
+    int32_t i;
+    for (i = 0; i < s->n; ++i) {
+        const double a = rows->earlier[i], b = rows->before[i], c = rows->node[SYM_EVENT_NODES - 1][i];
+        const double low = a < b ? (a < c ? a : c) : (b < c ? b : c), high = a > b ? (a > c ? a : c) : (b > c ? b : c);
+        const double nearest = low > 0.0 ? low : -high; /* below 0 where the sign changes */
+        if (!(a == a) || !(nearest > SYM_EVENT_FAR * (high - low))) return 0;
+    }
+    return 1;
+}
+
 SYM_EXPORT int32_t sym_event_search_begin(sym_event_search *s) {
     const sym_event_rows rows = sym_rows_of_search(s);
-    int32_t i, k, status;
+    int32_t i, k, far, status = s->evaluate(s->data, 1.0, rows.node[SYM_EVENT_NODES - 1]);
     s->taken = s->touched = s->unresolved = -1;
+    if (status != 0) return status;
     memcpy(rows.before, rows.node[0], (size_t)s->n * sizeof(double));
-    for (k = s->start_changes ? 0 : 1; k < SYM_EVENT_NODES; ++k) {
+    far = s->short_step && sym_all_events_are_far(s, &rows);
+    memcpy(rows.earlier, rows.before, (size_t)s->n * sizeof(double));
+    for (i = 0; i < s->n; ++i) rows.next_x[i] = 2.0;
+    if (far) return 0;
+    for (k = s->start_changes ? 0 : 1; k + 1 < SYM_EVENT_NODES; ++k) {
         status = s->evaluate(s->data, sym_event_nodes[k], rows.node[k]);
         if (status != 0) return status;
     }

@@ -45,6 +45,17 @@ static int32_t sym_record_events_at_cut(sym_run *r, sym_event_search *search, do
     return 0;
 }
 
+/* Values of the events at the present state, from which a search may begin; those before are unknown. Returns 0 or a
+ * status. */
+static int32_t sym_restart_events(sym_run *r) {
+    const int32_t n = r->system->n_events;
+    int32_t i;
+    if (n == 0) return 0;
+    for (i = 0; i < n; ++i) r->event_values[SYM_EVENT_EARLIER * n + i] = NAN;
+    sym_load_state(r);
+    return sym_event_values(r, r->event_values);
+}
+
 /* Errors that a state of fixed steps has at least; those of adaptive steps are rtol and atol. */
 #define SYM_EVENT_RTOL 1e-9
 #define SYM_EVENT_ATOL 1e-12
@@ -89,23 +100,17 @@ static int32_t sym_keep_event_notes(sym_event_step *step, const sym_event_search
     return status;
 }
 
-/* Change of a coordinate between two looks at the events, which may be periodic in it [rad or m], and the shortest share of
- * a step that this may come to. */
-#define SYM_EVENT_TURN 0.7
-#define SYM_EVENT_SHORTEST 0.004
-
-/* The share of the step just made in which no coordinate changes by more than that. */
-static double sym_longest_event_interval(const sym_run *r, const sym_workspace *w, double h) {
+/* The largest way of a coordinate in the step just made, by the speeds at its ends [rad or m]. */
+static double sym_way_of_step(const sym_run *r, const sym_workspace *w, double h) {
     const int32_t nv = r->system->nv;
-    double largest = SYM_EVENT_TURN;
+    double largest = 0.0;
     int32_t l;
     for (l = 0; l < nv; ++l) {
         const double first = h * fabs(r->v[l]), last = h * fabs(w->y1[nv + l]);
         if (first > largest) largest = first;
         if (last > largest) largest = last;
     }
-    largest = SYM_EVENT_TURN / largest;
-    return largest > SYM_EVENT_SHORTEST ? largest : SYM_EVENT_SHORTEST;
+    return largest;
 }
 
 /* Events of the step just made, recorded in the order of time, up to the first terminal one or as many as fit: *stop_x is
@@ -119,7 +124,7 @@ static int32_t sym_find_events(sym_run *r, sym_workspace *w, double h, int32_t *
     int32_t status;
     *stop_x = 2.0, r->terminal_event = -1;
     search.n = s->n_events, search.direction = s->event_direction, search.memory = r->event_values;
-    search.longest = sym_longest_event_interval(r, w, h);
+    sym_event_search_set_step(&search, h, sym_way_of_step(r, w, h));
     search.evaluate = sym_event_values_within_step, search.data = &step;
     search.start_changes = !s->events_free_of_inputs && s->nu > 0;
     status = sym_event_search_begin(&search);

@@ -91,10 +91,8 @@ SYM_EXPORT int32_t sym_run_start(sym_run *r) {
     status = sym_first_slope(r, w.k);
     if (status != 0) return status;
     sym_keep_diagnostic_state(r, 0);
-    if (s->n_events > 0) {
-        status = sym_event_values(r, r->event_values);
-        if (status != 0) return status;
-    }
+    status = sym_restart_events(r);
+    if (status != 0) return status;
     r->next_step = r->h;
     if (!r->adaptive || r->h > 0.0) return 0;
     status = sym_initial_step_size(r, &w);
@@ -160,8 +158,7 @@ static int32_t sym_accept_step(sym_run *r, sym_workspace *w, double h, double t1
     }
     if (!cut || ended) ++r->steps; /* else a step of fixed length goes on to its end */
     if (cut) { /* not the state that sym_find_events evaluated */
-        sym_load_state(r);
-        status = sym_event_values(r, r->event_values);
+        status = sym_restart_events(r);
         if (status != 0) return status;
     }
     if (r->record_every == 0) {

@@ -13,8 +13,6 @@ from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
 
 _EVALUATE = "int32_t(void *, double, double *)"
-# Change of a coordinate between two looks at the events [rad or m], and the least share of a step; as in events.c.
-_TURN, _SHORTEST = 0.7, 0.004
 
 
 class MetEvent(NamedTuple):
@@ -45,6 +43,7 @@ class EventSearch:
 
     def start(self, t: float, y: Array) -> int:
         """Evaluate the events at the first state; returns a Status."""
+        self._values[constants()["SYM_EVENT_EARLIER"]] = np.nan
         return self.stepper.event_values(t, y, self._values[0])
 
     def find(self, t0: float, t1: float, state: Callable[[float], Array]) -> tuple[int, list[MetEvent]]:
@@ -61,8 +60,8 @@ class EventSearch:
         native, search, stepper = self.stepper.native, self._search, self.stepper
         self._step = (t0, t1, state)
         nq, nv = stepper.model.nq, stepper.model.nv
-        turns = max((t1 - t0) * np.abs([state(t)[nq : nq + nv] for t in (t0, t1)]).max(initial=0.0), _TURN)
-        search.longest = max(_TURN / turns, _SHORTEST)
+        speeds = np.abs([state(t)[nq : nq + nv] for t in (t0, t1)])
+        native.sym_event_search_set_step(search, t1 - t0, (t1 - t0) * speeds.max(initial=0.0))
         which, x, met = stepper.ffi.new("int32_t *"), stepper.ffi.new("double *"), list[MetEvent]()
         status = native.sym_event_search_begin(search)
         while status == Status.RUNNING:
