@@ -50,19 +50,26 @@ static int32_t sym_arrives_at_zero(int32_t direction, double before, double afte
     return direction <= 0 && before > 0.0 && after <= 0.0;
 }
 
+/* Share of a step before an exact zero at which an event that is zero as well rests at zero. */
+#define SYM_EVENT_REST 1e-12
+
 /* The x in (a, b] from which on an event that is monotonic there is at zero or past it, by the Illinois method (regula
- * falsi whose retained end is halved). Returns 0 or a status. */
+ * falsi whose retained end is halved); where it rests at zero, by bisection. Returns 0 or a status. */
 static int32_t sym_locate_event(const sym_event_search *s, int32_t i, double a, double fa, double b, double fb, double *x) {
     const double before = fa;
     double past = fb;
-    int32_t k, side = 0;
-    for (k = 0; k < 100 && b - a > 4e-16 && past != 0.0; ++k) {
-        double c = (fa * b - fb * a) / (fa - fb), f;
+    int32_t k, side = 0, rests = 0;
+    for (k = 0; k < 100 && b - a > 4e-16; ++k) {
+        const int32_t looks_back = past == 0.0 && !rests;
+        double c = looks_back ? b - SYM_EVENT_REST : (fa * b - fb * a) / (fa - fb), f;
         int32_t status;
+        if (looks_back && c <= a) break;
         if (!(c > a && c < b)) c = 0.5 * (a + b);
         status = sym_event_at(s, i, c, &f);
         if (status != 0) return status;
         if (!(f == f)) return SYM_DIVERGED;
+        if (looks_back && f != 0.0) break;
+        rests = rests || looks_back;
         if ((f < 0.0) == (before < 0.0) && f != 0.0) {
             a = c, fa = f;
             if (side == 1) fb *= 0.5;

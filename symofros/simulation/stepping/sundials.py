@@ -133,6 +133,8 @@ class _Run(ABC):
         self.stepper.begin_step(stop)
         try:
             answer = self._solver.step(end, "onestep", stop)
+            if answer.success and float(answer.t) <= t0:  # After an interpolation it gives the last end again.
+                answer = self._solver.step(end, "onestep", stop)
             if not answer.success:
                 return _STATUS.get(int(answer.status), Status.DIVERGED)
             t1, y1 = float(answer.t), np.array(answer.y, dtype=np.float64).reshape(-1)
