@@ -130,7 +130,7 @@ typedef struct sym_system {
 
 typedef enum sym_event_sizes { SYM_EVENT_NODES = 5, SYM_EVENT_EARLIER = 11, SYM_EVENT_ROWS = 13 } sym_event_sizes;
 
-/* Events along one step, sought between x = 0, its start, and x = 1, its end. */
+/* Events along one step (docs/theory/simulation.md, section 2), sought between x = 0, its start, and x = 1, its end. */
 typedef struct sym_event_search {
     int32_t n;                    /* number of events */
     const int32_t *direction;     /* (n) 1 rising, -1 falling, 0 both */

@@ -103,6 +103,7 @@ class _Run(ABC):
             "max_step": float(run.max_step),
             "max_num_steps": 100_000_000,
         }
+
     def advance(self, t: float | None) -> tuple[int, int | None]:
         """Advance to a time, or by one step; to the next event at most. Returns a status, and the event met there."""
         end = float(self.stepper.run.t_end)

@@ -77,7 +77,16 @@ def test_a_thrown_body_passes_any_level_on_its_way_up_and_down(thrown: sf.Model,
         up, down = (v - root) / G, (v + root) / G
         events = {"any": "z - level", "up": sf.Event("z - level", "rising"), "down": sf.Event("level - z", "rising")}
         run = sf.simulate(
-            thrown, [0.0], [v], 2 * v / G, method=method, dt=2e-2, events=events, par={"level": level}, rtol=1e-9, atol=1e-12
+            thrown,
+            [0.0],
+            [v],
+            2 * v / G,
+            method=method,
+            dt=2e-2,
+            events=events,
+            par={"level": level},
+            rtol=1e-9,
+            atol=1e-12,
         )
         # An error of the state moves the zero by as much over the speed there.
         assert_met(run, [up, up, down, down], 1e-7 / root + 1e-9)
@@ -104,7 +113,14 @@ def test_two_zeros_near_each_other(rotor: sf.Model, method: str) -> None:
             first = rng.uniform(0.05, 1.9)
             second = first + 0.05 * 10 ** rng.uniform(-5, 0)
             run = sf.simulate(
-                rotor, [0.0], [1.0], 2.0, method=method, dt=0.05, events={"e": formula}, par={"level": first, "other": second}
+                rotor,
+                [0.0],
+                [1.0],
+                2.0,
+                method=method,
+                dt=0.05,
+                events={"e": formula},
+                par={"level": first, "other": second},
             )
             # The relative accuracy of a formula near its double zero is lost with their distance.
             assert_met(run, [first, second], 1e-9 + 1e-13 / (second - first))
@@ -116,7 +132,9 @@ def test_a_pendulum_that_turns_back_beyond_a_level(pendulum: sf.Model, method: s
     for share in (0.5, 0.9, 0.99, 0.9999):
         stop = {"limit": sf.Event("q - level", terminal=True)}
         options = {"events": stop, "par": {"level": share * top}}
-        fine = sf.simulate(pendulum, [0.0], [3.0], 10.0, method="dop853", rtol=1e-12, atol=1e-12, max_step=1e-3, **options)
+        fine = sf.simulate(
+            pendulum, [0.0], [3.0], 10.0, method="dop853", rtol=1e-12, atol=1e-12, max_step=1e-3, **options
+        )
         run = sf.simulate(pendulum, [0.0], [3.0], 10.0, method=method, rtol=1e-8, atol=1e-10, **options)
         assert run.outcome.kind == fine.outcome.kind == "event"
         assert run.outcome.t == pytest.approx(fine.outcome.t, abs=1e-6)
@@ -143,14 +161,25 @@ def test_zeros_at_the_ends_of_steps(rotor: sf.Model, method: str, dt: float) -> 
 
 @pytest.mark.parametrize("method", METHODS)
 def test_the_start_is_no_arrival_and_the_end_is_one(rotor: sf.Model, method: str) -> None:
-    events = {"start": "t", "angle": "a", "end": "t - 1", "beyond": "t - 1.001", "always": "0*a", "rests": "max(t - 0.6, 0)"}
+    events = {
+        "start": "t",
+        "angle": "a",
+        "end": "t - 1",
+        "beyond": "t - 1.001",
+        "always": "0*a",
+        "rests": "max(t - 0.6, 0)",
+    }
     run = sf.simulate(rotor, [0.0], [1.0], 1.0, method=method, dt=0.1, events=events)
     assert [(e.name, e.t) for e in run.events] == [("end", pytest.approx(1.0, abs=1e-12))]
 
 
 @pytest.mark.parametrize("method", METHODS)
 def test_an_event_that_rests_at_zero_arrives_once(rotor: sf.Model, method: str) -> None:
-    events = {"rests": "max(0.305 - a, 0)", "from below": "min(a - 0.305, 0)", "passes": "max(0.305 - a, 0) + min(0.605 - a, 0)"}
+    events = {
+        "rests": "max(0.305 - a, 0)",
+        "from below": "min(a - 0.305, 0)",
+        "passes": "max(0.305 - a, 0) + min(0.605 - a, 0)",
+    }
     run = sf.simulate(rotor, [0.0], [1.0], 1.0, method=method, dt=0.04, events=events)
     assert sorted(e.name for e in run.events) == ["from below", "passes", "rests"]
     assert [e.t for e in run.events] == pytest.approx([0.305] * 3, abs=1e-9)
@@ -208,7 +237,7 @@ def test_what_steps_cannot_tell_is_noted_and_nothing_else(thrown: sf.Model, meth
 
 @pytest.mark.parametrize("method", METHODS)
 def test_looking_for_events_changes_no_step(pendulum: sf.Model, method: str) -> None:
-    """Nor does it cost many evaluations: those of the dense output of dop853, three on twelve, and one a step elsewhere."""
+    """Nor does it cost many evaluations: three on twelve for the dense output of dop853, one a step elsewhere."""
     options = {"method": method, "dt": 1e-2, "rtol": 1e-6, "output": [2.0]}
     plain = sf.simulate(pendulum, [1.0], [0.0], 2.0, **options)
     run = sf.simulate(pendulum, [1.0], [0.0], 2.0, events={"low": "q", "far": "q - 9"}, **options)
