@@ -47,13 +47,13 @@ def event_notes(run: Any, events: Sequence[Event]) -> tuple[str, ...]:
     notes = []
     if run.touched_event >= 0:
         notes.append(
-            f"event '{events[run.touched_event].name}' turns at t = {run.touched_t:.6g} s so near to zero that the steps"
-            " cannot tell whether it gets there"
+            f"event '{events[run.touched_event].name}' turns at t = {run.touched_t:.6g} s so near to zero that the"
+            " steps cannot tell whether it gets there"
         )
     if run.unresolved_event >= 0:
         notes.append(
-            f"event '{events[run.unresolved_event].name}' changes too often in the step from t = {run.unresolved_t:.6g} s"
-            " on to be followed: zeros may be missing; take shorter steps"
+            f"event '{events[run.unresolved_event].name}' changes too often in the step from t = {run.unresolved_t:.6g}"
+            " s on to be followed: zeros may be missing; take shorter steps"
         )
     return tuple(notes)
 

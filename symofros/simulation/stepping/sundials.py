@@ -20,8 +20,8 @@ from symofros.simulation.stepping.event_search import EventSearch, MetEvent
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
 
-# Values of SUNDIALS' return flags, the same for both solvers: error tests or the accuracy asked for fail at the smallest
-# step; Newton's iterations do not converge.
+# Values of SUNDIALS' return flags, the same for both solvers: error tests or the accuracy asked for fail at the
+# smallest step; Newton's iterations do not converge.
 _STATUS = {-1: Status.STEP_TOO_SMALL, -2: Status.STEP_TOO_SMALL, -3: Status.STEP_TOO_SMALL, -4: Status.NO_CONVERGENCE}
 # Multipliers are no part of the motion: a bound this large takes them out of the error test.
 _UNTESTED = 1e100
