@@ -31,7 +31,8 @@ class EventSearch:
     """
 
     def __init__(self, stepper: Stepper) -> None:
-        self.stepper, self._failure = stepper, None
+        self.stepper = stepper
+        self._failure: BaseException | None = None
         self._step: tuple[float, float, Callable[[float], Array]]
         n, memory = len(stepper.events), stepper.memory
         self._last = constants()["SYM_EVENT_NODES"] - 1
