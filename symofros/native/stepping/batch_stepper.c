@@ -42,6 +42,7 @@ static int32_t sym_batch_allocate(sym_batch *b, sym_arena *arena) {
     b->magnitude = sym_allocate(arena, slots * m), b->end_slope = sym_allocate(arena, slots * m);
     b->k = sym_allocate(arena, slopes * slots * m);
     b->end_state = sym_allocate(arena, nq + nv);
+    b->defects = sym_allocate_defects(s, arena).impulse; /* the first of them */
     b->y0 = sym_allocate(arena, slots * m), b->length = sym_allocate(arena, slots * m);
     return sym_batch_bind(b, arena, &b->forward_dynamics) && sym_batch_bind(b, arena, &b->law);
 }
@@ -81,10 +82,13 @@ SYM_EXPORT int32_t sym_batch_start(sym_batch *b, double *memory) {
 /* Working memory of one slot. */
 static sym_workspace sym_batch_workspace(const sym_batch *b, int32_t slot) {
     const size_t m = 2 * (size_t)b->prototype->system->nv, at = (size_t)slot * (size_t)m;
+    sym_arena defects = {NULL, 0};
     sym_workspace w;
     w.y1 = b->y1 + at, w.stage = b->stage + at, w.magnitude = b->magnitude + at, w.end_slope = b->end_slope + at;
     w.end_state = b->end_state;
     w.k = b->k + at, w.stage_stride = (size_t)b->slots * (size_t)m;
+    defects.base = b->defects;
+    w.defects = sym_allocate_defects(b->prototype->system, &defects);
     memset(&w.implicit, 0, sizeof w.implicit);
     return w;
 }

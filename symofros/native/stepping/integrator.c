@@ -11,6 +11,7 @@
 #include "elimination.c"
 #include "workspace.c"
 #include "explicit.c"
+#include "input_moments.c"
 #include "step_size.c"
 #include "rosenbrock.c"
 #include "second_order.c"

@@ -98,7 +98,7 @@ static void sym_rosenbrock_solve(sym_run *r, double g, int32_t rank, sym_implici
  * or a status. */
 static int32_t sym_slope_time_derivative(sym_run *r, const double *k, double *y, double *derivative) {
     const int32_t n = 2 * r->system->nv;
-    const double step = sqrt(2.2e-16 * (fabs(r->t) > 1e-5 ? fabs(r->t) : 1e-5));
+    const double step = sym_time_difference(r->t);
     int32_t l, status;
     memset(y, 0, (size_t)n * sizeof *y);
     memcpy(y + r->system->nv, r->v, (size_t)r->system->nv * sizeof *y);

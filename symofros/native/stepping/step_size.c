@@ -118,9 +118,10 @@ static int32_t sym_propose_step(sym_run *r, sym_workspace *w, double *h, double 
     if (r->adaptive) {
         const double beyond = *t1 + 1e-9 * *h, sample = sym_next_sample(r->system, r->t, beyond);
         if (sample < beyond) *t1 = sample;
+        sym_state_magnitudes(r, w->magnitude);
+        *t1 = sym_end_by_inputs(r, w, *t1);
     }
     *h = *t1 - r->t;
     r->system->in_step = 1, r->system->step_end = *t1;
-    if (r->adaptive) sym_state_magnitudes(r, w->magnitude);
     return 0;
 }

@@ -58,6 +58,7 @@ typedef struct sym_batch {
      * Row by row: y0 = (0, v), and the step length m times, so that sums of stages are loops over all slots. */
     double *y1, *stage, *magnitude, *end_slope, *k, *y0, *length;
     double *end_state; /* (nq + nv) while one slot accepts its step */
+    double *defects;   /* of the inputs while one slot proposes its step: input_moments.c */
 } sym_batch;
 
 /* Doubles of memory that the slots take. */

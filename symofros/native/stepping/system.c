@@ -126,6 +126,9 @@ static void sym_evaluate_signals(sym_system *s) {
         s->u[s->signals[i].input] = sym_signal_at(&s->signals[i], *s->t, s->in_step ? s->step_end : HUGE_VAL);
 }
 
+/* The difference of time by which rates are taken. */
+static double sym_time_difference(double t) { return sqrt(2.2e-16 * (fabs(t) > 1e-5 ? fabs(t) : 1e-5)); }
+
 /* All inputs at the evaluation point. Not 0: the caller's function failed. */
 static int32_t sym_evaluate_inputs(sym_system *s) {
     int32_t i;
