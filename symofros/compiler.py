@@ -29,6 +29,7 @@ from symofros.errors import CompileError, CompilerMissingWarning, DescriptionErr
 from symofros.expr.program import Program
 from symofros.generator.beams import beams_at
 from symofros.generator.codegen.model import model_source
+from symofros.generator.instants import instants_at
 from symofros.generator.programs import ProgramBuilder, requested
 from symofros.generator.record import GENERATOR as GENERATOR
 from symofros.generator.record import model_record
@@ -204,6 +205,7 @@ class Compilation:
             parameter_check=RunTimeCheck(self.system, self.record.par_names).problems,
             origin=partial(compile_system, self.system, self.options),
             device_code=units.device_code,
+            instants=instants_at(self.tree),
         )
 
     def library(self, precision: Precision = "double") -> tuple[Path, str]:

@@ -29,6 +29,7 @@ from symofros.diagrams.run.values import parameter_values, record_interval
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.beams import BEAM_LIMIT
 from symofros.runtime.build.toolchain import find_toolchain
+from symofros.simulation.inputs import ROUNDED_ZERO
 from symofros.simulation.progress import bar
 from symofros.simulation.stepping.methods import METHODS
 
@@ -165,6 +166,7 @@ def _instants(plan: Schedule, t0: float, t_end: float) -> Iterator[tuple[float, 
     while True:
         for k, which in plan.instants:
             t = float(np.float64(t0) + np.float64(turn * plan.cycle + k) * base_n / base_d)
+            t = 0.0 if abs(t) < ROUNDED_ZERO * base_n / base_d else t
             if t > t_end + slack:
                 return
             due = plan.sets[which]

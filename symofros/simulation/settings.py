@@ -22,6 +22,8 @@ from symofros.simulation.stepping.stepper import Stepper
 # takes is of second order in that error: a run that loses a hundredth has steps that are wrong by tenths. Closed
 # reference models lose less than 1e-4, those at steps that are far too long more than 1e-2.
 LOSS_LIMIT = 0.01
+# Intervals of a run in which adaptive steps are looked into where next to nothing happens.
+LOOKS = 64
 # Gains of 20/s hold a loop through its singular posture (tests of the N-four-bar), and lose accuracy on long steps.
 _GAIN, _GAIN_STEP = 20.0, 0.5
 
@@ -148,6 +150,9 @@ class Settings:
         run.grid, run.n_grid = stepper.memory.doubles(self.grid), len(self.grid)
         run.realtime_scale = 1.0 / self.realtime if self.realtime else 0.0
         stepper.set_gains(self.gains)
+        if self.adaptive:
+            stepper.set_stops(self.t0, self.t_end)
+            run.look_every = (self.t_end - self.t0) / LOOKS
 
 
 def _check(options: SimulationOptions, t_end: float) -> None:

@@ -16,7 +16,7 @@ SYM_EXPORT int32_t sym_diagram_bind(sym_diagram *d, sym_call *call) {
 
 static double sym_instant_time(const sym_diagram *d, int64_t cycle, int64_t instant) {
     const int64_t ticks = cycle * d->cycle_ticks + d->instant_tick[instant];
-    return d->t0 + (double)ticks * d->base_numerator / d->base_denominator;
+    return sym_multiple(d->t0 + (double)ticks * d->base_numerator / d->base_denominator, d->base_numerator / d->base_denominator);
 }
 
 /* The diagram's point <- the states of the parts, and the signals at time t. */

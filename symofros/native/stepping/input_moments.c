@@ -1,11 +1,13 @@
-/* How long a step may be for its inputs (docs/theory/simulation.md, section 2a): what a step's stages make of inputs that depend
+/* How long a step may be for its inputs (docs/theory/simulation.md, (3b), (3c)): what a step's stages make of inputs that depend
  * on time, against what these are. Between two corners the lines of a signal are straight, and every adaptive method is exact
  * for them; a step that passes corners is shortened where its stages misjudge the inputs' impulses or their moments. */
 
 enum { SYM_MAX_STAGES = 16 };
 
-/* Share of the bound of a step's error that its inputs may take. */
-#define SYM_INPUT_ERROR 0.5
+/* Times the bound of a step's error that its inputs may cause before it is shortened, and may cause then: steps from corner to
+ * corner have defects of one sign, which add up. */
+#define SYM_INPUT_ERROR 2.0
+#define SYM_INPUT_SHORTENED 0.2
 /* Defects below this share of the input's size within the step are rounding. */
 #define SYM_INPUT_ROUNDING 1e-13
 
@@ -126,7 +128,7 @@ static void sym_find_input_effects(sym_run *r, const sym_workspace *w) {
     sym_system *s = r->system;
     const int32_t nv = s->nv;
     int32_t i, l;
-    sym_load_state(r);
+    sym_load_start(r);
     (void)sym_evaluate_inputs(s); /* without a function of the caller's it can't fail */
     for (i = 0; i < s->n_signals; ++i) {
         double *effect = w->defects.effect + SYM_INDEX(i, nv, 0), *u = s->u + s->signals[i].input;
@@ -165,7 +167,7 @@ static double sym_input_error(const sym_run *r, const sym_workspace *w, double h
 
 /* Whether the stages of a step from the present state to t1 see the inputs well enough. */
 static int32_t sym_inputs_are_seen(const sym_run *r, sym_workspace *w, double t1) {
-    return !sym_find_defects(r, &w->defects, r->t, t1) || sym_input_error(r, w, t1 - r->t) <= SYM_INPUT_ERROR;
+    return !sym_find_defects(r, &w->defects, r->t, t1) || sym_input_error(r, w, t1 - r->t) <= SYM_INPUT_SHORTENED;
 }
 
 /* Where a step that may last until t1 ends for its inputs: there, or at the last corner up to which its stages see them, by

@@ -20,6 +20,7 @@
 #include "axial_loads.c"
 #include "dense_output.c"
 #include "events.c"
+#include "quiet_steps.c"
 #include "diagnostic.c"
 #include "run.c"
 #include "external_rhs.c"

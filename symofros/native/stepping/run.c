@@ -12,7 +12,7 @@ static void sym_store_first_slope(sym_run *r, double *k) {
 static int32_t sym_first_slope(sym_run *r, double *k) {
     int32_t status = 0;
     if (!r->slope_valid) {
-        sym_load_state(r);
+        sym_load_start(r);
         status = sym_evaluate_acceleration(r);
         if (status == 0) sym_store_first_slope(r, k);
     }
@@ -76,7 +76,7 @@ SYM_EXPORT int32_t sym_run_start(sym_run *r) {
     r->n_records = r->n_event_records = r->next_grid = 0;
     r->n_diagnostic = 0, r->diagnostic_stride = 1, r->diagnostic_between = 0;
     r->rank_max = -1, r->rank_min = s->nc + 1;
-    r->previous_error = 1.0;
+    r->previous_error = 1.0, r->met_at = -HUGE_VAL;
     r->lost_energy = r->kinetic_energy = 0.0;
     r->clock_start = r->realtime_scale > 0.0 ? sym_clock_seconds() : 0.0;
     sym_load_state(r);
@@ -188,6 +188,10 @@ static int32_t sym_accept_or_reject(sym_run *r, sym_workspace *w, double h, doub
         return 0;
     }
     if (status != 0) return status;
+    if (r->adaptive && (status = sym_look_within_step(r, w, h, error)) <= 0) {
+        if (status == 0) ++r->rejected, r->next_step = h;
+        return status;
+    }
     if (r->adaptive) {
         const double proposed = r->next_step;
         r->next_step = sym_next_step_size(r, h, error);

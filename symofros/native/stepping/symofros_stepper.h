@@ -105,10 +105,12 @@ typedef struct sym_tableau { /* coefficients of a Runge-Kutta or Rosenbrock meth
 
 /* The differential equations of one model: its functions bound to one evaluation point, its inputs, its events. */
 typedef struct sym_system {
-    int32_t nq, nv, nu, nc, n_segments, n_signals, n_law, n_events, n_beams, n_quaternion_inputs;
+    int32_t nq, nv, nu, nc, n_segments, n_signals, n_law, n_events, n_beams, n_quaternion_inputs, n_stops;
     const sym_segment *segments;
     const sym_beam *beams;          /* (n_beams) */
     const sym_signal *signals;
+    /* (n_stops) instants, in order, at which adaptive steps end: kinks, jumps and narrow parts of formulas of time. */
+    const double *stops;
     const int32_t *law_inputs;      /* (n_law) indices in u of the inputs that the law gives */
     const int32_t *quaternion_inputs; /* (n_quaternion_inputs) first indices in u of quaternions that prescribe motions */
     const int32_t *event_direction; /* (n_events) 1 rising, -1 falling, 0 both */
@@ -121,10 +123,11 @@ typedef struct sym_system {
     const int32_t *on_speeds; /* (nc) whether a constraint binds speeds only (nonholonomic) */
     /* The evaluation point: inputs and outputs of the calls above. */
     double *q, *v, *u, *t, *gains, *a, *lam, *rank;
-    /* Whether the evaluation point lies within a step under way, and the time at its end: a held sample that begins there
-     * counts from the next step on (docs/theory/simulation.md, section 1). */
+    /* Whether the evaluation point lies within a step under way, the time at its end, and the first and last times at which a
+     * stage evaluates: held samples and jumps of formulas count from their instant on, in the step that begins there
+     * (docs/theory/simulation.md, section 1). */
     int32_t in_step;
-    double step_end;
+    double step_end, first_stage, last_stage;
 } sym_system;
 
 /* One integration of a system: method, settings, present state, records. */
@@ -147,6 +150,8 @@ typedef struct sym_run {
     int32_t *pivots;       /* 2 (nv + nc) */
     double *event_values;  /* 3 n_events: at the present state, then work */
     double next_step, previous_error; /* of the step-size controller */
+    double look_every; /* interval of time at which quiet steps are looked into [s]; 0: none are */
+    double met_at;     /* where something was met there: steps up to it end there */
     int64_t steps, rejected, evaluations, jacobians;
     int32_t rank_max, rank_min; /* of the constraints' Jacobian */
     double t_rank_min;
@@ -213,6 +218,11 @@ double sym_run_beam_error(sym_run *run, int32_t beam);
 int32_t sym_run_set_state(sym_run *run, double t, const double *y);
 /* Rate y' = (N v, v') of a state (nq + nv). */
 int32_t sym_run_rate(sym_run *run, double t, const double *y, double *rate);
+/* A step from t begins that may last until t1, or is over: held samples and jumps of formulas at t1 count after it only. */
+void sym_run_begin_step(sym_run *run, double t, double t1);
+void sym_run_end_step(sym_run *run);
+/* The first instant after t, up to t1, at which a step has to end; t1 where there is none. */
+double sym_run_next_stop(const sym_run *run, double t, double t1);
 /* Values of the events (n_events) at a state. */
 int32_t sym_run_event_values(sym_run *run, double t, const double *y, double *values);
 /* Rate N(q) w (nq) at the evaluation point, which is at the same configuration q. */

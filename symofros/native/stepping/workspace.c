@@ -22,6 +22,7 @@ typedef struct sym_workspace { /* m = 2 nv entries of y */
     double *stage;       /* (m) y at a stage; else work */
     double *magnitude;   /* (m) sizes of the entries of y at the start of the step */
     double *end_slope;   /* (m) slope at the end of the step, for the cubic dense output */
+    double *unseen;      /* (3 nv) of a look within a quiet step */
     double *end_state;   /* (nq + nv) q, v at the end of the step, projected where the run projects */
     double *k;           /* (dense_stages, m) slopes of the stages */
     size_t stage_stride; /* doubles from the slope of one stage to that of the next */
@@ -43,6 +44,7 @@ static sym_workspace sym_allocate_workspace(const sym_run *r, sym_arena *arena) 
     sym_workspace w;
     w.y1 = sym_allocate(arena, m), w.stage = sym_allocate(arena, m), w.magnitude = sym_allocate(arena, m);
     w.end_slope = sym_allocate(arena, m), w.end_state = sym_allocate(arena, (size_t)r->system->nq + nv), w.k = sym_allocate(arena, slopes * m), w.stage_stride = m;
+    w.unseen = sym_allocate(arena, 3 * nv);
     w.defects = sym_allocate_defects(r->system, arena);
     memset(&w.implicit, 0, sizeof w.implicit);
     if (r->method > SYM_METHOD_SEMI_IMPLICIT) {

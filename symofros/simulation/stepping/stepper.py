@@ -271,13 +271,22 @@ class Stepper:
         """Make y = (q, v), its quaternions normalised, the present state, and evaluate its inputs; returns a Status."""
         return int(self.native.sym_run_set_state(self.run, t, self._pointer(y)))
 
-    def begin_step(self, end: float) -> None:
-        """Held samples that begin at `end`, or later, do not count from now on; for integrators of others."""
-        self.system.in_step, self.system.step_end = 1, end
+    def begin_step(self, t: float, end: float) -> None:
+        """From t on, held samples and jumps at `end`, or later, do not count; for integrators of others."""
+        self.native.sym_run_begin_step(self.run, t, end)
 
     def end_step(self) -> None:
         """Those that begin there count."""
-        self.system.in_step = 0
+        self.native.sym_run_end_step(self.run)
+
+    def set_stops(self, t0: float, t_end: float) -> None:
+        """Find the instants between start and end [s] of a run at which steps have to end, for formulas of time."""
+        stops = self.model.formula_instants(list(self.inputs.formulas.values()), self.par, t0, t_end)
+        self.system.n_stops, self.system.stops = len(stops), self.memory.doubles(stops)
+
+    def next_stop(self, t: float, end: float) -> float:
+        """The first instant after t at which a step has to end, else `end` [s]; for integrators of others."""
+        return float(self.native.sym_run_next_stop(self.run, t, end))
 
     def slope(self, t: float, y: Array, rate: Array) -> int:
         """Write the rate y' = (N v, v') of a state y = (q, v) into `rate`; returns a Status."""

@@ -7,6 +7,7 @@ solvers' history stays smooth.
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from importlib import import_module
@@ -25,6 +26,15 @@ _ROOT = 2
 _STATUS = {-1: Status.STEP_TOO_SMALL, -2: Status.STEP_TOO_SMALL, -3: Status.STEP_TOO_SMALL, -4: Status.NO_CONVERGENCE}
 # Multipliers are no part of the motion: a bound this large takes them out of the error test.
 _UNTESTED = 1e100
+# Times the bound of the error that a jump of rates makes in the last step, beyond which the solver begins anew: a step
+# is tried seven times before the solver gives up, and may be shortened to a fifth each time.
+_JUMP = 1e4
+# Times the way to the next instant that the last step was long, beyond which its history is left.
+_LONGER = 2.0
+# Instants that differ by less, relative to themselves, are one: SUNDIALS' own share.
+_SAME_INSTANT = 1e-13
+# Share of the way between two instants that the first step covers.
+_FIRST_SHARE = 0.4
 # Rows of G count as dependent below this share of the largest remaining row; as RANK of assembly.
 _DEPENDENT = 1e-9
 # Conditions left out because others implied them may drift this far before they count as lost.
@@ -69,6 +79,10 @@ class _Run(ABC):
         self.size = stepper.model.nq + stepper.model.nv
         self._solver: Any = None
         self._reached = 0.0
+        self._stop = math.nan  # The instant at which the step under way has to end, or the last one ended.
+        self._answer: Any = None
+        self._last_step = 0.0
+        self._before = 0, 0  # Evaluations, and of Jacobians, before the solver began anew.
         self._method = stepper.method.name
 
     def start(self, q: Array, v: Array) -> int:
@@ -79,12 +93,17 @@ class _Run(ABC):
             self._reached = float(self.stepper.run.t0)
             y = np.concatenate([q, v])
             self._begin(y)  # The solver evaluates its functions elsewhere, too.
+            self._place_solver(self._reached, y)
             status = self.stepper.place(self._reached, y)
         return status
 
     @abstractmethod
     def _begin(self, y: Array) -> None:
-        """Create the solver and place it at the first state y = (q, v)."""
+        """Create the solver for motions from the first state y = (q, v)."""
+
+    @abstractmethod
+    def _place_solver(self, t: float, y: Array) -> None:
+        """Place the solver at a state y = (q, v), without a history."""
 
     def _options(self) -> dict[str, Any]:
         """Options that both solvers take."""
@@ -121,8 +140,8 @@ class _Run(ABC):
                 if not answer.success:
                     return _STATUS.get(int(answer.status), Status.DIVERGED), []
                 self.steps, self._reached = self.steps + 1, float(answer.t)
-                self.stepper.run.evaluations = int(answer.nfev)
-                self.stepper.run.jacobians = int(answer.njev)
+                self.stepper.run.evaluations = self._before[0] + int(answer.nfev)
+                self.stepper.run.jacobians = self._before[1] + int(answer.njev)
                 if int(answer.status) == _ROOT:
                     met = [i for i, sign in enumerate(np.atleast_2d(answer.i_events)[-1]) if sign]
                     return self._placed(self._reached, answer.y), met
@@ -132,13 +151,43 @@ class _Run(ABC):
             return Status.CALLBACK_FAILED, []
 
     def _step(self, end: float) -> Any:
-        """The solver's answer to one step, which ends where a held input changes: no pulse is stepped over."""
-        stop = self.stepper.inputs.next_jump(self._reached, end)
-        self.stepper.begin_step(stop)
+        """The solver's answer to one step, which ends where an input jumps or bends: no pulse is stepped over.
+
+        From such an instant the first step covers a part of the way to the next one only: steps are judged by their
+        ends, where a pulse may have no force.
+        """
+        t = self._reached
+        stop = self.stepper.next_stop(t, self.stepper.inputs.next_corner(t, end))
+        if math.isclose(t, self._stop, rel_tol=_SAME_INSTANT):
+            self._begin_anew(t, stop)
+            first = t + _FIRST_SHARE * (stop - t)
+        else:
+            first, self._stop = stop, stop
+        self.stepper.begin_step(t, first)
         try:
-            return self._solver.step(end, "onestep", stop)
+            self._answer = self._solver.step(end, "onestep", first)
         finally:
             self.stepper.end_step()
+        self._last_step = float(self._answer.t) - t
+        return self._answer
+
+    def _begin_anew(self, t: float, stop: float) -> None:
+        """Leave the solver's history at an instant t, where it is that of another function or of much longer steps.
+
+        Accelerations may jump at t, by so much that no step of an old history is short enough; and error estimates that
+        rest on steps far longer than the way to the next instant `stop` take no notice of what begins there.
+        """
+        y = np.array(self._answer.y, dtype=np.float64).reshape(-1)[: self.size]
+        before, after = np.zeros(self.size), np.zeros(self.size)
+        self.stepper.begin_step(t - self._last_step, t)
+        self.stepper.slope(t, y, before)
+        self.stepper.begin_step(t, stop)
+        self.stepper.slope(t, y, after)
+        bound = float(self.stepper.run.atol) + float(self.stepper.run.rtol) * np.abs(y)
+        jumps = np.abs(after - before) * self._last_step > _JUMP * bound
+        if jumps.any() or self._last_step > _LONGER * (stop - t):
+            self._before = self._before[0] + int(self._answer.nfev), self._before[1] + int(self._answer.njev)
+            self._place_solver(t, y)
 
     def _placed(self, t: float, y: Array) -> int:
         """Make a state the run's own; returns a status."""
@@ -155,7 +204,9 @@ class Cvode(_Run):
         method = "Adams" if self._method == "cvode_adams" else "BDF"
         options = self._options() | {"atol": float(self.stepper.run.atol), "method": method}
         self._solver = _solver("cvode", "CVODE")(self._slope, **options)
-        self._solver.init_step(float(self.stepper.run.t0), y)
+
+    def _place_solver(self, t: float, y: Array) -> None:
+        self._solver.init_step(t, y)
 
     def _event_function(self) -> Any:
         return lambda t, y, values: self._evaluate_events(t, y, values)
@@ -176,21 +227,28 @@ class Ida(_Run):
         stepper, model = self.stepper, self.stepper.model
         bind = model.bind
         self._residual, self._jacobian = bind("residual", par=stepper.par), bind("constraint_jacobian", par=stepper.par)
-        t, q, v = float(stepper.run.t0), y[: model.nq], y[model.nq :]
-        u = stepper.inputs_at(t, q, v)
-        a, lam = model.forward_dynamics(q, v, u, par=stepper.par, t=t, multipliers=True)
-        G = model.constraint_jacobian(q, u=u, par=stepper.par, t=t)
+        t, q = float(stepper.run.t0), y[: model.nq]
+        G = model.constraint_jacobian(q, u=stepper.inputs_at(t, q, y[model.nq :]), par=stepper.par, t=t)
         self._rows = independent_rows(G)
         on_speeds = [name in model.record.speed_conditions for name in model.names.constraints]
         self._closed = np.array([i for i in self._rows if not on_speeds[i]], dtype=np.intp)
+        bounds = np.full(self.size + len(self._rows) + len(self._closed), _UNTESTED)
+        bounds[: self.size] = float(stepper.run.atol)
+        options = self._options() | {"atol": bounds, "algebraic_idx": np.arange(self.size, len(bounds))}
+        self._solver = _solver("ida", "IDA")(self._residuals, **options)
+
+    def _place_solver(self, t: float, y: Array) -> None:
+        stepper, model = self.stepper, self.stepper.model
+        if stepper.place(t, y) != Status.RUNNING:
+            raise _InputFailedError
+        now, q, v = stepper.state
+        u = stepper.inputs_now
+        a, lam = model.forward_dynamics(q, v, u, par=stepper.par, t=now, multipliers=True)
+        G = model.constraint_jacobian(q, u=u, par=stepper.par, t=now)
         # The multipliers of the rows that are kept, of all rows' forces.
         lam = np.linalg.lstsq(G[self._rows].T, G.T @ lam, rcond=None)[0] if len(self._rows) else np.zeros(0)
         first = np.concatenate([y, lam, np.zeros(len(self._closed))])
-        rate = np.concatenate([stepper.configuration_rate(q, v), a, np.zeros(len(first) - self.size)])
-        bounds = np.full(len(first), _UNTESTED)
-        bounds[: self.size] = float(stepper.run.atol)
-        options = self._options() | {"atol": bounds, "algebraic_idx": np.arange(self.size, len(first))}
-        self._solver = _solver("ida", "IDA")(self._residuals, **options)
+        rate = np.concatenate([stepper.configuration_rate(y[: model.nq], v), a, np.zeros(len(first) - self.size)])
         self._solver.init_step(t, first, rate)
 
     def _event_function(self) -> Any:
