@@ -264,6 +264,7 @@ def record_of(resolved: Resolved, part: Part | None) -> ModelRecord:
         periodic=(False,) * nq,
         constraint_names=names,
         speed_conditions=tuple(name for name in names if name in layout.speed_conditions),
+        measures=layout.measures_of(of),
     )
 
 

@@ -277,13 +277,12 @@ class Fuser:
         measures = layout.measures_of(part)
         terms_of = (_matrix("M", M, nv), _vector("r", r), _matrix("G", G, nv), _vector("c", c))
         solved = (("a", (nv,)), ("lam", (nc,)), ("rank", ()))
-        forward = Function(
-            "forward_dynamics", "", ("q", "v", "u", "gains", "t"), terms_of, Solver("constrained", solved, (), measures)
-        )
-        q_moved = self._moved(at, part)
-        move = Function("move", "", ("q", "step"), (_vector("q_moved", q_moved),))
+        move = Function("move", "", ("q", "step"), (_vector("q_moved", self._moved(at, part)),))
+        residuals = (_vector("binds", binds), _vector("phi", phi))
+        solving = Solver("constrained", solved, (move,), measures)
+        forward = Function("forward_dynamics", "", ("q", "v", "u", "gains", "t"), (*terms_of, *residuals), solving)
         projected = (("q_on", (part.nq,)), ("v_on", (nv,)), ("residual", ()), ("rank", ()), ("energies", (2,)))
-        outputs = (terms_of[0], terms_of[2], _vector("binds", binds), _vector("phi", phi), _vector("rate", rate))
+        outputs = (terms_of[0], terms_of[2], *residuals, _vector("rate", rate))
         project = Function("project", "", AT, outputs, Solver("project", projected, (move,), measures))
         judging = self._judging(at, part)
         jacobian = [Function("constraint_jacobian", "", AT, (terms_of[2],))] if judging else []

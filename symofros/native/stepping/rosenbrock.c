@@ -65,7 +65,7 @@ static int32_t sym_rosenbrock_matrix(sym_run *r, double g, sym_implicit_workspac
         for (j = 0; j < nc; ++j) w->matrix[SYM_INDEX(i, n, nv + j)] = -G[SYM_INDEX(j, nv, i)];
     for (i = nv; i < n; ++i)
         for (j = nv; j < n; ++j) w->matrix[SYM_INDEX(i, n, j)] = 0.0;
-    return sym_eliminate(nv, n, w->matrix, w->scale, r->pivots, r->pivots + n);
+    return sym_eliminate(nv, n, s->group, nv + r->rank, w->matrix, w->scale, r->pivots, r->pivots + n);
 }
 
 /* U = (U_1, U_2) with (g - J) U = right = (r_1, r_2), J the Jacobian of f: U_1 less r_1/g by (5a), then U_2, which is not

@@ -18,6 +18,7 @@ static int32_t sym_first_slope(sym_run *r, double *k) {
     }
     if (r->system->nc > 0 && status == 0) {
         const int32_t rank = (int32_t)*r->system->rank;
+        r->rank = rank;
         if (rank > r->rank_max) r->rank_max = rank;
         if (rank < r->rank_min) r->rank_min = rank, r->t_rank_min = r->t;
     }
@@ -75,7 +76,7 @@ SYM_EXPORT int32_t sym_run_start(sym_run *r) {
     r->steps = r->rejected = r->evaluations = r->jacobians = 0;
     r->n_records = r->n_event_records = r->next_grid = 0;
     r->n_diagnostic = 0, r->diagnostic_stride = 1, r->diagnostic_between = 0;
-    r->rank_max = -1, r->rank_min = s->nc + 1;
+    r->rank = 0, r->rank_max = -1, r->rank_min = s->nc + 1;
     r->previous_error = 1.0;
     r->lost_energy = r->kinetic_energy = 0.0;
     r->clock_start = r->realtime_scale > 0.0 ? sym_clock_seconds() : 0.0;

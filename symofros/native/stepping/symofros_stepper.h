@@ -119,6 +119,7 @@ typedef struct sym_system {
     void *data;
     sym_call forward_dynamics, law, events, project, implicit_terms, residual, momentum, mass_matrix, constraint_jacobian;
     const int32_t *on_speeds; /* (nc) whether a constraint binds speeds only (nonholonomic) */
+    const int32_t *group;     /* (nc) first condition of those that share their sizes (docs/theory/constraints.md, section 10) */
     /* The evaluation point: inputs and outputs of the calls above. */
     double *q, *v, *u, *t, *gains, *a, *lam, *rank;
     /* Whether the evaluation point lies within a step under way, and the time at its end: a held sample that begins there
@@ -148,7 +149,7 @@ typedef struct sym_run {
     double *event_values;  /* 3 n_events: at the present state, then work */
     double next_step, previous_error; /* of the step-size controller */
     int64_t steps, rejected, evaluations, jacobians;
-    int32_t rank_max, rank_min; /* of the constraints' Jacobian */
+    int32_t rank, rank_max, rank_min; /* of the constraints' Jacobian: at the beginning of the step, so far */
     double t_rank_min;
     int32_t slope_valid;    /* whether the slope at the present state is known */
     int32_t jacobian_valid; /* whether its derivatives are; they outlive a rejected step */

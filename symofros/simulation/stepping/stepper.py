@@ -84,6 +84,7 @@ class Stepper:
         system.n_segments, system.segments = len(segments), memory.own("sym_segment[]", segments)
         on_speeds = [int(name in model.record.speed_conditions) for name in model.names.constraints]
         system.on_speeds = memory.own("int32_t[]", on_speeds)
+        system.group = memory.own("int32_t[]", list(model.record.measures.group))
         quaternions = model.record.quaternion_inputs
         system.n_quaternion_inputs, system.quaternion_inputs = len(quaternions), memory.own("int32_t[]", quaternions)
         sizes = {"q": model.nq, "v": model.nv, "u": model.nu, "t": 1, "gains": 2 * model.nc}
