@@ -339,23 +339,24 @@ def project(
     q: Array,
     v: Array,
     measures: Measures,
-) -> tuple[Array, Array, float, int, Array]:
+) -> tuple[Array, Array, float, int, Array, float]:
     """The nearest state on the constraints, in the metric of M.
 
     Args:
-        terms: (q, v) -> M, G, binds, phi, G v - b.
+        terms: (q, v) -> M, G, binds, phi, G v - b, and cosines of the angles between axes that are to be parallel.
         move: (q, step) -> q.
         q: (nq,).
         v: (nv,).
         measures: Measures of the rows and columns of G.
 
     Returns:
-        q, v, |phi| by weight, the rank of G, and the energies (2): what the change of speeds takes, and the kinetic
-        energy before it.
+        q, v, |phi| by weight (1 more half a turn off), the rank of G, and the energies (2): what the change of speeds
+        takes, and the kinetic
+        energy before it; |phi| by weight of q.
     """
-    M, G, binds, phi, rate = terms(q, v)
+    M, G, binds, phi, rate, *facing = terms(q, v)
     weights, closer = residual_weights(G, measures), True
-    left = float(np.linalg.norm(weights * phi))
+    left = gap = float(np.linalg.norm(weights * phi))
     for _ in range(NEWTON):
         if not (closer and left > CLOSED):
             break
@@ -366,11 +367,13 @@ def project(
             tried = move(q, step * 0.5**half)
             at_trial = terms(tried, v)
             if np.linalg.norm(weights * at_trial[3]) < left:
-                q, (M, G, binds, phi, rate), closer = tried, at_trial, True
+                q, (M, G, binds, phi, rate, *facing), closer = tried, at_trial, True
                 left = float(np.linalg.norm(weights * phi))
                 break
+    if any(np.any(cosines < 0.0) for cosines in facing):
+        left += 1.0  # Half a turn away phi is zero, too.
     if not len(G):
-        return q, v, left, 0, np.zeros(2)
+        return q, v, left, 0, np.zeros(2), gap
     change, mu, rank = solve(M, np.zeros_like(v), G, -rate, measures)
     energies = 0.5 * np.array([-rate @ mu, v @ M @ v + STILL**2 * np.trace(M)])
-    return q, v + change, left, rank, energies
+    return q, v + change, left, rank, energies, gap

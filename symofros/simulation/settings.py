@@ -13,6 +13,7 @@ from symofros.errors import AssemblyError, Problem, ShapeError, SymofrosError, U
 from symofros.native import native_number
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
+from symofros.simulation.analysis.kinematics.facing import refuse_opposite
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.stepping.methods import METHODS, Method, method_meant
@@ -248,7 +249,10 @@ def check_start(model: Model, settings: Settings, q: Array, v: Array, u: Array, 
     Raises:
         AssemblyError: With the constraint that is off most.
     """
-    if not model.nc or settings.stabilisation == "baumgarte":
+    if not model.nc:
+        return
+    refuse_opposite(model, q, u, par)
+    if settings.stabilisation == "baumgarte":
         return
     for what, values in (
         ("phi", model.constraint(q, u=u, par=par, t=settings.t0)),

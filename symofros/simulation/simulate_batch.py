@@ -16,6 +16,7 @@ from symofros.errors import Problem, ShapeError, SymofrosError
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.calls.layout import flat
 from symofros.runtime.model import ArrayLike, Model
+from symofros.simulation.analysis.kinematics.facing import facings
 from symofros.simulation.batch_inputs import Shape, sort_inputs
 from symofros.simulation.inputs import Inputs
 from symofros.simulation.options import SimulationOptions
@@ -179,13 +180,17 @@ def _off(model: Model, settings: Settings, initial: InitialStates, stepper: Batc
     """Which trajectories start off the constraints (n); as `check_start`, which refuses a single one."""
     n = initial.n
     off = np.zeros(n, dtype=np.bool_)
-    if not model.nc or settings.stabilisation == "baumgarte":
+    if not model.nc:
         return off
     u = initial.inputs.constant
     if model.record.driven:  # The motions of joints are inputs, by formulas too.
         q, v = np.broadcast_to(initial.q, (n, model.nq)), np.broadcast_to(initial.v, (n, model.nv))
         u = np.array([stepper.single.inputs_at(initial.t, q[i], v[i]) for i in range(n)])
     exact = model.with_precision("double")  # As states are.
+    for facing in facings(exact, initial.q, u, initial.par):
+        off |= facing.cosines < 0.0
+    if settings.stabilisation == "baumgarte":
+        return off
     phi = exact.constraint(initial.q, u=u, par=initial.par, t=initial.t)
     rate = exact.constraint_rate(initial.q, initial.v, u=u, par=initial.par, t=initial.t)
     for values in (phi, rate):

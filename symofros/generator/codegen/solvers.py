@@ -151,9 +151,10 @@ def _project(c_name: str, function: Function, needs: int, sparse: SparseSystem |
     """The state -> the nearest one on the constraints."""
     m, n = function.outputs[1].shape
     nq = function.returns[0][1][0]
+    facing = sum(len(output.edges) for output in function.outputs if output.name == "facing")
     lines = [
-        f"    *out[3] = sym_project({nq}, {n}, {m}, &measures, {c_name}_terms, {c_name}_move,",
-        "                          in, out[0], out[1], out[2], out[4], work);",
+        f"    *out[3] = sym_project({nq}, {n}, {m}, {facing}, &measures, {c_name}_terms, {c_name}_move,",
+        "                          in, out[0], out[1], out[2], out[4], out[5], work);",
     ]
     return lines, work_size("SYM_PROJECT_WORK", nq, n, m) + max(needs, _solving(n, m, sparse))
 

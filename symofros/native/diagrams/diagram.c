@@ -93,17 +93,37 @@ static int32_t sym_locks_changed(sym_diagram *d) {
     for (i = 0; i < d->n_locks; ++i) {
         const double now = d->u[d->lock_inputs[i]];
         if (now != d->lock_values[i]) changed = 1;
+        if (now > d->lock_values[i]) d->engaged = i;
         d->lock_values[i] = now;
     }
     return changed;
 }
 
-/* Project the parts onto their constraints at once: a plastic impact. Returns 0 or a status. */
+/* Largest |phi| by weight that engaging closes by moving bodies, which no force does (docs/theory/diagrams.md). */
+#define SYM_ENGAGE_TOLERANCE 1e-3
+
+/* Project a part whose constraints have just changed: a plastic impact. Returns 0 or a status. */
+static int32_t sym_engage(sym_diagram *d, sym_run *r, double t) {
+    const sym_call *project = &r->system->project;
+    int32_t status;
+    double gap;
+    sym_load_state(r); /* the inputs are those of the instant */
+    status = sym_project_point(r->system);
+    gap = project->out[5][0];
+    if (gap > d->engaged_gap) d->engaged_gap = gap, d->engaged_t = t;
+    if (gap > SYM_ENGAGE_TOLERANCE) return SYM_ENGAGED_APART;
+    if (status != 0) return status;
+    memcpy(r->q, r->system->q, (size_t)r->system->nq * sizeof *r->q);
+    memcpy(r->v, r->system->v, (size_t)r->system->nv * sizeof *r->v);
+    return 0;
+}
+
+/* Project the parts onto their constraints at once. Returns 0 or a status. */
 static int32_t sym_project_parts(sym_diagram *d, double t) {
     int32_t i, status;
     for (i = 0; i < d->n_parts; ++i) {
         if (!d->parts[i]->project) continue;
-        status = sym_project_state(d->parts[i]);
+        status = sym_engage(d, d->parts[i], t);
         if (status != 0) {
             d->failed_part = i;
             return status;
@@ -197,6 +217,7 @@ static int32_t sym_advance_parts(sym_diagram *d, double t) {
 SYM_EXPORT int32_t sym_diagram_start(sym_diagram *d) {
     d->cycle = d->next_instant = 0;
     d->finished = d->failed_part = 0;
+    d->engaged = -1, d->engaged_gap = d->engaged_t = 0.0;
     d->steps = d->rejected = d->evaluations = 0;
     d->n_records = d->n_event_records = d->n_lateness = 0;
     d->clock_start = d->realtime_scale > 0.0 ? sym_clock_seconds() : 0.0;

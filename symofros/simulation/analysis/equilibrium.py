@@ -23,6 +23,7 @@ from symofros.simulation.analysis.beam_theory import (
 )
 from symofros.simulation.analysis.input_rotations import given_inputs
 from symofros.simulation.analysis.kinematics.assembly import free_speeds
+from symofros.simulation.analysis.kinematics.facing import refuse_opposite
 from symofros.simulation.analysis.rest_search import Balance, search_rest
 
 # Estimated error of a beam's theory from which it is what a search without success is blamed on.
@@ -94,6 +95,7 @@ def equilibrium(
             no result (docs/theory/beams.md, section 6); `math.inf` for no limit.
 
     Raises:
+        AssemblyError: A closure is closed the wrong way round.
         BeamTheoryError: A beam is bent beyond the limit, or its theory has no equilibrium here.
         EquilibriumError: None was found; names the coordinate with the largest imbalance.
         UnknownNameError: `held` names something that is not a speed.
@@ -121,6 +123,7 @@ def equilibrium(
                 "place of rest",
             )
         )
+    refuse_opposite(model, q, u, par)
     refuse_beyond(model, bendings, beam_limit, "the equilibrium")
     effort = np.zeros(model.nv)
     held_rows = np.setdiff1d(np.arange(model.nv), free)

@@ -14,6 +14,7 @@ from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.beam_theory import bendings_in_motion, refuse_beyond
 from symofros.simulation.analysis.input_rotations import given_inputs
+from symofros.simulation.analysis.kinematics.facing import refuse_opposite
 from symofros.simulation.analysis.rest_linearisation import matrix_at_rest
 from symofros.simulation.analysis.rigid_motions import rigid_motions
 from symofros.simulation.analysis.state_space import state_space
@@ -69,6 +70,7 @@ def modes(
             (docs/theory/beams.md, section 6); `math.inf` for no limit.
 
     Raises:
+        AssemblyError: A closure is closed the wrong way round.
         BeamTheoryError: A beam is bent beyond the limit.
     """
     state = (
@@ -76,6 +78,7 @@ def modes(
         np.zeros(model.nv) if v is None else numeric("v", model.by_name("v", v)),
         given_inputs(model, u),
     )
+    refuse_opposite(model, state[0], state[2], par)
     A, basis = _linearised(model, *state, par, t)
     # Without constraints A holds the derivatives of the accelerations.
     slopes = None if model.nc else A[model.nv :, : model.nv]

@@ -28,6 +28,7 @@ from symofros.runtime.constrained import (
 )
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.input_rotations import given_inputs
+from symofros.simulation.analysis.kinematics.facing import refuse_opposite
 from symofros.simulation.analysis.kinematics.targets import finite_array
 from symofros.simulation.settings import refuse_lengths
 
@@ -142,7 +143,7 @@ def approach(
     at = _Conditions(model, given_inputs(model, u), par, t)
     end = _attempt(at, q, free, _own_measure(at, q, TOLERANCE), ITERATIONS)
     if end.closes:
-        _check_rotations(model, end.q, at.u, par)
+        refuse_opposite(model, end.q, at.u, par)
     return end
 
 
@@ -202,7 +203,7 @@ def _closed(
         if others is None:
             _refuse(at.model, first, held, bool(_movable(at, q, free).any()))
         first = others
-    _check_rotations(at.model, first.q, at.u, at.par)
+    refuse_opposite(at.model, first.q, at.u, at.par)
     return first
 
 
@@ -382,28 +383,3 @@ def _refuse(model: Model, first: Attempt, held: Collection[str], shifted: bool) 
             "start nearer, hold fewer coordinates, or check lengths",
         )
     )
-
-
-def _check_rotations(model: Model, q: Array, u: ArrayLike | None, par: ArrayLike | None) -> None:
-    """Conditions on rotations vanish at the opposite posture, too; that one is not closed."""
-    for closure in model.record.closures:
-        if not closure.rotations:
-            continue
-        R_A, R_B = (
-            np.eye(3) if frame is None else model.frame_pose(frame, q, u=u, par=par)[1]
-            for frame in (closure.first, closure.second)
-        )
-        cosines = np.diag(R_A.T @ R_B)
-        blocked = closure.rotations
-        judged = {3: [0, 1, 2], 2: [k for k in range(3) if k not in blocked]}.get(len(blocked), [])
-        worst = min((float(cosines[k]) for k in judged), default=1.0)
-        if worst < 0.0:
-            angle = np.degrees(np.arccos(max(worst, -1.0)))
-            raise AssemblyError(
-                Problem(
-                    f"model '{model.record.name}': closure '{closure.name}' is closed the wrong way round",
-                    f"axes that are to be parallel are {angle:.0f} degrees apart",
-                    "conditions on rotations hold up to a right angle from the closed posture",
-                    "start from a guess on the right side",
-                )
-            )

@@ -18,6 +18,7 @@ from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.beam_theory import bendings_in_motion
 from symofros.simulation.analysis.input_rotations import given_inputs
 from symofros.simulation.analysis.kinematics.assembly import Indices, free_speeds
+from symofros.simulation.analysis.kinematics.facing import facings
 from symofros.simulation.analysis.kinematics.nearest_posture import OPTIMALITY, NearestPosture, coordinate_limits
 from symofros.simulation.analysis.kinematics.targets import Target as Target
 from symofros.simulation.analysis.kinematics.targets import Task, finite_array, rotations_checked
@@ -114,12 +115,18 @@ def inverse_kinematics(
 
 
 def _judged(task: Task, reached: Reached, beam_limit: float) -> Reached:
-    """The same with its beams as they are when released there; not converged where one is bent beyond the limit."""
+    """The same with its beams as they are when released there.
+
+    It has not converged where one is bent beyond the limit, or a closure is closed the wrong way round.
+    """
     model, given = task.model, task.inputs["u"]
     u = given_inputs(model, given)
     bendings = bendings_in_motion(model, reached.q, np.zeros(model.nv), u, task.inputs["par"])
     within = all(bending.error <= beam_limit for bending in bendings)
-    return replace(reached, converged=reached.converged and within, bendings=bendings, notes=bending_notes(bendings))
+    opposite = [closure for closure, cosine in facings(model, reached.q, u, task.inputs["par"]) if cosine < 0.0]
+    notes = tuple(f"closure '{closure}' is closed the wrong way round" for closure in opposite)
+    converged = reached.converged and within and not opposite
+    return replace(reached, converged=converged, bendings=bendings, notes=notes + bending_notes(bendings))
 
 
 def _reach(task: Task, q: Array, free: Indices, tolerance: float, iterations: int) -> Reached:
