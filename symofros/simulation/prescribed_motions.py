@@ -14,6 +14,7 @@ import numpy as np
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
+from symofros.runtime.record import ModelRecord
 from symofros.simulation.inputs import InputPlan
 
 # Largest difference between a rate and what its integral changes by, as a share of the larger of them: of formulas,
@@ -66,12 +67,12 @@ class Contradiction(NamedTuple):
     found: float
 
 
-def rated_inputs(model: Model) -> list[Rated]:
+def rated_inputs(record: ModelRecord) -> list[Rated]:
     """The inputs that are rates of others: of each prescribed joint."""
-    names, first = model.names.u, model.nu - model.record.driven
+    names, first = record.u_names, len(record.u_names) - record.driven
     at = {name: i for i, name in enumerate(names) if i >= first}
     found = [Rated((at[name],), (at[f"d{name}"],)) for name in at if f"d{name}" in at]
-    for i in model.record.quaternion_inputs:
+    for i in record.quaternion_inputs:
         owner = names[i].rpartition(".")[0]
         spin = tuple(at[name] for x in "xyz" if (name := f"{owner}.w{x}") in at)
         found += [Rated(tuple(range(i, i + 4)), spin)] if len(spin) == 3 else []
@@ -92,7 +93,7 @@ def contradiction(
     if not model.record.driven or plan.callback is not None or not span[1] > span[0]:
         return None
     times = {index: t for index, t, _, _ in plan.signals}
-    for rated in rated_inputs(model):
+    for rated in rated_inputs(model.record):
         sampled = [times[i] for i in (*rated.position, *rated.rate) if i in times]
         intervals = _between_samples(sampled, span) if sampled else _around_instants(span)
         found = _compared(model, rated, inputs_at, intervals, OF_SAMPLES if sampled else OF_FORMULAS)
@@ -121,18 +122,18 @@ def refuse_contradiction(found: Contradiction | None) -> None:
     )
 
 
-def recorded_notes(model: Model, t: Array, u: Array) -> tuple[str, ...]:
-    """A remark on recorded inputs (n, nu) that prescribe no one motion, where they come from a function in Python."""
-    if not model.record.driven or len(t) < 3:
+def recorded_notes(record: ModelRecord, t: Array, u: Array) -> tuple[str, ...]:
+    """A remark on recorded inputs (n, nu) that prescribe no one motion; nothing was known of them before the run."""
+    if not record.driven or len(t) < 3:
         return ()
-    for rated in rated_inputs(model):
+    for rated in rated_inputs(record):
         chosen = _evenly(np.arange(len(t) - 1))
         means = np.array([rated.mean(u[k], u[k + 1], t[k + 1] - t[k]) for k in chosen if t[k + 1] > t[k]])
         stated = np.array([0.5 * (u[k] + u[k + 1])[list(rated.rate)] for k in chosen if t[k + 1] > t[k]])
         scale = max(float(np.abs(means).max(initial=0.0)), float(np.abs(stated).max(initial=0.0)))
         # Records may be far apart: only what differs nearly everywhere is no chord's fault.
         if len(means) and np.median(np.abs(means - stated).max(axis=1)) > OF_SAMPLES * scale > 0.0:
-            position, rate = model.names.u[rated.position[0]], model.names.u[rated.rate[0]]
+            position, rate = record.u_names[rated.position[0]], record.u_names[rated.rate[0]]
             return (
                 f"inputs '{position}' and '{rate}' prescribe no one motion: '{rate}' is not the rate of '{position}'",
             )

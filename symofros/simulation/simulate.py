@@ -93,7 +93,7 @@ def simulate(
     states = recorded.arrays()
     outcome, bendings = diagnose(stepper, recorded, states, settings, (q, v))
     if inputs.callback is not None:
-        outcome = replace(outcome, notes=(*outcome.notes, *recorded_notes(model, states[0], states[3])))
+        outcome = replace(outcome, notes=(*outcome.notes, *recorded_notes(model.record, states[0], states[3])))
     met = tuple(Found(looked_for[which].name, when, q_at, v_at) for which, when, q_at, v_at in recorded.events)
     statistics = _statistics(stepper, seconds, worked)
     t, q_all, v_all, u_all = states

@@ -189,7 +189,7 @@ def _contradiction(
     """The first prescribed motion whose inputs contradict each other: of the first trajectory, and of constants."""
     q, v, plan = initial.q[0], initial.v[0], initial.inputs.plan
     sampled = {index for index, *_ in plan.signals} | plan.formulas.keys()
-    for rated in rated_inputs(model):
+    for rated in rated_inputs(model.record):
         if sampled.isdisjoint((*rated.position, *rated.rate)):  # What stays has no rate.
             stated = initial.inputs.constant[:, list(rated.rate)]
             if np.nanmax(np.abs(stated), initial=0.0) > 0.0:

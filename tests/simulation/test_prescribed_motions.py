@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
+import symofros.blocks as blocks
 
 
 @cache
@@ -112,3 +113,20 @@ def test_a_function_in_python_is_judged_by_what_it_gave() -> None:
     right = sf.simulate(crane(), t_end=1.0, u=lambda t, q, v: [0.3 * t, 0.3, 0.0], dt=1e-2)
     assert [note for note in wrong.outcome.notes if "prescribe no one motion" in note]
     assert not [note for note in right.outcome.notes if "prescribe" in note]
+
+
+@pytest.mark.parametrize(("rate", "noted"), [(0.3, False), (0.1, True)])
+def test_wires_of_a_diagram_are_judged_by_what_they_gave(rate: float, noted: bool) -> None:
+    """Compiled and interpreted."""
+    hoist = sf.RigidBody("hoist", sf.Joint("th", "revolute", axis=(0, 1, 0), prescribed=True), sf.Inertia(1.0))
+    bob = sf.RigidBody(
+        "bob", sf.Joint("q", "revolute", "hoist", position=(0, 0, -1), axis=(0, 1, 0)), sf.Inertia(1.0, (0, 0, -0.5))
+    )
+    diagram = sf.Diagram("crane")
+    diagram.add_model("plant", sf.System("plant", (hoist, bob)))
+    diagram.add(blocks.Ramp(name="th", slope=[0.3, 0.0, 0.0], start=[0.0, rate, 0.0]))
+    diagram.add(blocks.ForwardDynamics(name="plant", model="plant"), u="th.y")
+    simulation = sf.Simulation(diagram)
+    for run in (simulation.run(0.5, dt=1e-3, record=0.01), simulation.interpret(0.5, dt=1e-3, record=0.01)):
+        assert run.outcome.kind == "finished"
+        assert noted == any("prescribe no one motion" in note for note in run.outcome.notes)
