@@ -1,7 +1,7 @@
 """Whether the inputs that prescribe a motion belong to one motion: each speed is the rate of its position.
 
-docs/theory/simulation.md, section 1. The equations of motion take position, speed and acceleration of a prescribed joint
-as they are given. A speed that is not the rate of its position makes a motion that no mechanism has.
+docs/theory/simulation.md, section 1. The equations of motion take position, speed and acceleration of a prescribed
+joint as they are given. A speed that is not the rate of its position makes a motion that no mechanism has.
 """
 
 from __future__ import annotations
