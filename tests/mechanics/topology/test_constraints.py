@@ -83,6 +83,6 @@ def test_a_condition_that_is_not_linear_in_speeds_is_refused_in_its_own_words() 
     )
     with pytest.raises(sf.DescriptionError) as caught:
         sf.compile(sf.System("points", bodies, constraints=(upright,)))
-    (problem,) = caught.value.problems
+    problem = caught.value.problems[0]
     assert "linear in" in problem.rule and "potential" not in str(problem)
     assert "product of two" in problem.remedy
