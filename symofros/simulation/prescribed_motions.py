@@ -127,7 +127,7 @@ def recorded_notes(record: ModelRecord, t: Array, u: Array) -> tuple[str, ...]:
     if not record.driven or len(t) < 3:
         return ()
     for rated in rated_inputs(record):
-        chosen = _evenly(np.arange(len(t) - 1))
+        chosen = _evenly(np.arange(len(t) - 1.0)).astype(int)
         means = np.array([rated.mean(u[k], u[k + 1], t[k + 1] - t[k]) for k in chosen if t[k + 1] > t[k]])
         stated = np.array([0.5 * (u[k] + u[k + 1])[list(rated.rate)] for k in chosen if t[k + 1] > t[k]])
         scale = max(float(np.abs(means).max(initial=0.0)), float(np.abs(stated).max(initial=0.0)))

@@ -77,6 +77,6 @@ def test_bricards_linkage_bears_no_note() -> None:
     model = sf.compile(MODELS["bricard"])
     fine = sf.simulate(model, t_end=2.0, method="dop853", rtol=1e-11, atol=1e-12)
     for settings in ({"dt": 5e-3}, {"dt": 1e-3}, {"method": "dopri5"}):
-        run = sf.simulate(model, t_end=2.0, **settings)  # type: ignore[arg-type]
+        run = sf.simulate(model, t_end=2.0, **settings)
         assert not run.outcome.notes, (settings, run.outcome.notes)
         assert np.abs(run.q[-1] - fine.q[-1]).max() < 1e-5

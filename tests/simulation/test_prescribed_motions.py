@@ -82,7 +82,7 @@ def test_what_is_not_is_refused(how: str) -> None:
     """By single runs and batches, with both rates and a remedy."""
     for simulate, q0 in ((sf.simulate, np.zeros(1)), (sf.simulate_batch, np.zeros((2, 1)))):
         with pytest.raises(sf.SymofrosError, match="prescribe no one motion"):
-            simulate(crane(), q0, t_end=2.0, u=BAD[how])  # type: ignore[operator]
+            simulate(crane(), q0, t_end=2.0, u=BAD[how])
 
 
 def test_one_trajectory_of_a_batch_is_enough() -> None:

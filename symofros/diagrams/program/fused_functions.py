@@ -282,8 +282,8 @@ class Fuser:
         residuals = (_vector("binds", binds), _vector("phi", phi))
         solving = Solver("constrained", solved, (move,), measures)
         forward = Function("forward_dynamics", "", ("q", "v", "u", "gains", "t"), (*terms_of, *residuals), solving)
-        projected = (("q_on", (part.nq,)), ("v_on", (nv,)), ("residual", ()), ("rank", ()))
-        projected = (*projected, ("energies", (2,)), ("gap", ()))
+        shapes: dict[str, tuple[int, ...]] = {"q_on": (part.nq,), "v_on": (nv,), "residual": (), "rank": ()}
+        projected = tuple((shapes | {"energies": (2,), "gap": ()}).items())
         faces = (_vector("facing", facing),) if facing else ()
         outputs = (terms_of[0], terms_of[2], *residuals, _vector("rate", rate), *faces)
         project = Function("project", "", AT, outputs, Solver("project", projected, (move,), measures))

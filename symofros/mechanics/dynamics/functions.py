@@ -262,11 +262,13 @@ def _inverse_hessian(e: Equations) -> list[list[list[Edge]]]:
 def _project(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[str, int]) -> Function:
     """The nearest state on the constraints: the terms of Newton's steps, and how a step moves q."""
     rate, facing = _vector("rate", e.constraint_rate), _vector("facing", [*chain.from_iterable(e.facing)])
-    outputs = (_matrix("M", (e.nv, e.nv), e.M), _jacobian(e), *_residuals(e), rate, facing)
-    if not facing.edges:
-        outputs = outputs[:-1]
+    outputs = [_matrix("M", (e.nv, e.nv), e.M), _jacobian(e), *_residuals(e), rate, *([facing] if facing.edges else [])]
     return Function(
-        row.name, "", row.inputs, outputs, Solver("project", _returns(row, known), (_move(e),), measures_of(e.tree))
+        row.name,
+        "",
+        row.inputs,
+        tuple(outputs),
+        Solver("project", _returns(row, known), (_move(e),), measures_of(e.tree)),
     )
 
 

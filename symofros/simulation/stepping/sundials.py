@@ -13,9 +13,12 @@ from importlib import import_module
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
+from symofros.base.measures import Measures
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.calls.kernel import Array
+from symofros.runtime.constrained import eliminate, natural_sizes
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
 
@@ -25,10 +28,11 @@ _ROOT = 2
 _STATUS = {-1: Status.STEP_TOO_SMALL, -2: Status.STEP_TOO_SMALL, -3: Status.STEP_TOO_SMALL, -4: Status.NO_CONVERGENCE}
 # Multipliers are no part of the motion: a bound this large takes them out of the error test.
 _UNTESTED = 1e100
-# Rows of G count as dependent below this share of the largest remaining row; as RANK of assembly.
-_DEPENDENT = 1e-9
-# Conditions left out because others implied them may drift this far before they count as lost.
-_LOST = 1e-6
+# Share of what combinations of conditions were independent by when they were chosen, below which others are.
+_WEAK = 0.3
+# Conditions that combinations leave out may drift this far before they count as lost, or by some of the tolerance that
+# is asked for, to which those that are kept are met as well.
+_LOST, _LOST_TOLERANCES = 1e-6, 10.0
 
 
 def _solver(module: str, name: str) -> Callable[..., Any]:
@@ -68,7 +72,7 @@ class _Run(ABC):
         self.stepper, self.steps = stepper, 0
         self.size = stepper.model.nq + stepper.model.nv
         self._solver: Any = None
-        self._reached = 0.0
+        self._reached, self._spent = 0.0, (0, 0)
         self._method = stepper.method.name
 
     def start(self, q: Array, v: Array) -> int:
@@ -121,8 +125,8 @@ class _Run(ABC):
                 if not answer.success:
                     return _STATUS.get(int(answer.status), Status.DIVERGED), []
                 self.steps, self._reached = self.steps + 1, float(answer.t)
-                self.stepper.run.evaluations = int(answer.nfev)
-                self.stepper.run.jacobians = int(answer.njev)
+                self.stepper.run.evaluations = self._spent[0] + int(answer.nfev)
+                self.stepper.run.jacobians = self._spent[1] + int(answer.njev)
                 if int(answer.status) == _ROOT:
                     met = [i for i, sign in enumerate(np.atleast_2d(answer.i_events)[-1]) if sign]
                     return self._placed(self._reached, answer.y), met
@@ -168,23 +172,27 @@ class Cvode(_Run):
 class Ida(_Run):
     """One run by IDA, on the equations of motion with their multipliers, index 2 (simulation.md, (10)).
 
-    Conditions that others imply at the start are left out, since their multipliers would be undetermined; where they
-    stop being implied, the run ends.
+    Of conditions that repeat others, independent combinations are kept, since multipliers would be undetermined. Where
+    the motion makes these weak, it starts anew with others; where the conditions contradict each other, it ends.
     """
 
     def _begin(self, y: Array) -> None:
+        bind, par = self.stepper.model.bind, self.stepper.par
+        self._residual, self._jacobian = bind("residual", par=par), bind("constraint_jacobian", par=par)
+        self._begin_at(float(self.stepper.run.t0), y)
+
+    def _begin_at(self, t: float, y: Array) -> None:
+        """Create the solver at a state y = (q, v)."""
         stepper, model = self.stepper, self.stepper.model
-        bind = model.bind
-        self._residual, self._jacobian = bind("residual", par=stepper.par), bind("constraint_jacobian", par=stepper.par)
-        t, q, v = float(stepper.run.t0), y[: model.nq], y[model.nq :]
+        q, v = y[: model.nq], y[model.nq :]
         u = stepper.inputs_at(t, q, v)
         a, lam = model.forward_dynamics(q, v, u, par=stepper.par, t=t, multipliers=True)
         G = model.constraint_jacobian(q, u=u, par=stepper.par, t=t)
-        self._rows = independent_rows(G)
-        on_speeds = [name in model.record.speed_conditions for name in model.names.constraints]
-        self._closed = np.array([i for i in self._rows if not on_speeds[i]], dtype=np.intp)
-        # The multipliers of the rows that are kept, of all rows' forces.
-        lam = np.linalg.lstsq(G[self._rows].T, G.T @ lam, rcond=None)[0] if len(self._rows) else np.zeros(0)
+        on_speeds = np.array([name in model.record.speed_conditions for name in model.names.constraints], dtype=bool)
+        self._kept, self._closed = (combinations(G, model.record.measures, of) for of in (on_speeds | True, ~on_speeds))
+        self._strength, self._last = _least_size(self._kept @ G), y
+        # The multipliers of what is kept, of all rows' forces.
+        lam = np.linalg.lstsq((self._kept @ G).T, G.T @ lam, rcond=None)[0] if len(self._kept) else np.zeros(0)
         first = np.concatenate([y, lam, np.zeros(len(self._closed))])
         rate = np.concatenate([stepper.configuration_rate(q, v), a, np.zeros(len(first) - self.size)])
         bounds = np.full(len(first), _UNTESTED)
@@ -192,6 +200,24 @@ class Ida(_Run):
         options = self._options() | {"atol": bounds, "algebraic_idx": np.arange(self.size, len(first))}
         self._solver = _solver("ida", "IDA")(self._residuals, **options)
         self._solver.init_step(t, first, rate)
+
+    def _step(self, end: float) -> Any:
+        self._choose_anew()
+        answer = super()._step(end)
+        self._last = np.array(answer.y, dtype=np.float64).reshape(-1)[: self.size]
+        return answer
+
+    def _choose_anew(self) -> None:
+        """Start anew with other combinations where those that are kept have become weak."""
+        stepper, model = self.stepper, self.stepper.model
+        if len(self._kept) == model.nc:
+            return
+        t, q, v = self._reached, self._last[: model.nq], self._last[model.nq :]
+        inputs: dict[str, Any] = {"u": stepper.inputs_at(t, q, v), "par": stepper.par, "t": t}
+        if _least_size(self._kept @ model.constraint_jacobian(q, **inputs)) < _WEAK * self._strength:
+            q, v, _ = model.project(q, v, **inputs)
+            self._spent = int(stepper.run.evaluations), int(stepper.run.jacobians)
+            self._begin_at(t, np.concatenate([q, v]))
 
     def _event_function(self) -> Any:
         return lambda t, y, rate, values: self._evaluate_events(t, y, values)
@@ -202,25 +228,25 @@ class Ida(_Run):
         if self.stepper.place(t, y[: self.size]) != Status.RUNNING:
             raise _InputFailedError
         t, q, v = self.stepper.state
-        n = self.size + len(self._rows)
-        lam, mu = np.zeros(model.nc), y[n:]
-        lam[self._rows] = y[self.size : n]
+        n = self.size + len(self._kept)
+        lam, mu = self._kept.T @ y[self.size : n], y[n:]
         values = {"q": q, "v": v, "a": rate[nq : self.size], "u": self.stepper.inputs_now, "lam": lam, "t": t}
         outputs = _evaluated(self._residual, values)
         G = _evaluated(self._jacobian, values)["G"] if model.nc else np.zeros((0, nv))
-        residual[:nq] = rate[:nq] - self.stepper.configuration_rate(y[:nq], v + G[self._closed].T @ mu)
+        residual[:nq] = rate[:nq] - self.stepper.configuration_rate(y[:nq], v + (self._closed @ G).T @ mu)
         residual[nq : self.size] = outputs["R"]
-        residual[self.size : n] = outputs["phi_rate"][self._rows]
-        residual[n:] = outputs["phi"][self._closed]
+        residual[self.size : n] = self._kept @ outputs["phi_rate"]
+        residual[n:] = self._closed @ outputs["phi"]
 
     def _placed(self, t: float, y: Array) -> int:
         status = super()._placed(t, np.asarray(y, dtype=np.float64).reshape(-1)[: self.size])
-        if status == Status.RUNNING and len(self._rows) < self.stepper.model.nc:
+        if status == Status.RUNNING and len(self._kept) < self.stepper.model.nc:
             t, q, v = self.stepper.state
             inputs: dict[str, Any] = {"u": self.stepper.inputs_now, "par": self.stepper.par, "t": t}
             phi = self.stepper.model.constraint(q, **inputs)
             rate = self.stepper.model.constraint_rate(q, v, **inputs)
-            if max(np.abs(phi).max(), np.abs(rate).max() * _LOST) > _LOST:
+            lost = max(_LOST, _LOST_TOLERANCES * float(self.stepper.run.rtol))
+            if max(np.abs(phi).max(), np.abs(rate).max() * _LOST) > lost:
                 return Status.PROJECTION_FAILED
         return status
 
@@ -234,18 +260,25 @@ def _evaluated(function: Any, values: dict[str, Any]) -> dict[str, Array]:
     return outputs
 
 
-def independent_rows(G: Array) -> Array:
-    """Indices of rows of G (nc, nv) that are independent and span all: by pivoting, each row judged by its own size."""
-    scale = np.linalg.norm(G, axis=1)
-    left = np.divide(G, scale[:, None], out=np.zeros_like(G), where=scale[:, None] > 0)
-    rows: list[int] = []
-    for _ in range(min(G.shape)):
-        sizes = np.linalg.norm(left, axis=1)
-        row = int(np.argmax(sizes))
-        if sizes[row] <= _DEPENDENT:
-            break
-        rows.append(row)
-        direction = left[row] / sizes[row]
-        left = left - np.outer(left @ direction, direction)
-        left[row] = 0.0
-    return np.array(sorted(rows), dtype=np.intp)
+def combinations(G: Array, measures: Measures, of: npt.NDArray[np.bool_]) -> Array:
+    """Independent combinations (k, nc) of some rows of G (nc, nv) that span them all; the rows themselves, if these do.
+
+    Args:
+        G: Jacobian of the constraints.
+        measures: Measures of its rows and columns, by which its rank is judged.
+        of: Which rows count (nc).
+    """
+    chosen = np.eye(len(of))[of]
+    rows = measures.of_rows(np.flatnonzero(of).tolist())
+    rank = eliminate(G[of], rows, np.ones(G.shape[1])).rank
+    if rank == len(chosen):
+        return chosen
+    sizes = natural_sizes(G[of], rows).max(axis=1, initial=0.0)
+    scale = np.divide(1.0, sizes, out=np.zeros_like(sizes), where=sizes > 0.0)
+    left = np.linalg.svd(scale[:, None] * G[of], full_matrices=False)[0]
+    return np.asarray(left[:, :rank].T * scale @ chosen, dtype=np.float64)
+
+
+def _least_size(G: Array) -> float:
+    """Least singular value; infinite of no rows."""
+    return float(np.linalg.svd(G, compute_uv=False)[-1]) if min(G.shape, default=0) else np.inf
