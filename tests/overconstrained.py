@@ -91,3 +91,41 @@ class Bennett:
         first = inertia(start)
         reached, _ = quad(lambda angle: np.sqrt(inertia(angle) / first) / rate, start, end, epsabs=1e-11, limit=500)
         return float((reached - t) * rate * np.sqrt(first / inertia(end)))
+
+
+_BAR = sf.Inertia(0.8, (0.25, 0.0, 0.0), (0.002, 0.02, 0.02))
+_TOP = sf.Inertia(1.5, (0.0, 0.0, 0.05), (0.03, 0.03, 0.05))
+
+
+def sarrus(by_slide: bool) -> sf.System:
+    """Sarrus' linkage: two chains of three hinges in planes at right angles hold a platform that moves up and down.
+
+    Sarrus (1853). As it is, five conditions of rank four; by a slide instead, two conditions a chain and no more than
+    it needs.
+
+    Args:
+        by_slide: Whether the platform is on a vertical slide, to which both chains are closed.
+    """
+    bodies: list[sf.Body] = []
+    ends = {"a": (1.0, 0.0), "b": (0.0, 1.0)}
+    for name, (x, y) in ends.items():
+        turned = sf.Rotation("matrix", (x, -y, 0, y, x, 0, 0, 0, 1))
+        foot = sf.Joint(f"{name}1", "revolute", position=(0.2 * x, 0.2 * y, 0), rotation=turned, axis=(0, -1, 0))
+        bodies.append(sf.RigidBody(f"{name}1", foot, _BAR, (sf.Frame("end", (0.5, 0, 0)),)))
+        knee = sf.Joint(f"{name}2", "revolute", parent=f"{name}1", frame="end", axis=(0, -1, 0))
+        bodies.append(sf.RigidBody(f"{name}2", knee, _BAR, (sf.Frame("end", (0.5, 0, 0)),)))
+    rims = tuple(
+        sf.Frame(name, (0.2 * x, 0.2 * y, 0.0), sf.Rotation("matrix", (x, -y, 0, y, x, 0, 0, 0, 1)))
+        for name, (x, y) in ends.items()
+    )
+    if by_slide:
+        bodies.append(sf.RigidBody("top", sf.Joint("z", "prismatic", axis=(0, 0, 1)), _TOP, rims))
+        closures = tuple(sf.Closure(f"hinge{n}", ("top", n), (f"{n}2", "end"), ("x", "z")) for n in ends)
+        return sf.System("slide", tuple(bodies), constraints=closures)
+    wrist = sf.Joint("a3", "revolute", parent="a2", frame="end", axis=(0, -1, 0))
+    # The rim is where the hinge is, the platform's origin beside it.
+    center = sf.Inertia(_TOP.mass, (-0.2, 0.0, 0.05), _TOP.moments)
+    frames = (sf.Frame("b", (-0.2, 0.2, 0.0), sf.Rotation("matrix", (0, -1, 0, 1, 0, 0, 0, 0, 1))),)
+    bodies.append(sf.RigidBody("top", wrist, center, frames))
+    closure = sf.Closure("hingeb", ("top", "b"), ("b2", "end"), ("x", "y", "z"), ("x", "z"))
+    return sf.System("sarrus", tuple(bodies), constraints=(closure,))

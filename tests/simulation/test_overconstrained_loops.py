@@ -9,7 +9,7 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from tests.overconstrained import Bennett
+from tests.overconstrained import Bennett, sarrus
 
 START, RATE, END = 0.5, 1.5, 2.9  # The way of the first hinge leads past pi, where two rows of G vanish.
 # Methods, their steps, and the angle [rad] by which they may be off: of fixed steps a bound of the order of the
@@ -80,3 +80,47 @@ def test_bricards_linkage_bears_no_note() -> None:
         run = sf.simulate(model, t_end=2.0, **settings)
         assert not run.outcome.notes, (settings, run.outcome.notes)
         assert np.abs(run.q[-1] - fine.q[-1]).max() < 1e-5
+
+
+@pytest.mark.parametrize(
+    ("method", "dt", "bound"),
+    [
+        ("rk4", 2e-2, 1e-5),
+        ("rk4", 1e-3, 1e-9),
+        ("dopri5", None, 1e-5),
+        ("generalized_alpha", 1e-3, 1e-5),
+        ("ida", None, 1e-5),
+    ],
+)
+def test_sarrus_linkage_moves_as_one_on_a_slide(method: str, dt: float | None, bound: float) -> None:
+    """Five conditions of rank four, against two conditions a chain and a slide: the same platform."""
+    full, slide = (sf.compile(sarrus(by_slide)) for by_slide in (False, True))
+    a = 1.1
+    start = {"a1": a, "a2": np.pi - 2 * a, "b1": a, "b2": np.pi - 2 * a}
+    one = sf.assemble(slide, start | {"z": np.sin(a)}, {"a1": 0.8}, held=("a1",))
+    other = sf.assemble(full, start | {"a3": a - np.pi}, {"a1": 0.8}, held=("a1",))
+    exact = sf.simulate(slide, one.q, one.v, 0.4, method="dop853", rtol=1e-11, atol=1e-12)
+    run = sf.simulate(full, other.q, other.v, 0.4, method=method, **({} if dt is None else {"dt": dt}))  # type: ignore[arg-type]
+    assert run.outcome.kind == "finished" and not run.outcome.notes
+    for name in start:
+        assert abs(run[name][-1] - exact[name][-1]) < bound
+
+
+@pytest.mark.parametrize(("method", "dt"), [("rk4", 1e-2), ("rodas4", None), ("generalized_alpha", 2e-3)])
+def test_planar_loops_closed_in_space_move_as_those_closed_in_their_plane(method: str, dt: float | None) -> None:
+    """Three conditions too many repeat others everywhere, and void ones are no conditions."""
+    bar, tip = sf.Inertia(1.0, (0.5, 0, 0), (0.01, 0.1, 0.1)), (sf.Frame("end", (1.0, 0, 0)),)
+    ends = []
+    for rows in ((("x", "z"), ()), (("x", "y", "z"), ("x", "z"))):
+        bodies = (
+            sf.RigidBody("crank", sf.Joint("a", "revolute", axis=(0, 1, 0)), bar, tip),
+            sf.RigidBody("coupler", sf.Joint("b", "revolute", "crank", "end", axis=(0, 1, 0)), bar, tip),
+            sf.RigidBody("rocker", sf.Joint("c", "revolute", position=(1.3, 0, 0.2), axis=(0, 1, 0)), bar, tip),
+        )
+        closure = sf.Closure("loop", ("rocker", "end"), ("coupler", "end"), *rows)  # type: ignore[arg-type]
+        model = sf.compile(sf.System("loop", bodies, constraints=(closure,)))
+        start = sf.assemble(model, {"a": -1.2, "b": 1.2, "c": -1.0}, held=("a",))
+        run = sf.simulate(model, start.q, start.v, 1.0, method=method, **({} if dt is None else {"dt": dt}))  # type: ignore[arg-type]
+        assert run.outcome.kind == "finished" and not run.outcome.notes
+        ends.append(run.q[-1])
+    assert np.abs(ends[0] - ends[1]).max() < 1e-6

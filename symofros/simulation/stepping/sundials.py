@@ -192,7 +192,7 @@ class Ida(_Run):
         self._kept, self._closed = (combinations(G, model.record.measures, of) for of in (on_speeds | True, ~on_speeds))
         self._strength, self._last = _least_size(self._kept @ G), y
         # The multipliers of what is kept, of all rows' forces.
-        lam = np.linalg.lstsq((self._kept @ G).T, G.T @ lam, rcond=None)[0] if len(self._kept) else np.zeros(0)
+        lam = np.asarray(np.linalg.lstsq((self._kept @ G).T, G.T @ lam, rcond=None)[0] if len(self._kept) else [])
         first = np.concatenate([y, lam, np.zeros(len(self._closed))])
         rate = np.concatenate([stepper.configuration_rate(q, v), a, np.zeros(len(first) - self.size)])
         bounds = np.full(len(first), _UNTESTED)
