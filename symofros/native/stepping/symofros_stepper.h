@@ -222,6 +222,10 @@ void sym_run_configuration_rate(const sym_run *run, const double *q, const doubl
  * basis of changes (theta, h v); matrix (dimension, dimension): h times the derivative in that basis; motion (dimension):
  * components of the motion of one step. Returns the number of directions, at most `dimension` <= 2 nv, or a status below 0. */
 int32_t sym_run_spectrum(sym_run *run, double h, int32_t dimension, double *basis, double *matrix, double *motion);
+/* Inputs u (n, nu) and accelerations a (n, nv) at n states of the motion, each projected first where the run projects; NaN
+ * where there are none. Returns 0, or SYM_CALLBACK_FAILED. */
+int32_t sym_run_accelerations(sym_run *run, int64_t n, const double *t, const double *q, const double *v, double *u,
+                              double *a);
 /* cdef end */
 
 #endif

@@ -329,6 +329,24 @@ class Stepper:
             m = int(self.native.sym_run_spectrum(self.run, h, dimension, *arrays))
         return (basis[:m], matrix[:m, :m], motion[:m]) if m > 0 else None
 
+    def accelerations(self, t: Array, q: Array, v: Array) -> tuple[Array, Array] | None:
+        """Accelerations (n, nv) and inputs (n, nu) at states of the motion; within `preserved`.
+
+        Each state is projected onto the constraints first, where the run is.
+
+        Args:
+            t: Times (n) [s].
+            q: Configurations (n, nq).
+            v: Speeds (n, nv).
+
+        Returns:
+            NaN where a state has no accelerations; None where a function of the caller's fails.
+        """
+        n = len(t)
+        a, u = np.empty((n, self.model.nv)), np.empty((n, self.model.nu))
+        arrays = [self._pointer(x) for x in (*map(np.ascontiguousarray, (t, q, v)), u, a)]
+        return (a, u) if self.native.sym_run_accelerations(self.run, n, *arrays) == 0 else None
+
     def configuration_rate(self, q: Array, w: Array) -> Array:
         """The rate N w (nq) at speeds w (nv) and the configuration that was placed last; q: its numbers."""
         rate = np.zeros(self.model.nq)
