@@ -12,6 +12,7 @@ from symofros.simulation.inputs import InputPlan
 from symofros.simulation.results.examination.energy_balance import EXPLODED, energy_note, energy_that_appeared
 from symofros.simulation.results.examination.energy_norm import metrics, norms_in
 from symofros.simulation.results.examination.repetition import halved_step_note, percent, tolerance_note, windows_note
+from symofros.simulation.results.examination.stepped_over import stepped_over_note
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.methods import Method
 from symofros.simulation.stepping.resolution import (
@@ -64,6 +65,8 @@ def examine_run(
         notes.append(halved_step_note(stepper, settings, start, states, steps))
     if ended_well and mode is None:
         notes.append(windows_note(stepper, settings, states, steps))
+    if ended_well and mode is None and not any(notes):
+        notes.append(stepped_over_note(stepper, settings, start, states, steps))
     if ended_well:
         notes.append(tolerance_note(stepper, settings, start, states, steps))
     if ended_well and (mode is None or not mode.amplified) and not (mode is None and any(notes)):
