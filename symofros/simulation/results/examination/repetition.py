@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from symofros.runtime.manifold import retract
 from symofros.simulation.results.examination.energy_norm import energies_of, energy_norms, metrics
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.loops import run_own
-from symofros.simulation.stepping.methods import Method
+from symofros.simulation.stepping.methods import METHODS, Method
 from symofros.simulation.stepping.resolution import TOLERANCE
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
@@ -110,6 +111,26 @@ def repeated(
     part.apply(again)
     recorded = run_own(again, q, v, part, lambda _: None)
     return recorded.status, recorded.arrays()
+
+
+def in_short_steps(
+    stepper: Stepper, settings: Settings, start: Sequence[Any], t_end: float, part: float
+) -> tuple[int, list[Array]]:
+    """Status and states of a part of a run, made once more in steps that are no longer than `part` [s].
+
+    Args:
+        stepper: Stepper of the run; in place of a method that keeps a history another one is taken.
+        settings: Settings of the run.
+        start: First t, q, v.
+        t_end: End [s].
+        part: Longest step [s].
+    """
+    t, q, v = start
+    method = stepper.method
+    if method.family.multistep:
+        method = METHODS["rodas4" if stepper.inputs.callback is None else "dopri5"]
+    short, dt = (replace(settings, max_step=part), 0.0) if settings.adaptive else (settings, min(part, settings.dt))
+    return repeated(stepper, short, (float(t), q, v), t_end, dt, max_steps=_MOST, method=method)
 
 
 def halved_step_note(

@@ -6,7 +6,6 @@ docs/theory/simulation.md, section 8.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -15,12 +14,12 @@ from symofros.simulation.results.examination.energy_norm import metrics, norms_i
 from symofros.simulation.results.examination.paths import path_within
 from symofros.simulation.results.examination.repetition import (
     ExaminedRun,
+    in_short_steps,
     percent,
     repeated,
     same_inputs_again,
 )
 from symofros.simulation.settings import Settings
-from symofros.simulation.stepping.methods import METHODS, Method
 from symofros.simulation.stepping.resolution import TOLERANCE
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
@@ -36,8 +35,6 @@ _REPEATED, _PROVED = (512, 0.05), 4
 _BOUNDS, _NOTED = 100.0, (0.01, TOLERANCE)
 # Change of speed that a step leaves out, by the cubic through its ends, from which it is held against shorter ones.
 _DOUBTED = 0.5
-# Most steps of one such proof.
-_STEPS = 8192
 
 
 def stepped_over_note(
@@ -66,7 +63,7 @@ def stepped_over_note(
     for ends in _single_steps(stepper, settings, states, steps, number):
         for i, part in _doubted(stepper, run, ends, number, _DOUBTED * noted):
             coarse, start = [x[i : i + 2] for x in ends], [x[i] for x in ends[:3]]
-            status, finer = _in_short_steps(stepper, settings, start, float(ends[0][i + 1]), part)
+            status, finer = in_short_steps(stepper, settings, start, float(ends[0][i + 1]), part)
             if status != Status.FINISHED:
                 continue
             change = run.share(coarse, [x[[0, -1]] for x in finer])
@@ -135,20 +132,3 @@ def _doubted(
     shares = np.array(left_out) / max(run.fastest, max(left_out), 1e-300)
     worst = np.argsort(-shares, kind="stable")[:_PROVED]
     return [(int(chosen[k]), float(spans[chosen[k]] / counts[chosen[k]])) for k in worst if shares[k] > least]
-
-
-def _in_short_steps(
-    stepper: Stepper, settings: Settings, start: Sequence[Array], t_end: float, part: float
-) -> tuple[int, list[Array]]:
-    """A step made once more in steps that are no longer than a part of it."""
-    t, q, v = start
-    short = replace(settings, max_step=part) if settings.adaptive else settings
-    dt = 0.0 if settings.adaptive else part
-    return repeated(stepper, short, (float(t), q, v), t_end, dt, max_steps=_STEPS, method=_one_step_method(stepper))
-
-
-def _one_step_method(stepper: Stepper) -> Method:
-    """The method of the run, or one in place of one that needs a history."""
-    if not stepper.method.family.multistep:
-        return stepper.method
-    return METHODS["rodas4" if stepper.inputs.callback is None else "dopri5"]
