@@ -127,8 +127,8 @@ class _Search:
         if changes and changes[-1] > REFINE:
             self.notes.append(
                 "the richer model has not converged: its last functions still change the outputs by"
-                f" {changes[-1]:.2g} of what is allowed, by which errors count as larger; state more functions or a rod,"
-                " or allow more"
+                f" {changes[-1]:.2g} of what is allowed, by which errors count as larger; state more functions or a"
+                " rod, or allow more"
             )
         self.truncation = self.runner.error(first, reference)
         self.bounds = {output.name: output.bound(reference.values[output.name]) for output in self.scene.outputs}
