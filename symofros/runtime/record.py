@@ -102,6 +102,7 @@ class ModelRecord:
         measures: Measures of the rows and columns of the constraint Jacobian.
         timed: Whether a formula depends on the time t.
         joint_limits: Limits of joints that state them: of coordinates, speeds and inputs.
+        friction_speeds: Indices of the speeds that have friction.
     """
 
     name: str
@@ -132,6 +133,7 @@ class ModelRecord:
     measures: Measures = Measures()
     timed: bool = False
     joint_limits: tuple[JointLimit, ...] = ()
+    friction_speeds: tuple[int, ...] = ()
 
     @property
     def vectors(self) -> dict[str, tuple[str, ...]]:

@@ -117,8 +117,7 @@ def equilibrium(
                 f"model '{model.record.name}': no equilibrium was found from this guess",
                 f"after {end.count} steps an imbalance of {end.R[worst]:.3g} at '{names[worst]}'",
                 f"the imbalance is below {tolerance:g} of the largest force",
-                "start nearer, give the inputs that hold it, allow more iterations, or hold coordinates that have no "
-                "place of rest",
+                _remedy(model),
             )
         )
     refuse_beyond(model, bendings, beam_limit, "the equilibrium")
@@ -129,6 +128,18 @@ def equilibrium(
     inputs = _holding_inputs(model, (q, v, u, lam), effort, par, t)
     notes = unstable + bending_notes(bendings)
     return Equilibrium(q, v, u, lam, effort, left, end.count, bendings, notes, efforts, inputs)
+
+
+def _remedy(model: Model) -> str:
+    """What may be done where no equilibrium was found."""
+    remedy = (
+        "start nearer, give the inputs that hold it, allow more iterations, or hold coordinates that have no place of"
+        " rest"
+    )
+    slid = ", ".join(f"'{model.names.v[i]}'" for i in model.record.friction_speeds[:6])
+    if not slid:
+        return remedy
+    return f"{remedy}; friction, of {slid}, is smooth and holds nothing at rest: hold what it is to hold"
 
 
 def _holding_inputs(

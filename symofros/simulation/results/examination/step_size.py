@@ -9,6 +9,7 @@ import numpy as np
 
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.inputs import InputPlan
+from symofros.simulation.results.examination.creep import creep_note
 from symofros.simulation.results.examination.energy_balance import EXPLODED, energy_note, energy_that_appeared
 from symofros.simulation.results.examination.energy_norm import metrics, norms_in
 from symofros.simulation.results.examination.repetition import halved_step_note, percent, tolerance_note, windows_note
@@ -71,6 +72,8 @@ def examine_run(
         notes.append(tolerance_note(stepper, settings, start, states, steps))
     if ended_well and (mode is None or not mode.amplified) and not (mode is None and any(notes)):
         notes.append(energy_note(stepper, settings, states, steps))
+    if ended_well:
+        notes.append(creep_note(stepper, states))
     return mode, tuple(note for note in notes if note)
 
 
