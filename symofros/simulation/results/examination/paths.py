@@ -4,12 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.manifold import chart_coordinates, chart_rate, retract
 from symofros.simulation.stepping.stepper import Stepper
+
+
+Numbers = npt.NDArray[np.integer[Any]]
 
 
 @dataclass(frozen=True)
@@ -24,14 +29,14 @@ class Path:
         path_a: Accelerations of the path (m, nv): those that the steps have made the motion follow.
     """
 
-    interval: Array
+    interval: Numbers
     x: Array
     states: list[Array]
     a: Array
     path_a: Array
 
 
-def path_within(stepper: Stepper, states: Sequence[Array], counts: Array) -> Path | None:
+def path_within(stepper: Stepper, states: Sequence[Array], counts: Numbers) -> Path | None:
     """States within the intervals between recorded ones, at the midpoints of equal parts of each.
 
     Args:

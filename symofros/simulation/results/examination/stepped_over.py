@@ -62,15 +62,15 @@ def stepped_over_note(
     run = ExaminedRun(stepper, settings, states, steps)
     for ends in _single_steps(stepper, settings, states, steps, number):
         for i, part in _doubted(stepper, run, ends, number, _DOUBTED * noted):
-            coarse, start = [x[i : i + 2] for x in ends], [x[i] for x in ends[:3]]
-            status, finer = in_short_steps(stepper, settings, start, float(ends[0][i + 1]), part)
+            coarse, first = [x[i : i + 2] for x in ends], [x[i] for x in ends[:3]]
+            status, finer = in_short_steps(stepper, settings, first, float(ends[0][i + 1]), part)
             if status != Status.FINISHED:
                 continue
             change = run.share(coarse, [x[[0, -1]] for x in finer])
             if change > noted:
                 cure = f"max_step={part:.2g}" if settings.adaptive else "a smaller dt"
                 return (
-                    f"the step from t = {start[0]:.6g} s to {coarse[0][1]:.6g} s passes over what acts within it: steps"
+                    f"the step from t = {first[0]:.6g} s to {coarse[0][1]:.6g} s passes over what acts within it: steps"
                     f" of {part:.2g} s change the motion there by {percent(change)}; {cure}"
                 )
     return ""
@@ -125,7 +125,7 @@ def _doubted(
     metric = metrics(stepper, ends[1][chosen], ends[3][chosen])
     left_out = []
     with np.errstate(all="ignore"):  # What has exploded overflows.
-        missed = (path.a - path.path_a) * (spans / np.maximum(counts, 1))[path.interval.astype(int), np.newaxis]
+        missed = (path.a - path.path_a) * (spans / np.maximum(counts, 1))[path.interval, np.newaxis]
         for M, i in zip(metric, chosen, strict=True):
             changes = np.nan_to_num(np.cumsum(missed[path.interval == i], axis=0))
             left_out.append(float(norms_in(np.broadcast_to(M, (len(changes), *M.shape)), changes).max()))
