@@ -13,7 +13,6 @@ from symofros.runtime.calls.kernel import Array
 from symofros.runtime.manifold import chart_coordinates, chart_rate, retract
 from symofros.simulation.stepping.stepper import Stepper
 
-
 Numbers = npt.NDArray[np.integer[Any]]
 
 
