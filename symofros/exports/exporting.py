@@ -32,6 +32,7 @@ from symofros.exports.folder import Exported as Exported
 from symofros.exports.folder import check_folder
 from symofros.exports.interchange.mjcf import write_mjcf
 from symofros.exports.interchange.urdf import write_urdf
+from symofros.exports.limits import joints_of, limits_note
 from symofros.exports.material import Material, Stepping
 from symofros.exports.wasm import wasm
 from symofros.exports.wasm.wasm import write_wasm
@@ -246,7 +247,7 @@ def _material(
         shown,
         GENERATOR,
         target == "c",
-        (*system.notes, *first.notes),
+        (*system.notes, *limits_note(joints_of(system)), *first.notes),
     )
 
 
