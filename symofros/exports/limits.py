@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Collection, Iterable
 
 from symofros.description.joints.joint import Joint, Limits
 from symofros.description.system import System
@@ -28,17 +28,18 @@ def joints_of(system: System) -> list[Joint]:
     return [body.joint for body in system.bodies if body.joint is not None]
 
 
-def limits_note(joints: Iterable[Joint], kept: Iterable[str] = ()) -> tuple[str, ...]:
-    """A note on limits that a target drops; none where no joint has such a limit.
+def limits_note(joints: Iterable[Joint], kept: Callable[[Joint], Collection[str]] | None = None) -> tuple[str, ...]:
+    """Notes on the limits that a target drops, one for each measure of them.
 
     Args:
-        joints: Joints whose limits are not written.
-        kept: Of these measures, limits are written all the same.
+        joints: Joints of the system.
+        kept: What limits of a joint bound that the target has places for; nothing by default.
     """
-    lost: dict[str, list[str]] = {measure: [] for measure in MEASURES if measure not in set(kept)}
+    lost: dict[str, list[str]] = {measure: [] for measure in MEASURES}
     for joint in joints:
+        written = kept(joint) if kept else ()
         for measure in measures(joint.limits):
-            if measure in lost:
+            if measure not in written:
                 lost[measure].append(joint.name)
     return tuple(f"limits of {measure} dropped: {listed(names)}" for measure, names in lost.items() if names)
 

@@ -24,6 +24,8 @@ from symofros.mechanics.topology.numbers import Numbers
 
 # Of a moment of inertia, of the largest one or of 1 kg m^2; MuJoCo's own bound is 1e-14.
 _LEAST = 1e-12
+# What limits of a single turn or slide bound in MuJoCo, too.
+_ACTING = ("travel", "effort")
 
 
 def write_mjcf(system: System, name: str | None, folder: Path, generator: str) -> Exported:
@@ -129,10 +131,9 @@ def _lost(links: Sequence[RigidLink], numbers: Numbers) -> list[str]:
     driven = [j.name for link, j in moving if not link.axes and j.actuated]
     if driven:
         losses.append("actuators of ball and free joints dropped: " + ", ".join(driven))
-    losses += limits_note([j for link, j in moving if len(link.axes) != 1])
-    single = [j for link, j in moving if len(link.axes) == 1]
-    losses += limits_note(single, kept=("travel", "effort"))
-    acting = [j.name for j in single if {"travel", "effort"} & {*measures(j.limits)}]
+    losses += limits_note([j for _, j in moving], lambda joint: _ACTING if _is_single(joint) else ())
+    single = [j for _, j in moving if _is_single(j)]
+    acting = [j.name for j in single if {*_ACTING} & {*measures(j.limits)}]
     if acting:
         losses.append(
             "limits of travel and effort, data here, act in MuJoCo, as soft stops and bounds of motors: "
@@ -142,6 +143,10 @@ def _lost(links: Sequence[RigidLink], numbers: Numbers) -> list[str]:
     if locked:
         losses.append("limits of travel that leave one place, which MuJoCo refuses, dropped: " + listed(locked))
     return losses
+
+
+def _is_single(joint: Joint) -> bool:
+    return joint.traits.series and joint.traits.nv == 1
 
 
 def _is_locked(limits: Limits) -> bool:

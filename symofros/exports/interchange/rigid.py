@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
@@ -108,7 +109,7 @@ def rigid_links(system: System, form: Literal["URDF", "MJCF"]) -> tuple[list[Rig
                 "export the model as an FMU, or replace these rods by rigid bodies",
             )
         )
-    names = {body.name for body in system.bodies}
+    names = Counter([body.name for body in system.bodies] + [f.name for body in system.bodies for f in body.frames])
     base = {body.name for body in system.bodies if body.joint is None} | {WORLD}
     rigid = []
     if not any(body.joint is None for body in system.bodies):
@@ -126,7 +127,7 @@ def _representable(joint: Joint, form: Literal["URDF", "MJCF"]) -> bool:
     return not joint.prescribed and (joint.traits.series or own is not None)
 
 
-def _link(body: Body, parent: str | None, system: System, numbers: Numbers, names: set[str]) -> RigidLink:
+def _link(body: Body, parent: str | None, system: System, numbers: Numbers, names: Counter[str]) -> RigidLink:
     mass, center, inertia = _beam_inertia(body, numbers) if isinstance(body, Beam) else _inertia(body.inertia, numbers)
     position, rotation = np.zeros(3), np.eye(3)
     if body.joint is not None:
@@ -136,9 +137,8 @@ def _link(body: Body, parent: str | None, system: System, numbers: Numbers, name
         at, turned = numbers.values(frame.position), numbers.rotation(frame.rotation)
         if isinstance(body, Beam):
             at, turned = np.array([frame.station * numbers.value(body.length), 0.0, 0.0]), np.eye(3)
-        taken = frame.name in names
-        frames.append((f"{body.name}.{frame.name}" if taken else frame.name, at, turned))
-        names.add(frame.name)
+        # As in models: a frame bears its own name where nothing else does.
+        frames.append((frame.name if names[frame.name] == 1 else f"{body.name}.{frame.name}", at, turned))
     axes = () if body.joint is None else _axes(body.joint, numbers)
     damping = () if body.joint is None else _damping(body.joint, numbers)
     return RigidLink(

@@ -15,7 +15,7 @@ from symofros.description.system import System
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.interchange.couplings import PolynomialCoupling, polynomial_couplings
 from symofros.exports.interchange.rigid import Array, Axis, RigidLink, numbers_text, rigid_links
-from symofros.exports.limits import limits_note, listed, measures
+from symofros.exports.limits import MEASURES, limits_note, listed, measures
 from symofros.generator.codegen.names import identifier
 from symofros.mechanics.topology.numbers import Numbers
 
@@ -72,7 +72,7 @@ def _lost(system: System, kept: set[str]) -> list[str]:
     dampers = [joint.name for joint in joints if any(not _kept(joint, e) for e in joint.elements)]
     if dampers:
         losses.append("dampers that are not linear or of no turn or slide dropped: " + ", ".join(dampers))
-    losses += limits_note(joint for joint in joints if not joint.traits.series or joint.traits.nv != 1)
+    losses += limits_note(joints, lambda joint: MEASURES if joint.traits.series and joint.traits.nv == 1 else ())
     passive = [joint.name for joint in joints if joint.traits.series and joint.traits.nv and not joint.actuated]
     if passive and any(joint.actuated for joint in joints):
         losses.append("which joints are driven is not part of URDF; these are not: " + listed(passive))
