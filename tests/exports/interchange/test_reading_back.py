@@ -1,4 +1,4 @@
-"""What is written is read again by the target's own reader: the same mechanics, limits and names, or a note says not."""
+"""What is written is read again by its target's own reader: the same mechanics, limits and names, or a note."""
 
 from __future__ import annotations
 

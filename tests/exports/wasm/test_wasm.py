@@ -159,7 +159,7 @@ def test_memory_that_is_used_again_does_not_grow(answers: dict[str, Any]) -> Non
 
 @pytest.mark.tools
 def test_arrays_of_a_prepared_batch_outlive_memory_that_grows(answers: dict[str, Any]) -> None:
-    """What was written to an array that memory has left is not taken for an input; the next one is of the same numbers."""
+    """An array that memory has left is refused as an input; one that is taken anew has the numbers of before."""
     before, refused, after, freed = answers["grown"]
     assert before == after and "memory has grown since q were taken" in refused and "the batch was freed" in freed
 
