@@ -44,7 +44,7 @@ from symofros.mechanics.topology.tree import build_tree
 from symofros.runtime.beams import BEAM_LIMIT
 from symofros.runtime.calls.kernel import LaneOptions
 from symofros.runtime.model import Model
-from symofros.simulation.analysis.kinematics.starts import ClosedStart, closed_start, stated_names
+from symofros.simulation.analysis.kinematics.starts import ClosedStart, closed_start, singular_start, stated_names
 from symofros.simulation.stepping.methods import METHODS, method_meant
 
 Target = Literal["c", "cuda", "mex", "sfunction", "fmu2", "fmu3", "wasm", "urdf", "mjcf"]
@@ -247,7 +247,7 @@ def _material(
         shown,
         GENERATOR,
         target == "c",
-        (*system.notes, *limits_note(joints_of(system)), *first.notes),
+        (*system.notes, *limits_note(joints_of(system)), *first.notes, *singular_start(interpreted, first.q)),
     )
 
 
