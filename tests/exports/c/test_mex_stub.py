@@ -1,4 +1,4 @@
-"""MEX without Matlab or Octave: its C, compiled with a stub of mex.h, answers as Python does, arrays column by column."""
+"""MEX without Matlab or Octave: its C, compiled with a stub of mex.h, answers as Python does, column by column."""
 
 from __future__ import annotations
 

@@ -112,6 +112,13 @@ def _told_by_mujoco(
         )
         if wanted is not None and not noted(done, "differ between", joint.name):
             assert engine.dof_damping[dof] == pytest.approx(wanted, rel=1e-15)
+    for k, part in enumerate(parts):
+        springs = [e for e in joint.elements if isinstance(e, sf.Spring) and e.coordinate == k and e.cubic == 0.0]
+        stiffness = np.array([float(e.stiffness) for e in springs])  # type: ignore[arg-type]
+        assert engine.jnt_stiffness[part.id] == pytest.approx(stiffness.sum(), rel=1e-15)
+        if springs:
+            rest = stiffness @ [float(e.rest) for e in springs] / stiffness.sum()  # type: ignore[arg-type]
+            assert engine.qpos_spring[part.qposadr[0]] == pytest.approx(rest, rel=1e-14)
     stated = joint.limits or sf.Limits()
     if len(parts) > 1 or joint.kind == "ball":
         for words in _lost(stated, "travel", "speed", "effort"):

@@ -19,8 +19,8 @@ from symofros.simulation.settings import CLOSED
 # Relative change of a stated number that counts as digits which were not typed; beyond, or of a zero that becomes more
 # than what drift leaves, the start is another one than was asked for.
 DIGITS = 1e-3
-# Share of the strongest combination of conditions below which one counts as repeating others: the closure leaves half of
-# its digits in a singular posture. It grows as the way from there [rad, m].
+# Share of the strongest combination of conditions below which one counts as repeating others: the closure leaves half
+# of its digits in a singular posture. It grows as the way from there [rad, m].
 WEAK, _BESIDE = 1e-5, 0.03
 
 
