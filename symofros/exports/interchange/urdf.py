@@ -173,11 +173,11 @@ def _single(
 ) -> None:
     assert link.joint is not None
     limits = link.joint.limits if len(link.axes) == 1 else None
-    stated = measures(limits)
-    kind = "prismatic" if not axis.turns else "revolute" if "travel" in stated else "continuous"
+    bounded = measures(limits)
+    kind = "prismatic" if not axis.turns else "revolute" if "travel" in bounded else "continuous"
     into = _joint(root, axis.name, kind, parent, child, position, rotation)
     Tree.SubElement(into, "axis", {"xyz": numbers_text(axis.direction)})
-    if kind != "continuous" or stated:
+    if kind != "continuous" or bounded:
         Tree.SubElement(into, "limit", _limit(limits or Limits(), kind != "continuous"))
     if link.damping[index] != 0.0:
         Tree.SubElement(into, "dynamics", {"damping": numbers_text(link.damping[index])})

@@ -94,13 +94,15 @@ def singular_start(model: Model, q: Array, u: ArrayLike | None = None) -> tuple[
     """
     if not model.nc or not model.nv:
         return ()
-    strengths = np.linalg.svd(model.constraint_jacobian(q, u=u))
-    weak = strengths.Vh[np.append(strengths.S, np.zeros(model.nv - len(strengths.S))) <= WEAK * strengths.S[0]]
-    ranks = [_rank(strengths.S)]
+    _, S, V = np.linalg.svd(model.constraint_jacobian(q, u=u))
+    strengths = np.append(np.asarray(S, dtype=np.float64), np.zeros(model.nv))[: model.nv]
+    weak = V[strengths <= WEAK * strengths[0]]
+    ranks = [_rank(strengths)]
     for way in (*weak, *-weak):  # What the constraints leave free here, and more of it beside a singular posture.
         with suppress(AssemblyError):
             beside = assemble(model, model.integrate(q, _BESIDE * way), u=u).q
-            ranks.append(_rank(np.linalg.svd(model.constraint_jacobian(beside, u=u), compute_uv=False)))
+            G = model.constraint_jacobian(beside, u=u)
+            ranks.append(_rank(np.asarray(np.linalg.svd(G, compute_uv=False), dtype=np.float64)))
     if max(ranks) == ranks[0]:
         return ()
     return (
