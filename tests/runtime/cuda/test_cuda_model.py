@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import copy
 import ctypes
+import pickle
 import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -73,12 +76,28 @@ class Exchanged:
         return 2, self.ordinal
 
     def __dlpack__(self, stream: int) -> object:
-        assert stream == 1
+        self.asked = stream
         capsule = self.array.__dlpack__()
         pointer = ctypes.pythonapi.PyCapsule_GetPointer
         pointer.restype, pointer.argtypes = ctypes.c_void_p, (ctypes.py_object, ctypes.c_char_p)
         ctypes.c_int32.from_address(pointer(capsule, b"dltensor") + 8).value = self.device_type
         return capsule
+
+
+class WithGradient:
+    """A tensor of PyTorch that requires a gradient."""
+
+    @property
+    def __cuda_array_interface__(self) -> object:
+        raise RuntimeError("Can't get __cuda_array_interface__ on Variable that requires grad.")
+
+
+class WithGradientExchanged(WithGradient):
+    def __dlpack_device__(self) -> tuple[int, int]:
+        return 2, 0
+
+    def __dlpack__(self, stream: int) -> object:
+        raise BufferError("Can't export tensors that require gradient, use tensor.detach()")
 
 
 def states(n: int) -> tuple[np.ndarray, np.ndarray]:
@@ -126,6 +145,7 @@ READ_ONLY.__cuda_array_interface__ |= {"data": (READ_ONLY.array.ctypes.data, Tru
     [
         ({"M": np.zeros((3, 2, 2))}, "M does not lie on the device"),
         ({"mass": OnDevice(np.zeros((3, 2, 2)))}, "no output 'mass'"),
+        (OnDevice(np.zeros((3, 2, 2))), "out is no mapping"),
         ({"M": READ_ONLY}, "M is read only"),
         ({"M": OnDevice(np.broadcast_to(np.zeros((2, 2)), (3, 2, 2)))}, "M shares memory(.|\n)*with itself"),
         ({"h": OnDevice(MEMORY[:, 1:3])}, "h shares memory(.|\n)*with q"),
@@ -164,10 +184,10 @@ def test_frames_and_parameters_are_those_of_the_model(on_device: CudaModel) -> N
 @pytest.mark.parametrize("given", ["all", "states", "steps"])
 def test_rollouts_hold_the_inputs_of_each_step(on_device: CudaModel, method: str, given: str) -> None:
     q, v = states(6)
-    u = np.random.default_rng(4).standard_normal({"all": (2,), "states": (6, 2), "steps": (8, 6, 2)}[given])
-    records = on_device.rollout(q, v, u, dt=0.01, steps=8, every=3, method=method)
+    u = np.random.default_rng(4).standard_normal({"all": (2,), "states": (6, 2), "steps": (6, 6, 2)}[given])
+    records = on_device.rollout(q, v, u, dt=0.01, steps=6, every=3, method=method)
     assert records[0].shape == (2, 6, 2)
-    held = np.broadcast_to(u, (8, 6, 2))
+    held = np.broadcast_to(u, (6, 6, 2))
     at_q, at_v = q, v
     for step in range(6):
         runs = [
@@ -194,7 +214,7 @@ STATES = {"q": np.zeros((3, 2)), "v": np.zeros((3, 2))}
         (STATES | {"q": OnDevice(np.zeros((3, 2), "f4"))}, "float64"),
         ({"q": Exchanged(np.zeros((3, 2)), 1), "v": np.zeros(2)}, "device 1 of DLPack"),
         ({"q": Exchanged(np.zeros((3, 2)), 2, 1), "v": np.zeros(2)}, "graphics processor 1;"),
-        ({"q": Exchanged(np.zeros((3, 2), "i8")), "v": np.zeros(2)}, "type 0 of DLPack"),
+        ({"q": Exchanged(np.zeros((3, 2), "i8")), "v": np.zeros(2)}, "int64"),
         (STATES | {"t": np.zeros(4)}, "one number of"),
     ],
 )
@@ -207,6 +227,12 @@ def test_inputs_that_do_not_fit_are_refused(on_device: CudaModel, inputs: dict[s
     ("options", "message"),
     [
         ({"every": 3}, "no such rollout"),
+        ({"steps": 10, "every": 3}, "every divides steps"),
+        ({"dt": 0.0}, "a step is positive"),
+        ({"dt": -0.1}, "a step is positive"),
+        ({"dt": np.nan}, "a step is positive"),
+        ({"steps": 2.5}, "steps is no whole number"),
+        ({"every": True}, "every is no whole number"),
         ({"method": "rk5"}, "by 'rk5'"),
         ({"u": np.zeros((3, 3, 2))}, "u has the"),
         ({"u": np.zeros((4, 2))}, "one number of"),
@@ -214,7 +240,7 @@ def test_inputs_that_do_not_fit_are_refused(on_device: CudaModel, inputs: dict[s
 )
 def test_rollouts_that_do_not_fit_are_refused(on_device: CudaModel, options: dict[str, Any], message: str) -> None:
     with pytest.raises((ShapeError, UnknownNameError), match=message):
-        on_device.rollout(**STATES, **options, dt=0.1, steps=2)
+        on_device.rollout(**{**STATES, "dt": 0.1, "steps": 2, **options})
 
 
 def test_memory_that_runs_out_is_the_drivers_word(on_device: CudaModel, device: Driver) -> None:
@@ -252,3 +278,190 @@ def test_inputs_that_are_left_out_are_copied_once(on_device: CudaModel, monkeypa
     monkeypatch.setattr(Driver, "write", lambda *arguments: copies.append(arguments))
     on_device.evaluate("forward_dynamics", q=q, v=v, wait=False)
     assert not copies
+
+
+class Stream:
+    """PyTorch's stream."""
+
+    def __init__(self, handle: int) -> None:
+        self.cuda_stream = handle
+
+
+class Protocol:
+    def __cuda_stream__(self) -> tuple[int, int]:
+        return 0, 0x30
+
+
+@pytest.fixture
+def said(device: Driver) -> Any:
+    """What the driver was asked of streams since the last call."""
+    device._library.sym_said.restype = ctypes.c_char_p
+    device._library.sym_forget()
+
+    def read() -> list[str]:
+        text = device._library.sym_said().decode()
+        device._library.sym_forget()
+        return [part.strip() for part in text.split(";") if part]
+
+    yield read
+    device._library.sym_capture(0)
+
+
+def test_producers_are_waited_for_by_dlpack_where_they_have_both(on_device: CudaModel) -> None:
+    """PyTorch and JAX give an interface without a stream, and DLPack with one."""
+
+    class Both(Exchanged, OnDevice):
+        def __init__(self, array: np.ndarray) -> None:
+            Exchanged.__init__(self, array)
+            OnDevice.__init__(self, array)
+
+    q, v = (Both(x) for x in states(3))
+    on_device.evaluate("dynamics", q=q, v=v)
+    assert (q.asked, v.asked) == (1, 1)
+    on_device.evaluate("dynamics", q=q, v=v, stream=Stream(0x30))
+    assert (q.asked, v.asked) == (0x30, 0x30)
+    M = Both(np.zeros((3, 2, 2)))
+    on_device.evaluate("dynamics", q=q, v=v, out={"M": M}, stream=0x30)
+    assert M.asked == 0x30  # What still reads it is waited for, too.
+
+
+@pytest.mark.parametrize(
+    ("stream", "handle"), [(None, "1"), (0, "1"), (1, "1"), (0x30, "30"), (Stream(0x30), "30"), (Protocol(), "30")]
+)
+def test_kernels_go_into_the_stream_and_wait_for_the_producers(
+    on_device: CudaModel, said: Any, stream: Any, handle: str
+) -> None:
+    q, v = (OnDevice(x) for x in states(3))
+    q.__cuda_array_interface__ |= {"stream": 0x40}
+    out = {"M": OnDevice(np.zeros((3, 2, 2)))}
+    on_device.evaluate("mass_matrix", q=q, out=out, stream=stream)
+    said()
+    on_device.evaluate("mass_matrix", q=q, out=out, stream=stream)
+    asked = said()
+    assert asked[:2] == [f"order 40 {handle}", f"launch {handle} 0"]
+    assert asked[2:] == ([] if handle == "1" else ["wait 30 0"])
+
+
+def test_results_say_which_stream_they_are_ready_in(on_device: CudaModel, said: Any, device: Driver) -> None:
+    q, v = states(3)
+    ready = on_device.evaluate("dynamics", q=q, v=v, stream=0x30)["h"]
+    begun = on_device.evaluate("dynamics", q=q, v=v, stream=0x30, wait=False)["h"]
+    assert (ready.stream, begun.stream) == (None, 0x30)
+    assert begun.__cuda_array_interface__["stream"] == 0x30 and ready.__cuda_array_interface__["stream"] == 1
+    said()
+    on_device.evaluate("forward_dynamics", q=q, v=v, u=begun)
+    assert "order 30 1" in said()
+    np.testing.assert_array_equal(begun.numpy(), ready.numpy())
+    assert "wait 30 0" in said() and not device._library.sym_events()
+
+
+def test_a_rollout_goes_into_its_stream(on_device: CudaModel, said: Any) -> None:
+    on_device.rollout(**STATES, dt=0.1, steps=2, stream=0x30)
+    asked = said()
+    assert "launch 30 0" in asked and asked[-1] == "wait 30 0"
+
+
+@pytest.mark.parametrize("stream", ["x", 2.5, True, -1, object()])
+def test_what_is_no_stream_is_refused(on_device: CudaModel, stream: Any) -> None:
+    with pytest.raises(sf.ArgumentError, match="stream is no stream"):
+        on_device.evaluate("mass_matrix", q=np.zeros((3, 2)), stream=stream)
+
+
+def captured(on_device: CudaModel, device: Driver, **changes: Any) -> dict[str, Any]:
+    """A call while a graph is captured from stream 0x20."""
+    arguments: dict[str, Any] = {
+        "q": OnDevice(np.zeros((3, 2))),
+        "out": {"M": OnDevice(np.zeros((3, 2, 2)))},
+        "wait": False,
+        "stream": 0x20,
+    }
+    on_device.evaluate("mass_matrix", **arguments)
+    device._library.sym_capture(1)
+    return on_device.evaluate("mass_matrix", **{**arguments, **changes})
+
+
+def test_a_graph_takes_in_what_goes_into_its_stream(on_device: CudaModel, device: Driver, said: Any) -> None:
+    captured(on_device, device)
+    assert said()[-1] == "launch 20 0"
+
+
+@pytest.mark.parametrize(
+    ("changes", "says"),
+    [
+        ({"wait": True}, "wait=True"),
+        ({"out": None}, "out without M"),
+        ({"q": np.zeros((3, 2))}, "q lies on the host"),
+    ],
+)
+def test_what_no_graph_can_take_in_is_refused(
+    on_device: CudaModel, device: Driver, said: Any, changes: dict[str, Any], says: str
+) -> None:
+    with pytest.raises(SymofrosError, match=f"mass_matrix can't be captured in a graph(.|\n)*{says}"):
+        captured(on_device, device, **changes)
+    assert [entry for entry in said() if entry.startswith("launch")] == ["launch 20 0"]  # That before the capture.
+
+
+def test_first_calls_and_rollouts_are_not_captured(on_device: CudaModel, device: Driver, said: Any) -> None:
+    with pytest.raises(SymofrosError, match="a rollout can't be captured"):
+        captured(on_device, device)
+        on_device.rollout(**STATES, dt=0.1, steps=2, stream=0x20)
+    with pytest.raises(SymofrosError, match="call it once before the capture"):
+        on_device.evaluate("kinetic_energy", q=OnDevice(np.zeros((3, 2))), stream=0x20, wait=False)
+
+
+@pytest.mark.parametrize("stream", [None, 0x30])
+def test_a_graph_of_another_stream_is_said(
+    on_device: CudaModel, monkeypatch: pytest.MonkeyPatch, said: Any, stream: Any
+) -> None:
+    """`with torch.cuda.graph(...)`: the current stream captures, the call went into another one and ran at once."""
+
+    class Torch:
+        class cuda:
+            is_initialized = is_current_stream_capturing = staticmethod(lambda: True)
+            current_stream = staticmethod(lambda: Stream(0x20))
+
+    monkeypatch.setitem(sys.modules, "torch", Torch)
+    with pytest.raises(SymofrosError, match=r"captured from another stream(.|\n)*stream=torch.cuda.current_stream\(\)"):
+        on_device.evaluate("mass_matrix", q=OnDevice(np.zeros((3, 2))), stream=stream)
+    assert not any(entry.startswith("launch") for entry in said())
+
+
+@pytest.mark.parametrize("tensor", [WithGradient, WithGradientExchanged])
+@pytest.mark.parametrize("place", ["q", "out"])
+def test_tensors_that_require_a_gradient_are_refused(on_device: CudaModel, tensor: Any, place: str) -> None:
+    given = {"q": tensor()} if place == "q" else {"q": np.zeros((3, 2)), "out": {"M": tensor()}}
+    with pytest.raises(ShapeError, match=r"is not given by its library(.|\n)*tensor.detach\(\)"):
+        on_device.evaluate("mass_matrix", **given)
+
+
+def test_a_model_on_the_device_is_copied_as_itself_and_not_pickled(on_device: CudaModel) -> None:
+    assert copy.copy(on_device) is on_device and copy.deepcopy({"gpu": on_device})["gpu"] is on_device
+    with pytest.raises(SymofrosError, match="can't be pickled"):
+        pickle.dumps(on_device)
+    result = on_device.evaluate("mass_matrix", q=np.zeros((3, 2)))["M"]
+    for attempt in (copy.copy, copy.deepcopy, pickle.dumps):
+        with pytest.raises(SymofrosError, match="not copied or pickled"):
+            attempt(result)
+
+
+@pytest.mark.parametrize("precision", ["float32", "half", 32, np.float32])
+def test_precisions_that_do_not_exist_are_refused_where_they_are_named(precision: Any) -> None:
+    with pytest.raises(sf.ArgumentError, match="no such precision"):
+        model("double_pendulum").cuda(precision)
+
+
+def test_arrays_that_live_to_the_end_are_silent(device: Driver) -> None:
+    """At the end of a process neither modules nor the driver are what they were."""
+    script = f"""
+import ctypes
+from symofros.runtime.cuda.arrays import DeviceArray
+from symofros.runtime.cuda.driver import Driver
+
+class Kept:
+    pass
+
+kept = Kept()
+kept.me, kept.array = kept, DeviceArray(Driver(ctypes.CDLL({device._library._name!r})), (3,), float)
+"""
+    run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    assert (run.returncode, run.stderr) == (0, "")
