@@ -206,7 +206,7 @@ class MechanismVectorEnv(_VectorEnv):  # type: ignore[misc]
         options = dict(options or {})
         chosen = np.flatnonzero(_checked_mask(options.pop("reset_mask", None), self.num_envs))
         given, seeds = _checked_options(options, ("par", "reset_mask")), _checked_seeds(seed, self.num_envs)
-        for k in chosen:
+        for k in chosen.tolist():
             if seeds[k] is not None:
                 self._generators[k] = gymnasium.utils.seeding.np_random(seeds[k])[0]
         self._begin(chosen)
@@ -231,7 +231,7 @@ class MechanismVectorEnv(_VectorEnv):  # type: ignore[misc]
 
     def _begin(self, chosen: Any) -> None:
         """New episodes in some environments, given by their numbers."""
-        for k in chosen:
+        for k in chosen.tolist():
             generator = self._generators[k]
             if generator is None:
                 generator = self._generators[k] = gymnasium.utils.seeding.np_random()[0]

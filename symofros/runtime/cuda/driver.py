@@ -105,12 +105,12 @@ class Driver:
         finally:
             self._call("cuEventDestroy_v2", event)
 
-    def captures(self, stream: int) -> bool:
-        """Whether a graph is captured from a stream; of the default stream, whether from one that waits for it."""
+    def captures(self, stream: int) -> bool | None:
+        """Whether a graph is captured from a stream; None of the default one beside a stream that waits for it."""
         status = ctypes.c_int()
         self._check("cuCtxSetCurrent", self._context)
         failed = self._library.cuStreamIsCapturing(ctypes.c_void_p(stream), ctypes.byref(status))
-        return failed == _CAPTURED_BESIDE or bool(status.value)
+        return None if failed == _CAPTURED_BESIDE else bool(status.value)
 
     def allocate(self, size: int) -> int:
         """The address of so many bytes of the device's memory."""

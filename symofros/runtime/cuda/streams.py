@@ -41,20 +41,21 @@ def is_captured(device: Driver, stream: int) -> bool:
     """Whether what is started in a stream becomes part of a graph instead of running.
 
     Raises:
-        SymofrosError: The current stream of PyTorch or CuPy captures a graph, and is not this one: what is started
-            would run at once, and be no part of the graph.
+        SymofrosError: A graph is captured from another stream, the current one of PyTorch or CuPy, or one that waits
+            for the default stream: what is started would run at once, and be no part of the graph.
     """
-    other = _capturing_stream()
-    if other is not None and other != stream:
+    other, captures = _capturing_stream(), device.captures(stream)
+    if captures is None or (other is not None and other != stream):
+        capturing = "another stream" if other is None else f"stream {other:#x}"
         raise SymofrosError(
             Problem(
                 "CUDA: a graph is captured from another stream",
-                f"stream {other:#x} captures, the call is for {_shown(stream)}",
+                f"{capturing} captures, the call is for {_shown(stream)}",
                 "a graph consists of what is started in the stream that it is captured from",
                 "pass stream=torch.cuda.current_stream(), or what your library has in its place",
             )
         )
-    return device.captures(stream)
+    return captures
 
 
 def refused_in_capture(what: str, found: str, remedy: str) -> SymofrosError:

@@ -27,7 +27,10 @@ const char *sym_said(void) { return said; }
 void sym_forget(void) { said[0] = 0; }
 void sym_capture(int on) { capturing = on; }
 int sym_events(void) { return events; }
-int cuStreamIsCapturing(void *stream, int *status) { return *status = capturing && stream == (void *)0x20, 0; }
+int cuStreamIsCapturing(void *stream, int *status) {
+    *status = capturing && stream == (void *)0x20;
+    return capturing == 2 && stream == (void *)1 ? 906 : 0; /* 2: from a stream that waits for the default one */
+}
 int cuStreamSynchronize(void *stream) {
     if (capturing) return 900;
     return say("wait", stream, NULL), current ? 0 : 201;

@@ -426,6 +426,14 @@ def test_a_graph_of_another_stream_is_said(
     assert not any(entry.startswith("launch") for entry in said())
 
 
+def test_the_default_stream_beside_one_that_waits_for_it_is_said(
+    on_device: CudaModel, device: Driver, said: Any
+) -> None:
+    device._library.sym_capture(2)
+    with pytest.raises(SymofrosError, match="another stream captures, the call is for the default stream"):
+        on_device.evaluate("mass_matrix", q=OnDevice(np.zeros((3, 2))))
+
+
 @pytest.mark.parametrize("tensor", [WithGradient, WithGradientExchanged])
 @pytest.mark.parametrize("place", ["q", "out"])
 def test_tensors_that_require_a_gradient_are_refused(on_device: CudaModel, tensor: Any, place: str) -> None:
