@@ -10,9 +10,10 @@ import numpy.typing as npt
 
 from symofros.base.arrays import numeric, real_array
 from symofros.errors import AssemblyError, Problem, ShapeError, SymofrosError, UnknownNameError
-from symofros.native import native_number
+from symofros.runtime import unit_quaternions
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
+from symofros.runtime.unit_quaternions import UNIT_TOLERANCE as UNIT_TOLERANCE
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.stepping.methods import METHODS, Method, method_meant
@@ -24,10 +25,6 @@ from symofros.simulation.stepping.stepper import Stepper
 LOSS_LIMIT = 0.01
 # Gains of 20/s hold a loop through its singular posture (tests of the N-four-bar), and lose accuracy on long steps.
 _GAIN, _GAIN_STEP = 20.0, 0.5
-
-
-# Deviation from unit length up to which a quaternion counts as a rotation written in few digits.
-UNIT_TOLERANCE = native_number("stepping/system.c", "SYM_QUATERNION_TOLERANCE")
 
 
 def vector(model: Model, name: str, values: ArrayLike, size: int) -> Array:
@@ -224,22 +221,7 @@ def refuse_lengths(model: Model, q: Array) -> None:
     Raises:
         ShapeError: With the coordinates of the one that is off most.
     """
-    for segment in model.record.segments:
-        if segment.kind == "linear":
-            continue
-        first = segment.q + segment.translations
-        lengths = np.linalg.norm(q[..., first : first + 4], axis=-1)
-        finite = lengths[np.isfinite(lengths)]  # Others are reported as not finite.
-        length = float(finite.flat[np.argmax(np.abs(finite - 1.0))]) if finite.size else 1.0
-        if not abs(length - 1.0) <= UNIT_TOLERANCE:
-            raise ShapeError(
-                Problem(
-                    f"model '{model.record.name}': q0 holds a quaternion that is no rotation",
-                    f"length {length:.6g} of {', '.join(model.names.q[first : first + 4])}",
-                    f"quaternions are of unit length, to {UNIT_TOLERANCE:g}",
-                    "divide it by its length; model.neutral() has those of no rotation",
-                )
-            )
+    unit_quaternions.refuse_lengths(model.record, q)
 
 
 def check_start(model: Model, settings: Settings, q: Array, v: Array, u: Array, par: Array) -> None:

@@ -19,6 +19,7 @@ from symofros.runtime.cuda.nvrtc import KernelUsage, compile_cuda, usage_of
 from symofros.runtime.cuda.receivers import receivers, strided_result
 from symofros.runtime.cuda.streams import is_captured, refused_in_capture, stream_handle
 from symofros.runtime.record import ModelRecord
+from symofros.runtime.unit_quaternions import refuse_lengths
 
 Key = tuple[str, str]
 
@@ -41,7 +42,8 @@ class CudaModel:
     other libraries take in place, too. Values of parameters are those of the model.
     Results are those of C where products and sums are not fused (`contract`), in single precision to its rounding. A
     step of a rollout that is too long for its method is not noticed, unlike in `simulate`; nor is bending of beams
-    beyond their theory, nor a quaternion among the inputs that is of another length than one.
+    beyond their theory, nor a quaternion of another length than one: among the inputs, or in arrays of the device. As
+    of `Model`, functions of a state take its quaternions as they are.
 
     Args:
         record: Names and sizes.
@@ -242,7 +244,7 @@ class CudaModel:
 
         Raises:
             UnknownNameError: There is no such method.
-            ShapeError: An input does not fit, or steps or the step are none.
+            ShapeError: An input does not fit, steps or the step are none, or a quaternion of q is no rotation.
             SymofrosError: The model has constraints, or there is no graphics processor; or a graph is captured.
         """
         code = self.code("forward_dynamics")
@@ -253,6 +255,8 @@ class CudaModel:
             )
         every = steps if every is None else every
         _check_rollout(dt, steps, every)
+        if not lies_on_device("q", q) and np.shape(q)[-1:] == (len(self.record.q_names),):
+            refuse_lengths(self.record, np.asarray(q, dtype=np.float64))
         device, handle = driver(), stream_handle(stream)
         if is_captured(device, handle):
             raise refused_in_capture("a rollout", "its results, which it allocates", "roll out before the capture")

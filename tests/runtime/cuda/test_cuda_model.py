@@ -243,6 +243,19 @@ def test_rollouts_that_do_not_fit_are_refused(on_device: CudaModel, options: dic
         on_device.rollout(**{**STATES, "dt": 0.1, "steps": 2, **options})
 
 
+@pytest.mark.parametrize("length", [1.1, 0.0])
+def test_rollouts_refuse_quaternions_that_are_no_rotations_as_simulate_does(length: float) -> None:
+    body = model("torque_free_body")
+    q = np.tile(body.neutral(), (3, 1))
+    q[1, -1] = length
+    for start in (
+        lambda: body.cuda().rollout(q, np.zeros((3, body.nv)), dt=0.1, steps=1),
+        lambda: sf.simulate_batch(body, q, t_end=0.1, dt=0.1),
+    ):
+        with pytest.raises(ShapeError, match=rf"a quaternion that is no rotation(.|\n)*length {length:g}"):
+            start()
+
+
 def test_memory_that_runs_out_is_the_drivers_word(on_device: CudaModel, device: Driver) -> None:
     with pytest.raises(SymofrosError, match="cuMemAlloc_v2 failed"):
         device.allocate(1 << 41)
