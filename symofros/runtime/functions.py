@@ -9,6 +9,7 @@ from typing import Any, Self
 
 import numpy as np
 
+from symofros.base.arguments import check_argument
 from symofros.base.functions import FRAME_FUNCTIONS, FUNCTIONS, INPUTS, MODEL_FUNCTIONS, generated_with
 from symofros.errors import ParameterError, Problem, ShapeError, SymofrosError
 from symofros.runtime.arguments import Arguments
@@ -74,6 +75,7 @@ class Functions(Arguments):
         origin: Callable[[], Functions] | None = None,
         device_code: Callable[[Key, Precision], DeviceCode] | None = None,
     ) -> None:
+        check_argument("Model: record", record, ModelRecord)
         super().__init__(record, np.array(record.par_default if par is None else par, dtype=np.float64))
         self._threads = threads
         self._precision = precision

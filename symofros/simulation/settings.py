@@ -163,6 +163,7 @@ def _check(options: SimulationOptions, t_end: float) -> None:
     for name, value in (("rtol", o.rtol), ("atol", o.atol), ("max_step", o.max_step), ("beam_limit", o.beam_limit)):
         if not value > 0:
             raise _wrong(f"{name} is not positive", value, f"{name} > 0", "leave it out")
+    check_pace(o.realtime)
     if o.every < 1:
         raise _wrong("nothing would be recorded", f"every = {o.every}", "every >= 1", "use output= for times")
     if o.gains is not None and o.stabilisation != "baumgarte":
@@ -171,6 +172,17 @@ def _check(options: SimulationOptions, t_end: float) -> None:
     if o.adaptive and not METHODS[o.method].adaptive:
         what, remedy = f"'{o.method}' does not adapt its steps", "use dopri5, dop853 or rodas4"
         raise _wrong(what, "adaptive=True", "it estimates no error", remedy)
+
+
+def check_pace(realtime: float | bool) -> None:
+    """Refuse what is no pace against the clock.
+
+    Raises:
+        SymofrosError: It is negative or infinite.
+    """
+    if not 0.0 <= float(realtime) < math.inf:
+        rule = "realtime is True, or seconds of motion a second, 0 for as fast as possible"
+        raise _wrong("no pace against the clock", f"realtime = {realtime}", rule, "realtime=True")
 
 
 def check_fit(model: Model, settings: Settings, inputs: InputPlan) -> None:
@@ -210,6 +222,8 @@ def check_fit(model: Model, settings: Settings, inputs: InputPlan) -> None:
         )
 
 
+# Of `output`: its times alone are 1.6 GB.
+MOST_RECORDS = 200_000_000
 # Beyond, a first state is a mistake and not what drift leaves.
 CLOSED = 1e-6
 
@@ -275,13 +289,17 @@ def _grid(output: float | npt.ArrayLike | None, t0: float, t_end: float) -> Arra
         interval = float(times)
         if not (math.isfinite(interval) and interval > 0):
             raise _wrong("the output interval is not positive", interval, "output > 0", "give an interval in seconds")
-        count = math.floor((t_end - t0) / interval * (1 + 1e-12))
+        count = (t_end - t0) / interval * (1 + 1e-12)
+        if not count < MOST_RECORDS:
+            rule, remedy = f"a run records at most {MOST_RECORDS} states", "a longer interval, or a shorter run"
+            raise _wrong("too many states to record", f"{count:.3g} of them", rule, remedy)
+        count = math.floor(count)
         return np.asarray(t0 + interval * np.arange(count + 1), dtype=np.float64)
-    if times.ndim != 1 or not np.all(np.diff(times) > 0) or times.size == 0 or times[0] < t0 or times[-1] > t_end:
+    if times.ndim != 1 or times.size == 0 or not (np.all(np.diff(times) > 0) and t0 <= times[0] <= times[-1] <= t_end):
         raise ShapeError(
             Problem(
                 "simulation: output times do not fit",
-                f"shape {times.shape}",
+                f"shape {times.shape}" if np.isfinite(times).all() else "times that are not finite",
                 f"times (n) increase from {t0} to {t_end} at most",
                 "sort them",
             )

@@ -204,6 +204,8 @@ def _run(command: Sequence[str], limit: float, folder: Path | None, errors: int)
             process = subprocess.Popen(
                 command,
                 cwd=folder,
+                # What a compiler that is killed leaves goes with the folder.
+                env=None if folder is None else {**os.environ, "TMPDIR": os.path.abspath(folder)},
                 stdin=subprocess.DEVNULL,
                 stdout=said,
                 stderr=errors,

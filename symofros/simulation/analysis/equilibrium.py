@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from symofros.base.arguments import checked
-from symofros.base.arrays import numeric
+from symofros.base.arrays import vector
 from symofros.errors import ActuationError, BeamTheoryError, EquilibriumError, Problem, UnknownNameError
 from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes, largest_bending
 from symofros.runtime.calls.kernel import Array
@@ -100,9 +100,9 @@ def equilibrium(
     """
     model = model.with_precision("double")
     free = free_speeds(model, held)
-    q = model.neutral() if q is None else numeric("q", model.by_name("q", q))
-    v = np.zeros(model.nv) if v is None else numeric("v", model.by_name("v", v))
-    u = given_inputs(model, u)
+    q = model.neutral() if q is None else vector("q", model.by_name("q", q), model.nq)
+    v = np.zeros(model.nv) if v is None else vector("v", model.by_name("v", v), model.nv)
+    u = vector("u", given_inputs(model, u), model.nu)
     balance = Balance(model, free, v, u, par, t)
     end = search_rest(balance, q, tolerance, iterations)
     q, lam = end.q, end.lam

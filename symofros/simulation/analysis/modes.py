@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arguments import checked
-from symofros.base.arrays import numeric
+from symofros.base.arrays import vector
 from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
@@ -72,9 +72,9 @@ def modes(
         BeamTheoryError: A beam is bent beyond the limit.
     """
     state = (
-        numeric("q", model.by_name("q", q)),
-        np.zeros(model.nv) if v is None else numeric("v", model.by_name("v", v)),
-        given_inputs(model, u),
+        vector("q", model.by_name("q", q), model.nq),
+        np.zeros(model.nv) if v is None else vector("v", model.by_name("v", v), model.nv),
+        vector("u", given_inputs(model, u), model.nu),
     )
     A, basis = _linearised(model, *state, par, t)
     # Without constraints A holds the derivatives of the accelerations.

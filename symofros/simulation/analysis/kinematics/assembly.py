@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arguments import checked
-from symofros.base.arrays import numeric
+from symofros.base.arrays import vector
 from symofros.base.measures import LENGTH, ROTATION, TRANSLATION
 from symofros.errors import AssemblyError, Problem, UnknownNameError, did_you_mean
 from symofros.runtime.calls.kernel import Array
@@ -102,11 +102,11 @@ def assemble(
     """
     free = free_speeds(model, held)
     model = model.with_precision("double")
-    q = model.neutral() if q is None else numeric("q", model.by_name("q", q))
+    q = model.neutral() if q is None else vector("q", model.by_name("q", q), model.nq)
     refuse_lengths(model, q)
     speeds = np.zeros(model.nv) if v is None else model.by_name("v", v)
     wished = finite_array("assemble: v", speeds, (model.nv,), "give one number a speed")
-    conditions = _Conditions(model, given_inputs(model, u), par, t)
+    conditions = _Conditions(model, vector("u", given_inputs(model, u), model.nu), par, t)
     tolerance = _own_measure(conditions, q, tolerance)
     found = _closed(conditions, q, free, tolerance, iterations, held)
     G = conditions.jacobian(found.q)
@@ -139,7 +139,7 @@ def approach(
     """
     free = free_speeds(model, held)
     model = model.with_precision("double")
-    at = _Conditions(model, given_inputs(model, u), par, t)
+    at = _Conditions(model, vector("u", given_inputs(model, u), model.nu), par, t)
     end = _attempt(at, q, free, _own_measure(at, q, TOLERANCE), ITERATIONS)
     if end.closes:
         _check_rotations(model, end.q, at.u, par)
