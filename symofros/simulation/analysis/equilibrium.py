@@ -78,6 +78,8 @@ def equilibrium(
     """Solve M 0 + h - Q - G^T lam = 0, phi = 0 for the configuration, by Newton's method with exact derivatives.
 
     Where that stalls, a relaxation from the same guess leads towards a stable rest, from where Newton's method goes on.
+    Its matrices are decomposed by NumPy's LAPACK, whose last digits depend on the processor: so do those of the result,
+    other than those of runs and of the functions of models.
 
     Args:
         model: Model, with or without constraints.
