@@ -18,7 +18,6 @@ from symofros.studio.editor.document.workspace import (
     autosave_of,
     layout_of,
     read_layout,
-    read_text,
 )
 from symofros.studio.editor.editing.data_edits import EditError
 from tests.studio.editor.texts import TEXTS
