@@ -72,8 +72,8 @@ def _with_motors(joint: sf.Joint, *others: sf.Rotor) -> sf.System:
     return sf.System("motors", (*bodies, sf.RigidBody("last", hinge, solid)))
 
 
-# Motors that ball and free joints drive: M has their spin, and h does not turn it with the axes. One spins in a link that
-# moves; the last two stand beside motors of other joints, whose spin h does turn.
+# Motors that ball and free joints drive: M has their spin, and h does not turn it with the axes. One spins in a link
+# that moves; the last two stand beside motors of other joints, whose spin h does turn.
 MOTORS = {
     "free armature": _with_motors(sf.Joint("base", "free", armature=0.5)),
     "ball rotor": _with_motors(sf.Joint("base", "ball", rotors=(sf.Rotor(0.4, 3.0, (1.0, 0.0, 0.0)),))),

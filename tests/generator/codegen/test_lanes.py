@@ -26,8 +26,8 @@ from symofros.runtime.calls.library import CompiledUnit
 from tests.generator.codegen.test_source import COMPILERS, compile_strictly
 from tests.models import sampled
 
-# Two lanes, four and eight on any processor, by the macros that choose: the compiler makes them of narrower vectors where
-# there are none so wide. Then four by the processor's own instructions, and what this processor has.
+# Two lanes, four and eight on any processor, by the macros that choose: the compiler makes them of narrower vectors
+# where there are none so wide. Then four by the processor's own instructions, and what this processor has.
 # gcc 12 fuses pairs of neighbouring statements even with contraction off, unless it leaves them apart.
 EXACT = (*DEFAULT_FLAGS, "-ffp-contract=off", "-fno-tree-slp-vectorize")
 WIDTHS = {

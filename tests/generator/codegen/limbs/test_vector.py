@@ -67,7 +67,7 @@ _WAITING: list[Step] = [
 ]
 
 
-# Lanes of several signs, times a number, which takes the signs of both: a number alone would be one number with the first.
+# Lanes of several signs, times a number, which takes the signs of both.
 _TURNED: list[Step] = [
     ("mul", (("joint", 0), ("mirrored", 1)), False),
     ("mul", (("own", 0), ("joint", 1)), False),
