@@ -196,7 +196,8 @@ def test_noise_moves_numbers_by_no_more_than_itself(case: str) -> None:
     np.testing.assert_allclose(noisy.kinetic_energy(q, v), T, rtol=0, atol=1e3 * size * np.abs(M).max() * (v @ v))
 
 
-MOVING = (*TREES[:20], *(f"{name}:0" for name in (*BEAMS, *RODS, *RIGID)))
+# Without beams that are stiff: steps of their order would be many.
+MOVING = (*TREES[:20], *(f"{name}:0" for name in ("flexible_pendulum", "spinning_beam", *RODS, *RIGID)))
 
 
 @pytest.mark.parametrize("case", sampled(MOVING, (*SOME_TREES[:2], "flexible_pendulum:0")))
