@@ -47,7 +47,7 @@ def bennett() -> Mechanism:
 
 
 def angles(first: Array) -> Array:
-    """The angles of the joints (..., 3) at angles of the first: tan(a/2) tan(b/2) is constant, opposite ones add to 0."""
+    """The joints' angles (..., 3) at angles of the first: tan(a/2) tan(b/2) is constant, opposite ones add to 0."""
     ratio = np.sin(0.5 * (ALPHA + BETA)) / np.sin(0.5 * (BETA - ALPHA))
     half = 0.5 * np.asarray(first)
     second = 2.0 * np.arctan2(ratio * np.cos(half), np.sin(half))
