@@ -62,9 +62,7 @@ class Fresh:
         listed = tokens(text)
         names = [name for name, _ in listed]
         return [
-            listed[i + ROW // 2][1]
-            for i in range(len(names) - ROW + 1)
-            if tuple(names[i : i + ROW]) not in self._rows
+            listed[i + ROW // 2][1] for i in range(len(names) - ROW + 1) if tuple(names[i : i + ROW]) not in self._rows
         ]
 
 
