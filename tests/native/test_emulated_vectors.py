@@ -1,4 +1,4 @@
-"""Vectors by the instructions of AVX2 on any x86 processor, under an emulator: batches give the bits of single states."""
+"""Vectors by the instructions of AVX2 on any x86 processor, emulated: batches give the bits of single states."""
 
 from __future__ import annotations
 
