@@ -38,7 +38,8 @@ def with_noise(system: sf.System, seed: int, size: float | None = None) -> sf.Sy
         one = 10.0 ** rng.uniform(-16, -6) if size is None else size
         return min(one, most) * rng.uniform(-1, 1, shape) * (rng.random(shape) < 0.7)
 
-    return _Noisy(rng, noise).of(system)
+    noisy: sf.System = _Noisy(rng, noise).of(system)
+    return noisy
 
 
 class _Noisy:
