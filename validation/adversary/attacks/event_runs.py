@@ -25,7 +25,9 @@ _ADAPTIVE = ("dopri5", "dop853", "rodas4")
 @cache
 def slide() -> Mechanism:
     """A mass on a spring of stiffness k under a constant force F."""
-    joint = sf.Joint("z", "prismatic", axis=(0, 0, 1), elements=(sf.Spring(sf.formula("k")),), effort=(sf.formula("F"),))
+    joint = sf.Joint(
+        "z", "prismatic", axis=(0, 0, 1), elements=(sf.Spring(sf.formula("k")),), effort=(sf.formula("F"),)
+    )
     # The levels of events, too: formulas stay the same, and so does what is compiled.
     parameters = tuple(sf.Parameter(name, 1.0) for name in ("k", "F", "e", "f"))
     return Mechanism(sf.System("slide", (sf.RigidBody("b", joint, inertia(1.0)),), parameters, gravity=(0, 0, 0)))
