@@ -29,6 +29,8 @@ from symofros.errors import CompileError, CompilerMissingWarning, DescriptionErr
 from symofros.expr.program import Program
 from symofros.generator.beams import beams_at
 from symofros.generator.codegen.model import model_source
+from symofros.generator.held_beams import held_beams, may_be_held
+from symofros.generator.instants import instants_at
 from symofros.generator.programs import ProgramBuilder, requested
 from symofros.generator.record import GENERATOR as GENERATOR
 from symofros.generator.record import model_record
@@ -169,12 +171,19 @@ class Compilation:
         """The functions that the options name, callable; where they name none, each is generated when first called."""
         chosen = self.requests  # A description that can't be a mechanism is refused here, not at the first call.
         rounded = (text for text in rounded_rotations(self.system) if text not in self.system.notes)
-        for text in (*inconsistencies(self.system), *rounded):
+        for text in (*inconsistencies(self.system), *rounded, *self._held_beams()):
             warnings.warn(text, InconsistentModelWarning, stacklevel=3)
         units = self._units(_choose_toolchain(self.options))
         if self.options.functions is None:
             return self._model(units, units.functions)
         return self._model(units, None, units.functions(chosen))
+
+    def _held_beams(self) -> Iterator[str]:
+        """In words, beams that a loop holds along an axis that does not stretch."""
+        if may_be_held(self.tree):
+            wanted = requested(self.tree, Options(("constraint", "constraint_jacobian")))
+            units = self._units(None)
+            yield from held_beams(self.tree, self._model(units, None, units.functions(wanted)))
 
     def model_by_vectors(self, functions: Collection[str]) -> Model:
         """Some of the requested functions, which C evaluates for several states at a time, in one library."""
@@ -204,6 +213,7 @@ class Compilation:
             parameter_check=RunTimeCheck(self.system, self.record.par_names).problems,
             origin=partial(compile_system, self.system, self.options),
             device_code=units.device_code,
+            instants=instants_at(self.tree),
         )
 
     def library(self, precision: Precision = "double") -> tuple[Path, str]:

@@ -237,6 +237,10 @@ class CompilerMissingWarning(UserWarning):
     """No C compiler was found; a slower way is used."""
 
 
+class StoredStateWarning(UserWarning):
+    """A file that keeps earlier work, such as one of the cache, is damaged or can't be written: work is repeated."""
+
+
 class InconsistentModelWarning(UserWarning):
     """A model leaves out terms of the order of those it keeps, or a matrix is a rotation to a few digits only."""
 

@@ -20,6 +20,7 @@ notice. Each name has its reason:
 | CudaModel, DeviceArray, Driver, KernelUsage, compile_cuda, present | kernels and copies on a graphics processor |
 | states_per_second | the rate of a kernel there |
 | write_atomically | files that a reader never sees half written |
+| stored_json, stored_lines, append_line, keep | what an earlier run left; damage counts as absent, with a warning |
 | Visual, visual_mesh, read_motion, Session, Workspace | what viewer and editor read files by, without windows: fuzz |
 """
 
@@ -33,6 +34,10 @@ import numpy as np
 
 from symofros.base.atomic import write_atomically as write_atomically
 from symofros.base.options import Options
+from symofros.base.stored import append_line as append_line
+from symofros.base.stored import keep as keep
+from symofros.base.stored import stored_json as stored_json
+from symofros.base.stored import stored_lines as stored_lines
 from symofros.compiler import Compilation
 from symofros.description.system import System
 from symofros.description.visual import Visual as Visual

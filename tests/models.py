@@ -58,22 +58,34 @@ SAMPLE = (
 )
 
 
-def _with_motors(joint: sf.Joint) -> sf.System:
-    """A body on a joint with motors, another on it, and an arm that may carry both."""
+def _with_motors(joint: sf.Joint, *others: sf.Rotor) -> sf.System:
+    """A body on a joint with motors, another on it, and an arm that may carry both.
+
+    Args:
+        joint: Joint with motors.
+        others: Rotors that a hinge drives; with them, the arm's joint has an armature.
+    """
     solid = sf.Inertia(1.3, (0.1, -0.2, 0.3), (0.5, 0.6, 0.7, 0.01, -0.02, 0.03))
-    shoulder = sf.Joint("shoulder", "revolute", axis=(0, 1, 0))
-    hinge = sf.Joint("hinge", "revolute", "driven", position=(0.2, 0.1, 0.3), axis=(0, 0, 1))
+    shoulder = sf.Joint("shoulder", "revolute", axis=(0, 1, 0), armature=0.3 if others else 0.0)
+    hinge = sf.Joint("hinge", "revolute", "driven", position=(0.2, 0.1, 0.3), axis=(0, 0, 1), rotors=others)
     bodies = (sf.RigidBody("arm", shoulder, solid), sf.RigidBody("driven", joint, solid))
     return sf.System("motors", (*bodies, sf.RigidBody("last", hinge, solid)))
 
 
-# Motors that ball and free joints drive: M has their spin, and h does not turn it with the axes. The last one spins in
-# a link that moves.
+# Motors that ball and free joints drive: M has their spin, and h does not turn it with the axes. One spins in a link
+# that moves; the last two stand beside motors of other joints, whose spin h does turn.
 MOTORS = {
     "free armature": _with_motors(sf.Joint("base", "free", armature=0.5)),
     "ball rotor": _with_motors(sf.Joint("base", "ball", rotors=(sf.Rotor(0.4, 3.0, (1.0, 0.0, 0.0)),))),
     "rotor in a link": _with_motors(
         sf.Joint("wrist", "ball", "arm", position=(0.3, 0.1, 0.2), rotors=(sf.Rotor(0.4, 3.0, (0.6, 0.0, 0.8), "arm"),))
+    ),
+    "free armature beside others": _with_motors(
+        sf.Joint("base", "free", armature=0.5), sf.Rotor(0.2, 5.0, (0.6, 0.8, 0.0), "driven")
+    ),
+    "ball rotor beside others": _with_motors(
+        sf.Joint("wrist", "ball", "arm", rotors=(sf.Rotor(0.4, 3.0, (0.6, 0.0, 0.8), "arm"),)),
+        sf.Rotor(0.2, 5.0, (0.6, 0.8, 0.0), "last"),
     ),
 }
 

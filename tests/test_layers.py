@@ -52,12 +52,18 @@ ALLOWED = table("""
         mechanics.dynamics runtime
     # The beams as numbers, which judge how far results bend them.
     generator.beams: expr description mechanics.beams mechanics.topology runtime
+    # What the constraints' Jacobian says of beams that can't stretch.
+    generator.held_beams: description mechanics.topology runtime
+    # When formulas of time bend or jump, which steps end at.
+    generator.instants: base expr description mechanics.topology mechanics.kinematics mechanics.dynamics
+        runtime
     generator.programs: base errors expr mechanics.topology mechanics.dynamics generator.passes
         generator.codegen
     generator.units: base errors native expr description mechanics.dynamics generator.passes runtime
         generator.codegen generator.record generator.programs
     compiler: base errors expr description mechanics.topology mechanics.dynamics runtime generator.codegen
-        generator.record generator.beams generator.programs generator.units
+        generator.record generator.beams generator.held_beams generator.instants generator.programs
+        generator.units
     loading: base errors description mechanics.topology
     simulation: base errors native runtime generator.codegen
     # A diagram is one more program over the graph: its blocks are written beside the models' equations.

@@ -29,6 +29,7 @@ _Result = TypeVar("_Result")
 _MAKERS = {
     "System": "sf.load(path) reads one",
     "Model": "sf.compile(system) makes one of a System, sf.compile(sf.load(path)) of a file",
+    "ModelRecord": "sf.compile(system) makes a Model",
     "Diagram": "sf.load_diagram(path) reads one",
     "Options": "sf.Options(functions=..., ...)",
     "SimulationOptions": "sf.SimulationOptions(method=..., ...), or its fields by name",
@@ -276,6 +277,8 @@ def _one_of(choices: Sequence[Any]) -> _Kind:
 def _list_of(item: _Kind | None, container: Any) -> _Kind:
     def is_list(value: Any) -> bool:
         if isinstance(value, str | bytes) or (isinstance(value, Mapping) and container is not Iterable):
+            return False
+        if isinstance(value, np.ndarray) and not value.ndim:  # It has the methods of a list, which refuse.
             return False
         # An array of texts is a list of names, though not by its class.
         return isinstance(value, container) or (

@@ -16,21 +16,29 @@ _OVERLAP_WORK = 100_000
 
 
 def real_array(values: ArrayLike | None, dtype: npt.DTypeLike = np.float64) -> npt.NDArray[Any] | None:
-    """The values as an array of real numbers; None where some are not: texts, dates, complex numbers, None.
+    """The values as an array of real numbers; None where some are not: texts, dates, masked ones, ...
 
-    NumPy would read texts and dates, make NaN of None, and drop imaginary parts.
+    NumPy would read texts and dates, make NaN of None, and drop imaginary parts and masks.
 
     Args:
         values: Values.
         dtype: Type of the array's numbers.
     """
     try:
+        if _is_masked(values):
+            return None
         array = np.asarray(values)
         if array.dtype.kind == "O" and not all(isinstance(value, numbers.Real) for value in array.flat):
             return None
         return np.asarray(array, dtype=dtype) if array.dtype.kind in "fiubO" else None
     except (TypeError, ValueError, OverflowError):  # Rows of unequal length, for instance.
         return None
+
+
+def _is_masked(values: Any) -> bool:
+    """Whether a value, or an entry of a list, is left out by a mask, which NumPy would drop."""
+    parts = values if isinstance(values, list | tuple) else (values,)
+    return any(isinstance(part, np.ma.MaskedArray) and bool(np.ma.getmaskarray(part).any()) for part in parts)
 
 
 def numeric(what: str, values: ArrayLike) -> npt.NDArray[np.float64]:
@@ -50,10 +58,28 @@ def numeric(what: str, values: ArrayLike) -> npt.NDArray[np.float64]:
                 f"{what} is not an array of numbers",
                 f"{type(values).__name__} {values!r:.60}",
                 f"{what} is an array of real numbers",
-                "convert texts, dates and complex numbers before",
+                "convert texts, dates and complex numbers, fill in masked ones before",
             )
         )
     return np.array(array)
+
+
+def vector(what: str, values: ArrayLike, size: int) -> npt.NDArray[np.float64]:
+    """The values as a new array (size) of real numbers.
+
+    Args:
+        what: Name of the values in the message.
+        values: Values.
+        size: Number of them.
+
+    Raises:
+        ShapeError: They are no numbers, or another number of them.
+    """
+    array = numeric(what, values)
+    if array.shape != (size,):
+        rule = f"{what} has shape ({size},): one state, no batch"
+        raise ShapeError(Problem(f"{what} has the wrong shape", str(array.shape), rule, f"give {size} numbers"))
+    return array
 
 
 def share_memory(a: npt.NDArray[Any], b: npt.NDArray[Any]) -> bool:

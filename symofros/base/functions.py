@@ -124,7 +124,7 @@ _ROWS: tuple[ModelFunction, ...] = (
     _row(
         "project",
         "q v u t",
-        "q_on (nq); v_on (nv); residual (); rank (); energies (2)",
+        "q_on (nq); v_on (nv); residual (); rank (); energies (2); gap ()",
         "stepping",
         "nearest state on the constraints",
         exported=True,

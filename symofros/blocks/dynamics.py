@@ -20,7 +20,8 @@ class ForwardDynamics(Block):
         perturbed: Frames that external wrenches act on: each adds an input "wrench_FRAME" (force; moment), at the
             frame's origin in world axes [N, N m]; "wrench_link2_tip" for the frame "link2.tip".
         engaged: Whether an input "engaged" says which constraints hold now: 1 or 0, one a constraint, from a sampled
-            block. A constraint that engages takes the state onto itself as a plastic impact does.
+            block. A constraint that engages takes the speeds onto itself as a plastic impact does; one whose frames are
+            then more than 1e-3 m or rad apart ends the run.
     """
 
     model: str
@@ -77,11 +78,15 @@ class ForwardDynamics(Block):
         outputs = context.call(self.model, "forward_dynamics", gains=context.gains, **given)
         phi = context.call(self.model, "constraint", q=context.q, u=u, t=context.t)["phi"]
         rate = context.call(self.model, "constraint_rate", q=context.q, v=context.v, u=u, t=context.t)["phi_rate"]
+        facing = context.call(self.model, "project", q=context.q, v=context.v, u=u, t=context.t).get("facing")
         G, c = outputs["G"], outputs["c"]
         if self.engaged:
             holds = self._holds(context)
             G, c, phi, rate = G * holds.reshape(-1, 1), c * holds, phi * holds, rate * holds
-        return Terms(M=outputs["M"], r=outputs["r"] + push, G=G, c=c, phi=phi, rate=rate)
+            if facing is not None:
+                first = joined([holds[i] for i in record.facing_conditions])
+                facing = facing * first + (1.0 - first)
+        return Terms(M=outputs["M"], r=outputs["r"] + push, G=G, c=c, phi=phi, rate=rate, facing=facing)
 
     def _mass_matrix(self, context: EvaluationContext) -> Tensor | None:
         """M of a mechanism with elastic beams (nv, nv)."""

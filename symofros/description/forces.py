@@ -82,6 +82,13 @@ class Friction(_Values):
 
     F = -[dynamic + (static - dynamic) exp(-(v / stribeck_velocity)^2)] tanh(v / minimum_velocity) - viscous v
 
+    It holds nothing at rest: a joint under a load P below `static` does not stick but creeps, at about
+    minimum_velocity artanh(P / static). A block that is loaded by half of that creeps by 55 mm in 100 s at the
+    default 1 mm/s, in proportion to `minimum_velocity`. And `static` is not quite reached: as friction falls with
+    speed before tanh is one, its peak, near 2.5 minimum_velocity, is 96.8 % of a static of 1.5 dynamic, 95.7 % of
+    twice and 94.7 % of three times dynamic. A stribeck_velocity of a hundred times minimum_velocity in place of ten
+    gives 99.9 %. A run that ends in creep bears a note.
+
     Attributes:
         dynamic: Coulomb friction at speed [N m or N].
         static: Friction at the onset of motion; equal to dynamic if not given [N m or N].

@@ -125,6 +125,7 @@ class Terms:
         c: (nc), Baumgarte's terms with the gains of `EvaluationContext.gains` included.
         phi: Residual of each condition (nc), zero for those on speeds only.
         rate: G v - b (nc).
+        facing: Cosines of the angles between axes of closures that are to be parallel; 1 for those that do not hold.
     """
 
     a: Tensor | None = None
@@ -134,6 +135,7 @@ class Terms:
     c: Tensor | None = None
     phi: Tensor | None = None
     rate: Tensor | None = None
+    facing: Tensor | None = None
 
     def stated(self) -> dict[str, Tensor]:
         """Those that are not None, by name."""

@@ -20,7 +20,7 @@ from symofros.diagrams.result import DiagramRun
 from symofros.diagrams.run.block_functions import Blocks
 from symofros.diagrams.run.examination.interpreted import notes_on_steps
 from symofros.diagrams.run.examination.joint_limits import joint_limit_notes
-from symofros.diagrams.run.examination.rotations import refuse_no_rotation
+from symofros.diagrams.run.examination.prescribed import judge_prescribed
 from symofros.diagrams.run.interpret import BeamWatch, Course, InterpretedRun, run_interpreted
 from symofros.diagrams.run.loop import RECORD
 from symofros.diagrams.run.python_blocks import begun
@@ -29,6 +29,7 @@ from symofros.diagrams.run.values import parameter_values, record_interval
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.beams import BEAM_LIMIT
 from symofros.runtime.build.toolchain import find_toolchain
+from symofros.simulation.inputs import ROUNDED_ZERO
 from symofros.simulation.progress import bar
 from symofros.simulation.stepping.methods import METHODS
 
@@ -137,7 +138,7 @@ class Simulation:
         watch = BeamWatch(resolved, par, beam_limit)
         with begun(resolved.wired) as called, bar(progress, t0, t_end) as show:
             run = run_interpreted(blocks, called, course, watch, show, observer)
-        run = replace(run, outcome=refuse_no_rotation(run.outcome, resolved, run.t, run.values.__getitem__))
+        run = replace(run, outcome=judge_prescribed(run.outcome, resolved, run.t, run.values.__getitem__))
         notes = joint_limit_notes(resolved, run.t, run.q, run.v)
         if run.outcome.ok:
             notes += notes_on_steps(run, blocks, course, called, METHODS[method])
@@ -165,6 +166,7 @@ def _instants(plan: Schedule, t0: float, t_end: float) -> Iterator[tuple[float, 
     while True:
         for k, which in plan.instants:
             t = float(np.float64(t0) + np.float64(turn * plan.cycle + k) * base_n / base_d)
+            t = 0.0 if abs(t) < ROUNDED_ZERO * base_n / base_d else t
             if t > t_end + slack:
                 return
             due = plan.sets[which]

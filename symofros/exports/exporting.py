@@ -32,6 +32,7 @@ from symofros.exports.folder import Exported as Exported
 from symofros.exports.folder import check_folder
 from symofros.exports.interchange.mjcf import write_mjcf
 from symofros.exports.interchange.urdf import write_urdf
+from symofros.exports.limits import joints_of, limits_note
 from symofros.exports.material import Material, Stepping
 from symofros.exports.wasm import wasm
 from symofros.exports.wasm.wasm import write_wasm
@@ -43,7 +44,7 @@ from symofros.mechanics.topology.tree import build_tree
 from symofros.runtime.beams import BEAM_LIMIT
 from symofros.runtime.calls.kernel import LaneOptions
 from symofros.runtime.model import Model
-from symofros.simulation.analysis.kinematics.starts import ClosedStart, closed_start, stated_names
+from symofros.simulation.analysis.kinematics.starts import ClosedStart, closed_start, singular_start, stated_names
 from symofros.simulation.stepping.methods import METHODS, method_meant
 
 Target = Literal["c", "cuda", "mex", "sfunction", "fmu2", "fmu3", "wasm", "urdf", "mjcf"]
@@ -246,7 +247,7 @@ def _material(
         shown,
         GENERATOR,
         target == "c",
-        (*system.notes, *first.notes),
+        (*system.notes, *limits_note(joints_of(system)), *first.notes, *singular_start(interpreted, first.q)),
     )
 
 

@@ -6,7 +6,9 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
+from symofros.base.arguments import check_argument
 from symofros.base.names import QUOTE, RESERVED, is_rate_symbol, quoted, symbol_of
+from symofros.errors import Problem, UnknownNameError, did_you_mean
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
 from symofros.expr.numerics.extended import Extended, extended_context, extended_rule
@@ -137,11 +139,24 @@ def evaluate(expression: Expression | float, values: Mapping[str, float]) -> flo
         values: The number of each symbol.
 
     Raises:
-        KeyError: A symbol has no value.
+        ArgumentError: It is no formula, or no mapping.
+        UnknownNameError: A symbol has no value.
         ArithmeticError: Division by zero, or outside a function's domain.
     """
     if isinstance(expression, float):
         return expression
+    if not isinstance(expression, Expression) or not isinstance(values, Mapping):
+        check_argument("evaluate: expression", expression, Expression | float)
+        check_argument("evaluate: values", values, Mapping[str, float])
+        return float(expression)
+    missing = expression.symbols() - values.keys()
+    if missing:
+        name = min(missing)
+        rule, remedy = "each symbol of a formula has a value", did_you_mean(name, values)
+        raise UnknownNameError(Problem(f"'{name}' has no value", ", ".join(map(str, values)) or "none", rule, remedy))
+    for name in expression.symbols():
+        if not isinstance(values[name], float):
+            check_argument(f"evaluate: the value of '{name}'", values[name], float)
     if expression.kind == "symbol" and expression.name not in CONSTANTS:
         return values[expression.name]
     graph = Graph()

@@ -9,6 +9,7 @@ from symofros.base.names import TIME
 from symofros.base.options import Options
 from symofros.description.beams.beam import Beam
 from symofros.description.constraints import AXES, Closure
+from symofros.description.forces import Friction
 from symofros.description.system import System
 from symofros.description.values import symbols
 from symofros.expr.expression import evaluate
@@ -82,6 +83,7 @@ def model_record(tree: SpanningTree, options: Options) -> ModelRecord:
         measures=measures_of(tree),
         timed=any(TIME in symbols(stated.value) for stated in stated_values(tree.system)),
         joint_limits=joint_limits(tree),
+        friction_speeds=_friction_speeds(tree),
     )
 
 
@@ -104,6 +106,17 @@ def joint_limits(tree: SpanningTree) -> tuple[JointLimit, ...]:
             places = (inputs[tree.coordinates.v[i]] for i in speeds)
             stated += [JointLimit("u", i, -limits.effort, limits.effort) for i in places]
     return tuple(stated)
+
+
+def _friction_speeds(tree: SpanningTree) -> tuple[int, ...]:
+    """Indices of the speeds that have friction."""
+    return tuple(
+        link.v[0] + element.coordinate
+        for link in tree.links
+        if not link.joint.prescribed and link.tip_of is None
+        for element in link.joint.elements
+        if isinstance(element, Friction)
+    )
 
 
 def _sizes(tree: SpanningTree, beam: Beam) -> tuple[float, ...]:

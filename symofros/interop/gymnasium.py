@@ -3,12 +3,14 @@
     env = sf.interop.gymnasium.MechanismEnv(sf.interop.gymnasium.cart_pole())
     envs = sf.interop.gymnasium.MechanismVectorEnv(sf.interop.gymnasium.cart_pole(), num_envs=1024)
 
-A Task states what is rewarded and where an episode ends; steps are those of `sf.simulate_batch`, inputs held.
+A Task states what is rewarded, where an episode ends and, where they vary, which parameters it has; steps are those of
+`sf.simulate_batch`, inputs held. Environment k of many that are reset with seed s is the single one with seed s + k, as
+in Gymnasium's own vector environments.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -41,6 +43,8 @@ class Task:
         fails: Which states (n) end an episode.
         dt: Time between actions [s].
         substeps: Steps of rk4 in that time.
+        parameters: Run-time parameters (n, npar) of n episodes from a generator (domain randomisation); those of the
+            model if not given.
     """
 
     model: Model
@@ -50,6 +54,7 @@ class Task:
     fails: Callable[[Array, Array], np.ndarray[Any, np.dtype[np.bool_]]]
     dt: float = 0.02
     substeps: int = 4
+    parameters: Callable[[np.random.Generator, int], Array] | None = None
 
     def __post_init__(self) -> None:
         """Check the sizes."""
@@ -61,19 +66,41 @@ class Task:
                 )
             )
 
-    def advance(self, q: Array, v: Array, u: Array) -> tuple[Array, Array, Array, np.ndarray[Any, Any]]:
+    def begin(self, rng: np.random.Generator) -> tuple[Array, Array, Array]:
+        """First state of an episode, q (nq) and v (nv), and its parameters (npar).
+
+        Raises:
+            InteropError: `start` or `parameters` gives arrays of another shape.
+        """
+        q, v = self.start(rng, 1)
+        par = self._own_parameters if self.parameters is None else self.parameters(rng, 1)
+        sizes = {"q of start": (q, self.model.nq), "v of start": (v, self.model.nv)}
+        for name, (values, size) in (sizes | {"parameters": (par, self.model.npar)}).items():
+            if np.shape(values) != (1, size):
+                remedy = "return one row for each of the n episodes that are asked for"
+                raise _misfit(f"task: {name} do not fit", str(np.shape(values)), f"shape (1, {size}) for n = 1", remedy)
+        return np.asarray(q[0]), np.asarray(v[0]), np.asarray(self.model.checked_parameters(par)[0])
+
+    @property
+    def _own_parameters(self) -> Array:
+        return np.array(self.model.parameter_values)[np.newaxis]
+
+    def advance(
+        self, q: Array, v: Array, u: Array, par: Array | None = None
+    ) -> tuple[Array, Array, Array, np.ndarray[Any, Any]]:
         """States after one action.
 
         Args:
             q: Configurations (n, nq).
             v: Speeds (n, nv).
             u: Inputs (n, nu).
+            par: Run-time parameters (n, npar); those of the model if not given.
 
         Returns:
             q, v, rewards (n), and which states (n) end their episodes; motions that end before the step does are among
             them, at their last good state.
         """
-        run = simulate_batch(self.model, q, v, self.dt, u=u, dt=self.dt / self.substeps)
+        run = simulate_batch(self.model, q, v, self.dt, u=u, par=par, dt=self.dt / self.substeps)
         return (
             run.q_last,
             run.v_last,
@@ -98,6 +125,9 @@ class MechanismEnv(_Env):  # type: ignore[misc]
 
     Args:
         task: What is asked of the agent.
+
+    Attributes:
+        par: Run-time parameters (npar) of the episode.
     """
 
     metadata: dict[str, Any] = {"render_modes": []}
@@ -106,17 +136,29 @@ class MechanismEnv(_Env):  # type: ignore[misc]
         self.task = task
         self.action_space, self.observation_space = task.action_space, task.observation_space
         self._q, self._v = np.zeros((1, task.model.nq)), np.zeros((1, task.model.nv))
+        self.par = np.array(task.model.parameter_values)
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Array, dict[str, Any]]:
-        """A first state (nq + nv)."""
+        """A first state (nq + nv).
+
+        Args:
+            seed: Seed of the first state and of the parameters; without one the generator goes on.
+            options: "par": run-time parameters (npar), or numbers by name, of this episode.
+
+        Raises:
+            InteropError: Another option is given.
+        """
         super().reset(seed=seed)
-        self._q, self._v = self.task.start(self.np_random, 1)
+        given = _checked_options(options, ("par",))
+        q, v, par = self.task.begin(self.np_random)
+        self._q, self._v = q[np.newaxis], v[np.newaxis]
+        self.par = par if given is None else np.array(self.task.model.checked_parameters(given))
         return self._observation(), {}
 
     def step(self, action: Any) -> tuple[Array, float, bool, bool, dict[str, Any]]:
         """The state (nq + nv) after an action, its reward, whether the episode has failed."""
         u = _bounded(self.task, np.asarray(action, dtype=np.float64).reshape(1, -1))
-        self._q, self._v, reward, failed = self.task.advance(self._q, self._v, u)
+        self._q, self._v, reward, failed = self.task.advance(self._q, self._v, u, self.par[np.newaxis])
         return self._observation(), float(reward[0]), bool(failed[0]), False, {}
 
     def _observation(self) -> Array:
@@ -130,6 +172,9 @@ class MechanismVectorEnv(_VectorEnv):  # type: ignore[misc]
         task: What is asked of the agent.
         num_envs: Number of mechanisms.
         max_steps: Number of steps after which an episode is cut off.
+
+    Attributes:
+        par: Run-time parameters (num_envs, npar) of the episodes.
     """
 
     def __init__(self, task: Task, num_envs: int, max_steps: int = 500) -> None:
@@ -140,33 +185,101 @@ class MechanismVectorEnv(_VectorEnv):  # type: ignore[misc]
         self.observation_space = batch_space(task.observation_space, num_envs)
         self.metadata = {"render_modes": [], "autoreset_mode": gymnasium.vector.AutoresetMode.NEXT_STEP}
         self._q, self._v = np.zeros((num_envs, task.model.nq)), np.zeros((num_envs, task.model.nv))
+        self.par = np.tile(np.array(task.model.parameter_values), (num_envs, 1))
         self._steps, self._ended = np.zeros(num_envs, dtype=np.int64), np.zeros(num_envs, dtype=bool)
+        self._generators: list[np.random.Generator | None] = [None] * num_envs
 
     def reset(
-        self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
+        self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Array, dict[str, Any]]:
-        """First states (num_envs, nq + nv)."""
-        super().reset(seed=seed)
-        self._q, self._v = self.task.start(self.np_random, self.num_envs)
-        self._steps[:], self._ended[:] = 0, False
+        """States (num_envs, nq + nv), the first ones of those that are reset.
+
+        Args:
+            seed: Seeds of the environments, one each; a number s stands for s, s + 1, and so on. Where there is none
+                the environment's generator goes on.
+            options: "reset_mask": which environments are reset (num_envs, of bool), all by default; "par": run-time
+                parameters (num_envs, npar), or arrays (num_envs) by name, of the episodes that begin.
+
+        Raises:
+            InteropError: Another option is given, or one does not fit; or the number of seeds is another one.
+        """
+        options = dict(options or {})
+        chosen = np.flatnonzero(_checked_mask(options.pop("reset_mask", None), self.num_envs))
+        given, seeds = _checked_options(options, ("par", "reset_mask")), _checked_seeds(seed, self.num_envs)
+        for k in chosen.tolist():
+            if seeds[k] is not None:
+                self._generators[k] = gymnasium.utils.seeding.np_random(seeds[k])[0]
+        self._begin(chosen)
+        if given is not None:
+            shape = (self.num_envs, self.task.model.npar)
+            self.par[chosen] = np.broadcast_to(self.task.model.checked_parameters(given), shape)[chosen]
         return self._observations(), {}
 
     def step(self, actions: Any) -> tuple[Array, Array, Any, Any, dict[str, Any]]:
         """States (num_envs, nq + nv), rewards, failures and cut-offs (num_envs)."""
         u = _bounded(self.task, np.asarray(actions, dtype=np.float64))
-        q, v, rewards, failed = self.task.advance(self._q, self._v, u)
         again = self._ended
+        self._q, self._v, rewards, failed = self.task.advance(self._q, self._v, u, self.par)
+        steps = self._steps + 1
         if again.any():
-            q[again], v[again] = self.task.start(self.np_random, int(again.sum()))
+            self._begin(np.flatnonzero(again))
             rewards, failed = np.where(again, 0.0, rewards), failed & ~again
-        self._q, self._v = q, v
-        self._steps = np.where(again, 0, self._steps + 1)
+        self._steps = np.where(again, 0, steps)
         cut = (self._steps >= self._max_steps) & ~failed
         self._ended = failed | cut
         return self._observations(), rewards, failed, cut, {}
 
+    def _begin(self, chosen: Any) -> None:
+        """New episodes in some environments, given by their numbers."""
+        for k in chosen.tolist():
+            generator = self._generators[k]
+            if generator is None:
+                generator = self._generators[k] = gymnasium.utils.seeding.np_random()[0]
+            self._q[k], self._v[k], self.par[k] = self.task.begin(generator)
+        self._steps[chosen] = 0
+        # A new array: the one before is part of what was returned by the last step.
+        self._ended = self._ended.copy()
+        self._ended[chosen] = False
+
     def _observations(self) -> Array:
         return np.concatenate([self._q, self._v], axis=1)
+
+
+def _checked_options(options: Mapping[str, Any] | None, known: tuple[str, ...]) -> Any:
+    """The parameters among the options of a reset; None where there are none."""
+    for name in options or {}:
+        if name not in known:
+            what, rule = f"reset: no option '{name!s:.40}'", f"options are {' and '.join(known)}"
+            raise _misfit(what, repr(name)[:60], rule, "leave it out; first states are drawn by Task.start")
+    return (options or {}).get("par")
+
+
+def _checked_mask(mask: Any, count: int) -> np.ndarray[Any, np.dtype[np.bool_]]:
+    """Which environments are reset."""
+    if mask is None:
+        return np.ones(count, dtype=bool)
+    array = np.asarray(mask)
+    if array.dtype != bool or array.shape != (count,) or not array.any():
+        found = f"{array.dtype} of shape {array.shape}, {int(np.count_nonzero(array))} of them true"
+        rule = f"one bool for each of {count} environments, one of them true at least"
+        raise _misfit("reset: reset_mask does not fit", found, rule, "leave it out to reset all")
+    return array
+
+
+def _checked_seeds(seed: int | Sequence[int | None] | None, count: int) -> Sequence[int | None]:
+    """One seed for each environment, or None."""
+    if seed is None:
+        return [None] * count
+    if isinstance(seed, int | np.integer):
+        return [int(seed) + k for k in range(count)]
+    seeds = [None if one is None else int(one) for one in seed]
+    if len(seeds) != count:
+        raise _misfit("reset: seeds do not fit", f"{len(seeds)} seeds", f"one for each of {count}", "give as many")
+    return seeds
+
+
+def _misfit(what: str, found: str, rule: str, remedy: str) -> rules.InteropError:
+    return rules.InteropError(Problem(what, found, rule, remedy))
 
 
 def _bounded(task: Task, u: Array) -> Array:

@@ -84,7 +84,7 @@ class Arguments:
                     f"model '{self.record.name}': {group} is not an array of numbers",
                     f"{type(values).__name__} {values!r:.60}",
                     f"{group} is an array of real numbers of shape (..., {size})",
-                    self._hint(group) or "convert texts, dates and complex numbers before",
+                    self._hint(group) or "convert texts, dates and complex numbers, fill in masked ones before",
                 )
             )
         if group == "t":

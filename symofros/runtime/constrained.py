@@ -25,6 +25,9 @@ LEAST_SIZE = 1e-9
 UNLIKE = 1e3
 # What is left of a diagonal entry beyond rounding; SYM_PIVOT in C.
 PIVOT = 1e-13
+# Of states beside the constraints, as in C (motion.c.in): deviation that is rounding; share of a row that it may have
+# left of one that repeats others, over the deviation and at most; steps to the constraints.
+BESIDE, DOUBT, DOUBT_MOST, APPROACH = 1e-10, 1e2, 0.1, 8
 # Reach [m] below which residuals count in proportion; SYM_SMALL_REACH in C.
 SMALL_REACH = 1e-3
 # Residual over reach that the rounding of coordinates and lengths leaves: some tens of units in the last place.
@@ -79,12 +82,14 @@ class Eliminated(NamedTuple):
         U: (rank, nv).
         rows: Rows of the pivots.
         columns: Columns of the pivots.
+        weakest: Least share of its own size that was left of a pivot's row, of 1.
     """
 
     L: Array
     U: Array
     rows: npt.NDArray[np.intp]
     columns: npt.NDArray[np.intp]
+    weakest: float = 1.0
 
     @property
     def rank(self) -> int:
@@ -92,13 +97,29 @@ class Eliminated(NamedTuple):
         return len(self.rows)
 
 
-def eliminate(G: Array, measures: Measures, inertia: Array) -> Eliminated:
+class Ranking(NamedTuple):
+    """How the rank of G is decided.
+
+    Attributes:
+        least: Share of its own size below which what is left of a row repeats others.
+        most: Rows that count at most; all, if not given.
+    """
+
+    least: float = RANK
+    most: int | None = None
+
+
+ANEW = Ranking()
+
+
+def eliminate(G: Array, measures: Measures, inertia: Array, ranking: Ranking = ANEW) -> Eliminated:
     """Eliminate G by complete pivoting; a pivot costs what the rows take that it changes, few of many loops.
 
     Args:
         G: (nc, nv).
         measures: Measures of its rows and columns.
         inertia: Diagonal of M (nv), or ones.
+        ranking: Which rows count.
     """
     left, size = G.copy(), natural_sizes(G, measures)
     (nc, nv), massive = G.shape, inertia > 0.0
@@ -114,7 +135,9 @@ def eliminate(G: Array, measures: Measures, inertia: Array) -> Eliminated:
         weak = (magnitude > WEAK_LEAST * size[judged]) & massive
         merit = np.where(significant, 1.0, np.where(weak, WEAK_WORTH, 0.0)) * magnitude * worth / own_or_one[judged]
         best, line = merit.argmax(axis=1), np.arange(len(judged))
-        is_open[judged] &= significant.any(axis=1)
+        is_open[judged] &= (
+            significant.any(axis=1) if ranking.least <= RANK else (magnitude > ranking.least * size[judged]).any(axis=1)
+        )
         merits[judged] = np.where(is_open[judged], merit[line, best], -1.0)
         columns_of[judged], strong[judged] = best, significant[line, best]
 
@@ -125,8 +148,10 @@ def eliminate(G: Array, measures: Measures, inertia: Array) -> Eliminated:
     columns: list[int] = []
     lower: list[Array] = []
     upper: list[Array] = []
-    while len(rows) < nv and is_open.any():
+    most, weakest = min(nv, nc if ranking.most is None else ranking.most), 1.0
+    while len(rows) < most and is_open.any():
         p = int(merits.argmax())
+        weakest = min(weakest, float((np.abs(left[p]) / np.maximum(size[p], np.finfo(float).tiny)).max()))
         d = int(columns_of[p])
         is_open[p], merits[p] = False, -1.0
         changed = np.flatnonzero(is_open & (left[:, d] != 0.0))
@@ -144,12 +169,12 @@ def eliminate(G: Array, measures: Measures, inertia: Array) -> Eliminated:
         factor[p] = 1.0
         lower.append(factor)
     L, U = np.array(lower).reshape(len(rows), nc).T.copy(), np.array(upper).reshape(len(rows), nv)
-    return Eliminated(L, U, np.array(rows, dtype=np.intp), np.array(columns, dtype=np.intp))
+    return Eliminated(L, U, np.array(rows, dtype=np.intp), np.array(columns, dtype=np.intp), weakest)
 
 
 def free_motions(eliminated: Eliminated, nv: int) -> tuple[Array, npt.NDArray[np.intp]]:
     """Basis Z (nv, free) of the motions with G Z = 0, and the free speeds, its independent ones (eq. 15)."""
-    _, U, _, columns = eliminated
+    U, columns = eliminated.U, eliminated.columns
     free = np.setdiff1d(np.arange(nv), columns)
     Z = np.zeros((nv, len(free)))
     Z[free, np.arange(len(free))] = 1.0
@@ -178,7 +203,9 @@ def pseudo_inverse(G: Array, measures: Measures) -> Array:
     return np.asarray((Vt[:rank].T / s[:rank]) @ U[:, :rank].T * scale, dtype=np.float64)
 
 
-def solve(M: Array, r: Array, G: Array, c: Array, measures: Measures) -> tuple[Array, Array, int]:
+def solve(
+    M: Array, r: Array, G: Array, c: Array, measures: Measures, ranking: Ranking = ANEW
+) -> tuple[Array, Array, int]:
     """The solution for one state, of one or several right-hand sides, by a = a_p + Z w.
 
     Args:
@@ -187,6 +214,7 @@ def solve(M: Array, r: Array, G: Array, c: Array, measures: Measures) -> tuple[A
         G: (nc, nv).
         c: (nc,) or (nc, k).
         measures: Measures of the rows and columns of G.
+        ranking: Which rows of G count.
 
     Returns:
         a and lam, shaped like r and c, and the rank of G; NaN where no acceleration exists, with rank -1 if M and G are
@@ -196,7 +224,7 @@ def solve(M: Array, r: Array, G: Array, c: Array, measures: Measures) -> tuple[A
     unsolved = np.full_like(r, np.nan), np.full_like(c, np.nan)
     if not (np.all(np.isfinite(M)) and np.all(np.isfinite(G))):
         return *unsolved, 0
-    L, U, rows, columns = eliminated = eliminate(G, measures, np.diag(M))
+    L, U, rows, columns, _ = eliminated = eliminate(G, measures, np.diag(M), ranking)
     Z, _ = free_motions(eliminated, nv)
     B = _factor(Z.T @ M @ Z, np.diag(np.abs(Z.T) @ np.abs(M) @ np.abs(Z)))
     if B is None:
@@ -238,6 +266,60 @@ def constrained(M: Array, r: Array, G: Array, c: Array, measures: Measures) -> l
     return [np.array(a), np.array(lam), np.array(rank, dtype=np.float64)]
 
 
+def deviation(G: Array, measures: Measures, phi: Array) -> float:
+    """How far a state is from phi = 0, in rad or shares of what turns (docs/theory/constraints.md, (11a))."""
+    speeds, unit = np.array(measures.speed, dtype=np.intp), np.array(measures.unit, dtype=np.intp)
+    reach = np.where(speeds == TRANSLATION, 0.0, natural_sizes(G, measures)).max(axis=1, initial=0.0)
+    scaled = (unit != ANGLE) & (reach > LEAST_SIZE)
+    return float((np.abs(phi) / np.where(scaled, reach, 1.0)).max(initial=0.0))
+
+
+def motion(
+    terms: Callable[[Array], list[Array]], move: Callable[[Array, Array], Array], q: Array, measures: Measures
+) -> tuple[Array, Array, int]:
+    """Motion of one state that may be beside the constraints, by the rank that G has on them (sym_motion in C).
+
+    Args:
+        terms: q -> M, r, G, c, binds, phi.
+        move: (q, step) -> q.
+        q: (nq,).
+        measures: Measures of the rows and columns of G.
+
+    Returns:
+        a, lam, and the rank of G.
+    """
+    M, r, G, c, _, phi = terms(q)
+    solution = solve(M, r, G, c, measures)
+    off = deviation(G, measures, phi)
+    if not (solution[2] > 0 and off > BESIDE):
+        return solution
+    if not eliminate(G, measures, np.diag(M)).weakest < min(DOUBT * off, DOUBT_MOST):
+        return solution
+    rank = _rank_on_constraints(terms, move, q, measures)
+    return solution if rank is None or rank >= solution[2] else solve(M, r, G, c, measures, Ranking(most=rank))
+
+
+def _rank_on_constraints(
+    terms: Callable[[Array], list[Array]], move: Callable[[Array, Array], Array], q: Array, measures: Measures
+) -> int | None:
+    """The rank of G on the constraints beside q, where Newton's steps lead there."""
+    before, doubt = np.inf, DOUBT
+    for _ in range(APPROACH):
+        M, _, G, _, binds, phi = terms(q)
+        off = deviation(G, measures, phi)
+        if off <= BESIDE:
+            return eliminate(G, measures, np.diag(M)).rank
+        if not off < DOUBT_MOST:
+            return None
+        doubt, before = (0.1 * doubt if off > 0.1 * before else doubt), off
+        ranking = Ranking(min(max(doubt * off, RANK), DOUBT_MOST))
+        step, _, rank = solve(M, np.zeros(len(M)), G * binds[:, None], -phi, measures, ranking)
+        if rank < 0:
+            return None
+        q = move(q, step)
+    return None
+
+
 def differentiate(M: Array, G: Array, slopes: list[Array], measures: Measures) -> list[Array]:
     """The derivatives of a and lam, from those of the residual by the same arguments: -K^-1 dR/dx of each.
 
@@ -257,23 +339,24 @@ def project(
     q: Array,
     v: Array,
     measures: Measures,
-) -> tuple[Array, Array, float, int, Array]:
+) -> tuple[Array, Array, float, int, Array, float]:
     """The nearest state on the constraints, in the metric of M.
 
     Args:
-        terms: (q, v) -> M, G, binds, phi, G v - b.
+        terms: (q, v) -> M, G, binds, phi, G v - b, and cosines of the angles between axes that are to be parallel.
         move: (q, step) -> q.
         q: (nq,).
         v: (nv,).
         measures: Measures of the rows and columns of G.
 
     Returns:
-        q, v, |phi| by weight, the rank of G, and the energies (2): what the change of speeds takes, and the kinetic
-        energy before it.
+        q, v, |phi| by weight (1 more half a turn off), the rank of G, and the energies (2): what the change of speeds
+        takes, and the kinetic
+        energy before it; |phi| by weight of q.
     """
-    M, G, binds, phi, rate = terms(q, v)
+    M, G, binds, phi, rate, *facing = terms(q, v)
     weights, closer = residual_weights(G, measures), True
-    left = float(np.linalg.norm(weights * phi))
+    left = gap = float(np.linalg.norm(weights * phi))
     for _ in range(NEWTON):
         if not (closer and left > CLOSED):
             break
@@ -284,11 +367,13 @@ def project(
             tried = move(q, step * 0.5**half)
             at_trial = terms(tried, v)
             if np.linalg.norm(weights * at_trial[3]) < left:
-                q, (M, G, binds, phi, rate), closer = tried, at_trial, True
+                q, (M, G, binds, phi, rate, *facing), closer = tried, at_trial, True
                 left = float(np.linalg.norm(weights * phi))
                 break
+    if any(np.any(cosines < 0.0) for cosines in facing):
+        left += 1.0  # Half a turn away phi is zero, too.
     if not len(G):
-        return q, v, left, 0, np.zeros(2)
+        return q, v, left, 0, np.zeros(2), gap
     change, mu, rank = solve(M, np.zeros_like(v), G, -rate, measures)
     energies = 0.5 * np.array([-rate @ mu, v @ M @ v + STILL**2 * np.trace(M)])
-    return q, v + change, left, rank, energies
+    return q, v + change, left, rank, energies, gap

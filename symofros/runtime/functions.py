@@ -9,6 +9,7 @@ from typing import Any, Self
 
 import numpy as np
 
+from symofros.base.arguments import check_argument
 from symofros.base.functions import FRAME_FUNCTIONS, FUNCTIONS, INPUTS, MODEL_FUNCTIONS, generated_with
 from symofros.errors import ParameterError, Problem, ShapeError, SymofrosError
 from symofros.runtime.arguments import Arguments
@@ -58,6 +59,8 @@ class Functions(Arguments):
         parameter_check: Problems of sets of run-time parameters (n, npar); None where nothing is known of them.
         origin: Makes the model again, for copies in other processes; None where it has no description.
         device_code: Generates kernels of a function, for graphics processors; None where there is no description.
+        instants: Gives the instants at which formulas of time bend, jump or change fast, the model's own and those of
+            laws, from laws, parameters (npar), start and end of a run; None where no formulas are known.
     """
 
     def __init__(
@@ -73,7 +76,9 @@ class Functions(Arguments):
         parameter_check: ParameterCheck | None = None,
         origin: Callable[[], Functions] | None = None,
         device_code: Callable[[Key, Precision], DeviceCode] | None = None,
+        instants: Callable[[Sequence[Any], Array, float, float], Array] | None = None,
     ) -> None:
+        check_argument("Model: record", record, ModelRecord)
         super().__init__(record, np.array(record.par_default if par is None else par, dtype=np.float64))
         self._threads = threads
         self._precision = precision
@@ -83,6 +88,7 @@ class Functions(Arguments):
         self._origin = origin
         self._device_code = device_code
         self._beams_at = beams
+        self._instants_of = instants
         self._kernels: dict[Key, Kernel] = {key: kernel for unit in units for key, kernel in unit.kernels.items()}
         self._prepared: dict[Key, Array] = {}
         self._single_calls = SingleCalls()
@@ -139,6 +145,7 @@ class Functions(Arguments):
             self._parameter_check,
             self._origin,
             self._device_code,
+            self._instants_of,
         )
         other._kernels = self._kernels  # Shared, so that what either compiles serves both.
         return other
@@ -148,6 +155,20 @@ class Functions(Arguments):
         if self._beams_at is None:
             return ()
         return self._beams_at(self._par if par is None else self._array("par", par, self.npar))
+
+    def formula_instants(self, formulas: Sequence[Any], par: Array, t0: float, t_end: float) -> Array:
+        """Instants at which formulas of time bend, jump or change fast, the model's own and those of laws.
+
+        Args:
+            formulas: Laws, as `formulas` takes them.
+            par: Run-time parameters (npar).
+            t0: Start of a run [s].
+            t_end: End of it [s].
+
+        Returns:
+            Instants in order, between start and end (n) [s].
+        """
+        return np.zeros(0) if self._instants_of is None else self._instants_of(formulas, par, t0, t_end)
 
     def kernel(self, name: str) -> Kernel:
         """A function of the whole model as the thing that is called, made on demand; for loops of one's own.

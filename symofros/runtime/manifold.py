@@ -93,6 +93,16 @@ def difference(segments: Sequence[Segment], q0: Array, q1: Array) -> Array:
     return dq
 
 
+def chart_coordinates(segments: Sequence[Segment], q0: Array, q1: Array) -> Array:
+    """The theta (..., nv) with retract(q0, theta) = q1, of smallest rotations."""
+    theta = difference(segments, q0, q1)
+    for segment in segments:
+        if segment.kind == "pose":
+            linear, angular = _pose_speeds(segment)
+            theta[..., linear] = screw_displacement(theta[..., angular], theta[..., linear])
+    return theta
+
+
 def chart_rate(segments: Sequence[Segment], theta: Array, v: Array) -> Array:
     """The rates of theta (..., nv) in a chart, where the speeds are v (..., nv)."""
     if _is_flat(segments):

@@ -56,6 +56,12 @@ class ClosureRecord(NamedTuple):
     second: str
     rotations: tuple[int, ...]
 
+    @property
+    def parallel(self) -> tuple[int, ...]:
+        """Axes that stay parallel in the closed posture: all three, or the one that may turn; of one blocked, none."""
+        free = tuple(k for k in range(3) if k not in self.rotations)
+        return {3: self.rotations, 2: free}.get(len(self.rotations), ())
+
 
 class JointLimit(NamedTuple):
     """Limit of a joint, which no force keeps.
@@ -102,6 +108,7 @@ class ModelRecord:
         measures: Measures of the rows and columns of the constraint Jacobian.
         timed: Whether a formula depends on the time t.
         joint_limits: Limits of joints that state them: of coordinates, speeds and inputs.
+        friction_speeds: Indices of the speeds that have friction.
     """
 
     name: str
@@ -132,6 +139,13 @@ class ModelRecord:
     measures: Measures = Measures()
     timed: bool = False
     joint_limits: tuple[JointLimit, ...] = ()
+    friction_speeds: tuple[int, ...] = ()
+
+    @property
+    def facing_conditions(self) -> tuple[int, ...]:
+        """A condition of the closure of each pair of axes that is to be parallel, in the order of "facing" in C."""
+        owners = [name.rsplit(".", 1)[0] for name in self.constraint_names]
+        return tuple(owners.index(closure.name) for closure in self.closures for _ in closure.parallel)
 
     @property
     def vectors(self) -> dict[str, tuple[str, ...]]:

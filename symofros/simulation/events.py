@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
@@ -35,6 +35,27 @@ class Event(metaclass=CheckedCalls):
     def sign(self) -> int:
         """1 rising, -1 falling, 0 both."""
         return _SIGNS[self.direction]
+
+
+def event_notes(run: Any, events: Sequence[Event]) -> tuple[str, ...]:
+    """What a run leaves undecided about its events: the first of each kind.
+
+    Args:
+        run: The sym_run.
+        events: Its events.
+    """
+    notes = []
+    if run.touched_event >= 0:
+        notes.append(
+            f"event '{events[run.touched_event].name}' turns at t = {run.touched_t:.6g} s so near to zero that the"
+            " steps cannot tell whether it gets there"
+        )
+    if run.unresolved_event >= 0:
+        notes.append(
+            f"event '{events[run.unresolved_event].name}' changes too often in the step from t = {run.unresolved_t:.6g}"
+            " s on to be followed: zeros may be missing; take shorter steps"
+        )
+    return tuple(notes)
 
 
 def named_events(given: Mapping[str, Any] | None) -> tuple[Event, ...]:

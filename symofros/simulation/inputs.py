@@ -18,6 +18,10 @@ from symofros.runtime.calls.kernel import Array
 from symofros.runtime.functions import Rate
 from symofros.runtime.model import Model
 
+# Times below this share of a period, or of the shortest time between samples, are zero but for rounding; as in
+# native/stepping/system.c.
+ROUNDED_ZERO = 1e-12
+
 
 @dataclass(frozen=True)
 class Signal(metaclass=CheckedCalls):
@@ -37,6 +41,8 @@ class Signal(metaclass=CheckedCalls):
         """Samples must be numbers in the order of time."""
         check_fields(self)
         t, values = numeric("signal: t", self.t), numeric("signal: values", self.values)
+        if t.ndim == 1 and len(t) > 1:  # Instants are the same within a share of themselves, which zero has none of.
+            t = np.where(np.abs(t) < ROUNDED_ZERO * np.abs(np.diff(t)).min(), 0.0, t)
         object.__setattr__(self, "t", np.ascontiguousarray(t))
         object.__setattr__(self, "values", np.ascontiguousarray(values))
         times = values.shape[0 if values.ndim == 1 else -2] if values.ndim else 0
@@ -52,8 +58,14 @@ class Signal(metaclass=CheckedCalls):
             )
 
 
-# Instants that differ by less, relative to themselves, are one; as in native/stepping/system.c.
-_SAME_INSTANT = 2e-15
+# Instants that differ by less, relative to themselves, are one, and zero is one with less than that [s]; as in
+# native/stepping/system.c.
+_SAME_INSTANT, _SAME_AS_ZERO = 2e-15, 1e-300
+
+
+def _rounding(t: float) -> float:
+    """What an instant may differ from t by and be the same [s]."""
+    return _SAME_INSTANT * abs(t) + _SAME_AS_ZERO
 
 
 def held_sample(times: Array, t: float, end: float = math.inf) -> int:
@@ -64,9 +76,9 @@ def held_sample(times: Array, t: float, end: float = math.inf) -> int:
         t: Time [s].
         end: Where the step under way ends [s]: samples that begin there, or later, do not count yet.
     """
-    bound = t + _SAME_INSTANT * abs(t)
+    bound = t + _rounding(t)
     if math.isfinite(end):
-        bound = min(bound, end - _SAME_INSTANT * abs(end))
+        bound = min(bound, end - _rounding(end))
     return max(0, int(np.searchsorted(times, bound, side="right")) - 1)
 
 
@@ -96,10 +108,43 @@ class InputPlan:
         held = [t[1:][np.diff(values) != 0] for _, t, values, linear in self.signals if not linear]
         return np.unique(np.concatenate([np.zeros(0), *held]))
 
-    def next_jump(self, t: float, end: float) -> float:
-        """The first of them after t and before `end`, else `end` [s]."""
-        k = int(np.searchsorted(self.jumps, t + _SAME_INSTANT * abs(t), side="right"))
-        return min(end, float(self.jumps[k])) if k < len(self.jumps) else end
+    def next_corner(self, t: float, end: float) -> float:
+        """Where lines of signals are not straight any more for a step from t, which may last until `end` [s].
+
+        For solvers that evaluate at the ends of steps only: between two of them no input leaves the chord by more than
+        a share of what it changes by (docs/theory/simulation.md, section 1, rule 4).
+        """
+        for _, times, values, linear in self.signals:
+            if linear:
+                end = _straight_until(times, values, t, end)
+        return end
+
+
+# Departure from a chord, as a share of what the signal changes by along it, up to which its lines count as straight.
+_STRAIGHT = 0.1
+
+
+def _straight_until(times: Array, values: Array, t: float, end: float) -> float:
+    """The last corner of a signal's lines (n) up to which they stay near their chord from t on, or `end` [s]."""
+    first = int(np.searchsorted(times, t + _rounding(t), side="right"))
+    after = int(np.searchsorted(times, end, side="left"))
+    start, last = float(np.interp(t, times, values)), float(np.interp(end, times, values))
+
+    def is_straight(k: int) -> bool:
+        """Whether corners before number k, or before `end`, lie near the chord that leads there."""
+        until, value = (end, last) if k == after else (float(times[k]), float(values[k]))
+        between = values[first:k]
+        chord = start + (value - start) * (times[first:k] - t) / (until - t)
+        lowest, highest = min(start, value, between.min()), max(start, value, between.max())
+        return bool(np.abs(between - chord).max() <= _STRAIGHT * (highest - lowest))
+
+    if first >= after or is_straight(after):
+        return end
+    straight, bent = first, after  # The line up to the first corner is straight.
+    while bent - straight > 1:
+        middle = (straight + bent) // 2
+        straight, bent = (middle, bent) if is_straight(middle) else (straight, middle)
+    return float(times[straight])
 
 
 def plan_inputs(model: Model, u: Inputs | None) -> InputPlan:

@@ -10,9 +10,11 @@ import numpy.typing as npt
 
 from symofros.base.arrays import numeric, real_array
 from symofros.errors import AssemblyError, Problem, ShapeError, SymofrosError, UnknownNameError
-from symofros.native import native_number
+from symofros.runtime import unit_quaternions
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
+from symofros.runtime.unit_quaternions import UNIT_TOLERANCE as UNIT_TOLERANCE
+from symofros.simulation.analysis.kinematics.facing import refuse_opposite
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.stepping.methods import METHODS, Method, method_meant
@@ -22,12 +24,10 @@ from symofros.simulation.stepping.stepper import Stepper
 # takes is of second order in that error: a run that loses a hundredth has steps that are wrong by tenths. Closed
 # reference models lose less than 1e-4, those at steps that are far too long more than 1e-2.
 LOSS_LIMIT = 0.01
+# Intervals of a run in which adaptive steps are looked into where next to nothing happens.
+LOOKS = 64
 # Gains of 20/s hold a loop through its singular posture (tests of the N-four-bar), and lose accuracy on long steps.
 _GAIN, _GAIN_STEP = 20.0, 0.5
-
-
-# Deviation from unit length up to which a quaternion counts as a rotation written in few digits.
-UNIT_TOLERANCE = native_number("stepping/system.c", "SYM_QUATERNION_TOLERANCE")
 
 
 def vector(model: Model, name: str, values: ArrayLike, size: int) -> Array:
@@ -148,6 +148,9 @@ class Settings:
         run.grid, run.n_grid = stepper.memory.doubles(self.grid), len(self.grid)
         run.realtime_scale = 1.0 / self.realtime if self.realtime else 0.0
         stepper.set_gains(self.gains)
+        if self.adaptive:
+            stepper.set_stops(self.t0, self.t_end)
+            run.look_every = (self.t_end - self.t0) / LOOKS
 
 
 def _check(options: SimulationOptions, t_end: float) -> None:
@@ -163,6 +166,7 @@ def _check(options: SimulationOptions, t_end: float) -> None:
     for name, value in (("rtol", o.rtol), ("atol", o.atol), ("max_step", o.max_step), ("beam_limit", o.beam_limit)):
         if not value > 0:
             raise _wrong(f"{name} is not positive", value, f"{name} > 0", "leave it out")
+    check_pace(o.realtime)
     if o.every < 1:
         raise _wrong("nothing would be recorded", f"every = {o.every}", "every >= 1", "use output= for times")
     if o.gains is not None and o.stabilisation != "baumgarte":
@@ -171,6 +175,17 @@ def _check(options: SimulationOptions, t_end: float) -> None:
     if o.adaptive and not METHODS[o.method].adaptive:
         what, remedy = f"'{o.method}' does not adapt its steps", "use dopri5, dop853 or rodas4"
         raise _wrong(what, "adaptive=True", "it estimates no error", remedy)
+
+
+def check_pace(realtime: float | bool) -> None:
+    """Refuse what is no pace against the clock.
+
+    Raises:
+        SymofrosError: It is negative or infinite.
+    """
+    if not 0.0 <= float(realtime) < math.inf:
+        rule = "realtime is True, or seconds of motion a second, 0 for as fast as possible"
+        raise _wrong("no pace against the clock", f"realtime = {realtime}", rule, "realtime=True")
 
 
 def check_fit(model: Model, settings: Settings, inputs: InputPlan) -> None:
@@ -210,6 +225,8 @@ def check_fit(model: Model, settings: Settings, inputs: InputPlan) -> None:
         )
 
 
+# Of `output`: its times alone are 1.6 GB.
+MOST_RECORDS = 200_000_000
 # Beyond, a first state is a mistake and not what drift leaves.
 CLOSED = 1e-6
 
@@ -224,22 +241,7 @@ def refuse_lengths(model: Model, q: Array) -> None:
     Raises:
         ShapeError: With the coordinates of the one that is off most.
     """
-    for segment in model.record.segments:
-        if segment.kind == "linear":
-            continue
-        first = segment.q + segment.translations
-        lengths = np.linalg.norm(q[..., first : first + 4], axis=-1)
-        finite = lengths[np.isfinite(lengths)]  # Others are reported as not finite.
-        length = float(finite.flat[np.argmax(np.abs(finite - 1.0))]) if finite.size else 1.0
-        if not abs(length - 1.0) <= UNIT_TOLERANCE:
-            raise ShapeError(
-                Problem(
-                    f"model '{model.record.name}': q0 holds a quaternion that is no rotation",
-                    f"length {length:.6g} of {', '.join(model.names.q[first : first + 4])}",
-                    f"quaternions are of unit length, to {UNIT_TOLERANCE:g}",
-                    "divide it by its length; model.neutral() has those of no rotation",
-                )
-            )
+    unit_quaternions.refuse_lengths(model.record, q)
 
 
 def check_start(model: Model, settings: Settings, q: Array, v: Array, u: Array, par: Array) -> None:
@@ -248,7 +250,10 @@ def check_start(model: Model, settings: Settings, q: Array, v: Array, u: Array, 
     Raises:
         AssemblyError: With the constraint that is off most.
     """
-    if not model.nc or settings.stabilisation == "baumgarte":
+    if not model.nc:
+        return
+    refuse_opposite(model, q, u, par)
+    if settings.stabilisation == "baumgarte":
         return
     for what, values in (
         ("phi", model.constraint(q, u=u, par=par, t=settings.t0)),
@@ -275,13 +280,17 @@ def _grid(output: float | npt.ArrayLike | None, t0: float, t_end: float) -> Arra
         interval = float(times)
         if not (math.isfinite(interval) and interval > 0):
             raise _wrong("the output interval is not positive", interval, "output > 0", "give an interval in seconds")
-        count = math.floor((t_end - t0) / interval * (1 + 1e-12))
+        count = (t_end - t0) / interval * (1 + 1e-12)
+        if not count < MOST_RECORDS:
+            rule, remedy = f"a run records at most {MOST_RECORDS} states", "a longer interval, or a shorter run"
+            raise _wrong("too many states to record", f"{count:.3g} of them", rule, remedy)
+        count = math.floor(count)
         return np.asarray(t0 + interval * np.arange(count + 1), dtype=np.float64)
-    if times.ndim != 1 or not np.all(np.diff(times) > 0) or times.size == 0 or times[0] < t0 or times[-1] > t_end:
+    if times.ndim != 1 or times.size == 0 or not (np.all(np.diff(times) > 0) and t0 <= times[0] <= times[-1] <= t_end):
         raise ShapeError(
             Problem(
                 "simulation: output times do not fit",
-                f"shape {times.shape}",
+                f"shape {times.shape}" if np.isfinite(times).all() else "times that are not finite",
                 f"times (n) increase from {t0} to {t_end} at most",
                 "sort them",
             )

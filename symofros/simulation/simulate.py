@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,9 +13,10 @@ import numpy as np
 from symofros.base.arguments import checked
 from symofros.runtime.calls.binding import native_library
 from symofros.runtime.model import ArrayLike, Model
-from symofros.simulation.events import named_events
+from symofros.simulation.events import event_notes, named_events
 from symofros.simulation.inputs import Inputs, plan_inputs
 from symofros.simulation.options import SimulationOptions
+from symofros.simulation.prescribed_motions import contradiction, recorded_notes, refuse_contradiction
 from symofros.simulation.progress import bar
 from symofros.simulation.results.examination.diagnosis import diagnose
 from symofros.simulation.results.trajectory import Found, Statistics, Trajectory
@@ -64,7 +66,7 @@ def simulate(
         ShapeError: An array does not fit, or a quaternion is no rotation.
         UnknownNameError: The name of an option, an input or in a formula is unknown.
         AssemblyError: The first state does not meet the constraints.
-        SymofrosError: The options contradict each other.
+        SymofrosError: The options contradict each other, or inputs that prescribe a motion.
     """
     settings = Settings.of(model, (options or SimulationOptions()).changed(changes), t_end)
     model = model.with_precision("double")
@@ -80,6 +82,8 @@ def simulate(
     prepare_run(model, settings)
     stepper = Stepper(model, settings.method, inputs, looked_for, values)
     settings.apply(stepper)
+    span = settings.t0, settings.t_end
+    refuse_contradiction(contradiction(model, inputs, lambda at: stepper.inputs_at(at, q, v), span))
     check_start(model, settings, q, v, stepper.inputs_at(settings.t0, q, v), np.asarray(values))
     began, worked = time.perf_counter(), time.thread_time()
     with bar(progress, settings.t0, t_end) as show:
@@ -88,6 +92,9 @@ def simulate(
     seconds, worked = time.perf_counter() - began, time.thread_time() - worked
     states = recorded.arrays()
     outcome, bendings = diagnose(stepper, recorded, states, settings, (q, v))
+    outcome = replace(outcome, notes=(*outcome.notes, *event_notes(stepper.run, looked_for)))
+    if inputs.callback is not None:
+        outcome = replace(outcome, notes=(*outcome.notes, *recorded_notes(model.record, states[0], states[3])))
     met = tuple(Found(looked_for[which].name, when, q_at, v_at) for which, when, q_at, v_at in recorded.events)
     statistics = _statistics(stepper, seconds, worked)
     t, q_all, v_all, u_all = states

@@ -16,9 +16,16 @@ from symofros.errors import Problem, ShapeError, SymofrosError
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.calls.layout import flat
 from symofros.runtime.model import ArrayLike, Model
+from symofros.simulation.analysis.kinematics.facing import facings
 from symofros.simulation.batch_inputs import Shape, sort_inputs
 from symofros.simulation.inputs import Inputs
 from symofros.simulation.options import SimulationOptions
+from symofros.simulation.prescribed_motions import (
+    Contradiction,
+    contradiction,
+    rated_inputs,
+    refuse_contradiction,
+)
 from symofros.simulation.results.examination.batch_examination import BatchExamination
 from symofros.simulation.results.trajectories import Trajectories
 from symofros.simulation.settings import CLOSED, Settings, refuse_lengths
@@ -99,6 +106,7 @@ def simulate_batch(
     began = time.perf_counter(), time.process_time()
     steppers = [BatchStepper(model, settings, initial, results, i, count) for i in range(count if n else 0)]
     if steppers:
+        refuse_contradiction(_contradiction(model, settings, initial, steppers[0]))
         results.status[_off(model, settings, initial, steppers[0])] = Status.PROJECTION_FAILED
         infinite = ~np.isfinite(initial.inputs.constant).all(axis=1)
         results.status[np.broadcast_to(infinite, n)] = Status.CALLBACK_FAILED
@@ -175,17 +183,36 @@ def _shaped(rows: Array, shape: Shape) -> Array:
     return rows.reshape(shape + rows.shape[1:])
 
 
+def _contradiction(
+    model: Model, settings: Settings, initial: InitialStates, stepper: BatchStepper
+) -> Contradiction | None:
+    """The first prescribed motion whose inputs contradict each other: of the first trajectory, and of constants."""
+    q, v, plan = initial.q[0], initial.v[0], initial.inputs.plan
+    sampled = {index for index, *_ in plan.signals} | plan.formulas.keys()
+    for rated in rated_inputs(model.record):
+        if sampled.isdisjoint((*rated.position, *rated.rate)):  # What stays has no rate.
+            stated = initial.inputs.constant[:, list(rated.rate)]
+            if np.nanmax(np.abs(stated), initial=0.0) > 0.0:
+                names, worst = model.names.u, float(stated.flat[int(np.nanargmax(np.abs(stated)))])
+                return Contradiction(names[rated.position[0]], names[rated.rate[0]], settings.t0, worst, 0.0)
+    return contradiction(model, plan, lambda at: stepper.single.inputs_at(at, q, v), (settings.t0, settings.t_end))
+
+
 def _off(model: Model, settings: Settings, initial: InitialStates, stepper: BatchStepper) -> npt.NDArray[np.bool_]:
     """Which trajectories start off the constraints (n); as `check_start`, which refuses a single one."""
     n = initial.n
     off = np.zeros(n, dtype=np.bool_)
-    if not model.nc or settings.stabilisation == "baumgarte":
+    if not model.nc:
         return off
     u = initial.inputs.constant
     if model.record.driven:  # The motions of joints are inputs, by formulas too.
         q, v = np.broadcast_to(initial.q, (n, model.nq)), np.broadcast_to(initial.v, (n, model.nv))
         u = np.array([stepper.single.inputs_at(initial.t, q[i], v[i]) for i in range(n)])
     exact = model.with_precision("double")  # As states are.
+    for facing in facings(exact, initial.q, u, initial.par):
+        off |= facing.cosines < 0.0
+    if settings.stabilisation == "baumgarte":
+        return off
     phi = exact.constraint(initial.q, u=u, par=initial.par, t=initial.t)
     rate = exact.constraint_rate(initial.q, initial.v, u=u, par=initial.par, t=initial.t)
     for values in (phi, rate):

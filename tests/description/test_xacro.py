@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -281,3 +282,36 @@ def test_trusted_files_expand_as_by_xacro_itself(tmp_path: Path) -> None:
     ours = xacro_files.expanded(file, {"n": "4"}, Packages(Path(file))).decode()
     assert 'name="right_y_T"' in ours and "<never" not in ours
     assert ours.split() == theirs.split()
+
+
+ROBOT = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">{}<link name="base"/></robot>'
+
+
+def test_an_argument_that_no_file_has_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "robot.xacro"
+    path.write_text(ROBOT.format('<xacro:arg name="lenght" default="1"/>'))
+    with pytest.raises(sf.DescriptionError, match=r"no <xacro:arg> is called 'length'; there are: lenght"):
+        sf.load(path, arguments={"length": "2"})
+
+
+def test_pipes_are_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    path = tmp_path / "robot.xacro"
+    for inside in ('<xacro:include filename="pipe"/>', '<xacro:property name="a" value="${load_yaml(\'pipe\')}"/>${a}'):
+        path.write_text(ROBOT.format(inside))
+        with pytest.raises(sf.DescriptionError, match="is no regular file"):
+            sf.load(path)
+
+
+@pytest.mark.parametrize("text", ["a: &a [*a]", "a0: &a0 [1, 2]\n{}"])
+def test_aliases_stand_for_a_bounded_number_of_entries(tmp_path: Path, text: str) -> None:
+    more = "".join(f"a{k + 1}: &a{k + 1} [{', '.join([f'*a{k}'] * 10)}]\n" for k in range(9))
+    (tmp_path / "data.yaml").write_text(text.format(more))
+    path = tmp_path / "robot.xacro"
+    path.write_text(ROBOT.format("""<xacro:property name="a" value="${load_yaml('data.yaml')}"/>${a}"""))
+    with pytest.raises(sf.DescriptionError, match="aliases written out"):
+        sf.load(path)
+    (tmp_path / "data.yaml").write_text("a: &a [1, 2]\nb: [*a, *a]\n")
+    path.write_text(ROBOT.format("""<xacro:property name="a" value="${load_yaml('data.yaml')}"/>"""))
+    with pytest.raises(sf.DescriptionError, match="moves|no joint|nothing|joint"):
+        sf.compile(sf.load(path))

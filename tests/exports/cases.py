@@ -46,7 +46,7 @@ PLANAR = sf.System(
     ),
     gravity=(0, -9.81, 0),
 )
-STRICT = ("-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Werror")
+STRICT = ("-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Wsign-conversion", "-Werror")
 # What an export compiles by itself has `compiling.FLAGS`; what the optimiser warns of shows under valgrind (--tools).
 BUILD = (*STRICT, "-O0")
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -71,3 +72,97 @@ def test_an_ended_episode_begins_anew_at_the_next_step(task: Any) -> None:
 def test_bounds_of_another_size_are_refused(task: Any) -> None:
     with pytest.raises(sf.SymofrosError, match="one an input"):
         sf.interop.gymnasium.Task(task.model, np.ones(3), task.start, task.reward, task.fails)
+
+
+def with_masses(task: Any) -> Any:
+    """The task on a model whose pole's mass is drawn anew in each episode."""
+    system = sf.System(
+        "pole",
+        (
+            sf.RigidBody("cart", sf.Joint("x", "prismatic", axis=(1, 0, 0), effort=("F",)), sf.Inertia(1.0)),
+            sf.RigidBody("pole", sf.Joint("p", "continuous", "cart", axis=(0, 1, 0)), sf.Inertia("m", (0, 0, 0.5))),
+        ),
+        parameters=(sf.Parameter("m", 0.1),),
+        inputs=(sf.Input("F"),),
+    )
+    model = sf.compile(system)
+    return sf.interop.gymnasium.Task(
+        model, np.ones(1), task.start, task.reward, task.fails, parameters=lambda rng, n: rng.uniform(0.1, 2.0, (n, 1))
+    )
+
+
+@pytest.mark.parametrize("seed", [7, [5, None, 3], [1, 2, 3]])
+@pytest.mark.parametrize("masses", [False, True])
+def test_many_are_single_ones_side_by_side(task: Any, seed: Any, masses: bool) -> None:
+    """Gymnasium's own vector environment of single ones gives the same, seed by seed, episode after episode."""
+    from gymnasium.vector import SyncVectorEnv
+    from gymnasium.wrappers import TimeLimit
+
+    made = with_masses(task) if masses else task
+    ours = sf.interop.gymnasium.MechanismVectorEnv(made, 3, max_steps=5)
+    theirs = SyncVectorEnv([lambda: TimeLimit(sf.interop.gymnasium.MechanismEnv(made), 5)] * 3)
+    for envs in (ours, theirs):
+        envs.reset(seed=[11, 12, 13])
+    np.testing.assert_array_equal(ours.reset(seed=seed)[0], theirs.reset(seed=seed)[0])
+    rng = np.random.default_rng(0)
+    for _ in range(14):
+        action = rng.uniform(-1.0, 1.0, (3, 1)).astype(np.float32)
+        for mine, other in zip(ours.step(action)[:4], theirs.step(action)[:4], strict=True):
+            np.testing.assert_array_equal(mine, other)
+    if masses:
+        np.testing.assert_array_equal(ours.par, [env.unwrapped.par for env in theirs.envs])
+        assert len(np.unique(ours.par)) == 3
+
+
+def test_parameters_of_an_episode_move_it(task: Any) -> None:
+    """By the option or by drawing, for one and for many: the states are those of simulate_batch with them."""
+    made = with_masses(task)
+    envs, env = sf.interop.gymnasium.MechanismVectorEnv(made, 2), sf.interop.gymnasium.MechanismEnv(made)
+    first = envs.reset(seed=1, options={"par": {"m": [5.0, 0.1]}})[0]
+    np.testing.assert_array_equal(envs.par, [[5.0], [0.1]])
+    state = envs.step(np.ones((2, 1)))[0]
+    q, v = first[:, :2], first[:, 2:]
+    run = sf.simulate_batch(made.model, q, v, made.dt, u=np.ones((2, 1)), par=[[5.0], [0.1]], dt=made.dt / 4)
+    np.testing.assert_array_equal(state, np.concatenate([run.q_last, run.v_last], axis=1))
+    env.reset(seed=1, options={"par": {"m": 5.0}})
+    np.testing.assert_array_equal(env.step(np.ones(1))[0], state[0])
+    env.reset(seed=1)
+    assert env.par != 5.0
+
+
+def test_a_mask_resets_some(task: Any) -> None:
+    envs = sf.interop.gymnasium.MechanismVectorEnv(task, 3, max_steps=4)
+    first, _ = envs.reset(seed=3)
+    moved = envs.step(np.ones((3, 1)))[0]
+    state, _ = envs.reset(seed=[3, 4, 5], options={"reset_mask": np.array([False, True, False])})
+    np.testing.assert_array_equal(state[[0, 2]], moved[[0, 2]])
+    np.testing.assert_array_equal(state[1], first[1])
+    cuts = [envs.step(np.zeros((3, 1)))[3].tolist() for _ in range(4)]
+    assert cuts[2] == [True, False, True] and cuts[3] == [False, True, False]
+
+
+@pytest.mark.parametrize(
+    ("asked", "says"),
+    [
+        ({"options": {"state": [0.0] * 4}}, "no option 'state'"),
+        ({"options": {"reset_mask": [1, 0]}}, "reset_mask does not fit"),
+        ({"options": {"reset_mask": np.zeros(2, dtype=bool)}}, "reset_mask does not fit"),
+        ({"seed": [1, 2, 3]}, "seeds do not fit"),
+    ],
+)
+def test_resets_that_mean_nothing_are_refused(task: Any, asked: dict[str, Any], says: str) -> None:
+    with pytest.raises(sf.SymofrosError, match=says):
+        sf.interop.gymnasium.MechanismVectorEnv(task, 2).reset(**asked)
+
+
+def test_a_single_one_has_no_mask(task: Any) -> None:
+    for name in ("reset_mask", "state"):
+        with pytest.raises(sf.SymofrosError, match=f"no option '{name}'"):
+            sf.interop.gymnasium.MechanismEnv(task).reset(options={name: None})
+
+
+@pytest.mark.parametrize("what", ["start", "parameters"])
+def test_draws_of_another_shape_are_refused(task: Any, what: str) -> None:
+    changed = {what: (lambda rng, n: (np.zeros(2), np.zeros(2))) if what == "start" else (lambda rng, n: np.zeros(3))}
+    with pytest.raises(sf.SymofrosError, match="do not fit"):
+        sf.interop.gymnasium.MechanismEnv(replace(with_masses(task), **changed)).reset(seed=0)

@@ -45,6 +45,16 @@ static void move(const double *const *in, double *const *out, double *work) {
     for (i = 0; i < NQ; ++i) out[0][i] = in[1][i] + in[2][i];
 }
 
+/* q0 = 0 and q0 (1 + q1) = 0: rank 1 on the constraints, 2 beside them. in: pre, q, v, u, gains, t. */
+static void beside_terms(const double *const *in, double *const *out, double *work) {
+    static const double inertia[N * N] = {2, 0, 0, 0, 1, 0, 0, 0, 1.5};
+    const double *q = in[1], *v = in[2], g[M_ * N] = {1, 0, 0, 1 + q[1], q[0], 0};
+    (void)work;
+    copy(out[0], inertia, N * N), copy(out[1], FORCE, N), copy(out[2], g, M_ * N);
+    out[3][0] = 0.0, out[3][1] = -2.0 * v[0] * v[1];
+    out[4][0] = out[4][1] = 1.0, out[5][0] = q[0], out[5][1] = q[0] * (1 + q[1]);
+}
+
 /* dR/dx of one x with N columns: minus the identity above zeros. */
 static void slopes(const double *const *in, double *const *out, double *work) {
     int i;
@@ -57,18 +67,27 @@ int main(void) {
     const double q0[NQ] = {0.3, 0.1, -0.2}, v0[N] = {1, 2, 3}, none[1] = {0};
     const double *const in[5] = {none, q0, v0, none, none};
     const int columns[1] = {N};
+    const double beside[NQ] = {1e-5, 0.1, -0.2}, still[N] = {0, 2, 3};
+    const double *const at[6] = {none, beside, still, none, none, none};
+    static const sym_form form = {N * N, M_ * N, sym_constrained, sym_row_sizes, sym_clear_row};
+    double rank, gap, *results[3];
+    sym_ranking ranking = sym_rank_anew(M_);
     double energies[2], A[N * N], B[M_ * N], r[N], c[M_], q[NQ], v[N], residual, derivative[(N + M_) * N], *out[1], *work;
     copy(A, MASS, N * N), copy(B, G, M_ * N), copy(r, FORCE, N), copy(c, RIGHT, M_);
     work = scratch(SYM_CONSTRAINED_WORK(N, M_));
-    printf("rank %d\n", sym_constrained(N, M_, &MEASURES, A, r, B, c, work));
+    printf("rank %d\n", sym_constrained(N, M_, &MEASURES, A, r, B, c, &ranking, work));
     print("a", N, r), print("lam", M_, c), free(work);
-    copy(B, G, M_ * N), copy(r, FORCE, N), copy(c, RIGHT, M_);
+    copy(A, MASS, N * N), copy(B, G, M_ * N), copy(r, FORCE, N), copy(c, RIGHT, M_);
     work = scratch(SYM_NULL_SPACE_WORK(N, M_));
-    printf("null_rank %d\n", sym_null_space(N, M_, &MEASURES, MASS, r, B, c, work));
+    printf("null_rank %d\n", sym_null_space(N, M_, &MEASURES, A, r, B, c, &ranking, work));
     print("null_a", N, r), print("null_lam", M_, c), free(work);
     work = scratch(SYM_PROJECT_WORK(NQ, N, M_) + SYM_CONSTRAINED_WORK(N, M_));
-    printf("project_rank %d\n", sym_project(NQ, N, M_, &MEASURES, projection_terms, move, in, q, v, &residual, energies, work));
-    print("q", NQ, q), print("v", N, v), print("residual", 1, &residual), free(work);
+    printf("project_rank %d\n", sym_project(NQ, N, M_, 0, &MEASURES, projection_terms, move, in, q, v, &residual, energies, &gap, work));
+    print("q", NQ, q), print("v", N, v), print("residual", 1, &residual), print("gap", 1, &gap), free(work);
+    work = scratch(N * N + M_ * N + SYM_MOTION_WORK(NQ, N, M_) + SYM_CONSTRAINED_WORK(N, M_));
+    results[0] = r, results[1] = c, results[2] = &rank;
+    sym_motion(NQ, N, M_, &MEASURES, &form, beside_terms, move, at, results, work);
+    print("motion_a", N, r), print("motion_lam", M_, c), print("motion_rank", 1, &rank), free(work);
     work = scratch(SYM_DIFFERENTIATE_WORK(N, M_) + SYM_KKT_SOLVE_WORK(N, M_, N));
     out[0] = derivative;
     sym_differentiate(N, M_, &MEASURES, 1, columns, dynamics_terms, slopes, in, out, work);

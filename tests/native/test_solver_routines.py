@@ -66,3 +66,14 @@ def test_derivatives_of_accelerations_and_multipliers_solve_the_kkt_system(resul
     slopes = np.vstack([-np.eye(3), np.zeros((2, 3))])  # dR/dx, as in the driver.
     derivative = results["derivative"].reshape(5, 3)
     np.testing.assert_allclose(derivative, np.linalg.solve(KKT, -slopes), rtol=0, atol=1e-13)
+
+
+def test_beside_the_constraints_the_rank_is_that_on_them(results: dict[str, np.ndarray]) -> None:
+    """q0 = 0 and q0 (1 + q1) = 0 repeat each other where they hold, and leave q1 free there."""
+    assert results["motion_rank"] == 1
+    np.testing.assert_allclose(results["motion_a"], [0.0, -2.0, 2.0], rtol=0, atol=1e-3)
+
+
+def test_projection_says_how_far_off_its_state_was(results: dict[str, np.ndarray]) -> None:
+    q0 = np.array([0.3, 0.1, -0.2])
+    np.testing.assert_allclose(results["gap"], np.linalg.norm(G @ q0 - RIGHT), rtol=1e-14)

@@ -15,7 +15,7 @@ from symofros.expr.numerics.evaluate import evaluate_edges
 from symofros.expr.program import Program
 from symofros.expr.quaternion import Quaternion
 from symofros.expr.vector import Vec3
-from symofros.runtime.manifold import chart_rate, difference, integrate, retract
+from symofros.runtime.manifold import chart_coordinates, chart_rate, difference, integrate, retract
 from symofros.runtime.record import Segment
 
 SEGMENTS = (
@@ -129,6 +129,17 @@ def test_the_rate_of_a_chart_makes_the_rates_of_the_coordinates(seed: int, first
     by_chart, by_speeds = values(g, moved, **inputs), values(g, graph.rates(q), **inputs)
     # The rate of a rotation vector is at most some pi times the speed up to a half turn.
     np.testing.assert_allclose(by_chart, by_speeds, atol=10 * ROUNDING, rtol=0)
+
+
+@given(SEEDS, ANGLES, ANGLES)
+@settings(max_examples=80)
+def test_the_coordinates_of_a_chart_undo_its_retraction(seed: int, first: float, second: float) -> None:
+    rng = np.random.default_rng(seed)
+    q0, theta = configuration(rng), step(rng, (first, second))
+    q1 = retract(SEGMENTS, q0, theta)
+    again = retract(SEGMENTS, q0, chart_coordinates(SEGMENTS, q0, q1))
+    again[2:6], again[9:13] = (x * np.sign(x @ y) for x, y in ((again[2:6], q1[2:6]), (again[9:13], q1[9:13])))
+    np.testing.assert_allclose(again, q1, atol=10 * ROUNDING, rtol=0)
 
 
 @given(SEEDS, ANGLES, ANGLES)

@@ -128,3 +128,25 @@ def test_a_short_pulse_is_not_stepped_over(cart: sf.Model, method: str) -> None:
         state = piece.q[-1], piece.v[-1]
     assert np.abs(state[1]).max() > 1.0
     np.testing.assert_allclose(run.v[-1], state[1], rtol=0, atol=1e-3)
+
+
+@pytest.mark.parametrize("method", ["rk4", "dopri5", "cvode"])
+@pytest.mark.parametrize("before", [1, 2, 3])
+@pytest.mark.parametrize("instants", INSTANTS)
+def test_a_sample_that_begins_at_zero_counts_from_there(
+    cart: sf.Model, instants: str, before: int, method: str
+) -> None:
+    """Zero, which rounding is no share of, as exactly as other instants, and where sums miss it by rounding."""
+    if method == "cvode":
+        pytest.importorskip("sksundae")
+    options: dict[str, object] = {"method": method} | ({"dt": PERIOD} if method == "rk4" else {"rtol": 1e-9})
+    start = -PERIOD * before
+    t = {"products": PERIOD * np.arange(-before, len(VALUES) - before), "sums": start + INSTANTS["sums"]}.get(
+        instants, np.linspace(start, start + END, len(VALUES))
+    )
+    signal = {cart.names.u[0]: sf.Signal(t, VALUES, "hold")}
+    run = sf.simulate(cart, t0=start, t_end=start + END, u=signal, **options)
+    pieces = in_pieces(cart, **options)
+    np.testing.assert_allclose(run.v[-1], pieces.v[-1], rtol=0, atol=1e-12 if method == "rk4" else 2e-5)
+    if method == "rk4":
+        np.testing.assert_array_equal(run[cart.names.u[0]], VALUES)

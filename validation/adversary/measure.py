@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
-from symofros.tools import write_atomically
+from symofros.tools import stored_json, write_atomically
 
 from ..reporting.command import Run, known
 from ..reporting.numbers import counted
@@ -82,6 +82,12 @@ def _attack(
         log.save()
 
 
+def _logged(data: Any) -> tuple[dict[str, Tally], list[Find]]:
+    """What log.json holds, of attacks that there are."""
+    tallies = {name: Tally(**one) for name, one in data["attacks"].items() if name in ATTACKS}
+    return tallies, [Find(**one) for one in data["finds"] if one["attack"] in ATTACKS]
+
+
 class Log:
     """The log of a search in its folder: counts and finds, as log.json. What is mended since is looked at anew.
 
@@ -94,12 +100,9 @@ class Log:
         self.tallies: dict[str, Tally] = {}
         self.finds: list[Find] = []
         folder.mkdir(parents=True, exist_ok=True)
-        path = folder / "log.json"
-        if path.is_file():
-            data: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-            self.tallies = {name: Tally(**one) for name, one in data["attacks"].items() if name in ATTACKS}
-            finds = [Find(**one) for one in data["finds"] if one["attack"] in ATTACKS]
-            self.finds = [find for find in finds if not ATTACKS[find.attack].verdict(find.scene).sound]
+        tallies, finds = stored_json(folder / "log.json", _logged) or ({}, [])
+        self.tallies = tallies
+        self.finds = [find for find in finds if not ATTACKS[find.attack].verdict(find.scene).sound]
 
     def save(self) -> None:
         """Write it."""

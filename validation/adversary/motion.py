@@ -20,6 +20,8 @@ UNNOTED_ENERGY = 2.0 * UNNOTED
 # Share by which the start is moved, and growth of that up to which steps are to follow the motion: of a chaotic one the
 # time until then is judged.
 MOVED, SENSITIVE = 1e-6, 1e3
+# Relative error of a run that deserves no note: a warning on right numbers is as wrong as none on wrong ones.
+RIGHT = 1e-9
 # Records, about, among which that time is found.
 _RECORDS = 32
 # Adaptive steps of the finer run; with them the errors are far below those that are asked about.
@@ -29,6 +31,24 @@ FINE: dict[str, Any] = {"method": "dop853", "rtol": 1e-10, "max_steps": 40_000}
 def claimed_good(run: sf.Trajectory) -> bool:
     """Whether the run says that all is well: an outcome that is ok, without a note."""
     return run.outcome.ok and not run.outcome.notes
+
+
+def of_claim(outcome: Any, quantity: str, error: float, bound: float) -> Verdict:
+    """An outcome against the error of what it stands for, relative: silent ones are to be right, right ones silent.
+
+    Args:
+        outcome: Outcome of the run.
+        quantity: Name of what was compared.
+        error: Relative error.
+        bound: Largest one without a note.
+    """
+    if not outcome.ok:
+        return refused(outcome)
+    if not outcome.notes:
+        return compared(quantity, error, bound, f"'{outcome}', without a note")
+    if error <= RIGHT:
+        return compared("a note on what is right", 1.0, 0.0, f"'{outcome}'; {quantity}: {error:.3g}")
+    return refused(outcome)
 
 
 def against_finer(

@@ -22,7 +22,7 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as parquet
 
-from symofros.tools import write_atomically
+from symofros.tools import append_line, stored_lines, write_atomically
 
 from .errors import StoreError
 
@@ -142,13 +142,11 @@ class Store:
 
     def note(self, **line: Any) -> None:
         """Add to the journal; a short line at the end of a file is written whole or not at all."""
-        with (self.folder / "journal.jsonl").open("ab", buffering=0) as stream:
-            stream.write(json.dumps(line | {"time": round(time.time(), 3)}).encode() + b"\n")
+        append_line(self.folder / "journal.jsonl", line | {"time": round(time.time(), 3)})
 
     def journal(self) -> list[dict[str, Any]]:
-        """Every line so far."""
-        path = self.folder / "journal.jsonl"
-        return [json.loads(line) for line in path.read_text().splitlines()] if path.is_file() else []
+        """Every sound line so far; it counts efforts and decides nothing."""
+        return stored_lines(self.folder / "journal.jsonl", _noted)
 
     def merge(self, count: int, provenance: dict[str, Any]) -> Path:
         """Write the one file of all rows; the parts go afterwards.
@@ -181,6 +179,12 @@ class Store:
             return ""
         except (*_UNREADABLE, KeyError, ValueError, TypeError) as error:
             return _in_a_line(error)
+
+
+def _noted(line: Any) -> dict[str, Any]:
+    """A line of the journal, each value of its type."""
+    begun = {"batch": int(line["batch"])} if line["event"] == "begun" else {}
+    return {**line, **begun, "event": str(line["event"]), "time": float(line["time"])}
 
 
 def manifest_of(folder: Path) -> dict[str, Any]:

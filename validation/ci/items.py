@@ -22,6 +22,7 @@ from ..cross_check.speed import Speed, measure
 from ..cross_check.tables import failure
 from ..engines.workers import registry
 from ..inputs.cases import Case, named
+from ..inputs.sampling import DEFAULT_STATES
 from ..reporting.numbers import digits
 from ..worker_pool import run_case
 from .cells import CellFailure, CellItem
@@ -44,7 +45,7 @@ class Tier:
     models: tuple[str, ...] = ()
 
 
-TIERS = {"smoke": Tier(20, SMOKE), "standard": Tier(200), "full": Tier(1000)}
+TIERS = {"smoke": Tier(20, SMOKE), "standard": Tier(200), "full": Tier(DEFAULT_STATES)}
 
 
 @cache

@@ -29,6 +29,8 @@ GROWTH = 8.0
 EXEMPT = {"energy_drift": 1.0, "retained_order": 1.0}
 # Slowdown that is always allowed, and how many times the noise of both runs.
 LEAST_SLOWDOWN, NOISES = 0.10, 2.0
+# Slowdown that a comparison is to find; where the noise hides it, the comparison is not decided.
+LOOKED_FOR = 0.25
 # What must be the same for speeds to be compared.
 _MACHINE = ("processor", "system")
 
@@ -131,6 +133,7 @@ class Baseline:
             notes.append(f"speeds: made on another machine ({', '.join(filter(None, self.machine))}); not compared")
         elif self.record.speeds:
             regressions += self._slower(record.speeds, same)
+            notes += self._undecided(record.speeds, same)
         return regressions, notes
 
     def _less_accurate(self, record: Record, models: set[str]) -> Iterator[Regression]:
@@ -160,6 +163,20 @@ class Baseline:
                 growth, allowed = fresh.ratio / row.ratio - 1.0, slowest(row, fresh) / row.ratio - 1.0
                 text = f"{growth:.0%} slower than {row.ratio:.3g} yardsticks; allowed {allowed:.0%}"
                 yield Regression(row.model, "", row.function, "slower", text)
+
+    def _undecided(self, speeds: tuple[Speed, ...], models: set[str]) -> Iterator[str]:
+        """The speeds whose noise hides what is looked for."""
+        now = {(row.model, row.function): row for row in speeds}
+        for row in self.record.speeds:
+            fresh = now.get((row.model, row.function))
+            if row.model not in models or fresh is None or fresh.ratio > slowest(row, fresh):
+                continue
+            hidden = slowest(row, fresh) / row.ratio - 1.0
+            if hidden > LOOKED_FOR:
+                yield (
+                    f"{row.model}, {row.function}: not decided, a slowdown of {hidden:.0%} would not show in the noise"
+                    f" ({row.noise:.1%} then, {fresh.noise:.1%} now); run the check on a machine at rest"
+                )
 
 
 def slowest(stored: Speed, fresh: Speed) -> float:

@@ -20,7 +20,7 @@ import typer
 from rich.console import Console
 
 from symofros.harness import worker_command
-from symofros.tools import write_atomically
+from symofros.tools import stored_json, write_atomically
 
 from ..program import PROGRAM
 from ..reporting import markdown, provenance
@@ -75,11 +75,8 @@ class Job:
 
     def state(self) -> dict[str, Made]:
         """What was made; nothing where no state is kept, or none that can be read."""
-        try:
-            stored = json.loads((self.work / _STATE).read_text(encoding="utf-8"))
-            return {name: Made(**row) for name, row in stored.items()}
-        except (OSError, ValueError, TypeError, AttributeError):
-            return {}
+        made = stored_json(self.work / _STATE, lambda rows: {name: Made(**row) for name, row in rows.items()})
+        return made or {}
 
     def keep(self, name: str, made: Made) -> None:
         """Add a report to the state."""

@@ -12,7 +12,8 @@ from ..mechanics.assembly import Assembly, Mover
 from ..mechanics.geometry import Array
 from ..mechanics.joint_kinds import SIMPLE_JOINTS
 
-DEFAULT_STATES = 1000
+# No multiple of 2, 4 or 8: whatever the width of vectors, some states are left behind the last whole one.
+DEFAULT_STATES = 1003
 
 # Angles all around, whatever the limits: engines must agree beyond a robot's stops too.
 ANGLE = np.pi

@@ -35,6 +35,10 @@ def measure(
     work: Annotated[
         Path, typer.Option(help="Folder of the copy of the tree, of answers; an old one is gone on with.")
     ] = Path("mutants"),
+    since: Annotated[
+        str,
+        typer.Option(help="A revision, or a day: faults only in code that is new since then, moved code not counted."),
+    ] = "",
     cache: Annotated[
         Path | None, typer.Option(help="Folder of models that are compiled already, to begin with.")
     ] = None,
@@ -42,7 +46,10 @@ def measure(
     """Plant single faults in the source, Python and C: `check` or the tests must see each that changes a result."""
     if find_spec("pytest") is None:
         raise typer.BadParameter("the tests are one of the judges: pip install 'symofros[test]'")
-    study = Study.begun(_ROOT, work.absolute(), faults, seed, cache, lambda module: run.advance(module))
+    try:
+        study = Study.begun(_ROOT, work.absolute(), faults, seed, cache, lambda module: run.advance(module), since)
+    except LookupError as error:
+        raise typer.BadParameter(str(error), param_hint="--since") from None
     unfinished: list[str] = []
     run.expect(len(study.faults), "planting faults")
     try:
@@ -52,7 +59,7 @@ def measure(
     finally:
         study.overlay.close()
     origin = {"copied": study.overlay.revision, "digest": study.overlay.digest}
-    return as_data(study) | {"seed": seed, **origin, "unfinished": unfinished}
+    return as_data(study) | {"seed": seed, "since": since, **origin, "unfinished": unfinished}
 
 
 def as_data(study: Study) -> dict[str, Any]:

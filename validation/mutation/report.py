@@ -82,6 +82,8 @@ def compose(data: Data) -> Report:
     refused = counted(len(rows) - planted, "fault")
     copied = str(data.get("copied", ""))
     origin = f" They stand in a copy of revision `{copied}`." if copied else ""
+    since = str(data.get("since", ""))
+    origin += f" They are in code whose tokens are new since {since}." if since else ""
     text = _TEXT.format(scores["check_asked"], refused, scores["tests"], scores["tests_asked"]) + origin
     return Report(
         "Faults planted in the source",

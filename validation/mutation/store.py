@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import hashlib
-import json
 from pathlib import Path
 from typing import Any
+
+from symofros.tools import append_line, stored_lines
 
 
 class Store:
@@ -20,11 +21,7 @@ class Store:
         self.path, self.root = path, root
         self._digests: dict[str, str] = {}
         self._answers: dict[tuple[str, str], dict[str, Any]] = {}
-        for line in path.read_text(encoding="utf-8").splitlines() if path.exists() else ():
-            try:
-                row = json.loads(line)
-            except ValueError:
-                continue  # The line that a killed process had begun.
+        for row in stored_lines(path, _row):
             if not row["module"] or row["digest"] == self.digest(row["module"]):
                 self._answers[row["id"], row["stage"]] = row["answer"]
 
@@ -45,5 +42,10 @@ class Store:
         self._answers[id, stage] = answer
         digest = self.digest(module) if module else ""
         row = {"id": id, "stage": stage, "module": module, "digest": digest, "answer": answer}
-        with self.path.open("a", encoding="utf-8") as stream:
-            stream.write(json.dumps(row) + "\n")
+        append_line(self.path, row)
+
+
+def _row(line: Any) -> dict[str, Any]:
+    """A line of the store, each value of its type."""
+    texts = {name: str(line[name]) for name in ("id", "stage", "module", "digest")}
+    return {**texts, "answer": dict(line["answer"])}

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from .fault import SourceFault
+from .fresh import Fresh
 from .overlay import Overlay
 from .sampling import drawn
 from .store import Store
@@ -31,6 +32,8 @@ LONGER_BUDGET = 120.0  # The same where nobody has seen a fault, and tests were 
 # Ends of a process that are its own doing. `check` reports them as a failed row, a run of the tests fails. Not among
 # them: SIGKILL and SIGBUS, which lack of memory or disk space brings, too; SIGBUS twice is no accident.
 _CRASHES = {-signal.SIGSEGV, -signal.SIGABRT, -signal.SIGFPE, -signal.SIGILL}
+# What the outputs that are compared do not come from: a fault there that no test sees counts as survived until argued.
+BEYOND = ("symofros/exports/", "symofros/interop/", "symofros/runtime/cuda/")
 _ARGUED = Path(__file__).with_name("argued.json")
 _CHECK_JUDGE, _TESTS_JUDGE = "validation.mutation.check_judge", "validation.mutation.tests_judge"
 _OUTPUTS = "validation.mutation.outputs"
@@ -62,10 +65,26 @@ class Study:
     argued: dict[str, str] = field(default_factory=lambda: json.loads(_ARGUED.read_text(encoding="utf-8")))
 
     @classmethod
-    def begun(cls, root: Path, folder: Path, count: int, seed: int, cache: Path | None, report: Report) -> Study:
-        """A new study, or that which is in the folder: the copy of the tree there is the one that it goes on with."""
+    def begun(
+        cls, root: Path, folder: Path, count: int, seed: int, cache: Path | None, report: Report, since: str = ""
+    ) -> Study:
+        """A new study, or that which is in the folder: the copy of the tree there is the one that it goes on with.
+
+        Args:
+            root: Folder of the repository.
+            folder: Folder of the study.
+            count: Number of faults.
+            seed: Seed of the draw.
+            cache: Folder of models that are compiled already.
+            report: Told what was done.
+            since: Revision or day: only code that is new since then; all if empty.
+
+        Raises:
+            LookupError: There is no such revision.
+        """
+        fresh = Fresh(root, since) if since else None
         overlay = Overlay(root, folder, cache)
-        faults = tuple(islice(drawn(overlay.tree, seed), count))
+        faults = tuple(islice(drawn(overlay.tree, seed, fresh), count))
         return cls(faults, Store(folder / "answers.jsonl", overlay.tree), overlay, folder, report)
 
     def run(self, seconds: float) -> None:
@@ -188,7 +207,7 @@ class Study:
             return ARGUED
         if check is None or tests is None or outputs is None or not (tests["answer"] or {}).get("whole"):
             return OPEN  # Tests that ran out of time have said nothing.
-        return UNCHANGED if unchanged(outputs) else SURVIVED
+        return UNCHANGED if unchanged(outputs) and not fault.module.startswith(BEYOND) else SURVIVED
 
 
 def stillborn(fault: SourceFault, answer: Answer | None) -> bool:

@@ -17,7 +17,7 @@ from typing import Any
 # Folders of tests, and files, of what the study plants faults in.
 FOLDERS = (
     "description expr mechanics generator identities runtime simulation native diagrams blocks reference exports"
-    " test_derived_once.py test_end_to_end.py"
+    " interop base test_derived_once.py test_end_to_end.py"
 ).split()
 LIMIT = 300  # Of one test [s]: one that takes longer with a fault than this hangs.
 HUNG = 77
@@ -147,7 +147,7 @@ def chosen(root: Path, module: str) -> list[str]:
     folder_of_tests = Path("tests", *path.parts[1:-1])
     mirror = (folder_of_tests if (root / folder_of_tests).is_dir() else folder_of_tests.parent).as_posix()
     mirrors = _MIRRORS.get(module, _MIRRORS.get(path.parent.as_posix(), (mirror,)))
-    general = _GENERAL["/".join(path.parts[:2])]
+    general = _GENERAL.get("/".join(path.parts[:2]), ())
     name = _words(Path(path.name.partition(".")[0]))
     ranked = []
     for file in test_files(root):

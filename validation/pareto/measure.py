@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import math
 from typing import Annotated, Any
 
 import typer
+
+from symofros.tools import stored_json
 
 from ..reporting.command import Done, Quick, Run, known
 from ..reporting.plain import plain
@@ -51,11 +52,13 @@ def measure(
 
 def _kept(run: Run, quick: bool) -> dict[str, Any]:
     """What an earlier run left on this machine, in the same way: problems by name."""
-    path = run.folder / "pareto.json"
-    data = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
-    if not data or data["quick"] != quick or data["machine"] != machine():
-        return {}
-    return {name: problem for name, problem in data["problems"].items() if name in PROBLEMS}
+
+    def kept(data: Any) -> dict[str, Any]:
+        if data["quick"] != quick or data["machine"] != machine():
+            return {}
+        return {name: dict(problem) for name, problem in data["problems"].items() if name in PROBLEMS}
+
+    return stored_json(run.folder / "pareto.json", kept) or {}
 
 
 def problem_data(problem: BenchmarkProblem, result: Result, date: str, quick: bool = False) -> dict[str, Any]:

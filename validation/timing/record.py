@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
+
+from symofros.tools import stored_json
 
 from ..reporting.plain import plain, restored
 from .models import Labelled
@@ -191,8 +192,4 @@ def as_data(record: Record) -> dict[str, Any]:
 
 def read(path: Path) -> Record:
     """The record of a file; an empty one where there is none, or one of another kind."""
-    try:
-        data = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return Record()
-    return restored(Record, data) if isinstance(data, dict) and data.get("schema") == SCHEMA else Record()
+    return stored_json(path, lambda data: restored(Record, data) if data["schema"] == SCHEMA else None) or Record()

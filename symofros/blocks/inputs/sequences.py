@@ -163,7 +163,7 @@ def _read_npz(block: str, path: Path) -> dict[str, Any]:
 
 def _read_csv(block: str, path: Path) -> dict[str, Any]:
     rows: list[list[float]] = []
-    with path.open(newline="", encoding="utf-8", errors="replace") as text:
+    with path.open(newline="", encoding="utf-8-sig", errors="replace") as text:
         lines = csv.reader(text)
         names = [name.strip() for name in next(lines, [])]
         if len(set(names)) < len(names) or not all(names):

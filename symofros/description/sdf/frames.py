@@ -50,6 +50,7 @@ class Frames:
         self.values = values
         self.nodes: dict[str, FrameNode] = {WORLD: FrameNode(root, "", IDENTITY_POSE, "", "")}
         self._in_world: dict[str, Pose] = {WORLD: IDENTITY_POSE}
+        self._bodies: dict[str, str] = {WORLD: WORLD}
 
     def add(self, name: str, element: Element, scope: str, default: str, attached_to: str = "") -> None:
         """Add a frame.
@@ -99,23 +100,30 @@ class Frames:
                     )
                     target = WORLD
                 setattr(node, label, target)
-            for label in ("relative_to", "attached_to"):
-                if name in self._chain(name, label):
-                    self.values.fault(
-                        node.element,
-                        f"{node.element.tag} '{name}': its frame refers to itself",
-                        " -> ".join([name, *list(self._chain(name, label))[:5]]),
-                        "frames refer to each other without a circle",
-                        f"name another frame as {label}",
-                    )
-                    setattr(node, label, WORLD)
+        for label in ("relative_to", "attached_to"):
+            for circle in list(self._circles(label)):
+                node = self.nodes[circle[0]]
+                self.values.fault(
+                    node.element,
+                    f"{node.element.tag} '{circle[0]}': its frame refers to itself",
+                    " -> ".join([*circle, circle[0]][:6]),
+                    "frames refer to each other without a circle",
+                    f"name another frame as {label}",
+                )
+                setattr(node, label, WORLD)
 
-    def _chain(self, name: str, label: str) -> Iterator[str]:
-        """The frames that one refers to, one after the other, until the first that comes back."""
-        passed: set[str] = set()
-        while (name := getattr(self.nodes.get(name), label, "")) and name not in passed:
-            passed.add(name)
-            yield name
+    def _circles(self, label: str) -> Iterator[list[str]]:
+        """Frames that refer to each other in a circle, each circle once; every frame is looked at once."""
+        looked_at: set[str] = set()
+        for name in self.nodes:
+            passed: dict[str, None] = {}
+            while name in self.nodes and name not in looked_at:
+                looked_at.add(name)
+                passed[name] = None
+                name = getattr(self.nodes[name], label)
+            if name in passed:
+                chain = list(passed)
+                yield chain[chain.index(name) :]
 
     def in_world(self, name: str) -> Pose:
         """Pose of a frame in the world, where all coordinates are as the file places the links."""
@@ -136,7 +144,12 @@ class Frames:
 
     def body(self, name: str) -> str:
         """Full name of the link that a frame is fixed to, or the world."""
-        for attached in (name, *self._chain(name, "attached_to")):
-            if self.nodes[attached].element.tag == "link" or attached == WORLD:
-                return attached
-        return WORLD
+        chain = [name]
+        while chain[-1] not in self._bodies:
+            node = self.nodes[chain[-1]]
+            if node.element.tag == "link" or not node.attached_to:
+                self._bodies[chain[-1]] = chain[-1] if node.element.tag == "link" else WORLD
+            else:
+                chain.append(node.attached_to)
+        self._bodies |= dict.fromkeys(chain, self._bodies[chain[-1]])
+        return self._bodies[name]

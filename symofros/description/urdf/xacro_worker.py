@@ -23,6 +23,7 @@ from xml.parsers import expat
 MAX_BYTES = 16 << 20
 MAX_FAULT = 2000  # Characters of what went wrong, of which the parent shows fewer.
 MAX_CAUSES = 10
+MAX_ENTRIES = 200_000  # Of a file of YAML.
 OUTSIDE = "leaves the folders of the file"
 MEMORY = 2 << 30  # [bytes]
 SECONDS = 20  # of processor time
@@ -74,6 +75,8 @@ def guard(folders: Collection[str]) -> None:
             # A number is a file that is open already, such as standard input.
             near = any(real == folder or real.startswith(folder + os.sep) for folder in folders)
             inside = near and not isinstance(args[0], int)
+            if inside and os.path.exists(real) and not (os.path.isfile(real) or os.path.isdir(real)):
+                raise expressions.Refusal(f"'{path:.100}' is no regular file")  # A pipe would be waited for.
             if not inside or set(str(mode or "r")) & set("wax+") or flags & writing:
                 raise expressions.Refusal(f"'{path:.100}' {OUTSIDE}")
         elif event.startswith(("os.", "subprocess.", "socket.", "shutil.", "ctypes.", "import")):
@@ -111,10 +114,10 @@ def expanded(file: str, folders: list[str], packages: Mapping[str, str], argumen
     from xacro import substitution_args
 
     functions = {
-        "load_yaml": xacro.load_yaml,
+        "load_yaml": lambda file: unfolded(xacro.load_yaml(file), file),
         "dotify": xacro.YamlDictWrapper,
         "abs_filename": xacro.abs_filename_spec,
-        "arg": lambda name: xacro.substitution_args_context["arg"][name],
+        "arg": lambda name: argument(xacro.substitution_args_context["arg"])(name),
     }
 
     def safe_eval(expression: str, symbols: Any, _: Any = None) -> Any:
@@ -123,8 +126,15 @@ def expanded(file: str, folders: list[str], packages: Mapping[str, str], argumen
     def substitution(expression: str, context: dict[str, Any]) -> str:
         known = {k: substitution_args.convert_value(v, "auto") for k, v in context.get("arg", {}).items()}
         known = {**known, **expressions.CONSTANTS}
-        own = {"arg": known.__getitem__, "find": find, "dirname": lambda: os.path.dirname(context["filename"])}
+        own = {"arg": argument(known), "find": find, "dirname": lambda: os.path.dirname(context["filename"])}
         return str(expressions.Evaluator(known, own, xacro.NameSpace)(expression))
+
+    def argument(known: Mapping[str, Any]) -> Any:
+        def value(name: str) -> Any:
+            used.add(name)
+            return known[name]
+
+        return value
 
     def find(name: str) -> str:
         if name not in packages:
@@ -135,24 +145,57 @@ def expanded(file: str, folders: list[str], packages: Mapping[str, str], argumen
     def opened(inp: Any, filename: str | None = None) -> Any:
         """As `parsed`; a missing file is xacro's error, which an optional include looks for."""
         try:
-            return parsed(inp, filename)
+            document = parsed(inp, filename)
+            if hasattr(document, "getElementsByTagName"):
+                used.update(arg.getAttribute("name") for arg in document.getElementsByTagName("xacro:arg"))
+            return document
         except OSError as error:
             xacro.filestack.pop()
             raise xacro.XacroException(f"{error.strerror}: {filename}", exc=error) from None
 
-    folders = list(folders)
+    folders, used = list(folders), set[str]()
     xacro.safe_eval, xacro.parse = safe_eval, opened
     substitution_args._eval, substitution_args._eval_find = substitution, find
     os.environ.clear()
     bound()
     guard(folders)
     document = xacro.process_file(file, mappings=dict(arguments))
+    unused = [name for name in arguments if name not in used]
+    if unused:
+        declared = ", ".join(sorted(used)[:12]) or "none"
+        raise expressions.Refusal(f"no <xacro:arg> is called '{unused[0]:.60}'; there are: {declared:.300}")
     text = str(document.toprettyxml(indent=" "))
     if len(text) > MAX_BYTES:
         raise expressions.Refusal(f"it expands to {len(text)} characters, more than {MAX_BYTES}")
     if any("\ud800" <= character <= "\udfff" for character in text):
         raise expressions.Refusal("it expands to a text with half of a surrogate pair, which no file holds")
     return text
+
+
+def unfolded(value: Any, file: str) -> Any:
+    """A value of YAML, whose aliases stand for no more entries than a file may have.
+
+    Raises:
+        Refusal: They stand for more, or for a value within itself.
+    """
+    entries = 0
+    levels = [iter([value])]
+    while levels:
+        item = next(levels[-1], levels)
+        if item is levels:
+            levels.pop()
+            continue
+        entries += 1
+        if entries > MAX_ENTRIES or len(levels) > expressions.MAX_DEPTH:
+            raise expressions.Refusal(
+                f"'{file:.100}': with its aliases written out it has more than {MAX_ENTRIES} entries,"
+                f" or more than {expressions.MAX_DEPTH} levels"
+            )
+        if isinstance(item, dict):
+            levels.append(iter(list(dict.values(item))))
+        elif isinstance(item, list):
+            levels.append(list.__iter__(item))
+    return value
 
 
 def printable(text: str) -> str:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -80,6 +80,13 @@ def read_usd(path: str | os.PathLike[str], *, snap_tol: float) -> Reading:
     return Reading(None if problems else system, problems)
 
 
+def _told(warnings: Sequence[str]) -> Iterator[str]:
+    """Notes on what OpenUSD said while it read the file."""
+    if warnings:
+        more = f" (and {len(warnings) - 1} more)" if len(warnings) > 1 else ""
+        yield f"OpenUSD warns: {warnings[0]:.300}{more}"
+
+
 class _Importer:
     def __init__(self, file: str, stage: Mapping[str, Any], snap_tol: float) -> None:
         self.file, self.stage = file, stage
@@ -134,7 +141,7 @@ class _Importer:
             (*base, *bodies),
             gravity=gravity,
             constraints=tuple(constraints),
-            notes=self.remarks.notes(),
+            notes=(*self.remarks.notes(), *_told(self.stage["warnings"])),
             origin=origin,
             visuals=self._visuals(),
         )

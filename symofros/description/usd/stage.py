@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import re
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -14,16 +16,18 @@ from symofros.errors import DescriptionError, Problem
 MAX_BYTES = 512 << 20  # Of the root layer, which may hold meshes.
 # Wall time of the process [s]; its processor time is bounded by itself.
 TIMEOUT = 180
+_SOURCE = re.compile(r"^(Warning|Error|Runtime Error|Coding Error): in .*? (at line \d+ (of|in file) \S+ )?(--|:) ")
 
 
 def stage_of(path: str | os.PathLike[str]) -> dict[str, Any]:
-    """What the stage of a file states, in its own units (`usd_worker.stage_data`).
+    """What the stage of a file states, in its own units (`usd_worker.stage_data`), with the "warnings" of OpenUSD.
 
     Args:
         path: Root layer: .usd, .usda, .usdc, .usdz.
 
     Raises:
-        DescriptionError: usd-core is not installed, the file can't be read, or is made of files of other folders.
+        DescriptionError: usd-core is not installed, the file can't be read, a part of it is missing, or it is made of
+            files of other folders.
     """
     file = Path(path)
     read_bytes(file, MAX_BYTES)
@@ -37,28 +41,51 @@ def stage_of(path: str | os.PathLike[str]) -> dict[str, Any]:
                 "usd",
             )
         )
+    _refuse_outside(file, answer.get("layers", ()))
+    if missing := tuple(_missing(text, path) for text in answer.get("missing", ())):
+        raise DescriptionError(missing)
     if "stage" not in answer:
+        warnings = "".join(f"; {text:.300}" for text in warnings_of(answer["printed"])[-1:])
         raise DescriptionError(
             Problem(
                 "OpenUSD can't read the file",
-                f"{answer.get('fault', 'nothing'):.500}",
+                f"{answer.get('fault', 'nothing'):.500}{warnings}",
                 "a stage whose layers are at hand",
                 "mend it; `usdchecker FILE` (OpenUSD's own) says more",
                 str(path),
             )
         )
     stage: dict[str, Any] = answer["stage"]
-    _refuse_outside(file, stage["layers"])
-    return stage
+    return {**stage, "warnings": warnings_of(answer["printed"])}
 
 
-def _refuse_outside(file: Path, layers: list[str]) -> None:
+def warnings_of(printed: str) -> list[str]:
+    """What OpenUSD prints, a text a line, without the place in OpenUSD's own source.
+
+    Args:
+        printed: Lines such as "Warning: in NAME at line N of FILE -- TEXT".
+    """
+    lines = (_SOURCE.sub("", line.strip()) for line in printed.splitlines())
+    # It frames what it says of its environment, which is ours, in such signs.
+    return list(dict.fromkeys(line for line in lines if line and not line.startswith("#")))
+
+
+def _missing(text: str, path: str | os.PathLike[str]) -> Problem:
+    """A reference, payload or sublayer that OpenUSD leaves out of the stage."""
+    return Problem(
+        "a part of the stage is missing",
+        f"{text:.500}",
+        "every reference, payload and sublayer is a file of USD in the folder of the file or below, and has the prim",
+        "put the file there, mend the path, or remove the reference; `usdchecker FILE` (OpenUSD's own) says more",
+        str(path),
+    )
+
+
+def _refuse_outside(file: Path, layers: Iterable[str]) -> None:
     """Refuse a stage that draws on other places than its own folder: who sends a file does not choose what is read."""
     folder = resolved(file).parent
     for layer in layers:
-        # What lies in a .usdz is named FILE[MEMBER].
-        inside = resolved(Path(layer.partition("[")[0]))
-        if not inside.is_relative_to(folder):
+        if not resolved(Path(layer)).is_relative_to(folder):
             raise DescriptionError(
                 Problem(
                     "the stage is made of files of other folders",

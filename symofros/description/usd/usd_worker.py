@@ -2,7 +2,8 @@
 
 Layers are parsed by OpenUSD's C++, which a file from elsewhere may crash or keep busy; here memory, time and
 environment are bounded. It reads {"file"} as JSON, and writes what the stage states of bodies, joints, shapes and
-gravity, in the stage's units, as {"stage"}; or {"fault"}. Matrices are USD's, which multiply rows: p' = p M.
+gravity, in the stage's units, as {"stage"}; with it, or alone, come the "layers" that it is made of, and what is
+"missing" of them; or {"fault"}. Matrices are USD's, which multiply rows: p' = p M.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ SECONDS = 60  # of processor time
 MAX_PRIMS = 200_000
 MAX_FAULT = 2000  # Characters of what went wrong, of which the parent shows fewer.
 MAX_LAYERS = 10_000
+MAX_MISSING = 20
 
 # Joint prim -> kind.
 _JOINTS = {
@@ -127,16 +129,18 @@ def stage_data(file: str) -> dict[str, Any]:
     from pxr import Usd, UsdGeom, UsdPhysics
 
     stage = Usd.Stage.Open(file)
-    layers = [layer.realPath for layer in stage.GetUsedLayers() if not layer.anonymous]
+    layers = sorted({place for layer in stage.GetUsedLayers() if not layer.anonymous for place in places(layer)})
     if len(layers) > MAX_LAYERS:
         return {"fault": f"it is made of more than {MAX_LAYERS} layers"}
+    missing = [printable(" ".join(str(error).split())) for error in stage.GetCompositionErrors()]
+    if missing:
+        return {"layers": layers, "missing": sorted(set(missing))[:MAX_MISSING]}
     cache = UsdGeom.XformCache(_time())
     data: dict[str, Any] = {
         "name": stage.GetDefaultPrim().GetName() if stage.GetDefaultPrim() else "",
         "meters": UsdGeom.GetStageMetersPerUnit(stage),
         "kilograms": UsdPhysics.GetStageKilogramsPerUnit(stage),
         "up": str(UsdGeom.GetStageUpAxis(stage)),
-        "layers": layers,
         "scenes": [],
         "bodies": [],
         "joints": [],
@@ -171,7 +175,19 @@ def stage_data(file: str) -> dict[str, Any]:
         if prim:
             matrix = cache.GetLocalToWorldTransform(prim)
             data["placements"][path] = [number(list(matrix.GetRow(row))) for row in range(4)]
-    return {"stage": data}
+    return {"stage": data, "layers": layers, "missing": []}
+
+
+def places(layer: Any) -> list[str]:
+    """Files that a layer lies in: its path, and of a member of a package (FILE.usdz[MEMBER]) the package's.
+
+    A file may have brackets in its name: both are said, and both have to lie where files may be read.
+    """
+    from pxr import Ar
+
+    path = layer.realPath
+    package = Ar.SplitPackageRelativePathOuter(path)[0]
+    return [package] if package != path and not os.path.lexists(path) else [package, path]
 
 
 def _schemas(prim: Any) -> list[str]:

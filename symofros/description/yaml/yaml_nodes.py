@@ -107,6 +107,16 @@ def decoded(data: bytes, file: str) -> str:
         ) from None
 
 
+def too_many_nodes(where: str) -> Problem:
+    """That a document has more than MAX_NODES values.
+
+    Args:
+        where: Place of the first beyond.
+    """
+    rule, remedy = f"at most {MAX_NODES} in a file", "check that it is the file you meant"
+    return Problem("too many values", f"more than {MAX_NODES}", rule, remedy, where)
+
+
 def compose_whole(text: str, file: str) -> tuple[Node, list[Problem]]:
     """Read one YAML document; see `yaml_pieces.compose_text`.
 
@@ -270,13 +280,7 @@ class _Builder:
     def put(self, node: Node) -> None:
         self.nodes += 1
         if self.nodes > MAX_NODES:
-            raise self.fault(
-                "too many values",
-                f"more than {MAX_NODES}",
-                f"at most {MAX_NODES} in a file",
-                node.line,
-                "check that it is the file you meant",
-            )
+            raise YamlFault(too_many_nodes(f"{self.file}:{node.line}"))
         if not self.open:
             self.root = node
             return

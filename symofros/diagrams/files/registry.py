@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import symofros.blocks
+from symofros.base.arguments import check_argument
 from symofros.diagrams.block import Block
 
 _WORD = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z0-9])(?=[A-Z][a-z])")
@@ -30,6 +31,8 @@ def kinds(extra: Iterable[type[Block]] = ()) -> dict[str, type[Block]]:
     Args:
         extra: Classes of the caller's own; one that is called as another takes its place.
     """
+    extra = list(extra)
+    check_argument("blocks", extra, Sequence[type[Block]])
     exported = [vars(symofros.blocks)[name] for name in sorted(vars(symofros.blocks))]
     library = [item for item in exported if isinstance(item, type) and issubclass(item, Block) and item is not Block]
     return {kind_of(block): block for block in (*library, *extra)}

@@ -18,6 +18,7 @@ from symofros.diagrams.program.lowered_block import Piece, piece_of
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.wiring import Source, Wired, located, wire
 from symofros.errors import CompileError, DescriptionError, Problem
+from symofros.expr.instants import formula_instants
 from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.program import Program
 from symofros.generator.beams import beams_at
@@ -200,14 +201,20 @@ def reads_accelerations(program: Program) -> bool:
 
 def _model(resolved: Resolved, write: Fuser, part: Part, toolchain: Toolchain, options: Options) -> tuple[Model, str]:
     record = record_of(resolved, part)
-    unit, text = unit_of(run_passes(write.motion(part)), record, toolchain, options)
+    motion = run_passes(write.motion(part))
+    unit, text = unit_of(motion, record, toolchain, options)
 
     def formulas(_: tuple[object, ...], __: bool) -> Unit:
         """What the stepper looks for zeros of."""
         return unit
 
+    def instants(_: Sequence[object], par: Array, t0: float, t_end: float) -> Array:
+        """Those of the formulas of time that the part's motion has."""
+        edges = [edge for function in motion.functions for edge in function.edges()]
+        return formula_instants(motion, edges, par, t0, t_end)
+
     beams = partial(part_beams, resolved, part)
-    return Model(record, None, (unit,), np.array(record.par_default), formulas, beams), text
+    return Model(record, None, (unit,), np.array(record.par_default), formulas, beams, instants=instants), text
 
 
 def part_beams(resolved: Resolved, part: Part, par: Array) -> tuple[ElasticBeam, ...]:
@@ -264,6 +271,7 @@ def record_of(resolved: Resolved, part: Part | None) -> ModelRecord:
         periodic=(False,) * nq,
         constraint_names=names,
         speed_conditions=tuple(name for name in names if name in layout.speed_conditions),
+        measures=layout.measures_of(of),
     )
 
 

@@ -252,13 +252,14 @@ class Fuser:
         M = [[ZERO] * nv for _ in range(nv)]
         G = [[ZERO] * nv for _ in range(nc)]
         r, c, phi, rate = [ZERO] * nv, [ZERO] * nc, [ZERO] * nc, [ZERO] * nc
-        layout, pieces = self._layout, self._pieces
+        layout, pieces, facing = self._layout, self._pieces, list[Edge]()
         for name in part.blocks:
             piece = pieces[name]
             if name in layout.v:
                 first, n = layout.v[name].start - part.v.start, layout.v[name].size
                 row = layout.lam[name].start - part.conditions.start
                 terms = at.write_all(piece, piece.terms.stated())
+                facing += terms["facing"].flat if "facing" in terms else ()
                 if "a" in terms:
                     r[first : first + n] = terms["a"].flat
                     for k in range(first, first + n):
@@ -277,13 +278,14 @@ class Fuser:
         measures = layout.measures_of(part)
         terms_of = (_matrix("M", M, nv), _vector("r", r), _matrix("G", G, nv), _vector("c", c))
         solved = (("a", (nv,)), ("lam", (nc,)), ("rank", ()))
-        forward = Function(
-            "forward_dynamics", "", ("q", "v", "u", "gains", "t"), terms_of, Solver("constrained", solved, (), measures)
-        )
-        q_moved = self._moved(at, part)
-        move = Function("move", "", ("q", "step"), (_vector("q_moved", q_moved),))
-        projected = (("q_on", (part.nq,)), ("v_on", (nv,)), ("residual", ()), ("rank", ()), ("energies", (2,)))
-        outputs = (terms_of[0], terms_of[2], _vector("binds", binds), _vector("phi", phi), _vector("rate", rate))
+        move = Function("move", "", ("q", "step"), (_vector("q_moved", self._moved(at, part)),))
+        residuals = (_vector("binds", binds), _vector("phi", phi))
+        solving = Solver("constrained", solved, (move,), measures)
+        forward = Function("forward_dynamics", "", ("q", "v", "u", "gains", "t"), (*terms_of, *residuals), solving)
+        shapes: dict[str, tuple[int, ...]] = {"q_on": (part.nq,), "v_on": (nv,), "residual": (), "rank": ()}
+        projected = tuple((shapes | {"energies": (2,), "gap": ()}).items())
+        faces = (_vector("facing", facing),) if facing else ()
+        outputs = (terms_of[0], terms_of[2], *residuals, _vector("rate", rate), *faces)
         project = Function("project", "", AT, outputs, Solver("project", projected, (move,), measures))
         judging = self._judging(at, part)
         jacobian = [Function("constraint_jacobian", "", AT, (terms_of[2],))] if judging else []

@@ -97,6 +97,7 @@ class Layout:
         segments: Segments of the configuration manifold.
         signals: (index in u, times, values, whether linear).
         lock_inputs: Entries of u that engage constraints: a change projects the state onto them.
+        lock_names: Names of these, by block and port.
         condition_names: Names of the conditions of constraints.
         speed_conditions: Names of the conditions on speeds only.
         driven: Whether some mechanism has prescribed motions.
@@ -123,6 +124,7 @@ class Layout:
     segments: list[Segment] = field(default_factory=list)
     signals: list[tuple[int, Array, Array, bool]] = field(default_factory=list)
     lock_inputs: list[int] = field(default_factory=list)
+    lock_names: list[str] = field(default_factory=list)
     condition_names: list[str] = field(default_factory=list)
     speed_conditions: list[str] = field(default_factory=list)
     driven: bool = False
@@ -173,6 +175,7 @@ def lay_out(wired: Wired, pieces: Mapping[str, Piece], groups: Sequence[Sequence
                     )
                 )
             layout.lock_inputs += range(place.start, place.start + place.size)
+            layout.lock_names += [f"{name}.{port}[{k}]" for k in range(place.size)]
     for model in wired.models.names:
         names = wired.models.record(model).par_names
         layout.parameters["", model] = Place(len(layout.par), (len(names),))

@@ -11,14 +11,14 @@ import numpy as np
 
 from symofros.diagrams.observer import NoObserver, Observer
 from symofros.diagrams.program.compiled import Resolved, part_beams
-from symofros.diagrams.program.layout import Part
 from symofros.diagrams.run.block_functions import Blocks
+from symofros.diagrams.run.engaging import EngagedApartError, engaged_apart, engaging_notes
 from symofros.diagrams.run.examination.faults import first_fault
+from symofros.diagrams.run.projection import engage, project_all
 from symofros.diagrams.run.python_blocks import Called
 from symofros.diagrams.wiring import Source
 from symofros.runtime.beams import BeamBending, ElasticBeam, amplification_of, bending_notes, largest_bending
 from symofros.runtime.calls.kernel import Array
-from symofros.runtime.constrained import project
 from symofros.runtime.manifold import chart_rate, retract
 from symofros.simulation.analysis.beam_theory import UNAMPLIFIED, amplifying
 from symofros.simulation.results.outcome import Outcome
@@ -104,47 +104,6 @@ def step(blocks: Blocks, tableau: Tableau, h: float, projects: bool) -> None:
     if projects:
         project_all(blocks)
     blocks.step_end = math.inf
-
-
-def project_all(blocks: Blocks) -> None:
-    """The parts back onto their constraints."""
-    for part in blocks.resolved.layout.parts:
-        if part.nc:
-            _project(blocks, part)
-
-
-def _project(blocks: Blocks, part: Part) -> None:
-    """The state of a part back onto its constraints, as C does it."""
-    layout, pieces = blocks.resolved.layout, blocks.resolved.pieces
-    nv, nc = part.nv, part.nc
-
-    def terms(q: Array, v: Array) -> list[Array]:
-        blocks.q[part.q], blocks.v[part.v] = q, v
-        blocks.signals()
-        M, G, phi, rate, binds = np.eye(nv), np.zeros((nc, nv)), np.zeros(nc), np.zeros(nc), np.zeros(nc)
-        for name in part.blocks:
-            if name not in layout.v or pieces[name].terms.G is None:
-                continue
-            call, outputs = blocks.calls[name, "motion"]
-            call()
-            i, n = layout.v[name].start - part.v.start, layout.v[name].size
-            c = layout.lam[name].start - part.conditions.start
-            M[i : i + n, i : i + n] = outputs["t_M"]
-            rows = slice(c, c + pieces[name].nc)
-            G[rows, i : i + n], phi[rows], rate[rows] = outputs["t_G"], outputs["t_phi"], outputs["t_rate"]
-            edges = pieces[name].terms.phi
-            assert edges is not None
-            binds[rows] = [float(edge != 0) for edge in edges.flat]
-        return [M, G, binds, phi, rate]
-
-    def move(q: Array, theta: Array) -> Array:
-        whole, along = blocks.q.copy(), np.zeros(len(blocks.v))
-        whole[part.q], along[part.v] = q, theta
-        return retract(layout.segments, whole, along)[part.q]
-
-    start = blocks.q[part.q].copy(), blocks.v[part.v].copy()
-    q_on, v_on, *_ = project(terms, move, *start, layout.measures_of(part))
-    blocks.q[part.q], blocks.v[part.v] = q_on, v_on
 
 
 class _RecordFeed:
@@ -322,9 +281,14 @@ def run_interpreted(
     instants, t_end, dt, projects = course.instants, course.t_end, course.dt, course.projects
     feed, goes_on = _RecordFeed(observer or NoObserver(), blocks, rows, kept), True
     steps, within, failed = 0, watch.judge(blocks.q, float(blocks.t[0])), False
+    closed, apart = (0.0, 0.0), None
     with np.errstate(all="ignore"):  # What is not finite ends the run, and is named.
         for i, instant in enumerate(instants):
-            _meet(blocks, called, instant, projects, record)
+            try:
+                closed = max(closed, (_meet(blocks, called, instant, projects, record), instant[0]))
+            except EngagedApartError as error:
+                apart = error
+                break
             show(instant[0])
             goes_on = feed.send(instant[0])
             if not goes_on:
@@ -345,7 +309,7 @@ def run_interpreted(
                 within = watch.judge(blocks.q, float(blocks.t[0]))
             if failed or not within:
                 break
-        if goes_on and not failed and (not rows or rows[-1][0] < float(blocks.t[0])):
+        if goes_on and not failed and apart is None and (not rows or rows[-1][0] < float(blocks.t[0])):
             blocks.t[0] = t_end if within else blocks.t[0]
             blocks.signals()
             record()
@@ -353,6 +317,9 @@ def run_interpreted(
     t_last, fault = float(blocks.t[0]), first_fault(blocks) if failed else ""
     watch.amplify(blocks, rows, kept)
     outcome = _outcome(watch, t_last, steps, fault, failed=failed, within=within)
+    if apart is not None:
+        outcome = engaged_apart(t_last, apart.gap, apart.name, outcome.notes)
+    outcome = replace(outcome, notes=(*outcome.notes, *engaging_notes(closed[1], closed[0])))
     if not goes_on:
         outcome = Outcome("interrupted", outcome.t, "stopped; the part up to here is kept", notes=outcome.notes)
     t, q, v = (np.array(column) for column in zip(*rows, strict=True)) if rows else (np.zeros(0), blocks.q, blocks.v)
@@ -360,8 +327,16 @@ def run_interpreted(
     return InterpretedRun(blocks.resolved, t, values, memories, q, v, outcome, steps, watch.bendings, called.kept())
 
 
-def _meet(blocks: Blocks, called: Called, instant: Instant, projects: bool, record: Callable[[], None]) -> None:
-    """What happens at an instant: blocks are sampled, constraints engage, signals are recorded."""
+def _meet(blocks: Blocks, called: Called, instant: Instant, projects: bool, record: Callable[[], None]) -> float:
+    """What happens at an instant: blocks are sampled, constraints engage, signals are recorded.
+
+    Returns:
+        The largest |phi| that engaging has closed.
+
+    Raises:
+        EngagedApartError: It is more than may be closed.
+    """
+    gap = 0.0
     t, due, recorded = instant
     blocks.t[0] = t
     reads_accelerations = bool(len(blocks.lam))
@@ -373,13 +348,14 @@ def _meet(blocks: Blocks, called: Called, instant: Instant, projects: bool, reco
         blocks.signals(due, called)
         blocks.update(due)
         if projects and not np.array_equal(before, blocks.engaged()):
-            project_all(blocks)
+            gap = engage(blocks, before)
     if recorded:
         blocks.signals()
         if reads_accelerations:
             blocks.accelerate()
             blocks.signals()
         record()
+    return gap
 
 
 def _outcome(watch: BeamWatch, t: float, steps: int, fault: str, *, failed: bool, within: bool) -> Outcome:

@@ -12,7 +12,7 @@ from symofros.base.arguments import check_fields
 from symofros.runtime.beams import BEAM_LIMIT
 from symofros.runtime.model import Model
 from symofros.simulation.options import SimulationOptions, Stabilisation, with_changes
-from symofros.simulation.settings import Settings
+from symofros.simulation.settings import Settings, check_pace
 
 
 @dataclass(frozen=True)
@@ -48,6 +48,7 @@ class DiagramOptions:
     def __post_init__(self) -> None:
         """Refuse what is of another type."""
         check_fields(self)
+        check_pace(self.realtime)
 
     def changed(self, changes: Mapping[str, Any]) -> DiagramOptions:
         """These options with some fields replaced.

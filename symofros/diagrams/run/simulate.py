@@ -19,8 +19,8 @@ from symofros.diagrams.result import DiagramRun
 from symofros.diagrams.run.examination.controllers import Again, End, blamed
 from symofros.diagrams.run.examination.diagnosis import Ended, diagnose
 from symofros.diagrams.run.examination.energy_balance import Energies
+from symofros.diagrams.run.examination.prescribed import judge_prescribed
 from symofros.diagrams.run.examination.remarks import Examined, remarks
-from symofros.diagrams.run.examination.rotations import refuse_no_rotation
 from symofros.diagrams.run.loop import RECORD, Loop, Task
 from symofros.diagrams.run.options import DiagramOptions
 from symofros.diagrams.run.parts import place_parts, start_parts
@@ -84,7 +84,7 @@ def run_compiled(
     outcome = blamed(outcome, resolved, _end_again(task, ended.states, called.given))
     t, q, v, u = ended.states
     records = Records(compiled, t, q, v, u, par)
-    outcome = refuse_no_rotation(outcome, resolved, records.t, lambda source: records[".".join(source)])
+    outcome = judge_prescribed(outcome, resolved, records.t, lambda source: records[".".join(source)])
     return _recorded(task, ended, outcome, bendings, kept)
 
 

@@ -14,6 +14,7 @@ from symofros.description.system import System
 from symofros.exports.c.c_text import comment, doubles
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.functions import NamedFunction, cell, functions_table, names_table
+from symofros.exports.limits import joints_of, limits_note
 from symofros.generator.codegen.cuda import device_code
 from symofros.generator.codegen.names import identifier
 from symofros.native import header_files, native_text
@@ -93,7 +94,7 @@ def write_cuda_package(system: System, name: str | None, frames: Sequence[str] |
 
 def _notes(made: Compilation, left_out: Sequence[str]) -> tuple[str, ...]:
     """What the kernels lack."""
-    notes = []
+    notes = [*limits_note(joints_of(made.system))]
     if left_out:
         notes.append(
             f"no kernels of {', '.join(left_out)}: a routine with pivots finishes them; they are in the C file"

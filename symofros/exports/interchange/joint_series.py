@@ -9,6 +9,9 @@ from dataclasses import dataclass, replace
 from symofros.base.rotations import matrix_product
 from symofros.exports.interchange.rigid import Array, RigidLink
 
+# Axes of the joints of one body, which MuJoCo takes no more of.
+_MOST_AXES = 6
+
 
 @dataclass(frozen=True)
 class JointPlace:
@@ -58,7 +61,7 @@ def gathered(links: Sequence[RigidLink], kept: Collection[str]) -> list[Gathered
         if before is not None:
             body = _carried_on(before, link)
         only_carries = link.mass == 0.0 and not link.inertia.any() and link.name not in kept and link.axes
-        if only_carries and children[link.name] == 1 and _is_single(following[link.name]):
+        if only_carries and children[link.name] == 1 and _can_take(following[link.name], body):
             waiting[link.name] = body
         else:
             bodies.append(body)
@@ -68,6 +71,12 @@ def gathered(links: Sequence[RigidLink], kept: Collection[str]) -> list[Gathered
 def _is_single(link: RigidLink) -> bool:
     """Whether a link is fixed, or moves by turns and slides."""
     return bool(link.axes) or (link.joint is not None and link.joint.traits.mjcf is None)
+
+
+def _can_take(link: RigidLink, before: GatheredBody) -> bool:
+    """Whether a link can have the joints of a body before it, too."""
+    axes = sum(len(place.link.axes) for place in before.carriers) + len(before.link.axes) + len(link.axes)
+    return _is_single(link) and axes <= _MOST_AXES
 
 
 def _carried_on(before: GatheredBody, link: RigidLink) -> GatheredBody:

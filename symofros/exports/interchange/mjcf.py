@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 from xml.etree import ElementTree as Tree
 
@@ -11,17 +12,20 @@ import numpy as np
 from symofros.base.rotations import matrix_product
 from symofros.description.constraints import Closure
 from symofros.description.forces import Anchor, Damper, Spring
-from symofros.description.joints.joint import Joint
+from symofros.description.joints.joint import Joint, Limits
 from symofros.description.system import System
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.interchange.couplings import DEGREE, PolynomialCoupling, polynomial_couplings
 from symofros.exports.interchange.joint_series import GatheredBody, JointPlace, gathered
 from symofros.exports.interchange.rigid import Array, RigidLink, numbers_text, rigid_links
+from symofros.exports.limits import limits_note, listed, measures
 from symofros.generator.codegen.names import identifier
 from symofros.mechanics.topology.numbers import Numbers
 
 # Of a moment of inertia, of the largest one or of 1 kg m^2; MuJoCo's own bound is 1e-14.
 _LEAST = 1e-12
+# What limits of a single turn or slide bound in MuJoCo, too.
+_ACTING = ("travel", "effort")
 
 
 def write_mjcf(system: System, name: str | None, folder: Path, generator: str) -> Exported:
@@ -37,7 +41,7 @@ def write_mjcf(system: System, name: str | None, folder: Path, generator: str) -
     Tree.SubElement(root, "option", {"gravity": numbers_text(numbers.values(system.gravity))})
     elements = {links[0].name: Tree.SubElement(root, "worldbody")}
     _sites(elements[links[0].name], links[0])
-    notes = [*lost, *_lost(system)]
+    notes = [*lost, *_lost(links, numbers)]
     thin = [link.name for link in links if link.mass and _positive(link.inertia) is not link.inertia]
     odd = [link.name for link in links if link.mass and _impossible(_positive(link.inertia))]
     if odd:
@@ -111,13 +115,42 @@ def _moves(body: GatheredBody) -> bool:
     return bool(link.axes or body.carriers or (link.joint is not None and link.joint.traits.mjcf is not None))
 
 
-def _lost(system: System) -> list[str]:
+def _lost(links: Sequence[RigidLink], numbers: Numbers) -> list[str]:
+    """What MJCF has no place for, and what acts there and is data here."""
     losses = []
-    joints = [body.joint for body in system.bodies if body.joint is not None]
-    elements = [j.name for j in joints if any(not _kept(element) for element in j.elements)]
+    moving = [(link, link.joint) for link in links if link.joint is not None]
+    elements = [j.name for _, j in moving if any(not _kept(element) for element in j.elements)]
     if elements:
         losses.append("friction, stops, and springs and dampers that are not linear, dropped: " + ", ".join(elements))
+    constant = [axis.name for link, j in moving for i, axis in enumerate(link.axes) if _pushes(j, i, numbers)]
+    if constant:
+        losses.append("springs whose stiffness cancels to a constant effort dropped: " + listed(constant))
+    uneven = [j.name for link, j in moving if not link.axes and len(set(link.damping)) > 1]
+    if uneven:
+        losses.append("dampers that differ between the speeds of a ball or free joint dropped: " + ", ".join(uneven))
+    driven = [j.name for link, j in moving if not link.axes and j.actuated]
+    if driven:
+        losses.append("actuators of ball and free joints dropped: " + ", ".join(driven))
+    losses += limits_note([j for _, j in moving], lambda joint: _ACTING if _is_single(joint) else ())
+    single = [j for _, j in moving if _is_single(j)]
+    acting = [j.name for j in single if {*_ACTING} & {*measures(j.limits)}]
+    if acting:
+        losses.append(
+            "limits of travel and effort, data here, act in MuJoCo, as soft stops and bounds of motors: "
+            + listed(acting)
+        )
+    locked = [j.name for j in single if j.limits is not None and _is_locked(j.limits)]
+    if locked:
+        losses.append("limits of travel that leave one place, which MuJoCo refuses, dropped: " + listed(locked))
     return losses
+
+
+def _is_single(joint: Joint) -> bool:
+    return joint.traits.series and joint.traits.nv == 1
+
+
+def _is_locked(limits: Limits) -> bool:
+    return limits.lower is not None and limits.lower == limits.upper
 
 
 def _kept(element: object) -> bool:
@@ -165,7 +198,8 @@ def _body(into: Tree.Element, gathered_body: GatheredBody, numbers: Numbers) -> 
     for place in gathered_body.carriers:
         _joints(body, place.link, numbers, place)
     if not link.axes and link.joint.traits.mjcf is not None:
-        Tree.SubElement(body, "joint", {"name": link.joint.name, "type": link.joint.traits.mjcf})
+        stated = {"name": link.joint.name, "type": link.joint.traits.mjcf}
+        Tree.SubElement(body, "joint", stated | _of_all_speeds(link, numbers))
     _joints(body, link, numbers, None)
     _sites(body, link)
     return body
@@ -197,22 +231,52 @@ def _impossible(inertia: Array) -> bool:
     return bool(small + middle < large * (1.0 - 1e-9))
 
 
+def _of_all_speeds(link: RigidLink, numbers: Numbers) -> dict[str, str]:
+    """Armature and damping of a ball or free joint, for which MJCF has one number each."""
+    assert link.joint is not None
+    stated = {"armature": numbers.value(link.joint.armature)}
+    if len(set(link.damping)) == 1:
+        stated["damping"] = link.damping[0]
+    return {name: numbers_text(value) for name, value in stated.items() if value != 0.0}
+
+
 def _dynamics(link: RigidLink, joint: Joint, index: int, numbers: Numbers) -> dict[str, str]:
-    attributes: dict[str, str] = {}
-    limits = joint.limits if len(link.axes) == 1 else None
-    if limits is not None and limits.lower is not None and limits.upper is not None:
-        # For readers; here a limit is not a force.
-        attributes |= {"range": numbers_text([limits.lower, limits.upper]), "limited": "false"}
+    attributes = _limits(joint.limits) if len(link.axes) == 1 and joint.limits is not None else {}
     armature = numbers.value(joint.armature)
     if armature != 0.0:
         attributes["armature"] = numbers_text(armature)
     if link.damping[index] != 0.0:
         attributes["damping"] = numbers_text(link.damping[index])
-    springs = [e for e in joint.elements if isinstance(e, Spring) and e.cubic == 0.0 and e.coordinate == index]
-    stiffness = sum(numbers.value(spring.stiffness) for spring in springs)
+    stiffness, pull = _springs(joint, index, numbers)
     if stiffness:
-        pull = sum(numbers.value(spring.stiffness) * numbers.value(spring.rest) for spring in springs)
         attributes |= {"stiffness": numbers_text(stiffness), "springref": numbers_text(pull / stiffness)}
+    return attributes
+
+
+def _springs(joint: Joint, index: int, numbers: Numbers) -> tuple[float, float]:
+    """Of the linear springs on a coordinate together: stiffness, and effort at zero."""
+    springs = [e for e in joint.elements if isinstance(e, Spring) and e.cubic == 0.0 and e.coordinate == index]
+    terms = [(numbers.value(spring.stiffness), numbers.value(spring.rest)) for spring in springs]
+    return math.fsum(k for k, _ in terms), math.fsum(k * rest for k, rest in terms)
+
+
+def _pushes(joint: Joint, index: int, numbers: Numbers) -> bool:
+    """Whether springs together push alike everywhere."""
+    stiffness, pull = _springs(joint, index, numbers)
+    return stiffness == 0.0 and pull != 0.0
+
+
+def _limits(limits: Limits) -> dict[str, str]:
+    """Attributes of limits: of travel, where a bound that is not stated is infinite, and of effort."""
+    attributes: dict[str, str] = {}
+    stated = measures(limits)
+    if "travel" in stated and not _is_locked(limits):
+        lower = -math.inf if limits.lower is None else limits.lower
+        upper = math.inf if limits.upper is None else limits.upper
+        attributes |= {"range": numbers_text([lower, upper]), "limited": "true"}
+    if "effort" in stated and limits.effort is not None:
+        bounds = numbers_text([-limits.effort, limits.effort])
+        attributes |= {"actuatorfrcrange": bounds, "actuatorfrclimited": "true"}
     return attributes
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
@@ -16,6 +17,7 @@ from symofros.description.forces import Damper
 from symofros.description.joints.joint import WORLD, Joint
 from symofros.description.system import Body, Inertia, RigidBody, System
 from symofros.errors import ExportError, Problem
+from symofros.exports.limits import listed
 from symofros.mechanics.topology.coordinates import coordinate_names
 from symofros.mechanics.topology.numbers import Numbers
 
@@ -55,7 +57,7 @@ class RigidLink:
         center: Mass centre in the body's frame (3) [m].
         inertia: About the centre, along the body's axes (3, 3) [kg m^2].
         frames: Name, position, rotation of each extremity frame.
-        damping: Viscous, of each axis or speed.
+        damping: Viscous, of each speed; linear dampers alone.
     """
 
     name: str
@@ -107,7 +109,7 @@ def rigid_links(system: System, form: Literal["URDF", "MJCF"]) -> tuple[list[Rig
                 "export the model as an FMU, or replace these rods by rigid bodies",
             )
         )
-    names = {body.name for body in system.bodies}
+    names = Counter([body.name for body in system.bodies] + [f.name for body in system.bodies for f in body.frames])
     base = {body.name for body in system.bodies if body.joint is None} | {WORLD}
     rigid = []
     if not any(body.joint is None for body in system.bodies):
@@ -125,7 +127,7 @@ def _representable(joint: Joint, form: Literal["URDF", "MJCF"]) -> bool:
     return not joint.prescribed and (joint.traits.series or own is not None)
 
 
-def _link(body: Body, parent: str | None, system: System, numbers: Numbers, names: set[str]) -> RigidLink:
+def _link(body: Body, parent: str | None, system: System, numbers: Numbers, names: Counter[str]) -> RigidLink:
     mass, center, inertia = _beam_inertia(body, numbers) if isinstance(body, Beam) else _inertia(body.inertia, numbers)
     position, rotation = np.zeros(3), np.eye(3)
     if body.joint is not None:
@@ -135,11 +137,10 @@ def _link(body: Body, parent: str | None, system: System, numbers: Numbers, name
         at, turned = numbers.values(frame.position), numbers.rotation(frame.rotation)
         if isinstance(body, Beam):
             at, turned = np.array([frame.station * numbers.value(body.length), 0.0, 0.0]), np.eye(3)
-        taken = frame.name in names
-        frames.append((f"{body.name}.{frame.name}" if taken else frame.name, at, turned))
-        names.add(frame.name)
+        # As in models: a frame bears its own name where nothing else does.
+        frames.append((frame.name if names[frame.name] == 1 else f"{body.name}.{frame.name}", at, turned))
     axes = () if body.joint is None else _axes(body.joint, numbers)
-    damping = () if body.joint is None else _damping(body.joint, max(1, len(axes)), numbers)
+    damping = () if body.joint is None else _damping(body.joint, numbers)
     return RigidLink(
         body.name, parent, body.joint, axes, position, rotation, mass, center, inertia, tuple(frames), damping
     )
@@ -176,10 +177,10 @@ def _axes(joint: Joint, numbers: Numbers) -> tuple[Axis, ...]:
     )
 
 
-def _damping(joint: Joint, count: int, numbers: Numbers) -> tuple[float, ...]:
-    total = [0.0] * count
+def _damping(joint: Joint, numbers: Numbers) -> tuple[float, ...]:
+    total = [0.0] * joint.traits.nv
     for element in joint.elements:
-        if isinstance(element, Damper) and element.coordinate < count:
+        if isinstance(element, Damper):
             total[element.coordinate] += numbers.value(element.coefficient)
     return tuple(total)
 
@@ -223,9 +224,9 @@ def _lost(system: System) -> Iterator[str]:
     """What no format of numbers holds."""
     beams = [body.name for body in system.bodies if isinstance(body, Beam) and body.modes]
     if beams:
-        yield f"beams as rigid bodies, without their elastic coordinates: {_listed(beams)}"
+        yield f"beams as rigid bodies, without their elastic coordinates: {listed(beams)}"
     if system.parameters:
-        yield f"parameters as the numbers they have: {_listed([p.name for p in system.parameters])}"
+        yield f"parameters as the numbers they have: {listed([p.name for p in system.parameters])}"
     joints = [body.joint for body in system.bodies if body.joint is not None]
     for what, names in (
         ("efforts by formula", [j.name for j in joints if j.effort and any(e != 0.0 for e in j.effort)]),
@@ -237,11 +238,7 @@ def _lost(system: System) -> Iterator[str]:
         ("inputs of formulas", [i.name for i in system.inputs]),
     ):
         if names:
-            yield f"{what} dropped: {_listed(names)}"
-
-
-def _listed(names: list[str]) -> str:
-    return ", ".join(names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")
+            yield f"{what} dropped: {listed(names)}"
 
 
 def numbers_text(values: npt.ArrayLike) -> str:

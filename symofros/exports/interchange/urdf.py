@@ -9,15 +9,17 @@ from xml.etree import ElementTree as Tree
 
 import numpy as np
 
-from symofros.description.forces import Damper
+from symofros.description.forces import Damper, JointElement
+from symofros.description.joints.joint import Joint, Limits
 from symofros.description.system import System
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.interchange.couplings import PolynomialCoupling, polynomial_couplings
 from symofros.exports.interchange.rigid import Array, Axis, RigidLink, numbers_text, rigid_links
+from symofros.exports.limits import MEASURES, limits_note, listed, measures
 from symofros.generator.codegen.names import identifier
 from symofros.mechanics.topology.numbers import Numbers
 
-# URDF wants limits of slides; these bind nothing.
+# URDF wants both bounds of a slide, effort and speed wherever one of them is stated; these bind nothing.
 _FAR = 1e9
 
 
@@ -67,10 +69,22 @@ def _lost(system: System, kept: set[str]) -> list[str]:
     elements = [joint.name for joint in joints if any(not isinstance(e, Damper) for e in joint.elements)]
     if elements:
         losses.append("springs, stops and friction of joints dropped: " + ", ".join(elements))
+    dampers = [joint.name for joint in joints if any(not _kept(joint, e) for e in joint.elements)]
+    if dampers:
+        losses.append("dampers that are not linear or of no turn or slide dropped: " + ", ".join(dampers))
+    losses += limits_note(joints, lambda joint: MEASURES if joint.traits.series and joint.traits.nv == 1 else ())
+    passive = [joint.name for joint in joints if joint.traits.series and joint.traits.nv and not joint.actuated]
+    if passive and any(joint.actuated for joint in joints):
+        losses.append("which joints are driven is not part of URDF; these are not: " + listed(passive))
     armed = [joint.name for joint in joints if joint.armature != 0.0]
     if armed:
         losses.append("armature dropped: " + ", ".join(armed))
     return losses
+
+
+def _kept(joint: Joint, element: JointElement) -> bool:
+    """Whether a damper is written; of others there is another note."""
+    return not isinstance(element, Damper) or (element.quadratic == 0.0 and joint.traits.series)
 
 
 def _origin(into: Tree.Element, position: Array, rotation: Array) -> None:
@@ -138,6 +152,14 @@ def _joints(root: Tree.Element, link: RigidLink, mimics: Mapping[str, Polynomial
         parent, position, rotation = child, np.zeros(3), np.eye(3)
 
 
+def _limit(limits: Limits, bounded: bool) -> dict[str, str]:
+    """Attributes of <limit>, which lacks none that readers ask for; those of travel only where the joint is bounded."""
+    stated = {"lower": limits.lower, "upper": limits.upper} if bounded else {}
+    stated |= {"effort": limits.effort, "velocity": limits.velocity}
+    bounds = {name: (-_FAR if name == "lower" else _FAR) if x is None else x for name, x in stated.items()}
+    return {name: numbers_text(bound) for name, bound in bounds.items()}
+
+
 def _single(
     root: Tree.Element,
     link: RigidLink,
@@ -151,29 +173,16 @@ def _single(
 ) -> None:
     assert link.joint is not None
     limits = link.joint.limits if len(link.axes) == 1 else None
-    bounded = limits is not None and limits.lower is not None and limits.upper is not None
-    kind = "prismatic" if not axis.turns else "revolute" if bounded else "continuous"
+    stated = measures(limits)
+    kind = "prismatic" if not axis.turns else "revolute" if "travel" in stated else "continuous"
     into = _joint(root, axis.name, kind, parent, child, position, rotation)
     Tree.SubElement(into, "axis", {"xyz": numbers_text(axis.direction)})
-    if kind != "continuous":
-        lower, upper = (limits.lower, limits.upper) if limits is not None and bounded else (-_FAR, _FAR)
-        effort = _FAR if limits is None or limits.effort is None else limits.effort
-        speed = _FAR if limits is None or limits.velocity is None else limits.velocity
-        assert lower is not None and upper is not None
-        Tree.SubElement(
-            into,
-            "limit",
-            {
-                "lower": numbers_text(lower),
-                "upper": numbers_text(upper),
-                "effort": numbers_text(effort),
-                "velocity": numbers_text(speed),
-            },
-        )
+    if kind != "continuous" or stated:
+        Tree.SubElement(into, "limit", _limit(limits or Limits(), kind != "continuous"))
     if link.damping[index] != 0.0:
         Tree.SubElement(into, "dynamics", {"damping": numbers_text(link.damping[index])})
     if mimic is not None:
         assert mimic.leader is not None
         offset, multiplier = mimic.coefficients
-        stated = {"multiplier": numbers_text(multiplier), "offset": numbers_text(offset)}
-        Tree.SubElement(into, "mimic", {"joint": mimic.leader, **stated})
+        law = {"multiplier": numbers_text(multiplier), "offset": numbers_text(offset)}
+        Tree.SubElement(into, "mimic", {"joint": mimic.leader, **law})

@@ -10,7 +10,7 @@ from symofros.base.measures import Measures
 from symofros.expr.numerics.evaluate import FunctionEvaluation, evaluate_edges
 from symofros.expr.program import Function, Program, Solver
 from symofros.runtime.calls.kernel import DEFAULT_OPTIONS, Array, BatchOptions, Kernel, Numbers, Signature
-from symofros.runtime.constrained import constrained, differentiate, project
+from symofros.runtime.constrained import constrained, differentiate, motion, project
 
 
 class InterpretedUnit:
@@ -78,10 +78,27 @@ class InterpretedKernel:
             evaluation = self._evaluations[id(function)] = FunctionEvaluation(self._program, function)
         return evaluation(inputs, n)
 
-    def _constrained(self, solver: Solver, _: Mapping[str, Array], outputs: list[Array]) -> list[Array]:
-        """Both forms: they have one solution."""
-        M, r, G, c = outputs
-        return constrained(M, r, G, c, Measures(*solver.tables))
+    def _motion(self, solver: Solver, named: Mapping[str, Array], outputs: list[Array]) -> list[Array]:
+        """Both forms, state by state: they have one solution."""
+        moved = []
+        for k in range(len(outputs[0])):
+            state = {name: values[min(k, len(values) - 1)][None] for name, values in named.items()}
+            terms, move = self._at(solver, state)
+            moved.append(motion(terms, move, state["q"][0], Measures(*solver.tables)))
+        return [np.array(values, dtype=np.float64) for values in zip(*moved, strict=True)]
+
+    def _at(
+        self, solver: Solver, state: Mapping[str, Array]
+    ) -> tuple[Callable[..., list[Array]], Callable[[Array, Array], Array]]:
+        """Terms of one state as functions of (q) or (q, v), and how a step moves q."""
+
+        def terms(*place: Array) -> list[Array]:
+            return self.evaluate(self._function, {**state, **{x: y[None] for x, y in zip("qv", place, strict=False)}})
+
+        def move(q: Array, step: Array) -> Array:
+            return self.evaluate(solver.parts[0], {**state, "q": q[None], "step": step[None]})[0]
+
+        return terms, move
 
     def _differentiate(self, solver: Solver, named: Mapping[str, Array], outputs: list[Array]) -> list[Array]:
         """At the motion that the terms determine."""
@@ -126,20 +143,14 @@ class InterpretedKernel:
         projected = []
         for k in range(len(outputs[0])):
             state = {name: values[min(k, len(values) - 1)][None] for name, values in named.items()}
-
-            def terms(q: Array, v: Array, state: dict[str, Array] = state) -> list[Array]:
-                return self.evaluate(self._function, state | {"q": q[None], "v": v[None]})
-
-            def move(q: Array, step: Array, state: dict[str, Array] = state) -> Array:
-                return self.evaluate(solver.parts[0], state | {"q": q[None], "step": step[None]})[0]
-
+            terms, move = self._at(solver, state)
             projected.append(project(terms, move, state["q"][0], state["v"][0], Measures(*solver.tables)))
         return [np.array(values) for values in zip(*projected, strict=True)]
 
 
 _TWINS: dict[str, Callable[[InterpretedKernel, Solver, Mapping[str, Array], list[Array]], list[Array]]] = {
-    "constrained": InterpretedKernel._constrained,
-    "null_space": InterpretedKernel._constrained,
+    "constrained": InterpretedKernel._motion,
+    "null_space": InterpretedKernel._motion,
     "project": InterpretedKernel._project,
     "differentiate": InterpretedKernel._differentiate,
     "transpose": InterpretedKernel._transpose,

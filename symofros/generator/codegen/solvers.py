@@ -17,11 +17,12 @@ ROUTINES: dict[str, tuple[str, ...]] = {
     "dense": ("dense",),
     "row_sizes": ("dense", "row_sizes"),
     "null_space_factors": ("dense", "row_sizes", "null_space_factors"),
-    "null_space": ("dense", "row_sizes", "null_space_factors", "null_space"),
+    "null_space": ("dense", "row_sizes", "null_space_factors", "null_space", "motion"),
     "kkt": ("dense", "row_sizes", "null_space_factors", "kkt"),
-    "constrained": ("dense", "row_sizes", "null_space_factors", "kkt", "constrained"),
+    "constrained": ("dense", "row_sizes", "null_space_factors", "kkt", "constrained", "motion"),
     "dense_system": ("dense", "row_sizes", "null_space_factors", "kkt", "constrained", "dense_system"),
     "sparse_system": ("dense", "row_sizes", "null_space_factors", "kkt", "constrained", "sparse_system"),
+    "motion": ("motion",),
     "project": ("dense", "row_sizes", "null_space_factors", "kkt", "constrained", "project"),
     "differentiate": ("dense", "row_sizes", "null_space_factors", "kkt", "differentiate"),
     "adjoint": ("dense", "row_sizes", "null_space_factors", "kkt", "adjoint"),
@@ -109,52 +110,51 @@ def _solving(n: int, m: int, sparse: SparseSystem | None) -> int:
 
 
 def _constrained(c_name: str, function: Function, needs: int, sparse: SparseSystem | None) -> tuple[list[str], int]:
-    """M, r, G, c -> a, lam, rank, by multipliers."""
+    """M, r, G, c, binds, phi -> a, lam, rank, by multipliers."""
     m, n = function.outputs[2].shape
-    M, _, G, _ = function.outputs if sparse is None else sparse.packed(function.outputs)
-    return _on_terms(
-        "sym_system_solve", c_name, (m, n), (len(M.edges), len(G.edges)), max(needs, _solving(n, m, sparse))
-    )
+    of = [f"sym_system_{name}" for name in ("solve", "sizes", "clear_row")]
+    return _motion(c_name, function, sparse, of, max(needs, _solving(n, m, sparse)))
 
 
 def _null_space(c_name: str, function: Function, needs: int, sparse: SparseSystem | None) -> tuple[list[str], int]:
-    """M, r, G, c -> a, lam, rank, in the coordinates that the constraints leave free."""
+    """M, r, G, c, binds, phi -> a, lam, rank, in the coordinates that the constraints leave free."""
     m, n = function.outputs[2].shape
-    return _on_terms(
-        "sym_null_space", c_name, (m, n), (n * n, m * n), max(needs, work_size("SYM_NULL_SPACE_WORK", n, m))
-    )
+    of = ["sym_null_space", "sym_row_sizes", "sym_clear_row"]
+    return _motion(c_name, function, None, of, max(needs, work_size("SYM_NULL_SPACE_WORK", n, m)))
 
 
-def _on_terms(
-    routine: str, c_name: str, shape: tuple[int, int], sizes: tuple[int, int], scratch: int
+def _motion(
+    c_name: str, function: Function, sparse: SparseSystem | None, form: Sequence[str], scratch: int
 ) -> tuple[list[str], int]:
-    """A routine that turns r and c, in the places of the results, into a and lam.
+    """Motion under constraints, by the rank of the posture beside the state that fulfils them.
 
     Args:
-        routine: Name of the routine.
         c_name: Prefix of the function's names.
-        shape: Shape of G.
-        sizes: Numbers that M and G are stored as.
-        scratch: Doubles of scratch of the routine and of the terms.
+        function: Function whose outputs are the terms.
+        sparse: Patterns of M and G, where these are packed.
+        form: Names of the routines that solve, judge the sizes of G's rows, and clear one.
+        scratch: Doubles of scratch that solving and the generated parts need.
     """
-    m, n = shape
-    start = sum(sizes)
+    assert function.solver is not None
+    m, n = function.outputs[2].shape
+    (moved,) = function.solver.parts[0].outputs
+    M, _, G, *_ = function.outputs if sparse is None else sparse.packed(function.outputs)
+    sizes, nq = (len(M.edges), len(G.edges)), moved.shape[0]
     lines = [
-        "    double *terms[4];",
-        f"    terms[0] = work, terms[1] = out[0], terms[2] = work + {sizes[0]}, terms[3] = out[1];",
-        f"    {c_name}_terms(in, terms, work + {start});",
-        f"    *out[2] = {routine}({n}, {m}, &measures, terms[0], out[0], terms[2], out[1], work + {start});",
+        f"    static const sym_form form = {{{', '.join(map(str, (*sizes, *form)))}}};",
+        f"    sym_motion({nq}, {n}, {m}, &measures, &form, {c_name}_terms, {c_name}_move, in, out, work);",
     ]
-    return lines, start + scratch
+    return lines, sum(sizes) + work_size("SYM_MOTION_WORK", nq, n, m) + scratch
 
 
 def _project(c_name: str, function: Function, needs: int, sparse: SparseSystem | None) -> tuple[list[str], int]:
     """The state -> the nearest one on the constraints."""
     m, n = function.outputs[1].shape
     nq = function.returns[0][1][0]
+    facing = sum(len(output.edges) for output in function.outputs if output.name == "facing")
     lines = [
-        f"    *out[3] = sym_project({nq}, {n}, {m}, &measures, {c_name}_terms, {c_name}_move,",
-        "                          in, out[0], out[1], out[2], out[4], work);",
+        f"    *out[3] = sym_project({nq}, {n}, {m}, {facing}, &measures, {c_name}_terms, {c_name}_move,",
+        "                          in, out[0], out[1], out[2], out[4], out[5], work);",
     ]
     return lines, work_size("SYM_PROJECT_WORK", nq, n, m) + max(needs, _solving(n, m, sparse))
 

@@ -223,6 +223,11 @@ class EquationsOfMotion:
         return [list(row.G) for row in self.constraints]
 
     @property
+    def facing(self) -> list[tuple[Edge, ...]]:
+        """Cosines of the angles between axes that each condition keeps parallel (constraints.md, 5a)."""
+        return [row.facing for row in self.constraints]
+
+    @property
     def gamma(self) -> list[Edge]:
         """Right-hand side of G v' = gamma (nc)."""
         return [row.gamma for row in self.constraints]

@@ -178,8 +178,10 @@ def _forward_dynamics(e: Equations, row: ModelFunction, methods: Methods, known:
         a = e.articulated if methods.trees == "articulated" else e.acceleration
         return Function(row.name, "", tuple(group for group in row.inputs if group != "gains"), (_vector("a", a),))
     routine = {"multipliers": "constrained", "null_space": "null_space"}[methods.constraints]
-    terms = _constrained_terms(e, e.gamma_baumgarte)
-    return Function(row.name, "", row.inputs, terms, Solver(routine, _returns(row, known), (), measures_of(e.tree)))
+    terms = (*_constrained_terms(e, e.gamma_baumgarte), *_residuals(e))
+    return Function(
+        row.name, "", row.inputs, terms, Solver(routine, _returns(row, known), (_move(e),), measures_of(e.tree))
+    )
 
 
 def _constrained_terms(e: Equations, right: Sequence[Edge]) -> tuple[Output, ...]:
@@ -259,18 +261,25 @@ def _inverse_hessian(e: Equations) -> list[list[list[Edge]]]:
 
 def _project(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[str, int]) -> Function:
     """The nearest state on the constraints: the terms of Newton's steps, and how a step moves q."""
-    binds = [ZERO if phi == ZERO else ONE for phi in e.phi]
-    outputs = (
-        _matrix("M", (e.nv, e.nv), e.M),
-        _jacobian(e),
-        _vector("binds", binds),
-        _vector("phi", e.phi),
-        _vector("rate", e.constraint_rate),
-    )
-    move = Function("move", "", ("q", "step"), (_vector("q_moved", retracted(e.kinematics)),))
+    rate, facing = _vector("rate", e.constraint_rate), _vector("facing", [*chain.from_iterable(e.facing)])
+    outputs = [_matrix("M", (e.nv, e.nv), e.M), _jacobian(e), *_residuals(e), rate, *([facing] if facing.edges else [])]
     return Function(
-        row.name, "", row.inputs, outputs, Solver("project", _returns(row, known), (move,), measures_of(e.tree))
+        row.name,
+        "",
+        row.inputs,
+        tuple(outputs),
+        Solver("project", _returns(row, known), (_move(e),), measures_of(e.tree)),
     )
+
+
+def _residuals(e: Equations) -> tuple[Output, Output]:
+    """Which conditions bind coordinates, 0 for those on speeds alone, and phi."""
+    return _vector("binds", [ZERO if phi == ZERO else ONE for phi in e.phi]), _vector("phi", e.phi)
+
+
+def _move(e: Equations) -> Function:
+    """How a step moves q."""
+    return Function("move", "", ("q", "step"), (_vector("q_moved", retracted(e.kinematics)),))
 
 
 def _beam_stiffness(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[str, int]) -> Function:

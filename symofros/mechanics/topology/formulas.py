@@ -8,7 +8,7 @@ from typing import Literal, NamedTuple
 
 from symofros.base.names import RESERVED, TIME, name_of, quoted, symbol_of
 from symofros.description.beams.beam import MATRIX_ORDER, STATION, STRAINS, Beam, BeamLoad, Samples
-from symofros.description.constraints import Constraint, Coupling, Nonholonomic
+from symofros.description.constraints import Constraint, Coupling, Nonholonomic, Rod
 from symofros.description.entry_units import units_of
 from symofros.description.forces import Connection, Load, Rotor
 from symofros.description.frames import Frame
@@ -30,7 +30,9 @@ from symofros.mechanics.topology.coordinates import (
 
 # What a formula may use: parameters alone; also coordinates; also t; also speeds and inputs; a general joint's own
 # coordinates; parameters and the station x of a beam; everything and x; the station xi = x/L alone.
-Scope = Literal["parameters", "coordinates", "configuration", "motion", "joint", "section", "spread", "shape"]
+Scope = Literal[
+    "parameters", "coordinates", "configuration", "condition", "motion", "joint", "section", "spread", "shape"
+]
 
 
 class Stated(NamedTuple):
@@ -63,6 +65,13 @@ _LINE_BY_FORMULA = (
 )
 
 
+# A length that is given in time has no noun; joints have it.
+_GIVEN_LENGTH = (
+    "declare a parameter for it; a length that is given in time is a prescribed prismatic joint, between a ball or "
+    "universal joint and a closure"
+)
+
+
 def stated_values(system: System) -> Iterator[Stated]:
     """Every value of a description."""
     for value in system.gravity:
@@ -92,13 +101,14 @@ def _constraint_values(constraint: Constraint) -> Iterator[Stated]:
     what, key = f"constraint '{constraint.name}'", ("constraint", constraint.name)
     for label in ("length", "radius", "height"):
         if hasattr(constraint, label):
-            yield Stated(f"{what}: {label}", getattr(constraint, label), key, units=units_of(type(constraint), label))
+            units, remedy = units_of(type(constraint), label), _GIVEN_LENGTH if isinstance(constraint, Rod) else ""
+            yield Stated(f"{what}: {label}", getattr(constraint, label), key, units=units, remedy=remedy)
     if isinstance(constraint, Coupling):
         yield Stated(what, constraint.residual, key, "coordinates")
     if isinstance(constraint, Nonholonomic):
         for speed, value in constraint.coefficients:
-            yield Stated(f"{what}: coefficient of {speed}", value, key, "configuration")
-        yield Stated(f"{what}: right", constraint.right, key, "configuration")
+            yield Stated(f"{what}: coefficient of {speed}", value, key, "condition")
+        yield Stated(f"{what}: right", constraint.right, key, "condition")
 
 
 def _joint_values(joint: Joint) -> Iterator[Stated]:
@@ -203,6 +213,8 @@ class _Scopes:
             return self.motion | {STATION}
         if stated.scope == "shape":
             return frozenset({"xi"})
+        if stated.scope == "condition":
+            return self.configuration
         return frozenset(getattr(self, stated.scope))
 
 
@@ -222,6 +234,8 @@ _RULES: dict[Scope, str] = {
     "parameters": "geometry, inertia, gravity and the constants of forces depend on parameters only",
     "coordinates": "a coupling depends on coordinates and parameters only",
     "configuration": "a potential depends on coordinates, parameters and t only",
+    "condition": "a condition on speeds is linear in them: its coefficients and its right side depend on coordinates, "
+    "parameters and t only",
     "motion": "a formula uses names that the description declares",
     "section": "a section property depends on parameters and on the station x only",
     "spread": "a spread load uses names that the description declares, and the station x",
@@ -234,6 +248,8 @@ _REMEDIES: dict[Scope, str] = {
     "parameters": "declare a parameter for it; what moves acts through loads, efforts, virtual power and potentials",
     "coordinates": "what binds speeds is a condition on speeds; a motion that is given in time is a prescribed joint",
     "configuration": "state forces that depend on speeds or inputs as loads, efforts or virtual power",
+    "condition": "state it as the sum of coefficient times speed = right; one that is not linear in speeds, such as a "
+    "product of two of them, has no equations of motion by virtual power and can't be stated",
     "motion": "",
     "joint": "name it under the joint's coordinates, or use a parameter",
     "section": "use parameters and x; what moves acts through loads",

@@ -11,6 +11,8 @@ from symofros.description.system import Body, Inertia, RigidBody, System
 from symofros.description.values import IDENTITY, Rotation, Term, Vector
 from symofros.mechanics.topology.coordinates import CoordinateMap, joint_sizes, map_coordinates, speed_names
 from symofros.mechanics.topology.graph import check
+from symofros.mechanics.topology.numbers import Numbers
+from symofros.mechanics.topology.rod_sections import with_sections
 
 BASE = -1
 
@@ -162,12 +164,12 @@ def build_tree(system: System) -> SpanningTree:
         DescriptionError: With every problem found.
     """
     check(system)
-    children: dict[str, list[Body]] = {}
+    numbers, children = Numbers(system), dict[str, list[Body]]()
     base_names = {WORLD} | {body.name for body in system.bodies if body.joint is None}
     for body in system.bodies:
         if body.joint is not None:
             parent = WORLD if body.joint.parent in base_names else body.joint.parent
-            children.setdefault(parent, []).append(body)
+            children.setdefault(parent, []).append(with_sections(body, numbers) if isinstance(body, Beam) else body)
     base = next((body for body in system.bodies if body.joint is None), RigidBody(WORLD))
     builder = _Builder(children)
     builder.place(base, BASE, (), WORLD)

@@ -16,7 +16,7 @@ SYM_EXPORT int32_t sym_diagram_bind(sym_diagram *d, sym_call *call) {
 
 static double sym_instant_time(const sym_diagram *d, int64_t cycle, int64_t instant) {
     const int64_t ticks = cycle * d->cycle_ticks + d->instant_tick[instant];
-    return d->t0 + (double)ticks * d->base_numerator / d->base_denominator;
+    return sym_multiple(d->t0 + (double)ticks * d->base_numerator / d->base_denominator, d->base_numerator / d->base_denominator);
 }
 
 /* The diagram's point <- the states of the parts, and the signals at time t. */
@@ -93,17 +93,37 @@ static int32_t sym_locks_changed(sym_diagram *d) {
     for (i = 0; i < d->n_locks; ++i) {
         const double now = d->u[d->lock_inputs[i]];
         if (now != d->lock_values[i]) changed = 1;
+        if (now > d->lock_values[i]) d->engaged = i;
         d->lock_values[i] = now;
     }
     return changed;
 }
 
-/* Project the parts onto their constraints at once: a plastic impact. Returns 0 or a status. */
+/* Largest |phi| by weight that engaging closes by moving bodies, which no force does (docs/theory/diagrams.md). */
+#define SYM_ENGAGE_TOLERANCE 1e-3
+
+/* Project a part whose constraints have just changed: a plastic impact. Returns 0 or a status. */
+static int32_t sym_engage(sym_diagram *d, sym_run *r, double t) {
+    const sym_call *project = &r->system->project;
+    int32_t status;
+    double gap;
+    sym_load_state(r); /* the inputs are those of the instant */
+    status = sym_project_point(r->system);
+    gap = project->out[5][0];
+    if (gap > d->engaged_gap) d->engaged_gap = gap, d->engaged_t = t;
+    if (gap > SYM_ENGAGE_TOLERANCE) return SYM_ENGAGED_APART;
+    if (status != 0) return status;
+    memcpy(r->q, r->system->q, (size_t)r->system->nq * sizeof *r->q);
+    memcpy(r->v, r->system->v, (size_t)r->system->nv * sizeof *r->v);
+    return 0;
+}
+
+/* Project the parts onto their constraints at once. Returns 0 or a status. */
 static int32_t sym_project_parts(sym_diagram *d, double t) {
     int32_t i, status;
     for (i = 0; i < d->n_parts; ++i) {
         if (!d->parts[i]->project) continue;
-        status = sym_project_state(d->parts[i]);
+        status = sym_engage(d, d->parts[i], t);
         if (status != 0) {
             d->failed_part = i;
             return status;
@@ -146,17 +166,20 @@ static void sym_add_counters(sym_diagram *d, sym_run *r) {
     r->steps = r->rejected = r->evaluations = 0;
 }
 
-/* An event stopped a part: record it, and execute its task, which may change inputs and states. Returns 0 or a status. */
+/* Events stopped a part, all at the same time: record them, and execute their tasks, which may change inputs and states, one
+ * after the other. Returns 0 or a status. */
 static int32_t sym_handle_crossing(sym_diagram *d, sym_run *stopped) {
     int32_t i, status;
     sym_gather_states(d, stopped->t);
     sym_diagram_record(d);
-    d->event_t[d->n_event_records] = stopped->t;
-    d->event_index[d->n_event_records++] = stopped->terminal_event;
-    stopped->n_event_records = 0;
     if (d->reads_accelerations && (status = sym_evaluate_parts(d)) != 0) return status;
-    status = sym_execute_tasks(d, &d->crossing_tasks[stopped->terminal_event], 1);
-    if (status != 0) return status;
+    for (i = 0; i < stopped->n_event_records; ++i) {
+        d->event_t[d->n_event_records] = stopped->t;
+        d->event_index[d->n_event_records++] = stopped->event_index[i];
+        status = sym_execute_tasks(d, &d->crossing_tasks[stopped->event_index[i]], 1);
+        if (status != 0) return status;
+    }
+    stopped->n_event_records = 0;
     for (i = 0; i < d->n_parts; ++i) {
         sym_run *r = d->parts[i];
         memcpy(r->q, d->q + d->q_offset[i], (size_t)r->system->nq * sizeof(double));
@@ -166,8 +189,7 @@ static int32_t sym_handle_crossing(sym_diagram *d, sym_run *stopped) {
             d->failed_part = i;
             return status;
         }
-        sym_load_state(r);
-        if (r->system->n_events > 0 && (status = sym_event_values(r, r->event_values)) != 0) return status;
+        if ((status = sym_restart_events(r)) != 0) return status;
     }
     sym_gather_states(d, stopped->t);
     sym_diagram_record(d);
@@ -181,7 +203,7 @@ static int32_t sym_advance_parts(sym_diagram *d, double t) {
     for (i = 0; i < d->n_parts && status == SYM_FINISHED; ++i) {
         sym_run *r = d->parts[i];
         do {
-            if (d->n_event_records == d->event_capacity || d->capacity - d->n_records < SYM_RECORDS_PER_INSTANT) return SYM_RECORDS_FULL;
+            if (d->event_capacity - d->n_event_records < d->n_crossings || d->capacity - d->n_records < SYM_RECORDS_PER_INSTANT) return SYM_RECORDS_FULL;
             status = sym_advance_part(r, t);
             sym_add_counters(d, r);
             if (status == SYM_TERMINAL_EVENT) {
@@ -197,6 +219,7 @@ static int32_t sym_advance_parts(sym_diagram *d, double t) {
 SYM_EXPORT int32_t sym_diagram_start(sym_diagram *d) {
     d->cycle = d->next_instant = 0;
     d->finished = d->failed_part = 0;
+    d->engaged = -1, d->engaged_gap = d->engaged_t = 0.0;
     d->steps = d->rejected = d->evaluations = 0;
     d->n_records = d->n_event_records = d->n_lateness = 0;
     d->clock_start = d->realtime_scale > 0.0 ? sym_clock_seconds() : 0.0;

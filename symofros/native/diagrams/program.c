@@ -1,7 +1,7 @@
 /* Exported diagrams: symofros_program.h. */
 
 /* Rows of records in a program, which nobody reads: they are emptied after each step of the caller's. */
-enum { SYM_PROGRAM_RECORDS = 2 * SYM_RECORDS_PER_INSTANT, SYM_PROGRAM_EVENTS = 4 };
+enum { SYM_PROGRAM_RECORDS = 2 * SYM_RECORDS_PER_INSTANT };
 
 /* A function of the instants' model as a call at the diagram's point; absent ones stay NULL. */
 static void sym_program_bind(sym_program_instance *instance, sym_arena *arena, sym_call *call, const char *name) {
@@ -57,7 +57,7 @@ static void sym_program_allocate_part(sym_program_instance *instance, sym_arena 
                       ? p->n_crossings
                       : 0;
     s->event_direction = p->directions, s->event_terminal = p->terminal;
-    r->event_values = sym_allocate(arena, 3 * n), r->event_capacity = p->n_crossings;
+    r->event_values = sym_allocate(arena, SYM_EVENT_ROWS * n), r->event_capacity = p->n_crossings;
     r->event_t = sym_allocate(arena, n), r->event_q = sym_allocate(arena, n * (size_t)model->nq);
     r->event_v = sym_allocate(arena, n * (size_t)model->nv);
     r->event_index = sym_allocate_bytes(arena, n * sizeof *r->event_index);
@@ -89,12 +89,12 @@ static void sym_program_allocate(sym_program_instance *instance, sym_arena *aren
     instance->task_sets = sym_allocate_bytes(arena, (size_t)p->n_sets * sizeof *instance->task_sets);
     instance->crossing_tasks = sym_allocate_bytes(arena, (size_t)p->n_crossings * sizeof *instance->crossing_tasks);
     d->task_sets = instance->task_sets, d->crossing_tasks = instance->crossing_tasks;
-    d->capacity = SYM_PROGRAM_RECORDS, d->event_capacity = SYM_PROGRAM_EVENTS;
+    d->capacity = SYM_PROGRAM_RECORDS, d->event_capacity = p->n_crossings;
     d->record_t = sym_allocate(arena, SYM_PROGRAM_RECORDS), d->record_q = sym_allocate(arena, SYM_PROGRAM_RECORDS * nq);
     d->record_v = sym_allocate(arena, SYM_PROGRAM_RECORDS * nv);
     d->record_u = sym_allocate(arena, SYM_PROGRAM_RECORDS * nu);
-    d->event_t = sym_allocate(arena, SYM_PROGRAM_EVENTS);
-    d->event_index = sym_allocate_bytes(arena, SYM_PROGRAM_EVENTS * sizeof *d->event_index);
+    d->event_t = sym_allocate(arena, (size_t)p->n_crossings);
+    d->event_index = sym_allocate_bytes(arena, (size_t)p->n_crossings * sizeof *d->event_index);
     sym_program_bind_tasks(instance, arena);
     memset(&instance->outputs, 0, sizeof instance->outputs);
     sym_program_bind(instance, arena, &instance->outputs, "signals");

@@ -26,6 +26,8 @@ typedef struct sym_diagram {
     int32_t n_locks;
     const int32_t *lock_inputs; /* (n_locks) entries of u that engage constraints: a change projects the parts */
     double *lock_values;        /* (n_locks) their last values */
+    int32_t engaged;            /* the lock that engaged last, -1: none */
+    double engaged_gap, engaged_t; /* largest |phi| by weight that engaging has closed, and when; of the last, if it failed */
     /* The point at which tasks are evaluated. */
     double *q, *v, *u, *t, *a, *lam;
     /* Instants: t0 + ticks of base_numerator / base_denominator seconds, the same in each cycle. */

@@ -17,6 +17,7 @@ static fmi2Status say(const fmu *f, fmi2Status status, const char *message) {
 static fmi2Status outcome(const fmu *f, int found) {
     if (found == FMU_OK) return fmi2OK;
     if (found == FMU_BEYOND_THEORY) return say(f, fmi2Discard, f->message);
+    if (found == FMU_NOT_DIFFERENTIATED) return say(f, fmi2Error, f->message);
     return say(f, found == FMU_SINGULAR ? fmi2Discard : fmi2Error, fmi_message(found));
 }
 

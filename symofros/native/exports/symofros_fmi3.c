@@ -15,6 +15,7 @@ static fmi3Status say(const fmu *f, fmi3Status status, const char *message) {
 static fmi3Status outcome(const fmu *f, int found) {
     if (found == FMU_OK) return fmi3OK;
     if (found == FMU_BEYOND_THEORY) return say(f, fmi3Discard, f->message);
+    if (found == FMU_NOT_DIFFERENTIATED) return say(f, fmi3Error, f->message);
     return say(f, found == FMU_SINGULAR ? fmi3Discard : fmi3Error, fmi_message(found));
 }
 

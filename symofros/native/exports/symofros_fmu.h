@@ -10,7 +10,7 @@ typedef enum { FMU_INSTANTIATED, FMU_INITIALISING, FMU_EVENT, FMU_CONTINUOUS, FM
 enum {
     FMU_OK, FMU_NOT_ALLOWED, FMU_UNKNOWN, FMU_SINGULAR, FMU_WRONG_MODE, FMU_START_NOT_CONSISTENT,
     FMU_STOP_BEFORE_START, FMU_NO_MEMORY, FMU_OTHER_MODEL, FMU_BUFFER_TOO_SMALL,
-    FMU_BEYOND_THEORY, FMU_NO_ROTATION, FMU_INPUT_NO_ROTATION,
+    FMU_BEYOND_THEORY, FMU_NO_ROTATION, FMU_INPUT_NO_ROTATION, FMU_NOT_DIFFERENTIATED,
     FMU_PARAMETERS /* and beyond: by the number of the condition that the parameters do not meet */
 };
 
@@ -28,6 +28,7 @@ typedef struct fmu {
     double stop;
     double *rates, *rate_derivatives; /* (nq + nv) */
     double *dq, *dv, *du, *dlam, *tangent;
+    double *dpar, *par; /* direction, and parameters that are set aside (npar) */
     double *work, *frame_outputs;
     const sym_function *pose[SYM_FMU_FRAMES + 1], *jacobian[SYM_FMU_FRAMES + 1];
     const sym_function *driven[SYM_FMU_FRAMES + 1]; /* by prescribed motions; NULL where there are none */
@@ -36,7 +37,7 @@ typedef struct fmu {
     void *environment, *logger;
     char *name;
     int bending_noted;  /* whether the log already says that a beam bends much */
-    char message[256]; /* on the beam that bends most */
+    char message[256]; /* on the beam that bends most, or on a derivative that there is none of */
     void (*release)(void *);
 } fmu;
 
@@ -84,6 +85,7 @@ static void fmu_layout(fmu *f, sym_arena *arena, const sym_plant *plant, size_t 
     f->rates = sym_allocate(arena, nq + nv), f->rate_derivatives = sym_allocate(arena, nq + nv);
     f->dq = sym_allocate(arena, nq), f->dv = sym_allocate(arena, nv), f->du = sym_allocate(arena, (size_t)m->nu);
     f->dlam = sym_allocate(arena, (size_t)m->nc), f->tangent = sym_allocate(arena, nv);
+    f->dpar = sym_allocate(arena, (size_t)m->npar), f->par = sym_allocate(arena, (size_t)m->npar);
     f->frame_outputs = sym_allocate(arena, fmu_frame_outputs(m));
     f->name = sym_allocate_bytes(arena, name_length + 1);
 }
@@ -281,7 +283,44 @@ static int fmu_frame_derivative(fmu *f, size_t frame, size_t row, double *deriva
     return FMU_OK;
 }
 
-/* Directional derivatives of unknowns (rates, multipliers, outputs) along seeds of knowns (states and inputs): exact. */
+/* Relative change of parameters, for differences of fourth order: their error and rounding are then below 1e-11. */
+#define FMU_PARAMETER_STEP 1e-3
+
+/* Add the derivatives of unknowns along f->dpar, states and inputs held: models have no functions for them. */
+static int fmu_add_by_parameters(fmu *f, size_t n_unknown, const uint32_t *unknown, double *derivative) {
+    static const double ways[4] = {1.0, -1.0, 2.0, -2.0}, weights[4] = {8.0, -8.0, -1.0, 1.0};
+    const size_t npar = (size_t)f->instance->model->npar;
+    double *const par = f->instance->par, change = 0.0, step, value;
+    size_t i, j, k;
+    int status = FMU_OK, restored;
+    for (i = 0; i < npar; ++i) {
+        const double relative = fabs(f->dpar[i]) / (par[i] == 0.0 ? 1.0 : fabs(par[i]));
+        change = relative > change ? relative : change;
+    }
+    if (!(change > 0.0)) return FMU_OK;
+    step = FMU_PARAMETER_STEP / change;
+    memcpy(f->par, par, npar * sizeof *par);
+    for (j = 0; j < 4 && status == FMU_OK; ++j) {
+        for (i = 0; i < npar; ++i) par[i] = f->par[i] + ways[j] * step * f->dpar[i];
+        f->parameters_valid = 0, f->rates_valid = 0;
+        for (k = 0; k < n_unknown && status == FMU_OK; ++k) {
+            status = fmu_get(f, unknown[k], &value);
+            if (status == FMU_OK) derivative[k] += weights[j] / (12.0 * step) * value;
+        }
+    }
+    memcpy(par, f->par, npar * sizeof *par);
+    f->parameters_valid = 0, f->rates_valid = 0;
+    restored = fmu_prepare(f);
+    return status == FMU_OK ? restored : status;
+}
+
+static int fmu_not_differentiated(fmu *f, uint32_t reference, const char *rule) {
+    sprintf(f->message, "no derivative with value reference %lu: %.160s", (unsigned long)reference, rule);
+    return FMU_NOT_DIFFERENTIATED;
+}
+
+/* Directional derivatives of unknowns (rates, multipliers, outputs) along seeds of knowns: states and inputs, exact; while
+ * the unit is initialised also parameters, by differences. */
 static int fmu_differentiate(fmu *f, size_t n_unknown, const uint32_t *unknown, size_t n_known, const uint32_t *known,
                              const double *seed, double *derivative) {
     sym_instance *instance = f->instance;
@@ -290,14 +329,18 @@ static int fmu_differentiate(fmu *f, size_t n_unknown, const uint32_t *unknown, 
     size_t i, k;
     int status;
     memset(f->dq, 0, nq * sizeof(double)), memset(f->dv, 0, nv * sizeof(double));
-    memset(f->du, 0, (size_t)m->nu * sizeof(double));
-    for (k = 0; k < n_known; ++k)
-        switch (fmu_find_variable(f, known[k], &i)) {
-        case FMU_Q: f->dq[i] += seed[k]; break;
-        case FMU_V: f->dv[i] += seed[k]; break;
-        case FMU_U: f->du[i] += seed[k]; break;
-        default: return FMU_UNKNOWN;
-        }
+    memset(f->du, 0, (size_t)m->nu * sizeof(double)), memset(f->dpar, 0, (size_t)m->npar * sizeof(double));
+    for (k = 0; k < n_known; ++k) {
+        const int what = fmu_find_variable(f, known[k], &i);
+        if (what == FMU_Q) f->dq[i] += seed[k];
+        else if (what == FMU_V) f->dv[i] += seed[k];
+        else if (what == FMU_U) f->du[i] += seed[k];
+        else if (what == FMU_PAR && f->phase == FMU_INITIALISING) f->dpar[i] += seed[k];
+        else
+            return fmu_not_differentiated(f, known[k], what == FMU_PAR
+                ? "parameters are knowns in initialisation mode alone"
+                : "knowns are states and inputs, and in initialisation mode parameters");
+    }
     status = fmu_refresh(f);
     if (status != FMU_OK) return status;
     if (sym_instance_differentiate(instance, f->dq, f->dv, f->du, f->rate_derivatives, f->dlam, f->work) != 0)
@@ -313,10 +356,11 @@ static int fmu_differentiate(fmu *f, size_t n_unknown, const uint32_t *unknown, 
             status = fmu_frame_derivative(f, i / 3, i % 3, &derivative[k]);
             if (status != FMU_OK) return status;
             break;
-        default: return FMU_UNKNOWN;
+        default:
+            return fmu_not_differentiated(f, unknown[k], "unknowns are states, their rates, multipliers and outputs");
         }
     }
-    return FMU_OK;
+    return fmu_add_by_parameters(f, n_unknown, unknown, derivative);
 }
 
 static size_t fmu_snapshot_size(const fmu *f) {

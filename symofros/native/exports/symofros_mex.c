@@ -39,11 +39,14 @@ static mxArray *texts(int32_t n, const char *const *names) {
     return found;
 }
 
-/* An argument of n doubles, or the default where it is empty or absent. */
-static void take(int count, const mxArray *const *given, int which, const char *what, int32_t n, double *into,
+enum { COLUMN, VECTOR };
+
+/* An argument of n finite doubles, a column or any vector, or the default where it is empty or absent. */
+static void take(int count, const mxArray *const *given, int which, const char *what, int shape, int32_t n, double *into,
                  const double *otherwise) {
     const mxArray *array = which < count ? given[which] : NULL;
     char rule[160];
+    int32_t i;
     if (array == NULL || mxIsEmpty(array)) {
         if (otherwise == NULL && n > 0) {
             sprintf(rule, "it has %d entries", (int)n);
@@ -56,7 +59,16 @@ static void take(int count, const mxArray *const *given, int which, const char *
         sprintf(rule, "it is a real, full array of %d doubles", (int)n);
         refuse("size", what, rule);
     }
+    if ((int32_t)mxGetM(array) != n && (shape == COLUMN || mxGetM(array) != 1)) {
+        sprintf(rule, "it is a column of %d doubles%s", (int)n, shape == COLUMN ? "" : ", or a row");
+        refuse("shape", what, rule);
+    }
     memcpy(into, mxGetPr(array), (size_t)n * sizeof *into);
+    for (i = 0; i < n; ++i)
+        if (!(into[i] - into[i] == 0.0)) {
+            sprintf(rule, "its entries are finite, and number %d is not", (int)i + 1);
+            refuse("value", what, rule);
+        }
 }
 
 /* X, then what follows from `from` on: U, Parameters and, but for a simulation, t. */
@@ -64,18 +76,18 @@ static void place(int count, const mxArray *const *given, int from, int with_tim
     const sym_model *m = instance->model;
     const int32_t nx = m->nq + m->nv;
     double *x = mxMalloc((size_t)(nx + m->npar + 1) * sizeof *x), *par = x + nx;
-    take(count, given, 1, "X = [q; v]", nx, x, NULL);
+    take(count, given, 1, "X = [q; v]", COLUMN, nx, x, NULL);
     memcpy(instance->q, x, (size_t)m->nq * sizeof *x);
     memcpy(instance->v, x + m->nq, (size_t)m->nv * sizeof *x);
-    take(count, given, from, "U", m->nu, instance->u, instance->plant->u_start);
-    take(count, given, from + 1, "Parameters", m->npar, par, m->par_default);
+    take(count, given, from, "U", COLUMN, m->nu, instance->u, instance->plant->u_start);
+    take(count, given, from + 1, "Parameters", VECTOR, m->npar, par, m->par_default);
     if (instance->refused >= 0 || memcmp(par, instance->par, (size_t)m->npar * sizeof *par) != 0) {
         memcpy(instance->par, par, (size_t)m->npar * sizeof *par);
         if (sym_instance_prepare(instance) != 0)
             refuse("parameters", "Parameters", instance->plant->conditions[instance->refused]);
     }
     instance->t = 0.0;
-    if (with_time) take(count, given, from + 2, "t", 1, &instance->t, &instance->t);
+    if (with_time) take(count, given, from + 2, "t", VECTOR, 1, &instance->t, &instance->t);
     mxFree(x);
 }
 
@@ -169,7 +181,7 @@ static void motion(int nlhs, mxArray **plhs) {
 static void inverse(int count, const mxArray *const *given, mxArray **plhs) {
     const sym_function *f = function("inverse_dynamics", NULL);
     double *out[8];
-    take(count, given, 2, "A, the accelerations", instance->model->nv, instance->a, NULL);
+    take(count, given, 2, "A, the accelerations", COLUMN, instance->model->nv, instance->a, NULL);
     evaluate(f, out);
     plhs[0] = column(instance->model->nv, out[0]);
 }
@@ -273,7 +285,7 @@ static void simulate(int nlhs, mxArray **plhs, int count, const mxArray *const *
     const size_t nq = (size_t)m->nq, nv = (size_t)m->nv;
     double span[3], *t, *x;
     size_t n, i, k;
-    take(count, given, 4, "[t0 t_end dt]", 3, span, NULL);
+    take(count, given, 4, "[t0 t_end dt]", VECTOR, 3, span, NULL);
     if (!(span[2] > 0.0) || !(span[1] >= span[0]) || !((span[1] - span[0]) / span[2] < 1e8))
         refuse("span", "[t0 t_end dt] is no span of time", "t_end >= t0 and dt > 0");
     n = (size_t)ceil((span[1] - span[0]) / span[2] * (1.0 - 1e-9)) + 1;

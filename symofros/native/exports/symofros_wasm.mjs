@@ -64,14 +64,27 @@ export class Model {
     return this.#results(f, call, n);
   }
 
-  /** A batch whose memory is kept until `free()`: fill `inputs`, `run()`, read `outputs`; nothing is copied. */
+  /** A batch whose memory is kept until `free()`: fill `inputs`, `run()`, read `outputs`; nothing is copied. Memory that
+   *  grows ends the arrays that were taken from it: `run()` throws until such `inputs` are taken anew. */
   prepareBatch(name, n, frame = null) {
     const f = this.find(name, frame), call = this.#made(f, count(n));
-    const view = (arrays, at) => Object.fromEntries(arrays.map((a, k) => [a.name, this.view(at[k], n * a.size)]));
+    const check = () => { if (!call.memory.length) throw new Error(`${name}: the batch was freed`); };
+    const ended = (view) => view.buffer !== this.wasm.memory.buffer;
+    const views = (arrays, at, taken) => Object.defineProperties({}, Object.fromEntries(arrays.map((a, k) => {
+      const get = () => {
+        check();
+        if (!taken.has(a.name) || ended(taken.get(a.name))) taken.set(a.name, this.view(at[k], n * a.size));
+        return taken.get(a.name);
+      };
+      return [a.name, { get, enumerable: true }];
+    })));
+    const given = new Map();
     return {
-      inputs: view(f.in.slice(1), call.inputs.slice(1)), outputs: view(f.out, call.outputs),
+      inputs: views(f.in.slice(1), call.inputs.slice(1), given), outputs: views(f.out, call.outputs, new Map()),
       run: () => {
-        if (!call.memory.length) throw new Error(`${name}: the batch was freed`);
+        check();
+        const lost = [...given.keys()].filter((key) => ended(given.get(key))).join(", ");
+        if (lost) throw new Error(`${name}: memory has grown since ${lost} were taken; take them from 'inputs' anew`);
         this.wasm.js_batch(f.index, n, call.in, call.stride, call.out, this.work);
       },
       free: () => this.#free(call),

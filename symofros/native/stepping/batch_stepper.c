@@ -41,7 +41,8 @@ static int32_t sym_batch_allocate(sym_batch *b, sym_arena *arena) {
     b->y1 = sym_allocate(arena, slots * m), b->stage = sym_allocate(arena, slots * m);
     b->magnitude = sym_allocate(arena, slots * m), b->end_slope = sym_allocate(arena, slots * m);
     b->k = sym_allocate(arena, slopes * slots * m);
-    b->end_state = sym_allocate(arena, nq + nv);
+    b->end_state = sym_allocate(arena, nq + nv), b->unseen = sym_allocate(arena, 3 * nv);
+    b->defects = sym_allocate_defects(s, arena).impulse; /* the first of them */
     b->y0 = sym_allocate(arena, slots * m), b->length = sym_allocate(arena, slots * m);
     return sym_batch_bind(b, arena, &b->forward_dynamics) && sym_batch_bind(b, arena, &b->law);
 }
@@ -81,10 +82,13 @@ SYM_EXPORT int32_t sym_batch_start(sym_batch *b, double *memory) {
 /* Working memory of one slot. */
 static sym_workspace sym_batch_workspace(const sym_batch *b, int32_t slot) {
     const size_t m = 2 * (size_t)b->prototype->system->nv, at = (size_t)slot * (size_t)m;
+    sym_arena defects = {NULL, 0};
     sym_workspace w;
     w.y1 = b->y1 + at, w.stage = b->stage + at, w.magnitude = b->magnitude + at, w.end_slope = b->end_slope + at;
-    w.end_state = b->end_state;
+    w.end_state = b->end_state, w.unseen = b->unseen;
     w.k = b->k + at, w.stage_stride = (size_t)b->slots * (size_t)m;
+    defects.base = b->defects;
+    w.defects = sym_allocate_defects(b->prototype->system, &defects);
     memset(&w.implicit, 0, sizeof w.implicit);
     return w;
 }
@@ -210,7 +214,7 @@ static void sym_batch_first_slopes(sym_batch *b) {
     int32_t i, missing = 0;
     for (i = 0; i < b->n_active; ++i) {
         if (b->runs[i].slope_valid) continue;
-        sym_load_state(b->runs + i);
+        sym_load_start(b->runs + i);
         ++missing;
     }
     if (missing > 0) sym_batch_evaluate_acceleration(b);
@@ -253,7 +257,7 @@ static void sym_batch_evaluate_stage(sym_batch *b, int32_t stage) {
     sym_batch_combine_slopes(b, stage, method->a + (size_t)stage * (size_t)method->dense_stages, b->stage);
     for (i = 0; i < b->n_active; ++i) {
         sym_run *r = b->runs + i;
-        sym_load_chart_state(r, r->t + method->c[stage] * b->h[i], sym_batch_workspace(b, i).stage);
+        sym_load_chart_state(r, sym_stage_time(r->system, r->t + method->c[stage] * b->h[i]), sym_batch_workspace(b, i).stage);
     }
     sym_batch_evaluate_acceleration(b);
     for (i = 0; i < b->n_active; ++i) {

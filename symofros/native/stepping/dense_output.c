@@ -1,5 +1,19 @@
 /* States between the ends of a step: dense output, and records at given times. */
 
+/* The end of the step <- the evaluation point. */
+static void sym_store_end_state(const sym_system *s, sym_workspace *w) {
+    memcpy(w->end_state, s->q, (size_t)s->nq * sizeof *s->q);
+    memcpy(w->end_state + s->nq, s->v, (size_t)s->nv * sizeof *s->v);
+}
+
+/* Evaluation point <- the end of the step just made. */
+static void sym_load_end_state(sym_run *r, const sym_workspace *w) {
+    sym_system *s = r->system;
+    memcpy(s->q, w->end_state, (size_t)s->nq * sizeof *s->q);
+    memcpy(s->v, w->end_state + s->nq, (size_t)s->nv * sizeof *s->v);
+    *s->t = s->step_end;
+}
+
 /* y at x in [0, 1] of the step that has just been made, of length h. *dense_ready: whether what the polynomial needs besides
  * the step has been evaluated. Returns 0 or a status. */
 static int32_t sym_dense_output(sym_run *r, sym_workspace *w, double h, int32_t *dense_ready, double x, double *y) {
@@ -24,7 +38,10 @@ static int32_t sym_dense_output(sym_run *r, sym_workspace *w, double h, int32_t 
         return 0;
     }
     if (!*dense_ready) { /* cubic Hermite interpolation needs the slope at the end */
-        status = sym_evaluate_slope(r, r->t + h, w->y1, w->end_slope);
+        sym_load_end_state(r, w);
+        *r->system->t = sym_stage_time(r->system, *r->system->t);
+        status = sym_evaluate_acceleration(r);
+        sym_slope_of_acceleration(r->system, w->y1, w->end_slope);
         if (status != 0) return status;
         *dense_ready = 1;
     }
@@ -36,10 +53,13 @@ static int32_t sym_dense_output(sym_run *r, sym_workspace *w, double h, int32_t 
     return 0;
 }
 
-/* Evaluation point <- the state at x in [0, 1] of the step just made, projected where the run projects. Returns 0 or a
- * status. */
+/* Evaluation point <- the state at x in [0, 1] of the step just made, projected where the run projects; at its ends just
+ * the states there. Returns 0 or a status. */
 static int32_t sym_load_state_within_step(sym_run *r, sym_workspace *w, double h, int32_t *dense_ready, double x) {
-    const int32_t status = sym_dense_output(r, w, h, dense_ready, x, w->stage);
+    int32_t status;
+    if (x == 0.0) return sym_load_start(r), 0;
+    if (x == 1.0) return sym_load_end_state(r, w), 0;
+    status = sym_dense_output(r, w, h, dense_ready, x, w->stage);
     return status != 0 ? status : sym_load_projected_state(r, r->t + x * h, w->stage);
 }
 

@@ -45,3 +45,23 @@ static void sym_keep_diagnostic_state(sym_run *r, int32_t last) {
     r->diagnostic_between = r->steps % r->diagnostic_stride != 0;
     sym_store_diagnostic_state(r, r->n_diagnostic++);
 }
+
+/* Accelerations and inputs at states of the motion (n), each projected first where the run projects. A state without
+ * accelerations gets NaN. Returns 0, or SYM_CALLBACK_FAILED. */
+SYM_EXPORT int32_t sym_run_accelerations(sym_run *r, int64_t n, const double *t, const double *q, const double *v, double *u,
+                                         double *a) {
+    sym_system *s = r->system;
+    int64_t i;
+    int32_t k, status;
+    for (i = 0; i < n; ++i) {
+        memcpy(s->q, q + i * s->nq, (size_t)s->nq * sizeof *q);
+        memcpy(s->v, v + i * s->nv, (size_t)s->nv * sizeof *v);
+        *s->t = t[i];
+        status = r->project ? sym_project_point(s) : 0;
+        if (status == 0) status = sym_evaluate_acceleration(r);
+        if (status == SYM_CALLBACK_FAILED) return status;
+        memcpy(u + i * s->nu, s->u, (size_t)s->nu * sizeof *u);
+        for (k = 0; k < s->nv; ++k) a[i * s->nv + k] = status == 0 ? s->a[k] : NAN;
+    }
+    return 0;
+}

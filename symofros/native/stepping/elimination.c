@@ -2,6 +2,9 @@
 
 /* Relative to the largest pivot of the scaled system: smaller ones count as zero, and the system as of lower rank. */
 #define SYM_PIVOT_TOLERANCE 1e-13
+/* The same of pivots beyond the rank that the conditions have where they are fulfilled: beside it, they say nothing
+ * (docs/theory/constraints.md, section 4). */
+#define SYM_PIVOT_DOUBT 1e-3
 /* Share of the largest entry of a column in all conditions below which an entry is rounding of the sum that it is. */
 #define SYM_ENTRY_ROUNDING 1e-12
 
@@ -24,9 +27,9 @@ static int32_t sym_condition_is_void(int32_t nv, int32_t n, const double *A, int
     return 1;
 }
 
-/* scale (n): each speed in units of its own inertia, each condition by its own size in these units, or 0 where it is void
- * (docs/theory/simulation.md, section 3). */
-static void sym_natural_scale(int32_t nv, int32_t n, const double *A, double *scale) {
+/* scale (n): each speed in units of its own inertia, each condition by the largest size in its group in these units, or 0
+ * where it is void (docs/theory/simulation.md, section 3). */
+static void sym_natural_scale(int32_t nv, int32_t n, const int32_t *group, const double *A, double *scale) {
     int32_t i, j;
     for (j = 0; j < nv; ++j) scale[j] = sym_inverse_root(fabs(A[SYM_INDEX(j, n, j)]));
     for (i = nv; i < n; ++i) {
@@ -35,16 +38,23 @@ static void sym_natural_scale(int32_t nv, int32_t n, const double *A, double *sc
             const double entry = fabs(A[SYM_INDEX(i, n, j)]) * scale[j];
             size = entry > size ? entry : size;
         }
+        j = nv + group[i - nv]; /* the first row of its group */
+        scale[i] = 0.0;
+        if (size > scale[j]) scale[j] = size;
+    }
+    for (i = n - 1; i >= nv; --i) { /* first rows after the others of their groups */
+        const double size = scale[nv + group[i - nv]];
         scale[i] = sym_condition_is_void(nv, n, A, i) ? 0.0 : sym_inverse_root(size * size);
     }
 }
 
 /* Factors A (n x n, row by row; nv equations of motion, then conditions with their multipliers) in place, scaled; p and c
- * become the permutations of rows and columns. Returns the rank. */
-static int32_t sym_eliminate(int32_t nv, int32_t n, double *A, double *scale, int32_t *p, int32_t *c) {
+ * become the permutations of rows and columns. group (n - nv): sym_system. known: the rank where the conditions are
+ * fulfilled. Returns the rank. */
+static int32_t sym_eliminate(int32_t nv, int32_t n, const int32_t *group, int32_t known, double *A, double *scale, int32_t *p, int32_t *c) {
     int32_t i, j, k, rank = 0;
     double largest = 0.0;
-    sym_natural_scale(nv, n, A, scale);
+    sym_natural_scale(nv, n, group, A, scale);
     for (i = 0; i < n; ++i) {
         for (j = 0; j < n; ++j) A[SYM_INDEX(i, n, j)] *= scale[i] * scale[j];
         p[i] = c[i] = i;
@@ -56,7 +66,7 @@ static int32_t sym_eliminate(int32_t nv, int32_t n, double *A, double *scale, in
             for (j = k; j < n; ++j)
                 if (fabs(A[SYM_INDEX(i, n, j)]) > best) best = fabs(A[SYM_INDEX(i, n, j)]), row = i, column = j;
         if (k == 0) largest = best;
-        if (!(best > SYM_PIVOT_TOLERANCE * largest)) break;
+        if (!(best > (k < known ? SYM_PIVOT_TOLERANCE : SYM_PIVOT_DOUBT) * largest)) break;
         ++rank;
         if (row != k) {
             for (j = 0; j < n; ++j) {

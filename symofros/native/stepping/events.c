@@ -1,90 +1,153 @@
-/* Events: zeros of formulas along the dense output. */
+/* Events of a run: zeros of formulas along the dense output, found by event_search.c. */
 
 /* Values of all events at the evaluation point. Returns 0 or a status. */
 static int32_t sym_event_values(sym_run *r, double *values) {
     const sym_system *s = r->system;
-    if (sym_evaluate_inputs(r->system) != 0) return SYM_CALLBACK_FAILED;
+    if (!s->events_free_of_inputs && sym_evaluate_inputs(r->system) != 0) return SYM_CALLBACK_FAILED;
     sym_evaluate(&s->events);
     memcpy(values, s->events.out[0], (size_t)s->n_events * sizeof *values);
     return 0;
 }
 
-/* The value of one event at the evaluation point; NaN where the inputs fail. */
-static double sym_event_value(sym_run *r, int32_t which) {
-    if (sym_evaluate_inputs(r->system) != 0) return NAN;
-    sym_evaluate(&r->system->events);
-    return r->system->events.out[0][which];
+typedef struct sym_event_step { /* the step just made */
+    sym_run *run;
+    sym_workspace *memory;
+    double h;
+    int32_t *dense_ready;
+} sym_event_step;
+
+/* Values of all events at x of the step, the sample that holds from its start on included. Returns 0 or a status. */
+static int32_t sym_event_values_within_step(void *data, double x, double *values) {
+    const sym_event_step *step = (const sym_event_step *)data;
+    const int32_t status = sym_load_state_within_step(step->run, step->memory, step->h, step->dense_ready, x);
+    return status != 0 ? status : sym_event_values(step->run, values);
 }
 
-/* Whether the sign changes in that direction. */
-static int32_t sym_crosses_zero(int32_t direction, double before, double after) {
-    if (direction >= 0 && before < 0.0 && after >= 0.0) return 1;
-    return direction <= 0 && before > 0.0 && after <= 0.0;
+/* Record the evaluation point as an event. */
+static void sym_record_event(sym_run *r, int32_t which) {
+    const sym_system *s = r->system;
+    const int64_t row = r->n_event_records++;
+    r->event_t[row] = *s->t;
+    r->event_index[row] = which;
+    memcpy(r->event_q + row * s->nq, s->q, (size_t)s->nq * sizeof(double));
+    memcpy(r->event_v + row * s->nv, s->v, (size_t)s->nv * sizeof(double));
 }
 
-/* The x in [0, 1] at which an event is zero, by the Illinois method (regula falsi whose retained end is halved).
- * Returns 0 or a status. */
-static int32_t sym_locate_event(sym_run *r, sym_workspace *w, double h, int32_t *dense_ready, int32_t which,
-                                double before, double after, double *x) {
-    double a = 0.0, b = 1.0, fa = before, fb = after;
-    int32_t i, side = 0;
-    for (i = 0; i < 100 && b - a > 4e-16 && fb != 0.0; ++i) {
-        double c = (fa * b - fb * a) / (fa - fb), f;
-        int32_t status;
-        if (!(c > a && c < b)) c = 0.5 * (a + b);
-        status = sym_load_state_within_step(r, w, h, dense_ready, c);
-        if (status != 0) return status;
-        f = sym_event_value(r, which);
-        if (!(f == f)) return SYM_DIVERGED;
-        if ((f < 0.0) == (fa < 0.0) && f != 0.0) {
-            a = c, fa = f;
-            if (side == 1) fb *= 0.5;
-            side = 1;
-        } else {
-            b = c, fb = f;
-            if (side == -1) fa *= 0.5;
-            side = -1;
-        }
-    }
-    *x = b;
+/* Record the events that are met where the step is cut, at the evaluation point, and were not found there by rounding: the
+ * next step begins behind them. Returns 0 or a status. */
+static int32_t sym_record_events_at_cut(sym_run *r, sym_event_search *search, double x) {
+    const sym_system *s = r->system;
+    double *values = r->event_values; /* evaluated again at the start of the next step */
+    int32_t i, status = sym_event_values(r, values);
+    if (status != 0) return status;
+    for (i = 0; i < s->n_events; ++i)
+        if (sym_event_is_met(search, i, x, values[i])) sym_record_event(r, i);
     return 0;
 }
 
-/* Events of the step just made, at whose end the evaluation point is: recorded in the order of time, up to the first
- * terminal one, whose x is returned in *stop_x. r->event_values becomes the values at the end; the rest of it is work.
+/* Values of the events at the present state, from which a search may begin; those before are unknown. Returns 0 or a
+ * status. */
+static int32_t sym_restart_events(sym_run *r) {
+    const int32_t n = r->system->n_events;
+    int32_t i;
+    if (n == 0) return 0;
+    for (i = 0; i < n; ++i) r->event_values[SYM_EVENT_EARLIER * n + i] = NAN;
+    sym_load_state(r);
+    return sym_event_values(r, r->event_values);
+}
+
+/* Errors that a state of fixed steps has at least; those of adaptive steps are rtol and atol. */
+#define SYM_EVENT_RTOL 1e-9
+#define SYM_EVENT_ATOL 1e-12
+
+/* What event i may change by at x where the entries of y have errors of the size that steps allow, their signs alternating
+ * one way or the other. Returns 0 or a status. */
+static int32_t sym_event_error(sym_event_step *step, int32_t i, double x, double value, double *error) {
+    sym_run *r = step->run;
+    sym_workspace *w = step->memory;
+    const double rtol = r->adaptive ? r->rtol : SYM_EVENT_RTOL, atol = r->adaptive ? r->atol : SYM_EVENT_ATOL;
+    double *values = r->event_values + (SYM_EVENT_ROWS - 1) * r->system->n_events;
+    int32_t way, l;
+    *error = 0.0;
+    sym_state_magnitudes(r, w->magnitude);
+    for (way = -1; way <= 1; way += 2) {
+        int32_t sign = way, status = sym_dense_output(r, w, step->h, step->dense_ready, x, w->stage);
+        if (status != 0) return status;
+        for (l = 0; l < 2 * r->system->nv; ++l, sign = -sign) w->stage[l] += sign * (atol + rtol * w->magnitude[l]);
+        sym_load_chart_state(r, r->t + x * step->h, w->stage);
+        status = sym_event_values(r, values);
+        if (status != 0) return status;
+        *error += fabs(values[i] - value);
+    }
+    return 0;
+}
+
+/* Keep what was noted of the events of a step, the first of each kind: one that turns at x nearer to zero than the errors of
+ * the state let it be known, one that was not followed. Returns 0 or a status. */
+static int32_t sym_keep_event_notes(sym_event_step *step, const sym_event_search *search) {
+    sym_run *r = step->run;
+    const int32_t i = search->touched;
+    double *values = r->event_values + (SYM_EVENT_ROWS - 1) * r->system->n_events, value, error;
+    int32_t status;
+    if (r->unresolved_event < 0 && search->unresolved >= 0)
+        r->unresolved_event = search->unresolved, r->unresolved_t = r->t;
+    if (r->touched_event >= 0 || i < 0) return 0;
+    status = sym_event_values_within_step(step, search->touched_x, values);
+    if (status != 0) return status;
+    value = values[i];
+    status = sym_event_error(step, i, search->touched_x, value, &error);
+    if (status == 0 && fabs(value) <= error) r->touched_event = i, r->touched_t = r->t + search->touched_x * step->h;
+    return status;
+}
+
+/* The largest way of a coordinate in the step just made, by the speeds at its ends [rad or m]. */
+static double sym_way_of_step(const sym_run *r, const sym_workspace *w, double h) {
+    const int32_t nv = r->system->nv;
+    double largest = 0.0;
+    int32_t l;
+    for (l = 0; l < nv; ++l) {
+        const double first = h * fabs(r->v[l]), last = h * fabs(w->y1[nv + l]);
+        if (first > largest) largest = first;
+        if (last > largest) largest = last;
+    }
+    return largest;
+}
+
+/* Events of the step just made, recorded in the order of time, up to the first terminal one or as many as fit: *stop_x is
+ * where the step is cut then, else beyond 1. r->event_values becomes the values at the end, of a step that is not cut.
  * Returns 0 or a status. */
 static int32_t sym_find_events(sym_run *r, sym_workspace *w, double h, int32_t *dense_ready, double *stop_x) {
     sym_system *s = r->system;
-    double *values = r->event_values, *after = values + s->n_events;
-    double *met_x = after, *met_index = after + s->n_events; /* met_x overwrites what has been read of after */
-    int32_t i, status, n = 0;
-    *stop_x = 2.0;
-    r->terminal_event = -1;
-    status = sym_event_values(r, after);
-    if (status != 0) return status;
-    for (i = 0; i < s->n_events; ++i) {
-        const double before = values[i];
+    sym_event_step step = {r, w, h, dense_ready};
+    sym_event_search search;
+    double last_x = 2.0;
+    int32_t status;
+    *stop_x = 2.0, r->terminal_event = -1;
+    search.n = s->n_events, search.direction = s->event_direction, search.memory = r->event_values;
+    sym_event_search_set_step(&search, h, sym_way_of_step(r, w, h));
+    search.evaluate = sym_event_values_within_step, search.data = &step;
+    search.start_changes = !s->events_free_of_inputs && s->nu > 0;
+    status = sym_event_search_begin(&search);
+    while (status == 0) {
         double x;
-        values[i] = after[i];
-        if (!sym_crosses_zero(s->event_direction[i], before, values[i])) continue;
-        status = sym_locate_event(r, w, h, dense_ready, i, before, values[i], &x);
-        if (status != 0) return status;
-        if (s->event_terminal[i] && x < *stop_x) *stop_x = x, r->terminal_event = i;
-        met_x[n] = x, met_index[n] = (double)i;
-        ++n;
+        int32_t which;
+        status = sym_event_search_next(&search, &which, &x);
+        if (status != 0 || which < 0 || x > *stop_x) break;
+        if (x != last_x && r->n_event_records + s->n_events > r->event_capacity) {
+            *stop_x = last_x;
+            break;
+        }
+        last_x = x;
+        if (s->event_terminal[which] && r->terminal_event < 0) r->terminal_event = which, *stop_x = x;
+        status = sym_load_state_within_step(r, w, h, dense_ready, x);
+        if (status == 0) sym_record_event(r, which);
     }
-    for (;;) { /* record the earliest that is left, until there is none before stop_x */
-        int32_t first = -1;
-        for (i = 0; i < n; ++i)
-            if (met_x[i] <= *stop_x && (first < 0 || met_x[i] < met_x[first])) first = i;
-        if (first < 0) return 0;
-        status = sym_load_state_within_step(r, w, h, dense_ready, met_x[first]);
-        if (status != 0) return status;
-        r->event_t[r->n_event_records] = *s->t;
-        r->event_index[r->n_event_records] = (int32_t)met_index[first];
-        memcpy(r->event_q + r->n_event_records * s->nq, s->q, (size_t)s->nq * sizeof(double));
-        memcpy(r->event_v + r->n_event_records * s->nv, s->v, (size_t)s->nv * sizeof(double));
-        ++r->n_event_records;
-        met_x[first] = 3.0; /* beyond any stop_x: recorded */
+    if (status == 0) status = sym_keep_event_notes(&step, &search);
+    if (status != 0) return status;
+    if (*stop_x > 1.0) {
+        memcpy(r->event_values, r->event_values + (SYM_EVENT_NODES - 1) * s->n_events, (size_t)s->n_events * sizeof(double));
+        return 0;
     }
+    status = sym_load_state_within_step(r, w, h, dense_ready, *stop_x);
+    return status != 0 ? status : sym_record_events_at_cut(r, &search, *stop_x);
 }

@@ -65,7 +65,7 @@ static int32_t sym_instance_allocate(sym_instance *instance, sym_arena *arena) {
     memset(s, 0, sizeof *s), memset(r, 0, sizeof *r);
     memset(&instance->beam_stiffness, 0, sizeof instance->beam_stiffness);
     s->nq = m->nq, s->nv = m->nv, s->nu = m->nu, s->nc = m->nc;
-    s->n_segments = p->n_segments, s->segments = p->segments, s->on_speeds = p->on_speeds;
+    s->n_segments = p->n_segments, s->segments = p->segments, s->on_speeds = p->on_speeds, s->group = p->group;
     s->n_quaternion_inputs = p->n_quaternion_inputs, s->quaternion_inputs = p->quaternion_inputs;
     sym_run_set_defaults(r);
     r->system = s, r->method = p->method, r->adaptive = p->adaptive, r->tableau = *p->tableau;

@@ -120,7 +120,7 @@ SYM_EXPORT int32_t sym_instance_differentiate(sym_instance *instance, const doub
         }
         w.right[nv + i] -= 2.0 * alpha * by_rate + (s->on_speeds[i] ? 0.0 : beta * beta * by_phi);
     }
-    rank = sym_eliminate(nv, n, w.matrix, w.scale, pivots, pivots + n);
+    rank = sym_eliminate(nv, n, s->group, nc > 0 ? nv + (int32_t)*s->rank : nv, w.matrix, w.scale, pivots, pivots + n);
     if (rank < nv) return SYM_SINGULAR;
     sym_solve(n, rank, w.matrix, w.scale, pivots, pivots + n, w.right, w.solution, w.scratch);
     memcpy(rates + s->nq, w.solution, (size_t)nv * sizeof *rates);

@@ -65,7 +65,7 @@ static int32_t sym_rosenbrock_matrix(sym_run *r, double g, sym_implicit_workspac
         for (j = 0; j < nc; ++j) w->matrix[SYM_INDEX(i, n, nv + j)] = -G[SYM_INDEX(j, nv, i)];
     for (i = nv; i < n; ++i)
         for (j = nv; j < n; ++j) w->matrix[SYM_INDEX(i, n, j)] = 0.0;
-    return sym_eliminate(nv, n, w->matrix, w->scale, r->pivots, r->pivots + n);
+    return sym_eliminate(nv, n, s->group, nv + r->rank, w->matrix, w->scale, r->pivots, r->pivots + n);
 }
 
 /* U = (U_1, U_2) with (g - J) U = right = (r_1, r_2), J the Jacobian of f: U_1 less r_1/g by (5a), then U_2, which is not
@@ -98,7 +98,7 @@ static void sym_rosenbrock_solve(sym_run *r, double g, int32_t rank, sym_implici
  * or a status. */
 static int32_t sym_slope_time_derivative(sym_run *r, const double *k, double *y, double *derivative) {
     const int32_t n = 2 * r->system->nv;
-    const double step = sqrt(2.2e-16 * (fabs(r->t) > 1e-5 ? fabs(r->t) : 1e-5));
+    const double step = sym_time_difference(r->t);
     int32_t l, status;
     memset(y, 0, (size_t)n * sizeof *y);
     memcpy(y + r->system->nv, r->v, (size_t)r->system->nv * sizeof *y);

@@ -12,12 +12,13 @@ static void sym_store_first_slope(sym_run *r, double *k) {
 static int32_t sym_first_slope(sym_run *r, double *k) {
     int32_t status = 0;
     if (!r->slope_valid) {
-        sym_load_state(r);
+        sym_load_start(r);
         status = sym_evaluate_acceleration(r);
         if (status == 0) sym_store_first_slope(r, k);
     }
     if (r->system->nc > 0 && status == 0) {
         const int32_t rank = (int32_t)*r->system->rank;
+        r->rank = rank;
         if (rank > r->rank_max) r->rank_max = rank;
         if (rank < r->rank_min) r->rank_min = rank, r->t_rank_min = r->t;
     }
@@ -75,9 +76,10 @@ SYM_EXPORT int32_t sym_run_start(sym_run *r) {
     r->steps = r->rejected = r->evaluations = r->jacobians = 0;
     r->n_records = r->n_event_records = r->next_grid = 0;
     r->n_diagnostic = 0, r->diagnostic_stride = 1, r->diagnostic_between = 0;
-    r->rank_max = -1, r->rank_min = s->nc + 1;
-    r->previous_error = 1.0;
+    r->rank = 0, r->rank_max = -1, r->rank_min = s->nc + 1;
+    r->previous_error = 1.0, r->met_at = -HUGE_VAL;
     r->lost_energy = r->kinetic_energy = 0.0;
+    r->terminal_event = r->touched_event = r->unresolved_event = -1;
     r->clock_start = r->realtime_scale > 0.0 ? sym_clock_seconds() : 0.0;
     sym_load_state(r);
     if (r->record_every > 0 || (r->n_grid > 0 && r->grid[0] <= r->t)) {
@@ -90,21 +92,13 @@ SYM_EXPORT int32_t sym_run_start(sym_run *r) {
     status = sym_first_slope(r, w.k);
     if (status != 0) return status;
     sym_keep_diagnostic_state(r, 0);
-    if (s->n_events > 0) {
-        status = sym_event_values(r, r->event_values);
-        if (status != 0) return status;
-    }
+    status = sym_restart_events(r);
+    if (status != 0) return status;
     r->next_step = r->h;
     if (!r->adaptive || r->h > 0.0) return 0;
     status = sym_initial_step_size(r, &w);
     if (r->method == SYM_METHOD_ROSENBROCK) r->slope_valid = 0; /* the Jacobian is evaluated at the present state */
     return status;
-}
-
-/* The end of the step <- the evaluation point. */
-static void sym_store_end_state(const sym_system *s, sym_workspace *w) {
-    memcpy(w->end_state, s->q, (size_t)s->nq * sizeof *s->q);
-    memcpy(w->end_state + s->nq, s->v, (size_t)s->nv * sizeof *s->v);
 }
 
 /* The present state <- the end of the step, at time t1. */
@@ -122,7 +116,7 @@ static void sym_set_end_state(sym_run *r, const sym_workspace *w, double t1) {
 static int32_t sym_accept_step(sym_run *r, sym_workspace *w, double h, double t1) {
     sym_system *s = r->system;
     const int32_t nv = s->nv, fsal = r->method == SYM_METHOD_EXPLICIT && r->tableau.fsal_stage > 0;
-    int32_t dense_ready = 0, status, beyond, stopped = 0;
+    int32_t dense_ready = 0, status, beyond, cut = 0, ended = 0;
     double stop_x = 2.0;
     status = sym_load_projected_state(r, t1, w->y1);
     if (status == 0 && r->project) status = sym_judge_projection(r);
@@ -131,13 +125,13 @@ static int32_t sym_accept_step(sym_run *r, sym_workspace *w, double h, double t1
     if (s->n_events > 0) {
         status = sym_find_events(r, w, h, &dense_ready, &stop_x);
         if (status != 0) return status;
-        stopped = stop_x <= 1.0;
+        cut = stop_x <= 1.0, ended = r->terminal_event >= 0;
     }
     if (r->record_every == 0) {
-        status = sym_record_grid_within_step(r, w, h, &dense_ready, stopped ? stop_x : 1.0);
+        status = sym_record_grid_within_step(r, w, h, &dense_ready, cut ? stop_x : 1.0);
         if (status != 0) return status;
     }
-    if (stopped) {
+    if (cut) {
         status = sym_load_state_within_step(r, w, h, &dense_ready, stop_x);
         if (status != 0) return status;
         sym_store_end_state(s, w);
@@ -147,29 +141,33 @@ static int32_t sym_accept_step(sym_run *r, sym_workspace *w, double h, double t1
     sym_set_end_state(r, w, t1);
     r->slope_valid = 0;
     /* First same as last, but in the chart about the new state, where theta' = v. */
-    if (fsal && !r->project && !stopped && !sym_changes_at(s, t1)) {
-        memcpy(w->k + nv, w->k + SYM_INDEX(r->tableau.fsal_stage, w->stage_stride, nv), (size_t)nv * sizeof(double));
-        memcpy(w->k, r->v, (size_t)nv * sizeof(double));
-        r->slope_valid = 1;
+    if (!cut && !sym_changes_at(s, t1)) {
+        const double *slope = NULL;
+        if (fsal && !r->project) slope = w->k + SYM_INDEX(r->tableau.fsal_stage, w->stage_stride, 0);
+        else if (!fsal && dense_ready && s->n_events > 0 && r->method <= SYM_METHOD_SEMI_IMPLICIT) slope = w->end_slope;
+        if (slope != NULL) {
+            memcpy(w->k + nv, slope + nv, (size_t)nv * sizeof(double));
+            memcpy(w->k, r->v, (size_t)nv * sizeof(double));
+            r->slope_valid = 1;
+        }
     }
-    ++r->steps;
-    if (s->n_events > 0 && stopped) { /* not the state that sym_find_events evaluated */
-        sym_load_state(r);
-        status = sym_event_values(r, r->event_values);
+    if (!cut || ended) ++r->steps; /* else a step of fixed length goes on to its end */
+    if (cut) { /* not the state that sym_find_events evaluated */
+        status = sym_restart_events(r);
         if (status != 0) return status;
     }
     if (r->record_every == 0) {
         status = sym_record_grid_at_end(r, h);
         if (status != 0) return status;
-    } else if (r->steps % r->record_every == 0 || r->t >= r->t_end || stopped || beyond != 0) {
+    } else if (r->steps % r->record_every == 0 || r->t >= r->t_end || ended || beyond != 0) {
         sym_load_state(r);
         status = sym_record(r);
         if (status != 0) return status;
     }
-    sym_keep_diagnostic_state(r, r->t >= r->t_end || stopped);
+    if (!cut || ended) sym_keep_diagnostic_state(r, r->t >= r->t_end || ended);
     if (beyond == 0) beyond = sym_judge_axial_loads(r);
     if (r->realtime_scale > 0.0) sym_wait_for_clock(r);
-    return beyond != 0 ? beyond : stopped ? SYM_TERMINAL_EVENT : 0;
+    return beyond != 0 ? beyond : ended ? SYM_TERMINAL_EVENT : 0;
 }
 
 /* Whether one more step fits into the records. */
@@ -188,6 +186,10 @@ static int32_t sym_accept_or_reject(sym_run *r, sym_workspace *w, double h, doub
         return 0;
     }
     if (status != 0) return status;
+    if (r->adaptive && (status = sym_look_within_step(r, w, h, error)) <= 0) {
+        if (status == 0) ++r->rejected, r->next_step = h;
+        return status;
+    }
     if (r->adaptive) {
         const double proposed = r->next_step;
         r->next_step = sym_next_step_size(r, h, error);

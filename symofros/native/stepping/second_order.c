@@ -149,7 +149,7 @@ static int32_t sym_alpha_factor(sym_run *r, sym_workspace *memory, double h) {
         }
         for (j = 0; j < nc; ++j) w.matrix[SYM_INDEX(nv + i, n, nv + j)] = 0.0;
     }
-    return sym_eliminate(nv, n, w.matrix, w.scale, r->pivots, r->pivots + n);
+    return sym_eliminate(nv, n, s->group, nv + r->rank, w.matrix, w.scale, r->pivots, r->pivots + n);
 }
 
 /* The change of speeds. */
@@ -294,7 +294,7 @@ static int32_t sym_variational_factor(sym_run *r, sym_workspace *memory, double 
     status = sym_evaluate_jacobian(r);
     if (status != 0) return status;
     for (i = 0; i < nv * nv; ++i) w.matrix[i] = M[i] / h + 0.5 * R_v[i] + 0.25 * h * R_q[i];
-    return sym_eliminate(nv, nv, w.matrix, w.scale, r->pivots, r->pivots + nv);
+    return sym_eliminate(nv, nv, NULL, nv, w.matrix, w.scale, r->pivots, r->pivots + nv);
 }
 
 static double sym_variational_size(const sym_run *r, double h, const double *correction) {
@@ -342,7 +342,7 @@ static int32_t sym_variational_step(sym_run *r, sym_workspace *memory, double h)
     *s->t = r->t + h;
     sym_evaluate(&s->momentum); /* for M at the end of the step */
     memcpy(w.matrix, s->momentum.out[2], (size_t)nv * (size_t)nv * sizeof(double));
-    rank = sym_eliminate(nv, nv, w.matrix, w.scale, r->pivots, r->pivots + nv);
+    rank = sym_eliminate(nv, nv, NULL, nv, w.matrix, w.scale, r->pivots, r->pivots + nv);
     if (rank < nv) return SYM_SINGULAR;
     sym_solve(nv, rank, w.matrix, w.scale, r->pivots, r->pivots + nv, end, y1 + nv, w.scratch);
     return 0;

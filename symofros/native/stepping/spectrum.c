@@ -2,11 +2,63 @@
  * (docs/theory/simulation.md, section 8). States are scaled, x = (theta, h (v - v_0)), so that the eigenvalues are those
  * of h times the linearised motion. */
 
-/* slope = (h theta', h^2 v') at x. y: work (2 nv). Returns 0 or a status. */
+/* The rotation vector that turns unit quaternion a into b: exp(theta / 2) = a^-1 b. */
+static void sym_rotation_between(const double *a, const double *b, double *theta) {
+    const double inverse[4] = {-a[0], -a[1], -a[2], a[3]};
+    double turn[4], size, scale;
+    int i;
+    sym_quaternion_product(inverse, b, turn);
+    size = sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]);
+    scale = turn[3] < 0.0 ? -2.0 : 2.0; /* of the two that are this rotation the shorter one */
+    if (size > 0.0) scale *= atan2(size, fabs(turn[3])) / size;
+    for (i = 0; i < 3; ++i) theta[i] = scale * turn[i];
+}
+
+/* theta <- the coordinates of configuration q in the chart about q0: the inverse of sym_retract. */
+static void sym_chart_coordinates(const sym_system *s, const double *q0, const double *q, double *theta) {
+    int32_t k, i;
+    for (k = 0; k < s->n_segments; ++k) {
+        const sym_segment *seg = &s->segments[k];
+        const double *a = q0 + seg->q, *b = q + seg->q;
+        double *x = theta + seg->v, back[4], displacement[3];
+        if (seg->kind == SYM_SEGMENT_LINEAR) {
+            for (i = 0; i < seg->size; ++i) x[i] = b[i] - a[i];
+        } else if (seg->kind == SYM_SEGMENT_QUATERNION) {
+            sym_rotation_between(a, b, x);
+        } else {
+            for (i = 0; i < 3; ++i) displacement[i] = b[i] - a[i], back[i] = -a[3 + i];
+            back[3] = a[6];
+            sym_rotate(back, displacement, x);
+            sym_rotation_between(a + 3, b + 3, x + 3);
+        }
+    }
+}
+
+/* Whether changes are brought back onto the constraints: a motion has none that leave them, where no gains pull it back. */
+static int32_t sym_keeps_to_constraints(const sym_system *s) {
+    int32_t i;
+    for (i = 0; i < 2 * s->nc; ++i)
+        if (s->gains[i] != 0.0) return 0;
+    return s->nc > 0 && s->project.function != NULL;
+}
+
+/* y = (theta, v) <- the nearest one on the constraints. Returns 0 or a status. */
+static int32_t sym_project_chart_state(sym_run *r, double *y) {
+    sym_system *s = r->system;
+    int32_t status;
+    sym_load_chart_state(r, r->t, y);
+    status = sym_project_point(s);
+    sym_chart_coordinates(s, r->q, s->q, y);
+    memcpy(y + s->nv, s->v, (size_t)s->nv * sizeof *y);
+    return status;
+}
+
+/* slope = (h theta', h^2 v') at x, (16a). y: work (2 nv). Returns 0 or a status. */
 static int32_t sym_scaled_slope(sym_run *r, double h, const double *x, double *y, double *slope) {
     const int32_t nv = r->system->nv;
     int32_t i, status;
     for (i = 0; i < nv; ++i) y[i] = x[i], y[nv + i] = r->v[i] + x[nv + i] / h;
+    if (sym_keeps_to_constraints(r->system) && (status = sym_project_chart_state(r, y)) != 0) return status;
     status = sym_evaluate_slope(r, r->t, y, slope);
     for (i = 0; i < nv; ++i) slope[i] *= h, slope[nv + i] *= h * h;
     return status;
@@ -40,8 +92,12 @@ static double sym_normalize(int32_t n, double *x) {
 #define SYM_SPECTRUM_MIXTURE 1e-3
 /* Least change of a coordinate for a difference, relative to the largest one: its error by rounding is 1e-8. */
 #define SYM_SPECTRUM_LEAST_CHANGE 1e-8
+/* Most where changes are projected: one of a length is to be small against mechanisms of a tenth of a millimetre, beyond
+ * which the nearest posture on the constraints is another one. */
+#define SYM_SPECTRUM_PROJECTED_CHANGE 1e-6
 
-/* basis[0] <- the direction of the motion, mixed with others. Returns the change of the state by the motion of a step. */
+/* basis[0] <- the direction of the motion, mixed with others. Returns the change of the state by the motion of a step,
+ * or the most that is projected. */
 static double sym_first_direction(const sym_run *r, int32_t n, const double *slope, double *first) {
     double size, largest = 1.0;
     uint32_t seed = 1;
@@ -54,6 +110,8 @@ static double sym_first_direction(const sym_run *r, int32_t n, const double *slo
     }
     sym_normalize(n, first);
     for (i = 0; i < r->system->nq; ++i) largest = fabs(r->q[i]) > largest ? fabs(r->q[i]) : largest;
+    if (sym_keeps_to_constraints(r->system) && size > SYM_SPECTRUM_PROJECTED_CHANGE * largest)
+        size = SYM_SPECTRUM_PROJECTED_CHANGE * largest;
     return size > SYM_SPECTRUM_LEAST_CHANGE * largest ? size : SYM_SPECTRUM_LEAST_CHANGE * largest;
 }
 

@@ -111,16 +111,18 @@ static int32_t sym_too_short(const sym_run *r) {
 /* The step to try next: its length h and the time t1 at its end. Returns 0 or a status. */
 static int32_t sym_propose_step(sym_run *r, sym_workspace *w, double *h, double *t1) {
     *h = r->adaptive ? r->next_step : r->h;
-    *t1 = r->adaptive ? r->t + *h : r->t0 + (double)(r->steps + 1) * r->h;
+    *t1 = r->adaptive ? r->t + *h : sym_multiple(r->t0 + (double)(r->steps + 1) * r->h, r->h);
     if (r->adaptive && *h < 16.0 * 2.2e-16 * fabs(r->t) + 1e-300) return sym_too_short(r);
     if (*t1 >= r->t_end - 1e-9 * *h) *t1 = r->t_end; /* no sliver of a last step */
     if (r->adaptive && r->max_step > 0.0 && *t1 - r->t > r->max_step) *t1 = r->t + r->max_step;
     if (r->adaptive) {
-        const double beyond = *t1 + 1e-9 * *h, sample = sym_next_sample(r->system, r->t, beyond);
-        if (sample < beyond) *t1 = sample;
+        const double beyond = *t1 + 1e-9 * *h, stop = sym_next_stop(r->system, r->t, beyond);
+        if (stop < beyond) *t1 = stop;
+        if (r->met_at > sym_instant(r->t) && r->met_at < *t1) *t1 = r->met_at;
+        sym_state_magnitudes(r, w->magnitude);
+        *t1 = sym_end_by_inputs(r, w, *t1);
     }
     *h = *t1 - r->t;
-    r->system->in_step = 1, r->system->step_end = *t1;
-    if (r->adaptive) sym_state_magnitudes(r, w->magnitude);
+    sym_begin_step(r->system, r->t, *t1);
     return 0;
 }

@@ -57,7 +57,8 @@ typedef struct sym_batch {
     /* Working memory as in a single run, with m = 2 nv entries of y: (slots, m), slopes k (dense_stages, slots, m).
      * Row by row: y0 = (0, v), and the step length m times, so that sums of stages are loops over all slots. */
     double *y1, *stage, *magnitude, *end_slope, *k, *y0, *length;
-    double *end_state; /* (nq + nv) while one slot accepts its step */
+    double *end_state, *unseen; /* (nq + nv), (3 nv) while one slot accepts its step */
+    double *defects;   /* of the inputs while one slot proposes its step: input_moments.c */
 } sym_batch;
 
 /* Doubles of memory that the slots take. */

@@ -23,6 +23,7 @@ typedef struct sym_plant { /* constants that a package generates besides the mod
     int32_t n_segments;
     const sym_segment *segments;
     const int32_t *on_speeds;             /* (nc) whether a constraint binds speeds only */
+    const int32_t *group;                 /* (nc) first condition of those that share their sizes */
     const char *const *constraint_names;  /* (nc) */
     const double *q_start, *v_start, *u_start;
     int32_t n_frames;

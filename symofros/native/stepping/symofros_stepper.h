@@ -25,7 +25,8 @@ typedef enum sym_status {
     SYM_BEYOND_THEORY = -7,      /* a beam is bent beyond second-order theory */
     SYM_ENERGY_LOST = -8,        /* projection onto the constraints has taken the motion's energy */
     SYM_PARAMETERS_REFUSED = -9, /* parameters violate a condition of the description; of instances only */
-    SYM_NO_ROTATION = -10        /* a quaternion among the inputs is not of unit length */
+    SYM_NO_ROTATION = -10,       /* a quaternion among the inputs is not of unit length */
+    SYM_ENGAGED_APART = -11      /* conditions that engage are not fulfilled; of diagrams only */
 } sym_status;
 
 typedef enum sym_method {
@@ -105,10 +106,12 @@ typedef struct sym_tableau { /* coefficients of a Runge-Kutta or Rosenbrock meth
 
 /* The differential equations of one model: its functions bound to one evaluation point, its inputs, its events. */
 typedef struct sym_system {
-    int32_t nq, nv, nu, nc, n_segments, n_signals, n_law, n_events, n_beams, n_quaternion_inputs;
+    int32_t nq, nv, nu, nc, n_segments, n_signals, n_law, n_events, n_beams, n_quaternion_inputs, n_stops;
     const sym_segment *segments;
     const sym_beam *beams;          /* (n_beams) */
     const sym_signal *signals;
+    /* (n_stops) instants, in order, at which adaptive steps end: kinks, jumps and narrow parts of formulas of time. */
+    const double *stops;
     const int32_t *law_inputs;      /* (n_law) indices in u of the inputs that the law gives */
     const int32_t *quaternion_inputs; /* (n_quaternion_inputs) first indices in u of quaternions that prescribe motions */
     const int32_t *event_direction; /* (n_events) 1 rising, -1 falling, 0 both */
@@ -119,13 +122,33 @@ typedef struct sym_system {
     void *data;
     sym_call forward_dynamics, law, events, project, implicit_terms, residual, momentum, mass_matrix, constraint_jacobian;
     const int32_t *on_speeds; /* (nc) whether a constraint binds speeds only (nonholonomic) */
+    const int32_t *group;     /* (nc) first condition of those that share their sizes (docs/theory/constraints.md, section 10) */
     /* The evaluation point: inputs and outputs of the calls above. */
     double *q, *v, *u, *t, *gains, *a, *lam, *rank;
-    /* Whether the evaluation point lies within a step under way, and the time at its end: a held sample that begins there
-     * counts from the next step on (docs/theory/simulation.md, section 1). */
+    /* Whether the evaluation point lies within a step under way, the time at its end, and the first and last times at which a
+     * stage evaluates: held samples and jumps of formulas count from their instant on, in the step that begins there
+     * (docs/theory/simulation.md, section 1). */
     int32_t in_step;
-    double step_end;
+    double step_end, first_stage, last_stage;
+    int32_t events_free_of_inputs; /* 1: no event needs the inputs, which cost a call of the caller's */
 } sym_system;
+
+typedef enum sym_event_sizes { SYM_EVENT_NODES = 5, SYM_EVENT_EARLIER = 11, SYM_EVENT_ROWS = 13 } sym_event_sizes;
+
+/* Events along one step (docs/theory/simulation.md, section 2), sought between x = 0, its start, and x = 1, its end. */
+typedef struct sym_event_search {
+    int32_t n;                    /* number of events */
+    const int32_t *direction;     /* (n) 1 rising, -1 falling, 0 both */
+    int32_t (*evaluate)(void *data, double x, double *values); /* values of all events (n) at x; returns 0 or a status */
+    void *data;
+    double *memory; /* (SYM_EVENT_ROWS, n): values at the end of the step before; row SYM_EVENT_EARLIER, at its start or NaN */
+    int32_t short_step;           /* whether events far from zero need no look within the step */
+    double longest;               /* interval between two points at which an event is looked at */
+    int32_t start_changes;        /* whether values at x = 0 may differ from those at the end of the step before */
+    int32_t taken;                /* event that was returned last; -1: none */
+    int32_t touched, unresolved;  /* the event that turns nearest to zero, one too fast to follow; -1: none */
+    double touched_x, touched_share; /* where it turns, and its share there of its largest value in the step */
+} sym_event_search;
 
 /* One integration of a system: method, settings, present state, records. */
 typedef struct sym_run {
@@ -145,10 +168,12 @@ typedef struct sym_run {
     double t, *q, *v;
     double *work;          /* sym_run_work_size doubles */
     int32_t *pivots;       /* 2 (nv + nc) */
-    double *event_values;  /* 3 n_events: at the present state, then work */
+    double *event_values;  /* (SYM_EVENT_ROWS, n_events): at the present state, then work */
     double next_step, previous_error; /* of the step-size controller */
+    double look_every; /* interval of time at which quiet steps are looked into [s]; 0: none are */
+    double met_at;     /* where something was met there: steps up to it end there */
     int64_t steps, rejected, evaluations, jacobians;
-    int32_t rank_max, rank_min; /* of the constraints' Jacobian */
+    int32_t rank, rank_max, rank_min; /* of the constraints' Jacobian: at the beginning of the step, so far */
     double t_rank_min;
     int32_t slope_valid;    /* whether the slope at the present state is known */
     int32_t jacobian_valid; /* whether its derivatives are; they outlive a rejected step */
@@ -189,6 +214,8 @@ typedef struct sym_run {
     double *event_t, *event_q, *event_v;
     int32_t *event_index;
     int32_t terminal_event; /* index of the event that ended the run */
+    int32_t touched_event, unresolved_event; /* what sym_event_search noted first, and when; -1: nothing */
+    double touched_t, unresolved_t;
 } sym_run;
 
 /* Settings that have a default in one place, whoever fills the rest. */
@@ -213,8 +240,20 @@ double sym_run_beam_error(sym_run *run, int32_t beam);
 int32_t sym_run_set_state(sym_run *run, double t, const double *y);
 /* Rate y' = (N v, v') of a state (nq + nv). */
 int32_t sym_run_rate(sym_run *run, double t, const double *y, double *rate);
+/* A step from t begins that may last until t1, or is over: held samples and jumps of formulas at t1 count after it only. */
+void sym_run_begin_step(sym_run *run, double t, double t1);
+void sym_run_end_step(sym_run *run);
+/* The first instant after t, up to t1, at which a step has to end; t1 where there is none. */
+double sym_run_next_stop(const sym_run *run, double t, double t1);
 /* Values of the events (n_events) at a state. */
 int32_t sym_run_event_values(sym_run *run, double t, const double *y, double *values);
+/* Tell the search the length h of a step, and the largest way of a coordinate in it [rad or m]. */
+void sym_event_search_set_step(sym_event_search *search, double h, double way);
+/* Begin the search in one step, whose search->memory begins with the values at the end of the step before; the values at its
+ * own end are row SYM_EVENT_NODES - 1 afterwards. Returns 0 or a status. */
+int32_t sym_event_search_begin(sym_event_search *search);
+/* The events in the order of time, one a call: which, and where; -1: there is none any more. Returns 0 or a status. */
+int32_t sym_event_search_next(sym_event_search *search, int32_t *which, double *x);
 /* Rate N(q) w (nq) at the evaluation point, which is at the same configuration q. */
 void sym_run_configuration_rate(const sym_run *run, const double *q, const double *w, double *rate);
 /* Linearise the motion about the present state in the subspace of the first directions that the motion excites, by
@@ -222,6 +261,10 @@ void sym_run_configuration_rate(const sym_run *run, const double *q, const doubl
  * basis of changes (theta, h v); matrix (dimension, dimension): h times the derivative in that basis; motion (dimension):
  * components of the motion of one step. Returns the number of directions, at most `dimension` <= 2 nv, or a status below 0. */
 int32_t sym_run_spectrum(sym_run *run, double h, int32_t dimension, double *basis, double *matrix, double *motion);
+/* Inputs u (n, nu) and accelerations a (n, nv) at n states of the motion, each projected first where the run projects; NaN
+ * where there are none. Returns 0, or SYM_CALLBACK_FAILED. */
+int32_t sym_run_accelerations(sym_run *run, int64_t n, const double *t, const double *q, const double *v, double *u,
+                              double *a);
 /* cdef end */
 
 #endif

@@ -58,20 +58,31 @@ static void sym_evaluate(const sym_call *call) {
 
 /* Instants that differ by less, relative to themselves, are one: multiples of a step and of a period of samples. */
 #define SYM_SAME_INSTANT 2e-15
+/* The same for zero, no share of which is above it [s]. */
+#define SYM_SAME_AS_ZERO 1e-300
 
 /* The last instant that is the same as t, the last one before it: bounds of samples that begin at t, or before it. */
-static double sym_instant(double t) { return t + SYM_SAME_INSTANT * fabs(t); }
-static double sym_before(double t) { return t - SYM_SAME_INSTANT * fabs(t); }
+static double sym_instant(double t) { return t + (SYM_SAME_INSTANT * fabs(t) + SYM_SAME_AS_ZERO); }
+static double sym_before(double t) { return t - (SYM_SAME_INSTANT * fabs(t) + SYM_SAME_AS_ZERO); }
 
-/* How many of a signal's samples begin up to time t. */
-static int32_t sym_samples_begun(const sym_signal *signal, double t) {
-    int32_t begun = 0, end = signal->n;
+/* A multiple of a period that is zero but for rounding: that of the start time, which is no share of zero, is left out. */
+#define SYM_ROUNDED_ZERO 1e-12
+static double sym_multiple(double t, double period) { return fabs(t) < SYM_ROUNDED_ZERO * period ? 0.0 : t; }
+
+/* How many of n instants, in order, begin up to time t. */
+static int32_t sym_instants_begun(const double *instants, int32_t n, double t) {
+    int32_t begun = 0, end = n;
     while (begun < end) {
         const int32_t middle = begun + (end - begun) / 2;
-        if (signal->t[middle] <= t) begun = middle + 1;
+        if (instants[middle] <= t) begun = middle + 1;
         else end = middle;
     }
     return begun;
+}
+
+/* How many of a signal's samples begin up to time t. */
+static int32_t sym_samples_begun(const sym_signal *signal, double t) {
+    return sym_instants_begun(signal->t, signal->n, t);
 }
 
 /* The value of a signal at time t: the first one before its samples, the last one after them. Held samples that begin at
@@ -92,9 +103,10 @@ static double sym_signal_at(const sym_signal *signal, double t, double end) {
     return signal->value[low] + x * (signal->value[low + 1] - signal->value[low]);
 }
 
-/* The first instant after t, up to t1, at which a held signal changes; t1 where there is none. */
-static double sym_next_sample(const sym_system *s, double t, double t1) {
-    int32_t i, k;
+/* The first instant after t, up to t1, at which a held signal changes or formulas ask for a stop; t1 where there is none. */
+static double sym_next_stop(const sym_system *s, double t, double t1) {
+    int32_t i, k = sym_instants_begun(s->stops, s->n_stops, sym_instant(t));
+    if (k < s->n_stops && s->stops[k] < t1) t1 = s->stops[k];
     for (i = 0; i < s->n_signals; ++i) {
         const sym_signal *signal = &s->signals[i];
         if (signal->linear) continue;
@@ -107,15 +119,38 @@ static double sym_next_sample(const sym_system *s, double t, double t1) {
     return t1;
 }
 
-/* Whether a held signal changes at time t. */
+/* Whether a formula asks for a stop at time t. */
+static int32_t sym_stops_at(const sym_system *s, double t) {
+    const int32_t k = sym_instants_begun(s->stops, s->n_stops, sym_instant(t)) - 1;
+    return k >= 0 && s->stops[k] > sym_before(t);
+}
+
+/* Whether a held signal changes at time t, or a formula may. */
 static int32_t sym_changes_at(const sym_system *s, double t) {
     int32_t i;
+    if (sym_stops_at(s, t)) return 1;
     for (i = 0; i < s->n_signals; ++i) {
         const sym_signal *signal = &s->signals[i];
         const int32_t k = signal->linear ? 0 : sym_samples_begun(signal, sym_instant(t)) - 1;
         if (k > 0 && signal->t[k] > sym_before(t) && signal->value[k] != signal->value[k - 1]) return 1;
     }
     return 0;
+}
+
+/* The time at which functions are evaluated for the slope that a step from t begins with: after a jump of a formula. */
+static double sym_first_time(const sym_system *s, double t) { return sym_stops_at(s, t) ? sym_instant(t) : t; }
+
+/* A step from t to t1 begins: what begins at t1 counts from the next step on. */
+static void sym_begin_step(sym_system *s, double t, double t1) {
+    s->in_step = 1, s->step_end = t1;
+    s->first_stage = sym_first_time(s, t);
+    s->last_stage = sym_stops_at(s, t1) ? sym_before(t1) : t1;
+}
+
+/* The time at which functions are evaluated for a stage at time t. */
+static double sym_stage_time(const sym_system *s, double t) {
+    if (!s->in_step) return t;
+    return t > s->last_stage ? s->last_stage : t < s->first_stage ? s->first_stage : t;
 }
 
 /* The inputs that depend on time alone, at the evaluation point. */
@@ -125,6 +160,9 @@ static void sym_evaluate_signals(sym_system *s) {
     for (i = 0; i < s->n_signals; ++i)
         s->u[s->signals[i].input] = sym_signal_at(&s->signals[i], *s->t, s->in_step ? s->step_end : HUGE_VAL);
 }
+
+/* The difference of time by which rates are taken. */
+static double sym_time_difference(double t) { return sqrt(2.2e-16 * (fabs(t) > 1e-5 ? fabs(t) : 1e-5)); }
 
 /* All inputs at the evaluation point. Not 0: the caller's function failed. */
 static int32_t sym_evaluate_inputs(sym_system *s) {
@@ -195,6 +233,12 @@ static void sym_load_state(sym_run *r) {
     *s->t = r->t;
 }
 
+/* Evaluation point <- the present state, as the start of a step. */
+static void sym_load_start(sym_run *r) {
+    sym_load_state(r);
+    *r->system->t = sym_first_time(r->system, r->t);
+}
+
 /* Evaluation point <- y = (theta, v) in the chart about r->q, at time t. */
 static void sym_load_chart_state(sym_run *r, double t, const double *y) {
     sym_retract(r->system, r->q, y, r->system->q);
@@ -211,7 +255,7 @@ static void sym_slope_of_acceleration(const sym_system *s, const double *y, doub
 /* dy = f(t, y), in the chart about r->q. Returns 0 or a status. */
 static int32_t sym_evaluate_slope(sym_run *r, double t, const double *y, double *dy) {
     int32_t status;
-    sym_load_chart_state(r, t, y);
+    sym_load_chart_state(r, sym_stage_time(r->system, t), y);
     status = sym_evaluate_acceleration(r);
     sym_slope_of_acceleration(r->system, y, dy);
     return status;

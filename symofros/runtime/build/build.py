@@ -11,12 +11,13 @@ from __future__ import annotations
 import hashlib
 import os
 import platform
+import re
 import sys
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
-from symofros.base.atomic import write_atomically
+from symofros.base.stored import keep, stored_text
 from symofros.runtime.build.cache import cache_folder, create_cache_folder, install, is_intact, unusable
 from symofros.runtime.build.identity import CODE_IDENTITY
 from symofros.runtime.build.toolchain import (
@@ -29,6 +30,7 @@ from symofros.runtime.build.toolchain import (
 )
 
 _SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
+_FILE_NAME = re.compile(r"[0-9a-f]{32}\.\w+")
 _REMEDY = "check Options(flags=…) and the compiler; backend='interpreter' needs none"
 # Linked with these, a library of gcc's up to 12 makes the whole process flush denormal numbers to zero when it loads.
 _LOOSE = {"-ffast-math", "-Ofast", "-funsafe-math-optimizations"}
@@ -59,15 +61,23 @@ def recall_library(
     """
     folder = cache_folder()
     known = folder / f"{cache_key(toolchain, flags, dispatch, recipe, CODE_IDENTITY, header)}.known"
-    try:
-        library = folder / Path(known.read_text(encoding="utf-8")).name
-        if is_intact(library):
-            return library
-    except OSError:
-        pass
+    name = stored_text(known, file_name)
+    if name is not None and is_intact(folder / name):
+        return folder / name
     library = build_library(source(), header, toolchain, flags, dispatch, symbol)
-    write_atomically(known, library.name)
+    keep(known, library.name)
     return library
+
+
+def file_name(text: str) -> str:
+    """A text that is the name of a file of the folder, and nothing else.
+
+    Raises:
+        ValueError: It is none.
+    """
+    if not _FILE_NAME.fullmatch(text):
+        raise ValueError(f"{text[:40]!r} is no name of a library")
+    return text
 
 
 def cache_key(toolchain: Toolchain, flags: Sequence[str] | None, dispatch: str, *parts: str) -> str:

@@ -14,11 +14,11 @@ import sys
 from collections.abc import Iterable
 from importlib.util import find_spec
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from symofros.base.atomic import write_atomically
 from symofros.base.sources import Source
-from symofros.runtime.build.build import cache_key
+from symofros.base.stored import keep, stored_json
+from symofros.runtime.build.build import cache_key, file_name
 from symofros.runtime.build.cache import cache_folder, is_intact
 from symofros.runtime.build.identity import CODE_IDENTITY
 from symofros.runtime.build.toolchain import Toolchain
@@ -56,14 +56,18 @@ def recall_prepared(description: Path, request: str, toolchain: Toolchain) -> Pr
         CompileError: The cache folder can't be trusted.
     """
     folder = cache_folder()
-    try:
-        stated = json.loads((folder / _file_name(description, request, toolchain)).read_text(encoding="utf-8"))
-        known = Prepared(stated["name"], tuple(Source(*each) for each in stated["sources"]), (*stated["libraries"],))
-        libraries = [folder / Path(name).name for name in known.libraries]
-    except (OSError, ValueError, TypeError, KeyError):  # Not there, or damaged.
+    known = stored_json(folder / _file_name(description, request, toolchain), _prepared)
+    if known is None:
         return None
+    libraries = [folder / name for name in known.libraries]
     unchanged = bool(known.sources and libraries) and all(source.is_unchanged() for source in known.sources)
     return known if unchanged and all(map(is_intact, libraries)) else None
+
+
+def _prepared(stated: Any) -> Prepared:
+    """What a file states, each value of its type."""
+    sources = tuple(Source(str(a), str(b), int(size), str(digest)) for a, b, size, digest in stated["sources"])
+    return Prepared(str(stated["name"]), sources, tuple(map(file_name, stated["libraries"])))
 
 
 def note_prepared(
@@ -86,11 +90,10 @@ def note_prepared(
 
     Raises:
         CompileError: The cache folder can't be trusted.
-        OSError: It can't be written to.
     """
     prepared = Prepared(name, tuple(sources), tuple(sorted(path.name for path in libraries)))
     file = cache_folder() / _file_name(description, request, toolchain)
-    write_atomically(file, json.dumps(prepared._asdict()))
+    keep(file, json.dumps(prepared._asdict()))
 
 
 def _file_name(description: Path, request: str, toolchain: Toolchain) -> str:

@@ -9,6 +9,8 @@ import time
 from types import TracebackType
 from typing import Self
 
+from symofros.base.threads import try_to_start
+
 LOGGER = logging.getLogger("symofros")
 # What takes less is not worth a line [s].
 PATIENCE = 3.0
@@ -38,8 +40,11 @@ class Progress:
         if not self._began:
             self._began = time.perf_counter()
             if sys.stderr is not None and sys.stderr.isatty() and _LINE.acquire(blocking=False):
-                self._teller = threading.Thread(target=self._tell, daemon=True)
-                self._teller.start()
+                teller = threading.Thread(target=self._tell, daemon=True)
+                if try_to_start(teller):
+                    self._teller = teller
+                else:
+                    _LINE.release()
 
     def __enter__(self) -> Self:
         """Nothing is reported before a stage begins: most libraries are in the cache."""

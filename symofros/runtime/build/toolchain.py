@@ -13,12 +13,13 @@ import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from threading import Event, Timer
 
+from symofros.base.threads import try_to_start
 from symofros.errors import CompileError, Problem
 
 # -fno-math-errno lets sqrt and sincos be instructions and single calls; -ffast-math was measured and gains nothing.
@@ -204,6 +205,8 @@ def _run(command: Sequence[str], limit: float, folder: Path | None, errors: int)
             process = subprocess.Popen(
                 command,
                 cwd=folder,
+                # What a compiler that is killed leaves goes with the folder.
+                env=None if folder is None else {**os.environ, "TMPDIR": os.path.abspath(folder)},
                 stdin=subprocess.DEVNULL,
                 stdout=said,
                 stderr=errors,
@@ -223,9 +226,9 @@ def _run(command: Sequence[str], limit: float, folder: Path | None, errors: int)
 
         watch = Timer(limit, end)
         watch.daemon = True
-        watch.start()
         try:
-            status = process.wait()
+            # A process that ends starts no thread; it builds what its successors find in the cache.
+            status = process.wait() if try_to_start(watch) else _wait(process, limit, end)
         except BaseException:  # As of a user who interrupts.
             _end_group(process)
             process.wait()
@@ -243,6 +246,15 @@ def _run(command: Sequence[str], limit: float, folder: Path | None, errors: int)
             )
         said.seek(0)
         return status, said.read().decode(errors="replace")
+
+
+def _wait(process: subprocess.Popen[bytes], limit: float, end: Callable[[], None]) -> int:
+    """The status of a process, which is ended after a time limit [s]."""
+    try:
+        return process.wait(limit)
+    except subprocess.TimeoutExpired:
+        end()
+        return process.wait()
 
 
 def _end_group(process: subprocess.Popen[bytes]) -> None:

@@ -18,8 +18,8 @@ from time import thread_time_ns
 
 import numpy as np
 
-from symofros.base.atomic import write_atomically
 from symofros.base.options import Options
+from symofros.base.stored import keep, stored_text
 from symofros.runtime.build.toolchain import Toolchain, find_toolchain
 from symofros.runtime.calls.library import CompiledKernel, CompiledUnit
 
@@ -97,18 +97,16 @@ def fastest(libraries: Sequence[Path], load: Callable[[Path], CompiledUnit]) -> 
         libraries: Libraries of the same functions, in one folder, where the choice is kept.
         load: Opens one.
 
-    Raises:
-        OSError: The folder can't be written to.
     """
     folder = libraries[0].parent
     names = sorted({path.name for path in libraries})
     known = folder / f"{hashlib.sha256(' '.join(names).encode()).hexdigest()[:32]}.fastest"
-    if known.is_file():
-        chosen = folder / Path(known.read_text(encoding="utf-8")).name
-        if chosen in libraries:
-            return chosen
+    stated = stored_text(known, str)
+    chosen = next((path for path in libraries if path.name == stated), None)
+    if chosen is not None:
+        return chosen
     chosen = _measured(dict.fromkeys(libraries), load)
-    write_atomically(known, chosen.name)
+    keep(known, chosen.name)
     return chosen
 
 

@@ -21,6 +21,7 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.threads import try_to_start
 from symofros.errors import CompileError
 from symofros.native import native_text
 from symofros.runtime.build.build import build_library
@@ -54,9 +55,9 @@ def call_type(when_there: Callable[[], None]) -> Any:
 def begin() -> None:
     """Begin what plain calls need, by other threads, unless that has begun: the type, and the declarations of C."""
     if next(_begun) == 0:
-        threading.Thread(target=interface).start()
+        try_to_start(threading.Thread(target=interface))
         # The process waits for it at its end: a script that is over sooner would never have it.
-        threading.Thread(target=_load_behind, name=_NAME).start()
+        try_to_start(threading.Thread(target=_load_behind, name=_NAME))
 
 
 def _load_behind() -> None:

@@ -5,19 +5,21 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NoReturn, Self
 
 import numpy as np
 
 from symofros.base.functions import FRAME_FUNCTIONS, MODEL_FUNCTIONS
 from symofros.errors import Problem, ShapeError, SymofrosError, UnknownNameError, did_you_mean
 from symofros.runtime.calls.kernel import Array, BatchOptions, Precision
-from symofros.runtime.cuda.arrays import DeviceArray, Placed, Strided, StridedSequence, placed
+from symofros.runtime.cuda.arrays import DeviceArray, Placed, Strided, StridedSequence, lies_on_device, placed
 from symofros.runtime.cuda.device_code import BLOCK, DeviceCode
 from symofros.runtime.cuda.driver import Driver, driver
 from symofros.runtime.cuda.nvrtc import KernelUsage, compile_cuda, usage_of
 from symofros.runtime.cuda.receivers import receivers, strided_result
+from symofros.runtime.cuda.streams import is_captured, refused_in_capture, stream_handle
 from symofros.runtime.record import ModelRecord
+from symofros.runtime.unit_quaternions import refuse_lengths
 
 Key = tuple[str, str]
 
@@ -40,7 +42,8 @@ class CudaModel:
     other libraries take in place, too. Values of parameters are those of the model.
     Results are those of C where products and sums are not fused (`contract`), in single precision to its rounding. A
     step of a rollout that is too long for its method is not noticed, unlike in `simulate`; nor is bending of beams
-    beyond their theory, nor a quaternion among the inputs that is of another length than one.
+    beyond their theory, nor a quaternion of another length than one: among the inputs, or in arrays of the device. As
+    of `Model`, functions of a state take its quaternions as they are.
 
     Args:
         record: Names and sizes.
@@ -64,6 +67,29 @@ class CudaModel:
         self._loaded: dict[Key, _Loaded] = {}
         self._dtype = BatchOptions(precision=precision).dtype
         self._defaults: dict[str, DeviceArray] = {}
+
+    def __copy__(self) -> Self:
+        """The same: nothing of it can be changed."""
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
+        """The same: nothing of it can be changed."""
+        return self
+
+    def __reduce_ex__(self, protocol: Any) -> NoReturn:
+        """Not pickled: its kernels are loaded in this process.
+
+        Raises:
+            SymofrosError: Always.
+        """
+        raise SymofrosError(
+            Problem(
+                f"model '{self.record.name}': what runs on a graphics processor can't be pickled",
+                "a CudaModel",
+                "kernels are loaded in one process",
+                "pickle the model, and call its cuda() in the other process",
+            )
+        )
 
     def code(self, name: str, frame: str = "") -> DeviceCode:
         """Kernels of a function as text, which no processor is needed for.
@@ -106,7 +132,14 @@ class CudaModel:
         return usage_of(self.code(name, frame).text, architecture or driver().architecture, self.contract)
 
     def evaluate(
-        self, name: str, frame: str = "", *, out: Mapping[str, Any] | None = None, wait: bool = True, **inputs: Any
+        self,
+        name: str,
+        frame: str = "",
+        *,
+        out: Mapping[str, Any] | None = None,
+        wait: bool = True,
+        stream: Any = None,
+        **inputs: Any,
     ) -> dict[str, Any]:
         """A function of a batch of states.
 
@@ -114,8 +147,12 @@ class CudaModel:
             name: Name of the function.
             frame: Frame of a function of frames.
             out: Arrays of the device to write into, by name, each (n, ...); what is left out is allocated.
-            wait: Whether to return when the results are there. Without it they are ready for the default stream, and
-                the arrays must be kept until then.
+            wait: Whether to return when the results are there. Without it they are ready in the stream, and the arrays
+                must be kept until then.
+            stream: Stream that the kernels go into: a handle, or an object of PyTorch or CuPy; the default stream if
+                left out. It waits for what writes the inputs. A graph that is captured from it takes the call in,
+                where all arrays lie on the device, `out` has all outputs, the function was called before and
+                `wait=False`.
             inputs: Inputs by name; `t` is 0 and `u` the default inputs where they are left out.
 
         Returns:
@@ -125,25 +162,56 @@ class CudaModel:
             ShapeError: An input is missing or does not fit, or an array of `out` is none that can be written into: it
                 lies on the host, or shares memory with another one.
             UnknownNameError: There is no such input or output.
-            SymofrosError: There is no graphics processor, or the function has no kernel.
+            SymofrosError: There is no graphics processor, or the function has no kernel; or a graph is captured, and
+                the call can't become part of it.
         """
-        loaded, device = self._load((name, self.record.frame_aliases.get(frame, frame))), driver()
+        key, device, handle = (name, self.record.frame_aliases.get(frame, frame)), driver(), stream_handle(stream)
+        captured = is_captured(device, handle)
+        if captured:
+            self._check_capture(key, {} if out is None else out, wait, inputs)
+        loaded = self._load(key)
         kernel = loaded.code.kernels[0]
-        given = self._placed({size[0]: size[1] for size in kernel.signature.inputs}, inputs, device)
+        given = self._placed({size[0]: size[1] for size in kernel.signature.inputs}, inputs, device, handle, captured)
         n = self._states(name, given)
         shapes = {label: (n, *shape) for label, shape in kernel.signature.outputs}
-        written = receivers(name, shapes, out or {}, given, self._dtype, device)
-        results: dict[str, Any] = dict(out or {})
+        given_out = {} if out is None else out
+        written = receivers(name, shapes, given_out, given, self._dtype, device, handle, captured)
+        results: dict[str, Any] = dict(given_out)
         for label, shape in shapes.items():
             if label not in results:
                 results[label] = DeviceArray(device, shape, self._dtype)
                 written[label] = strided_result(label, placed(label, results[label], self._dtype, device), shape)
         arguments = [_batch(given[group], n) for group, _ in kernel.signature.inputs]
         arguments += [written[label] for label in shapes]
-        self._launch(loaded, kernel.symbol, n, arguments, device)
+        self._launch(loaded, kernel.symbol, n, arguments, device, handle)
         if wait:
-            device.wait()
+            device.wait(handle)
+        for result in results.values():
+            if isinstance(result, DeviceArray):
+                result.stream = None if wait or captured else handle
         return {label: results[label] for label in shapes}
+
+    def _check_capture(self, key: Key, out: Any, wait: bool, inputs: Mapping[str, Any]) -> None:
+        """Refuse a call that allocates, copies or waits while a graph is captured."""
+        name = " of ".join(filter(None, key))
+        if key not in self._loaded:
+            raise refused_in_capture(name, "its first call, which compiles it", "call it once before the capture")
+        if wait:
+            raise refused_in_capture(name, "wait=True", "pass wait=False")
+        signature = self._loaded[key].code.kernels[0].signature
+        missing = [label for label, _ in signature.outputs if label not in out]
+        if missing:
+            remedy = "pass arrays of the device for all outputs in out"
+            raise refused_in_capture(name, f"out without {', '.join(missing)}", remedy)
+        for group, _ in signature.inputs:
+            value = inputs.get(group)
+            ready = group in self._defaults if value is None else lies_on_device(group, value)
+            if not ready:
+                found = f"{group} is left out" if value is None else f"{group} lies on the host"
+                raise refused_in_capture(name, found, f"pass an array of the device for {group}")
+            if isinstance(value, DeviceArray) and value.stream is not None:
+                found = f"{group} is still being written"
+                raise refused_in_capture(name, found, "wait for it before the capture")
 
     def rollout(
         self,
@@ -156,6 +224,7 @@ class CudaModel:
         every: int | None = None,
         method: str = "rk4",
         t: Any = 0.0,
+        stream: Any = None,
     ) -> tuple[DeviceArray, DeviceArray]:
         """Motions from many states by steps of constant length, inputs held over each step.
 
@@ -165,17 +234,18 @@ class CudaModel:
             u: Inputs: (nu), (n, nu), or (steps, n, nu); the default inputs where they are left out.
             dt: Step [s].
             steps: Number of steps.
-            every: Steps between two records; the last state alone by default.
+            every: Steps between two records, a divisor of steps; the last state alone by default.
             method: "rk4" or "semi_implicit_euler", as in `simulate`.
             t: First time, for all or (n) [s].
+            stream: Stream that the kernel goes into, as of `evaluate`.
 
         Returns:
             q (records, n, nq) and v (records, n, nv).
 
         Raises:
             UnknownNameError: There is no such method.
-            ShapeError: An input does not fit.
-            SymofrosError: The model has constraints, or there is no graphics processor.
+            ShapeError: An input does not fit, steps or the step are none, or a quaternion of q is no rotation.
+            SymofrosError: The model has constraints, or there is no graphics processor; or a graph is captured.
         """
         code = self.code("forward_dynamics")
         if method not in code.rollouts:
@@ -184,20 +254,17 @@ class CudaModel:
                 Problem(f"CUDA: no rollouts by '{method}'", method, ", ".join(known), did_you_mean(method, known))
             )
         every = steps if every is None else every
-        if not (steps >= 1 and 1 <= every <= steps and np.isfinite(dt)):
-            raise ShapeError(
-                Problem(
-                    "CUDA: no such rollout",
-                    f"{steps} steps of {dt}, a record every {every}",
-                    "1 <= every <= steps, and a finite step",
-                    "leave every out for the last state alone",
-                )
-            )
-        loaded, device = self._load(("forward_dynamics", "")), driver()
+        _check_rollout(dt, steps, every)
+        if not lies_on_device("q", q) and np.shape(q)[-1:] == (len(self.record.q_names),):
+            refuse_lengths(self.record, np.asarray(q, dtype=np.float64))
+        device, handle = driver(), stream_handle(stream)
+        if is_captured(device, handle):
+            raise refused_in_capture("a rollout", "its results, which it allocates", "roll out before the capture")
+        loaded = self._load(("forward_dynamics", ""))
         sizes = {"q": len(self.record.q_names), "v": len(self.record.v_names), "t": 1}
-        given = self._placed(sizes, {"q": q, "v": v, "t": t}, device)
+        given = self._placed(sizes, {"q": q, "v": v, "t": t}, device, handle)
         n = self._states("rollout", given)
-        inputs = placed("u", self._default("u", device) if u is None else u, self._dtype, device)
+        inputs = placed("u", self._default("u", device) if u is None else u, self._dtype, device, handle)
         held = self._held(inputs, steps, n)
         records = steps // every
         results = [DeviceArray(device, (records, n, sizes[x]), self._dtype, batch=1) for x in ("q", "v")]
@@ -208,8 +275,8 @@ class CudaModel:
         scalars = [ctypes.c_longlong(steps), ctypes.c_longlong(every), ctypes.c_double(dt)]
         start = [_batch(given[x], n) for x in ("q", "v", "t")]
         arguments = [*scalars, *start[:2], held, start[2], *sequences]
-        self._launch(loaded, loaded.code.rollouts[method], n, arguments, device)
-        device.wait()
+        self._launch(loaded, loaded.code.rollouts[method], n, arguments, device, handle)
+        device.wait(handle)
         return results[0], results[1]
 
     def _held(self, u: Placed, steps: int, n: int) -> StridedSequence:
@@ -233,12 +300,19 @@ class CudaModel:
             self._loaded[key] = _Loaded(code, module, pre)
         return self._loaded[key]
 
-    def _launch(self, loaded: _Loaded, symbol: str, n: int, arguments: list[Any], device: Driver) -> None:
+    def _launch(self, loaded: _Loaded, symbol: str, n: int, arguments: list[Any], device: Driver, stream: int) -> None:
         given = [ctypes.c_longlong(n), ctypes.c_void_p(loaded.pre.address), *arguments]
         if n:
-            device.launch(device.function(loaded.module, symbol), n, BLOCK, given)
+            device.launch(device.function(loaded.module, symbol), n, BLOCK, given, stream)
 
-    def _placed(self, sizes: Mapping[str, int], inputs: Mapping[str, Any], device: Driver) -> dict[str, Placed]:
+    def _placed(
+        self,
+        sizes: Mapping[str, int],
+        inputs: Mapping[str, Any],
+        device: Driver,
+        stream: int,
+        captured: bool = False,
+    ) -> dict[str, Placed]:
         """Inputs on the device, in their shapes: (n, size) or (size); t as (n, 1) or (1)."""
         values = {"u": None, "t": None} | dict(inputs)
         for group in inputs:
@@ -253,7 +327,7 @@ class CudaModel:
                     Problem(f"CUDA: no {group}", ", ".join(inputs) or "nothing", ", ".join(sizes), "add it")
                 )
             value = self._default(group, device) if group in "ut" and values[group] is None else values[group]
-            array = placed(group, value, self._dtype, device)
+            array = placed(group, value, self._dtype, device, stream, captured)
             if group == "t" and value is not self._defaults.get(group):
                 array = Placed(array.address, (*array.shape, 1), (*array.strides, 1), array.owner)
             arrays[group] = self._fitting(group, array, size)
@@ -281,6 +355,23 @@ class CudaModel:
             shown = ", ".join(f"{group} {array.shape}" for group, array in arrays.items())
             raise _misfit(name, tuple(sorted(counts)), f"one number of states in all of {shown}")
         return counts.pop() if counts else 1
+
+
+def _check_rollout(dt: float, steps: int, every: int) -> None:
+    """Refuse numbers of steps and steps that are none."""
+    for name, number in (("steps", steps), ("every", every)):
+        if isinstance(number, bool) or not isinstance(number, int | np.integer):
+            found = f"{name} = {number!r:.40}"
+            raise ShapeError(Problem(f"CUDA: {name} is no whole number", found, "steps are counted", "pass an int"))
+    if steps < 1 or not 1 <= every <= steps or steps % every or not (np.isfinite(dt) and dt > 0.0):
+        raise ShapeError(
+            Problem(
+                "CUDA: no such rollout",
+                f"{steps} steps of {dt}, a record every {every}",
+                "1 <= every <= steps, every divides steps so that the last record is the end, and a step is positive",
+                "leave every out for the last state alone",
+            )
+        )
 
 
 def _batch(array: Placed, n: int) -> Strided:

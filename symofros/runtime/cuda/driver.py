@@ -11,6 +11,10 @@ from symofros.errors import Problem, SymofrosError
 
 # Attributes of devices: the two numbers of the compute capability.
 _MAJOR, _MINOR = 75, 76
+# The default stream's handle, as arrays' interfaces and the driver (CU_STREAM_LEGACY) have it.
+DEFAULT_STREAM = 1
+# An event without times; and what is said of the default stream where a stream that waits for it captures a graph.
+_EVENT_WITHOUT_TIMES, _CAPTURED_BESIDE = 2, 906
 _REMEDY = "export the kernels (sf.export(system, 'cuda', folder)), or run on a machine that has one"
 
 
@@ -68,15 +72,45 @@ class Driver:
         self._call("cuModuleGetFunction", ctypes.byref(function), module, name.encode())
         return function
 
-    def launch(self, function: ctypes.c_void_p, threads: int, block: int, arguments: Sequence[Any]) -> None:
-        """Start a kernel on so many threads, in the default stream."""
+    def launch(
+        self,
+        function: ctypes.c_void_p,
+        threads: int,
+        block: int,
+        arguments: Sequence[Any],
+        stream: int = DEFAULT_STREAM,
+    ) -> None:
+        """Start a kernel on so many threads, in a stream."""
         addresses = (ctypes.c_void_p * len(arguments))(*(ctypes.addressof(x) for x in arguments))
         blocks = -(-threads // block)
-        self._call("cuLaunchKernel", function, blocks, 1, 1, block, 1, 1, 0, None, addresses, None)
+        in_stream = ctypes.c_void_p(stream)
+        self._call("cuLaunchKernel", function, blocks, 1, 1, block, 1, 1, 0, in_stream, addresses, None)
 
-    def wait(self) -> None:
-        """Return when everything that was started has ended."""
-        self._call("cuCtxSynchronize")
+    def wait(self, stream: int = DEFAULT_STREAM) -> None:
+        """Return when everything that was started in a stream has ended; of the default stream, in all of them."""
+        if stream == DEFAULT_STREAM:
+            self._call("cuCtxSynchronize")
+        else:
+            self._call("cuStreamSynchronize", ctypes.c_void_p(stream))
+
+    def order(self, first: int, then: int) -> None:
+        """What is started in a stream from now on begins when what is in another one has ended."""
+        if first == then:
+            return
+        event = ctypes.c_void_p()
+        self._call("cuEventCreate", ctypes.byref(event), _EVENT_WITHOUT_TIMES)
+        try:
+            self._call("cuEventRecord", event, ctypes.c_void_p(first))
+            self._call("cuStreamWaitEvent", ctypes.c_void_p(then), event, 0)
+        finally:
+            self._call("cuEventDestroy_v2", event)
+
+    def captures(self, stream: int) -> bool | None:
+        """Whether a graph is captured from a stream; None of the default one beside a stream that waits for it."""
+        status = ctypes.c_int()
+        self._check("cuCtxSetCurrent", self._context)
+        failed = self._library.cuStreamIsCapturing(ctypes.c_void_p(stream), ctypes.byref(status))
+        return None if failed == _CAPTURED_BESIDE else bool(status.value)
 
     def allocate(self, size: int) -> int:
         """The address of so many bytes of the device's memory."""
@@ -89,8 +123,10 @@ class Driver:
         self._call("cuMemFree_v2", ctypes.c_void_p(address))
 
     def write(self, address: int, source: int, size: int) -> None:
-        """Copy from the memory of the host."""
+        """Copy from the memory of the host; it is there for all streams afterwards."""
         self._call("cuMemcpyHtoD_v2", ctypes.c_void_p(address), ctypes.c_void_p(source), ctypes.c_size_t(size))
+        # Of memory that may be paged out, the copy returns when it is staged.
+        self._call("cuStreamSynchronize", ctypes.c_void_p(DEFAULT_STREAM))
 
     def read(self, address: int, target: int, size: int) -> None:
         """Copy to the memory of the host, when what was started has ended."""

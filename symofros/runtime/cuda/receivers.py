@@ -11,8 +11,8 @@ import numpy.typing as npt
 
 from symofros.base.arrays import share_memory
 from symofros.errors import Problem, ShapeError, UnknownNameError, did_you_mean
-from symofros.runtime.cuda.arrays import DeviceArray, Placed, Strided, lies_on_device, placed
-from symofros.runtime.cuda.driver import Driver
+from symofros.runtime.cuda.arrays import DeviceArray, Placed, Strided, interface_of, lies_on_device, placed
+from symofros.runtime.cuda.driver import DEFAULT_STREAM, Driver
 
 Shape = tuple[int, ...]
 
@@ -24,6 +24,8 @@ def receivers(
     inputs: Mapping[str, Placed],
     dtype: npt.DTypeLike,
     driver: Driver,
+    stream: int = DEFAULT_STREAM,
+    captured: bool = False,
 ) -> dict[str, Strided]:
     """The arrays to write into, as kernels take them, by output.
 
@@ -34,18 +36,23 @@ def receivers(
         inputs: Arrays that are read.
         dtype: Type of the numbers.
         driver: Driver of the device.
+        stream: Stream of the kernels.
+        captured: Whether a graph is captured from it.
 
     Raises:
         UnknownNameError: There is no such output.
         ShapeError: An array is none of the device, does not fit, can't be written, or shares memory with another one or
             with itself.
     """
+    if not isinstance(out, Mapping):
+        remedy = f"write out={{'{next(iter(shapes))}': array}}"
+        raise ShapeError(Problem("CUDA: out is no mapping", type(out).__name__, "out maps outputs to arrays", remedy))
     for label, array in out.items():
         if label not in shapes:
             hint = did_you_mean(label, shapes) or "leave it out"
             raise UnknownNameError(Problem(f"CUDA: {name} has no output '{label}'", label, ", ".join(shapes), hint))
         _check_writeable(label, array)
-    places = {label: placed(label, array, dtype, driver) for label, array in out.items()}
+    places = {label: placed(label, array, dtype, driver, stream, captured) for label, array in out.items()}
     batches = {label: strided_result(label, place, shapes[label]) for label, place in places.items()}
     kind = np.dtype(dtype)
     others = {other: (read, _bounds(read, kind)) for other, read in inputs.items()} if places else {}
@@ -86,7 +93,7 @@ def strided_result(label: str, array: Placed, shape: Shape) -> Strided:
 def _check_writeable(label: str, array: Any) -> None:
     if isinstance(array, DeviceArray):
         return
-    if not lies_on_device(array):
+    if not lies_on_device(label, array):
         raise ShapeError(
             Problem(
                 f"CUDA: {label} does not lie on the device",
@@ -95,7 +102,7 @@ def _check_writeable(label: str, array: Any) -> None:
                 "leave it out, and call .numpy() on the result",
             )
         )
-    interface = getattr(array, "__cuda_array_interface__", None)
+    interface = interface_of(label, array)
     if interface is not None and interface["data"][1]:
         raise ShapeError(
             Problem(f"CUDA: {label} is read only", "an array that refuses writing", "results are written", "copy it")

@@ -46,6 +46,10 @@ class CopyFunctions(ParameterFunctions):
         Raises:
             ArgumentError: Neither of them.
         """
+        self._check_precision(precision)
+        return self if precision == self._precision else self._like(precision=precision)
+
+    def _check_precision(self, precision: Precision) -> None:
         if not isinstance(precision, str) or precision not in ("double", "single"):
             raise ArgumentError(
                 Problem(
@@ -55,7 +59,6 @@ class CopyFunctions(ParameterFunctions):
                     "numpy.float32 is 'single'",
                 )
             )
-        return self if precision == self._precision else self._like(precision=precision)
 
     def cuda(self, precision: Precision | None = None, *, contract: bool = False) -> CudaModel:
         """The model's functions on a graphics processor, with the present values of its parameters.
@@ -65,8 +68,11 @@ class CopyFunctions(ParameterFunctions):
             contract: Whether products and sums are fused: faster where arithmetic bounds, and rounded otherwise than C.
 
         Raises:
+            ArgumentError: No such precision.
             SymofrosError: The model came without its description.
         """
+        if precision is not None:
+            self._check_precision(precision)
         if self._device_code is None:
             raise SymofrosError(
                 Problem(

@@ -26,7 +26,12 @@ class MomentumFunctions(Functions):
     def centroidal_momentum(
         self, q: ArrayLike, v: ArrayLike, *, u: ArrayLike | None = None, par: ArrayLike | None = None
     ) -> Array:
-        """Momentum about the mass centre, in world axes (..., 6): linear [kg m/s], then angular [kg m^2/s]."""
+        """Momentum about the mass centre, in world axes (..., 6): linear [kg m/s], then angular [kg m^2/s].
+
+        Along runs by `variational`, which keeps linear momentum and angular momentum about the world's origin to
+        rounding, the angular momentum about a mass centre that translates drifts as dt^2 t
+        (docs/theory/simulation.md, section 5).
+        """
         return self._one("centroidal_momentum", {"q": q, "v": v, "u": u}, par)
 
     def centroidal_momentum_matrix(

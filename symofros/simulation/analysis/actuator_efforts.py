@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arguments import checked
-from symofros.base.arrays import numeric
+from symofros.base.arrays import numeric, vector
 from symofros.errors import ActuationError, Problem, ShapeError, UnknownNameError, did_you_mean
 from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
 from symofros.runtime.calls.kernel import Array
@@ -110,7 +110,7 @@ def actuator_efforts(
     model = model.with_precision("double")
     names = _names(model, actuators)
     accelerations = _vector("a", model.by_name("a", a), model.nv)
-    weights = np.ones(len(names)) if sizes is None else _vector("sizes", sizes, len(names))
+    weights = np.ones(len(names)) if sizes is None else vector("sizes", sizes, len(names))
     stated = [model.names.u.index(name) for name in names if name in model.names.u]
     others = np.array(_vector("u", given_inputs(model, u), model.nu))
     others[..., stated] = 0.0

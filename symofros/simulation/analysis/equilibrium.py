@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from symofros.base.arguments import checked
-from symofros.base.arrays import numeric
+from symofros.base.arrays import vector
 from symofros.errors import ActuationError, BeamTheoryError, EquilibriumError, Problem, UnknownNameError
 from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes, largest_bending
 from symofros.runtime.calls.kernel import Array
@@ -23,6 +23,7 @@ from symofros.simulation.analysis.beam_theory import (
 )
 from symofros.simulation.analysis.input_rotations import given_inputs
 from symofros.simulation.analysis.kinematics.assembly import free_speeds
+from symofros.simulation.analysis.kinematics.facing import refuse_opposite
 from symofros.simulation.analysis.rest_search import Balance, search_rest
 
 # Estimated error of a beam's theory from which it is what a search without success is blamed on.
@@ -78,6 +79,8 @@ def equilibrium(
     """Solve M 0 + h - Q - G^T lam = 0, phi = 0 for the configuration, by Newton's method with exact derivatives.
 
     Where that stalls, a relaxation from the same guess leads towards a stable rest, from where Newton's method goes on.
+    Its matrices are decomposed by NumPy's LAPACK, whose last digits depend on the processor: so do those of the result,
+    other than those of runs and of the functions of models.
 
     Args:
         model: Model, with or without constraints.
@@ -94,15 +97,16 @@ def equilibrium(
             no result (docs/theory/beams.md, section 6); `math.inf` for no limit.
 
     Raises:
+        AssemblyError: A closure is closed the wrong way round.
         BeamTheoryError: A beam is bent beyond the limit, or its theory has no equilibrium here.
         EquilibriumError: None was found; names the coordinate with the largest imbalance.
         UnknownNameError: `held` names something that is not a speed.
     """
     model = model.with_precision("double")
     free = free_speeds(model, held)
-    q = model.neutral() if q is None else numeric("q", model.by_name("q", q))
-    v = np.zeros(model.nv) if v is None else numeric("v", model.by_name("v", v))
-    u = given_inputs(model, u)
+    q = model.neutral() if q is None else vector("q", model.by_name("q", q), model.nq)
+    v = np.zeros(model.nv) if v is None else vector("v", model.by_name("v", v), model.nv)
+    u = vector("u", given_inputs(model, u), model.nu)
     balance = Balance(model, free, v, u, par, t)
     end = search_rest(balance, q, tolerance, iterations)
     q, lam = end.q, end.lam
@@ -117,10 +121,10 @@ def equilibrium(
                 f"model '{model.record.name}': no equilibrium was found from this guess",
                 f"after {end.count} steps an imbalance of {end.R[worst]:.3g} at '{names[worst]}'",
                 f"the imbalance is below {tolerance:g} of the largest force",
-                "start nearer, give the inputs that hold it, allow more iterations, or hold coordinates that have no "
-                "place of rest",
+                _remedy(model),
             )
         )
+    refuse_opposite(model, q, u, par)
     refuse_beyond(model, bendings, beam_limit, "the equilibrium")
     effort = np.zeros(model.nv)
     held_rows = np.setdiff1d(np.arange(model.nv), free)
@@ -129,6 +133,18 @@ def equilibrium(
     inputs = _holding_inputs(model, (q, v, u, lam), effort, par, t)
     notes = unstable + bending_notes(bendings)
     return Equilibrium(q, v, u, lam, effort, left, end.count, bendings, notes, efforts, inputs)
+
+
+def _remedy(model: Model) -> str:
+    """What may be done where no equilibrium was found."""
+    remedy = (
+        "start nearer, give the inputs that hold it, allow more iterations, or hold coordinates that have no place of"
+        " rest"
+    )
+    slid = ", ".join(f"'{model.names.v[i]}'" for i in model.record.friction_speeds[:6])
+    if not slid:
+        return remedy
+    return f"{remedy}; friction, of {slid}, is smooth and holds nothing at rest: hold what it is to hold"
 
 
 def _holding_inputs(

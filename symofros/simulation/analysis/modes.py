@@ -8,12 +8,13 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arguments import checked
-from symofros.base.arrays import numeric
+from symofros.base.arrays import vector
 from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.beam_theory import bendings_in_motion, refuse_beyond
 from symofros.simulation.analysis.input_rotations import given_inputs
+from symofros.simulation.analysis.kinematics.facing import refuse_opposite
 from symofros.simulation.analysis.rest_linearisation import matrix_at_rest
 from symofros.simulation.analysis.rigid_motions import rigid_motions
 from symofros.simulation.analysis.state_space import state_space
@@ -69,13 +70,15 @@ def modes(
             (docs/theory/beams.md, section 6); `math.inf` for no limit.
 
     Raises:
+        AssemblyError: A closure is closed the wrong way round.
         BeamTheoryError: A beam is bent beyond the limit.
     """
     state = (
-        numeric("q", model.by_name("q", q)),
-        np.zeros(model.nv) if v is None else numeric("v", model.by_name("v", v)),
-        given_inputs(model, u),
+        vector("q", model.by_name("q", q), model.nq),
+        np.zeros(model.nv) if v is None else vector("v", model.by_name("v", v), model.nv),
+        vector("u", given_inputs(model, u), model.nu),
     )
+    refuse_opposite(model, state[0], state[2], par)
     A, basis = _linearised(model, *state, par, t)
     # Without constraints A holds the derivatives of the accelerations.
     slopes = None if model.nc else A[model.nv :, : model.nv]

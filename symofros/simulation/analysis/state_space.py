@@ -14,6 +14,7 @@ from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import null_space, pseudo_inverse
 from symofros.runtime.model import ArrayLike, Model, Output
 from symofros.simulation.analysis.input_rotations import given_inputs
+from symofros.simulation.analysis.kinematics.facing import refuse_opposite
 from symofros.simulation.analysis.singular_mass import ADVICE, singular_mass
 
 
@@ -62,12 +63,14 @@ def state_space(
         t: Time.
 
     Raises:
+        AssemblyError: A closure is closed the wrong way round.
         UnknownNameError: No such output or frame.
         SymofrosError: The accelerations have no derivatives, as where the mass matrix is singular.
     """
     model = model.with_precision("double")
     v = np.zeros(model.nv) if v is None else numeric("v", model.by_name("v", v))
     u = given_inputs(model, u)
+    refuse_opposite(model, q, u, par)
     A, B, C, D = model.linearize(q, v, u, outputs=outputs, par=par, t=t)
     if not np.all(np.isfinite(A)):
         configuration = numeric("q", model.by_name("q", q))

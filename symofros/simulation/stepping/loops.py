@@ -76,21 +76,24 @@ def run_sundials(stepper: Stepper, q: Array, v: Array, settings: Settings, show:
         if recorded.status == Status.RUNNING and (grid is None or (grid and grid[0] <= run.t)):
             recorded.states.append(_now(stepper))
         grid = grid[1:] if grid and grid[0] <= run.t else grid
-        while recorded.status == Status.RUNNING and (settings.max_steps is None or solver.steps < settings.max_steps):
+        while recorded.status == Status.RUNNING and (
+            settings.max_steps is None or solver.steps < settings.max_steps or solver.met
+        ):
             wanted = grid[0] if grid else (None if grid is None else float(run.t_end))
             recorded.status, met = solver.advance(wanted)
             run.steps = solver.steps
             if recorded.status < 0:
                 break
             t, q_now, v_now = stepper.state
-            recorded.events += [(which, t, q_now, v_now) for which in met]
-            final = [which for which in met if stepper.events[which].terminal]
+            if met is not None:
+                recorded.events.append((met, t, q_now, v_now))
+            final = met is not None and stepper.events[met].terminal
             if final:
-                recorded.status, run.terminal_event = Status.TERMINAL_EVENT, final[0]
-            elif t >= float(run.t_end):
+                recorded.status, run.terminal_event = Status.TERMINAL_EVENT, met
+            elif t >= float(run.t_end) and not solver.met:
                 recorded.status = Status.FINISHED
             if grid is None:
-                if run.steps % settings.every == 0 or recorded.status != Status.RUNNING:
+                if (met is None and run.steps % settings.every == 0) or recorded.status != Status.RUNNING:
                     recorded.states.append(_now(stepper))
             elif (grid and t >= grid[0]) or final:
                 recorded.states.append(_now(stepper))

@@ -84,6 +84,7 @@ class Stepper:
         system.n_segments, system.segments = len(segments), memory.own("sym_segment[]", segments)
         on_speeds = [int(name in model.record.speed_conditions) for name in model.names.constraints]
         system.on_speeds = memory.own("int32_t[]", on_speeds)
+        system.group = memory.own("int32_t[]", list(model.record.measures.group))
         quaternions = model.record.quaternion_inputs
         system.n_quaternion_inputs, system.quaternion_inputs = len(quaternions), memory.own("int32_t[]", quaternions)
         sizes = {"q": model.nq, "v": model.nv, "u": model.nu, "t": 1, "gains": 2 * model.nc}
@@ -162,6 +163,9 @@ class Stepper:
         system.n_events = len(events)
         system.event_direction = memory.own("int32_t[]", [event.sign for event in events])
         system.event_terminal = memory.own("int32_t[]", [int(event.terminal) for event in events])
+        if self.inputs.callback is not None:  # Each evaluation of the inputs is a call of it.
+            written, names = " ".join(str(event.formula) for event in events), self.model.names
+            system.events_free_of_inputs = int(not any(name in written for name in {*names.u} - {*names.q}))
         if events:
             self._bind("events", self.model.formulas([event.formula for event in events], derivatives=False))
 
@@ -218,7 +222,7 @@ class Stepper:
         run.q, run.v = memory.doubles(q), memory.doubles(v)
         run.work = memory.zeros(self.native.sym_run_work_size(run))
         run.pivots = memory.own("int32_t[]", 2 * (model.nv + model.nc))
-        run.event_values = memory.zeros(3 * len(self.events))
+        run.event_values = memory.zeros(constants()["SYM_EVENT_ROWS"] * len(self.events))
         run.capacity, run.event_capacity = capacity, max(_EVENT_ROWS, 2 * len(self.events))
         self._records = memory.table(run, "record_", capacity, t=1, q=model.nq, v=model.nv, u=model.nu)
         self._event_records = memory.table(run, "event_", run.event_capacity, t=1, q=model.nq, v=model.nv)
@@ -271,13 +275,22 @@ class Stepper:
         """Make y = (q, v), its quaternions normalised, the present state, and evaluate its inputs; returns a Status."""
         return int(self.native.sym_run_set_state(self.run, t, self._pointer(y)))
 
-    def begin_step(self, end: float) -> None:
-        """Held samples that begin at `end`, or later, do not count from now on; for integrators of others."""
-        self.system.in_step, self.system.step_end = 1, end
+    def begin_step(self, t: float, end: float) -> None:
+        """From t on, held samples and jumps at `end`, or later, do not count; for integrators of others."""
+        self.native.sym_run_begin_step(self.run, t, end)
 
     def end_step(self) -> None:
         """Those that begin there count."""
-        self.system.in_step = 0
+        self.native.sym_run_end_step(self.run)
+
+    def set_stops(self, t0: float, t_end: float) -> None:
+        """Find the instants between start and end [s] of a run at which steps have to end, for formulas of time."""
+        stops = self.model.formula_instants(list(self.inputs.formulas.values()), self.par, t0, t_end)
+        self.system.n_stops, self.system.stops = len(stops), self.memory.doubles(stops)
+
+    def next_stop(self, t: float, end: float) -> float:
+        """The first instant after t at which a step has to end, else `end` [s]; for integrators of others."""
+        return float(self.native.sym_run_next_stop(self.run, t, end))
 
     def slope(self, t: float, y: Array, rate: Array) -> int:
         """Write the rate y' = (N v, v') of a state y = (q, v) into `rate`; returns a Status."""
@@ -328,6 +341,24 @@ class Stepper:
             arrays = (self._pointer(basis), self._pointer(matrix), self._pointer(motion))
             m = int(self.native.sym_run_spectrum(self.run, h, dimension, *arrays))
         return (basis[:m], matrix[:m, :m], motion[:m]) if m > 0 else None
+
+    def accelerations(self, t: Array, q: Array, v: Array) -> tuple[Array, Array] | None:
+        """Accelerations (n, nv) and inputs (n, nu) at states of the motion; within `preserved`.
+
+        Each state is projected onto the constraints first, where the run is.
+
+        Args:
+            t: Times (n) [s].
+            q: Configurations (n, nq).
+            v: Speeds (n, nv).
+
+        Returns:
+            NaN where a state has no accelerations; None where a function of the caller's fails.
+        """
+        n = len(t)
+        a, u = np.empty((n, self.model.nv)), np.empty((n, self.model.nu))
+        arrays = [self._pointer(x) for x in (*map(np.ascontiguousarray, (t, q, v)), u, a)]
+        return (a, u) if self.native.sym_run_accelerations(self.run, n, *arrays) == 0 else None
 
     def configuration_rate(self, q: Array, w: Array) -> Array:
         """The rate N w (nq) at speeds w (nv) and the configuration that was placed last; q: its numbers."""

@@ -66,6 +66,7 @@ class Advice:
             is allowed.
         bounds: Output's name -> what is allowed, in its own unit.
         truncation: Error of the full model against the richer one, in units of what is allowed.
+        unsettled: What functions beyond those of the richer model may still change, in the same units.
         options: The functions to generate, and the frames.
         methods: A line on each integrator tried.
         runs: Number of simulations it took.
@@ -83,6 +84,7 @@ class Advice:
     errors: Mapping[str, float]
     bounds: Mapping[str, float]
     truncation: float
+    unsettled: float
     options: Options
     methods: tuple[str, ...]
     runs: int
@@ -90,8 +92,8 @@ class Advice:
 
     @property
     def ok(self) -> bool:
-        """Whether every output is within its tolerance."""
-        return all(share <= 1.0 for share in self.errors.values())
+        """Whether every output is within its tolerance, and stays so whatever the richer model still changes by."""
+        return all(share + self.unsettled <= 1.0 for share in self.errors.values())
 
     @property
     def gain(self) -> float:
@@ -140,7 +142,8 @@ class Advice:
         lines = [f"step it by {self.stepping}; functions: {', '.join(self.options.functions or ())}"]
         for name, share in self.errors.items():
             bound = self.bounds[name]
-            lines.append(f"output '{name}': error {share * bound:.3g}, allowed {bound:.3g}")
+            beside = f" beside a model that may itself be off by {self.unsettled * bound:.3g}" if self.unsettled else ""
+            lines.append(f"output '{name}': error {share * bound:.3g}{beside}, allowed {bound:.3g}")
         lines.append(
             f"{self.cost.total} operations a run ({self.cost.per_evaluation} x {self.cost.evaluations} evaluations"
             + (f", {self.cost.per_jacobian} x {self.cost.jacobians} derivatives" if self.cost.jacobians else "")
@@ -177,6 +180,7 @@ class Advice:
                 for name, share in self.errors.items()
             ],
             "truncation": self.truncation,
+            "unsettled": self.unsettled,
             "choices": [
                 {
                     "subject": one.subject,

@@ -10,7 +10,7 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from symofros.base.arguments import CheckedCalls, shown
+from symofros.base.arguments import CheckedCalls, check_fields, entries_of, shown
 from symofros.errors import DescriptionError, Problem, did_you_mean
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.results.trajectory import Trajectory
@@ -119,7 +119,10 @@ class Scene(metaclass=CheckedCalls):
     def __post_init__(self) -> None:
         """Freeze the collections, check the numbers."""
         for name in ("outputs", "keep"):
-            object.__setattr__(self, name, tuple(getattr(self, name)))
+            entries = entries_of(getattr(self, name))
+            if entries is not None:
+                object.__setattr__(self, name, tuple(entries))
+        check_fields(self)
         for name in ("inputs", "start"):
             object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
         if not (math.isfinite(self.t_end) and self.t_end > 0.0):

@@ -66,6 +66,7 @@ class _Search:
         self.divided: set[str] = set()  # Beams that were put in segments, and these.
         self.choices: list[Choice] = []
         self.notes: list[str] = []
+        self.unsettled = 0.0
         self.current = system
         self.reference = self._settle()
         self.seen = Observed.of(self.current, scene, self.reference)
@@ -92,6 +93,7 @@ class _Search:
             self.runner.errors(stepped, self.reference.trial),
             self.bounds,
             self.truncation,
+            self.unsettled,
             Options(self.runner.functions(self.current, stepping.method), self.scene.frames),
             tuple(methods),
             self.runner.runs,
@@ -106,19 +108,40 @@ class _Search:
         first = described = self._within_theory()
         if self.current != self.full:
             described = self.runner.exact(self.current)[0]
+        changes: list[float] = []
         for _ in range(_ROUNDS):
             richer = refined(self.current)
-            reference = self.runner.exact(richer)[0] if richer != self.current else described
-            off = self.runner.error(described, reference)
-            if off <= REFINE:
+            if richer == self.current:
+                reference = described
+                self._note_what_is_not_judged()
                 break
-            self.notes.append(f"the model errs by {off:.2g} of the tolerance against one of more functions: refined")
+            reference = self.runner.exact(richer)[0]
+            changes.append(self.runner.error(described, reference))
+            if changes[-1] <= REFINE:
+                break
+            self.notes.append(
+                f"the model errs by {changes[-1]:.2g} of the tolerance against one of more functions: refined"
+            )
             self.current, described = richer, reference
-        else:
-            self.notes.append("more functions still change the outputs; the tolerance is near what beams can give")
+        self.unsettled = _still_to_come(changes)
+        if changes and changes[-1] > REFINE:
+            self.notes.append(
+                "the richer model has not converged: its last functions still change the outputs by"
+                f" {changes[-1]:.2g} of what is allowed, by which errors count as larger; state more functions or a"
+                " rod, or allow more"
+            )
         self.truncation = self.runner.error(first, reference)
         self.bounds = {output.name: output.bound(reference.values[output.name]) for output in self.scene.outputs}
         return ReferenceSolution(richer, reference)
+
+    def _note_what_is_not_judged(self) -> None:
+        """Say of which beams no richer model exists: those whose functions the user gives."""
+        own = [f"'{b.name}'" for b in self.current.bodies if isinstance(b, Beam) and b.modes and b.family == "user"]
+        if own:
+            self.notes.append(
+                f"{', '.join(own)}: functions of yours, of which there are no more to judge them by: errors are"
+                " relative to the description"
+            )
 
     def _within_theory(self) -> Trial:
         """The described motion; where second-order theory misses too much of it, rods take the place of its beams."""
@@ -287,6 +310,18 @@ class _Search:
 
 # What saves most comes first.
 _PRIORITY = ("rigid", "elastic joint", "direction", "theory", "rotor", "rotary inertia", "order", "foreshortening")
+
+
+def _still_to_come(changes: Sequence[float]) -> float:
+    """What further functions may change the outputs by, after changes by one more each, in units of what is allowed.
+
+    Those that settle are taken to go on as they did last, by one ratio; of the first change alone none is known, and
+    what is left after a small one counts as nothing.
+    """
+    if not changes or changes[-1] > REFINE:
+        return changes[-1] if changes else 0.0
+    ratio = changes[-1] / changes[-2] if len(changes) > 1 else 0.0
+    return changes[-1] * ratio / (1.0 - ratio)
 
 
 def _order(one: Reduction) -> tuple[int, float]:

@@ -382,3 +382,37 @@ def test_constraints_engage_at_samples_only() -> None:
     diagram.add(After(name="after", time=0.1))
     with pytest.raises(sf.DescriptionError, match="put a hold with a period"):
         sf.Simulation(diagram)
+
+
+@pytest.mark.parametrize("method", ["rk4", "dopri5"])
+@pytest.mark.parametrize("start", [0.0, -0.3])
+def test_a_held_sequence_jumps_between_steps(method: str, start: float) -> None:
+    """A lag behind held samples: each counts from its instant, not in the last stage of the step that ends there."""
+    t, values = start + 0.1 * np.arange(6), np.array([1.0, -2.0, 3.0, -1.0, 4.0, 0.0])
+    diagram = sf.Diagram("held")
+    diagram.add(blocks.Sequence(name="given", t=t, values=values, kind="hold"))
+    diagram.add(Lag(name="lag"), x="given")
+    h = 0.1  # The lag's own time: a step of rk4 keeps 3/8 of the state, the motion itself exp(-1).
+    kept, steps = (0.375, {"dt": h}) if method == "rk4" else (np.exp(-1.0), {"rtol": 1e-11})
+    want = 0.0
+    for value in values[:-1]:
+        want = kept * want + (1.0 - kept) * value
+    simulation = sf.Simulation(diagram)
+    run = simulation.run(start + 0.5, t0=start, method=method, record=h, **steps)
+    assert run["lag"][-1] == pytest.approx(want, abs=1e-12 if method == "rk4" else 1e-8)
+    assert np.array_equal(np.ravel(run["given"]), values)
+    for compiled in (True, False) if method == "rk4" else ():
+        other = simulation.interpret(start + 0.5, t0=start, method=method, record=h, compiled=compiled, **steps)
+        assert other["lag"][-1] == pytest.approx(want, abs=1e-12)
+        assert np.array_equal(np.ravel(other["given"]), values)
+
+
+def test_a_push_by_lines_is_not_stepped_over() -> None:
+    """By adaptive steps, from rest: a lag behind a tent of a fiftieth of the run."""
+    diagram = sf.Diagram("pushed")
+    diagram.add(blocks.Sequence(name="given", t=[0.0, 4.7, 4.75, 4.8, 10.0], values=[0.0, 0.0, 5.0, 0.0, 0.0]))
+    diagram.add(Lag(name="lag"), x="given")
+    fine = sf.Simulation(diagram).run(5.0, dt=1e-3)
+    run = sf.Simulation(diagram).run(5.0, method="dopri5")
+    assert abs(fine["lag"][-1]).max() > 0.05
+    assert np.abs(run["lag"][-1] - fine["lag"][-1]).max() < 1e-5

@@ -52,10 +52,24 @@ int main(void) {
 }
 """)
 
+# Two motors, each of which is an input.
+DRIVEN = sf.System(
+    "driven_arm",
+    tuple(
+        sf.RigidBody(
+            f"link{i}",
+            sf.Joint(f"q{i}", "revolute", "link0" if i else "world", position=(0.5 * i, 0, 0), actuated=True),
+            sf.Inertia(1.0, (0.2, 0, 0), (0.1, 0.2, 0.2)),
+        )
+        for i in range(2)
+    ),
+)
+SYSTEMS = {**MODELS, "driven_arm": DRIVEN}
 # Models and the speeds whose joints have actuators: a tree, a loop with more actuators than freedoms, one in space with
 # conditions that repeat each other, one with a prescribed motion and a beam.
 CASES = {
     "double_pendulum": ("q1", "q2"),
+    "driven_arm": ("q0", "q1"),
     "four_bar": ("q1", "q2", "q3"),
     "bricard": ("q1", "q3", "q4"),
     "spinning_beam": tuple(f"beam.bend_y[{i}]" for i in range(3)),
@@ -94,17 +108,18 @@ def numbers(line: str) -> np.ndarray:
     "name",
     [
         "double_pendulum",
+        "driven_arm",
         "four_bar",
         "spinning_beam",
         *(pytest.param(name, marks=pytest.mark.slow) for name in ("bricard", "flexible_slider_crank")),
     ],
 )
 def test_c_gives_the_reactions_of_python(tmp_path: Path, name: str) -> None:
-    m, actuators = sf.compile(MODELS[name]), CASES[name]
+    m, actuators = sf.compile(SYSTEMS[name]), CASES[name]
     states = motions(m, name, 3)
     if not m.nc:
         states = [(q, v, np.cos(np.arange(m.nv) + q[0]), u) for q, v, _, u in states]
-    sf.export(MODELS[name], "c", tmp_path, frames=[])
+    sf.export(SYSTEMS[name], "c", tmp_path, frames=[])
     codes = ", ".join(
         str(m.names.u.index(actuator)) if actuator in m.names.u else f"SYM_ON_SPEED({m.names.v.index(actuator)})"
         for actuator in actuators

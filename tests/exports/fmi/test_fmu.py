@@ -218,7 +218,7 @@ class Unit:
 
     def __init__(self, path: Path, version: int, cosim: bool, folder: Path) -> None:
         fmpy.extract(str(path), folder)
-        self.version, self.description = version, fmpy.read_model_description(str(path))
+        self.path, self.version, self.description = path, version, fmpy.read_model_description(str(path))
         kind: Any = {(2, 0): FMU2Model, (2, 1): FMU2Slave, (3, 0): FMU3Model, (3, 1): FMU3Slave}[version, int(cosim)]
         interface = self.description.coSimulation if cosim else self.description.modelExchange
         self.fmu = kind(

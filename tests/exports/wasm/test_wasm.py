@@ -45,6 +45,15 @@ const use = () => {
   return model.wasm.memory.buffer.byteLength;
 };
 results.memory = [use(), use(), use()];
+const kept = model.prepareBatch("dynamics", 4), held = kept.inputs.q;
+held.set([0.1, 0.4, 0.2, 0.3, 0.3, 0.2, 0.4, 0.1]); kept.run();
+results.grown = [kept.outputs.M[0]];
+model.prepareBatch("dynamics", 30000);
+try { held[0] = 9; kept.run(); } catch (error) { results.grown.push(error.message); }
+kept.inputs.q[2] = 0.2; kept.run();
+results.grown.push(kept.outputs.M[0]);
+kept.free();
+try { kept.inputs.q[0] = 9; } catch (error) { results.grown.push(error.message); }
 console.log(JSON.stringify(results));
 """
 
@@ -146,6 +155,13 @@ def test_wrong_names_and_sizes_are_refused_in_words(answers: dict[str, Any]) -> 
 def test_memory_that_is_used_again_does_not_grow(answers: dict[str, Any]) -> None:
     first, second, third = answers["memory"]
     assert first == second == third < 2**25
+
+
+@pytest.mark.tools
+def test_arrays_of_a_prepared_batch_outlive_memory_that_grows(answers: dict[str, Any]) -> None:
+    """An array that memory has left is refused as an input; one that is taken anew has the numbers of before."""
+    before, refused, after, freed = answers["grown"]
+    assert before == after and "memory has grown since q were taken" in refused and "the batch was freed" in freed
 
 
 @pytest.mark.tools

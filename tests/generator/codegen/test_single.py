@@ -25,7 +25,10 @@ EPS = float(np.finfo(np.float32).eps)
 # Measured: 0.83 without fused operations, 0.77 with them.
 ULPS = 0.85
 WIDTHS = {
-    "sse2": ("-O2",),
+    "four": ("-O2",),
+    # On any processor, by the macros that choose, as in test_lanes.py.
+    "eight": ("-O2", "-Wno-psabi", "-D__AVX__=1"),
+    "sixteen": ("-O2", "-Wno-psabi", "-D__AVX512F__=1"),
     "avx": ("-O2", "-mavx2", "-mfma"),
     "native": DEFAULT_FLAGS,
     "strict": (*DEFAULT_FLAGS, "-ffp-contract=off"),
@@ -132,8 +135,10 @@ def test_forward_dynamics_loses_what_the_condition_takes() -> None:
     assert np.all(error < 10.0 * EPS * condition) and error.max() > EPS
 
 
-def test_numpys_floats_in_and_out() -> None:
-    m = sf.compile(MODELS["friction_arm"]).with_precision("single")
+@pytest.mark.parametrize("width", ["four", "eight", "sixteen"])
+def test_numpys_floats_in_and_out(width: str) -> None:
+    m = sf.compile(MODELS["friction_arm"], sf.Options(("mass_matrix", "dynamics"), flags=WIDTHS[width]))
+    m = m.with_precision("single")
     rng = np.random.default_rng(2)
     for n in (1, 2, 15, 16, 17, 100):
         q, v, u = (rng.uniform(-1.0, 1.0, (n, size)).astype(np.float32) for size in (m.nq, m.nv, m.nu))

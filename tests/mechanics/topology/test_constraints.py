@@ -72,3 +72,17 @@ def test_a_coupling_of_prescribed_coordinates_alone_binds_nothing() -> None:
     led = sf.RigidBody("a", sf.Joint("p", "revolute", prescribed=True), SOLID)
     with pytest.raises(sf.DescriptionError, match="binds no coordinate"):
         sf.compile(sf.System("s", (led, BODIES[1]), constraints=(sf.Coupling("k", "p - 1"),)))
+
+
+def test_a_condition_that_is_not_linear_in_speeds_is_refused_in_its_own_words() -> None:
+    """Not in those for potentials, which share the names that they may use."""
+    upright = sf.Nonholonomic("upright", (("dq", "dp"),))
+    bodies = (
+        sf.RigidBody("a", sf.Joint("q", "prismatic"), sf.Inertia(1.0)),
+        sf.RigidBody("b", sf.Joint("p", "prismatic"), sf.Inertia(1.0)),
+    )
+    with pytest.raises(sf.DescriptionError) as caught:
+        sf.compile(sf.System("points", bodies, constraints=(upright,)))
+    problem = caught.value.problems[0]
+    assert "linear in" in problem.rule and "potential" not in str(problem)
+    assert "product of two" in problem.remedy

@@ -243,6 +243,7 @@ def test_a_damaged_library_is_made_anew(compiling: Compiling, arm: Path, spoil: 
         "\0\xff",
     ],
 )
+@pytest.mark.filterwarnings("ignore::symofros.errors.StoredStateWarning")
 def test_a_damaged_note_is_none(compiling: Compiling, arm: Path, content: str) -> None:
     first = compiling(arm)
     (note,) = (path for path in compiling.cache.glob("*.known") if "sources" in path.read_text())
@@ -252,6 +253,7 @@ def test_a_damaged_note_is_none(compiling: Compiling, arm: Path, content: str) -
     assert note.read_bytes() == whole
 
 
+@pytest.mark.filterwarnings("ignore::symofros.errors.StoredStateWarning")
 def test_libraries_outside_of_the_folder_are_not_looked_at(compiling: Compiling, arm: Path, tmp_path: Path) -> None:
     compiling(arm)
     (note,) = (path for path in compiling.cache.glob("*.known") if "sources" in path.read_text())

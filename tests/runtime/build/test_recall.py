@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 
 import symofros as sf
 from reference_models.rigid.random_tree import random_tree
+from symofros.errors import StoredStateWarning
 from symofros.generator import units
 from symofros.runtime.build import build
 
@@ -100,3 +102,20 @@ def test_a_deleted_library_is_made_anew(cache: Path, written: list[str]) -> None
     library.unlink()
     m = compiled(random_tree(31))
     assert library.exists() and len(written) == 2 and m.nv > 0
+
+
+@pytest.mark.parametrize("damage", [b"", b"\0" * 40, b"\xff\xfe", b"../../../etc/passwd", b"{", None], ids=repr)
+def test_a_damaged_file_of_the_cache_is_made_anew(cache: Path, damage: bytes | None) -> None:
+    system = random_tree(31)
+    expected = compiled(system).mass_matrix(q := sf.compile(system).neutral())
+    for file in sorted(cache.iterdir()):
+        if file.suffix not in (".known", ".digest", ".fastest"):
+            continue
+        if damage is None and file.suffix != ".known":  # Where a library is to be, a folder is refused in words.
+            continue
+        file.unlink()
+        file.mkdir() if damage is None else file.write_bytes(damage)
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            assert np.array_equal(compiled(system).mass_matrix(q), expected)
+        assert any(issubclass(one.category, StoredStateWarning) for one in caught) == (file.suffix != ".digest")

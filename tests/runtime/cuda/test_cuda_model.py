@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import copy
 import ctypes
+import pickle
 import subprocess
-from pathlib import Path
+import sys
 from typing import Any
 
 import numpy as np
@@ -12,78 +14,10 @@ import pytest
 
 import symofros as sf
 from symofros.errors import ShapeError, SymofrosError, UnknownNameError
-from symofros.runtime.cuda import cuda_model
 from symofros.runtime.cuda.cuda_model import CudaModel
 from symofros.runtime.cuda.driver import Driver, driver
-from tests.cuda_on_host import on_host
 from tests.models import model
-
-HERE = Path(__file__).parent
-
-
-@pytest.fixture(scope="module")
-def device(tmp_path_factory: pytest.TempPathFactory) -> Driver:
-    library = tmp_path_factory.mktemp("driver") / "libcuda.so.1"
-    subprocess.run(["gcc", "-shared", "-fPIC", HERE / "driver_on_host.c", "-o", library, "-ldl"], check=True)
-    return Driver(ctypes.CDLL(str(library)))
-
-
-@pytest.fixture(scope="module")
-def on_device(device: Driver, tmp_path_factory: pytest.TempPathFactory) -> CudaModel:
-    """The double pendulum, its kernels compiled as C++."""
-    folder = tmp_path_factory.mktemp("kernels")
-
-    def compiled(text: str, architecture: str, contract: bool) -> bytes:
-        assert architecture == "sm_90"
-        code = next(code for code in gpu._codes.values() if code.text == text)
-        place = folder / code.kernels[0].symbol
-        place.mkdir()
-        return str(on_host(code, place)).encode() + b"\0"
-
-    patch = pytest.MonkeyPatch()
-    patch.setattr(cuda_model, "driver", lambda: device)
-    patch.setattr(cuda_model, "compile_cuda", compiled)
-    gpu = model("double_pendulum").cuda()
-    gpu.evaluate("dynamics", q=np.zeros((1, 2)), v=np.zeros((1, 2)))
-    yield gpu
-    patch.undo()
-
-
-class OnDevice:
-    """An array of another library, in place."""
-
-    def __init__(self, array: np.ndarray) -> None:
-        self.array = array
-        self.__cuda_array_interface__ = {
-            "shape": array.shape,
-            "typestr": array.dtype.str,
-            "data": (array.ctypes.data, False),
-            "strides": array.strides,
-            "version": 3,
-        }
-
-
-class Exchanged:
-    """An array of another library, by DLPack; NumPy's, said to be of the device."""
-
-    def __init__(self, array: np.ndarray, device_type: int = 2, ordinal: int = 0) -> None:
-        self.array, self.device_type, self.ordinal = array, device_type, ordinal
-
-    def __dlpack_device__(self) -> tuple[int, int]:
-        return 2, self.ordinal
-
-    def __dlpack__(self, stream: int) -> object:
-        assert stream == 1
-        capsule = self.array.__dlpack__()
-        pointer = ctypes.pythonapi.PyCapsule_GetPointer
-        pointer.restype, pointer.argtypes = ctypes.c_void_p, (ctypes.py_object, ctypes.c_char_p)
-        ctypes.c_int32.from_address(pointer(capsule, b"dltensor") + 8).value = self.device_type
-        return capsule
-
-
-def states(n: int) -> tuple[np.ndarray, np.ndarray]:
-    rng = np.random.default_rng(3)
-    return rng.uniform(-3, 3, (n, 2)), rng.standard_normal((n, 2))
+from tests.runtime.cuda.foreign_arrays import STATES, Exchanged, OnDevice, WithGradient, WithGradientExchanged, states
 
 
 @pytest.mark.parametrize("n", [1, 2, 128, 300])
@@ -126,6 +60,7 @@ READ_ONLY.__cuda_array_interface__ |= {"data": (READ_ONLY.array.ctypes.data, Tru
     [
         ({"M": np.zeros((3, 2, 2))}, "M does not lie on the device"),
         ({"mass": OnDevice(np.zeros((3, 2, 2)))}, "no output 'mass'"),
+        (OnDevice(np.zeros((3, 2, 2))), "out is no mapping"),
         ({"M": READ_ONLY}, "M is read only"),
         ({"M": OnDevice(np.broadcast_to(np.zeros((2, 2)), (3, 2, 2)))}, "M shares memory(.|\n)*with itself"),
         ({"h": OnDevice(MEMORY[:, 1:3])}, "h shares memory(.|\n)*with q"),
@@ -164,10 +99,10 @@ def test_frames_and_parameters_are_those_of_the_model(on_device: CudaModel) -> N
 @pytest.mark.parametrize("given", ["all", "states", "steps"])
 def test_rollouts_hold_the_inputs_of_each_step(on_device: CudaModel, method: str, given: str) -> None:
     q, v = states(6)
-    u = np.random.default_rng(4).standard_normal({"all": (2,), "states": (6, 2), "steps": (8, 6, 2)}[given])
-    records = on_device.rollout(q, v, u, dt=0.01, steps=8, every=3, method=method)
+    u = np.random.default_rng(4).standard_normal({"all": (2,), "states": (6, 2), "steps": (6, 6, 2)}[given])
+    records = on_device.rollout(q, v, u, dt=0.01, steps=6, every=3, method=method)
     assert records[0].shape == (2, 6, 2)
-    held = np.broadcast_to(u, (8, 6, 2))
+    held = np.broadcast_to(u, (6, 6, 2))
     at_q, at_v = q, v
     for step in range(6):
         runs = [
@@ -180,10 +115,6 @@ def test_rollouts_hold_the_inputs_of_each_step(on_device: CudaModel, method: str
                 assert np.abs(record.numpy()[step // 3] - wanted).max() < 1e-12
 
 
-# Three states of two joints.
-STATES = {"q": np.zeros((3, 2)), "v": np.zeros((3, 2))}
-
-
 @pytest.mark.parametrize(
     ("inputs", "message"),
     [
@@ -194,7 +125,7 @@ STATES = {"q": np.zeros((3, 2)), "v": np.zeros((3, 2))}
         (STATES | {"q": OnDevice(np.zeros((3, 2), "f4"))}, "float64"),
         ({"q": Exchanged(np.zeros((3, 2)), 1), "v": np.zeros(2)}, "device 1 of DLPack"),
         ({"q": Exchanged(np.zeros((3, 2)), 2, 1), "v": np.zeros(2)}, "graphics processor 1;"),
-        ({"q": Exchanged(np.zeros((3, 2), "i8")), "v": np.zeros(2)}, "type 0 of DLPack"),
+        ({"q": Exchanged(np.zeros((3, 2), "i8")), "v": np.zeros(2)}, "int64"),
         (STATES | {"t": np.zeros(4)}, "one number of"),
     ],
 )
@@ -207,6 +138,12 @@ def test_inputs_that_do_not_fit_are_refused(on_device: CudaModel, inputs: dict[s
     ("options", "message"),
     [
         ({"every": 3}, "no such rollout"),
+        ({"steps": 10, "every": 3}, "every divides steps"),
+        ({"dt": 0.0}, "a step is positive"),
+        ({"dt": -0.1}, "a step is positive"),
+        ({"dt": np.nan}, "a step is positive"),
+        ({"steps": 2.5}, "steps is no whole number"),
+        ({"every": True}, "every is no whole number"),
         ({"method": "rk5"}, "by 'rk5'"),
         ({"u": np.zeros((3, 3, 2))}, "u has the"),
         ({"u": np.zeros((4, 2))}, "one number of"),
@@ -214,7 +151,20 @@ def test_inputs_that_do_not_fit_are_refused(on_device: CudaModel, inputs: dict[s
 )
 def test_rollouts_that_do_not_fit_are_refused(on_device: CudaModel, options: dict[str, Any], message: str) -> None:
     with pytest.raises((ShapeError, UnknownNameError), match=message):
-        on_device.rollout(**STATES, **options, dt=0.1, steps=2)
+        on_device.rollout(**{**STATES, "dt": 0.1, "steps": 2, **options})
+
+
+@pytest.mark.parametrize("length", [1.1, 0.0])
+def test_rollouts_refuse_quaternions_that_are_no_rotations_as_simulate_does(length: float) -> None:
+    body = model("torque_free_body")
+    q = np.tile(body.neutral(), (3, 1))
+    q[1, -1] = length
+    for start in (
+        lambda: body.cuda().rollout(q, np.zeros((3, body.nv)), dt=0.1, steps=1),
+        lambda: sf.simulate_batch(body, q, t_end=0.1, dt=0.1),
+    ):
+        with pytest.raises(ShapeError, match=rf"a quaternion that is no rotation(.|\n)*length {length:g}"):
+            start()
 
 
 def test_memory_that_runs_out_is_the_drivers_word(on_device: CudaModel, device: Driver) -> None:
@@ -252,3 +202,44 @@ def test_inputs_that_are_left_out_are_copied_once(on_device: CudaModel, monkeypa
     monkeypatch.setattr(Driver, "write", lambda *arguments: copies.append(arguments))
     on_device.evaluate("forward_dynamics", q=q, v=v, wait=False)
     assert not copies
+
+
+@pytest.mark.parametrize("tensor", [WithGradient, WithGradientExchanged])
+@pytest.mark.parametrize("place", ["q", "out"])
+def test_tensors_that_require_a_gradient_are_refused(on_device: CudaModel, tensor: Any, place: str) -> None:
+    given = {"q": tensor()} if place == "q" else {"q": np.zeros((3, 2)), "out": {"M": tensor()}}
+    with pytest.raises(ShapeError, match=r"is not given by its library(.|\n)*tensor.detach\(\)"):
+        on_device.evaluate("mass_matrix", **given)
+
+
+def test_a_model_on_the_device_is_copied_as_itself_and_not_pickled(on_device: CudaModel) -> None:
+    assert copy.copy(on_device) is on_device and copy.deepcopy({"gpu": on_device})["gpu"] is on_device
+    with pytest.raises(SymofrosError, match="can't be pickled"):
+        pickle.dumps(on_device)
+    result = on_device.evaluate("mass_matrix", q=np.zeros((3, 2)))["M"]
+    for attempt in (copy.copy, copy.deepcopy, pickle.dumps):
+        with pytest.raises(SymofrosError, match="not copied or pickled"):
+            attempt(result)
+
+
+@pytest.mark.parametrize("precision", ["float32", "half", 32, np.float32])
+def test_precisions_that_do_not_exist_are_refused_where_they_are_named(precision: Any) -> None:
+    with pytest.raises(sf.ArgumentError, match="no such precision"):
+        model("double_pendulum").cuda(precision)
+
+
+def test_arrays_that_live_to_the_end_are_silent(device: Driver) -> None:
+    """At the end of a process neither modules nor the driver are what they were."""
+    script = f"""
+import ctypes
+from symofros.runtime.cuda.arrays import DeviceArray
+from symofros.runtime.cuda.driver import Driver
+
+class Kept:
+    pass
+
+kept = Kept()
+kept.me, kept.array = kept, DeviceArray(Driver(ctypes.CDLL({device._library._name!r})), (3,), float)
+"""
+    run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    assert (run.returncode, run.stderr) == (0, "")

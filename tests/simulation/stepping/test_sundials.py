@@ -10,7 +10,9 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from symofros.simulation.stepping.sundials import independent_rows
+from symofros.base.measures import FORMULA, OTHER, Measures
+from symofros.simulation.stepping.sundials import combinations
+from tests.overconstrained import Bennett
 
 
 def moving(name: str) -> tuple[sf.Model, np.ndarray, np.ndarray]:
@@ -136,7 +138,27 @@ def test_ida_rolls() -> None:
 
 
 @pytest.mark.parametrize("scale", [1e-9, 1.0, 1e9])
-def test_rows_are_judged_by_their_own_size(scale: float) -> None:
+def test_combinations_are_judged_by_the_rows_own_sizes(scale: float) -> None:
+    """A row that repeats another takes part with it, and a row of zeros does not."""
     G = np.array([[1.0, 2.0, 0.0], [scale, 2 * scale, 0.0], [0.0, 0.0, scale], [0.0, 0.0, 0.0]])
-    rows = independent_rows(G)
-    assert len(rows) == np.linalg.matrix_rank(G[rows] / np.linalg.norm(G[rows], axis=1)[:, None]) == 2 and 3 not in rows
+    measures = Measures((0, 1, 2, 3), (FORMULA,) * 4, (OTHER,) * 3)
+    kept = combinations(G, measures, np.ones(4, dtype=bool))
+    left = kept @ G
+    assert left.shape == (2, 3)
+    assert np.linalg.matrix_rank(left / np.linalg.norm(left, axis=1)[:, None]) == 2
+    assert not kept[:, 3].any()
+    alone = combinations(G, measures, np.array([True, False, True, False]))
+    assert np.array_equal(alone, np.eye(4)[[0, 2]])
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-8])
+def test_ida_moves_loops_whose_conditions_repeat_each_other_in_closed_postures_alone(rtol: float, seed: int) -> None:
+    """Which combinations are independent changes along the motion."""
+    bennett = Bennett.drawn(np.random.default_rng(seed))
+    model = sf.compile(bennett.system())
+    run = sf.simulate(
+        model, bennett.posture(0.5), bennett.speeds(0.5, 1.5), 2.9, method="ida", rtol=rtol, atol=1e-2 * rtol
+    )
+    assert run.outcome.kind == "finished"
+    assert abs(bennett.late(model, 0.5, 1.5, float(run.q[-1, 0]), 2.9)) < 1e2 * rtol

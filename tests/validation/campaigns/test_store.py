@@ -11,9 +11,11 @@ import pyarrow as pa
 import pyarrow.parquet as parquet
 import pytest
 
+from symofros.errors import StoredStateWarning
 from tests.validation.campaigns.scripted import with_a_damaged_page
 from validation.campaigns.errors import StoreError
 from validation.campaigns.store import Store, manifest_of, provenance_of
+from validation.campaigns.summary import effort
 
 MANIFEST: dict[str, Any] = {
     "hash": "abc",
@@ -117,3 +119,16 @@ def test_two_clients_do_not_share_a_folder(store: Store) -> None:
         pass
     with store.lock():
         pass
+
+
+@pytest.mark.parametrize("torn", [b'{"event": "beg', b"\xff\x00", b"7", b'{"event": "begun", "time": 1}'])
+def test_a_torn_line_of_the_journal_is_left_out(store: Store, torn: bytes) -> None:
+    store.note(event="session")
+    store.note(event="begun", batch=0)
+    with (store.folder / "journal.jsonl").open("ab") as stream:
+        stream.write(torn)  # As a killed process, or a full disk, leaves it.
+    store.note(event="done", batch=0)
+    with pytest.warns(StoredStateWarning, match=r"journal\.jsonl: 1 of its lines \(3\)"):
+        journal = store.journal()
+    assert [line["event"] for line in journal] == ["session", "begun", "done"]
+    assert effort(journal)["executions"] == 1

@@ -85,8 +85,18 @@ def test_a_slowdown_of_30_percent_is_named_and_noise_is_not(stored: Path, checke
     slower = (replace(SPEEDS[0], ratio=1.3 * SPEEDS[0].ratio),)
     assert judged(stored, checked, speeds=slower) == [("mass_matrix", "", "slower")]
     assert judged(stored, checked, speeds=(replace(SPEEDS[0], ratio=1.05 * SPEEDS[0].ratio),)) == []
-    noisy = (replace(slower[0], noise=0.2),)
-    assert judged(stored, checked, speeds=noisy) == []
+
+
+@pytest.mark.parametrize(
+    ("noise", "growth", "decided"),
+    [(0.0, 1.0, True), (0.05, 1.0, True), (0.2, 1.0, False), (0.2, 1.3, False), (1.0, 2.0, False)],
+)
+def test_a_speed_is_not_decided_where_noise_hides_what_is_looked_for(
+    stored: Path, checked: ModelResult, noise: float, growth: float, decided: bool
+) -> None:
+    data = as_data(SETTINGS, [checked], 1.0, (), (replace(SPEEDS[0], ratio=growth * SPEEDS[0].ratio, noise=noise),))
+    regressions, notes = Baseline.read(stored).judge(Record.of(data), machine_of(data))
+    assert regressions == [] and any("not decided" in note for note in notes) != decided
 
 
 def test_speeds_of_another_machine_are_not_compared(stored: Path, checked: ModelResult) -> None:

@@ -1,13 +1,16 @@
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import reference_models
 import symofros as sf
 from symofros.commands.reading import ReadingOptions, reading_of
 from tests.validation.subjects import URDF
-from validation.inputs.cases import FILES, ROBOTS, Case, named, robot_case, standard_set
+from validation.inputs.cases import FILES, ROBOTS, Case, file_case, named, robot_case, standard_set
+from validation.inputs.sampling import DEFAULT_STATES
 
 
 def test_robots_are_found_in_the_package() -> None:
@@ -20,6 +23,30 @@ def test_robots_are_found_in_the_package() -> None:
 def test_the_standard_set_is_robots_reference_models_and_files() -> None:
     labels = [case.label for case in standard_set()]
     assert labels == [*ROBOTS, *reference_models.MODELS, *FILES] and len(labels) == len(set(labels))
+
+
+def test_files_of_the_standard_set_turn_inertias_where_it_counts() -> None:
+    """A reader that leaves the rotation of <inertial> out would give another M."""
+    system = file_case("sampler").load().system
+    stated, plain = (
+        sf.compile(each, sf.Options(("mass_matrix",), backend="interpreter"))
+        for each in (
+            system,
+            replace(
+                system,
+                bodies=tuple(
+                    replace(body, inertia=body.inertia and replace(body.inertia, rotation=sf.Rotation()))
+                    for body in system.bodies
+                ),
+            ),
+        )
+    )
+    M, q = stated.mass_matrix(stated.neutral()), plain.neutral()
+    assert np.abs(M - plain.mass_matrix(q)).max() > 1e-3 * np.abs(M).max()
+
+
+def test_states_leave_a_tail_behind_vectors_of_every_width() -> None:
+    assert all(DEFAULT_STATES % lanes for lanes in (2, 4, 8))
 
 
 def test_what_takes_longest_is_begun_early() -> None:

@@ -108,6 +108,7 @@ def test_the_fault_of_a_killed_study_is_taken_out_by_the_next(overlay: Overlay, 
     assert (overlay.tree / FAULT.module).read_text() == sound
 
 
+@pytest.mark.filterwarnings("ignore::symofros.errors.StoredStateWarning")
 def test_answers_outlive_the_process_but_not_the_text_that_they_are_about(tmp_path: Path) -> None:
     (tmp_path / "m.py").write_text("a = 1\n")
     store = Store(tmp_path / "answers.jsonl", tmp_path)

@@ -158,7 +158,10 @@ def judge(maps: Maps) -> Verdict:
         f"holds up to α h = {reached['rk4']:.3f}, Dormand-Prince up to {reached['dopri5']:.3f}, Euler up to "
         f"{reached['euler']:.3f}. With longer steps the edge comes sooner, {edges[1]:.2f} at 1 ms and "
         f"{edges[0]:.2f} at 10 ms for RK4: a double root moves by the square root of a perturbation, and the gap "
-        f"falls with h to the power {slope:.2f}. Below the edge too much gain costs accuracy: at h = {best[1]:.3g} "
+        f"falls with h to the power {slope:.2f}. These edges are where a run counts as lost, its speed along the rod "
+        "above a tenth of the speed itself, or φ above the bound: a threshold of accuracy, which long steps reach "
+        "before the method's own limit of stability. Below the edge too much gain costs accuracy: at "
+        f"h = {best[1]:.3g} "
         f"s the constraint is kept best, to {best[0]:.1e}, with α = {best[2]:.3g}/s. Euler keeps the rod only in "
         f"{euler.good.mean():.0%} of its map, and with no gain at long steps."
     )

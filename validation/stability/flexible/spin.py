@@ -46,7 +46,7 @@ def run(name: str, eta: float, hub: float) -> sf.Trajectory:
     m = beam(name).with_parameters(r=hub)
     start = np.zeros(m.nq)
     start[0] = 1e-3
-    return simulate(m, start, t_end=END, u=[0.0, eta, 0.0], method="dop853", rtol=1e-9, atol=1e-15, output=0.05)
+    return simulate(m, start, t_end=END, u={"turn": f"{eta!r}*t"}, method="dop853", rtol=1e-9, atol=1e-15, output=0.05)
 
 
 def measure(name: str) -> Callable[[float, float], Cell]:

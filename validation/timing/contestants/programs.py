@@ -15,7 +15,15 @@ from functools import cache
 from importlib.resources import files
 from pathlib import Path
 
-from symofros.tools import cache_folder, cpu_identity, create_cache_folder, install, is_intact, write_atomically
+from symofros.tools import (
+    cache_folder,
+    cpu_identity,
+    create_cache_folder,
+    install,
+    is_intact,
+    stored_json,
+    write_atomically,
+)
 
 # Linked with these, a library of gcc's up to 12 makes the whole process flush denormal numbers to zero when it loads.
 _LOOSE = ("-ffast-math",)
@@ -138,7 +146,8 @@ def build(
     key = hashlib.sha256("\0".join(parts).encode()).hexdigest()[:32]
     folder = cache_folder()
     library, record = folder / f"timing-{key}.so", folder / f"timing-{key}.json"
-    if not (record.exists() and is_intact(library)):
+    facts = stored_json(record, dict) if is_intact(library) else None
+    if facts is None:
         say(f"compiling {next(iter(sources))} by {compiler.name}")
         create_cache_folder(folder)
         with tempfile.TemporaryDirectory(prefix=f".{key[:8]}-", dir=folder) as private:
@@ -146,7 +155,7 @@ def build(
             facts = {name: value for name, value in asdict(built).items() if name != "path"}
             write_atomically(record, json.dumps(facts))
             install(built.path, library)
-    return Built(library, **json.loads(record.read_text(encoding="utf-8")))
+    return Built(library, **facts)
 
 
 def copies(library: Path, count: int = COPIES) -> list[Path]:

@@ -10,12 +10,14 @@ import numpy as np
 from symofros.base.user_functions import raised_where
 from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.program.layout import Layout
+from symofros.diagrams.run.engaging import engaged_apart, engaging_notes
 from symofros.diagrams.run.examination.faults import fault_at
 from symofros.diagrams.run.examination.joint_limits import joint_limit_notes
 from symofros.diagrams.run.loop import Loop
 from symofros.runtime.beams import BeamBending, bending_notes, largest_bending
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.analysis.beam_theory import UNAMPLIFIED, amplifications
+from symofros.simulation.events import event_notes
 from symofros.simulation.results.examination.step_size import examine_steps, remedy, step_size_note
 from symofros.simulation.results.outcome import Kind, Outcome
 from symofros.simulation.settings import Settings
@@ -98,7 +100,14 @@ def diagnose(ended: Ended, bendings: Sequence[BeamBending]) -> tuple[Outcome, Re
     """
     loop, status, t = ended.loop, ended.status, ended.t
     left = joint_limit_notes(ended.resolved, *ended.states[:3])
-    notes = (*bending_notes(bendings), *([loop.fault] if loop.fault else []), *left)
+    undecided = (note for stepper in loop.parts for note in event_notes(stepper.run, stepper.events))
+    closed = float(loop.diagram.engaged_t), float(loop.diagram.engaged_gap)
+    notes = (*bending_notes(bendings), *([loop.fault] if loop.fault else []), *left, *undecided)
+    if status == Status.ENGAGED_APART:
+        names, which = ended.layout.lock_names, int(loop.diagram.engaged)
+        name = names[which] if which >= 0 else ", ".join(names)
+        return engaged_apart(closed[0], closed[1], name, notes), Resolution()
+    notes = (*notes, *engaging_notes(*closed))
     if ended.interrupted:
         return Outcome("interrupted", t, "Ctrl-C; the part up to here is kept", notes=notes), Resolution()
     if status == Status.CALLBACK_FAILED:

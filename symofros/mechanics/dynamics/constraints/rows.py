@@ -7,7 +7,7 @@ accelerations, so prescribed joints and the tips of beams need nothing of their 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from symofros.base.names import TIME
@@ -43,6 +43,7 @@ class Row:
         rate: G v - b: the rate of phi, or the residual of the condition on speeds.
         gamma: Right-hand side of G v' = gamma.
         levers: Terms of G, through which the multiplier acts on bodies.
+        facing: Cosines of the angles between axes that it keeps parallel; negative where they are the wrong way round.
     """
 
     phi: Edge
@@ -50,6 +51,7 @@ class Row:
     rate: Edge
     gamma: Edge
     levers: tuple[Lever, ...] = ()
+    facing: tuple[Edge, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -115,8 +117,11 @@ class Constraints:
         A, B = self._state(closure.first), self._state(closure.second)
         for axis in closure.translations:
             yield self._offset(A, B, A.R.column(AXES.index(axis)))
-        for pairs in _conditions(closure.rotations):
-            yield self._between(A, B, pairs)
+        blocked = [AXES.index(axis) for axis in closure.rotations]
+        parallel = {3: blocked, 2: [k for k in range(3) if k not in blocked]}.get(len(blocked), [])
+        facing = tuple(A.R.column(k).dot(B.R.column(k)) for k in parallel)
+        for which, pairs in enumerate(_conditions(closure.rotations)):
+            yield replace(self._between(A, B, pairs), facing=facing if which == 0 else ())
 
     def _offset(self, A: FrameState, B: FrameState, n: Vec3) -> Row:
         """Condition d . n = 0 for d = p_B - p_A and n fixed in A (eq. 3)."""

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arguments import checked
-from symofros.base.arrays import numeric
+from symofros.base.arrays import vector
 from symofros.base.measures import LENGTH, ROTATION, TRANSLATION
 from symofros.errors import AssemblyError, Problem, UnknownNameError, did_you_mean
 from symofros.runtime.calls.kernel import Array
@@ -28,6 +28,7 @@ from symofros.runtime.constrained import (
 )
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.input_rotations import given_inputs
+from symofros.simulation.analysis.kinematics.facing import refuse_opposite
 from symofros.simulation.analysis.kinematics.targets import finite_array
 from symofros.simulation.settings import refuse_lengths
 
@@ -102,11 +103,11 @@ def assemble(
     """
     free = free_speeds(model, held)
     model = model.with_precision("double")
-    q = model.neutral() if q is None else numeric("q", model.by_name("q", q))
+    q = model.neutral() if q is None else vector("q", model.by_name("q", q), model.nq)
     refuse_lengths(model, q)
     speeds = np.zeros(model.nv) if v is None else model.by_name("v", v)
     wished = finite_array("assemble: v", speeds, (model.nv,), "give one number a speed")
-    conditions = _Conditions(model, given_inputs(model, u), par, t)
+    conditions = _Conditions(model, vector("u", given_inputs(model, u), model.nu), par, t)
     tolerance = _own_measure(conditions, q, tolerance)
     found = _closed(conditions, q, free, tolerance, iterations, held)
     G = conditions.jacobian(found.q)
@@ -139,10 +140,10 @@ def approach(
     """
     free = free_speeds(model, held)
     model = model.with_precision("double")
-    at = _Conditions(model, given_inputs(model, u), par, t)
+    at = _Conditions(model, vector("u", given_inputs(model, u), model.nu), par, t)
     end = _attempt(at, q, free, _own_measure(at, q, TOLERANCE), ITERATIONS)
     if end.closes:
-        _check_rotations(model, end.q, at.u, par)
+        refuse_opposite(model, end.q, at.u, par)
     return end
 
 
@@ -202,7 +203,7 @@ def _closed(
         if others is None:
             _refuse(at.model, first, held, bool(_movable(at, q, free).any()))
         first = others
-    _check_rotations(at.model, first.q, at.u, at.par)
+    refuse_opposite(at.model, first.q, at.u, at.par)
     return first
 
 
@@ -382,28 +383,3 @@ def _refuse(model: Model, first: Attempt, held: Collection[str], shifted: bool) 
             "start nearer, hold fewer coordinates, or check lengths",
         )
     )
-
-
-def _check_rotations(model: Model, q: Array, u: ArrayLike | None, par: ArrayLike | None) -> None:
-    """Conditions on rotations vanish at the opposite posture, too; that one is not closed."""
-    for closure in model.record.closures:
-        if not closure.rotations:
-            continue
-        R_A, R_B = (
-            np.eye(3) if frame is None else model.frame_pose(frame, q, u=u, par=par)[1]
-            for frame in (closure.first, closure.second)
-        )
-        cosines = np.diag(R_A.T @ R_B)
-        blocked = closure.rotations
-        judged = {3: [0, 1, 2], 2: [k for k in range(3) if k not in blocked]}.get(len(blocked), [])
-        worst = min((float(cosines[k]) for k in judged), default=1.0)
-        if worst < 0.0:
-            angle = np.degrees(np.arccos(max(worst, -1.0)))
-            raise AssemblyError(
-                Problem(
-                    f"model '{model.record.name}': closure '{closure.name}' is closed the wrong way round",
-                    f"axes that are to be parallel are {angle:.0f} degrees apart",
-                    "conditions on rotations hold up to a right angle from the closed posture",
-                    "start from a guess on the right side",
-                )
-            )

@@ -8,6 +8,7 @@ from symofros.errors import ActuationError, Problem
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import STILL, residual_weights
 from symofros.runtime.model import ArrayLike, Model
+from symofros.simulation.analysis.kinematics.facing import refuse_opposite
 
 # Residual of phi = 0, and of G v = b and G a = gamma relative to their terms: what interpolated trajectories meet.
 CONSISTENT = 1e-6
@@ -20,10 +21,12 @@ def consistent_jacobian(
 
     Raises:
         ActuationError: It does not.
+        AssemblyError: A closure is closed the wrong way round.
     """
     if not model.nc:
         return np.zeros((0, model.nv))
     q, v, a, u = state
+    refuse_opposite(model, q, u, par)
     G = model.constraint_jacobian(q, u=u, par=par, t=t)
     speeds, size = np.asarray(model.by_name("v", v), dtype=np.float64), np.abs(G)
     weights = np.array([residual_weights(one, model.record.measures) for one in G.reshape(-1, model.nc, model.nv)])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -13,19 +13,18 @@ from symofros.base.measures import ANGLE, LENGTH, Measures
 from symofros.errors import AssemblyError, Problem, SymofrosError
 from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
 from symofros.runtime.calls.kernel import Array
-from symofros.runtime.constrained import LARGEST_STEP, pseudo_inverse
+from symofros.runtime.constrained import pseudo_inverse
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.beam_theory import bendings_in_motion
 from symofros.simulation.analysis.input_rotations import given_inputs
-from symofros.simulation.analysis.kinematics.assembly import Indices, free_speeds
-from symofros.simulation.analysis.kinematics.nearest_posture import OPTIMALITY, NearestPosture, coordinate_limits
+from symofros.simulation.analysis.kinematics.assembly import free_speeds
+from symofros.simulation.analysis.kinematics.posture_search import STARTS, Posture, PostureSearch
+from symofros.simulation.analysis.kinematics.restarts import default_start
+from symofros.simulation.analysis.kinematics.targets import CLOSED_TO, Task, finite_array, rotations_checked
 from symofros.simulation.analysis.kinematics.targets import Target as Target
-from symofros.simulation.analysis.kinematics.targets import Task, finite_array, rotations_checked
 
-# Damping of the least squares, relative to the largest singular value: first value, and factors after a good step and
-# a bad one (Levenberg-Marquardt).
-_DAMPING, _RELAX, _TIGHTEN = 1e-3, 0.2, 8.0
-_SMALLEST_GAIN = 1e-16
+# Beyond so many starts a target counts as out of reach: hours would pass without an answer.
+_MOST_STARTS = 100_000
 
 
 @dataclass(frozen=True)
@@ -33,17 +32,19 @@ class Reached:
     """The configuration nearest to what was wanted.
 
     Attributes:
-        q: Configuration (nq), within its limits.
-        error: Largest remaining error of position [m], rotation [rad] and constraints.
-        converged: Whether the error is below the tolerance and, with a posture of rest, the distance from it is least
-            among the solutions nearby, to first order, and no beam is bent beyond its theory; otherwise the target is
-            out of reach from here.
+        q: Configuration (nq); constraints hold there, whether or not the targets are reached.
+        error: Largest remaining error of targets: of position [m] and rotation [rad].
+        converged: Whether error and gap are below the tolerance and, with a posture of rest, the distance from it is
+            least among the solutions nearby, to first order, and no beam is bent beyond its theory; otherwise no start
+            led to the targets, and q misses them by least, as far as was found.
         iterations: Steps taken.
         distance: Distance from rest: norm of differences of coordinates and of rotation vectors; 0 without rest.
         gradient: Norm of the distance's gradient along the solutions, times the distance: of what remains of q - rest
             in the null space of the targets' Jacobian, less what joint limits hold; 0 without rest.
         bendings: Bending of each beam, with the error of its theory.
-        notes: Remarks: beams whose theory errs by more than a per cent.
+        notes: Remarks: beams whose theory errs by more than a per cent, loops that no start closes.
+        gap: Largest residual of the constraints [m, rad].
+        starts: Number of starts that were followed.
     """
 
     q: Array
@@ -54,6 +55,8 @@ class Reached:
     gradient: float = 0.0
     bendings: tuple[BeamBending, ...] = ()
     notes: tuple[str, ...] = ()
+    gap: float = 0.0
+    starts: int = 1
 
 
 @checked
@@ -66,114 +69,79 @@ def inverse_kinematics(
     held: Collection[str] = (),
     u: ArrayLike | None = None,
     par: ArrayLike | None = None,
-    tolerance: float = 1e-10,
+    tolerance: float = CLOSED_TO,
     iterations: int = 200,
     beam_limit: float = BEAM_LIMIT,
+    starts: int = STARTS,
 ) -> Reached:
     """Damped least squares on the targets and, for mechanisms with loops, on their constraints.
 
-    With a posture of rest, descent on the solutions follows, from what is reached from the guess and from what is
-    reached from rest, and the nearer end counts (docs/theory/constraints.md, section 9). It is a local minimum:
-    branches of solutions that neither start leads to are not searched.
+    Where the guess does not lead to the targets, drawn starts follow, the same for the same model and guess, and of
+    the solutions that the first successful round of them finds the one nearest to the guess counts. Where none leads
+    there, the targets are out of reach as far as was found: the posture on the constraints and within the limits that
+    misses them by least is returned. With a posture of rest, descent on the solutions follows, from what is reached
+    from the guess and from what is reached from rest, and the nearer end counts. It is a local minimum: branches of
+    solutions that neither start leads to are not searched (docs/theory/constraints.md, section 9).
 
     Args:
         model: Model, whose joint limits are kept.
         targets: Frame -> where it is wanted.
-        q: Guess (nq); rest, or the neutral configuration, if not given.
+        q: Guess (nq); rest, or the neutral configuration with coordinates in the middle of limits that it breaks, if
+            not given.
         rest: Configuration to stay nearest to with the freedom that is left (nq).
         held: Names of speeds whose coordinates stay.
         u: Inputs, for prescribed motions.
         par: Run-time parameters.
-        tolerance: Bound of the largest error.
+        tolerance: Bound of the targets' largest error; constraints close to 1e-10 however large it is.
         iterations: Most steps from one start.
         beam_limit: Estimated error of the beams' second-order theory, relative to the deflection, beyond which a
             configuration does not count as reached (docs/theory/beams.md, section 6).
+        starts: Most starts; with 1 the solution is on the branch that the guess leads to, or none is found.
 
     Raises:
         UnknownNameError: No such frame or speed.
         ShapeError: A target, the guess or rest does not fit, or is not of finite numbers.
-        SymofrosError: A target's matrix is not a rotation, or nothing is asked for.
+        SymofrosError: A target's matrix is not a rotation, or nothing is asked for; or starts is out of range.
     """
     model = model.with_precision("double")
-    free = free_speeds(model, held)
+    _check_starts(starts)
     task = Task(model, targets, u, par)
+    free = free_speeds(model, held)
     resting = None if rest is None else _configuration(model, "rest", rest)
     if q is not None:
-        starts = [_configuration(model, "q", q)]
+        guess = _configuration(model, "q", q)
     else:
-        starts = [np.array(model.neutral() if resting is None else resting)]
-    if resting is None:
-        return _judged(task, _reach(task, starts[0], free, tolerance, iterations), beam_limit)
-    if q is not None and not held:
-        starts.append(resting)
-    nearest = min(
-        (_reach_near(task, start, resting, free, tolerance, iterations) for start in starts),
-        key=lambda reached: (not reached.converged, reached.distance if reached.converged else reached.error),
-    )
-    return _judged(task, nearest, beam_limit)
+        guess = default_start(model) if resting is None else resting
+    _refuse_nan(task, task.error(guess))
+    search = PostureSearch(task, guess, resting, free, tuple(held), tolerance, iterations)
+    return _judged(task, search.best(starts), tolerance, beam_limit)
 
 
-def _judged(task: Task, reached: Reached, beam_limit: float) -> Reached:
-    """The same with its beams as they are when released there; not converged where one is bent beyond the limit."""
+def _judged(task: Task, found: Posture, tolerance: float, beam_limit: float) -> Reached:
+    """The posture with its beams as they are when released there; not converged where one is bent beyond the limit."""
     model, given = task.model, task.inputs["u"]
     u = given_inputs(model, given)
-    bendings = bendings_in_motion(model, reached.q, np.zeros(model.nv), u, task.inputs["par"])
+    bendings = bendings_in_motion(model, found.q, np.zeros(model.nv), u, task.inputs["par"])
     within = all(bending.error <= beam_limit for bending in bendings)
-    return replace(reached, converged=reached.converged and within, bendings=bendings, notes=bending_notes(bendings))
-
-
-def _reach(task: Task, q: Array, free: Indices, tolerance: float, iterations: int) -> Reached:
-    """Damped least squares from a guess, within the limits."""
-    model = task.model
-    q = _within(model, q, free)
-    error, damping, count = task.error(q), _DAMPING, 0
-    _refuse_nan(task, error)
-    while np.abs(error).max(initial=0.0) > tolerance and count < iterations:
-        J = task.jacobian(q)
-        movable = _movable(model, q, J.T @ error, free)
-        step = np.zeros(model.nv)
-        step[movable] = _damped(J[:, movable], error, damping)
-        step *= min(1.0, LARGEST_STEP / max(float(np.abs(step).max(initial=0.0)), 1e-300))
-        tried = _within(model, model.integrate(q, step), free)
-        error_tried = task.error(tried)
-        count += 1
-        gain = float(error @ error - error_tried @ error_tried)
-        if gain > 0.0:
-            q, error, damping = tried, error_tried, damping * _RELAX
-        else:
-            damping *= _TIGHTEN
-        if damping > 1e8 or 0.0 <= gain <= _SMALLEST_GAIN * float(error @ error):
-            break
-    left = float(np.abs(error).max(initial=0.0))
-    return Reached(q, left, left <= tolerance, count)
-
-
-def _polished(task: Task, q: Array, free: Indices) -> Array:
-    """The solution after a step without damping, to rounding: distances of solutions are compared to all digits."""
-    error, J = task.error(q), task.jacobian(q)
-    movable = _movable(task.model, q, J.T @ error, free)
-    step = np.zeros(task.model.nv)
-    step[movable] = pseudo_inverse(J[:, movable], task.measures.of_speeds(movable)) @ error
-    tried = _within(task.model, task.model.integrate(q, step), free)
-    return tried if np.linalg.norm(task.error(tried)) < np.linalg.norm(error) else q
-
-
-def _reach_near(task: Task, q: Array, rest: Array, free: Indices, tolerance: float, iterations: int) -> Reached:
-    """A solution from a guess, then descent of the distance from rest among the solutions."""
-    reached = _reach(task, q, free, tolerance, iterations)
-
-    def restore(at: Array, movable: Indices, most: int) -> tuple[Array, float, int]:
-        near = _reach(task, at, movable, tolerance, most)
-        return (_polished(task, near.q, movable) if near.converged else near.q), near.error, near.iterations
-
-    nearest = NearestPosture(task, rest, free, restore, tolerance)
-    q, count = reached.q, 0
-    if reached.converged:
-        q, count = nearest.descend(_polished(task, q, free), iterations - reached.iterations)
-    error, distance = float(np.abs(task.error(q)).max(initial=0.0)), nearest.distance(q)
-    gradient = float(np.linalg.norm(nearest.projected_pull(q)[0]))
-    converged = error <= tolerance and gradient <= OPTIMALITY * (1.0 + distance)
-    return Reached(q, error, converged, reached.iterations + count, distance, gradient)
+    missing = np.abs(task.error(found.q))
+    error, gap = (float(part.max(initial=0.0)) for part in np.split(missing, [task.wishes]))
+    notes = bending_notes(bendings)
+    if gap > min(tolerance, CLOSED_TO):
+        notes = (*notes, f"no start closes the loops: constraints are missed by {gap:.3g}")
+    elif found.wrong_way_round:
+        notes = (*notes, "a closure is closed the wrong way round: axes that are to be parallel point apart")
+    return Reached(
+        found.q,
+        error,
+        found.solved and within,
+        found.steps,
+        found.distance,
+        found.gradient,
+        bendings,
+        notes,
+        gap,
+        found.starts,
+    )
 
 
 @checked
@@ -228,9 +196,9 @@ def joint_motion(
     units = (LENGTH, LENGTH, LENGTH, ANGLE, ANGLE, ANGLE)
     measures = Measures((0, 0, 0, 3, 3, 3)[:rows], units[:rows], model.record.measures.speed)
     for i in range(len(p)):
-        at = inverse_kinematics(
-            model, {frame: Target(p[i], None if R is None else R[i])}, q, par=par, tolerance=tolerance
-        )
+        target = {frame: Target(p[i], None if R is None else R[i])}
+        # From the second sample on, a motion that goes on never changes to another branch of solutions.
+        at = inverse_kinematics(model, target, q, par=par, tolerance=tolerance, starts=1 if i else STARTS)
         if not at.converged:
             raise AssemblyError(
                 Problem(
@@ -250,26 +218,16 @@ def joint_motion(
     return np.array(qs), np.array(vs), np.array(accs)
 
 
-def _damped(J: Array, error: Array, damping: float) -> Array:
-    U, s, Vt = np.linalg.svd(J, full_matrices=False)
-    floor = damping * s.max(initial=0.0)
-    return np.asarray(Vt.T @ (s / (s**2 + floor**2 + 1e-300) * (U.T @ error)))
-
-
-def _movable(model: Model, q: Array, wish: Array, free: Indices) -> Indices:
-    """The free speeds without those that would push a coordinate through its limit."""
-    limits = coordinate_limits(model)
-    stuck = {k for i, k, low, high in limits if (q[i] <= low and wish[k] < 0.0) or (q[i] >= high and wish[k] > 0.0)}
-    return np.array([k for k in free if k not in stuck], dtype=np.intp)
-
-
-def _within(model: Model, q: Array, free: Indices) -> Array:
-    """The configuration with its free coordinates moved to their limits where they are beyond them."""
-    q, movable = np.array(q), set(free.tolist())
-    for i, k, low, high in coordinate_limits(model):
-        if k in movable:
-            q[i] = min(max(q[i], low), high)
-    return q
+def _check_starts(starts: int) -> None:
+    if not 1 <= starts <= _MOST_STARTS:
+        raise SymofrosError(
+            Problem(
+                "inverse kinematics: starts is out of range",
+                str(starts) if abs(starts) < 10 * _MOST_STARTS else "a number far outside of it",
+                f"the guess is the first start, and {_MOST_STARTS} are the most",
+                "leave it out, or give 1 for the guess alone",
+            )
+        )
 
 
 def _configuration(model: Model, name: str, values: ArrayLike) -> Array:

@@ -1,12 +1,14 @@
-"""The posture nearest to a posture of rest among those that meet a task (docs/theory/constraints.md, section 9).
+"""The best posture among those that meet a task (docs/theory/constraints.md, section 9).
 
-Minimise d^2/2 over q with e(q) = 0 and lower <= q <= upper, d the distance in the chart about the posture of rest. The
-descent stays on the solutions: a step along the null space of the task's Jacobian, then least squares back onto e = 0.
+Minimise f(q) with e(q) = 0 and lower <= q <= upper: f is d^2/2, d the distance in the chart about a posture of rest, or
+half the square of what targets out of reach are missed by. The descent stays on the solutions: a step along the null
+space of the task's Jacobian, then least squares back onto e = 0.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Protocol
 
 import numpy as np
 
@@ -17,21 +19,22 @@ from symofros.runtime.model import Model
 from symofros.simulation.analysis.kinematics.assembly import Indices
 from symofros.simulation.analysis.kinematics.targets import Task
 
-# Restores e = 0 near a configuration with some speeds, in so many steps at most: (q, largest error, steps).
-Restore = Callable[[Array, Indices, int], tuple[Array, float, int]]
+# Restores e = 0 near a configuration with some speeds, in so many steps at most: (q, whether it is met, steps).
+Restore = Callable[[Array, Indices, int], tuple[Array, bool, int]]
 
-# Norm of the projected gradient, relative to 1 + d, that counts as zero: with half of a double's digits in the
-# gradient, the distance is the least to all of them, as it changes with the square.
+# Norm of the projected gradient, relative to its size where nothing is best, that counts as zero: with half of a
+# double's digits in the gradient, f is the least to all of them, as it changes with the square.
 OPTIMALITY = 1e-8
-# Least decrease of d^2/2, as a share of what the slope promises (Armijo), and halvings of a step.
+# Least decrease of f, as a share of what the slope promises (Armijo), and halvings of a step.
 _DECREASE, _HALVINGS = 1e-4, 25
-# Relative change of d^2/2 that is rounding.
+# Relative change of f that is rounding.
 _ROUNDING = 1e-14
 # Step of central differences, whose error is of its square.
 _DIFFERENCE = 1e-5
 # Distance from a limit that counts as none: coordinates are led back onto the solutions to about that.
 _AT_LIMIT = 1e-12
-# Curvature of d^2/2 along the solutions, 1 on a flat one, below which its size is not trusted; and what is negative.
+# Curvature of f along the solutions, in the objective's own unit, below which its size is not trusted; and what is
+# negative.
 _LEAST_CURVATURE, _NEGATIVE = 1e-3, -1e-4
 
 
@@ -60,24 +63,101 @@ def pull(model: Model, q: Array, rest: Array) -> Array:
     return chart
 
 
-class NearestPosture:
-    """Descent of the distance from rest among the solutions of a task.
+class Objective(Protocol):
+    """What is to be least: f(q) >= 0.
 
-    Args:
-        task: Targets and constraints.
-        rest: Posture of rest (nq).
-        free: Speeds that may be used.
-        restore: Least squares onto the task.
-        tolerance: Bound of the largest error of the task.
+    Attributes:
+        curvature: Unit of its second derivatives by motions.
     """
 
-    def __init__(self, task: Task, rest: Array, free: Indices, restore: Restore, tolerance: float) -> None:
-        self.task, self.model, self.rest, self.free = task, task.model, rest, free
-        self.restore, self.tolerance = restore, tolerance
+    curvature: float
+
+    def value(self, q: Array) -> float:
+        """The objective f at a configuration (nq)."""
+
+    def pull(self, q: Array) -> Array:
+        """Minus its gradient (nv) by motions from q."""
+
+    def flat(self, q: Array) -> float:
+        """Norm of a gradient at q that counts as zero."""
+
+
+class FromRest:
+    """Half the square of the distance d from a posture of rest.
+
+    Args:
+        model: Model.
+        rest: Posture of rest (nq).
+    """
+
+    # On a flat set of solutions.
+    curvature = 1.0
+
+    def __init__(self, model: Model, rest: Array) -> None:
+        self._model, self._rest = model, rest
+
+    def pull(self, q: Array) -> Array:
+        """Minus the gradient (nv) of d^2/2 by motions from q; its norm is d."""
+        return pull(self._model, q, self._rest)
+
+    def distance(self, q: Array) -> float:
+        """Norm of what separates q from rest."""
+        return float(np.linalg.norm(self.pull(q)))
+
+    def value(self, q: Array) -> float:
+        """Half the square of the distance."""
+        return 0.5 * self.distance(q) ** 2
+
+    def flat(self, q: Array) -> float:
+        """Where the distance changes by rounding."""
+        return OPTIMALITY * (1.0 + self.distance(q))
+
+
+class FromTargets:
+    """Half the square of what targets are missed by, metres and radians alike.
+
+    Args:
+        task: Targets; the rows of its constraints take no part.
+        q: Configuration (nq) whose Jacobian gives the unit of curvature.
+    """
+
+    def __init__(self, task: Task, q: Array) -> None:
+        self._task = task
+        J = task.jacobian(q)[: task.wishes]
+        self.curvature = float(np.sum(J * J, axis=0).max(initial=0.0)) or 1.0
+
+    def value(self, q: Array) -> float:
+        """Half the square of the error."""
+        error = self._task.error(q)[: self._task.wishes]
+        return 0.5 * float(error @ error)
+
+    def pull(self, q: Array) -> Array:
+        """J^T e (nv), as the gradient of half a rotation vector's square is the vector itself."""
+        rows = self._task.wishes
+        return np.asarray(self._task.jacobian(q)[:rows].T @ self._task.error(q)[:rows])
+
+    def flat(self, q: Array) -> float:
+        """A share of the gradient of targets that are missed by this much the straight way."""
+        return OPTIMALITY * float(np.sqrt(2.0 * self.curvature * self.value(q)))
+
+
+class NearestPosture:
+    """Descent of an objective among the solutions of a task.
+
+    Args:
+        task: What is kept: targets and constraints, or constraints alone.
+        objective: What is to be least.
+        free: Speeds that may be used.
+        restore: Least squares onto the task.
+    """
+
+    def __init__(self, task: Task, objective: Objective, free: Indices, restore: Restore) -> None:
+        self.task, self.model, self.objective, self.free = task, task.model, objective, free
+        self.restore = restore
         self.limits = [limit for limit in coordinate_limits(task.model) if limit[1] in set(free.tolist())]
 
     def descend(self, q: Array, iterations: int) -> tuple[Array, int]:
-        """From a solution to one where the distance is least nearby.
+        """From a solution to one where the objective is least nearby.
 
         Args:
             q: Solution of the task (nq), within its limits.
@@ -89,7 +169,7 @@ class NearestPosture:
         count = 0
         while count < iterations:
             steepest, blocked = self.projected_pull(q)
-            small = float(np.linalg.norm(steepest)) <= OPTIMALITY * (1.0 + self.distance(q))
+            small = float(np.linalg.norm(steepest)) <= self.objective.flat(q)
             moved = None
             for step, held in self._directions(q, steepest, blocked, small):
                 moved, steps = self._line_search(q, step, steepest, held, iterations - count)
@@ -101,17 +181,13 @@ class NearestPosture:
             q = moved
         return q, count
 
-    def distance(self, q: Array) -> float:
-        """Norm of what separates q from rest."""
-        return float(np.linalg.norm(pull(self.model, q, self.rest)))
-
     def projected_pull(self, q: Array) -> tuple[Array, Indices]:
         """Steepest descent (nv) along motions that task and limits allow, and the speeds that limits block.
 
         It is zero where the conditions of Karush, Kuhn and Tucker hold: gradient = J^T lam + mu, mu pushing inwards.
         """
         Z = self._null_space(q, np.array([], dtype=np.intp))
-        wish = Z.T @ pull(self.model, q, self.rest)
+        wish = Z.T @ self.objective.pull(q)
         active, inwards = self._active(q)
         # By Moreau, a vector is the sum of its projections on the cone of allowed motions and on the normal cone.
         mu = _nonnegative(-Z[active].T * inwards, wish)
@@ -143,8 +219,8 @@ class NearestPosture:
             if not Z.shape[1]:
                 return fallback
             curvature, V = np.linalg.eigh(self._curvature(q, Z))
-            slope = V.T @ (Z.T @ pull(self.model, q, self.rest))
-            newton = Z @ (V @ (slope / np.maximum(np.abs(curvature), _LEAST_CURVATURE)))
+            slope = V.T @ (Z.T @ self.objective.pull(q))
+            newton = Z @ (V @ (slope / np.maximum(np.abs(curvature), _LEAST_CURVATURE * self.objective.curvature)))
             pushed = self._pushed(q, newton)
             if not pushed.size:
                 break
@@ -156,7 +232,7 @@ class NearestPosture:
         # A saddle or a maximum: either way along the negative curvature leads down.
         downhill = LARGEST_STEP * (Z @ V[:, 0])
         both = [(x, blocked) for x in (downhill, -downhill) if not self._pushed(q, x).size]
-        return both if curvature[0] < _NEGATIVE else []
+        return both if curvature[0] < _NEGATIVE * self.objective.curvature else []
 
     def _pushed(self, q: Array, step: Array) -> Indices:
         """Speeds at a limit that the step would push through it."""
@@ -164,13 +240,13 @@ class NearestPosture:
         return active[step[active] * inwards < -1e-14 * float(np.abs(step).max(initial=0.0))]
 
     def _curvature(self, q: Array, Z: Array) -> Array:
-        """Second derivative of d^2/2 - lam e along the null space (n, n), by central differences of its gradient."""
+        """Second derivative of f - lam e along the null space (n, n), by central differences of its gradient."""
         J = self.task.jacobian(q)
         inverse = pseudo_inverse(J[:, self.free], self.task.measures.of_speeds(self.free))
-        lam = -inverse.T @ pull(self.model, q, self.rest)[self.free]
+        lam = -inverse.T @ self.objective.pull(q)[self.free]
 
         def gradient(at: Array) -> Array:
-            return -pull(self.model, at, self.rest) - self.task.jacobian(at).T @ lam
+            return -self.objective.pull(at) - self.task.jacobian(at).T @ lam
 
         columns = [
             gradient(self.model.integrate(q, _DIFFERENCE * z)) - gradient(self.model.integrate(q, -_DIFFERENCE * z))
@@ -182,17 +258,17 @@ class NearestPosture:
     def _line_search(
         self, q: Array, step: Array, steepest: Array, held: Indices, most: int
     ) -> tuple[Array | None, int]:
-        """A solution along the step whose distance is smaller, or None; and the steps of least squares it took."""
-        before, slope = 0.5 * self.distance(q) ** 2, float(steepest @ step)
+        """A solution along the step where the objective is less, or None; and the steps of least squares it took."""
+        before, slope = self.objective.value(q), float(steepest @ step)
         step = step * min(1.0, LARGEST_STEP / max(float(np.abs(step).max()), 1e-300))
         count, movable = 0, np.setdiff1d(self.free, held)
         for _ in range(_HALVINGS):
             if count >= most:
                 break
-            tried, error, steps = self.restore(self._stopped(q, step), movable, most - count)
+            tried, met, steps = self.restore(self._stopped(q, step), movable, most - count)
             count += 1 + steps
-            gain = before - 0.5 * self.distance(tried) ** 2
-            if error <= self.tolerance:
+            gain = before - self.objective.value(tried)
+            if met:
                 if gain > max(_DECREASE * slope, _ROUNDING * before):
                     return tried, count
                 # Where the gain drowns in rounding, the gradient still tells.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -20,6 +20,8 @@ NEAR = 0.05
 MOST, MOST_OPERATIONS, FEWEST = 1000, 1e7, 16
 # States farther apart than this [rad, m] have others looked at between them, so many at most.
 FAR, MOST_BETWEEN = 0.05, 16
+# Parts of the motion that are asked for where the straight way between records meets weak conditions.
+ASKED = 4
 # Change of a row of G, relative to its size, while the configuration changes by MOST_CHANGE [rad, m], halved BISECTIONS
 # times: a smooth row changes by far less.
 TURN, MOST_CHANGE, BISECTIONS = 0.3, 0.02, 16
@@ -122,58 +124,83 @@ def worst_violation(model: Model, t: Array, states: tuple[Array, Array, Array], 
 
 
 def nearest_to_singular(
-    model: Model, t: Array, q: Array, u: Array, par: Array, rank: int
+    model: Model,
+    states: Sequence[Array],
+    par: Array,
+    rank: int,
+    motion: Callable[[int, int], Sequence[Array] | None],
 ) -> tuple[float, float] | None:
     """Where the conditions were closest to repeating each other.
 
+    Between records that are far apart, weak conditions are looked for on the straight way from one to the next, which
+    the motion does not take: what is found there is asked for along the motion itself.
+
     Args:
         model: Model with constraints.
-        t: Recorded times (n).
-        q: States (n, nq).
-        u: Inputs (n, nu).
+        states: Recorded t (n), q (n, nq), v (n, nv), u (n, nu).
         par: Run-time parameters (npar).
         rank: Rank of the constraints at regular postures.
+        motion: States of the motion between two records, by their numbers, in short steps; None where it is not known.
 
     Returns:
         When, and the smallest singular value of G there over its largest in the run; None where it stayed above NEAR.
     """
-    if rank < 1 or len(t) < 2:
+    if rank < 1 or len(states[0]) < 2:
         return None
     model = model.with_precision("double")
     most = int(min(MOST, max(FEWEST, MOST_OPERATIONS / model.nc**3)))
 
-    def weakest(first: int, end: int) -> tuple[Array, Array]:
-        """Times, and there the singular value of the weakest condition of those that do not repeat others."""
-        chosen = np.unique(np.linspace(first, end, min(end - first + 1, most)).astype(int))
-        times, at, inputs = _between(model, most, t[chosen], q[chosen], u[chosen])
-        G = model.constraint_jacobian(at, u=inputs, par=par, t=times)
+    def weakest(at: Sequence[Array]) -> Array:
+        """The singular value of the weakest condition of those that do not repeat others, at states t, q, u."""
+        times, q, u = at
+        G = model.constraint_jacobian(q, u=u, par=par, t=times)
         squares = np.linalg.eigvalsh(G @ np.swapaxes(G, -1, -2))
-        return times, np.sqrt(np.maximum(squares[:, -rank], 0.0))
+        return np.asarray(np.sqrt(np.maximum(squares[:, -rank], 0.0)))
 
-    times, sizes = weakest(0, len(t) - 1)
-    largest = max(float(sizes.max()), 1e-300)
+    t, q, _, u = states
+    rows = np.unique(np.linspace(0, len(t) - 1, min(len(t), most)).astype(int))
+    sizes = weakest([x[rows] for x in (t, q, u)])
+    lowest, largest = int(np.argmin(sizes)), max(float(sizes.max()), 1e-300)
+    found = [(float(sizes[lowest]), float(t[rows[lowest]]))]
+    if len(t) > most:  # Between the records that were chosen others may be weaker.
+        first, end = (int(rows[max(0, min(len(rows) - 1, i))]) for i in (lowest - 1, lowest + 1))
+        near = np.unique(np.linspace(first, end, min(end - first + 1, most)).astype(int))
+        found.append(_least(weakest([x[near] for x in (t, q, u)]), t[near]))
+    between = _between(model, most, *(x[rows] for x in (t, q, u)))
+    if len(between[0]) > len(rows):
+        straight, part = weakest(between), np.searchsorted(t[rows], between[0], side="right") - 1
+        doubted = [int(part[k]) for k in np.argsort(straight) if straight[k] < NEAR * largest]
+        for k in list(dict.fromkeys(k for k in doubted if k + 1 < len(rows)))[:ASKED]:
+            along = motion(int(rows[k]), int(rows[k + 1]))
+            if along is not None and len(along[0]):
+                found.append(_least(weakest([along[0], along[1], along[3]]), along[0]))
+    size, when = min(found)
+    return (when, size / largest) if size < NEAR * largest else None
+
+
+def _least(sizes: Array, t: Array) -> tuple[float, float]:
+    """The least of these, and its time."""
     at = int(np.argmin(sizes))
-    if len(t) > most:  # Between the states that were chosen others may be weaker.
-        first, end = (int(np.searchsorted(t, times[max(0, min(len(times) - 1, i))])) for i in (at - 1, at + 1))
-        times, sizes = (np.append(x, y) for x, y in zip((times[at], sizes[at]), weakest(first, end), strict=True))
-        at = int(np.argmin(sizes))
-    share = float(sizes[at]) / largest
-    return (float(times[at]), share) if share < NEAR else None
+    return float(sizes[at]), float(t[at])
 
 
-def _between(model: Model, most: int, t: Array, q: Array, u: Array) -> tuple[Array, Array, Array]:
+def _between(model: Model, most: int, t: Array, q: Array, u: Array) -> list[Array]:
     """States with others between them where they are far apart, at most about so many: long steps leap over some."""
     changes = model.difference(q[:-1], q[1:])
     if not np.isfinite(changes).all():
-        return t, q, u
+        return [t, q, u]
     far = float(np.abs(changes).max(initial=0.0)) / FAR
     parts = int(min(max(1.0, math.ceil(far)), MOST_BETWEEN, max(1, most // len(t))))
-    shares = np.arange(parts) / parts
-    inner = model.integrate(
-        np.repeat(q[:-1], parts, axis=0), (shares[:, np.newaxis] * changes[:, np.newaxis]).reshape(-1, model.nv)
-    )
-    times = (t[:-1, np.newaxis] + shares * np.diff(t)[:, np.newaxis]).ravel()
-    return np.append(times, t[-1]), np.vstack([inner, q[-1:]]), np.vstack([np.repeat(u[:-1], parts, axis=0), u[-1:]])
+    shares, count = (np.arange(parts) / parts)[:, np.newaxis], (len(t) - 1) * parts
+
+    def inner(x: Array) -> Array:
+        """Those of numbers (n, m)."""
+        return np.asarray(x[:-1, np.newaxis] + shares * np.diff(x, axis=0)[:, np.newaxis]).reshape(count, x.shape[1])
+
+    turned = (shares * changes[:, np.newaxis]).reshape(-1, model.nv)
+    configurations = model.integrate(np.repeat(q[:-1], parts, axis=0), turned)
+    times = np.append(inner(t[:, np.newaxis])[:, 0], t[-1])
+    return [times, np.vstack([configurations, q[-1:]]), np.vstack([inner(u), u[-1:]])]
 
 
 # What is limited -> what a note says of it, and of what would keep the limit.

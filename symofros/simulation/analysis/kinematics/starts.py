@@ -6,16 +6,22 @@ from collections.abc import Collection, Mapping, Sequence
 from contextlib import suppress
 from typing import NamedTuple
 
+import numpy as np
+
 from symofros.base.names import coordinate_of, speed_of
 from symofros.errors import AssemblyError, Problem
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
+from symofros.simulation.analysis.kinematics.assembly import assemble
 from symofros.simulation.analysis.kinematics.nearest_start import Instant, nearest_posture_to, nearest_speeds_to
 from symofros.simulation.settings import CLOSED
 
 # Relative change of a stated number that counts as digits which were not typed; beyond, or of a zero that becomes more
 # than what drift leaves, the start is another one than was asked for.
 DIGITS = 1e-3
+# Share of the strongest combination of conditions below which one counts as repeating others: the closure leaves half
+# of its digits in a singular posture. It grows as the way from there [rad, m].
+WEAK, _BESIDE = 1e-5, 0.03
 
 
 class ClosedStart(NamedTuple):
@@ -76,6 +82,36 @@ def closed_start(
     moving = _speeds(at, on, v, speeds)
     names, stated = (model.names.q, model.names.v), (coordinates, speeds)
     return ClosedStart(on, moving, changes(model.record.name, names, stated, (q, v), (on, moving)))
+
+
+def singular_start(model: Model, q: Array, u: ArrayLike | None = None) -> tuple[str, ...]:
+    """A note where the constraints have less rank at a first posture than beside it; none where they have not.
+
+    Args:
+        model: Model; one without constraints has no singular posture.
+        q: Configuration (nq) on the constraints.
+        u: Inputs, for prescribed motions.
+    """
+    if not model.nc or not model.nv:
+        return ()
+    strengths = np.linalg.svd(model.constraint_jacobian(q, u=u))
+    weak = strengths.Vh[np.append(strengths.S, np.zeros(model.nv - len(strengths.S))) <= WEAK * strengths.S[0]]
+    ranks = [_rank(strengths.S)]
+    for way in (*weak, *-weak):  # What the constraints leave free here, and more of it beside a singular posture.
+        with suppress(AssemblyError):
+            beside = assemble(model, model.integrate(q, _BESIDE * way), u=u).q
+            ranks.append(_rank(np.linalg.svd(model.constraint_jacobian(beside, u=u)).S))
+    if max(ranks) == ranks[0]:
+        return ()
+    return (
+        f"the start is a singular posture: the constraints' rank is {ranks[0]} there and {max(ranks)} beside it;"
+        " which way the mechanism leaves it is left to rounding: start beside it",
+    )
+
+
+def _rank(strengths: Array) -> int:
+    """Number of singular values that are not weak."""
+    return int((strengths > WEAK * strengths.max(initial=0.0)).sum())
 
 
 def _posture(at: Instant, q: Array, coordinates: Collection[str]) -> Array:

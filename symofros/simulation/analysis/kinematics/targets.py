@@ -21,6 +21,8 @@ from symofros.runtime.model import ArrayLike, Model
 # no rotation written with few digits. A deviation d leaves the nearest rotation uncertain by d/2: below any tolerance
 # on how near to the target a frame comes that such digits can mean.
 ROTATION_TOLERANCE = 1e-6
+# Largest residual of a constraint [m, rad] that counts as closed, and the default tolerance of targets.
+CLOSED_TO = 1e-10
 
 
 @dataclass(frozen=True)
@@ -69,6 +71,26 @@ class Task:
         of_constraints = self.model.record.measures.of_rows(self.coordinates)
         group += [len(unit) + first for first in of_constraints.group]
         return Measures(tuple(group), (*unit, *of_constraints.unit), of_constraints.speed)
+
+    @property
+    def conditions(self) -> Task:
+        """The constraints alone, without targets."""
+        return Task(self.model, {}, **self.inputs)
+
+    @property
+    def wishes(self) -> int:
+        """Number of rows of the targets, which come before those of the constraints."""
+        return 3 * sum(wanted is not None for pose in self.wanted.values() for wanted in pose)
+
+    def bounds(self, tolerance: float) -> Array:
+        """Largest entries of the error that count as met: constraints are closed however coarse the targets may be."""
+        of_constraints = np.full(len(self.coordinates), min(tolerance, CLOSED_TO))
+        return np.concatenate([np.full(self.wishes, tolerance), of_constraints])
+
+    def position_errors(self, q: Array) -> Array:
+        """What is missing of the targets' positions [m] at a configuration (nq)."""
+        units = np.array(self.measures.unit[: self.wishes], dtype=np.intp)
+        return np.asarray(self.error(q)[: self.wishes][units == LENGTH])
 
     def error(self, q: Array) -> Array:
         """What is missing: positions [m], rotation vectors [rad] in world axes, residuals of constraints."""

@@ -8,7 +8,16 @@ import numpy as np
 
 from symofros.errors import SymofrosError
 from symofros.runtime.calls.kernel import Array
-from symofros.simulation.analysis.kinematics.postures import Jump, Violation, jump_ahead, worst_violation
+from symofros.simulation.analysis.kinematics.postures import (
+    MOST_BETWEEN,
+    Jump,
+    Violation,
+    jump_ahead,
+    nearest_to_singular,
+    worst_violation,
+)
+from symofros.simulation.results.examination.repetition import in_short_steps, same_inputs_again
+from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
 
@@ -59,3 +68,22 @@ def violation(stepper: Stepper, states: Sequence[Array], projected: bool) -> Vio
     except SymofrosError:  # Options.functions left out what says it.
         return None
     return worst if worst is not None and worst.share > _VIOLATED else None
+
+
+def near_singular(stepper: Stepper, settings: Settings, states: Sequence[Array]) -> tuple[float, float] | None:
+    """When a run came close to a singular posture, and to which share of the conditions' strength; None: it did not.
+
+    Args:
+        stepper: Stepper at its last state.
+        settings: Settings of the run.
+        states: States of the run: t (n), q, v, u.
+    """
+    t, q, v, _ = states
+
+    def motion(first: int, last: int) -> Sequence[Array] | None:
+        if settings.realtime or not same_inputs_again(stepper, settings, states):
+            return None
+        part = float(t[last] - t[first]) / MOST_BETWEEN
+        return in_short_steps(stepper, settings, (t[first], q[first], v[first]), float(t[last]), part)[1]
+
+    return nearest_to_singular(stepper.model, states, stepper.par, int(stepper.run.rank_max), motion)

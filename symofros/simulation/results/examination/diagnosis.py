@@ -11,9 +11,9 @@ import numpy as np
 from symofros.runtime.beams import BeamBending, bending_notes, largest_bending
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.analysis.beam_theory import UNAMPLIFIED, amplifications
-from symofros.simulation.analysis.kinematics.postures import limit_notes, nearest_to_singular
+from symofros.simulation.analysis.kinematics.postures import limit_notes
 from symofros.simulation.analysis.singular_mass import ADVICE, singular_mass
-from symofros.simulation.results.examination.constraint_faults import jump, lost_energy, violation
+from symofros.simulation.results.examination.constraint_faults import jump, lost_energy, near_singular, violation
 from symofros.simulation.results.examination.energy_balance import EXPLODED
 from symofros.simulation.results.examination.input_faults import input_failure, input_fault
 from symofros.simulation.results.examination.step_size import examine_run, remedy
@@ -67,7 +67,7 @@ def _outcome(
     most_bent, limit = largest_bending(bendings), settings.beam_limit
     run, notes = (
         stepper.run,
-        _notes(stepper, states, () if status == Status.BEYOND_THEORY else bendings),
+        _notes(stepper, settings, states, () if status == Status.BEYOND_THEORY else bendings),
     )  # Else the reason says it.
     fault = input_fault(stepper) if status < 0 else ""
     failed = status in (Status.DIVERGED, Status.BEYOND_THEORY) and not fault
@@ -190,7 +190,9 @@ def _steady(settings: Settings) -> str:
     return "a smaller dt, an adaptive or an implicit method; for stiff beams and contacts, an implicit one"
 
 
-def _notes(stepper: Stepper, states: Sequence[Array], bendings: Sequence[BeamBending]) -> tuple[str, ...]:
+def _notes(
+    stepper: Stepper, settings: Settings, states: Sequence[Array], bendings: Sequence[BeamBending]
+) -> tuple[str, ...]:
     run = stepper.run
     notes = []
     if stepper.model.nc and 0 <= run.rank_min < run.rank_max:
@@ -199,8 +201,7 @@ def _notes(stepper: Stepper, states: Sequence[Array], bendings: Sequence[BeamBen
             f" {run.rank_max} to {run.rank_min}"
         )
     elif stepper.model.nc:
-        t, q, _, u = states
-        close = nearest_to_singular(stepper.model, t, q, u, stepper.par, int(run.rank_max))
+        close = near_singular(stepper, settings, states)
         if close:
             when, share = close
             notes.append(

@@ -10,6 +10,7 @@ import numpy as np
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.manifold import retract
 from symofros.simulation.results.examination.energy_norm import energies_of
+from symofros.simulation.results.examination.paths import path_within
 from symofros.simulation.results.examination.repetition import repeatable, repeated
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.stepper import Stepper
@@ -27,6 +28,8 @@ _NOTED_CHANGE, _NOTED_WORK = 0.05, 0.1
 _DENSE = 1.5
 # Intervals between states farther apart that are repeated step by step: those where the energy changes most.
 _REPEATED = 8
+# States within each of these.
+_INSIDE = 16
 
 
 def energy_note(stepper: Stepper, settings: Settings, states: Sequence[Array], steps: int) -> str:
@@ -49,7 +52,7 @@ def energy_note(stepper: Stepper, settings: Settings, states: Sequence[Array], s
         if not np.isfinite(energy).all():
             return f"energy overflows, although the states do not: speeds have exploded; {cure}"
         gain = float(energy.max() - energy[0])
-        if gain > 0.5 * kinetic.max() and not few[3].any():
+        if gain > 0.5 * kinetic.max() and not _acts(stepper):
             # Angles may have no digits left, and power none.
             growth = math.sqrt(float(kinetic.max()) / max(_first_energy(stepper, few), 1e-300))
             if growth > EXPLODED:
@@ -62,13 +65,40 @@ def energy_note(stepper: Stepper, settings: Settings, states: Sequence[Array], s
         for shown in (few, states, *_between(stepper, settings, states, energy, steps)):
             if shown is None:
                 return ""
-            power = _power(stepper, span / steps, shown)
-            if not float(np.abs(power).max()) * span <= _NOTED_WORK * change:
+            if not _works_little(stepper, span / steps, shown, change):
                 return ""
+        inside = _within(stepper, states, energy)
+        if inside is None or not _works_little(stepper, span / steps, inside, change):
+            return ""
     return (
         f"energy changes by {change:.3g} J although no force does work, where the motion has {largest:.3g} J at most:"
         f" {cure}"
     )
+
+
+def _works_little(stepper: Stepper, step: float, shown: Sequence[Array], change: float) -> bool:
+    """Whether the power in these states explains no such change of energy [J] over their span."""
+    work = float(np.abs(_power(stepper, step, shown)).max()) * float(shown[0].max() - shown[0].min())
+    return work <= _NOTED_WORK * change
+
+
+def _acts(stepper: Stepper) -> bool:
+    """Whether an input is, or may be, other than zero at some time, or forces depend on time."""
+    inputs = stepper.inputs
+    signals = any(np.any(values) for _, _, values, _ in inputs.signals)
+    given = inputs.callback is not None or bool(inputs.formulas) or bool(np.any(inputs.constant))
+    return given or signals or stepper.model.record.timed
+
+
+def _within(stepper: Stepper, states: Sequence[Array], energy: Array) -> list[Array] | None:
+    """States within the intervals in which the energy changes most; None where there are none.
+
+    An input may come and go between the ends of two steps, which then show no power.
+    """
+    counts = np.zeros(len(energy) - 1, dtype=int)
+    counts[np.argsort(-np.abs(np.diff(energy)), kind="stable")[:_REPEATED]] = _INSIDE
+    path = path_within(stepper, states, counts)
+    return None if path is None else path.states
 
 
 def _between(

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from symofros.runtime.manifold import retract
 from symofros.simulation.results.examination.energy_norm import energies_of, energy_norms, metrics
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.loops import run_own
+from symofros.simulation.stepping.methods import METHODS, Method
 from symofros.simulation.stepping.resolution import TOLERANCE
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
@@ -44,7 +46,18 @@ _ALLOWED, _MOTION, _TIGHT, _MOST = 0.1, 100.0, 1e-3, 8192
 
 
 def repeatable(stepper: Stepper, settings: Settings, states: Sequence[Array]) -> bool:
-    """Whether a run can be made once more: a function of the user's that gives the inputs has to give the same again.
+    """Whether a run can be made once more: by a method without history, and with the same inputs.
+
+    Args:
+        stepper: Stepper of the run.
+        settings: Settings of the run.
+        states: States of the run: t (n), q, v, u.
+    """
+    return not stepper.method.family.multistep and same_inputs_again(stepper, settings, states)
+
+
+def same_inputs_again(stepper: Stepper, settings: Settings, states: Sequence[Array]) -> bool:
+    """Whether a function of the user's that gives the inputs gives the same again; True where there is none.
 
     It is called at some of the recorded states, the last one first, so that what it keeps of the run shows. In real
     time it is not called: what it serves may be hardware.
@@ -55,7 +68,7 @@ def repeatable(stepper: Stepper, settings: Settings, states: Sequence[Array]) ->
         states: States of the run: t (n), q, v, u.
     """
     function = stepper.inputs.callback
-    if stepper.method.family.multistep or (function is not None and settings.realtime):
+    if function is not None and settings.realtime:
         return False
     if function is None:
         return True
@@ -76,6 +89,7 @@ def repeated(
     dt: float,
     every: int = 1,
     max_steps: int | None = None,
+    method: Method | None = None,
 ) -> tuple[int, list[Array]]:
     """Status and states of a part of a run, made once more.
 
@@ -87,13 +101,36 @@ def repeated(
         dt: Step [s]; of adaptive methods the first one, 0: found anew.
         every: Number of steps between records.
         max_steps: Number of steps after which it ends; None: no bound.
+        method: Stepping method; the run's own if not given.
     """
     t, q, v = start
+    method = method or stepper.method
     part = replace(settings, t0=t, t_end=t_end, dt=dt, every=every, grid=np.zeros(0), max_steps=max_steps, realtime=0.0)
-    again = Stepper(stepper.model, stepper.method, stepper.inputs, (), stepper.par)
+    part = replace(part, method=method, project=part.project or (method != stepper.method and stepper.model.nc > 0))
+    again = Stepper(stepper.model, method, stepper.inputs, (), stepper.par)
     part.apply(again)
     recorded = run_own(again, q, v, part, lambda _: None)
     return recorded.status, recorded.arrays()
+
+
+def in_short_steps(
+    stepper: Stepper, settings: Settings, start: Sequence[Any], t_end: float, part: float
+) -> tuple[int, list[Array]]:
+    """Status and states of a part of a run, made once more in steps that are no longer than `part` [s].
+
+    Args:
+        stepper: Stepper of the run; in place of a method that keeps a history another one is taken.
+        settings: Settings of the run.
+        start: First t, q, v.
+        t_end: End [s].
+        part: Longest step [s].
+    """
+    t, q, v = start
+    method = stepper.method
+    if method.family.multistep:
+        method = METHODS["rodas4" if stepper.inputs.callback is None else "dopri5"]
+    short, dt = (replace(settings, max_step=part), 0.0) if settings.adaptive else (settings, min(part, settings.dt))
+    return repeated(stepper, short, (float(t), q, v), t_end, dt, max_steps=_MOST, method=method)
 
 
 def halved_step_note(
@@ -152,7 +189,7 @@ def windows_note(stepper: Stepper, settings: Settings, states: Sequence[Array], 
         return ""
     if not stepper.model.nv or not repeatable(stepper, settings, states):
         return ""
-    run = _Run(stepper, settings, states, steps)
+    run = ExaminedRun(stepper, settings, states, steps)
     t, h = states[0], settings.dt
     worst = _Changed(0.0, float(t[0]), 1)
     for window in windows(t, states[2], h, steps):
@@ -187,20 +224,25 @@ class _Changed:
     steps: int
 
 
-class _Run:
-    """A run with fixed steps, parts of which are held against half the step.
+class ExaminedRun:
+    """A run, parts of which are held against shorter steps.
 
     Args:
         stepper: Stepper of the run.
         settings: Settings of the run.
         states: States of the run: t (n), q, v, u.
         steps: Number of steps.
+
+    Attributes:
+        fastest: Largest speed of the run, in the norm of the kinetic energy.
+        span: Its length [s].
     """
 
     def __init__(self, stepper: Stepper, settings: Settings, states: Sequence[Array], steps: int) -> None:
         self._stepper, self._settings, self._states, self._steps = stepper, settings, states, steps
+        self.span = float(states[0][-1] - states[0][0])
         _, q, v, u = (x[:: -max(1, len(x) // _SPEEDS)] for x in states)
-        self._fastest = float(energy_norms(stepper, q, u, v).max())
+        self.fastest = float(energy_norms(stepper, q, u, v).max())
         displacements = stepper.model.difference(np.broadcast_to(states[1][0], q.shape), q)
         self._reach = float(energy_norms(stepper, q, u, displacements).max())
 
@@ -223,9 +265,9 @@ class _Run:
         if status < 0:
             return None
         rows = slice(min(len(coarse[0]), len(half[0])))  # One of them may end with a part of `every` steps.
-        return _Changed(self._share([x[rows] for x in coarse], [x[rows] for x in half]), start[0], count)
+        return _Changed(self.share([x[rows] for x in coarse], [x[rows] for x in half]), start[0], count)
 
-    def _share(self, coarse: Sequence[Array], fine: Sequence[Array]) -> float:
+    def share(self, coarse: Sequence[Array], fine: Sequence[Array]) -> float:
         """Largest difference of speeds and displacements, relative to the run's fastest and what that makes of time."""
         (_, q, v, _), (t, q_fine, v_fine, u) = coarse, fine
         stepper = self._stepper
@@ -233,7 +275,7 @@ class _Run:
             changes = v - v_fine, stepper.model.difference(q_fine, q)
             faster, apart = (float(energy_norms(stepper, q_fine, u, x).max()) for x in changes)
         span, rounding = float(t[-1] - t[0]), _rounding(stepper, fine)
-        largest = max(self._fastest, rounding)
+        largest = max(self.fastest, rounding)
         reach = min(largest * span, max(self._reach, rounding * span))  # To and fro comes no farther.
         return max(_share(faster, largest), _share(apart, reach) / _POSITIONS)
 

@@ -9,9 +9,12 @@ import numpy as np
 
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.inputs import InputPlan
+from symofros.simulation.results.examination.creep import creep_note
 from symofros.simulation.results.examination.energy_balance import EXPLODED, energy_note, energy_that_appeared
 from symofros.simulation.results.examination.energy_norm import metrics, norms_in
+from symofros.simulation.results.examination.input_impulses import input_impulse_note
 from symofros.simulation.results.examination.repetition import halved_step_note, percent, tolerance_note, windows_note
+from symofros.simulation.results.examination.stepped_over import stepped_over_note
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.methods import Method
 from symofros.simulation.stepping.resolution import (
@@ -41,7 +44,7 @@ def examine_run(
     ended_well: bool,
     failed: bool,
 ) -> tuple[Mode | None, tuple[str, ...]]:
-    """The mode that a run resolves worst, and notes on its steps: on that, on half the step, on energy.
+    """The mode that a run resolves worst, and notes on its steps: on that, on half the step, on inputs, on energy.
 
     Args:
         stepper: Stepper of the run; its state stays.
@@ -65,9 +68,15 @@ def examine_run(
     if ended_well and mode is None:
         notes.append(windows_note(stepper, settings, states, steps))
     if ended_well:
+        notes.append(input_impulse_note(stepper, settings, start, states))
+    if ended_well and mode is None and not any(notes):
+        notes.append(stepped_over_note(stepper, settings, start, states, steps))
+    if ended_well:
         notes.append(tolerance_note(stepper, settings, start, states, steps))
     if ended_well and (mode is None or not mode.amplified) and not (mode is None and any(notes)):
         notes.append(energy_note(stepper, settings, states, steps))
+    if ended_well:
+        notes.append(creep_note(stepper, states))
     return mode, tuple(note for note in notes if note)
 
 

@@ -9,13 +9,15 @@ from pathlib import Path
 from typing import Any
 
 from symofros.base.atomic import write_atomically
-from symofros.description.reading import MODEL_SUFFIXES, YAML_SUFFIXES
+from symofros.description.reading import MODEL_SUFFIXES, YAML_SUFFIXES, kind_of
 from symofros.description.yaml.files import MAX_BYTES
 from symofros.diagrams.files.kind import is_diagram
 from symofros.errors import Problem, SymofrosError
 
 MAX_LISTED = 1000
 MAX_SCANNED = 20_000
+# Bytes of a name; systems allow 255, and files that are kept beside one have longer names.
+MAX_NAME = 200
 
 
 class FileError(SymofrosError):
@@ -63,6 +65,14 @@ class Workspace:
                 )
         except (OSError, ValueError, RuntimeError) as error:  # A NUL character, or a loop of links.
             raise _refusal(f"'{text[:100]!r}' is not a path", str(error)[:100], rule, "choose another") from None
+        longest = max((len(os.fsencode(part)) for part in path.parts), default=0)
+        if longest > MAX_NAME:
+            raise _refusal(
+                f"'{text[:100]}' has too long a name",
+                f"a part of {longest} bytes",
+                f"names have at most {MAX_NAME} bytes, since files beside it have longer ones",
+                "shorten it",
+            )
         if suffixes and path.suffix.lower() not in suffixes:
             raise _refusal(
                 f"'{text[:100]}' has another suffix",
@@ -109,7 +119,7 @@ def read_text(path: Path) -> tuple[str, bytes]:
     try:
         if not path.is_file():
             raise _refusal(
-                f"'{path.name}' can't be opened", "no such file", "a description is a file", "choose another"
+                f"'{path.name}' can't be opened", kind_of(path), "a description is a regular file", "choose another"
             )
         with path.open("rb") as stream:
             data = stream.read(MAX_BYTES + 1)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 from array import array as packed
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
@@ -181,9 +182,10 @@ def _read_csv(file: Path, model: Model) -> PlayedMotion:
     if file.stat().st_size > _WIDEST * MAX_NUMBERS:
         raise TooLargeError(f"{file.stat().st_size} bytes")
     numbers = packed("d")
-    with file.open(newline="", encoding="utf-8") as stream:
+    with file.open(newline="", encoding="utf-8-sig") as stream:
         rows = csv.reader(stream)
         head = next(rows, [])
+        _refuse_doubled(head)
         for row in rows:
             if row and len(row) != len(head):
                 raise ValueError(f"line {rows.line_num} has {len(row)} of {len(head)} columns")
@@ -210,11 +212,23 @@ def _read_parquet(file: Path, model: Model) -> PlayedMotion:
     with parquet.ParquetFile(file) as stored:
         wanted = {TIME, *map(symbol_of, model.names.q), *model.names.u, *(f"u.{name}" for name in model.names.u)}
         columns = [name for name in stored.schema_arrow.names if name in wanted]
+        _refuse_doubled(columns)
         # A column of one value, repeated, takes a few bytes whatever its length.
         if stored.metadata.num_rows * len(columns) > MAX_NUMBERS:
             raise TooLargeError(f"{stored.metadata.num_rows} rows of {len(columns)} columns")
         table = stored.read(columns)
     return _from_columns({name: table[name].to_numpy() for name in table.column_names}, file, model)
+
+
+def _refuse_doubled(names: Sequence[str]) -> None:
+    """Refuse columns of one name.
+
+    Raises:
+        ValueError: With the names.
+    """
+    doubled = [name for name, count in Counter(names).items() if count > 1]
+    if doubled:
+        raise ValueError(f"several columns are called {_some(doubled)}")
 
 
 def _from_columns(columns: Mapping[str, Array], file: Path, model: Model) -> PlayedMotion:
@@ -258,6 +272,9 @@ def _checked(
                 f"{name} has shape {shape}: nq is {model.nq}, nu {model.nu}, npar {model.npar}",
                 "show it with the model that it was simulated with",
             )
+    if not np.isfinite(t).all():
+        found = f"time {int(np.argmin(np.isfinite(t)))} of {n} is missing or not finite"
+        _refuse(what, found, "each state has its time", "leave out states without a time")
     # A run that diverged ends in states that can't be drawn.
     finite = np.isfinite(t) & np.isfinite(q).all(axis=1) & np.isfinite(u).all(axis=1) & _drawable(model, q)
     count = n if finite.all() else int(np.argmin(finite))

@@ -67,9 +67,32 @@ _WAITING: list[Step] = [
 ]
 
 
-def limbs(steps: list[Step], count: int) -> tuple[Program, tuple[Output, ...]]:
-    """A function that does the steps in turn for each of several limbs, then again from what these add up to."""
+# Lanes of several signs, times a number, which takes the signs of both.
+_TURNED: list[Step] = [
+    ("mul", (("joint", 0), ("mirrored", 1)), False),
+    ("mul", (("own", 0), ("joint", 1)), False),
+    ("mul", (("joint", 0), ("joint", 1)), False),
+    ("add", (("own", 1), ("own", 2)), False),
+    ("mul", (("own", 1), ("same number", 2)), False),
+    ("add", (("own", 3), ("own", 4)), False),
+    ("mul", (("own", 5), ("own", 5)), True),
+]
+
+
+def limbs(steps: list[Step], count: int, numbers_first: bool = False) -> tuple[Program, tuple[Output, ...]]:
+    """A function that does the steps in turn for each of several limbs, then again from what these add up to.
+
+    Args:
+        steps: Steps.
+        count: Number of limbs.
+        numbers_first: Whether numbers are the first factors of products, as nodes that were made first are; else they
+            are the last ones.
+    """
     graph = Graph()
+    for number in range(12 * numbers_first):
+        graph.constant(0.25 + number)
+        for limb in range(count):
+            graph.constant(0.7 + 0.1 * number + 0.3 * limb)
     joints = [[graph.input("q", JOINTS * k + j) for j in range(JOINTS)] for k in range(count)]
     common = [graph.input("q", JOINTS * count + i) for i in range(3)]
     common = [graph.add(common[0], common[1]), graph.mul(common[1], common[2]), common[2]]
@@ -141,18 +164,21 @@ def assert_exact(made: tuple[Program, tuple[Output, ...]], folder: Path, seed: i
 
 
 @settings(max_examples=60)
-@given(st.lists(_STEPS, min_size=1, max_size=14), st.integers(2, 6), st.integers(0, 3))
-@example(_ENDS, 2, 0)
-@example(_ENDS, 3, 0)
-@example(_MIRRORED, 4, 0)
-@example(_CONTRADICTING, 2, 0)
-@example(_CONTRADICTING, 5, 0)
-@example(_WAITING, 2, 0)
-@example(_WAITING, 4, 0)
+@given(st.lists(_STEPS, min_size=1, max_size=14), st.integers(2, 6), st.booleans(), st.integers(0, 3))
+@example(_ENDS, 2, False, 0)
+@example(_ENDS, 3, True, 0)
+@example(_MIRRORED, 4, False, 0)
+@example(_MIRRORED, 4, True, 0)
+@example(_CONTRADICTING, 2, False, 0)
+@example(_CONTRADICTING, 5, True, 0)
+@example(_TURNED, 2, False, 0)
+@example(_TURNED, 2, True, 0)
+@example(_WAITING, 2, False, 0)
+@example(_WAITING, 4, True, 0)
 def test_vectors_compute_the_bits_of_the_graph(
-    tmp_path_factory: pytest.TempPathFactory, steps: list[Step], count: int, seed: int
+    tmp_path_factory: pytest.TempPathFactory, steps: list[Step], count: int, numbers_first: bool, seed: int
 ) -> None:
-    assert_exact(limbs(steps, count), tmp_path_factory.mktemp("limbs"), seed)
+    assert_exact(limbs(steps, count, numbers_first), tmp_path_factory.mktemp("limbs"), seed)
 
 
 def stopped(g: Graph, q: Joint, k: int) -> Edge:

@@ -25,10 +25,13 @@ def interpreted(system: sf.System) -> sf.Model:
     return sf.compile(system, sf.Options(backend="interpreter"))
 
 
-@pytest.mark.parametrize("seed", sampled(range(6), (0, 3)))
+@pytest.mark.parametrize("seed", sampled(range(6), (0, 1)))
 @pytest.mark.parametrize("carrier_choice", ["parent", "own link", "elsewhere"])
 def test_rotor_equals_a_geared_body(seed: int, carrier_choice: str, rng: np.random.Generator) -> None:
-    """Speeds of the explicit model are G v; then M = G^T M' G and h = G^T h' (G is constant)."""
+    """Speeds of the explicit model are G v; then M = G^T M' G and h = G^T h' (G is constant).
+
+    Seed 1 drives a revolute joint, which turns the rotor's own carrier.
+    """
     stated = random_tree(200 + seed, kinds=("revolute", "ball", "prismatic", "free"))
     bodies = moving(stated)
     driven = next(body for body in reversed(bodies) if body.joint and body.joint.kind in ("revolute", "prismatic"))

@@ -21,13 +21,21 @@ def swept(m: sf.Model, angles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.linspace(0.0, 1.0, len(angles)), angles[:, None] * signs
 
 
+def recorded(m: sf.Model, t: np.ndarray, q: np.ndarray) -> list[np.ndarray]:
+    return [t, q, np.zeros((len(t), m.nv)), np.zeros((len(t), m.nu))]
+
+
+def nothing_between(first: int, last: int) -> None:
+    return None
+
+
 @pytest.mark.parametrize("lowest", [0.004, 0.02])
 def test_the_weakest_of_many_states_is_found(row: sf.Model, lowest: float) -> None:
     """A dip of a hundredth of the run, that lies between any ninety states spread over it."""
     t = np.linspace(0.0, 1.0, 4001)
     angles = 1.0 - (1.0 - lowest) * np.exp(-(((t - 0.4567) / 0.02) ** 2))
     times, q = swept(row, angles)
-    close = nearest_to_singular(row, times, q, np.zeros((len(t), row.nu)), row.parameter_values, row.nc)
+    close = nearest_to_singular(row, recorded(row, times, q), row.parameter_values, row.nc, nothing_between)
     assert close is not None
     when, share = close
     assert when == pytest.approx(0.4567, abs=1e-3)
@@ -36,7 +44,33 @@ def test_the_weakest_of_many_states_is_found(row: sf.Model, lowest: float) -> No
 
 def test_a_row_that_stays_upright_is_not_near(row: sf.Model) -> None:
     times, q = swept(row, np.linspace(1.2, 0.7, 500))
-    assert nearest_to_singular(row, times, q, np.zeros((500, row.nu)), row.parameter_values, row.nc) is None
+    assert nearest_to_singular(row, recorded(row, times, q), row.parameter_values, row.nc, nothing_between) is None
+
+
+A, B, SPEED = 0.3, 1.0, 20.0
+
+
+@pytest.fixture(scope="module")
+def driven_crank() -> sf.Model:
+    """A crank whose angle is prescribed, a rod and a slide: det G = B cos(angle of the rod), 1 to 0.954."""
+    crank = sf.Joint("q1", "revolute", axis=(0, -1, 0), prescribed=True)
+    link = sf.Joint("q2", "revolute", "crank", "e", axis=(0, -1, 0))
+    bodies = (
+        sf.RigidBody("crank", crank, sf.Inertia(1, (A / 2, 0, 0), (0, 0.01, 0.01)), (sf.Frame("e", (A, 0, 0)),)),
+        sf.RigidBody("rod", link, sf.Inertia(1, (B / 2, 0, 0), (0, 0.08, 0.08)), (sf.Frame("e", (B, 0, 0)),)),
+        sf.RigidBody("slide", sf.Joint("x", "prismatic", axis=(1, 0, 0)), sf.Inertia(2, (0, 0, 0), (1, 1, 1))),
+    )
+    pin = sf.Closure("pin", ("slide", None), ("rod", "e"), ("x", "z"))
+    return sf.compile(sf.System("driven_crank", bodies, constraints=(pin,)))
+
+
+@pytest.mark.parametrize("options", [{"method": "dop853"}, {"method": "rodas4", "rtol": 1e-8}, {"dt": 0.01}])
+def test_the_straight_way_between_records_is_no_posture_of_the_motion(driven_crank: sf.Model, options: dict) -> None:
+    """Records are radians apart, and the driven crank moves between them as well."""
+    start = sf.assemble(driven_crank, {"q2": 0.0, "x": A + B}, u=[0.0, SPEED, 0.0])
+    run = sf.simulate(driven_crank, start.q, start.v, 20.0, u={"q1": f"{SPEED}*t"}, output=0.01, **options)
+    exact = A * np.cos(SPEED * run.t) + np.sqrt(B * B - (A * np.sin(SPEED * run.t)) ** 2)
+    assert np.abs(run["x"] - exact).max() < 1e-9 and not run.outcome.notes, run.outcome
 
 
 def falling(*limits: float) -> sf.System:

@@ -8,7 +8,7 @@ import pytest
 import symofros.simulation.results.examination.repetition as repetition
 from symofros.simulation.inputs import plan_inputs
 from symofros.simulation.options import SimulationOptions
-from symofros.simulation.results.examination.repetition import _Changed, _Run
+from symofros.simulation.results.examination.repetition import ExaminedRun, _Changed
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.resolution import TOLERANCE
 from symofros.simulation.stepping.stepper import Stepper
@@ -17,14 +17,14 @@ from tests.simulation.oscillator import oscillator
 STEPS, H = 6000, 0.01
 
 
-def a_run(method: str, every: int = 1) -> _Run:
+def a_run(method: str, every: int = 1) -> ExaminedRun:
     """A run of the oscillator from x = 1, with a record at each or some of the ends of its steps."""
     model = oscillator()
     settings = Settings.of(model, SimulationOptions(method=method, dt=H, adaptive=False), STEPS * H)
     stepper = Stepper(model, settings.method, plan_inputs(model, None), (), np.array([1.0, 0.0]))
     settings.apply(stepper)
     _, states = repetition.repeated(stepper, settings, (0.0, np.ones(1), np.zeros(1)), STEPS * H, H)
-    return _Run(stepper, settings, [x[::every] for x in states], STEPS)
+    return ExaminedRun(stepper, settings, [x[::every] for x in states], STEPS)
 
 
 @pytest.mark.parametrize(("power", "longest"), [(0.0, 64), (1.0, 64), (2.0, 4096)])
@@ -34,11 +34,11 @@ def test_parts_grow_until_the_power_of_their_growth_says_what_the_run_comes_to(
     """Changes of 1e-5 in eight steps: 7.5e-3 over the run where they grow with time, 5.6 where with its square."""
     looked_at = []
 
-    def changed(self: _Run, first: int, count: int, every: int = 1) -> _Changed:
+    def changed(self: ExaminedRun, first: int, count: int, every: int = 1) -> _Changed:
         looked_at.append(count)
         return _Changed(1e-5 * (count / 8) ** power, 0.0, count)
 
-    monkeypatch.setattr(_Run, "changed", changed)
+    monkeypatch.setattr(ExaminedRun, "changed", changed)
     worst = a_run("rk4").added_up(_Changed(1e-5, 0.0, 8))
     assert max(looked_at) == longest
     assert (worst.share > TOLERANCE) == (power == 2.0)

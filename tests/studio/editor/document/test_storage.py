@@ -12,7 +12,14 @@ import pytest
 from symofros.studio.editor.document.document import MAX_TEXT, StaleError
 from symofros.studio.editor.document.session import Session
 from symofros.studio.editor.document.storage import ConflictError
-from symofros.studio.editor.document.workspace import FileError, Workspace, autosave_of, layout_of, read_layout
+from symofros.studio.editor.document.workspace import (
+    FileError,
+    Workspace,
+    autosave_of,
+    layout_of,
+    read_layout,
+    read_text,
+)
 from symofros.studio.editor.editing.data_edits import EditError
 from tests.studio.editor.texts import TEXTS
 
@@ -403,3 +410,17 @@ def test_a_file_that_is_a_loop_of_links_is_refused_in_words(tmp_path: Path) -> N
     loop.symlink_to(loop.name)
     session = Session(Workspace(tmp_path), loop)
     json.dumps(session.as_json(), allow_nan=False)
+
+
+@pytest.mark.parametrize("name", ["a" * 300 + ".yaml", "\u00e4" * 120 + ".yaml", "b" * 250 + "/c.yaml"])
+def test_names_that_are_too_long_are_refused(tmp_path: Path, name: str) -> None:
+    with pytest.raises(FileError, match="too long a name"):
+        Workspace(tmp_path).inside(name)
+
+
+def test_what_is_no_file_is_named(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.yaml")
+    (tmp_path / "folder.yaml").mkdir()
+    for name, kind in (("pipe.yaml", "a named pipe"), ("folder.yaml", "a folder"), ("gone.yaml", "no such file")):
+        with pytest.raises(FileError, match=kind):
+            read_text(tmp_path / name)

@@ -87,6 +87,8 @@ def test_what_follows_a_state_that_is_not_finite_is_left_out(pendulum: sf.Model)
         ("b.csv", "t,q1,q2\n0,1,two\n", "'b.csv' is not a .csv file"),
         ("c.csv", "t,q1,q2\n0,1\n", "'c.csv' is not a .csv file"),
         ("d.csv", "t,q1,q2\n", r"no states\n  rule:   one finite state at least"),
+        ("h.csv", "t,q1,q2,q1\n0,1,2,3\n", "several columns are called q1"),
+        ("i.csv", "t,q1,q2\n0,1,2\nnan,1,2\n2,1,2\n", "time 1 of 3 is missing or not finite"),
         ("e.csv", "t,q1,q2\n1,0,0\n0,0,0\n", "times that fall"),
         ("f.npz", "not an archive", "'f.npz' is not a .npz file"),
         ("g.parquet", "not parquet", "'g.parquet' is not a .parquet file"),
@@ -208,3 +210,21 @@ class TestPlayer:
         for asked, found in ((2.2, 2.2), (0.0, 1.0), (9.0, 3.0)):
             player.seek(asked)
             assert player.time == found
+
+
+def test_a_csv_file_may_begin_with_a_byte_order_mark(pendulum: sf.Model, tmp_path: Path) -> None:
+    file = tmp_path / "a.csv"
+    file.write_text("t,q1,q2\n0,1,2\n", encoding="utf-8-sig")
+    assert np.allclose(read_motion(file, pendulum).at(0.0)[0], [1.0, 2.0])
+
+
+def test_columns_of_parquet_have_one_name_and_times_are_stated(pendulum: sf.Model, tmp_path: Path) -> None:
+    pa = require("pyarrow", "parquet")
+    parquet = importlib.import_module("pyarrow.parquet")
+    file, x = tmp_path / "a.parquet", pa.array([0.0, 1.0])
+    parquet.write_table(pa.Table.from_arrays([x, x, x, x], ["t", "q1", "q1", "q2"]), file)
+    with pytest.raises(SymofrosError, match="several columns are called q1"):
+        read_motion(file, pendulum)
+    parquet.write_table(pa.table({"t": pa.array([0.0, None]), "q1": x, "q2": x}), file)
+    with pytest.raises(SymofrosError, match="time 1 of 2 is missing"):
+        read_motion(file, pendulum)

@@ -1,4 +1,4 @@
-"""Whether the rotations that wires prescribe to mechanisms are rotations."""
+"""Whether what wires prescribe to mechanisms are rotations, and motions."""
 
 from __future__ import annotations
 
@@ -10,12 +10,15 @@ import numpy as np
 from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.wiring import Source
 from symofros.runtime.calls.kernel import Array
+from symofros.simulation.prescribed_motions import recorded_notes
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.settings import UNIT_TOLERANCE
 
 
-def refuse_no_rotation(outcome: Outcome, resolved: Resolved, t: Array, signal: Callable[[Source], Array]) -> Outcome:
+def judge_prescribed(outcome: Outcome, resolved: Resolved, t: Array, signal: Callable[[Source], Array]) -> Outcome:
     """The outcome of a run, "input failed" where a wire prescribes a quaternion that is no rotation.
+
+    Positions and speeds that are no one motion are noted (docs/theory/simulation.md, (3e)).
 
     Args:
         outcome: Outcome of the run.
@@ -43,4 +46,6 @@ def refuse_no_rotation(outcome: Outcome, resolved: Resolved, t: Array, signal: C
                     f" {lengths[row]:.6g} from t = {t[row]:.6g} s on, which is no rotation",
                     advice="divide the quaternion by its length",
                 )
+        notes = recorded_notes(wired.models.record(mechanism), t, signal(source))
+        outcome = replace(outcome, notes=(*outcome.notes, *(f"block '{name}': {note}" for note in notes)))
     return outcome

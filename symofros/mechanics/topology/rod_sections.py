@@ -1,0 +1,69 @@
+"""How many sections a rod gets that is curved without stress (docs/theory/rods.md, section 6)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from symofros.description.beams.beam import MOST_SECTIONS, PRE_STRAINS, STATION, Beam
+from symofros.mechanics.beams.strains import strains_of
+from symofros.mechanics.topology.numbers import Numbers
+
+# Bound of the distance between frames within the rod and where its strains without stress put them, over its length.
+_BOUND = 1e-3
+# Stations at which strains without stress are looked at.
+_STATIONS = 33
+
+
+def with_sections(beam: Beam, numbers: Numbers) -> Beam:
+    """The same beam; a rod whose sections are left to the generator with those that its own curvature needs, too.
+
+    Args:
+        beam: Beam of a checked system.
+        numbers: Values of its parameters.
+    """
+    if beam.theory != "strain" or not beam.modes or beam.sections:
+        return beam
+    needed = sections_of_turn(*_turn(beam, numbers))
+    if needed <= 2:
+        return beam
+    chosen = len(strains_of(beam).sections.stations) - 1
+    return replace(beam, sections=min(MOST_SECTIONS, chosen + needed - 2))
+
+
+def sections_of_turn(turn: float, amplitude: float) -> int:
+    """Sections, at least 2, through which a tangent that turns is interpolated to the bound.
+
+    Args:
+        turn: Angle by which the sections turn from the root to the tip [rad].
+        amplitude: Share of the tangent that turns.
+    """
+    count, error = 2, amplitude * (0.25 * turn) ** 3 / 6.0
+    while error > _BOUND:
+        count += 1
+        error *= 0.25 * turn / (count + 1)
+    return count
+
+
+def _turn(beam: Beam, numbers: Numbers) -> tuple[float, float]:
+    """Angle by which the sections turn without stress, and the largest share of that which bends the axis."""
+    length = numbers.value(beam.length)
+    if all(isinstance(getattr(beam, label), (int, float)) and not getattr(beam, label) for label in PRE_STRAINS):
+        return 0.0, 0.0
+    rows = np.array(
+        [
+            [numbers.extended({STATION: float(x)}).value(getattr(beam, label)) for label in PRE_STRAINS]
+            for x in np.linspace(0.0, length, _STATIONS)
+        ]
+    )
+    if not np.all(np.isfinite(rows)):
+        return 0.0, 0.0
+    rates = np.linalg.norm(rows, axis=1)
+    largest = float(rates.max())
+    if largest == 0.0:
+        return 0.0, 0.0
+    bends = float(np.linalg.norm(rows[:, 1:], axis=1).max())
+    turn = length * float((0.5 * (rates[1:] + rates[:-1])).mean())
+    return (turn, bends / largest) if math.isfinite(turn) else (0.0, 0.0)

@@ -1,0 +1,204 @@
+"""Whether the inputs that prescribe a motion belong to one motion: each speed is the rate of its position.
+
+docs/theory/simulation.md, section 1. The equations of motion take position, speed and acceleration of a prescribed
+joint as they are given. A speed that is not the rate of its position makes a motion that no mechanism has.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from symofros.errors import Problem, SymofrosError
+from symofros.runtime.calls.kernel import Array
+from symofros.runtime.model import Model
+from symofros.runtime.record import ModelRecord
+from symofros.simulation.inputs import InputPlan
+
+# Largest difference between a rate and what its integral changes by, as a share of the larger of them: of formulas,
+# which differences resolve to some 1e-6; of samples, whose chords miss a tenth of a sine with eight samples a period.
+OF_FORMULAS, OF_SAMPLES = 1e-3, 0.2
+# Instants at which formulas are looked at; half the way between the two values of a difference, as a share of the run.
+_INSTANTS, _HALF = 16, 1e-7
+# Intervals between samples that are looked at, evenly chosen of all.
+_INTERVALS = 400
+
+
+class Rated(NamedTuple):
+    """An input that is the rate of others.
+
+    Attributes:
+        position: Indices of what it is a rate of: one number, or the four of a quaternion.
+        rate: Indices of the rate: one number, or three of an angular velocity in body axes.
+    """
+
+    position: tuple[int, ...]
+    rate: tuple[int, ...]
+
+    def mean(self, before: Array, after: Array, span: float) -> Array:
+        """The mean rate between two values of all inputs."""
+        p, q = before[list(self.position)], after[list(self.position)]
+        if len(self.position) == 1:
+            return np.asarray((q - p) / span, dtype=np.float64)
+        lengths = float(np.linalg.norm(p) * np.linalg.norm(q))
+        if not lengths > 0.0:
+            return np.full(3, np.nan)  # No rotation, which the run says.
+        turned = _product(np.append(-p[:3], p[3]), q / lengths)
+        turned *= 1.0 if turned[3] >= 0.0 else -1.0
+        sine = float(np.linalg.norm(turned[:3]))
+        angle = 2.0 * np.arctan2(sine, turned[3])
+        return np.asarray(turned[:3] * (angle / sine if sine > 0.0 else 2.0) / span, dtype=np.float64)
+
+
+class Contradiction(NamedTuple):
+    """Where a rate and what it is a rate of differ.
+
+    Attributes:
+        position: Name of an input.
+        rate: Name of that which should be its rate.
+        t: Time [s].
+        stated: The rate that is given there.
+        found: The rate of the position there.
+    """
+
+    position: str
+    rate: str
+    t: float
+    stated: float
+    found: float
+
+
+def rated_inputs(record: ModelRecord) -> list[Rated]:
+    """The inputs that are rates of others: of each prescribed joint."""
+    names, first = record.u_names, len(record.u_names) - record.driven
+    at = {name: i for i, name in enumerate(names) if i >= first}
+    found = [Rated((at[name],), (at[f"d{name}"],)) for name in at if f"d{name}" in at]
+    for i in record.quaternion_inputs:
+        owner = names[i].rpartition(".")[0]
+        spin = tuple(at[name] for x in "xyz" if (name := f"{owner}.w{x}") in at)
+        found += [Rated(tuple(range(i, i + 4)), spin)] if len(spin) == 3 else []
+    return found
+
+
+def contradiction(
+    model: Model, plan: InputPlan, inputs_at: Callable[[float], Array], span: tuple[float, float]
+) -> Contradiction | None:
+    """The first prescribed motion whose inputs contradict each other; of functions in Python nothing is known before.
+
+    Args:
+        model: Model with prescribed joints.
+        plan: Its inputs, by how they are evaluated.
+        inputs_at: All inputs (nu) at a time.
+        span: Start and end of the run [s].
+    """
+    if not model.record.driven or plan.callback is not None or not span[1] > span[0]:
+        return None
+    times = {index: t for index, t, _, _ in plan.signals}
+    for rated in rated_inputs(model.record):
+        sampled = [times[i] for i in (*rated.position, *rated.rate) if i in times]
+        intervals = _between_samples(sampled, span) if sampled else _around_instants(span)
+        found = _compared(model, rated, inputs_at, intervals, OF_SAMPLES if sampled else OF_FORMULAS)
+        if found is not None:
+            return found
+    return None
+
+
+def refuse_contradiction(found: Contradiction | None) -> None:
+    """Refuse a motion whose inputs contradict each other.
+
+    Raises:
+        SymofrosError: It does.
+    """
+    if found is None:
+        return
+    raise SymofrosError(
+        Problem(
+            f"inputs '{found.position}' and '{found.rate}' prescribe no one motion",
+            f"at t = {found.t:.4g} s '{found.rate}' is {found.stated:.4g}, and '{found.position}' changes at "
+            f"{found.found:.4g}",
+            f"'{found.rate}' is the rate of '{found.position}', and the joint is where '{found.position}' says",
+            f"give '{found.position}' as a formula of t alone, whose rates follow ('0.3*t' for a speed of 0.3), or "
+            "rates that belong to it",
+        )
+    )
+
+
+def recorded_notes(record: ModelRecord, t: Array, u: Array) -> tuple[str, ...]:
+    """A remark on recorded inputs (n, nu) that prescribe no one motion; nothing was known of them before the run."""
+    if not record.driven or len(t) < 3:
+        return ()
+    for rated in rated_inputs(record):
+        chosen = _evenly(np.arange(len(t) - 1.0)).astype(int)
+        means = np.array([rated.mean(u[k], u[k + 1], t[k + 1] - t[k]) for k in chosen if t[k + 1] > t[k]])
+        stated = np.array([0.5 * (u[k] + u[k + 1])[list(rated.rate)] for k in chosen if t[k + 1] > t[k]])
+        scale = max(float(np.nanmax(np.abs(means), initial=0.0)), float(np.abs(stated).max(initial=0.0)))
+        # Records may be far apart: only what differs nearly everywhere is no chord's fault.
+        if len(means) and np.median(np.abs(means - stated).max(axis=1)) > OF_SAMPLES * scale > 0.0:
+            position, rate = record.u_names[rated.position[0]], record.u_names[rated.rate[0]]
+            return (
+                f"inputs '{position}' and '{rate}' prescribe no one motion: '{rate}' is not the rate of '{position}'",
+            )
+    return ()
+
+
+def _compared(
+    model: Model,
+    rated: Rated,
+    inputs_at: Callable[[float], Array],
+    intervals: Sequence[tuple[float, float]],
+    tolerance: float,
+) -> Contradiction | None:
+    """Where the mean rate over an interval differs most from the rate in its middle, if that is too much."""
+    middles = [0.5 * (a + b) for a, b in intervals]
+    # Inputs share their memory.
+    ends = [(inputs_at(a).copy(), inputs_at(b).copy()) for a, b in intervals]
+    means = np.array([rated.mean(*values, b - a) for values, (a, b) in zip(ends, intervals, strict=True)])
+    stated = np.array([inputs_at(t).copy()[list(rated.rate)] for t in middles])
+    rounding = np.array(
+        [
+            np.abs(p[list(rated.position)]).max() * 1e-14 / (b - a)
+            for (p, _), (a, b) in zip(ends, intervals, strict=True)
+        ]
+    )
+    scale = max(float(np.nanmax(np.abs(means), initial=0.0)), float(np.abs(stated).max(initial=0.0)))
+    differ = np.nan_to_num(np.abs(means - stated) - rounding[:, None])
+    if not differ.max(initial=0.0) > tolerance * scale:
+        return None
+    k, axis = (int(i) for i in np.unravel_index(int(np.argmax(differ)), differ.shape))
+    names = model.names.u
+    return Contradiction(
+        names[rated.position[0]], names[rated.rate[axis]], middles[k], float(stated[k, axis]), float(means[k, axis])
+    )
+
+
+def _around_instants(span: tuple[float, float]) -> list[tuple[float, float]]:
+    """Short intervals around instants that are drawn, the same for the same run."""
+    begin, end = span
+    half = max(_HALF * (end - begin), 1e-9 * max(abs(begin), abs(end)))
+    instants = begin + half + (end - begin - 2.0 * half) * np.random.default_rng(0).random(_INSTANTS)
+    return [(float(t - half), float(t + half)) for t in instants]
+
+
+def _between_samples(sampled: Sequence[Array], span: tuple[float, float]) -> list[tuple[float, float]]:
+    """Intervals between neighbouring samples within the run, and before and after them."""
+    begin, end = span
+    times = np.unique(np.concatenate([[begin, end], *sampled]))
+    times = times[(times >= begin) & (times <= end)]
+    pairs = np.array([times[:-1], times[1:]]).T
+    pairs = pairs[np.diff(pairs)[:, 0] > 1e-12 * max(abs(begin), abs(end))]
+    return [(float(a), float(b)) for a, b in _evenly(pairs)]
+
+
+def _evenly(rows: Array) -> Array:
+    """At most so many of the rows."""
+    if len(rows) <= _INTERVALS:
+        return rows
+    return np.asarray(rows[np.linspace(0, len(rows) - 1, _INTERVALS).astype(int)])
+
+
+def _product(p: Array, q: Array) -> Array:
+    """Product of two quaternions (x, y, z, w)."""
+    vector = p[3] * q[:3] + q[3] * p[:3] + np.cross(p[:3], q[:3])
+    return np.append(vector, p[3] * q[3] - p[:3] @ q[:3])

@@ -1,0 +1,236 @@
+"""Inputs that change within fixed steps: their impulse against what the nodes of the steps make of it.
+
+docs/theory/simulation.md, section 8, (18c).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from symofros.runtime.calls.kernel import Array
+from symofros.runtime.manifold import retract
+from symofros.simulation.results.examination.energy_norm import energy_norms
+from symofros.simulation.settings import Settings
+from symofros.simulation.stepping.methods import Method
+from symofros.simulation.stepping.resolution import TOLERANCE
+from symofros.simulation.stepping.stepper import Stepper
+
+# Of a step: what happens nearer to one of its ends than this happens there.
+_AT_END = 1e-6
+# Steps about one within which an input bends: the one before it, and two after it, in which it is made good or not.
+_ABOUT = np.arange(-1, 3)
+# Points of Gauss in each interval between instants: lines and held samples are exact by their middles.
+_OF_SIGNALS, _OF_FORMULAS = 1, 5
+# Intervals of a run in which formulas are integrated, besides those between their instants.
+_INTERVALS = 256
+# Of a step, the distance of two values that make a rate.
+_RATE = 1e-7
+# Instants that differ by this share are one, as in simulation/inputs.py.
+_SAME_INSTANT = 2e-15
+# Share of what an input gives in all below which a part of it is rounding.
+_ROUNDING = 1e-12
+# Share of the speeds at the start and of one by which formulas are asked whether they depend on the state.
+_MOVED = 0.37
+# Records, about, among which the fastest is looked for.
+_SPEEDS = 200
+
+
+@dataclass(frozen=True)
+class TimedInput:
+    """An input that is known as a function of time.
+
+    Attributes:
+        index: Its number among all.
+        at: Its values at times (n) [s]; at held samples those before them if asked for.
+        instants: Where it bends, jumps or is narrow (n), in order [s].
+        points: Points of Gauss by which it is integrated between two of them.
+    """
+
+    index: int
+    at: Callable[[Array, bool], Array]
+    instants: Array
+    points: int
+
+
+@dataclass(frozen=True)
+class _Misjudged:
+    """What steps make of an input's impulse.
+
+    Attributes:
+        t: End of the step at which that is off most [s].
+        missed: By how much; less what a delay by a step explains.
+        whole: Range of the impulse over the run, less that of the input's mean.
+    """
+
+    t: float
+    missed: float
+    whole: float
+
+
+def input_impulse_note(
+    stepper: Stepper, settings: Settings, start: tuple[Array, Array], states: Sequence[Array]
+) -> str:
+    """An input of time whose impulse fixed steps misjudge (18c), in words; nothing where none is, or does no harm.
+
+    Args:
+        stepper: Stepper of the run; its state stays.
+        settings: Settings of the run.
+        start: Initial q, v.
+        states: States of the run: t (n), q, v, u.
+    """
+    if settings.adaptive or not stepper.model.nv or stepper.inputs.callback is not None or not len(states[0]):
+        return ""
+    h, t_end = settings.dt, float(states[0][-1])
+    for one in timed_inputs(stepper, settings, start):
+        found = _misjudged(one, settings.method, settings.t0, t_end, h)
+        if found is not None and found.missed > TOLERANCE * found.whole and _matters(stepper, states, one, found, h):
+            return (
+                f"steps of {h:.4g} s misjudge the input '{stepper.model.names.u[one.index]}', which changes within them:"
+                f" at t = {found.t:.6g} s its impulse is off by {found.missed:.3g}, of {found.whole:.3g} in the run; a"
+                " smaller dt or an adaptive method"
+            )
+    return ""
+
+
+def timed_inputs(stepper: Stepper, settings: Settings, start: tuple[Array, Array]) -> Iterator[TimedInput]:
+    """The inputs that are signals, or formulas of time; none of those that prescribe motions, which are no forces.
+
+    Args:
+        stepper: Stepper of the run.
+        settings: Settings of the run.
+        start: Initial q, v.
+    """
+    inputs, free = stepper.inputs, stepper.model.nu - stepper.model.record.driven
+    for index, t, values, linear in inputs.signals:
+        if index < free:
+            yield TimedInput(index, _lines(t, values) if linear else _held(t, values), t, _OF_SIGNALS)
+    of_law = sorted(inputs.formulas)
+    if not of_law or of_law[0] >= free:
+        return
+    formulas = [inputs.formulas[i] for i in of_law]
+    instants = stepper.model.formula_instants(formulas, stepper.par, settings.t0, settings.t_end)
+    if not len(instants):
+        return
+    q, v = start
+    moved = retract(stepper.model.record.segments, q, np.full(len(v), _MOVED)), v + _MOVED * (1.0 + np.abs(v))
+    with np.errstate(all="ignore"):
+        here, there = (_law(stepper, state, instants) for state in (start, moved))
+    for column, index in enumerate(of_law):
+        if index < free and np.array_equal(here[:, column], there[:, column]):
+            yield TimedInput(index, _formula(stepper, start, column), instants, _OF_FORMULAS)
+
+
+def _lines(t: Array, values: Array) -> Callable[[Array, bool], Array]:
+    return lambda at, before: np.interp(at, t, values)
+
+
+def _held(t: Array, values: Array) -> Callable[[Array, bool], Array]:
+    def at(when: Array, before: bool) -> Array:
+        slack = _SAME_INSTANT * np.abs(when)
+        held: Array = values[np.maximum(np.searchsorted(t, when - slack if before else when + slack, "right") - 1, 0)]
+        return held
+
+    return at
+
+
+def _formula(stepper: Stepper, start: tuple[Array, Array], column: int) -> Callable[[Array, bool], Array]:
+    return lambda at, before: _law(stepper, start, at)[:, column]
+
+
+def _law(stepper: Stepper, state: tuple[Array, Array], t: Array) -> Array:
+    """Values (n, number of formulas) of the inputs' formulas at a state and times (n)."""
+    given = {"q": state[0], "v": state[1], "u": stepper.inputs.constant}
+    return _run(stepper, "law", {name: x[np.newaxis] for name, x in given.items()} | {"t": t[:, np.newaxis]}, len(t))
+
+
+def _run(stepper: Stepper, slot: str, given: dict[str, Array], n: int) -> Array:
+    """The first output of a function of the run at n states, given by group."""
+    kernel = stepper.kernels[slot]
+    inputs = [given[group] if group in given else np.zeros((1, size)) for group, size in kernel.signature.inputs]
+    return np.asarray(kernel.run(n, kernel.prepare(stepper.par[np.newaxis]), inputs)[0], dtype=np.float64)
+
+
+def nodes(method: Method) -> tuple[Array, Array, float]:
+    """Nodes and weights by which a step integrates a function of time, and the weight of its rate at the start.
+
+    Generalised alpha weighs the accelerations of several steps: one or the other end, in the mean.
+    """
+    tableau, m = method.tableau, method.tableau.stages
+    if method.kind == "alpha":
+        return np.array([0.0, 1.0]), np.array([0.5, 0.5]), 0.0
+    if method.kind == "variational":
+        return np.array([0.5]), np.array([1.0]), 0.0
+    if method.kind != "rosenbrock":
+        return tableau.c[:m], tableau.b[:m], 0.0
+    coupling = np.tril(tableau.coupling[:m, :m], -1)
+    weights: Array = tableau.gamma * np.linalg.solve((np.eye(m) - tableau.gamma * coupling).T, tableau.b[:m])
+    return tableau.c[:m], weights, float(weights @ tableau.d[:m])
+
+
+def _misjudged(one: TimedInput, method: Method, t0: float, t_end: float, h: float) -> _Misjudged | None:
+    """Where the impulse that steps make is off most; None where no step has an instant within."""
+    place = (one.instants - t0) / h
+    last = int(np.ceil((t_end - t0) / h - _AT_END)) - 1
+    within = np.unique(np.floor(place[np.abs(place - np.rint(place)) > _AT_END]).astype(np.int64))
+    within = within[(within >= 0) & (within <= last)]
+    if not len(within):
+        return None
+    k = np.unique(np.minimum(np.maximum(within[:, np.newaxis] + _ABOUT, 0), last))
+    begin, end, after = (np.minimum(t0 + (k + i) * h, t_end) for i in range(3))
+    known = one.instants[(one.instants > t0) & (one.instants < t_end)]
+    apart = np.linspace(t0, t_end, _INTERVALS + 1)
+    times = np.unique(np.concatenate([apart, known, begin, end, after]))
+    with np.errstate(all="ignore"):
+        parts = _integrals(one, times)
+        impulse = np.concatenate([[0.0], np.cumsum(parts)])
+        exact = impulse[np.searchsorted(times, end)] - impulse[np.searchsorted(times, begin)]
+        missed = np.cumsum(exact - _made(one, method, begin, end))
+        beyond = impulse - impulse[-1] * (times - t0) / (t_end - t0)  # A constant part is met by any step.
+        near = np.array([beyond[np.searchsorted(times, t)] for t in (begin, end, after)])
+        made = near[1] - missed
+        off = np.maximum(np.maximum(near.min(axis=0) - made, made - near.max(axis=0)), 0.0)
+    worst, whole = int(np.argmax(off)), float(np.ptp(beyond))
+    if not off[worst] > _ROUNDING * np.abs(parts).sum():  # Nor where it is not finite: the run says that.
+        return None
+    return _Misjudged(float(end[worst]), float(off[worst]), whole)
+
+
+def _integrals(one: TimedInput, times: Array) -> Array:
+    """Integrals of an input between times (n) that hold all its instants (n - 1)."""
+    x, weights = np.polynomial.legendre.leggauss(one.points)
+    middle, half = 0.5 * (times[1:] + times[:-1]), 0.5 * np.diff(times)
+    total = np.zeros(len(half))
+    for place, weight in zip(x, weights, strict=True):
+        total += weight * half * one.at(middle + place * half, False)
+    return total
+
+
+def _made(one: TimedInput, method: Method, begin: Array, end: Array) -> Array:
+    """What steps make of the integrals of an input over themselves."""
+    c, weights, of_rate = nodes(method)
+    h, total = end - begin, np.zeros(len(begin))
+    for node, weight in zip(c, weights, strict=True):
+        if weight:
+            total += weight * h * one.at(end if node == 1.0 else begin + node * h, node == 1.0)
+    if of_rate:
+        ahead = begin + _RATE * h
+        total += of_rate * h**2 * (one.at(ahead, True) - one.at(begin, False)) / (ahead - begin)
+    return total
+
+
+def _matters(stepper: Stepper, states: Sequence[Array], one: TimedInput, found: _Misjudged, h: float) -> bool:
+    """Whether the motion would be faster or slower by more than TOLERANCE of its largest speed."""
+    t, q, v, u = states
+    row = [min(max(0, int(np.searchsorted(t, found.t)) - 1), len(t) - 1)]
+    pushed = np.repeat(u[row], 2, axis=0)
+    pushed[1, one.index] += found.missed / h
+    given = {"q": q[row], "v": v[row], "u": pushed, "t": t[row][:, np.newaxis]}
+    few = slice(None, None, -max(1, len(t) // _SPEEDS))
+    with np.errstate(all="ignore"):
+        a = _run(stepper, "forward_dynamics", given, 2)
+        change = float(energy_norms(stepper, q[row], u[row], h * (a[1:] - a[:1]))[0])
+        fastest = float(energy_norms(stepper, q[few], u[few], v[few]).max())
+    return change > TOLERANCE * fastest

@@ -1,0 +1,119 @@
+"""What a USD stage is made of: parts that are missing are refused, and no path leads outside, whatever names are."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import symofros as sf
+from symofros.description.usd.stage import warnings_of
+from symofros.description.workers import MAX_PRINTED, answer_of
+from tests.description.usd_models import body, stage
+from tests.late import require
+
+require("pxr.Usd", "usd")
+
+ARM = {"mass": 2.0, "centerOfMass": (0.1, 0.2, -0.3), "diagonalInertia": (0.3, 0.4, 0.5)}
+PARTS = {
+    "missing": "@gone.usda@",
+    "not USD": "@junk.usda@",
+    "an unknown kind of file": "@junk.txt@",
+    "on the network": "@http://localhost:1/part.usda@",
+    "a folder": "@folder@",
+    "a prim that is not there": "@part.usda@</nobody>",
+    "without a default prim": "@anonymous.usda@",
+}
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "part.usda").write_text(stage(body("arm", **ARM)))
+    (tmp_path / "anonymous.usda").write_text('#usda 1.0\ndef Xform "arm" {}\n')
+    (tmp_path / "junk.usda").write_text("junk")
+    (tmp_path / "junk.txt").write_text("junk")
+    (tmp_path / "folder").mkdir()
+    return tmp_path
+
+
+@pytest.mark.parametrize("arc", ["references", "payload", "subLayers"])
+@pytest.mark.parametrize("part", list(PARTS))
+def test_a_part_that_is_missing_is_refused(folder: Path, arc: str, part: str) -> None:
+    named = PARTS[part]
+    text = stage(body("base", **ARM))
+    if arc == "subLayers":
+        if named.endswith(">") or part == "without a default prim":
+            pytest.skip("a sublayer names no prim")
+        text = text.replace("(\n", f"(\n    subLayers = [{named}]\n", 1)
+    else:
+        extra = f'def Xform "more" (prepend {arc} = {named}) {{\n}}\n'
+        text = f"{text}\n{extra}"
+    file = folder / "robot.usda"
+    file.write_text(text)
+    with pytest.raises(sf.DescriptionError, match="a part of the stage is missing") as raised:
+        sf.load(file)
+    assert named.strip("@").partition("@")[0].rpartition("/")[2] in str(raised.value)
+
+
+def test_each_missing_part_is_told(folder: Path) -> None:
+    file = folder / "robot.usda"
+    extra = "".join(f'def Xform "m{k}" (prepend references = @gone{k}.usda@) {{\n}}\n' for k in range(3))
+    file.write_text(stage(body("base", **ARM)) + "\n" + extra)
+    with pytest.raises(sf.DescriptionError) as raised:
+        sf.load(file)
+    assert len(raised.value.problems) == 3
+
+
+@pytest.mark.parametrize("name", ["[x", "x[y", "x[y]", "part.usda[y]", "[x]", "[x]y", "x]"])
+@pytest.mark.parametrize("suffix", [".usda", ""])
+def test_no_name_of_a_link_leads_outside(folder: Path, name: str, suffix: str) -> None:
+    inside = folder / "model"
+    inside.mkdir()
+    (inside / "part.usda").write_text(stage(body("own", **ARM)))
+    (inside / f"{name}{suffix}").symlink_to(folder / "part.usda")
+    file = inside / "robot.usda"
+    file.write_text(stage().replace("(\n", f"(\n    subLayers = [@./{name}{suffix}@]\n", 1))
+    with pytest.raises(sf.DescriptionError, match="other folders|is missing"):
+        sf.load(file)
+
+
+@pytest.mark.parametrize("name", ["[robots]", "a[b", "a]b", "x.usdz[y]"])
+def test_folders_have_any_name(folder: Path, name: str) -> None:
+    inside = folder / name
+    inside.mkdir()
+    (inside / "part.usda").write_text(stage(body("arm", **ARM)))
+    (inside / "robot.usda").write_text(stage().replace("(\n", "(\n    subLayers = [@./part.usda@]\n", 1))
+    for file in ("part.usda", "robot.usda"):
+        assert [body.name for body in sf.load(inside / file).bodies] == ["arm"]
+
+
+def test_members_of_a_package_lie_in_it(folder: Path) -> None:
+    from pxr import UsdUtils
+
+    inside = folder / "[robots]"
+    inside.mkdir()
+    package = inside / "robot.usdz"
+    assert UsdUtils.CreateNewUsdzPackage(str(folder / "part.usda"), str(package))
+    assert sf.load(package).bodies[0].name == "arm"
+
+
+def test_what_openusd_warns_of_is_a_note(folder: Path) -> None:
+    file = folder / "robot.usda"
+    file.write_text(stage(body("arm", **ARM)))
+    assert not any("OpenUSD" in note for note in sf.load(file).notes)
+    printed = (
+        "Warning: in _Report at line 12 of /opt/x.cpp -- In </a>: odd.\n\nWarning: in _Report at line 12 of /y -- b\n"
+    )
+    assert warnings_of(printed) == ["In </a>: odd.", "b"]
+
+
+def test_a_worker_that_prints_without_end_does_not_wait(tmp_path: Path) -> None:
+    script = tmp_path / "worker.py"
+    script.write_text("import sys\nsys.stderr.write('\\x1bxy' * 400_000)\nprint('{\"text\": 1}')\n")
+    answer = answer_of(str(script), {}, 60.0, "too much")
+    assert answer["text"] == 1 and answer["printed"].startswith("\\u001bxy")
+    assert len(answer["printed"]) < 10 * MAX_PRINTED
+    script.write_text("import sys\nprint('no memory', file=sys.stderr)\nsys.exit(3)\n")
+    assert answer_of(str(script), {}, 60.0, "too much") == {"fault": "it takes too much", "printed": "no memory\n"}
+    script.write_text("print('not JSON')")
+    assert "no answer" in answer_of(str(script), {}, 60.0, "too much")["fault"]

@@ -1,0 +1,69 @@
+"""Constraints that engage while they are not fulfilled: refused with the size, or said."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import symofros as sf
+import symofros.blocks as blocks
+from symofros.diagrams.run.engaging import ENGAGE_TOLERANCE
+
+
+def sliders(gap: float, engaged: bool = True) -> sf.Diagram:
+    """Two masses on one rail, `gap` apart, that a closure holds together from 0.02 s on."""
+    rail = (
+        sf.RigidBody(n, sf.Joint(n, "prismatic", axis=(1, 0, 0)), sf.Inertia(m)) for n, m in (("x", 1.0), ("y", 3.0))
+    )
+    grip = sf.Closure("grip", ("x", None), ("y", None), ("x",))
+    diagram = sf.Diagram("sliders")
+    diagram.add_model("plant", sf.System("plant", tuple(rail), constraints=(grip,)), start={"y": gap, "dx": 0.0})
+    diagram.add(blocks.Step(name="grip", time=0.02, before=[0.0], after=[1.0], period=0.01))
+    diagram.add(blocks.ForwardDynamics(name="plant", model="plant", engaged=engaged), engaged="grip.y")
+    return diagram
+
+
+@pytest.mark.parametrize("gap", [2.0 * ENGAGE_TOLERANCE, 0.01, 0.7])
+def test_a_gap_ends_the_run_and_moves_nothing(gap: float) -> None:
+    """With its size and the input that engages; compiled and interpreted alike."""
+    simulation = sf.Simulation(sliders(gap))
+    for run in (simulation.run(0.05, dt=1e-3, record=0.01), simulation.interpret(0.05, dt=1e-3, record=0.01)):
+        assert run.outcome.kind == "constraints lost"
+        assert run.outcome.t == pytest.approx(0.02)
+        assert "'plant.engaged[0]'" in run.outcome.reason
+        assert f"|phi| = {gap:.3g}" in run.outcome.reason
+        assert np.array_equal(run["plant.q"][-1], [0.0, gap])
+
+
+@pytest.mark.parametrize("gap", [1e-5, 0.5 * ENGAGE_TOLERANCE])
+def test_a_small_gap_is_closed_and_said(gap: float) -> None:
+    """The momentum's moment has changed by it."""
+    simulation = sf.Simulation(sliders(gap))
+    for run in (simulation.run(0.05, dt=1e-3, record=0.01), simulation.interpret(0.05, dt=1e-3, record=0.01)):
+        assert run.outcome.kind == "finished"
+        (note,) = [note for note in run.outcome.notes if "closed a gap of |phi|" in note]
+        assert f"{gap:.2g}" in note
+        assert np.ptp(run["plant.q"][-1]) < 1e-12
+
+
+def test_frames_that_meet_engage_in_silence() -> None:
+    """Nothing is moved, and nothing said."""
+    simulation = sf.Simulation(sliders(0.0))
+    for run in (simulation.run(0.05, dt=1e-3, record=0.01), simulation.interpret(0.05, dt=1e-3, record=0.01)):
+        assert run.outcome.kind == "finished"
+        assert not run.outcome.notes
+
+
+def test_a_weld_that_engages_half_a_turn_off_is_lost() -> None:
+    """Its conditions are fulfilled there, too: without a word it would hold four directions of six."""
+    mass = sf.Inertia(1.0, (0, 0, 0), (0.1, 0.2, 0.25))
+    bodies = tuple(sf.RigidBody(n, sf.Joint(n, "free"), mass) for n in "ab")
+    weld = sf.Closure("weld", ("a", None), ("b", None), ("x", "y", "z"), ("x", "y", "z"))
+    system = sf.System("plant", bodies, constraints=(weld,), gravity=(0, 0, 0))
+    turned = {"b.qx": 0.6, "b.qy": 0.8, "b.qz": 0.0, "b.qw": 0.0}
+    diagram = sf.Diagram("welded")
+    diagram.add_model("plant", system, start=turned)
+    diagram.add(blocks.Step(name="grip", time=0.02, before=[0.0], after=[1.0], period=0.01))
+    diagram.add(blocks.ForwardDynamics(name="plant", model="plant", engaged=True), engaged="grip.y")
+    run = sf.Simulation(diagram).run(0.05, dt=1e-3, record=0.01)
+    assert run.outcome.kind == "constraints lost"

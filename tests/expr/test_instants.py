@@ -1,0 +1,65 @@
+"""Instants of formulas of time: where they bend, jump or change fast."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+
+
+@pytest.fixture(scope="module")
+def model() -> sf.Model:
+    return sf.compile(MODELS["cart_pole"])
+
+
+def instants(model: sf.Model, formula: str, t_end: float = 10.0) -> np.ndarray:
+    return model.formula_instants([formula], model.parameter_values, 0.0, t_end)
+
+
+@pytest.mark.parametrize("width", [2.0, 1e-2, 1e-4, 1e-6])
+def test_corners_of_pulses_of_any_width(model: sf.Model, width: float) -> None:
+    for at in np.random.default_rng(0).uniform(2.5, 7.5, 10):
+        corners = [at - width, at + width]
+        tent = instants(model, f"max(0, 1 - abs(t - {at})/{width})")
+        parabola = instants(model, f"max(0, 1 - (t - {at})^2/{width}^2)")
+        plateau = instants(model, f"sign(t - {corners[0]}) - sign(t - {corners[1]})")
+        for found, wanted in ((tent, [at, *corners]), (parabola, corners), (plateau, corners)):
+            nearest = np.abs(found[:, np.newaxis] - wanted).min(axis=0)
+            assert nearest.max() <= 1e-7 * width + 1e-14 * at
+
+
+@pytest.mark.parametrize("width", [1e-1, 1e-3, 1e-5])
+@pytest.mark.parametrize("formula", ["exp(-((t - 4.2)/{})^2)", "1 - tanh((t - 4.2)/{})^2", "1/(1 + ((t - 4.2)/{})^2)"])
+def test_narrow_parts_are_framed(model: sf.Model, formula: str, width: float) -> None:
+    found = instants(model, formula.format(width))
+    assert 8 <= len(found) <= 12 and np.abs(found - 4.2).min() < 1e-3 * width
+    gaps = np.diff(found)
+    assert 0.4 * width < gaps.min() <= width and found[0] < 4.2 - 7 * width and found[-1] > 4.2 + 7 * width
+
+
+def test_every_kink_of_a_wave(model: sf.Model) -> None:
+    found = instants(model, "abs(sin(20*t))")
+    zeros = np.arange(1, 64) * np.pi / 20
+    assert np.abs(found[found > 0.1][:, np.newaxis] - zeros).min(axis=0).max() < 1e-12
+    assert len(instants(model, "cos(t)*max(0, sin(t))")) == 4  # One of them just after the start.
+
+
+@pytest.mark.parametrize(
+    "formula", ["sin(50*t)", "exp(-t)", "t^3 - t", "1/sqrt(0.5 - t)", "log(t)", "max(0, q0) + abs(v0)", "3*t + 1"]
+)
+def test_smooth_formulas_and_those_of_the_state_have_none(model: sf.Model, formula: str) -> None:
+    formula = formula.replace("q0", model.names.q[0]).replace("v0", f"d{model.names.q[0]}")
+    assert len(instants(model, formula)) == 0
+
+
+def test_parameters_move_them_and_factors_of_the_state_do_not() -> None:
+    parameter = sf.Parameter("late", 3.0)
+    slide = sf.Joint("x", "prismatic", axis=(1, 0, 0), actuated=True)
+    body = sf.RigidBody("b", slide, sf.Inertia(1.0, moments=(1, 1, 1)))
+    cart = sf.compile(sf.System("cart", (body,), parameters=(parameter,)))
+    law = "x*max(0, t - late)"
+    assert cart.formula_instants([law], np.array([3.0]), 0.0, 10.0) == pytest.approx([3.0])
+    assert cart.formula_instants([law], np.array([7.0]), 0.0, 10.0) == pytest.approx([7.0])
+    assert len(cart.formula_instants([law], np.array([7.0]), 0.0, 5.0)) == 0

@@ -1,0 +1,70 @@
+"""Friction that is smooth holds nothing at rest: a joint that creeps under load at the end of a run is named."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+import symofros as sf
+
+ADAPTIVE = ("dopri5", "rodas4")
+
+
+@cache
+def block() -> sf.Model:
+    """1 kg on a plane, with a spring of no stiffness until it is given one."""
+    friction = sf.Friction(1.0, static="rise", minimum_velocity="v0", viscous="c")
+    elements = (friction, sf.Spring("k"))
+    joint = sf.Joint("x", "prismatic", axis=(1, 0, 0), elements=elements, actuated=True)
+    parameters = tuple(
+        sf.Parameter(name, value) for name, value in (("rise", 1.2), ("v0", 1e-3), ("c", 0.0), ("k", 0.0))
+    )
+    body = sf.RigidBody("block", joint, sf.Inertia(1.0))
+    return sf.compile(sf.System("block", (body,), gravity=(0, 0, 0), parameters=parameters))
+
+
+def creeps(run: sf.Trajectory) -> list[str]:
+    return [note for note in run.outcome.notes if "so that the joint creeps" in note]
+
+
+@pytest.mark.parametrize("v0", [1e-2, 1e-3, 1e-5])
+@pytest.mark.parametrize("load", [-0.9, 0.1, 0.5])
+def test_a_joint_that_creeps_is_named_with_its_load(load: float, v0: float) -> None:
+    m = block().with_parameters(v0=v0, c=0.3)
+    run = sf.simulate(m, t_end=5.0, u={"x": load}, method="rodas4")
+    assert abs(run.v[-1, 0]) < 2.0 * v0
+    (note,) = creeps(run)
+    assert note.startswith("'x' ends at") and f"carries {abs(load):.2g}" in note
+    many = (
+        sf.simulate_batch(m, np.zeros((1, 1)), t_end=5.0, u={"x": load}, dt=1e-2 * v0, output=0.1)
+        if v0 > 1e-3
+        else None
+    )
+    assert many is None or creeps(many[0])
+
+
+@pytest.mark.parametrize("method", ADAPTIVE)
+def test_what_slides_swings_or_rests_bears_no_note(method: str) -> None:
+    slides = sf.simulate(block(), t_end=5.0, u={"x": 1.3}, method=method)
+    rests = sf.simulate(block(), t_end=5.0, method=method)
+    stops = sf.simulate(block(), [0.0], [1.0], 5.0, method=method)  # Nothing loads it.
+    swings = sf.simulate(block().with_parameters(k=100.0, v0=0.05), [1.0], [0.0], np.pi / 10, method=method)
+    assert abs(swings.v[-1, 0]) < 0.05  # At its turning point, where the spring brakes it.
+    for run in (slides, rests, stops, swings):
+        assert not creeps(run), run.outcome
+
+
+def test_no_equilibrium_by_friction_is_said_to_be_so() -> None:
+    with pytest.raises(sf.EquilibriumError, match="friction, of 'x', is smooth and holds nothing at rest"):
+        sf.equilibrium(block(), u=[0.5])
+
+
+@pytest.mark.parametrize(("ratio", "share"), [(1.5, 0.968), (2.0, 0.957), (3.0, 0.947)])
+def test_how_much_of_static_friction_is_reached(ratio: float, share: float) -> None:
+    """As its documentation says."""
+    m = block().with_parameters(rise=ratio)
+    speeds = np.linspace(0.0, 2e-2, 20001)[:, np.newaxis]
+    forces = m.generalized_force(np.zeros((len(speeds), 1)), speeds, np.zeros(1))
+    assert np.abs(forces).max() / ratio == pytest.approx(share, abs=5e-4)

@@ -1,0 +1,89 @@
+"""The spectrum of a mechanism with loops is that of its motion: changes that leave the constraints are none of it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from symofros.base.rotations import quaternion_exp, quaternion_product
+from symofros.simulation.inputs import plan_inputs
+from symofros.simulation.options import SimulationOptions
+from symofros.simulation.settings import Settings
+from symofros.simulation.stepping.methods import METHODS
+from symofros.simulation.stepping.stepper import Stepper
+
+BAR = sf.Inertia(1.0, (0.0, 0.1, -0.5), (0.09, 0.08, 0.02))
+# A bar on a ball joint, and what holds the free bar's end in the same place.
+HUNG = sf.System("hung", (sf.RigidBody("bar", sf.Joint("b", "ball"), BAR),))
+PINNED = sf.System(
+    "pinned",
+    (sf.RigidBody("bar", sf.Joint("b", "free"), BAR, (sf.Frame("end"),)),),
+    constraints=(sf.Closure("pin", ("world", None), ("bar", "end"), ("x", "y", "z")),),
+)
+STEP = 1e-2
+
+
+def rates(model: sf.Model, q: Any, v: Any, u: Any = None, step: float = STEP) -> np.ndarray:
+    """The rates [1/s] of the modes about a state, in order; slow ones, which rounding hides, left out."""
+    plan = plan_inputs(model, u)
+    settings = Settings.of(model, SimulationOptions(method="rk4", dt=step), 1.0)
+    stepper = Stepper(model, METHODS["rk4"], plan, (), model.parameter_values)
+    settings.apply(stepper)
+    inputs = stepper.inputs_at(0.0, np.asarray(q), np.asarray(v))
+    seen = stepper.spectrum(0.0, np.asarray(q), np.asarray(v), inputs, step, 2 * model.nv)
+    assert seen is not None
+    values = np.linalg.eigvals(seen[1]) / step
+    return np.sort_complex(values[np.abs(values) > 1.0])
+
+
+@pytest.mark.parametrize("yaw", [0.0, 0.7, 2.5, -1.6])
+def test_a_loop_has_the_modes_of_its_tree(yaw: float) -> None:
+    """At rest, where modes do not depend on coordinates; turned by some angle about the vertical."""
+    tree, loop = sf.compile(HUNG), sf.compile(PINNED)
+    tilt = -np.arctan2(0.1, 0.5)  # Its mass centre hangs below the pin.
+    q = quaternion_product(quaternion_exp(np.array([0.0, 0.0, yaw])), quaternion_exp(np.array([tilt, 0.0, 0.0])))
+    still = np.zeros(3)
+    expected = rates(tree, q, still)
+    assert np.abs(tree.forward_dynamics(q, still, [])).max() < 1e-12 and len(expected) == 4
+    found = rates(loop, np.concatenate([still, q]), np.zeros(6))
+    np.testing.assert_allclose(np.sort(found.imag), np.sort(expected.imag), rtol=3e-3)
+    np.testing.assert_allclose(found.real, 0.0, atol=3e-3 * np.abs(expected).max())
+
+
+def test_a_loop_without_freedom_has_no_modes() -> None:
+    """A four-bar whose crank is prescribed."""
+
+    def bar(name: str, length: float, joint: sf.Joint) -> sf.RigidBody:
+        inertia = sf.Inertia(length, (length / 2, 0, 0), (0.1, 0.1, 0.1))
+        return sf.RigidBody(name, joint, inertia, (sf.Frame("e", (length, 0, 0)),))
+
+    bars = (
+        bar("a", 0.5, sf.Joint("q1", "revolute", prescribed=True)),
+        bar("b", 1.2, sf.Joint("q2", "revolute", "a", "e")),
+        bar("c", 0.8, sf.Joint("q3", "revolute", position=(1, 0, 0))),
+    )
+    pin = sf.Closure("pin", ("c", "e"), ("b", "e"), ("x", "y"))
+    model = sf.compile(sf.System("four_bar", bars, constraints=(pin,), gravity=(0, -9.81, 0)))
+    start = sf.assemble(model, {"q2": 0.8, "q3": 1.8}, u=[0.3, 20.0, 0.0])
+    law = {"q1": "0.3 + 20*t"}
+    assert not len(rates(model, start.q, start.v, law))
+    for dt in (0.005, 0.01):
+        run = sf.simulate(model, start.q, start.v, 2.0, u=law, method="rk4", dt=dt)
+        assert run.outcome.ok and not run.outcome.notes, run.outcome
+
+
+@pytest.mark.parametrize("method", ["rk4", "generalized_alpha", "rodas4", "semi_implicit_euler"])
+def test_an_overconstrained_mechanism_has_the_modes_of_its_one_freedom(method: str) -> None:
+    """Beside its manifold Bricard's conditions have full rank, and would let it move no more."""
+    model = sf.compile(MODELS["bricard"])
+    adaptive = False if method == "rodas4" else None
+    for dt in (5e-3, 1e-3):
+        run = sf.simulate(model, t_end=2.0, method=method, dt=dt, adaptive=adaptive, output=0.02)
+        assert run.outcome.ok and not run.outcome.notes, run.outcome
+    assert (
+        np.abs(rates(model, run.q[50], run.v[50], step=1e-4)).max(initial=0.0) < 10.0
+    )  # Those that lock it would be of 1e3 or more.

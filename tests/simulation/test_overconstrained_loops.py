@@ -1,0 +1,126 @@
+"""Loops with conditions that repeat others on the constraints alone move as they should, by every method and step."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from tests.overconstrained import Bennett, sarrus
+
+START, RATE, END = 0.5, 1.5, 2.9  # The way of the first hinge leads past pi, where two rows of G vanish.
+# Methods, their steps, and the angle [rad] by which they may be off: of fixed steps a bound of the order of the
+# method's error on a smooth motion, of adaptive ones a small multiple of their tolerance of 1e-6.
+METHODS = (
+    *(("rk4", dt, 1e-7 if dt < 0.01 else 1e-5) for dt in (2e-2, 5e-3, 2e-3, 1e-3)),
+    *((method, None, 2e-5) for method in ("dopri5", "dop853", "rodas4")),
+    *(("generalized_alpha", dt, dt) for dt in (5e-3, 1e-3)),
+)
+DRAWN = range(4)
+
+
+@cache
+def linkage(seed: int) -> tuple[Bennett, sf.Model]:
+    """Bennett's linkage of random proportions."""
+    bennett = Bennett.drawn(np.random.default_rng(seed))
+    return bennett, sf.compile(bennett.system())
+
+
+@pytest.mark.parametrize("seed", DRAWN)
+@pytest.mark.parametrize(("method", "dt", "bound"), METHODS)
+def test_bennetts_linkage_moves_as_its_energy_says(method: str, dt: float | None, bound: float, seed: int) -> None:
+    """G has two independent rows on the constraints and three beside them: no stage may take the third one for more."""
+    bennett, model = linkage(seed)
+    q, v = bennett.posture(START), bennett.speeds(START, RATE)
+    run = sf.simulate(model, q, v, END, method=method, **({} if dt is None else {"dt": dt}))
+    assert run.outcome.kind == "finished"
+    assert not run.outcome.notes
+    assert abs(bennett.late(model, START, RATE, float(run.q[-1, 0]), END)) < bound
+
+
+def test_a_batch_and_the_interpreter_move_alike() -> None:
+    """The rank is decided in the function itself: whoever calls it gets the same motion."""
+    bennett, model = linkage(0)
+    q, v = bennett.posture(START), bennett.speeds(START, RATE)
+    alone = sf.simulate(model, q, v, END, dt=1e-2)
+    several = sf.simulate_batch(model, np.array([q, q]), np.array([v, v]), END, dt=1e-2)
+    assert np.allclose(several.q[:, -1], alone.q[-1], rtol=0, atol=1e-12)
+    interpreted = sf.compile(bennett.system(), sf.Options(backend="interpreter"))
+    for h in (1e-1, 1e-2, 1e-3):
+        beside = q + h * v
+        a, lam = (m.forward_dynamics(beside, v, [], multipliers=True) for m in (model, interpreted))
+        for one, other in zip(a, lam, strict=True):
+            # Beside the constraints their rows contradict each other by some h^2, and the forms weigh that differently.
+            assert np.allclose(one, other, rtol=0, atol=h * h)
+
+
+@pytest.mark.parametrize("constraints", ["multipliers", "null_space"])
+def test_accelerations_beside_the_constraints_are_those_on_them(constraints: str) -> None:
+    """They differ by as much as the states do; a lock would make them differ by themselves."""
+    bennett = linkage(1)[0]
+    model = sf.compile(bennett.system(), sf.Options(constraints=constraints))
+    rng = np.random.default_rng(7)
+    for _ in range(40):
+        angle, size = rng.uniform(-3, 3), 10.0 ** rng.uniform(-8, -3)
+        q, v = bennett.posture(angle), bennett.speeds(angle, RATE)
+        on = model.forward_dynamics(q, v, [])
+        beside = model.forward_dynamics(q + size * rng.uniform(-1, 1, 3), v, [])
+        # The motion's own scale over the shares of rows that count, some hundredths at the least.
+        assert np.abs(beside - on).max() < 1e3 * size * (1.0 + np.abs(on).max())
+
+
+def test_bricards_linkage_bears_no_note() -> None:
+    """Five conditions of rank four; right, and so nothing is said of modes or singular postures."""
+    model = sf.compile(MODELS["bricard"])
+    fine = sf.simulate(model, t_end=2.0, method="dop853", rtol=1e-11, atol=1e-12)
+    for settings in ({"dt": 5e-3}, {"dt": 1e-3}, {"method": "dopri5"}):
+        run = sf.simulate(model, t_end=2.0, **settings)
+        assert not run.outcome.notes, (settings, run.outcome.notes)
+        assert np.abs(run.q[-1] - fine.q[-1]).max() < 1e-5
+
+
+@pytest.mark.parametrize(
+    ("method", "dt", "bound"),
+    [
+        ("rk4", 2e-2, 1e-5),
+        ("rk4", 1e-3, 1e-9),
+        ("dopri5", None, 1e-5),
+        ("generalized_alpha", 1e-3, 1e-5),
+        ("ida", None, 1e-5),
+    ],
+)
+def test_sarrus_linkage_moves_as_one_on_a_slide(method: str, dt: float | None, bound: float) -> None:
+    """Five conditions of rank four, against two conditions a chain and a slide: the same platform."""
+    full, slide = (sf.compile(sarrus(by_slide)) for by_slide in (False, True))
+    a = 1.1
+    start = {"a1": a, "a2": np.pi - 2 * a, "b1": a, "b2": np.pi - 2 * a}
+    one = sf.assemble(slide, start | {"z": np.sin(a)}, {"a1": 0.8}, held=("a1",))
+    other = sf.assemble(full, start | {"a3": a - np.pi}, {"a1": 0.8}, held=("a1",))
+    exact = sf.simulate(slide, one.q, one.v, 0.4, method="dop853", rtol=1e-11, atol=1e-12)
+    run = sf.simulate(full, other.q, other.v, 0.4, method=method, **({} if dt is None else {"dt": dt}))  # type: ignore[arg-type]
+    assert run.outcome.kind == "finished" and not run.outcome.notes
+    for name in start:
+        assert abs(run[name][-1] - exact[name][-1]) < bound
+
+
+@pytest.mark.parametrize(("method", "dt"), [("rk4", 1e-2), ("rodas4", None), ("generalized_alpha", 2e-3)])
+def test_planar_loops_closed_in_space_move_as_those_closed_in_their_plane(method: str, dt: float | None) -> None:
+    """Three conditions too many repeat others everywhere, and void ones are no conditions."""
+    bar, tip = sf.Inertia(1.0, (0.5, 0, 0), (0.01, 0.1, 0.1)), (sf.Frame("end", (1.0, 0, 0)),)
+    ends = []
+    for rows in ((("x", "z"), ()), (("x", "y", "z"), ("x", "z"))):
+        bodies = (
+            sf.RigidBody("crank", sf.Joint("a", "revolute", axis=(0, 1, 0)), bar, tip),
+            sf.RigidBody("coupler", sf.Joint("b", "revolute", "crank", "end", axis=(0, 1, 0)), bar, tip),
+            sf.RigidBody("rocker", sf.Joint("c", "revolute", position=(1.3, 0, 0.2), axis=(0, 1, 0)), bar, tip),
+        )
+        closure = sf.Closure("loop", ("rocker", "end"), ("coupler", "end"), *rows)  # type: ignore[arg-type]
+        model = sf.compile(sf.System("loop", bodies, constraints=(closure,)))
+        start = sf.assemble(model, {"a": -1.2, "b": 1.2, "c": -1.0}, held=("a",))
+        run = sf.simulate(model, start.q, start.v, 1.0, method=method, **({} if dt is None else {"dt": dt}))  # type: ignore[arg-type]
+        assert run.outcome.kind == "finished" and not run.outcome.notes
+        ends.append(run.q[-1])
+    assert np.abs(ends[0] - ends[1]).max() < 1e-6

@@ -1,0 +1,132 @@
+"""Inputs that prescribe a motion belong to one motion, or are refused."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+import symofros as sf
+import symofros.blocks as blocks
+
+
+@cache
+def crane() -> sf.Model:
+    """A hoist whose angle is prescribed, with a bob that swings."""
+    hoist = sf.Joint("th", "revolute", axis=(0, -1, 0), prescribed=True)
+    tip = (sf.Frame("e", (0, 0, -1)),)
+    arm = sf.RigidBody("hoist", hoist, sf.Inertia(1, (0, 0, -0.5), (0.1, 0.1, 0.01)), tip)
+    swing = sf.Joint("q", "revolute", "hoist", "e", axis=(0, -1, 0))
+    bob = sf.RigidBody("bob", swing, sf.Inertia(1.0, (0, 0, -0.5), (0.05, 0.05, 0.01)))
+    return sf.compile(sf.System("crane", (arm, bob)))
+
+
+@cache
+def turned() -> sf.Model:
+    """A body whose orientation is prescribed, with a pendulum on it."""
+    base = sf.RigidBody("base", sf.Joint("j", "ball", prescribed=True), sf.Inertia(1.0, (0, 0, 0.1), (1, 1, 1)))
+    hinge = sf.Joint("q", "revolute", "base", position=(0.2, 0, 0), axis=(0, 1, 0))
+    return sf.compile(
+        sf.System("turned", (base, sf.RigidBody("p", hinge, sf.Inertia(1.0, (0, 0, -0.3), (0.1, 0.1, 0.1)))))
+    )
+
+
+T = np.linspace(0, 2, 81)
+HELD = np.diff(np.sin(3 * np.linspace(0, 2.025, 82))) / 0.025  # Until the next sample.
+GOOD: dict[str, Any] = {
+    "position": {"th": "0.3*t"},
+    "all three": {"th": "sin(30*t)", "dth": "30*cos(30*t)", "ddth": "-900*sin(30*t)"},
+    "an angle that stays": {"th": 0.7, "dth": 0.0},
+    "samples": {
+        "th": sf.Signal(T, np.sin(3 * T)),
+        "dth": sf.Signal(T, 3 * np.cos(3 * T)),
+        "ddth": sf.Signal(T, -9 * np.sin(3 * T)),
+    },
+    "held samples": {
+        "th": sf.Signal(T, np.sin(3 * T), "hold"),
+        "dth": sf.Signal(T, HELD, "hold"),
+        "ddth": sf.Signal(T, np.append(np.diff(HELD), 0.0) / 0.025, "hold"),
+    },
+    "all by one signal": sf.Signal(T, np.array([0.1 + 0 * T, 0 * T, 0 * T]).T),
+}
+BAD: dict[str, Any] = {
+    "speed alone": {"dth": "0.3"},
+    "number alone": {"dth": 0.3},
+    "acceleration alone": {"ddth": 0.5},
+    "contradicting": {"th": "0.3*t", "dth": "0.1"},
+    "other sign": {"th": "sin(t)", "dth": "-cos(t)"},
+    "another acceleration": {"th": "sin(t)", "dth": "cos(t)", "ddth": 0.0},
+    "samples that end early": {
+        "th": sf.Signal([0, 1], [0, 0.3]),
+        "dth": sf.Signal([0, 1], [0.3, 0.3]),
+        "ddth": 0.0,
+    },
+    "an array": np.array([0.2, 0.3, 0.0]),
+    "all by one signal": sf.Signal([0, 2], [[0.1, 0.2, 0.0], [0.1, 0.2, 0.0]]),
+}
+
+
+@pytest.mark.parametrize("how", GOOD)
+def test_what_is_one_motion_runs(how: str) -> None:
+    """And bears no note."""
+    run = sf.simulate(crane(), t_end=2.0, u=GOOD[how])
+    assert run.outcome.kind == "finished"
+    assert not [note for note in run.outcome.notes if "prescribe" in note]
+    assert "finished" in str(sf.simulate_batch(crane(), np.zeros((2, 1)), t_end=2.0, u=GOOD[how]).outcome((0,)))
+
+
+@pytest.mark.parametrize("how", BAD)
+def test_what_is_not_is_refused(how: str) -> None:
+    """By single runs and batches, with both rates and a remedy."""
+    for simulate, q0 in ((sf.simulate, np.zeros(1)), (sf.simulate_batch, np.zeros((2, 1)))):
+        with pytest.raises(sf.SymofrosError, match="prescribe no one motion"):
+            simulate(crane(), q0, t_end=2.0, u=BAD[how])
+
+
+def test_one_trajectory_of_a_batch_is_enough() -> None:
+    """Constants differ from one to the next."""
+    with pytest.raises(sf.SymofrosError, match="'dth' is 0.3"):
+        sf.simulate_batch(crane(), np.zeros((3, 1)), t_end=1.0, u={"dth": np.array([0.0, 0.3, 0.0])})
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_angular_velocities_belong_to_their_quaternions(seed: int) -> None:
+    """About a random axis at a random speed, and with another speed."""
+    rng = np.random.default_rng(seed)
+    axis, w = rng.normal(size=3), float(rng.uniform(0.5, 20.0))
+    axis /= np.linalg.norm(axis)
+    law = {f"j.q{x}": f"{a!r}*sin({w!r}*t/2)" for x, a in zip("xyz", axis.tolist(), strict=True)} | {
+        "j.qw": f"cos({w!r}*t/2)"
+    }
+    spin = {f"j.w{x}": float(w * a) for x, a in zip("xyz", axis, strict=True)}
+    assert sf.simulate(turned(), t_end=1.0, u=law | spin).outcome.kind == "finished"
+    for wrong in ({}, {name: -value for name, value in spin.items()}, {name: 1.01 * w for name, w in spin.items()}):
+        with pytest.raises(sf.SymofrosError, match="prescribe no one motion"):
+            sf.simulate(turned(), t_end=1.0, u=law | wrong)
+
+
+def test_a_function_in_python_is_judged_by_what_it_gave() -> None:
+    """It may have a state, so that it is not called beforehand: a note."""
+    wrong = sf.simulate(crane(), t_end=1.0, u=lambda t, q, v: [0.3 * t, 0.1, 0.0], dt=1e-2)
+    right = sf.simulate(crane(), t_end=1.0, u=lambda t, q, v: [0.3 * t, 0.3, 0.0], dt=1e-2)
+    assert [note for note in wrong.outcome.notes if "prescribe no one motion" in note]
+    assert not [note for note in right.outcome.notes if "prescribe" in note]
+
+
+@pytest.mark.parametrize(("rate", "noted"), [(0.3, False), (0.1, True)])
+def test_wires_of_a_diagram_are_judged_by_what_they_gave(rate: float, noted: bool) -> None:
+    """Compiled and interpreted."""
+    hoist = sf.RigidBody("hoist", sf.Joint("th", "revolute", axis=(0, 1, 0), prescribed=True), sf.Inertia(1.0))
+    bob = sf.RigidBody(
+        "bob", sf.Joint("q", "revolute", "hoist", position=(0, 0, -1), axis=(0, 1, 0)), sf.Inertia(1.0, (0, 0, -0.5))
+    )
+    diagram = sf.Diagram("crane")
+    diagram.add_model("plant", sf.System("plant", (hoist, bob)))
+    diagram.add(blocks.Ramp(name="th", slope=[0.3, 0.0, 0.0], start=[0.0, rate, 0.0]))
+    diagram.add(blocks.ForwardDynamics(name="plant", model="plant"), u="th.y")
+    simulation = sf.Simulation(diagram)
+    for run in (simulation.run(0.5, dt=1e-3, record=0.01), simulation.interpret(0.5, dt=1e-3, record=0.01)):
+        assert run.outcome.kind == "finished"
+        assert noted == any("prescribe no one motion" in note for note in run.outcome.notes)

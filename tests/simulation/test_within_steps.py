@@ -1,0 +1,204 @@
+"""What acts for a short time only, within a step or between two: pulses of any place, length and shape."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+
+END = 10.0
+RTOL, ATOL = 1e-6, 1e-9
+# Times the bound of a step's error that a run of some hundred steps may be off by; BDF's leave most.
+ADDED_UP = 200.0
+OWN = ["dopri5", "dop853", "rodas4"]
+SUNDIALS = ["cvode", "cvode_adams", "ida"]
+
+
+@pytest.fixture(scope="module")
+def cart() -> sf.Model:
+    """One kilogram on a line: its speed is the impulse."""
+    slide = sf.Joint("x", "prismatic", axis=(1, 0, 0), actuated=True)
+    body = sf.RigidBody("b", slide, sf.Inertia(1.0, moments=(1, 1, 1)))
+    return sf.compile(sf.System("cart", (body,), gravity=(0, 0, 0)))
+
+
+def held(F: float, t: float, w: float) -> tuple[sf.Signal, float]:
+    return sf.Signal([0.0, t, t + w], [0.0, F, 0.0], "hold"), F * w
+
+
+def lines(F: float, t: float, w: float) -> tuple[sf.Signal, float]:
+    return sf.Signal([0.0, t, t + w / 2, t + w, END], [0.0, 0.0, F, 0.0, 0.0]), F * w / 2
+
+
+def sampled(F: float, t: float, w: float) -> tuple[sf.Signal, float]:
+    """At 100 Hz, mostly quiet."""
+    times = np.linspace(0.0, END, 1001)
+    values = np.where((times > t) & (times < t + w), F * np.sin((times - t) / w * np.pi), 0.0)
+    return sf.Signal(times, values), float(np.trapezoid(values, times))
+
+
+def push_and_pull(F: float, t: float, w: float) -> tuple[sf.Signal, float]:
+    """No impulse, but a way."""
+    corners = [0.0, t, t + w / 6, t + w / 3, t + 2 * w / 3, t + 5 * w / 6, t + w]
+    return sf.Signal(corners, [0.0, 0.0, F, 0.0, 0.0, -F, 0.0]), 0.0
+
+
+def tent(F: float, t: float, w: float) -> tuple[str, float]:
+    return f"{F}*max(0, 1 - abs(t - {t})/{w})", F * w
+
+
+def parabola(F: float, t: float, w: float) -> tuple[str, float]:
+    return f"{F}*max(0, 1 - (t - {t})^2/{w}^2)", F * w * 4 / 3
+
+
+def rectangle(F: float, t: float, w: float) -> tuple[str, float]:
+    return f"{F}*(sign(t - {t}) - sign(t - {t + w}))/2", F * w
+
+
+def bell(F: float, t: float, w: float) -> tuple[str, float]:
+    w = min(w, t / 8, (END - t) / 8)
+    return f"{F}*exp(-((t - {t})/{w})^2)", F * w * float(np.sqrt(np.pi))
+
+
+def hump(F: float, t: float, w: float) -> tuple[str, float]:
+    w = min(w, t / 16, (END - t) / 16)
+    return f"{F}*(1 - tanh((t - {t})/{w})^2)", 2 * F * w
+
+
+SHAPES = [held, lines, sampled, push_and_pull, tent, parabola, rectangle, bell, hump]
+Shape = Callable[[float, float, float], tuple[object, float]]
+
+
+def pulses(shape: Shape, count: int) -> list[tuple[object, float, float, float]]:
+    """Inputs, their impulses, first speeds, lengths of time; seeded by the shape."""
+    rng, drawn = np.random.default_rng(SHAPES.index(shape)), []
+    for _ in range(count):
+        w, t = 10 ** rng.uniform(-4, 0), rng.uniform(1.1, 8.5)
+        F = rng.choice([1.0, -1.0]) * 10 ** rng.uniform(-1, 2)
+        drawn.append((*shape(F, t, w), rng.choice([0.0, 1.0]), w))
+    return drawn
+
+
+@pytest.mark.parametrize("method", [*OWN, *SUNDIALS, "batch"])
+@pytest.mark.parametrize("shape", SHAPES)
+def test_a_pulse_gives_its_impulse(cart: sf.Model, shape: Shape, method: str) -> None:
+    if method in SUNDIALS:
+        pytest.importorskip("sksundae")
+    for u, impulse, v0, w in pulses(shape, 4):
+        if method == "batch":
+            run = sf.simulate_batch(cart, [[0.0], [0.1]], [v0], END, method="dopri5", u={"x": u})
+            end = run.v.ravel()[0]
+        else:
+            end = sf.simulate(cart, None, [v0], END, method=method, u={"x": u}).v[-1, 0]
+        fastest = abs(impulse) or 10.0  # A push and its pull.
+        bound = ADDED_UP * (ATOL + RTOL * max(abs(v0), fastest))
+        assert abs(end - v0 - impulse) < bound, (u, impulse, v0, w, end)
+
+
+@pytest.mark.parametrize("method", [*OWN, *SUNDIALS])
+def test_a_push_and_a_pull_leave_a_way(cart: sf.Model, method: str) -> None:
+    """Their impulses cancel; the moment about the end of the step does not."""
+    if method in SUNDIALS:
+        pytest.importorskip("sksundae")
+    u, _ = push_and_pull(60.0, 5.0, 0.6)
+    run = sf.simulate(cart, t_end=END, method=method, u={"x": u})
+    impulse, apart = 60.0 * 0.1, 0.4
+    assert run.q[-1, 0] == pytest.approx(impulse * apart, rel=1e-3)
+
+
+@pytest.mark.parametrize("method", OWN)
+def test_a_swing_under_a_push_is_that_of_short_steps(method: str) -> None:
+    rod = sf.Inertia(1.0, (0, 0, -0.5), (0.08, 0.08, 0.01))
+    joint = sf.Joint("q", "revolute", axis=(0, -1, 0), actuated=True)
+    pendulum = sf.compile(sf.System("pendulum", (sf.RigidBody("a", joint, rod),)))
+    for law in (sf.Signal([0, 4.7, 5, 5.3, 10], [0, 0, 10 / 3, 0, 0]), "10/3*max(0, 1 - abs(t - 5)/0.3)"):
+        want = sf.simulate(pendulum, t_end=END, method="rk4", dt=1e-3, u={"q": law})
+        run = sf.simulate(pendulum, t_end=END, method=method, u={"q": law})
+        np.testing.assert_allclose(run.v[-1], want.v[-1], rtol=0, atol=1e-4)
+
+
+@pytest.mark.parametrize("method", ["dopri5", "dop853"])
+@pytest.mark.parametrize("share", [0.05, 0.1, 0.3])
+@pytest.mark.parametrize("begin", [2.3, 6.1])
+def test_what_no_formula_of_time_says_is_met(cart: sf.Model, method: str, share: float, begin: float) -> None:
+    """A force on part of the way, and one by a function of the caller's: of one twentieth of the run, or more."""
+    w = share * END
+    law = f"2*max(0, 1 - abs(x - {begin + w / 2})/{w / 2})"
+    want = sf.simulate(cart, None, [1.0], END, method="rk4", dt=1e-3, u={"x": law})
+    run = sf.simulate(cart, None, [1.0], END, method=method, u={"x": law})
+    np.testing.assert_allclose(run.v[-1], want.v[-1], rtol=2e-4)
+    batch = sf.simulate_batch(cart, [[0.0], [0.0]], [1.0], END, method=method, u={"x": law})
+    np.testing.assert_allclose(batch.v[0].ravel(), want.v[-1], rtol=2e-4)
+
+    def push(t: float, q: np.ndarray, v: np.ndarray) -> list[float]:
+        return [2.0 * max(0.0, 1.0 - abs(t - begin - w / 2) / (w / 2))]
+
+    run = sf.simulate(cart, t_end=END, method=method, u=push)
+    assert run.v[-1, 0] == pytest.approx(w, rel=1e-3)
+
+
+@pytest.mark.parametrize("method", OWN)
+@pytest.mark.parametrize("name", ["cart_pole", "gyroscope"])
+def test_what_is_smooth_costs_no_steps(name: str, method: str) -> None:
+    """Neither corners that no step can tell from a curve, nor looks within steps, nor kinks of formulas."""
+    model = sf.compile(MODELS[name])
+    q, v = model.random_state(np.random.default_rng(3))
+    t = np.linspace(0.0, 2.0, 20001)
+    x = model.names.u[0]
+
+    def steps(u: object) -> int:
+        return int(sf.simulate(model, q, v, 2.0, u={x: u}, method=method).statistics.steps)
+
+    smooth = steps("sin(3*t)")
+    assert steps(sf.Signal(t, np.sin(3 * t))) <= 1.1 * smooth + 2
+    assert steps(sf.Signal(t, np.zeros(len(t)))) <= steps(0.0)
+
+
+def test_steps_pass_no_corner_that_matters(cart: sf.Model) -> None:
+    """A random signal: the end is right, and steps are no more than its corners."""
+    t = np.linspace(0.0, 2.0, 201)
+    values = np.random.default_rng(1).choice([-1.0, 1.0], len(t))
+    for method in OWN:
+        run = sf.simulate(cart, t_end=2.0, method=method, u={"x": sf.Signal(t, values)})
+        assert run.v[-1, 0] == pytest.approx(np.trapezoid(values, t), abs=1e-5)
+        assert run.statistics.steps <= len(t) + 20 and run.statistics.rejected <= 10
+
+
+def test_a_formula_that_jumps_counts_from_its_instant_on(cart: sf.Model) -> None:
+    """Also at the start and at a step's end, where the formula itself says half."""
+    run = sf.simulate(cart, t_end=1.0, method="dopri5", u={"x": "sign(t - 0.25)*sign(t)"})
+    assert run.v[-1, 0] == pytest.approx(0.5, abs=1e-12)
+    assert run.statistics.rejected == 0
+
+
+@pytest.mark.parametrize("pull", ["max(0, 1 - abs(t - 5)/0.01)", "exp(-((t - 5)/0.01)^2)"])
+def test_a_model_s_own_formula_of_time_is_not_stepped_over(pull: str) -> None:
+    slide = sf.Joint("x", "prismatic", axis=(1, 0, 0))
+    body = sf.RigidBody("b", slide, sf.Inertia(1.0, moments=(1, 1, 1)))
+    power = sf.VirtualPower("pull", {"dx": f"100*({pull})"})
+    model = sf.compile(sf.System("cart", (body,), gravity=(0, 0, 0), virtual_power=(power,)))
+    want = 1.0 if "max" in pull else float(np.sqrt(np.pi))
+    for method in OWN:
+        run = sf.simulate(model, t_end=END, method=method)
+        assert run.v[-1, 0] == pytest.approx(want, rel=1e-4)
+
+
+@pytest.mark.parametrize("method", OWN)
+@pytest.mark.parametrize("name", ["double_pendulum", "four_bar", "heavy_top", "planar_robot"])
+def test_looks_into_quiet_steps_cut_no_smooth_motion(name: str, method: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The dense output, whose last slope is that of the end of the step under way, has nothing to hide there."""
+    model = sf.compile(MODELS[name])
+    q, v = model.random_state(np.random.default_rng(3))
+    if model.nc:
+        start = sf.assemble(model, q, v)
+        q, v = start.q, start.v
+    counts = []
+    for looks in (64, 0):
+        monkeypatch.setattr("symofros.simulation.settings.LOOKS", looks or np.inf)
+        found = sf.simulate(model, 0.3 * q if name == "planar_robot" else q, 0.1 * v, 2.0, method=method).statistics
+        counts.append((found.steps, found.rejected))
+    assert counts[0] == counts[1]

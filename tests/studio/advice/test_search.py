@@ -1,0 +1,72 @@
+"""The model that reductions are judged by: advice is ok by as much as that has converged."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from symofros.studio.advice.search import _Search, _still_to_come
+
+ROPE = sf.Beam("rope", sf.Joint("q", "revolute", axis=(0, 1, 0)), 1.2, 0.1, EI_y=0.01, bend_z=1, family="legendre")
+
+
+class Runner:
+    """In place of simulations: the changes that one function more brings each time, the last for ever."""
+
+    def __init__(self, changes: Sequence[float]) -> None:
+        self.changes = list(changes)
+
+    def exact(self, system: sf.System) -> tuple[Any, None]:
+        return SimpleNamespace(system=system, values={"tip": np.zeros(1)}), None
+
+    def error(self, trial: Any, reference: Any) -> float:
+        return self.changes.pop(0) if len(self.changes) > 1 else self.changes[0]
+
+
+def settled(changes: Sequence[float], beam: sf.Beam = ROPE) -> _Search:
+    search = object.__new__(_Search)
+    search.full = search.current = sf.System("swing", (beam,))
+    search.runner, search.notes = Runner(changes), []  # type: ignore[assignment]
+    search.scene = SimpleNamespace(outputs=[SimpleNamespace(name="tip", bound=lambda _: 1.0)])  # type: ignore[assignment]
+    search._within_theory = lambda: search.runner.exact(search.full)[0]  # type: ignore[method-assign]
+    search._settle()
+    return search
+
+
+def advice(errors: float, unsettled: float) -> sf.Advice:
+    values = dict.fromkeys(sf.Advice.__dataclass_fields__, None) | {"errors": {"tip": errors}, "unsettled": unsettled}
+    return sf.Advice(**values)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("changes", "unsettled", "converged"),
+    [
+        ([0.1], 0.0, True),
+        ([2.0, 0.2], 0.2 * 0.1 / 0.9, True),
+        ([0.65, 1.7, 0.3], 0.3 * (0.3 / 1.7) / (1 - 0.3 / 1.7), True),
+        ([0.65, 1.7, 2.7], 2.7, False),
+        ([9.0, 3.0, 1.0], 1.0, False),
+    ],
+)
+def test_what_more_functions_still_change_counts(changes: list[float], unsettled: float, converged: bool) -> None:
+    search = settled(changes)
+    assert search.unsettled == pytest.approx(unsettled)
+    assert any("not converged" in note for note in search.notes) != converged
+    assert advice(0.02, search.unsettled).ok == (0.02 + unsettled <= 1.0)
+    assert not advice(1.01, 0.0).ok and advice(1.0, 0.0).ok
+
+
+def test_nothing_is_to_come_of_a_model_without_beams() -> None:
+    assert _still_to_come([]) == 0.0
+
+
+def test_functions_of_the_users_have_none_to_be_judged_by() -> None:
+    own = sf.Beam("rope", ROPE.joint, 1.2, 0.1, EI_y=0.01, bend_z=1, family="user", shapes={"bend_z": ["xi^2"]})
+    (note,) = settled([5.0], own).notes
+    assert "'rope'" in note and "functions of yours" in note
+    assert not settled([0.1]).notes

@@ -1,0 +1,201 @@
+"""The register of notes: what the project remarks upon, each with a test that hears it and one where it is silent.
+
+A note is a claim about a run, a file or an export, and one that cries wolf is a fault like one that is missing. What
+the sources can say is read from their text. Each sentence has to be quoted by a test; silent are they all of runs that
+are right (tests/simulation/results/examination/test_quiet_runs.py), and of files and exports that lack nothing, below.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+import time
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+
+ROOT = Path(__file__).parents[1]
+# Names of what collects notes, and of functions that return them in words.
+COLLECTED, RETURNED = ("notes", "remarks"), re.compile(r"note|_lost$|_remark")
+# Letters in a row that tell one sentence from others.
+TELLING = 10
+# In place of what a sentence is about.
+HOLE = "\0"
+
+
+def sentence(node: ast.expr) -> str:
+    """A literal text, with holes; "" of anything else."""
+    if isinstance(node, ast.Constant):
+        return node.value if isinstance(node.value, str) else ""
+    if isinstance(node, ast.JoinedStr):
+        return "".join(str(part.value) if isinstance(part, ast.Constant) else HOLE for part in node.values)
+    if isinstance(node, ast.IfExp):
+        return sentence(node.body) or sentence(node.orelse)
+    if isinstance(node, ast.BinOp):
+        return sentence(node.left) + HOLE + sentence(node.right)
+    return ""
+
+
+def collects(node: ast.AST) -> bool:
+    """Whether it adds to what is collected: `self.notes.append(...)`, `remarks.add(...)`."""
+    if not (
+        isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in ("append", "add")
+    ):
+        return False
+    holder = node.func.value
+    return (getattr(holder, "attr", "") or getattr(holder, "id", "")) in COLLECTED
+
+
+def of_function(node: ast.FunctionDef) -> Iterator[str]:
+    """What it returns in words."""
+    for inner in ast.walk(node):
+        if isinstance(inner, ast.Return) and inner.value is not None:
+            values = [inner.value, *getattr(inner.value, "elts", ())]
+            yield from (sentence(value) for value in values)
+
+
+@cache
+def register() -> dict[str, str]:
+    """Sentence -> file of the sources that says it."""
+    found: dict[str, str] = {}
+    for path in sorted((ROOT / "symofros").rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            said: list[str] = []
+            if collects(node):
+                assert isinstance(node, ast.Call)
+                said = [sentence(node.args[0])]
+            elif isinstance(node, ast.FunctionDef) and RETURNED.search(node.name):
+                said = list(of_function(node))
+            for one in said:
+                if max(map(len, one.split(HOLE)), default=0) >= TELLING:
+                    found.setdefault(one, path.relative_to(ROOT).as_posix())
+    return found
+
+
+@cache
+def expected() -> tuple[str, ...]:
+    """Every literal text of the tests that may tell a note."""
+    texts: set[str] = set()
+    for path in (ROOT / "tests").rglob("*.py"):
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        listed = [node for node in tree.body if isinstance(node, ast.Assign) and path == Path(__file__)]
+        tree.body = [node for node in tree.body if node not in listed]  # Those without a test are no test of them.
+        for node in ast.walk(tree):
+            if isinstance(node, ast.expr):
+                texts |= {part for part in sentence(node).split(HOLE) if len(part) >= TELLING}
+    return tuple(texts)
+
+
+def tells(text: str, note: str) -> bool:
+    """Whether a text of a test quotes a note, or a part of it: both are compared by a part without holes."""
+    return any(len(part) >= TELLING and (part.strip() in text or text in part) for part in note.split(HOLE))
+
+
+# By their beginnings, notes that no test quotes yet. What is added to the sources comes with a test, and not here.
+UNHEARD = (
+    "yield of springs ignored",
+    "MuJoCo warns",
+    "<\0> of <include> ignored",
+    "limits of universal joints ignored",
+    "added mass of fluids ignored",
+    "packages of one name, of which none is taken",
+    "masses or moments of inertia taken from collision shapes",
+    "physics scenes after the first ignored",
+    "joints that are not enabled ignored",
+    "breaking of joints ignored",
+    "joints that bind nothing ignored",
+    "friction and damping of ball joints ignored",
+    "\0 do not show the motion: \0",
+    "\0 do not show the motion: with \0",
+    "\0 are not held against \0",
+    "rollouts do not judge how far beams bend",
+    "moments of inertia near zero raised",
+    "energy overflows, although the states do not",
+    "speeds grow \0-fold and energy by",
+    "atol = \0 bounds no error of speeds",
+    "the model errs by \0 of the tolerance against one of more functions",
+    "\0; the full model has geometrically exact rods",
+)
+
+
+def test_each_note_is_heard_by_a_test() -> None:
+    heard = {note: any(tells(text, note) for text in expected()) for note in register()}
+    missing = [f"{register()[note]}: {note}" for note in heard if not heard[note] and not note.startswith(UNHEARD)]
+    assert not missing, "notes without a test that quotes them:\n" + "\n".join(missing)
+
+
+def test_what_is_listed_as_unheard_is_said_by_the_sources() -> None:
+    assert len(register()) > 80, "the scan finds no notes"
+    stale = [one for one in UNHEARD if not any(note.startswith(one) for note in register())]
+    assert not stale, stale
+
+
+MOMENTS = " ".join(
+    f'{name}="{value}"' for name, value in zip(("ixx", "iyy", "izz", "ixy", "ixz", "iyz"), "111000", strict=True)
+)
+LINK = f'<link name="{{}}"><inertial><mass value="1"/><inertia {MOMENTS}/></inertial></link>'
+JOINT = '<joint name="q{}" type="{}"><parent link="{}"/><child link="{}"/>{}</joint>'
+SOUND = "".join(LINK.format(name) for name in "ab") + '<link name="base"/>'
+AXIS, LONG_AXIS = '<axis xyz="0 0 1"/>', '<axis xyz="0 0 2"/>'
+LIMIT, DAMPED = '<limit lower="-1" upper="1" effort="1" velocity="1"/>', '<dynamics damping="0.1" friction="0"/>'
+CHAIN = JOINT.format(1, "{0}", "base", "a", "{1}") + JOINT.format(2, "continuous", "a", "b", AXIS)
+
+
+ARM = sf.System(
+    "arm", (sf.RigidBody("a", sf.Joint("q", "revolute", actuated=True), sf.Inertia(1.0, moments=(1, 1, 1))),)
+)
+
+
+def urdf(folder: Path, content: str) -> tuple[str, ...]:
+    """The notes on a URDF file."""
+    path = folder / "robot.urdf"
+    path.write_text(f'<robot name="r">{SOUND}{content}</robot>', encoding="utf-8")
+    return sf.load(path).notes
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (CHAIN.format("continuous", AXIS + DAMPED), "damping and friction ignored"),
+        (CHAIN.format("continuous", LONG_AXIS), "axes that are not unit vectors are normalised"),
+        (CHAIN.format("planar", AXIS + LIMIT), "limits of planar joints ignored"),
+        (CHAIN.format("continuous", AXIS) + '<gazebo><link name="c"/></gazebo>', "<link> in <gazebo> ignored"),
+        (CHAIN.format("continuous", AXIS), ""),
+        (CHAIN.format("revolute", AXIS + LIMIT), ""),
+        (CHAIN.format("planar", AXIS), ""),
+    ],
+)
+def test_a_file_is_remarked_upon_where_something_of_it_is_left_out(tmp_path: Path, content: str, said: str) -> None:
+    notes = urdf(tmp_path, content)
+    # What is fixed to the world has no mass, and is said to.
+    told = [note for note in notes if note != "links without <inertial> are massless: 1 link (base)"]
+    assert [said in note for note in told] == [True] * bool(said), notes
+
+
+@pytest.mark.parametrize("name", ["pendulum", "double_pendulum", "four_bar", "flexible_pendulum", "car", "heavy_top"])
+def test_native_files_bear_no_note(name: str) -> None:
+    assert not MODELS[name].notes
+
+
+@pytest.mark.parametrize("target", ["urdf", "mjcf", "c"])
+def test_an_export_that_lacks_nothing_bears_no_note(tmp_path: Path, target: str) -> None:
+    assert not sf.export(ARM, target, tmp_path).notes
+
+
+def test_steps_that_begin_late_are_said_to() -> None:
+    """A function of inputs that sleeps for longer than a step of real time lasts; without a clock nothing is late."""
+
+    def slow(t: float, q: object, v: object) -> list[float]:
+        time.sleep(2e-3)
+        return [0.0]
+
+    joint = sf.Joint("x", "prismatic", axis=(1, 0, 0), actuated=True)
+    cart = sf.compile(sf.System("cart", (sf.RigidBody("b", joint, sf.Inertia(1.0)),), gravity=(0, 0, 0)))
+    for realtime in (True, False):
+        run = sf.simulate(cart, t_end=0.01, u=slow, method="euler", dt=1e-3, realtime=realtime)
+        assert bool([note for note in run.outcome.notes if "steps began late" in note]) == realtime
