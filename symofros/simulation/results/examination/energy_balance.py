@@ -104,8 +104,10 @@ def _within(stepper: Stepper, states: Sequence[Array], energy: Array) -> list[Ar
 def _between(
     stepper: Stepper, settings: Settings, states: Sequence[Array], energy: Array, steps: int
 ) -> Iterator[list[Array] | None]:
-    """The ends of all steps in the intervals where the energy changes most; None where they can't be repeated."""
-    if steps <= _DENSE * (len(states[0]) - 1):
+    """Ends of all steps in the intervals where the energy changes most, and states within; None: not repeatable."""
+    intervals = len(states[0]) - 1
+    # Of adaptive steps many may lie in one interval between samples, though there are fewer of them in all.
+    if steps == intervals or (not settings.adaptive and steps < _DENSE * intervals):
         return
     if not repeatable(stepper, settings, states):
         yield None
@@ -114,7 +116,11 @@ def _between(
     changes = np.abs(np.diff(energy))
     for i in np.argsort(-changes)[:_REPEATED]:
         if changes[i] > 0.0:
-            yield repeated(stepper, settings, (float(t[i]), q[i], v[i]), float(t[i + 1]), settings.dt)[1]
+            ends = repeated(stepper, settings, (float(t[i]), q[i], v[i]), float(t[i + 1]), settings.dt)[1]
+            yield ends
+            energies = energies_of(stepper, ends)
+            if energies is not None and len(ends[0]) > 1:
+                yield _within(stepper, ends, energies[1])
 
 
 def energy_that_appeared(stepper: Stepper, settings: Settings, states: Sequence[Array]) -> str:

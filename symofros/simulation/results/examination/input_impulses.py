@@ -22,8 +22,10 @@ from symofros.simulation.stepping.stepper import Stepper
 _AT_END = 1e-6
 # Steps about one within which an input bends: the one before it, and two after it, in which it is made good or not.
 _ABOUT = np.arange(-1, 3)
-# Points of Gauss in each interval between instants: lines and held samples are exact by their middles.
-_OF_SIGNALS, _OF_FORMULAS = 1, 5
+# Samples that are looked at, at most: those at which a signal bends most.
+_MOST = 10_000
+# Points of Gauss by which formulas are integrated between instants.
+_POINTS = 5
 # Intervals of a run in which formulas are integrated, besides those between their instants.
 _INTERVALS = 256
 # Of a step, the distance of two values that make a rate.
@@ -45,14 +47,14 @@ class TimedInput:
     Attributes:
         index: Its number among all.
         at: Its values at times (n) [s]; at held samples those before them if asked for.
+        impulse: Its integral up to times (n) in order [s], from any instant on.
         instants: Where it bends, jumps or is narrow (n), in order [s].
-        points: Points of Gauss by which it is integrated between two of them.
     """
 
     index: int
     at: Callable[[Array, bool], Array]
+    impulse: Callable[[Array], Array]
     instants: Array
-    points: int
 
 
 @dataclass(frozen=True)
@@ -88,9 +90,9 @@ def input_impulse_note(
         found = _misjudged(one, settings.method, settings.t0, t_end, h)
         if found is not None and found.missed > TOLERANCE * found.whole and _matters(stepper, states, one, found, h):
             return (
-                f"steps of {h:.4g} s misjudge the input '{stepper.model.names.u[one.index]}', which changes within them:"
-                f" at t = {found.t:.6g} s its impulse is off by {found.missed:.3g}, of {found.whole:.3g} in the run; a"
-                " smaller dt or an adaptive method"
+                f"steps of {h:.4g} s misjudge the input '{stepper.model.names.u[one.index]}', which changes within"
+                f" them: at t = {found.t:.6g} s its impulse is off by {found.missed:.3g}, of {found.whole:.3g} in the"
+                " run; a smaller dt or an adaptive method"
             )
     return ""
 
@@ -106,7 +108,7 @@ def timed_inputs(stepper: Stepper, settings: Settings, start: tuple[Array, Array
     inputs, free = stepper.inputs, stepper.model.nu - stepper.model.record.driven
     for index, t, values, linear in inputs.signals:
         if index < free:
-            yield TimedInput(index, _lines(t, values) if linear else _held(t, values), t, _OF_SIGNALS)
+            yield _lines(index, t, values) if linear else _held(index, t, values)
     of_law = sorted(inputs.formulas)
     if not of_law or of_law[0] >= free:
         return
@@ -120,24 +122,63 @@ def timed_inputs(stepper: Stepper, settings: Settings, start: tuple[Array, Array
         here, there = (_law(stepper, state, instants) for state in (start, moved))
     for column, index in enumerate(of_law):
         if index < free and np.array_equal(here[:, column], there[:, column]):
-            yield TimedInput(index, _formula(stepper, start, column), instants, _OF_FORMULAS)
+            yield _formula(stepper, start, column, index, instants)
 
 
-def _lines(t: Array, values: Array) -> Callable[[Array, bool], Array]:
-    return lambda at, before: np.interp(at, t, values)
+def _lines(index: int, t: Array, values: Array) -> TimedInput:
+    slopes = np.concatenate([[0.0], np.diff(values) / np.diff(t), [0.0]])
+    areas = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(t) * (values[1:] + values[:-1]))])
+
+    def at(when: Array, before: bool) -> Array:
+        return np.interp(when, t, values)
+
+    def impulse(when: Array) -> Array:
+        k = np.maximum(np.searchsorted(t, when, "right") - 1, 0)
+        return np.asarray(areas[k] + 0.5 * (when - t[k]) * (values[k] + at(when, False)))
+
+    return TimedInput(index, at, impulse, _sharpest(t, np.diff(slopes)))
 
 
-def _held(t: Array, values: Array) -> Callable[[Array, bool], Array]:
+def _held(index: int, t: Array, values: Array) -> TimedInput:
+    areas = np.concatenate([[0.0], np.cumsum(np.diff(t) * values[:-1])])
+
     def at(when: Array, before: bool) -> Array:
         slack = _SAME_INSTANT * np.abs(when)
-        held: Array = values[np.maximum(np.searchsorted(t, when - slack if before else when + slack, "right") - 1, 0)]
-        return held
+        return np.asarray(
+            values[np.maximum(np.searchsorted(t, when - slack if before else when + slack, "right") - 1, 0)]
+        )
 
-    return at
+    def impulse(when: Array) -> Array:
+        k = np.maximum(np.searchsorted(t, when, "right") - 1, 0)
+        return np.asarray(areas[k] + (when - t[k]) * values[k])
+
+    return TimedInput(index, at, impulse, _sharpest(t, np.diff(values, prepend=values[:1])))
 
 
-def _formula(stepper: Stepper, start: tuple[Array, Array], column: int) -> Callable[[Array, bool], Array]:
-    return lambda at, before: _law(stepper, start, at)[:, column]
+def _sharpest(t: Array, changes: Array) -> Array:
+    """The samples at which a signal changes most (n): at most _MOST, none at which it goes on as before."""
+    sizes = np.abs(changes)
+    if len(t) > _MOST:
+        chosen = np.sort(np.argpartition(-sizes, _MOST)[:_MOST])
+        t, sizes = t[chosen], sizes[chosen]
+    return np.asarray(t[sizes > _ROUNDING * sizes.max(initial=0.0)])
+
+
+def _formula(stepper: Stepper, start: tuple[Array, Array], column: int, index: int, instants: Array) -> TimedInput:
+    x, weights = np.polynomial.legendre.leggauss(_POINTS)
+
+    def at(when: Array, before: bool) -> Array:
+        return _law(stepper, start, when)[:, column]
+
+    def impulse(when: Array) -> Array:
+        between = instants[(instants > when[0]) & (instants < when[-1])]
+        times = np.union1d(when, between)
+        middle, half, total = 0.5 * (times[1:] + times[:-1]), 0.5 * np.diff(times), np.zeros(len(times))
+        for place, weight in zip(x, weights, strict=True):
+            total[1:] += weight * half * at(middle + place * half, False)
+        return np.asarray(np.cumsum(total)[np.searchsorted(times, when)])
+
+    return TimedInput(index, at, impulse, instants)
 
 
 def _law(stepper: Stepper, state: tuple[Array, Array], t: Array) -> Array:
@@ -166,7 +207,8 @@ def nodes(method: Method) -> tuple[Array, Array, float]:
     if method.kind != "rosenbrock":
         return tableau.c[:m], tableau.b[:m], 0.0
     coupling = np.tril(tableau.coupling[:m, :m], -1)
-    weights: Array = tableau.gamma * np.linalg.solve((np.eye(m) - tableau.gamma * coupling).T, tableau.b[:m])
+    solved = np.linalg.solve((np.eye(m) - tableau.gamma * coupling).T, tableau.b[:m])
+    weights = tableau.gamma * np.asarray(solved, dtype=np.float64)
     return tableau.c[:m], weights, float(weights @ tableau.d[:m])
 
 
@@ -184,8 +226,8 @@ def _misjudged(one: TimedInput, method: Method, t0: float, t_end: float, h: floa
     apart = np.linspace(t0, t_end, _INTERVALS + 1)
     times = np.unique(np.concatenate([apart, known, begin, end, after]))
     with np.errstate(all="ignore"):
-        parts = _integrals(one, times)
-        impulse = np.concatenate([[0.0], np.cumsum(parts)])
+        impulse = one.impulse(times)
+        impulse = impulse - impulse[0]
         exact = impulse[np.searchsorted(times, end)] - impulse[np.searchsorted(times, begin)]
         missed = np.cumsum(exact - _made(one, method, begin, end))
         beyond = impulse - impulse[-1] * (times - t0) / (t_end - t0)  # A constant part is met by any step.
@@ -193,19 +235,9 @@ def _misjudged(one: TimedInput, method: Method, t0: float, t_end: float, h: floa
         made = near[1] - missed
         off = np.maximum(np.maximum(near.min(axis=0) - made, made - near.max(axis=0)), 0.0)
     worst, whole = int(np.argmax(off)), float(np.ptp(beyond))
-    if not off[worst] > _ROUNDING * np.abs(parts).sum():  # Nor where it is not finite: the run says that.
+    if not off[worst] > _ROUNDING * np.abs(np.diff(impulse)).sum():  # Nor where it is not finite: the run says that.
         return None
     return _Misjudged(float(end[worst]), float(off[worst]), whole)
-
-
-def _integrals(one: TimedInput, times: Array) -> Array:
-    """Integrals of an input between times (n) that hold all its instants (n - 1)."""
-    x, weights = np.polynomial.legendre.leggauss(one.points)
-    middle, half = 0.5 * (times[1:] + times[:-1]), 0.5 * np.diff(times)
-    total = np.zeros(len(half))
-    for place, weight in zip(x, weights, strict=True):
-        total += weight * half * one.at(middle + place * half, False)
-    return total
 
 
 def _made(one: TimedInput, method: Method, begin: Array, end: Array) -> Array:
