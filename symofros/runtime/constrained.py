@@ -26,8 +26,9 @@ UNLIKE = 1e3
 # What is left of a diagonal entry beyond rounding; SYM_PIVOT in C.
 PIVOT = 1e-13
 # Of states beside the constraints, as in C (motion.c.in): deviation that is rounding; share of a row that it may have
-# left of one that repeats others, over the deviation and at most; steps to the constraints.
-BESIDE, DOUBT, DOUBT_MOST, APPROACH = 1e-10, 1e2, 0.1, 8
+# left of one that repeats others, over the deviation and at most; deviation of no state that has drifted; steps to the
+# constraints.
+BESIDE, DOUBT, DOUBT_MOST, FARTHEST, APPROACH = 1e-10, 1e2, 0.1, 1e-2, 8
 # Reach [m] below which residuals count in proportion; SYM_SMALL_REACH in C.
 SMALL_REACH = 1e-3
 # Residual over reach that the rounding of coordinates and lengths leaves: some tens of units in the last place.
@@ -309,7 +310,7 @@ def _rank_on_constraints(
         off = deviation(G, measures, phi)
         if off <= BESIDE:
             return eliminate(G, measures, np.diag(M)).rank
-        if not off < DOUBT_MOST:
+        if not off < FARTHEST:
             return None
         doubt, before = (0.1 * doubt if off > 0.1 * before else doubt), off
         ranking = Ranking(min(max(doubt * off, RANK), DOUBT_MOST))

@@ -57,6 +57,23 @@ def test_a_batch_and_the_interpreter_move_alike() -> None:
             assert np.allclose(one, other, rtol=0, atol=h * h)
 
 
+@pytest.mark.parametrize("backend", ["c", "interpreter"])
+def test_far_from_the_constraints_the_conditions_there_are_met(backend: str) -> None:
+    """A state that no drift has left asks for the rank that G has at it: phi'' = 0 holds of all conditions."""
+    model = sf.compile(MODELS["bricard"], sf.Options(backend=backend))
+    rng, met = np.random.default_rng(0), 0
+    closed = sf.assemble(model).q
+    for _ in range(300):
+        q, v = closed + rng.uniform(-0.15, 0.15, model.nq), rng.uniform(-1, 1, model.nv)
+        strengths = np.linalg.svd(model.constraint_jacobian(q), compute_uv=False)
+        if strengths[-1] > 1e-4 * strengths[0] and np.abs(model.constraint(q)).max() > 0.05:
+            a = model.forward_dynamics(q, v, [])
+            missed = np.abs(model.constraint_jacobian(q) @ a - model.constraint_bias(q, v)).max()
+            assert missed < 1e-6 * (1.0 + np.abs(a).max()), q
+            met += 1
+    assert met > 50
+
+
 @pytest.mark.parametrize("constraints", ["multipliers", "null_space"])
 def test_accelerations_beside_the_constraints_are_those_on_them(constraints: str) -> None:
     """They differ by as much as the states do; a lock would make them differ by themselves."""
