@@ -268,14 +268,14 @@ static int32_t sym_all_events_are_far(const sym_event_search *s, const sym_event
 
 SYM_EXPORT int32_t sym_event_search_begin(sym_event_search *s) {
     const sym_event_rows rows = sym_rows_of_search(s);
-    int32_t i, k, far, status = s->evaluate(s->data, 1.0, rows.node[SYM_EVENT_NODES - 1]);
+    int32_t i, k, distant, status = s->evaluate(s->data, 1.0, rows.node[SYM_EVENT_NODES - 1]);
     s->taken = s->touched = s->unresolved = -1;
     if (status != 0) return status;
     memcpy(rows.before, rows.node[0], (size_t)s->n * sizeof(double));
-    far = s->short_step && sym_all_events_are_far(s, &rows);
+    distant = s->short_step && sym_all_events_are_far(s, &rows);
     memcpy(rows.earlier, rows.before, (size_t)s->n * sizeof(double));
     for (i = 0; i < s->n; ++i) rows.next_x[i] = 2.0;
-    if (far) return 0;
+    if (distant) return 0;
     for (k = s->start_changes ? 0 : 1; k + 1 < SYM_EVENT_NODES; ++k) {
         status = s->evaluate(s->data, sym_event_nodes[k], rows.node[k]);
         if (status != 0) return status;
