@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
+import numpy.typing as npt
 
 from symofros.base.arguments import CheckedCalls, check_fields
 from symofros.base.arrays import numeric
@@ -17,6 +18,8 @@ from symofros.errors import Problem, ShapeError, UnknownNameError, did_you_mean
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.functions import Rate
 from symofros.runtime.model import Model
+
+Indices = npt.NDArray[np.intp]
 
 # Times below this share of a period, or of the shortest time between samples, are zero but for rounding; as in
 # native/stepping/system.c.
@@ -63,23 +66,26 @@ class Signal(metaclass=CheckedCalls):
 _SAME_INSTANT, _SAME_AS_ZERO = 2e-15, 1e-300
 
 
-def _rounding(t: float) -> float:
-    """What an instant may differ from t by and be the same [s]."""
-    return _SAME_INSTANT * abs(t) + _SAME_AS_ZERO
-
-
-def held_sample(times: Array, t: float, end: float = math.inf) -> int:
-    """Number of the sample that counts at time t where samples are held (docs/theory/simulation.md, section 1).
+def held_samples(times: Array, t: Array, end: Array | float = math.inf) -> Indices:
+    """Numbers of the samples that count at times t where samples are held (docs/theory/simulation.md, section 1).
 
     Args:
         times: Instants at which samples begin (n), increasing [s].
-        t: Time [s].
-        end: Where the step under way ends [s]: samples that begin there, or later, do not count yet.
+        t: Times (...) [s].
+        end: Where the steps under way end [s]: samples that begin there, or later, do not count yet.
     """
-    bound = t + _rounding(t)
-    if math.isfinite(end):
-        bound = min(bound, end - _rounding(end))
-    return max(0, int(np.searchsorted(times, bound, side="right")) - 1)
+    bound = np.minimum(t + _rounding(t), end - np.where(np.isfinite(end), _rounding(end), 0.0))
+    return np.maximum(np.searchsorted(times, bound, side="right") - 1, 0)
+
+
+def held_sample(times: Array, t: float, end: float = math.inf) -> int:
+    """Number of the sample that counts at a time t: as `held_samples`."""
+    return int(held_samples(times, np.asarray(t), end))
+
+
+def _rounding(t: Array | float) -> Array:
+    """What instants may differ from t by and be the same [s]."""
+    return np.asarray(_SAME_INSTANT * np.abs(t) + _SAME_AS_ZERO)
 
 
 Callback = Callable[[float, Array, Array], Any]

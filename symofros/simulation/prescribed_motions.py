@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from symofros.base.rotations import conjugate, normalized, quaternion_log, quaternion_product
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
@@ -42,14 +43,10 @@ class Rated(NamedTuple):
         p, q = before[list(self.position)], after[list(self.position)]
         if len(self.position) == 1:
             return np.asarray((q - p) / span, dtype=np.float64)
-        lengths = float(np.linalg.norm(p) * np.linalg.norm(q))
-        if not lengths > 0.0:
+        if not (np.linalg.norm(p) > 0.0 and np.linalg.norm(q) > 0.0):
             return np.full(3, np.nan)  # No rotation, which the run says.
-        turned = _product(np.append(-p[:3], p[3]), q / lengths)
-        turned *= 1.0 if turned[3] >= 0.0 else -1.0
-        sine = float(np.linalg.norm(turned[:3]))
-        angle = 2.0 * np.arctan2(sine, turned[3])
-        return np.asarray(turned[:3] * (angle / sine if sine > 0.0 else 2.0) / span, dtype=np.float64)
+        turned = quaternion_log(quaternion_product(conjugate(normalized(p)), normalized(q)))
+        return np.asarray(turned / span, dtype=np.float64)
 
 
 class Contradiction(NamedTuple):
@@ -133,7 +130,7 @@ def recorded_notes(record: ModelRecord, t: Array, u: Array) -> tuple[str, ...]:
         chosen = _evenly(np.arange(len(t) - 1.0)).astype(int)
         means = np.array([rated.mean(u[k], u[k + 1], t[k + 1] - t[k]) for k in chosen if t[k + 1] > t[k]])
         stated = np.array([0.5 * (u[k] + u[k + 1])[list(rated.rate)] for k in chosen if t[k + 1] > t[k]])
-        scale = max(float(np.nanmax(np.abs(means), initial=0.0)), float(np.abs(stated).max(initial=0.0)))
+        scale = _largest(means, stated)
         # Records may be far apart: only what differs nearly everywhere is no chord's fault.
         if len(means) and np.median(np.abs(means - stated).max(axis=1)) > OF_SAMPLES * scale > 0.0:
             position, rate = record.u_names[rated.position[0]], record.u_names[rated.rate[0]]
@@ -162,7 +159,7 @@ def _compared(
             for (p, _), (a, b) in zip(ends, intervals, strict=True)
         ]
     )
-    scale = max(float(np.nanmax(np.abs(means), initial=0.0)), float(np.abs(stated).max(initial=0.0)))
+    scale = _largest(means, stated)
     differ = np.nan_to_num(np.abs(means - stated) - rounding[:, None])
     if not differ.max(initial=0.0) > tolerance * scale:
         return None
@@ -171,6 +168,11 @@ def _compared(
     return Contradiction(
         names[rated.position[0]], names[rated.rate[axis]], middles[k], float(stated[k, axis]), float(means[k, axis])
     )
+
+
+def _largest(means: Array, stated: Array) -> float:
+    """The largest rate of all that are numbers."""
+    return max(float(np.nanmax(np.abs(means), initial=0.0)), float(np.abs(stated).max(initial=0.0)))
 
 
 def _around_instants(span: tuple[float, float]) -> list[tuple[float, float]]:
@@ -196,9 +198,3 @@ def _evenly(rows: Array) -> Array:
     if len(rows) <= _INTERVALS:
         return rows
     return np.asarray(rows[np.linspace(0, len(rows) - 1, _INTERVALS).astype(int)])
-
-
-def _product(p: Array, q: Array) -> Array:
-    """Product of two quaternions (x, y, z, w)."""
-    vector = p[3] * q[:3] + q[3] * p[:3] + np.cross(p[:3], q[:3])
-    return np.append(vector, p[3] * q[3] - p[:3] @ q[:3])

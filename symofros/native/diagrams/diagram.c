@@ -112,10 +112,8 @@ static int32_t sym_engage(sym_diagram *d, sym_run *r, double t) {
     gap = project->out[5][0];
     if (gap > d->engaged_gap) d->engaged_gap = gap, d->engaged_t = t;
     if (gap > SYM_ENGAGE_TOLERANCE) return SYM_ENGAGED_APART;
-    if (status != 0) return status;
-    memcpy(r->q, r->system->q, (size_t)r->system->nq * sizeof *r->q);
-    memcpy(r->v, r->system->v, (size_t)r->system->nv * sizeof *r->v);
-    return 0;
+    if (status == 0) sym_store_state(r);
+    return status;
 }
 
 /* Project the parts onto their constraints at once. Returns 0 or a status. */

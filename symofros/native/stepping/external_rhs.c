@@ -37,8 +37,7 @@ SYM_EXPORT int32_t sym_run_event_values(sym_run *r, double t, const double *y, d
 
 SYM_EXPORT int32_t sym_run_set_state(sym_run *r, double t, const double *y) {
     sym_load_flat_state(r->system, sym_stage_time(r->system, t), y);
-    memcpy(r->q, r->system->q, (size_t)r->system->nq * sizeof *y);
-    memcpy(r->v, r->system->v, (size_t)r->system->nv * sizeof *y);
+    sym_store_state(r);
     r->t = *r->system->t;
     return sym_evaluate_inputs(r->system) != 0 ? SYM_CALLBACK_FAILED : 0;
 }

@@ -284,16 +284,20 @@ static int32_t sym_judge_projection(sym_run *r) {
     return r->lost_energy > r->loss_limit * r->kinetic_energy ? SYM_ENERGY_LOST : 0;
 }
 
-/* Project the present state onto the constraints. Returns 0 or a status. */
-static int32_t sym_project_state(sym_run *r) {
-    sym_system *s = r->system;
-    int32_t status;
-    sym_load_state(r);
-    status = sym_project_point(s);
-    if (status != 0) return status;
+/* The present state <- the evaluation point. */
+static void sym_store_state(sym_run *r) {
+    const sym_system *s = r->system;
     memcpy(r->q, s->q, (size_t)s->nq * sizeof *r->q);
     memcpy(r->v, s->v, (size_t)s->nv * sizeof *r->v);
-    return 0;
+}
+
+/* Project the present state onto the constraints. Returns 0 or a status. */
+static int32_t sym_project_state(sym_run *r) {
+    int32_t status;
+    sym_load_state(r);
+    status = sym_project_point(r->system);
+    if (status == 0) sym_store_state(r);
+    return status;
 }
 
 /* Evaluation point <- y = (theta, v) in the chart about r->q at time t, projected where the run projects. Returns 0 or a

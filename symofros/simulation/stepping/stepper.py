@@ -21,7 +21,7 @@ from symofros.simulation.events import Event
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.stepping.methods import Method
 from symofros.simulation.stepping.status import Status
-from symofros.simulation.stepping.tableaus import Tableau
+from symofros.simulation.stepping.tableaus import fill_tableau
 
 # Events recorded between two calls that take them.
 _EVENT_ROWS = 64
@@ -391,15 +391,3 @@ class Stepper:
         system, model = self.system, self.model
         q, v = self.memory.view(system.q, model.nq), self.memory.view(system.v, model.nv)
         return float(system.t[0]), q.copy(), v.copy()
-
-
-def fill_tableau(struct: Any, tableau: Tableau, memory: NativeMemory) -> None:
-    """Write a method's coefficients into a sym_tableau."""
-    struct.stages, struct.dense_stages, struct.fsal_stage = tableau.stages, len(tableau.b), tableau.last
-    struct.estimate_order, struct.n_estimates = tableau.error_order, len(tableau.errors)
-    struct.dense_degree, struct.gamma = tableau.dense.shape[1], tableau.gamma
-    absent = np.zeros(tableau.stages)
-    e, e2, *_ = [*tableau.errors, absent, absent]
-    arrays = {"a": tableau.a, "b": tableau.b, "c": tableau.c, "e": e, "e2": e2, "dense": tableau.dense}
-    for name, values in (arrays | {"coupling": tableau.coupling, "d": tableau.d}).items():
-        setattr(struct, name, memory.doubles(values))

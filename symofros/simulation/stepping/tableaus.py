@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from symofros.runtime.calls.binding import NativeMemory
 from symofros.simulation.stepping import dop853
 
 Array = npt.NDArray[np.float64]
@@ -45,6 +47,18 @@ class Tableau:
     gamma: float = 0.0
     coupling: Array = field(default_factory=lambda: np.zeros(0))
     d: Array = field(default_factory=lambda: np.zeros(0))
+
+
+def fill_tableau(struct: Any, tableau: Tableau, memory: NativeMemory) -> None:
+    """Write a method's coefficients into a sym_tableau."""
+    struct.stages, struct.dense_stages, struct.fsal_stage = tableau.stages, len(tableau.b), tableau.last
+    struct.estimate_order, struct.n_estimates = tableau.error_order, len(tableau.errors)
+    struct.dense_degree, struct.gamma = tableau.dense.shape[1], tableau.gamma
+    absent = np.zeros(tableau.stages)
+    e, e2, *_ = [*tableau.errors, absent, absent]
+    arrays = {"a": tableau.a, "b": tableau.b, "c": tableau.c, "e": e, "e2": e2, "dense": tableau.dense}
+    for name, values in (arrays | {"coupling": tableau.coupling, "d": tableau.d}).items():
+        setattr(struct, name, memory.doubles(values))
 
 
 def _numbers(text: str) -> Array:

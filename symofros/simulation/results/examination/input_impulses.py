@@ -12,6 +12,7 @@ import numpy as np
 
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.manifold import retract
+from symofros.simulation.inputs import held_samples
 from symofros.simulation.results.examination.energy_norm import energy_norms
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.methods import Method
@@ -30,8 +31,6 @@ _POINTS = 5
 _INTERVALS = 256
 # Of a step, the distance of two values that make a rate.
 _RATE = 1e-7
-# Instants that differ by this share are one, as in simulation/inputs.py.
-_SAME_INSTANT = 2e-15
 # Share of what an input gives in all below which a part of it is rounding.
 _ROUNDING = 1e-12
 # Share of the speeds at the start and of one by which formulas are asked whether they depend on the state.
@@ -143,10 +142,7 @@ def _held(index: int, t: Array, values: Array) -> TimedInput:
     areas = np.concatenate([[0.0], np.cumsum(np.diff(t) * values[:-1])])
 
     def at(when: Array, before: bool) -> Array:
-        slack = _SAME_INSTANT * np.abs(when)
-        return np.asarray(
-            values[np.maximum(np.searchsorted(t, when - slack if before else when + slack, "right") - 1, 0)]
-        )
+        return np.asarray(values[held_samples(t, when, when if before else np.inf)])
 
     def impulse(when: Array) -> Array:
         k = np.maximum(np.searchsorted(t, when, "right") - 1, 0)
