@@ -351,9 +351,8 @@ def project(
         measures: Measures of the rows and columns of G.
 
     Returns:
-        q, v, |phi| by weight (1 more half a turn off), the rank of G, and the energies (2): what the change of speeds
-        takes, and the kinetic
-        energy before it; |phi| by weight of q.
+        q, v, |phi| by weight (1 more half a turn off), the rank of G, the energies (2), which are what the change of
+        speeds takes and the kinetic energy before it, and |phi| by weight of the q that was given.
     """
     M, G, binds, phi, rate, *facing = terms(q, v)
     weights, closer = residual_weights(G, measures), True
