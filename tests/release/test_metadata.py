@@ -110,7 +110,7 @@ def test_the_readme_says_what_its_commands_take_before_it_uses_them() -> None:
     text = (ROOT / "README.md").read_text()
     for command in ("the first", "the second"):
         (row,) = re.findall(rf"^\| {command} \|.*$", text, re.MULTILINE)
-        assert len(re.findall(r"[\d.]+ GB", row)) == 2 and len(re.findall(r"\d to \d minutes", row)) == 2
+        assert len(re.findall(r"[\d.]+ GB", row)) == 2 and len(re.findall(r"\d+ to \d+ minutes", row)) == 2
     first = re.search(r"^symofros ", text, re.MULTILINE)
     assert first and text.index(". .venv/bin/activate") < first.start()
     assert "come next" not in text
