@@ -207,8 +207,22 @@ def latex_text(name: str) -> str:
     return "".join(_ESCAPED.get(sign, sign) for sign in name)
 
 
+class _NumPyText(sympy.printing.numpy.NumPyPrinter):  # type: ignore[misc]
+    """NumPy's functions alone: SymPy has min and max by functools."""
+
+    def _print_Min(self, expr: Any) -> str:
+        return self._nested("minimum", expr.args)
+
+    def _print_Max(self, expr: Any) -> str:
+        return self._nested("maximum", expr.args)
+
+    def _nested(self, name: str, args: Sequence[Any]) -> str:
+        *others, last = map(self._print, args)
+        return reduce(lambda text, arg: f"numpy.{name}({arg}, {text})", reversed(others), str(last))
+
+
 def numpy_text(expression: Any, names: Mapping[Any, str]) -> str:
     """Python source of an expression, with functions of NumPy as np; symbols as named."""
     renamed = expression.xreplace({old: sympy.Symbol(new, real=True) for old, new in names.items()})
-    printer = sympy.printing.numpy.NumPyPrinter({"fully_qualified_modules": True, "precision": 17})
+    printer = _NumPyText({"fully_qualified_modules": True, "precision": 17})
     return str(printer.doprint(renamed)).replace("numpy.", "np.")
