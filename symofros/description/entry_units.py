@@ -31,6 +31,7 @@ ENTRY_UNITS: Mapping[str, Mapping[str, tuple[str, ...]]] = {
         "static": _TURN_OR_SHIFT,
         "minimum_velocity": ("rad/s", "m/s"),
         "viscous": _DAMPING,
+        "stribeck_velocity": ("rad/s", "m/s"),
     },
     "Rotor": {"inertia": ("kg m^2",)},
     "Load": {"force": ("N",), "torque": ("N m",)},

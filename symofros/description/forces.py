@@ -80,21 +80,24 @@ class Stop(_Values):
 class Friction(_Values):
     """Coulomb, Stribeck and viscous friction, smooth through zero speed.
 
-    F = -[dynamic + (static - dynamic) exp(-(v / stribeck_velocity)^2)] tanh(v / minimum_velocity) - viscous v
+    F = -sign(v) [dynamic + (static - dynamic) exp(-((|v| - peak)/stribeck_velocity)^2)] - viscous v
+
+    from the speed `peak` on, which is 15/8 minimum_velocity, and 1.5 stribeck_velocity at most. Below it, F grows with
+    |v| from zero at rest, where its slope is static/minimum_velocity, to `static` at the peak: the maximum of dry
+    friction is exactly that. Without `static`, F is `dynamic` from the peak on. It is twice continuously
+    differentiable (docs/theory/rigid.md, (56) to (58)).
 
     It holds nothing at rest: a joint under a load P below `static` does not stick but creeps, at about
-    minimum_velocity artanh(P / static). A block that is loaded by half of that creeps by 55 mm in 100 s at the
-    default 1 mm/s, in proportion to `minimum_velocity`. And `static` is not quite reached: as friction falls with
-    speed before tanh is one, its peak, near 2.5 minimum_velocity, is 96.8 % of a static of 1.5 dynamic, 95.7 % of
-    twice and 94.7 % of three times dynamic. A stribeck_velocity of a hundred times minimum_velocity in place of ten
-    gives 99.9 %. A run that ends in creep bears a note.
+    minimum_velocity P/static. A block that is loaded by half of `static` creeps by 53 mm in 100 s at the default
+    1 mm/s, in proportion to `minimum_velocity`. A run that ends in creep bears a note; `equilibrium` finds none.
 
     Attributes:
         dynamic: Coulomb friction at speed [N m or N].
-        static: Friction at the onset of motion; equal to dynamic if not given [N m or N].
-        minimum_velocity: Speed below which the sign of the speed is smoothed [rad/s or m/s].
+        static: Friction at the onset of motion, its maximum: not below dynamic, and dynamic if not given [N m or N].
+        minimum_velocity: Speed over which the sign of the speed is smoothed [rad/s or m/s].
         viscous: Viscous coefficient [N m s/rad or N s/m].
-        stribeck_velocity: Speed over which static falls to dynamic; ten times the minimum velocity if not given.
+        stribeck_velocity: Speed over which static falls to dynamic; ten times the minimum velocity if not given
+            [rad/s or m/s].
         coordinate: Index of the speed of the joint, from 0.
     """
 

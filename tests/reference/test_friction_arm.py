@@ -15,16 +15,20 @@ from tests.reference.motion import move, reference
 STATIC, DYNAMIC = np.array([0.49, 0.20, 0.10]), np.array([0.42, 0.17, 0.08])
 VISCOUS = np.array([0.05, 0.03, 0.01])
 SLOW, STRIBECK = 0.001, 0.02
+PEAK = 15.0 / 8.0 * SLOW
 ROUNDING = 1e-14
 # The integrator's 1e-12 a step.
 MOTION = 1e-10
 
 
 def test_the_law(rng: np.random.Generator) -> None:
+    """Up to the peak a polynomial with the value, slope and curvature of Stribeck's curve, which goes on from there."""
     arm = reference("friction_arm")
     v = rng.choice([-1, 1], (200, 3)) * 10.0 ** rng.uniform(-5, 1, (200, 3))
-    level = DYNAMIC + (STATIC - DYNAMIC) * np.exp(-((v / STRIBECK) ** 2))
-    expected = -level * np.tanh(v / SLOW) - VISCOUS * v
+    x, drop = np.abs(v) / PEAK, STATIC - DYNAMIC
+    rising = STATIC * (15 * x - 10 * x**3 + 3 * x**5) / 8 - drop * (PEAK / STRIBECK) ** 2 * x * (1 - x**2) ** 2 / 4
+    falling = DYNAMIC + drop * np.exp(-(((np.abs(v) - PEAK) / STRIBECK) ** 2))
+    expected = -np.sign(v) * np.where(x < 1.0, rising, falling) - VISCOUS * v
     Q = arm.generalized_force(rng.uniform(-3, 3, (200, 3)), v, np.zeros(3))
     np.testing.assert_allclose(Q, expected, rtol=ROUNDING, atol=ROUNDING)
     assert np.all(Q * v < 0.0)
@@ -32,7 +36,7 @@ def test_the_law(rng: np.random.Generator) -> None:
 
 @pytest.mark.parametrize("motor", range(3))
 def test_landmarks_of_the_table(motor: int) -> None:
-    """Nothing at rest; just below static friction at a few minimum velocities; dynamic and viscous when fast."""
+    """Nothing at rest; static friction at 15/8 minimum velocities, and no more; dynamic and viscous when fast."""
     arm = reference("friction_arm")
 
     def force(speed: float) -> float:
@@ -41,9 +45,8 @@ def test_landmarks_of_the_table(motor: int) -> None:
         return float(-arm.generalized_force(np.zeros(3), v, np.zeros(3))[motor])
 
     assert force(0.0) == 0.0
-    peak = max(force(speed) for speed in np.linspace(SLOW, 5 * SLOW, 50))
-    # At four minimum velocities, where tanh is 0.9993, 4 % of the way from static to dynamic is already made.
-    assert 0.98 * STATIC[motor] < peak < STATIC[motor]
+    dry = [force(speed) - VISCOUS[motor] * speed for speed in np.linspace(0.0, 5 * PEAK, 101)]
+    assert np.argmax(dry) == 20 and dry[20] == pytest.approx(STATIC[motor], rel=ROUNDING)
     assert force(1.0) == pytest.approx(DYNAMIC[motor] + VISCOUS[motor])
 
 

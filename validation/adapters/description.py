@@ -130,12 +130,23 @@ def element_force(element: Any, x: Any, v: Array, values: Mapping[str, Any]) -> 
                 inward = np.where(beyond > 0.0, np.maximum(side * v, 0.0), 0.0)
                 force -= side * (number("stiffness") * beyond + number("damping") * inward)
         return force
-    slow = number("minimum_velocity")
-    level = number("dynamic") + 0.0 * v
+    return np.asarray(-_dry_friction(element, v, number) - number("viscous") * v)
+
+
+def _dry_friction(element: sf.Friction, v: Array, number: Callable[[str], Any]) -> Array:
+    """Size of dry friction with the sign of v: one formula up to the peak, one beyond."""
+    slow, dynamic = number("minimum_velocity"), number("dynamic")
+    peak, static, wide = 1.875 * slow, dynamic, 10.0 * slow
     if element.static is not None:
-        wide = 10.0 * slow if element.stribeck_velocity is None else number("stribeck_velocity")
-        level = level + (number("static") - number("dynamic")) * np.exp(-((v / wide) ** 2))
-    return np.asarray(-level * np.tanh(v / slow) - number("viscous") * v)
+        static = number("static")
+    if element.stribeck_velocity is not None:
+        wide = number("stribeck_velocity")
+        peak = np.minimum(peak, 1.5 * wide)
+    x, drop = v / peak, static - dynamic
+    rising = static * x * (15 - 10 * x**2 + 3 * x**4) / 8 - drop * (peak / wide) ** 2 * x * (1 - x**2) ** 2 / 4
+    with np.errstate(under="ignore"):
+        falling = np.sign(v) * (dynamic + drop * np.exp(-(((np.abs(v) - peak) / wide) ** 2)))
+    return np.asarray(np.where(np.abs(v) < peak, rising, falling))
 
 
 def element_energy(element: sf.Spring | sf.Stop, x: Array, values: Mapping[str, Any]) -> Array:

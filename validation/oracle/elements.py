@@ -75,9 +75,18 @@ def _dissipation(scope: Scope, element: Any, q: Any, v: Any) -> Any:
         damper = [-out * x("damping") * sympy.Piecewise((_positive(out * v), far > 0), (0, True)) for out, far in sides]
         return sum(damper, sympy.Integer(0))
     if isinstance(element, sf.Friction):
-        level = x("dynamic")
-        if element.static is not None:
-            wide = 10 * x("minimum_velocity") if element.stribeck_velocity is None else x("stribeck_velocity")
-            level = level + (x("static") - level) * sympy.exp(-((v / wide) ** 2))
-        return -level * sympy.tanh(v / x("minimum_velocity")) - x("viscous") * v
+        static = "dynamic" if element.static is None else "static"
+        wide = 10 * x("minimum_velocity") if element.stribeck_velocity is None else x("stribeck_velocity")
+        return -_dry_friction(x(static), x("dynamic"), x("minimum_velocity"), wide, v) - x("viscous") * v
     return sympy.Integer(0)
+
+
+def _dry_friction(static: Any, dynamic: Any, slow: Any, wide: Any, v: Any) -> Any:
+    """Rises to `static` at the peak, falls to `dynamic` beyond."""
+    peak = sympy.Min(sympy.Rational(15, 8) * slow, sympy.Rational(3, 2) * wide)
+    xi, beyond = v / peak, sympy.Abs(v) - peak
+    # The polynomial c1 xi + c3 xi^3 + c5 xi^5 that has the value, slope and curvature of what falls.
+    bend = 2 * (static - dynamic) * (peak / wide) ** 2
+    c1, c3, c5 = (15 * static - bend) / 8, (bend - 5 * static) / 4, (3 * static - bend) / 8
+    falling = dynamic + (static - dynamic) * sympy.exp(-((beyond / wide) ** 2))
+    return sympy.Piecewise((c1 * xi + c3 * xi**3 + c5 * xi**5, beyond < 0), (sympy.sign(v) * falling, True))

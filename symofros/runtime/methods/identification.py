@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arguments import check_argument
+from symofros.base.smoothed_sign import smoothed_sign
 from symofros.errors import ArgumentError, Problem
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.functions import ArrayLike, Functions
@@ -40,7 +41,7 @@ class IdentificationFunctions(Functions):
         neither are the forces of joints, dampers and friction among them, unless `joint_terms` asks for columns:
 
             M a + h + friction = Y pi,    nv columns each:  "viscous"   d v_k
-                                                            "coulomb"   f tanh(v_k / minimum_velocity)
+                                                            "coulomb"   f sign(v_k), smoothed
                                                             "armature"  I a_k
 
         They are `Damper.coefficient` or `Friction.viscous`, `Friction.dynamic`, and `Joint.armature`: a rotor counts
@@ -65,7 +66,11 @@ class IdentificationFunctions(Functions):
         if not joint_terms:
             return Y
         speeds, rates = np.asarray(self._array("v", v, self.nv)), np.asarray(self._array("a", a, self.nv))
-        values = {"viscous": speeds, "coulomb": np.tanh(speeds / self._smoothing(minimum_velocity)), "armature": rates}
+        values = {
+            "viscous": speeds,
+            "coulomb": smoothed_sign(speeds, self._smoothing(minimum_velocity)),
+            "armature": rates,
+        }
         columns = [
             np.broadcast_to(values[term][..., np.newaxis] * np.eye(self.nv), (*Y.shape[:-1], self.nv))
             for term in joint_terms

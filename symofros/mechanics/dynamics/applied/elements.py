@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from symofros.base.smoothed_sign import PEAK, TERMS
 from symofros.description.forces import Damper, Friction, JointElement, Spring, Stop
 from symofros.expr.edges import ONE, ZERO, Edge
+from symofros.expr.graph import Graph
 from symofros.mechanics.kinematics.lowering import Lowering
 
 # Stribeck velocity where none is given, as a multiple of the minimum velocity.
 _STRIBECK = 10.0
+# Most Stribeck velocities over which friction rises to its maximum: below 1.58, its slope is largest at rest.
+_LONGEST_RISE = 1.5
 
 
 def element_force(lowering: Lowering, element: JointElement, q: Edge, v: Edge) -> Edge:
@@ -72,14 +76,34 @@ def _stop_force(lowering: Lowering, stop: Stop, q: Edge, v: Edge) -> Edge:
 
 
 def _friction(lowering: Lowering, friction: Friction, v: Edge) -> Edge:
+    """Coulomb, Stribeck and viscous friction; docs/theory/rigid.md, (56) to (58)."""
     g = lowering.g
+    dynamic, static, slow = lowering.value(friction.dynamic), friction.static, lowering.value(friction.minimum_velocity)
+    peak, fall_range = _peak_and_fall(lowering, friction, slow)
+    speed = g.call("abs", v)
+    xi = g.div(v, g.call("max", speed, peak))
+    square = g.mul(xi, xi)
+    rise = _polynomial(g, square)
+    level = g.mul(dynamic, rise)
+    if static is not None:
+        y, width = g.div(g.call("max", g.sub(speed, peak), ZERO), fall_range), g.div(peak, fall_range)
+        flank = g.mul(g.mul(g.constant(0.5), width), g.sub(ONE, square))
+        fallen = g.sub(g.call("exp", -g.mul(y, y)), g.add(ONE, g.mul(flank, flank)))
+        level = g.add(level, g.mul(g.sub(lowering.value(static), dynamic), g.add(rise, fallen)))
+    return -g.add(g.mul(level, xi), g.mul(lowering.value(friction.viscous), v))
 
-    dynamic, slow = lowering.value(friction.dynamic), lowering.value(friction.minimum_velocity)
-    level = dynamic
-    if friction.static is not None:
-        stated = friction.stribeck_velocity
-        range_ = g.mul(g.constant(_STRIBECK), slow) if stated is None else lowering.value(stated)
-        x = g.div(v, range_)
-        level = g.add(dynamic, g.mul(g.sub(lowering.value(friction.static), dynamic), g.call("exp", -g.mul(x, x))))
-    sliding = g.mul(level, g.call("tanh", g.mul(g.div(ONE, slow), v)))
-    return -g.add(sliding, g.mul(lowering.value(friction.viscous), v))
+
+def _peak_and_fall(lowering: Lowering, friction: Friction, slow: Edge) -> tuple[Edge, Edge]:
+    """Speed at which friction has its maximum, and the range of speeds over which it falls beyond."""
+    g = lowering.g
+    peak = g.mul(g.constant(PEAK), slow)
+    if friction.stribeck_velocity is None:
+        return peak, g.mul(g.constant(_STRIBECK), slow)
+    fall_range = lowering.value(friction.stribeck_velocity)
+    return g.call("min", peak, g.mul(g.constant(_LONGEST_RISE), fall_range)), fall_range
+
+
+def _polynomial(g: Graph, square: Edge) -> Edge:
+    """The smoothed sign over xi, of xi^2: (56)."""
+    inner = g.add(g.constant(TERMS[1]), g.mul(g.constant(TERMS[2]), square))
+    return g.add(g.constant(TERMS[0]), g.mul(inner, square))

@@ -59,12 +59,3 @@ def test_what_slides_swings_or_rests_bears_no_note(method: str) -> None:
 def test_no_equilibrium_by_friction_is_said_to_be_so() -> None:
     with pytest.raises(sf.EquilibriumError, match="friction, of 'x', is smooth and holds nothing at rest"):
         sf.equilibrium(block(), u=[0.5])
-
-
-@pytest.mark.parametrize(("ratio", "share"), [(1.5, 0.968), (2.0, 0.957), (3.0, 0.947)])
-def test_how_much_of_static_friction_is_reached(ratio: float, share: float) -> None:
-    """As its documentation says."""
-    m = block().with_parameters(rise=ratio)
-    speeds = np.linspace(0.0, 2e-2, 20001)[:, np.newaxis]
-    forces = m.generalized_force(np.zeros((len(speeds), 1)), speeds, np.zeros(1))
-    assert np.abs(forces).max() / ratio == pytest.approx(share, abs=5e-4)

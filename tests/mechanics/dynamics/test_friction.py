@@ -1,0 +1,85 @@
+"""The law of smooth friction (docs/theory/rigid.md, (56) to (58)), for random numbers."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import symofros as sf
+from symofros.base.smoothed_sign import smoothed_sign
+
+ROUNDING = 1e-12
+
+
+def slider(friction: sf.Friction, *parameters: sf.Parameter) -> sf.Model:
+    joint = sf.Joint("x", "prismatic", axis=(1, 0, 0), elements=(friction,))
+    body = sf.RigidBody("block", joint, sf.Inertia(1.0))
+    return sf.compile(sf.System("slider", (body,), parameters), sf.Options(backend="interpreter"))
+
+
+@cache
+def stated_by_parameters() -> sf.Model:
+    friction = sf.Friction("c", "s", "v0", "d", "w")  # type: ignore[arg-type]
+    values = {"c": 1.0, "s": 2.0, "v0": 1e-3, "d": 0.0, "w": 1e-2}
+    return slider(friction, *(sf.Parameter(name, value) for name, value in values.items()))
+
+
+def forces(m: sf.Model, v: np.ndarray) -> np.ndarray:
+    """Against the motion (n), at speeds (n)."""
+    return -m.generalized_force(np.zeros((len(v), 1)), v[:, np.newaxis], np.zeros(0))[:, 0]
+
+
+def levels(low: float, high: float) -> st.SearchStrategy[float]:
+    return st.floats(low, high).map(lambda exponent: float(10.0**exponent))
+
+
+@settings(max_examples=60, deadline=None)
+@given(s=levels(-6, 6), share=st.floats(0.0, 1.0), v0=levels(-6, 1), ratio=levels(-4, 4))
+def test_the_maximum_is_static_friction_whatever_the_ratios(s: float, share: float, v0: float, ratio: float) -> None:
+    c, w = share * s, ratio * v0
+    m = stated_by_parameters().with_parameters(c=c, s=s, v0=v0, w=w)
+    peak = min(15 / 8 * v0, 1.5 * w)
+    rise, fall = np.linspace(0.0, peak, 201), peak + w * np.linspace(0.0, 7.0, 201)
+    up, down = forces(m, rise), forces(m, fall)
+    assert up.max() == pytest.approx(s, rel=ROUNDING) and down.max() == pytest.approx(s, rel=ROUNDING)
+    assert up[-1] == pytest.approx(s, rel=ROUNDING) and up[0] == 0.0
+    # It rises all the way, most steeply at rest, and falls all the way.
+    assert np.all(np.diff(up) > -ROUNDING * s) and np.all(np.diff(down) < ROUNDING * s)
+    assert np.diff(up).max() == pytest.approx(up[1], rel=1e-3)
+    assert down[-1] == pytest.approx(c, abs=ROUNDING * s)
+    assert np.array_equal(forces(m, -rise), -up) and np.array_equal(forces(m, -fall), -down)
+    slope = (15 * s / peak - 2 * (s - c) * peak / w**2) / 8
+    assert forces(m, np.array([1e-9 * peak]))[0] == pytest.approx(1e-9 * peak * slope, rel=1e-9)
+
+
+@settings(max_examples=40, deadline=None)
+@given(share=st.floats(0.0, 1.0), ratio=levels(-1, 2))
+def test_the_curvature_is_the_same_on_both_sides_of_the_peak(share: float, ratio: float) -> None:
+    m = stated_by_parameters().with_parameters(c=share, s=1.0, v0=1.0, w=ratio)
+    peak = min(15 / 8, 1.5 * ratio)
+    h = 1e-4 * peak
+    left, right = (forces(m, peak + side * h * np.arange(3.0)) for side in (-1.0, 1.0))
+    bends = [float(x[0] - 2 * x[1] + x[2]) / h**2 for x in (left, right)]
+    expected = -2.0 * (1.0 - share) / ratio**2
+    # What a second difference on one side is off by.
+    assert bends == pytest.approx([expected] * 2, abs=3e-3 * 15 / peak**2)
+    assert abs(left[1] - left[0]) < 30.0 * 1e-8 and abs(right[1] - right[0]) < 30.0 * 1e-8  # No slope at the peak.
+
+
+@pytest.mark.parametrize("static", [None, 0.7])
+def test_without_a_fall_it_is_the_smoothed_sign_and_stays_at_its_maximum(static: float | None) -> None:
+    m = slider(sf.Friction(0.7, static, 0.01))
+    v = np.linspace(-0.05, 0.05, 1001)
+    F = forces(m, v)
+    np.testing.assert_allclose(F, 0.7 * smoothed_sign(v, 0.01), rtol=1e-15, atol=1e-16)
+    assert np.all(np.abs(F)[np.abs(v) > 15 / 8 * 0.01] == 0.7)
+    assert forces(m, np.array([1e-9]))[0] == pytest.approx(0.7 * 1e-7, rel=1e-12)
+
+
+def test_speeds_that_are_no_numbers_are_not_passed_over() -> None:
+    for friction in (sf.Friction(1.0), sf.Friction(1.0, 2.0)):
+        assert np.isnan(forces(slider(friction), np.array([np.nan]))[0])
