@@ -22,6 +22,7 @@ from symofros.mechanics.topology.constraints import anchor_problems, constraint_
 from symofros.mechanics.topology.coordinates import coordinate_symbols, rate_symbols, speed_symbols
 from symofros.mechanics.topology.formulas import formula_problems, power_problems
 from symofros.mechanics.topology.frames import frame_remedy, frames_of
+from symofros.mechanics.topology.friction import friction_conditions
 from symofros.mechanics.topology.joints import joint_number_problems, joint_problems
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.physics import inertia_problems, massless_tip_conditions
@@ -359,4 +360,4 @@ class _Checker:
                 where = self.where("body", body.name)
                 sections = list(violations(beam_conditions(body, where), numbers))
                 yield from sections or beam_number_problems(body, numbers, where)
-        yield from violations(constraint_conditions(self.system), numbers)
+        yield from violations(chain(constraint_conditions(self.system), friction_conditions(self.system)), numbers)

@@ -26,6 +26,7 @@ from symofros.mechanics.topology.beams import (
 from symofros.mechanics.topology.conditions import Condition, Conditions
 from symofros.mechanics.topology.constraints import constraint_conditions
 from symofros.mechanics.topology.formulas import Stated, stated_values
+from symofros.mechanics.topology.friction import friction_conditions
 from symofros.mechanics.topology.joints import joint_number_problems
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.physics import inertia_conditions, massless_tip_conditions, moment_conditions
@@ -77,7 +78,7 @@ class RunTimeCheck:
     def conditions(self) -> Conditions:
         """Conditions that depend on the parameters; they hold at the defaults."""
         system, names = self.system, frozenset(self.names)
-        conditions = [*value_conditions(system), *constraint_conditions(system)]
+        conditions = [*value_conditions(system), *constraint_conditions(system), *friction_conditions(system)]
         for body in system.bodies:
             if isinstance(body, Beam):
                 conditions += beam_conditions(body, system.origin.get(("body", body.name), ""))

@@ -83,3 +83,23 @@ def test_without_a_fall_it_is_the_smoothed_sign_and_stays_at_its_maximum(static:
 def test_speeds_that_are_no_numbers_are_not_passed_over() -> None:
     for friction in (sf.Friction(1.0), sf.Friction(1.0, 2.0)):
         assert np.isnan(forces(slider(friction), np.array([np.nan]))[0])
+
+
+@pytest.mark.parametrize(
+    ("entries", "words"),
+    [
+        ({"minimum_velocity": 0.0}, ("friction minimum_velocity 0", "above zero")),
+        ({"minimum_velocity": -0.1}, ("friction minimum_velocity -0.1", "above zero")),
+        ({"static": 2.0, "stribeck_velocity": 0.0}, ("friction stribeck_velocity 0", "above zero")),
+        ({"static": 0.9}, ("friction rises with speed", "static 0.9, dynamic 1")),
+    ],
+)
+def test_numbers_that_make_no_friction_are_refused(entries: dict[str, float], words: tuple[str, ...]) -> None:
+    with pytest.raises(sf.DescriptionError) as caught:
+        slider(sf.Friction(1.0, **entries))
+    assert all(word in str(caught.value) for word in words), caught.value
+    # The same numbers as parameters of a run.
+    names = {"minimum_velocity": "v0", "static": "s", "stribeck_velocity": "w"}
+    with pytest.raises(sf.SymofrosError) as refused:
+        stated_by_parameters().with_parameters(**{names[key]: value for key, value in entries.items()})
+    assert all(word in str(refused.value) for word in words), refused.value
