@@ -21,13 +21,17 @@ from symofros.simulation.analysis.beam_theory import (
     beyond_critical_load,
     refuse_beyond,
 )
+from symofros.simulation.analysis.friction import friction_curve
 from symofros.simulation.analysis.input_rotations import given_inputs
 from symofros.simulation.analysis.kinematics.assembly import free_speeds
 from symofros.simulation.analysis.kinematics.facing import refuse_opposite
-from symofros.simulation.analysis.rest_search import Balance, search_rest
+from symofros.simulation.analysis.rest_search import Balance, Search, search_rest
 
 # Estimated error of a beam's theory from which it is what a search without success is blamed on.
 _BLAMED = 0.05
+# Speeds at which friction is looked at [rad/s or m/s]; joints shown that would creep.
+_FRICTION_SPEEDS = np.concatenate([[0.0], np.geomspace(1e-9, 1e3, 193)])
+_SHOWN = 6
 
 
 @dataclass(frozen=True)
@@ -114,16 +118,7 @@ def equilibrium(
     left = balance.size(end.R, end.scale)
     if not left <= max(tolerance, 1e-9):
         _refuse_without_rest(model, bendings, end.count)
-        worst = int(balance.rows[np.argmax(np.abs(end.R[balance.rows]))])
-        names = (*model.names.v, *model.names.constraints)
-        raise EquilibriumError(
-            Problem(
-                f"model '{model.record.name}': no equilibrium was found from this guess",
-                f"after {end.count} steps an imbalance of {end.R[worst]:.3g} at '{names[worst]}'",
-                f"the imbalance is below {tolerance:g} of the largest force",
-                _remedy(model),
-            )
-        )
+        raise EquilibriumError(_no_balance(balance, end, tolerance))
     refuse_opposite(model, q, u, par)
     refuse_beyond(model, bendings, beam_limit, "the equilibrium")
     effort = np.zeros(model.nv)
@@ -135,16 +130,40 @@ def equilibrium(
     return Equilibrium(q, v, u, lam, effort, left, end.count, bendings, notes, efforts, inputs)
 
 
-def _remedy(model: Model) -> str:
-    """What may be done where no equilibrium was found."""
+def _no_balance(balance: Balance, end: Search, tolerance: float) -> Problem:
+    """What is wrong where no equilibrium was found: the largest imbalance, and what friction would have to hold."""
+    model = balance.model
+    worst = int(balance.rows[np.argmax(np.abs(end.R[balance.rows]))])
+    names = (*model.names.v, *model.names.constraints)
+    found = f"after {end.count} steps an imbalance of {end.R[worst]:.3g} at '{names[worst]}'"
+    rule = f"the imbalance is below {tolerance:g} of the largest force"
     remedy = (
         "start nearer, give the inputs that hold it, allow more iterations, or hold coordinates that have no place of"
         " rest"
     )
-    slid = ", ".join(f"'{model.names.v[i]}'" for i in model.record.friction_speeds[:6])
-    if not slid:
-        return remedy
-    return f"{remedy}; friction, of {slid}, is smooth and holds nothing at rest: hold what it is to hold"
+    creeping = _creeping(balance, end, tolerance)
+    if creeping:
+        loads = "; ".join(
+            f"friction of '{name}' carries {load:.3g} in motion only, up to {most:.3g}" for name, load, most in creeping
+        )
+        found = f"{found}; {loads}"
+        rule = f"{rule}; friction is smooth through zero speed and holds nothing at rest: under a load, joints creep"
+        remedy = f"hold what friction is to hold, held={[name for name, _, _ in creeping]}; or {remedy}"
+    return Problem(f"model '{model.record.name}': no equilibrium was found from this guess", found, rule, remedy)
+
+
+def _creeping(balance: Balance, end: Search, tolerance: float) -> list[tuple[str, float, float]]:
+    """Joints out of balance by less than their friction reaches: name of the speed, imbalance, what is reached."""
+    model, creeping = balance.model, list[tuple[str, float, float]]()
+    for i in np.intersect1d(balance.free, model.record.friction_speeds).tolist():
+        load = abs(float(end.R[i]))
+        if not np.isfinite(load) or load <= tolerance * end.scale or len(creeping) == _SHOWN:
+            continue
+        state = (end.q, balance.v, np.asarray(balance.u))
+        curve = friction_curve(model, i, balance.v[i] + _FRICTION_SPEEDS, state, balance.par, balance.t)
+        if curve is not None and load < curve.reached:
+            creeping.append((model.names.v[i], load, curve.reached))
+    return creeping
 
 
 def _holding_inputs(

@@ -36,7 +36,8 @@ def test_a_joint_that_creeps_is_named_with_its_load(load: float, v0: float) -> N
     run = sf.simulate(m, t_end=5.0, u={"x": load}, method="rodas4")
     assert abs(run.v[-1, 0]) < 2.0 * v0
     (note,) = creeps(run)
-    assert note.startswith("'x' ends at") and f"carries {abs(load):.2g}" in note
+    most = 1.2 + 0.3 * 15 / 8 * v0  # With what the damper carries at the peak.
+    assert note.startswith("'x' ends at") and f"carries {abs(load):.2g} of the {most:.3g} that" in note
     many = (
         sf.simulate_batch(m, np.zeros((1, 1)), t_end=5.0, u={"x": load}, dt=1e-2 * v0, output=0.1)
         if v0 > 1e-3
@@ -56,6 +57,30 @@ def test_what_slides_swings_or_rests_bears_no_note(method: str) -> None:
         assert not creeps(run), run.outcome
 
 
-def test_no_equilibrium_by_friction_is_said_to_be_so() -> None:
-    with pytest.raises(sf.EquilibriumError, match="friction, of 'x', is smooth and holds nothing at rest"):
-        sf.equilibrium(block(), u=[0.5])
+@pytest.mark.parametrize("v0", [1e-5, 1e-3, 1e-1])
+@pytest.mark.parametrize("load", [-0.05, 0.5, 1.19])
+def test_no_equilibrium_by_friction_is_said_to_be_so(load: float, v0: float) -> None:
+    m = block().with_parameters(v0=v0, c=0.1)
+    with pytest.raises(sf.EquilibriumError) as refused:
+        sf.equilibrium(m, u=[load])
+    said = str(refused.value)
+    assert f"friction of 'x' carries {abs(load):.3g} in motion only, up to 1.2" in said
+    assert "smooth through zero speed and holds nothing at rest" in said and "held=['x']" in said
+    # The remedy, as it stands.
+    assert sf.equilibrium(m, u=[load], held=["x"]).efforts == pytest.approx({"x": -load})
+
+
+def test_what_friction_would_not_hold_is_not_blamed_on_it() -> None:
+    """Beyond static friction; on another joint; with a place of rest."""
+    with pytest.raises(sf.EquilibriumError) as refused:
+        sf.equilibrium(block(), u=[1.3])
+    assert "friction" not in str(refused.value) and "imbalance of" in str(refused.value)
+    first = sf.Joint("x", "prismatic", axis=(1, 0, 0), elements=(sf.Friction(1.0),))
+    second = sf.Joint("y", "prismatic", parent="a", axis=(0, 1, 0), actuated=True)
+    both = sf.compile(
+        sf.System("s", (sf.RigidBody("a", first, sf.Inertia(1.0)), sf.RigidBody("b", second, sf.Inertia(1.0))))
+    )
+    with pytest.raises(sf.EquilibriumError) as refused:
+        sf.equilibrium(both, u=[0.5])
+    assert "friction" not in str(refused.value) and "at 'y'" in str(refused.value)
+    assert sf.equilibrium(block().with_parameters(k=10.0), u=[0.5]).q == pytest.approx([0.05])
