@@ -77,6 +77,12 @@ def test_constrained_motion_stays_in_c_and_the_notes_say_so(tmp_path: Path) -> N
     assert "four_bar_dynamics" in (tmp_path / "four_bar_double.cu").read_text()
 
 
+@pytest.mark.parametrize(("name", "bends"), [("double_pendulum", False), ("flexible_pendulum", True)])
+def test_rollouts_of_beams_are_said_not_to_be_judged(tmp_path: Path, name: str, bends: bool) -> None:
+    notes = sf.export(system(name), "cuda", tmp_path).notes
+    assert bool([note for note in notes if "rollouts do not judge how far beams bend" in note]) == bends
+
+
 def test_a_folder_of_something_else_is_left_alone(tmp_path: Path) -> None:
     (tmp_path / "mine").write_text("x")
     with pytest.raises(ExportError, match="not overwritten"):
