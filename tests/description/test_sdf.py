@@ -152,7 +152,7 @@ ONE = link("a", "", 1) + joint("q", "world", "a")
 
 def universal(first: str, second: str) -> str:
     """A link on a universal joint, with what its two axes state."""
-    axes = AXIS.format(first) + "<axis2><xyz>1 0 0</xyz>{}</axis2>".format(second)
+    axes = AXIS.format(first) + f"<axis2><xyz>1 0 0</xyz>{second}</axis2>"
     return link("a", "", 1) + joint("q", "world", "a", axes, "universal")
 
 
