@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -175,3 +176,19 @@ def test_steps_that_leap_over_what_ends_the_motion_are_noted(t_end: float, said:
     mass = sf.RigidBody("mass", slide, sf.Inertia(1.0), loads=(sf.Load((force, 0.0, 0.0)),))
     run = sf.simulate(sf.compile(sf.System("gap", (mass,), gravity=(0, 0, 0))), [1.0], t_end=t_end, dt=0.05)
     assert [said in note for note in run.outcome.notes] == [True] * met, run.outcome
+
+
+@pytest.mark.parametrize("options", [{"dt": 0.05}, {"dt": 0.01}, {"dt": 1e-3}, {"method": "dopri5"}], ids=str)
+@pytest.mark.parametrize("kind", ["pure", "remembering"])
+def test_a_function_is_asked_once_whether_it_gives_the_same_inputs(options: dict[str, Any], kind: str) -> None:
+    """However many notes would make parts of the run once more: the last record, and then one before it."""
+    calls: list[float] = []
+
+    def law(t: float, q: np.ndarray, v: np.ndarray) -> list[float]:
+        calls.append(t)
+        return [-200.0 * float(q[0]) ** 3 + 1e-3 * len(calls) * (kind == "remembering")]
+
+    run = sf.simulate(oscillator(), [0.0], [2.0], 5.0, u=law, **options)
+    asked = run.t[:: -max(1, len(run.t) // 8)]
+    count = sum(calls[i : i + 3] == [*asked[:3]] for i in range(len(calls)))
+    assert count == 1, run.outcome
