@@ -14,8 +14,8 @@ import numpy as np
 
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.manifold import retract
-from symofros.simulation.results.examination.energy_norm import energies_of, energy_norms, metrics
 from symofros.simulation.inputs import Callback
+from symofros.simulation.results.examination.energy_norm import energies_of, energy_norms, metrics
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.loops import run_own
 from symofros.simulation.stepping.methods import METHODS, Method
