@@ -133,7 +133,7 @@ typedef struct sym_system {
     int32_t events_free_of_inputs; /* 1: no event needs the inputs, which cost a call of the caller's */
 } sym_system;
 
-typedef enum sym_event_sizes { SYM_EVENT_NODES = 5, SYM_EVENT_EARLIER = 11, SYM_EVENT_ROWS = 13 } sym_event_sizes;
+typedef enum sym_event_sizes { SYM_EVENT_NODES = 5, SYM_EVENT_EARLIER = 11, SYM_EVENT_ROWS = 19 } sym_event_sizes;
 
 /* Events along one step (docs/theory/simulation.md, section 2), sought between x = 0, its start, and x = 1, its end. */
 typedef struct sym_event_search {
@@ -144,6 +144,8 @@ typedef struct sym_event_search {
     double *memory; /* (SYM_EVENT_ROWS, n): values at the end of the step before; row SYM_EVENT_EARLIER, at its start or NaN */
     int32_t short_step;           /* whether events far from zero need no look within the step */
     double longest;               /* interval between two points at which an event is looked at */
+    double h;                     /* length of the step [s] */
+    int32_t looks;                /* whether the rates of events are looked at that are far from zero */
     int32_t start_changes;        /* whether values at x = 0 may differ from those at the end of the step before */
     int32_t taken;                /* event that was returned last; -1: none */
     int32_t touched, unresolved;  /* the event that turns nearest to zero, one too fast to follow; -1: none */
@@ -247,8 +249,8 @@ void sym_run_end_step(sym_run *run);
 double sym_run_next_stop(const sym_run *run, double t, double t1);
 /* Values of the events (n_events) at a state. */
 int32_t sym_run_event_values(sym_run *run, double t, const double *y, double *values);
-/* Tell the search the length h of a step, and the largest way of a coordinate in it [rad or m]. */
-void sym_event_search_set_step(sym_event_search *search, double h, double way);
+/* Tell the search the length h of a step [s], the largest way of a coordinate in it [rad or m], and its number. */
+void sym_event_search_set_step(sym_event_search *search, double h, double way, int64_t step);
 /* Begin the search in one step, whose search->memory begins with the values at the end of the step before; the values at its
  * own end are row SYM_EVENT_NODES - 1 afterwards. Returns 0 or a status. */
 int32_t sym_event_search_begin(sym_event_search *search);
