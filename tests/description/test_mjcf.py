@@ -18,7 +18,6 @@ from validation.mechanics.geometry import quaternion_matrix
 PENDULUM = '<body name="a"><joint name="q" axis="0 1 0"/><geom size="0.1" pos="1 0 0"/></body>'
 NOT_A_NUMBER = PENDULUM.replace('name="q"', 'name="q" armature="nan"')
 FLOOR = '<worldbody><geom type="plane" size="1 1 1"/></worldbody>'
-NO_CONTACT = '<option><flag contact="disable"/></option>'
 # Sums of some dozen products of doubles; measured: 2e-15 of the largest entry.
 ROUNDING = 1e-12
 STATES = 20
@@ -201,11 +200,6 @@ def test_rounded_numbers_are_made_exact_unless_asked_not_to(tmp_path: Path) -> N
 )
 def test_what_is_ignored_is_said(tmp_path: Path, text: str, said: str) -> None:
     assert said in notes(tmp_path, text + world(PENDULUM))
-
-
-@pytest.mark.parametrize("text", ["", '<default><geom contype="0"/></default>' + FLOOR, NO_CONTACT + FLOOR])
-def test_shapes_that_touch_nothing_bear_no_note(tmp_path: Path, text: str) -> None:
-    assert not notes(tmp_path, text + world(PENDULUM))
 
 
 # Meshes.

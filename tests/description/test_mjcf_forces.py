@@ -10,7 +10,7 @@ import pytest
 
 import symofros as sf
 from symofros.description.yaml.files import read_yaml
-from tests.description.test_mjcf import STATES, Reference, close, write
+from tests.description.test_mjcf import FLOOR, STATES, Reference, close, write
 
 ARM = """
     <compiler angle="radian"/>
@@ -147,3 +147,10 @@ def test_springs_that_yield_are_said_to_be_kept_from_it(tmp_path: Path, attribut
 def test_what_mujoco_warns_of_is_a_note(tmp_path: Path, compiler: str, said: bool) -> None:
     (*notes,) = sf.load(write(tmp_path, compiler + HINGE.format(""))).notes
     assert [note.startswith("MuJoCo warns: 1 remark (compiler attribute") for note in notes] == [True] * said, notes
+
+
+@pytest.mark.parametrize(
+    "text", ["", '<default><geom contype="0"/></default>' + FLOOR, '<option><flag contact="disable"/></option>' + FLOOR]
+)
+def test_shapes_that_touch_nothing_bear_no_note(tmp_path: Path, text: str) -> None:
+    assert not sf.load(write(tmp_path, text + HINGE.format(""))).notes
