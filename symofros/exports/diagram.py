@@ -32,6 +32,7 @@ from symofros.exports.functions import cell, names_table
 from symofros.exports.material import Stepping
 from symofros.generator.codegen.model import model_source
 from symofros.generator.codegen.names import c_string, identifier
+from symofros.generator.instants import with_instants
 from symofros.generator.passes import run_passes
 from symofros.native import amalgamated, header_files, native_text
 from symofros.runtime.beams import ElasticBeam
@@ -101,7 +102,7 @@ def write_diagram(
     files: dict[str, str] = {f"{name}.h": _header(name, wired.name, generator)}
     for i, part in enumerate(layout.parts):
         record, c_name = record_of(resolved, part), f"{name}_part{i}"
-        text = model_source(run_passes(write.motion(part)), record, generator, c_name=c_name)
+        text = model_source(run_passes(with_instants(write.motion(part))), record, generator, c_name=c_name)
         material = PartMaterial(
             c_name,
             record,

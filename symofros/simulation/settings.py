@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from symofros.base.arrays import numeric, real_array
 from symofros.errors import AssemblyError, Problem, ShapeError, SymofrosError, UnknownNameError
+from symofros.native import native_number
 from symofros.runtime import unit_quaternions
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
@@ -25,7 +26,7 @@ from symofros.simulation.stepping.stepper import Stepper
 # reference models lose less than 1e-4, those at steps that are far too long more than 1e-2.
 LOSS_LIMIT = 0.01
 # Intervals of a run in which adaptive steps are looked into where next to nothing happens.
-LOOKS = 64
+LOOKS = native_number("stepping/quiet_steps.c", "SYM_LOOKS")
 # Gains of 20/s hold a loop through its singular posture (tests of the N-four-bar), and lose accuracy on long steps.
 _GAIN, _GAIN_STEP = 20.0, 0.5
 

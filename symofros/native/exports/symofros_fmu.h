@@ -226,6 +226,17 @@ static int fmu_initialise(fmu *f) {
     return FMU_OK;
 }
 
+/* Begin to integrate from the present time, in Model Exchange: whether the importer has to stop somewhere since a formula of time
+ * bends, jumps or changes fast there, or since instants are not known beyond -> *next. */
+static int fmu_next_event(fmu *f, double *next) {
+    sym_instance *instance = f->instance;
+    const double t = instance->t, end = f->has_stop ? f->stop : t + sym_instance_span(instance, t, t);
+    if (instance->operands.function == NULL || fmu_prepare(f) != FMU_OK || !(end > t)) return 0;
+    *next = sym_instance_begin_step(instance, end);
+    f->rates_valid = 0; /* those of a step that begins here */
+    return *next < end || !f->has_stop;
+}
+
 /* Estimated error of the beams' theory from which the log says so. */
 #define FMU_NOTED_ERROR 0.01
 

@@ -150,6 +150,26 @@ typedef struct sym_event_search {
     double touched_x, touched_share; /* where it turns, and its share there of its largest value in the step */
 } sym_event_search;
 
+/* What an operand of a formula of time does where it is small (docs/theory/simulation.md, (3a)). */
+typedef enum sym_instant_kind {
+    SYM_INSTANT_KINK = 0,   /* the formula bends or jumps where it passes zero */
+    SYM_INSTANT_NARROW = 1, /* the formula has a narrow part where it is small, zero or not */
+    SYM_INSTANT_END = 2     /* the same, but a zero is where the formula ends */
+} sym_instant_kind;
+
+/* Rows of a search's memory, and their length in packages. */
+typedef enum sym_instant_sizes { SYM_INSTANT_ROWS = 11, SYM_INSTANT_CAPACITY = 2048 } sym_instant_sizes;
+
+/* Instants of formulas of time, by the values of their operands. */
+typedef struct sym_instant_search {
+    int32_t n;          /* number of operands, those of inner formulas first */
+    const double *kind; /* (n) sym_instant_kind of each */
+    void (*evaluate)(void *data, int32_t operand, int32_t n, const double *t, double *value); /* at times (n) */
+    void *data;
+    int32_t capacity;   /* most instants, and most points at which an operand is looked at: more than 1025 */
+    double *memory;     /* (SYM_INSTANT_ROWS, capacity) */
+} sym_instant_search;
+
 /* One integration of a system: method, settings, present state, records. */
 typedef struct sym_run {
     sym_system *system;
@@ -245,6 +265,8 @@ void sym_run_begin_step(sym_run *run, double t, double t1);
 void sym_run_end_step(sym_run *run);
 /* The first instant after t, up to t1, at which a step has to end; t1 where there is none. */
 double sym_run_next_stop(const sym_run *run, double t, double t1);
+/* Instants (capacity) within a span at which steps have to end, in order. Returns how many, or -1 where they do not fit. */
+int32_t sym_find_instants(const sym_instant_search *search, double t0, double t_end, double *instants);
 /* Values of the events (n_events) at a state. */
 int32_t sym_run_event_values(sym_run *run, double t, const double *y, double *values);
 /* Tell the search the length h of a step, and the largest way of a coordinate in it [rad or m]. */
