@@ -16,8 +16,8 @@ from symofros.diagrams.settings import RunSettings
 from tests.diagrams.parts import After, Ball, Counter, Hold, Lag, Number, Spoken, Wave, arm
 from tests.diagrams.run.test_runs import First, Given
 from tests.exports.cases import build, run
-from tests.exports.pulses import SHAPES, cart
 from tests.models import sampled
+from tests.pulses import SHAPES, cart
 
 MODELS = Path(__file__).parents[2] / "reference_models"
 

@@ -9,7 +9,7 @@ import pytest
 
 import symofros as sf
 from tests.exports.cases import build, run, sources
-from tests.exports.pulses import END, SHAPES, cart, drawn
+from tests.pulses import END, SHAPES, cart, drawn
 
 # What the methods leave between two instants, at the default bounds; rk4 of a bell, about which instants are half a
 # width apart in the middle and several at its ends.

@@ -8,7 +8,7 @@ import fmpy
 import pytest
 
 import symofros as sf
-from tests.exports.pulses import END, SHAPES, cart, drawn
+from tests.pulses import END, SHAPES, cart, drawn
 
 # Of CVODE at FMPy's relative tolerance, 1e-4 a step; of dopri5 at its default bounds.
 BOUND = {"ModelExchange": 2e-3, "CoSimulation": 1e-4}

@@ -12,6 +12,7 @@ from symofros.simulation.inputs import InputPlan
 from symofros.simulation.results.examination.creep import creep_note
 from symofros.simulation.results.examination.energy_balance import EXPLODED, energy_note, energy_that_appeared
 from symofros.simulation.results.examination.energy_norm import metrics, norms_in
+from symofros.simulation.results.examination.formula_impulses import formula_impulse_note
 from symofros.simulation.results.examination.input_impulses import input_impulse_note
 from symofros.simulation.results.examination.repetition import halved_step_note, percent, tolerance_note, windows_note
 from symofros.simulation.results.examination.stepped_over import stepped_over_note
@@ -69,6 +70,8 @@ def examine_run(
         notes.append(windows_note(stepper, settings, states, steps))
     if ended_well:
         notes.append(input_impulse_note(stepper, settings, start, states))
+    if ended_well and not any(notes):
+        notes.append(formula_impulse_note(stepper, settings, states))
     if ended_well and mode is None and not any(notes):
         notes.append(stepped_over_note(stepper, settings, start, states, steps))
     if ended_well:
