@@ -1,4 +1,4 @@
-"""Fixed steps say where they misjudge forces of the model's own formulas of time, and are silent where they meet them."""
+"""Fixed steps say where they misjudge forces by a model's own formulas of time, and are silent where they do not."""
 
 from __future__ import annotations
 
