@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.results.examination.energy_norm import energy_norms
@@ -78,7 +79,7 @@ def _missed(
     return total
 
 
-def _held(stepper: Stepper, at: tuple[Array, Array, Array], rows: Array, t: Array) -> Array:
+def _held(stepper: Stepper, at: tuple[Array, Array, Array], rows: npt.NDArray[np.intp], t: Array) -> Array:
     """Accelerations (n, nv) at some of the states and at times (n)."""
     given = dict(zip("qvu", (group[rows] for group in at), strict=True)) | {"t": t[:, np.newaxis]}
     return evaluated(stepper, "forward_dynamics", given, len(t))
