@@ -230,7 +230,7 @@ static int fmu_initialise(fmu *f) {
  * bends, jumps or changes fast there, or since instants are not known beyond -> *next. */
 static int fmu_next_event(fmu *f, double *next) {
     sym_instance *instance = f->instance;
-    const double t = instance->t, end = f->has_stop ? f->stop : t + sym_instance_span(instance, t, t);
+    const double t = instance->t, end = f->has_stop ? f->stop : t + 0.5 * sym_instance_span(instance, t, t);
     if (instance->operands.function == NULL || fmu_prepare(f) != FMU_OK || !(end > t)) return 0;
     *next = sym_instance_begin_step(instance, end);
     f->rates_valid = 0; /* those of a step that begins here */

@@ -54,7 +54,7 @@ def test_time_events_are_the_instants_of_the_formula(tmp_path: Path) -> None:
     assert _events(unit, tmp_path / "stopped", END) == corners
     on = _events(unit, tmp_path / "open", None)
     assert [t for t in on if abs(t - 5.0) < 0.01] == corners
-    assert max(b - a for a, b in zip([0.0, *on], on, strict=False)) < 1.1
+    assert max(b - a for a, b in zip([0.0, *on], on, strict=False)) < 0.55
 
 
 def _events(unit: Path, folder: Path, stop: float | None) -> list[float]:
