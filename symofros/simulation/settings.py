@@ -10,10 +10,10 @@ import numpy.typing as npt
 
 from symofros.base.arrays import numeric, real_array
 from symofros.errors import AssemblyError, Problem, ShapeError, SymofrosError, UnknownNameError
-from symofros.runtime import unit_quaternions
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
 from symofros.runtime.unit_quaternions import UNIT_TOLERANCE as UNIT_TOLERANCE
+from symofros.runtime.unit_quaternions import at_unit_length
 from symofros.simulation.analysis.kinematics.facing import refuse_opposite
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.options import SimulationOptions
@@ -52,6 +52,17 @@ def vector(model: Model, name: str, values: ArrayLike, size: int) -> Array:
             )
         )
     return array
+
+
+def first_configuration(model: Model, q0: ArrayLike | None) -> Array:
+    """The configuration (nq) that a motion starts from, its quaternions at unit length; neutral if not given.
+
+    Raises:
+        ShapeError: It is no finite vector of that size, or a quaternion is no rotation.
+    """
+    if q0 is None:
+        return model.neutral()
+    return at_unit_length(model.record, "q", vector(model, "q0", q0, model.nq), "q0")
 
 
 def _wrong(what: str, found: object, rule: str, remedy: str) -> SymofrosError:
@@ -229,19 +240,6 @@ def check_fit(model: Model, settings: Settings, inputs: InputPlan) -> None:
 MOST_RECORDS = 200_000_000
 # Beyond, a first state is a mistake and not what drift leaves.
 CLOSED = 1e-6
-
-
-def refuse_lengths(model: Model, q: Array) -> None:
-    """Refuse first configurations whose quaternions are no rotations; runs make those written in few digits unit ones.
-
-    Args:
-        model: Model.
-        q: Configurations (..., nq).
-
-    Raises:
-        ShapeError: With the coordinates of the one that is off most.
-    """
-    unit_quaternions.refuse_lengths(model.record, q)
 
 
 def check_start(model: Model, settings: Settings, q: Array, v: Array, u: Array, par: Array) -> None:

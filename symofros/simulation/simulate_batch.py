@@ -16,6 +16,7 @@ from symofros.errors import Problem, ShapeError, SymofrosError
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.calls.layout import flat
 from symofros.runtime.model import ArrayLike, Model
+from symofros.runtime.unit_quaternions import at_unit_length
 from symofros.simulation.analysis.kinematics.facing import facings
 from symofros.simulation.batch_inputs import Shape, sort_inputs
 from symofros.simulation.inputs import Inputs
@@ -28,7 +29,7 @@ from symofros.simulation.prescribed_motions import (
 )
 from symofros.simulation.results.examination.batch_examination import BatchExamination
 from symofros.simulation.results.trajectories import Trajectories
-from symofros.simulation.settings import CLOSED, Settings, refuse_lengths
+from symofros.simulation.settings import CLOSED, Settings
 from symofros.simulation.stepping.batch_stepper import BatchResults, BatchStepper, InitialStates, run_batch_steppers
 from symofros.simulation.stepping.methods import METHODS
 from symofros.simulation.stepping.status import Status
@@ -95,7 +96,7 @@ def simulate_batch(
         "v0": _rows(model, "v0", np.zeros(model.nv) if v0 is None else v0, model.nv),
         "par": _rows(model, "par", parameters, model.npar),
     }
-    refuse_lengths(model, rows["q0"])
+    rows["q0"] = at_unit_length(model.record, "q", rows["q0"], "q0")
     shape = _batch_shape(rows, given.shapes)
     n = math.prod(shape)
     count = min(count, max(n, 1))

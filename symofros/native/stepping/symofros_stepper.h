@@ -25,7 +25,7 @@ typedef enum sym_status {
     SYM_BEYOND_THEORY = -7,      /* a beam is bent beyond second-order theory */
     SYM_ENERGY_LOST = -8,        /* projection onto the constraints has taken the motion's energy */
     SYM_PARAMETERS_REFUSED = -9, /* parameters violate a condition of the description; of instances only */
-    SYM_NO_ROTATION = -10,       /* a quaternion among the inputs is not of unit length */
+    SYM_NO_ROTATION = -10,       /* a quaternion is not of unit length: of inputs, or of an instance's state */
     SYM_ENGAGED_APART = -11      /* conditions that engage are not fulfilled; of diagrams only */
 } sym_status;
 
