@@ -200,26 +200,12 @@ static int fmu_set(fmu *f, size_t reference, double value) {
     return FMU_OK;
 }
 
-/* Whether the start quaternions are rotations; they are of unit length afterwards. */
-static int fmu_normalise_start(fmu *f) {
-    const sym_plant *plant = f->instance->plant;
-    int32_t k, i;
-    for (k = 0; k < plant->n_segments; ++k) {
-        const sym_segment *segment = &plant->segments[k];
-        double *p = f->instance->q + segment->q + (segment->kind == SYM_SEGMENT_POSE ? 3 : 0), length;
-        if (segment->kind == SYM_SEGMENT_LINEAR) continue;
-        if (!sym_is_rotation(p, &length)) return 0;
-        for (i = 0; i < 4; ++i) p[i] /= length;
-    }
-    return 1;
-}
-
 static int fmu_initialise(fmu *f) {
     int status = fmu_prepare(f);
     if (status != FMU_OK) return status;
-    if (!fmu_normalise_start(f)) return FMU_NO_ROTATION;
     f->rates_valid = 0;
-    if (sym_instance_project(f->instance) != 0) return FMU_SINGULAR;
+    status = sym_instance_project(f->instance);
+    if (status != 0) return status == SYM_NO_ROTATION ? FMU_NO_ROTATION : FMU_SINGULAR;
     status = fmu_refresh(f);
     if (status != FMU_OK) return status;
     f->phase = f->cosim ? FMU_STEPPING : FMU_EVENT;

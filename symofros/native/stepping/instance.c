@@ -143,8 +143,23 @@ static void sym_instance_load_state(sym_instance *instance) {
     sym_normalize_quaternions(&instance->system);
 }
 
+/* Bring the quaternions of the state to unit length, if they are off by more than rounding; what is not finite stays.
+ * Returns 0, or SYM_NO_ROTATION where one is no rotation. */
+static int32_t sym_instance_normalize(sym_instance *instance) {
+    const sym_plant *plant = instance->plant;
+    int32_t k;
+    for (k = 0; k < plant->n_segments; ++k) {
+        const sym_segment *segment = &plant->segments[k];
+        double *p = instance->q + segment->q + (segment->kind == SYM_SEGMENT_POSE ? 3 : 0);
+        if (segment->kind == SYM_SEGMENT_LINEAR || !(0.0 * p[0] + 0.0 * p[1] + 0.0 * p[2] + 0.0 * p[3] == 0.0)) continue;
+        if (!sym_make_rotation(p)) return SYM_NO_ROTATION;
+    }
+    return 0;
+}
+
 SYM_EXPORT int32_t sym_instance_project(sym_instance *instance) {
     if (instance->refused >= 0) return SYM_PARAMETERS_REFUSED;
+    if (sym_instance_normalize(instance) != 0) return SYM_NO_ROTATION;
     if (instance->model->nc == 0) return 0;
     instance->run.t = instance->t;
     return sym_project_state(&instance->run);
@@ -187,6 +202,7 @@ SYM_EXPORT int32_t sym_instance_advance(sym_instance *instance, double t_end, do
     int32_t status;
     if (instance->refused >= 0) return SYM_PARAMETERS_REFUSED;
     if (!(span > 0.0)) return span == 0.0 ? SYM_FINISHED : SYM_DIVERGED;
+    if (sym_instance_normalize(instance) != 0) return SYM_NO_ROTATION;
     r->t0 = r->t = instance->t, r->t_end = t_end, r->project = instance->project && instance->model->nc > 0;
     if (r->adaptive) {
         if (!(r->h > 0.0)) r->h = h > 0.0 ? h : instance->plant->h;

@@ -6,8 +6,10 @@
  *     arm->u[0] = 1.5;                                         // inputs, held until they are changed
  *     status = sym_instance_advance(arm, t_end, 1e-3);         // arm->t, arm->q, arm->v move on
  *
- * After sym_instance_init nothing allocates, and nothing is shared between instances: each may live in a thread of its
- * own. A status below zero is one of SYM_DIVERGED ... SYM_NO_ROTATION (symofros_stepper.h).
+ * Quaternions of arm->q may be of any length where a function, accelerations, rates or derivatives are asked for: these
+ * are evaluated at the quaternions divided by their lengths. After sym_instance_init nothing allocates, and nothing is
+ * shared between instances: each may live in a thread of its own. A status below zero is one of SYM_DIVERGED ...
+ * SYM_NO_ROTATION (symofros_stepper.h).
  */
 #ifndef SYMOFROS_INSTANCE_H
 #define SYMOFROS_INSTANCE_H
@@ -73,7 +75,8 @@ void sym_instance_reset(sym_instance *instance);
 /* Evaluate what depends on parameters alone. Returns 0, or SYM_PARAMETERS_REFUSED where they violate a condition of the
  * description (instance->refused): nothing moves then until this is called with parameters that are allowed. */
 int32_t sym_instance_prepare(sym_instance *instance);
-/* Project the state onto the constraints. Returns 0 or a status. */
+/* Project the state onto the constraints, after its quaternions, which are near unit length (1e-3), were divided by
+ * their lengths. Returns 0 or a status. */
 int32_t sym_instance_project(sym_instance *instance);
 /* Judge how far the beams of the present state bend, as sym_instance_advance does. Returns 0 or SYM_BEYOND_THEORY. */
 int32_t sym_instance_judge_beams(sym_instance *instance);
@@ -81,7 +84,8 @@ int32_t sym_instance_judge_beams(sym_instance *instance);
 double sym_instance_beam_error(sym_instance *instance, int32_t beam);
 /* Accelerations and multipliers at the present state. Returns 0 or a status. */
 int32_t sym_instance_accelerate(sym_instance *instance);
-/* Integrate to t_end by steps of at most h (0: the plant's). Returns SYM_FINISHED or a status below zero. */
+/* Integrate to t_end by steps of at most h (0: the plant's), from quaternions that are near unit length (1e-3), which
+ * have it then. Returns SYM_FINISHED or a status below zero. */
 int32_t sym_instance_advance(sym_instance *instance, double t_end, double h);
 /* Evaluate one function of the model at the present state; out: its outputs in order. Returns 0 where it is absent, or
  * asks for an input that an instance does not hold, or parameters are refused. */
