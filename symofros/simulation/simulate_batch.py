@@ -193,8 +193,9 @@ def _contradiction(
         if sampled.isdisjoint((*rated.position, *rated.rate)):  # What stays has no rate.
             stated = initial.inputs.constant[:, list(rated.rate)]
             if np.nanmax(np.abs(stated), initial=0.0) > 0.0:
-                names, worst = model.names.u, float(stated.flat[int(np.nanargmax(np.abs(stated)))])
-                return Contradiction(names[rated.position[0]], names[rated.rate[0]], settings.t0, worst, 0.0)
+                names, (k, axis) = model.names.u, np.unravel_index(int(np.nanargmax(np.abs(stated))), stated.shape)
+                position, rate = names[rated.position[0]], names[rated.rate[axis]]
+                return Contradiction(position, rate, settings.t0, float(stated[k, axis]), 0.0)
     return contradiction(model, plan, lambda at: stepper.single.inputs_at(at, q, v), (settings.t0, settings.t_end))
 
 
