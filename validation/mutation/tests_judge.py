@@ -49,6 +49,11 @@ _MIRRORS = {
     "symofros/native/diagrams": ("tests/diagrams/run", "tests/blocks/generic", "tests/diagrams/program"),
     # Tests of what a user asks for, which have the names of the answers.
     "symofros/description/yaml": ("tests/description", "tests/description/test_files.py"),
+    "symofros/description/urdf": (
+        "tests/description",
+        "tests/description/test_urdf_kinds.py",
+        "tests/description/test_packages.py",
+    ),
     "symofros/diagrams/run/simulate.py": (
         "tests/diagrams/run",
         "tests/diagrams/run/test_runs.py",
