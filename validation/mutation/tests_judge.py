@@ -46,7 +46,12 @@ _MIRRORS = {
     "symofros/native/stepping/beams.c": _BEAM_LIMITS,
     "symofros/native/stepping/axial_loads.c": _BEAM_LIMITS,
     "symofros/generator/beams.py": (*_BEAM_LIMITS, "tests/mechanics/beams/test_rod_services.py"),
-    "symofros/native/diagrams": ("tests/diagrams/run", "tests/blocks/generic", "tests/diagrams/program"),
+    "symofros/native/diagrams": (
+        "tests/diagrams/run",
+        "tests/diagrams/run/test_runs.py",
+        "tests/blocks/generic",
+        "tests/diagrams/program",
+    ),
     # Tests of what a user asks for, which have the names of the answers.
     "symofros/description/yaml": ("tests/description", "tests/description/test_files.py"),
     "symofros/description/urdf": (
