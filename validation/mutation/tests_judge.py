@@ -49,6 +49,7 @@ _MIRRORS = {
     "symofros/native/diagrams": (
         "tests/diagrams/run",
         "tests/diagrams/run/test_runs.py",
+        "tests/diagrams/run/test_crossings.py",
         "tests/blocks/generic",
         "tests/diagrams/program",
     ),
