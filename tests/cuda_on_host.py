@@ -13,7 +13,10 @@ from tests.late import needs_program, with_utilities
 
 SHIM = Path(__file__).parent / "cuda_shim.h"
 # As the C code is compiled: products and sums are not fused, so that results agree bit for bit.
-FLAGS = ("-x", "c++", "-std=c++17", "-O0", "-ffp-contract=off", "-fPIC", "-shared", "-Wno-unknown-pragmas")
+WARNINGS = ("-Wall", "-Wextra", "-Werror", "-Wno-unknown-pragmas")
+FLAGS = ("-x", "c++", "-std=c++17", "-O0", "-ffp-contract=off", "-fPIC", "-shared", *WARNINGS)
+# Of an inline function that nothing calls nvcc warns, and g++ does not.
+PLAIN = "#define inline"
 _STRIDED, _SEQUENCE = "sym_strided", "sym_sequence"
 _ROLLOUT = ("long long", "long long", "double", *(_STRIDED,) * 2, _SEQUENCE, _STRIDED, *(_SEQUENCE,) * 2)
 
@@ -43,7 +46,7 @@ def on_host(code: DeviceCode, folder: Path, sources: str = "") -> Path:
     ]
     launchers += [launcher(symbol, _ROLLOUT) for symbol in code.rollouts.values()]
     source = folder / f"{code.precision}.cu"
-    source.write_text("\n".join([f'#include "{SHIM}"', code.text, *launchers, sources]))
+    source.write_text("\n".join([f'#include "{SHIM}"', PLAIN, code.text, *launchers, sources]))
     library = source.with_suffix(".so")
     needs_program("g++")
     subprocess.run(["g++", *FLAGS, source, "-o", library], check=True, env=with_utilities())

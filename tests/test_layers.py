@@ -69,7 +69,7 @@ ALLOWED = table("""
     # A diagram is one more program over the graph: its blocks are written beside the models' equations.
     diagrams: base errors native expr description mechanics.topology mechanics.kinematics
         mechanics.dynamics generator.passes runtime generator.codegen generator.record generator.beams
-        generator.programs compiler simulation
+        generator.instants generator.programs compiler simulation
     # Formulas of blocks go through the parser of model files; one of them shows its model.
     blocks: base errors expr description runtime simulation diagrams studio.viewer
     diagrams.files: base errors description loading simulation diagrams blocks
@@ -77,7 +77,7 @@ ALLOWED = table("""
     # URDF and MJCF hold numbers, which topology's Numbers makes of formulas.
     # A diagram's package is made of its parts' C, written as the diagram is resolved.
     exports: base errors native expr description mechanics.topology
-        generator.passes runtime generator.codegen compiler loading simulation diagrams
+        generator.passes runtime generator.codegen generator.instants compiler loading simulation diagrams
     # Models in other frameworks, each of them imported by its own module alone.
     interop: base errors native expr description compiler generator.codegen runtime simulation
     # Advice compiles and simulates reduced systems, and counts what they take; rods tell what their sections resist.

@@ -109,6 +109,7 @@ CALLS: dict[str, Callable[[], tuple[Callable[..., Any], dict[str, Any]]]] = {
     "vjp": lambda: (model().vjp, {"name": "bias", "q": Q, "v": V, "h_bar": V}),
     "integrate": lambda: (model().integrate, {"q": Q, "dq": V}),
     "difference": lambda: (model().difference, {"q0": Q, "q1": Q}),
+    "normalized": lambda: (model().normalized, {"q": Q}),
     "random_state": lambda: (model().random_state, {"rng": np.random.default_rng(0)}),
     "with_precision": lambda: (model().with_precision, {"precision": "double"}),
     "with_threads": lambda: (model().with_threads, {"threads": 2}),

@@ -276,6 +276,14 @@ _ROWS: tuple[ModelFunction, ...] = (
         by_solver=True,
     ),
     _row(
+        "instant_operands",
+        "t",
+        "operand (ni); kind (ni)",
+        "stepping",
+        "operands of formulas of time that steps end at zeros or extrema of: docs/theory/simulation.md, (3a)",
+        by_solver=True,
+    ),
+    _row(
         "mass_matrix_values",
         "q",
         "values (nz)",

@@ -93,7 +93,8 @@ class Friction(_Values):
 
     Attributes:
         dynamic: Coulomb friction at speed [N m or N].
-        static: Friction at the onset of motion, its maximum: not below dynamic, and dynamic if not given [N m or N].
+        static: Friction at the onset of motion, its maximum unless it is below dynamic; dynamic if
+            not given [N m or N].
         minimum_velocity: Speed over which the sign of the speed is smoothed [rad/s or m/s].
         viscous: Viscous coefficient [N m s/rad or N s/m].
         stribeck_velocity: Speed over which static falls to dynamic; ten times the minimum velocity if not given

@@ -13,33 +13,32 @@ import numpy as np
 from symofros.diagrams.external_block import ExternalBlock
 from symofros.diagrams.program.compiled import (
     Resolved,
-    compile_diagram,
     fuser,
     part_beams,
     reads_accelerations,
     record_of,
 )
 from symofros.diagrams.program.lowered_block import watched
-from symofros.diagrams.run.simulate import run_compiled
 from symofros.diagrams.wiring import Source
 from symofros.errors import ExportError, Problem
 from symofros.exports.c.c_package import INTEGRATOR_HEADERS
 from symofros.exports.c.c_text import comment, doubles, integers, strings
 from symofros.exports.c.parameter_check import Judged
 from symofros.exports.c.plant import plant_text
+from symofros.exports.diagram_start import first_motion
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.functions import cell, names_table
 from symofros.exports.material import Stepping
 from symofros.generator.codegen.model import model_source
 from symofros.generator.codegen.names import c_string, identifier
+from symofros.generator.instants import with_instants
 from symofros.generator.passes import run_passes
 from symofros.native import amalgamated, header_files, native_text
 from symofros.runtime.beams import ElasticBeam
 from symofros.runtime.record import ModelRecord
 
 _DIRECTIONS = {"rising": 1, "falling": -1, "both": 0}
-# Instants and steps of the self-test: its signals are those of the same run from Python.
-_CHECKED = 20
+# Of the self-test, whose signals are those of the same run from Python.
 _TOLERANCE = "1e-9"
 
 
@@ -99,16 +98,17 @@ def write_diagram(
     models = wired.models
     stated = [(model, place) for (block, model), place in layout.parameters.items() if not block]
     files: dict[str, str] = {f"{name}.h": _header(name, wired.name, generator)}
-    for i, part in enumerate(layout.parts):
+    first = first_motion(resolved, outputs, stepping)
+    for i, (part, (q, v)) in enumerate(zip(layout.parts, first.starts, strict=True)):
         record, c_name = record_of(resolved, part), f"{name}_part{i}"
-        text = model_source(run_passes(write.motion(part)), record, generator, c_name=c_name)
+        text = model_source(run_passes(with_instants(write.motion(part))), record, generator, c_name=c_name)
         material = PartMaterial(
             c_name,
             record,
             stepping,
             (),
-            tuple(layout.q0[part.q]),
-            tuple(layout.v0[part.v]),
+            tuple(q.tolist()),
+            tuple(v.tolist()),
             part_beams(resolved, part, np.array(layout.par)),
             tuple(Judged(models.system(model), models.record(model).par_names, place.start) for model, place in stated),
             generator,
@@ -119,7 +119,6 @@ def write_diagram(
         instants, record_of(resolved, None), generator, c_name=f"{name}_instants"
     )
     files[f"{name}_program.c"] = _program(resolved, name, sources, reads_accelerations(instants), generator)
-    until, values = _reference(resolved, outputs, stepping)
     fields = {
         "name": name,
         "heading": cell(wired.name),
@@ -127,8 +126,8 @@ def write_diagram(
         "names": names_table(record_of(resolved, None)),
         "generator": generator,
         "version": generator.rpartition(" ")[2],
-        "until": repr(until),
-        "reference": doubles(values),
+        "until": repr(first.until),
+        "reference": doubles(first.signals),
         "tolerance": _TOLERANCE,
         "step": repr(stepping.dt),
         "sources": " ".join(file for file in files if file.endswith(".c")),
@@ -138,17 +137,8 @@ def write_diagram(
     files["CMakeLists.txt"] = Template(native_text("exports/diagram_CMakeLists.txt.in")).substitute(fields)
     files |= header_files(*INTEGRATOR_HEADERS, "diagrams/symofros_diagram.h", "diagrams/symofros_program.h")
     files["symofros_diagram.c"] = amalgamated("diagrams/symofros_diagram.c")
-    notes = () if layout.condition_names else ("no constraints: accelerations are in closed form",)
-    return write_folder(folder, "c", name, files, generator, notes)
-
-
-def _reference(resolved: Resolved, outputs: Sequence[str], stepping: Stepping) -> tuple[float, list[float]]:
-    """A time, and the signals then of a run from Python."""
-    base = float(resolved.schedule.base) if resolved.schedule.instants else stepping.dt
-    until = _CHECKED * max(base, stepping.dt)
-    stated = {name: getattr(stepping, name) for name in ("dt", "rtol", "atol", "beam_limit")}
-    run = run_compiled(compile_diagram(resolved), until, method=stepping.method.name, record=until, **stated)
-    return float(run.t[-1]), [float(x) for name in outputs for x in np.ravel(run[name][-1])]
+    closed_form = () if layout.condition_names else ("no constraints: accelerations are in closed form",)
+    return write_folder(folder, "c", name, files, generator, (*closed_form, *first.notes))
 
 
 def _header(name: str, title: str, generator: str) -> str:

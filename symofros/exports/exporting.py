@@ -38,6 +38,7 @@ from symofros.exports.wasm import wasm
 from symofros.exports.wasm.wasm import write_wasm
 from symofros.generator.codegen.interpreted import InterpretedUnit
 from symofros.generator.codegen.names import identifier
+from symofros.generator.instants import OPERANDS, has_instants
 from symofros.loading import load
 from symofros.mechanics.topology.physics import OTHER_FUNCTIONS
 from symofros.mechanics.topology.tree import build_tree
@@ -63,6 +64,12 @@ REACTIONS = ("joint_wrenches", "prescribed_efforts", "section_forces")
 # How programs and FMUs step where nobody says.
 _STEPPING: dict[str, Any] = {"method": "rk4", "dt": 1e-3, "rtol": 1e-6, "atol": 1e-8, "beam_limit": BEAM_LIMIT}
 _OF_CHOSEN_FUNCTIONS = ("c", "wasm")
+# Targets whose steps, or those of whose hosts, end at instants of formulas of time.
+_STEPPED = ("c", "mex", "wasm", "fmu2", "fmu3")
+_UNKNOWN_INSTANTS = (
+    "formulas of time bend, jump or are narrow at instants that Simulink's solvers are not told of: a step may pass"
+    " over a pulse unseen; bound the step by the shortest of them"
+)
 # Targets that give exact derivatives of their outputs, by inputs too.
 _DIFFERENTIATED = ("fmu2", "fmu3")
 _DESCRIBED: dict[str, Callable[[System, str | None, Path, str], Exported]] = {"urdf": write_urdf, "mjcf": write_mjcf}
@@ -216,6 +223,9 @@ def _material(
     needs = (*stepping.method.family.functions, *reactions)
     if any(isinstance(body, Beam) and body.modes for body in system.bodies):
         needs = (*needs, "beam_stiffness", "mass_matrix")
+    instants = has_instants(build_tree(system))
+    if target in _STEPPED and instants:
+        needs = (*needs, OPERANDS)
     constrained = bool(system.constraints)
     stepped = ("forward_dynamics", "project") if constrained else ("forward_dynamics",)
     offered = stepped if chosen else wasm.functions(constrained) if target == "wasm" else exported(constrained)
@@ -247,7 +257,13 @@ def _material(
         shown,
         GENERATOR,
         target == "c",
-        (*system.notes, *limits_note(joints_of(system)), *first.notes, *singular_start(interpreted, first.q)),
+        (
+            *system.notes,
+            *limits_note(joints_of(system)),
+            *first.notes,
+            *singular_start(interpreted, first.q),
+            *((_UNKNOWN_INSTANTS,) if instants and target not in _STEPPED else ()),
+        ),
     )
 
 

@@ -24,6 +24,7 @@ from symofros.description.values import as_value
 from symofros.errors import Problem
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
+from symofros.runtime.unit_quaternions import at_unit_length
 from symofros.simulation.simulate_batch import simulate_batch
 
 gymnasium = rules.framework("gymnasium", "gymnasium")
@@ -71,6 +72,7 @@ class Task:
 
         Raises:
             InteropError: `start` or `parameters` gives arrays of another shape.
+            ShapeError: `start` gives a quaternion that is no rotation.
         """
         q, v = self.start(rng, 1)
         par = self._own_parameters if self.parameters is None else self.parameters(rng, 1)
@@ -79,7 +81,8 @@ class Task:
             if np.shape(values) != (1, size):
                 remedy = "return one row for each of the n episodes that are asked for"
                 raise _misfit(f"task: {name} do not fit", str(np.shape(values)), f"shape (1, {size}) for n = 1", remedy)
-        return np.asarray(q[0]), np.asarray(v[0]), np.asarray(self.model.checked_parameters(par)[0])
+        q = at_unit_length(self.model.record, "q", np.asarray(q, dtype=np.float64), "q of start")
+        return q[0], np.asarray(v[0]), np.asarray(self.model.checked_parameters(par)[0])
 
     @property
     def _own_parameters(self) -> Array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import prod
 from pathlib import Path
 from typing import Any, Self
 
@@ -23,6 +24,7 @@ from symofros.runtime.calls.library import CompiledKernel
 from symofros.runtime.calls.single import SingleCall, SingleCalls, single_call
 from symofros.runtime.cuda.device_code import DeviceCode
 from symofros.runtime.record import ModelRecord
+from symofros.runtime.unit_quaternions import at_unit_length
 
 Key = tuple[str, str]
 ParameterCheck = Callable[[Array], Sequence[Problem]]
@@ -281,7 +283,8 @@ class Functions(Arguments):
         if key not in calls.prepared:
             kernel = self._kernels.get((name, frame)) or self._make(name, frame, begin)
             default = np.array(self.record.u_default)
-            calls.prepared[key] = single_call(kernel, self._par, default, self._forget_single_calls)
+            quaternions, better = self.record.quaternions, self._forget_single_calls
+            calls.prepared[key] = single_call(kernel, self._par, default, quaternions, better)
         return calls.prepared[key]
 
     def _forget_single_calls(self) -> None:
@@ -303,6 +306,16 @@ class Functions(Arguments):
             self._array(group, self.record.u_default if group == "u" and u is None else given[group], size, dtype)
             for group, size in kernel.signature.inputs
         ]
+        shapes = [array.shape[:-1] for array in arrays]
+        par_array = None
+        if par is not None:
+            par_array = self.checked_parameters(par)
+            shapes.append(par_array.shape[:-1])
+        batch = self._batch_shape(name, shapes, given)
+        if self.record.quaternions:
+            for k, (group, _) in enumerate(kernel.signature.inputs):
+                if group in self.record.quaternions:
+                    arrays[k] = at_unit_length(self.record, group, arrays[k])
         if par is None and self._precision == "double" and all(array.ndim == 1 for array in arrays):
             # One state after all: as lists, by name, or of other numbers.
             named = {group: x for (group, _), x in zip(kernel.signature.inputs, arrays, strict=True)}
@@ -310,13 +323,7 @@ class Functions(Arguments):
             outputs = single(named | {"t": float(named["t"][0])} if "t" in named else named)
             if outputs is not None:
                 return outputs if out is None else into(out, kernel.signature, outputs)
-        shapes = [array.shape[:-1] for array in arrays]
-        par_array = None
-        if par is not None:
-            par_array = self.checked_parameters(par)
-            shapes.append(par_array.shape[:-1])
-        batch = self._batch_shape(name, shapes, given)
-        n = int(np.prod(batch))
+        n = prod(batch)
         pre = self._pre(kernel, (name, frame), par_array, batch)
         inputs = [states(array, batch) for array in arrays]
         options = BatchOptions(self._threads, by_columns(inputs), self._precision)

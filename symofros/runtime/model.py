@@ -12,13 +12,13 @@ import numpy.typing as npt
 from symofros.base.arguments import check_argument
 from symofros.base.arrays import numeric
 from symofros.base.functions import MODEL_FUNCTIONS, generated_with
-from symofros.runtime import manifold
 from symofros.runtime.calls.bound import Bound, Layout, bind, bind_batch
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.functions import ArrayLike as ArrayLike
 from symofros.runtime.functions import Key as Key
 from symofros.runtime.methods import linear
 from symofros.runtime.methods.adjoint import AdjointFunctions
+from symofros.runtime.methods.configurations import ConfigurationFunctions
 from symofros.runtime.methods.constraints import ConstraintFunctions
 from symofros.runtime.methods.copies import CopyFunctions
 from symofros.runtime.methods.frames import FrameFunctions
@@ -32,6 +32,7 @@ from symofros.runtime.methods.reactions import ReactionFunctions
 
 class Model(
     AdjointFunctions,
+    ConfigurationFunctions,
     ConstraintFunctions,
     CopyFunctions,
     FrameFunctions,
@@ -49,30 +50,12 @@ class Model(
     `par=` overrides the run-time parameters (..., npar), judged as the description's own (`with_parameter_checks`);
     `t=` gives the time (...,) to models that depend on it; `u=` matters where a motion is prescribed, because its
     coordinates, speeds and their rates are inputs.
+    Quaternions are rotations: near unit length, to 1e-3, they are taken at it, others raise ShapeError.
     NaN in a state or an input propagates to what depends on it, so that one bad state does not spoil its batch.
     Methods raise ShapeError where an array does not fit, UnknownNameError for a name that is not in the model, and
     ParameterError for parameters that the description refuses.
     Functions may be called from several threads; C runs without the interpreter lock.
     """
-
-    # Configurations.
-
-    def neutral(self) -> Array:
-        """A valid configuration (nq): zeros, and quaternions of no rotation."""
-        return np.array(self.record.q_neutral)
-
-    def random_state(self, rng: np.random.Generator) -> tuple[Array, Array]:
-        """A random q (nq) on the manifold, within the limits, and v (nv)."""
-        check_argument("random_state: rng", rng, np.random.Generator)
-        return manifold.random_state(self.record, rng)
-
-    def integrate(self, q: ArrayLike, dq: ArrayLike) -> Array:
-        """Move from q (..., nq) along the manifold by dq (..., nv), a velocity times a time."""
-        return manifold.integrate(self.record.segments, self._array("q", q, self.nq), self._array("dq", dq, self.nv))
-
-    def difference(self, q0: ArrayLike, q1: ArrayLike) -> Array:
-        """The dq (..., nv) that leads from q0 to q1 (..., nq)."""
-        return manifold.difference(self.record.segments, self._array("q0", q0, self.nq), self._array("q1", q1, self.nq))
 
     # Functions ahead of their first call.
 
@@ -122,6 +105,7 @@ class Model(
         `M = model.bind("mass_matrix")`, then write into `M.inputs["q"]`, call `M()`, read `M.outputs["M"]`.
         With n, of that many states: `M.inputs["q"]` is (n, nq), `M.outputs["M"]` (n, nv, nv), and a call gives the
         bits of `model.mass_matrix(q)` in double precision, by vectors and in the model's threads where that does.
+        Quaternions are not looked at: they are of unit length.
 
         Args:
             name: Name of the function, as of the method.
@@ -295,7 +279,10 @@ class Model(
     def forward_dynamics_derivatives(
         self, q: ArrayLike, v: ArrayLike, u: ArrayLike, *, par: ArrayLike | None = None, t: ArrayLike = 0.0
     ) -> tuple[Array, Array, Array]:
-        """The derivatives of `forward_dynamics` by q, v (..., nv, nv) and u (..., nv, nu), constraints kept."""
+        """The derivatives of `forward_dynamics` by q, v (..., nv, nv) and u (..., nv, nu), constraints kept.
+
+        Of a quaternion among u they hold for changes that are perpendicular to it (docs/theory/linear.md, section 9).
+        """
         by_q, by_v, by_u = self._call("forward_dynamics_derivatives", "", {"q": q, "v": v, "u": u, "t": t}, par)
         return by_q[..., : self.nv, :], by_v[..., : self.nv, :], by_u[..., : self.nv, :]
 
@@ -357,7 +344,7 @@ class Model(
 
         With outputs C (..., p, 2 nv) and D (..., p, nu) as well: y = C x + D u.
         x = (difference of q along the manifold, difference of v). Exact: differentiated on the graph. On constraints
-        only some x are possible: `sf.state_space` keeps those.
+        only some x are possible: `sf.state_space` keeps those. Of u, changes of a quaternion are perpendicular to it.
 
         Args:
             q: Configuration (..., nq).

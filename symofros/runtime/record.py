@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal, NamedTuple
 
 from symofros.base.manifold import ManifoldKind
@@ -140,6 +141,12 @@ class ModelRecord:
     timed: bool = False
     joint_limits: tuple[JointLimit, ...] = ()
     friction_speeds: tuple[int, ...] = ()
+
+    @cached_property
+    def quaternions(self) -> dict[str, tuple[int, ...]]:
+        """First index of each quaternion among the coordinates, "q", and among the inputs, "u"; empty without any."""
+        of_q = tuple(segment.q + segment.translations for segment in self.segments if segment.kind != "linear")
+        return {group: firsts for group, firsts in (("q", of_q), ("u", self.quaternion_inputs)) if firsts}
 
     @property
     def facing_conditions(self) -> tuple[int, ...]:

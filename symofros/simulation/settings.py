@@ -10,10 +10,11 @@ import numpy.typing as npt
 
 from symofros.base.arrays import numeric, real_array
 from symofros.errors import AssemblyError, Problem, ShapeError, SymofrosError, UnknownNameError
-from symofros.runtime import unit_quaternions
+from symofros.native import native_number
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
 from symofros.runtime.unit_quaternions import UNIT_TOLERANCE as UNIT_TOLERANCE
+from symofros.runtime.unit_quaternions import at_unit_length
 from symofros.simulation.analysis.kinematics.facing import refuse_opposite
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.options import SimulationOptions
@@ -25,7 +26,7 @@ from symofros.simulation.stepping.stepper import Stepper
 # reference models lose less than 1e-4, those at steps that are far too long more than 1e-2.
 LOSS_LIMIT = 0.01
 # Intervals of a run in which adaptive steps are looked into where next to nothing happens.
-LOOKS = 64
+LOOKS = native_number("stepping/quiet_steps.c", "SYM_LOOKS")
 # Gains of 20/s hold a loop through its singular posture (tests of the N-four-bar), and lose accuracy on long steps.
 _GAIN, _GAIN_STEP = 20.0, 0.5
 
@@ -52,6 +53,17 @@ def vector(model: Model, name: str, values: ArrayLike, size: int) -> Array:
             )
         )
     return array
+
+
+def first_configuration(model: Model, q0: ArrayLike | None) -> Array:
+    """The configuration (nq) that a motion starts from, its quaternions at unit length; neutral if not given.
+
+    Raises:
+        ShapeError: It is no finite vector of that size, or a quaternion is no rotation.
+    """
+    if q0 is None:
+        return model.neutral()
+    return at_unit_length(model.record, "q", vector(model, "q0", q0, model.nq), "q0")
 
 
 def _wrong(what: str, found: object, rule: str, remedy: str) -> SymofrosError:
@@ -229,19 +241,6 @@ def check_fit(model: Model, settings: Settings, inputs: InputPlan) -> None:
 MOST_RECORDS = 200_000_000
 # Beyond, a first state is a mistake and not what drift leaves.
 CLOSED = 1e-6
-
-
-def refuse_lengths(model: Model, q: Array) -> None:
-    """Refuse first configurations whose quaternions are no rotations; runs make those written in few digits unit ones.
-
-    Args:
-        model: Model.
-        q: Configurations (..., nq).
-
-    Raises:
-        ShapeError: With the coordinates of the one that is off most.
-    """
-    unit_quaternions.refuse_lengths(model.record, q)
 
 
 def check_start(model: Model, settings: Settings, q: Array, v: Array, u: Array, par: Array) -> None:

@@ -20,7 +20,7 @@ from symofros.simulation.prescribed_motions import contradiction, recorded_notes
 from symofros.simulation.progress import bar
 from symofros.simulation.results.examination.diagnosis import diagnose
 from symofros.simulation.results.trajectory import Found, Statistics, Trajectory
-from symofros.simulation.settings import Settings, check_fit, check_start, refuse_lengths, vector
+from symofros.simulation.settings import Settings, check_fit, check_start, first_configuration, vector
 from symofros.simulation.stepping.loops import run_own, run_sundials
 from symofros.simulation.stepping.stepper import Stepper
 
@@ -73,8 +73,7 @@ def simulate(
     values = model.parameter_values
     if par is not None:
         values = vector(model, "par", model.checked_parameters(par), model.npar)
-    q = model.neutral() if q0 is None else vector(model, "q0", q0, model.nq)
-    refuse_lengths(model, q)
+    q = first_configuration(model, q0)
     v = np.zeros(model.nv) if v0 is None else vector(model, "v0", v0, model.nv)
     looked_for = named_events(events)
     inputs = plan_inputs(model, u)

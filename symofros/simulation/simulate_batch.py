@@ -16,6 +16,7 @@ from symofros.errors import Problem, ShapeError, SymofrosError
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.calls.layout import flat
 from symofros.runtime.model import ArrayLike, Model
+from symofros.runtime.unit_quaternions import at_unit_length
 from symofros.simulation.analysis.kinematics.facing import facings
 from symofros.simulation.batch_inputs import Shape, sort_inputs
 from symofros.simulation.inputs import Inputs
@@ -28,7 +29,7 @@ from symofros.simulation.prescribed_motions import (
 )
 from symofros.simulation.results.examination.batch_examination import BatchExamination
 from symofros.simulation.results.trajectories import Trajectories
-from symofros.simulation.settings import CLOSED, Settings, refuse_lengths
+from symofros.simulation.settings import CLOSED, Settings
 from symofros.simulation.stepping.batch_stepper import BatchResults, BatchStepper, InitialStates, run_batch_steppers
 from symofros.simulation.stepping.methods import METHODS
 from symofros.simulation.stepping.status import Status
@@ -95,7 +96,7 @@ def simulate_batch(
         "v0": _rows(model, "v0", np.zeros(model.nv) if v0 is None else v0, model.nv),
         "par": _rows(model, "par", parameters, model.npar),
     }
-    refuse_lengths(model, rows["q0"])
+    rows["q0"] = at_unit_length(model.record, "q", rows["q0"], "q0")
     shape = _batch_shape(rows, given.shapes)
     n = math.prod(shape)
     count = min(count, max(n, 1))
@@ -193,8 +194,9 @@ def _contradiction(
         if sampled.isdisjoint((*rated.position, *rated.rate)):  # What stays has no rate.
             stated = initial.inputs.constant[:, list(rated.rate)]
             if np.nanmax(np.abs(stated), initial=0.0) > 0.0:
-                names, worst = model.names.u, float(stated.flat[int(np.nanargmax(np.abs(stated)))])
-                return Contradiction(names[rated.position[0]], names[rated.rate[0]], settings.t0, worst, 0.0)
+                names, (k, axis) = model.names.u, np.unravel_index(int(np.nanargmax(np.abs(stated))), stated.shape)
+                position, rate = names[rated.position[0]], names[rated.rate[axis]]
+                return Contradiction(position, rate, settings.t0, float(stated[k, axis]), 0.0)
     return contradiction(model, plan, lambda at: stepper.single.inputs_at(at, q, v), (settings.t0, settings.t_end))
 
 

@@ -40,6 +40,16 @@ MAKE: dict[str, Callable[[], Block]] = {
     "OrientationError": lambda: lib.OrientationError(name="b", kind="rotation_vector"),
     "Orientation": lambda: lib.Orientation(name="b", source="rotation_vector", target="axis_angle"),
 }
+# Blocks that have vectors (linear; angular) where the user asks for them.
+CHOSEN: dict[str, Block] = {
+    "perturbed": lib.ForwardDynamics(name="b", model="m", perturbed=("rod",)),
+    "extremities": lib.Extremities(name="b", model="m", frames=["rod", "crank"]),
+    **{f"transform of a {each}": lib.Transform(name="b", quantity=each) for each in ("velocity", "wrench")},
+    **{
+        f"frame transform of a {each}": lib.FrameTransform(name="b", model="m", source="rod", quantity=each)
+        for each in ("velocity", "wrench")
+    },
+}
 # Ports of these blocks are of what is connected or of what the user says; no other port may be without a unit.
 OF_THE_USER = {
     "Chirp", "Constant", "DeadZone", "Derivative", "Formula", "Gain", "Hold", "Integrator", "Join", "LookupTable",
@@ -76,6 +86,17 @@ def test_every_port_with_a_meaning_has_a_unit(name: str) -> None:
     for port in ports_of(MAKE[name]()):
         assert all(port.entry_units), f"{name}.{port.name}"
         assert len(port.units) in (0, (port.shape or (0,))[-1])
+
+
+@pytest.mark.parametrize("how", CHOSEN)
+def test_vectors_of_two_units_have_one_for_each_entry(how: str) -> None:
+    """All that are linear, then all that are angular."""
+    mixed = [port for port in ports_of(CHOSEN[how]) if port.shape and port.shape[-1] == 6]
+    assert mixed
+    for port in mixed:
+        linear, angular = port.units[:3], port.units[3:]
+        assert len(linear) == len(angular) == 3 and len(set(linear)) == len(set(angular)) == 1, f"{how}: {port.name}"
+        assert linear[0] != angular[0]
 
 
 def wired(controller: Block, units: dict[str, str], model: str = "") -> list[str]:

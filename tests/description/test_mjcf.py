@@ -17,6 +17,7 @@ from validation.mechanics.geometry import quaternion_matrix
 
 PENDULUM = '<body name="a"><joint name="q" axis="0 1 0"/><geom size="0.1" pos="1 0 0"/></body>'
 NOT_A_NUMBER = PENDULUM.replace('name="q"', 'name="q" armature="nan"')
+FLOOR = '<worldbody><geom type="plane" size="1 1 1"/></worldbody>'
 # Sums of some dozen products of doubles; measured: 2e-15 of the largest entry.
 ROUNDING = 1e-12
 STATES = 20
@@ -184,7 +185,7 @@ def test_rounded_numbers_are_made_exact_unless_asked_not_to(tmp_path: Path) -> N
         ('<tendon><fixed name="t"><joint joint="q" coef="1"/></fixed></tendon>', "<tendon> ignored: 1 element (t)"),
         ('<tendon><spatial name="t" stiffness="5"/></tendon>', "stiffness of <tendon> ignored: 1 tendon (t)"),
         ('<keyframe><key qpos="1"/></keyframe>', "<keyframe> ignored"),
-        ('<extension><plugin plugin="mujoco.pid"/></extension>', "contacts ignored"),
+        ('<extension><plugin plugin="mujoco.pid"/></extension>' + FLOOR, "contacts ignored"),
         ('<option density="1.2" viscosity="0.1"/>', "forces of the medium ignored"),
         ('<default><joint frictionloss="0.1"/></default>', "frictionloss ignored"),
         ('<default><joint range="-1 1"/></default>', "limits kept as data"),

@@ -10,7 +10,7 @@ import pytest
 
 import symofros as sf
 from symofros.description.yaml.files import read_yaml
-from tests.description.test_mjcf import STATES, Reference, close, write
+from tests.description.test_mjcf import FLOOR, STATES, Reference, close, write
 
 ARM = """
     <compiler angle="radian"/>
@@ -124,3 +124,33 @@ def test_a_coupling_measures_what_mujoco_s_measures(tmp_path: Path) -> None:
     q, v = model.random_state(np.random.default_rng(3))
     reference.at(q, v)
     close(model.constraint(q), reference.d.efc_pos[:1])
+
+
+HINGE = '<worldbody><body name="a"><joint name="q" axis="0 1 0" {}/><geom size="0.1" pos="1 0 0"/></body></worldbody>'
+
+
+@pytest.mark.parametrize(
+    ("attributes", "said"),
+    [
+        ('stiffness="1" springyield="0.5"', True),
+        ('stiffness="0 0 2" springyield="0.5"', True),
+        ('stiffness="1"', False),
+        ('springyield="0.5"', False),  # There is no spring to yield.
+    ],
+)
+def test_springs_that_yield_are_said_to_be_kept_from_it(tmp_path: Path, attributes: str, said: bool) -> None:
+    notes = sf.load(write(tmp_path, HINGE.format(attributes))).notes
+    assert notes == ("yield of springs ignored: 1 joint (q)",) * said
+
+
+@pytest.mark.parametrize(("compiler", "said"), [('<compiler settotalmass="5"/>', True), ("", False)])
+def test_what_mujoco_warns_of_is_a_note(tmp_path: Path, compiler: str, said: bool) -> None:
+    (*notes,) = sf.load(write(tmp_path, compiler + HINGE.format(""))).notes
+    assert [note.startswith("MuJoCo warns: 1 remark (compiler attribute") for note in notes] == [True] * said, notes
+
+
+@pytest.mark.parametrize(
+    "text", ["", '<default><geom contype="0"/></default>' + FLOOR, '<option><flag contact="disable"/></option>' + FLOOR]
+)
+def test_shapes_that_touch_nothing_bear_no_note(tmp_path: Path, text: str) -> None:
+    assert not sf.load(write(tmp_path, text + HINGE.format(""))).notes

@@ -229,6 +229,10 @@ def test_a_mesh_of_one_of_two_packages_is_left_out_in_words(tmp_path: Path) -> N
         (tmp_path / f"src/{folder}/a.stl").write_text("solid")
     system = sf.load(main)
     assert not system.visuals and any("src/one" in note and "src/two" in note for note in system.notes)
+    assert any("packages of one name, of which none is taken" in note for note in system.notes)
+    (tmp_path / "src/two/package.xml").unlink()
+    alone = sf.load(main)
+    assert alone.visuals and not any("of one name" in note for note in alone.notes)
 
 
 @pytest.mark.parametrize("folder", ["a\0b", "x" * 5000])

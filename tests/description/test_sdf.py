@@ -150,6 +150,17 @@ def test_visual_shapes_are_kept(tmp_path: Path) -> None:
 ONE = link("a", "", 1) + joint("q", "world", "a")
 
 
+def universal(first: str, second: str) -> str:
+    """A link on a universal joint, with what its two axes state."""
+    axes = AXIS.format(first) + f"<axis2><xyz>1 0 0</xyz>{second}</axis2>"
+    return link("a", "", 1) + joint("q", "world", "a", axes, "universal")
+
+
+def in_fluid(added: str) -> str:
+    """A link with the mass that a fluid adds to it."""
+    return ONE.replace("</inertial>", f"<fluid_added_mass>{added}</fluid_added_mass></inertial>")
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [
@@ -175,10 +186,32 @@ ONE = link("a", "", 1) + joint("q", "world", "a")
             ONE + link("b", '<pose rotation_format="quat_xyzw">0 0 0 0 0 1 1</pose>', 1),
             "quaternions that are no unit quaternions normalized: 1 pose (link 'b')",
         ),
+        (universal("<limit><lower>-1</lower></limit>", ""), "limits of universal joints ignored"),
+        (universal("", "<limit><effort>3</effort></limit>"), "limits of universal joints ignored"),
+        (universal("<limit><effort>0</effort></limit>", ""), "limits of universal joints ignored"),
+        (in_fluid("<xx>0.1</xx>"), "added mass of fluids ignored"),
     ],
 )
 def test_what_is_ignored_is_said(tmp_path: Path, text: str, said: str) -> None:
     assert said in "\n".join(load(tmp_path, document(text)).notes)
+
+
+NO_EFFORT = "<limit><effort>0</effort></limit>"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        ONE,
+        universal("", ""),
+        universal("<limit><lower>-1e16</lower><upper>inf</upper></limit>", "<limit/>"),
+        universal(NO_EFFORT, NO_EFFORT),
+        in_fluid(""),
+        in_fluid("<xx>0</xx><yz>0</yz>"),
+    ],
+)
+def test_nothing_is_said_where_nothing_is_ignored(tmp_path: Path, text: str) -> None:
+    assert not load(tmp_path, document(text)).notes
 
 
 @pytest.mark.parametrize(

@@ -99,6 +99,20 @@ def test_a_merged_model_refers_to_the_frame_that_stands_for_its_own(tmp_path: Pa
     np.testing.assert_allclose(model.frame_pose("_merged__wheel__model__", q)[0], (1.0, 0.0, 0.0), atol=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("inside", "said"),
+    [
+        ('<plugin name="p" filename="x"/>', "<plugin> of <include> ignored: 1 include (line 1)"),
+        ("<name>left</name><pose>0 0 1 0 0 0</pose><static>false</static>", ""),
+    ],
+)
+def test_what_an_include_states_in_vain_is_said(tmp_path: Path, inside: str, said: str) -> None:
+    held = '<joint name="j" type="ball"><parent>world</parent><child>w</child></joint>'
+    write(tmp_path / "wheel", WHEEL.format(link("w", "", 1) + held))
+    notes = sf.load(write(tmp_path / "cart", including(f"<uri>model://wheel</uri>{inside}"))).notes
+    assert notes == (said,) * bool(said)
+
+
 def test_models_are_found_below_beside_and_where_it_is_said(tmp_path: Path) -> None:
     wheel = WHEEL.format(link("w", "", 1))
     below = write(tmp_path / "below", including("<uri>parts/wheel</uri>"))

@@ -15,8 +15,9 @@ from symofros import blocks
 from symofros.diagrams.settings import RunSettings
 from tests.diagrams.parts import After, Ball, Counter, Hold, Lag, Number, Spoken, Wave, arm
 from tests.diagrams.run.test_runs import First, Given
-from tests.exports.cases import build
+from tests.exports.cases import build, run
 from tests.models import sampled
+from tests.pulses import SHAPES, cart
 
 MODELS = Path(__file__).parents[2] / "reference_models"
 
@@ -112,14 +113,27 @@ def test_the_program_tells_what_python_tells(case: str, tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     header, *rows = done.stdout.splitlines()
     told = np.array([[float(x) for x in row.split(",")] for row in rows])
-    run = sf.Simulation(diagram).run(1.1, dt=1e-3, record=0.05)
+    moved = sf.Simulation(diagram).run(1.1, dt=1e-3, record=0.05)
     if case != "ball":  # Whose crossings are recorded, too.
-        want = np.concatenate([np.asarray(run[name]).reshape(len(run.t), -1) for name in outputs], axis=1)
+        want = np.concatenate([np.asarray(moved[name]).reshape(len(moved.t), -1) for name in outputs], axis=1)
         assert header.split(",")[0] == "t" and len(header.split(",")) == 1 + want.shape[1]
-        assert np.abs(told[:, 0] - run.t).max() < 1e-12
+        assert np.abs(told[:, 0] - moved.t).max() < 1e-12
         assert np.abs(told[:, 1:] - want).max() < 1e-8 * max(1.0, np.abs(want).max())
     else:
-        assert told[-1, 2] == run["ball.bounces"][-1] == 2
+        assert told[-1, 2] == moved["ball.bounces"][-1] == 2
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_a_program_meets_the_pulses_of_a_models_formulas(shape: str, tmp_path: Path) -> None:
+    """However its run is cut: a part whose adaptive steps end at no instants stays at rest."""
+    force, impulse = SHAPES[shape]
+    diagram = sf.Diagram("cart")
+    diagram.add_model("plant", cart(force))
+    diagram.add(blocks.ForwardDynamics(name="plant", model="plant"))
+    program = build(sf.export(diagram, "c", tmp_path / "c", method="dopri5", dt=0.01).folder, "program")
+    for period in ("10", "0.1"):
+        last = run(program, "10", period, cwd=tmp_path).splitlines()[-1].split(",")
+        assert float(last[-1]) == pytest.approx(impulse, rel=1e-4), period
 
 
 NONSENSE = (

@@ -7,6 +7,9 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from symofros.expr.instants import InstantKind
+from symofros.runtime.calls.declarations import constants
+from symofros.runtime.instants import find_instants
 
 
 @pytest.fixture(scope="module")
@@ -63,3 +66,37 @@ def test_parameters_move_them_and_factors_of_the_state_do_not() -> None:
     assert cart.formula_instants([law], np.array([3.0]), 0.0, 10.0) == pytest.approx([3.0])
     assert cart.formula_instants([law], np.array([7.0]), 0.0, 10.0) == pytest.approx([7.0])
     assert len(cart.formula_instants([law], np.array([7.0]), 0.0, 5.0)) == 0
+
+
+def test_kinds_are_those_of_the_header() -> None:
+    assert {kind.name: kind.value for kind in InstantKind} == {
+        kind.name: constants()[f"SYM_INSTANT_{kind.name}"] for kind in InstantKind
+    }
+
+
+def test_operands_of_a_description_are_a_function_of_its_model() -> None:
+    """Inner ones first, each once; parameters move them."""
+    load = sf.Load(force=("max(0, 1 - abs(t - late)) + abs(t - late)", "exp(-t*late)", "1/(late - t) + abs(x)*sin(t)"))
+    slide = sf.Joint("x", "prismatic", axis=(1, 0, 0))
+    body = sf.RigidBody("b", slide, sf.Inertia(1.0, moments=(1, 1, 1)), loads=(load,))
+    system = sf.System("cart", (body,), parameters=(sf.Parameter("late", 3.0),))
+    for backend in ("interpreter", "c"):
+        model = sf.compile(system, sf.Options(functions=("instant_operands",), backend=backend))
+        operands, kinds = model.evaluate("instant_operands", t=2.5, par=[3.5])
+        np.testing.assert_allclose(np.abs(operands), [1.0, 0.0, 8.75, 1.0])
+        np.testing.assert_array_equal(kinds, [InstantKind.KINK, InstantKind.KINK, InstantKind.NARROW, InstantKind.END])
+
+
+def test_memory_of_a_search_grows_with_what_it_finds() -> None:
+    """More instants than a package's memory holds."""
+    teeth = find_instants([0, 0, 0], lambda i, t: np.sin((300 + 7 * i) * np.pi * t + 0.1), 0.0, 3.0)
+    assert len(teeth) > constants()["SYM_INSTANT_CAPACITY"]
+    np.testing.assert_array_equal(np.unique(teeth), teeth)
+
+
+def test_what_an_operand_raises_is_raised() -> None:
+    def fail(operand: int, t: np.ndarray) -> np.ndarray:
+        raise ArithmeticError(f"operand {operand}")
+
+    with pytest.raises(ArithmeticError, match="operand 0"):
+        find_instants([0], fail, 0.0, 1.0)

@@ -42,6 +42,7 @@ FUNCTIONS(DECLARE)
 static const external functions[] = {FUNCTIONS(LIST)};
 /* Entries of a pattern: dense by columns where its third number is 1, else rows of each column. */
 static WHOLE entries(const WHOLE *s) { return s[2] == 1 ? s[0] * s[1] : s[2 + s[1]]; }
+enum { BEHIND = 1000 }; /* numbers behind the scratch, which no function may write */
 int main(void) {
     size_t f;
     for (f = 0; f < sizeof functions / sizeof *functions; ++f) {
@@ -52,7 +53,8 @@ int main(void) {
         WHOLE *iw;
         if (each->work(guard + 1, guard + 2, guard + 3, guard + 4) || guard[0] != -7 || guard[5] != -7) return 1;
         in = calloc((size_t)guard[1] + 1, sizeof *in), out = calloc((size_t)guard[2] + 1, sizeof *out);
-        iw = calloc((size_t)guard[3] + 1, sizeof *iw), work = calloc((size_t)guard[4] + 1, sizeof *work);
+        iw = calloc((size_t)guard[3] + 1, sizeof *iw), work = calloc((size_t)guard[4] + BEHIND, sizeof *work);
+        for (k = 0; k < BEHIND; ++k) work[guard[4] + k] = -7.0;
         for (i = 0; i < each->n_in(); ++i) {
             const WHOLE n = entries(each->sparsity_in(i));
             double *x = calloc((size_t)n + 1, sizeof *x);
@@ -62,6 +64,8 @@ int main(void) {
         }
         for (i = 0; i < each->n_out(); ++i) out[i] = calloc((size_t)entries(each->sparsity_out(i)) + 1, sizeof **out);
         if (each->fun(in, out, iw, work, 0)) return 3;
+        for (k = 0; k < BEHIND; ++k)
+            if (work[guard[4] + k] != -7.0) return 4;
         for (i = 0; i < each->n_out(); ++i) {
             const WHOLE *s = each->sparsity_out(i), *colind = s + 2, *row = colind + s[1] + 1;
             WHOLE c, at = 0;

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 
 import pytest
 
 import symofros as sf
+from symofros.base.functions import FUNCTIONS
 from symofros.interop import rules
+from tests.models import model
 
 
 def test_importing_interop_loads_no_framework() -> None:
@@ -46,3 +49,14 @@ def test_prescribed_motions_are_refused() -> None:
     )
     with pytest.raises(sf.SymofrosError, match="prescribe motion"):
         rules.check_model(sf.compile(system))
+
+
+@pytest.mark.parametrize("function", rules.RULES)
+def test_what_second_derivatives_are_referred_to_is_there_and_of_the_same_function(function: str) -> None:
+    """The methods and functions that the remedy names are the model's."""
+    m = model("double_pendulum")
+    remedy = str(rules.second_derivatives(m, function))
+    assert re.findall(r"evaluate\('(\w+)'", remedy) == [f"{function}_hessian"]
+    assert f"{function}_hessian" in FUNCTIONS
+    others = [name for name in re.findall(r"model\.(\w+)\(", remedy) if name != "evaluate"]
+    assert others == [name for name in (f"{function}_hvp",) if hasattr(m, name)]

@@ -66,6 +66,16 @@ def test_single_precision_is_refused_in_words(dynamics: Any, model: sf.Model) ->
     q = torch.zeros(model.nv)
     with pytest.raises(sf.SymofrosError, match="float64 on the CPU"):
         dynamics.forward_dynamics(q, q, q)
+    q, v, u, par = tensors(model, 1, model.nu)
+    with pytest.raises(sf.SymofrosError, match=r"'par' can't be taken(.|\n)*par\.double\(\)"):
+        dynamics.forward_dynamics(q, v, u, par.float())
+
+
+@pytest.mark.parametrize("missing", ["q", "v", "u"])
+def test_only_parameters_may_be_left_to_the_model(dynamics: Any, model: sf.Model, missing: str) -> None:
+    given = dict(zip(("q", "v", "u"), tensors(model, 1, model.nu), strict=False)) | {missing: None}
+    with pytest.raises(sf.SymofrosError, match=f"'{missing}' can't be taken(.|\n)*NoneType"):
+        dynamics.forward_dynamics(given["q"], given["v"], given["u"])
 
 
 def test_loops_keep_their_constraints_in_the_derivatives() -> None:

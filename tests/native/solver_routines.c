@@ -63,12 +63,34 @@ static void slopes(const double *const *in, double *const *out, double *work) {
     for (i = 0; i < N; ++i) out[0][i * N + i] = -1.0;
 }
 
+/* More columns than the factors take: dR/dx and (omega . R)_zx of small whole numbers, (omega . R)_xx = 0. */
+enum { K_ = 60, OWN = 100 };
+
+static void many_slopes(const double *const *in, double *const *out, double *work) {
+    int i, j;
+    (void)in, (void)work;
+    for (i = 0; i < N + M_; ++i)
+        for (j = 0; j < K_; ++j) out[0][i * K_ + j] = (7 * i + 3 * j) % 5 - 2;
+}
+
+/* A function may write all of its own scratch, behind its results as well. */
+static void curvature(const double *const *in, double *const *out, double *work) {
+    int i, j;
+    (void)in;
+    memset(out[0], 0, K_ * K_ * sizeof(double));
+    for (i = 0; i < N + M_; ++i)
+        for (j = 0; j < K_; ++j) out[1][i * K_ + j] = (3 * i + 5 * j) % 7 - 3;
+    for (i = 0; i < OWN; ++i) work[i] = NAN;
+}
+
 int main(void) {
     const double q0[NQ] = {0.3, 0.1, -0.2}, v0[N] = {1, 2, 3}, none[1] = {0};
     const double *const in[5] = {none, q0, v0, none, none};
     const int columns[1] = {N};
     const double beside[NQ] = {1e-5, 0.1, -0.2}, still[N] = {0, 2, 3};
     const double *const at[6] = {none, beside, still, none, none, none};
+    const double *const weighed[7] = {none, q0, v0, none, none, FORCE, RIGHT};
+    static double hessian[K_ * K_];
     static const sym_form form = {N * N, M_ * N, sym_constrained, sym_row_sizes, sym_clear_row};
     double rank, gap, *results[3];
     sym_ranking ranking = sym_rank_anew(M_);
@@ -92,5 +114,9 @@ int main(void) {
     out[0] = derivative;
     sym_differentiate(N, M_, &MEASURES, 1, columns, dynamics_terms, slopes, in, out, work);
     print("derivative", (N + M_) * N, derivative), free(work);
+    work = scratch(SYM_HESSIAN_WORK(N, M_, K_) + SYM_KKT_SOLVE_WORK(N, M_, K_) + OWN);
+    out[0] = hessian;
+    sym_hessian(N, M_, K_, &MEASURES, dynamics_terms, many_slopes, curvature, weighed, out, work);
+    print("hessian", K_ * K_, hessian), free(work);
     return 0;
 }

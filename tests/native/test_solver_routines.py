@@ -68,6 +68,14 @@ def test_derivatives_of_accelerations_and_multipliers_solve_the_kkt_system(resul
     np.testing.assert_allclose(derivative, np.linalg.solve(KKT, -slopes), rtol=0, atol=1e-13)
 
 
+def test_second_derivatives_of_many_columns_are_made_of_first_ones(results: dict[str, np.ndarray]) -> None:
+    """H = B^T z_x + z_x^T B where R_xx = 0. Functions may write all of their scratch, which holds nothing else then."""
+    row, column = np.arange(5)[:, None], np.arange(60)
+    slopes, mixed = (7 * row + 3 * column) % 5 - 2, (3 * row + 5 * column) % 7 - 3  # As in the driver.
+    half = mixed.T @ np.linalg.solve(KKT, -slopes)
+    np.testing.assert_allclose(results["hessian"].reshape(60, 60), half + half.T, rtol=0, atol=1e-12)
+
+
 def test_beside_the_constraints_the_rank_is_that_on_them(results: dict[str, np.ndarray]) -> None:
     """q0 = 0 and q0 (1 + q1) = 0 repeat each other where they hold, and leave q1 free there."""
     assert results["motion_rank"] == 1

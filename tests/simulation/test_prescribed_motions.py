@@ -91,6 +91,15 @@ def test_one_trajectory_of_a_batch_is_enough() -> None:
         sf.simulate_batch(crane(), np.zeros((3, 1)), t_end=1.0, u={"dth": np.array([0.0, 0.3, 0.0])})
 
 
+@pytest.mark.parametrize("axis", "xyz")
+def test_the_rate_that_is_named_is_the_one_that_is_stated(axis: str) -> None:
+    """Of an angular velocity: by single runs and by batches, where one trajectory states it."""
+    for simulate, stated in ((sf.simulate, 0.3), (sf.simulate_batch, np.array([0.0, 0.3]))):
+        q0 = np.zeros(1) if simulate is sf.simulate else np.zeros((2, 1))
+        with pytest.raises(sf.SymofrosError, match=rf"'j\.w{axis}' is 0\.3, and 'j\.qx' changes at 0"):
+            simulate(turned(), q0, t_end=1.0, u={f"j.w{axis}": stated})
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_angular_velocities_belong_to_their_quaternions(seed: int) -> None:
     """About a random axis at a random speed, and with another speed."""

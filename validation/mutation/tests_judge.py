@@ -31,22 +31,52 @@ _BEAM_LIMITS = (
 _MIRRORS = {
     "symofros/native/model": (
         "tests/mechanics/dynamics/constraints",
+        "tests/native/test_solver_routines.py",
         "tests/generator/codegen",
         "tests/native",
         "tests/mechanics/dynamics/forward",
     ),
     "symofros/native/stepping": ("tests/simulation/stepping", "tests/simulation", "tests/native"),
-    # What packages alone call.
+    "symofros/native/stepping/input_moments.c": ("tests/simulation/stepping", "tests/simulation/test_within_steps.py"),
+    # What packages and frameworks alone call.
     "symofros/native/stepping/instance.c": ("tests/exports/c/test_c_package.py", "tests/exports/fmi/test_fmu.py"),
     "symofros/native/stepping/linearize.c": ("tests/exports/fmi/test_fmu.py",),
+    "symofros/native/interop": ("tests/interop", "tests/interop/test_casadi.py"),
     # What judges the bending of beams, by tables of the generator.
     "symofros/native/stepping/beams.c": _BEAM_LIMITS,
     "symofros/native/stepping/axial_loads.c": _BEAM_LIMITS,
     "symofros/generator/beams.py": (*_BEAM_LIMITS, "tests/mechanics/beams/test_rod_services.py"),
-    "symofros/native/diagrams": ("tests/diagrams/run", "tests/blocks/generic", "tests/diagrams/program"),
+    "symofros/native/diagrams": (
+        "tests/diagrams/run",
+        "tests/diagrams/run/test_runs.py",
+        "tests/diagrams/run/test_crossings.py",
+        "tests/blocks/generic",
+        "tests/diagrams/program",
+    ),
+    # Tests of what a user asks for, which have the names of the answers.
+    "symofros/description/yaml": ("tests/description", "tests/description/test_files.py"),
+    "symofros/description/urdf": (
+        "tests/description",
+        "tests/description/test_urdf_kinds.py",
+        "tests/description/test_packages.py",
+    ),
+    "symofros/diagrams/run/simulate.py": (
+        "tests/diagrams/run",
+        "tests/diagrams/run/test_runs.py",
+        "tests/diagrams/run/examination/test_controllers.py",
+    ),
+    "symofros/mechanics/topology/beams.py": (
+        "tests/mechanics/topology",
+        "tests/mechanics/topology/test_beams.py",
+        "tests/mechanics/beams/test_coupled_sections.py",
+    ),
+    "symofros/runtime/manifold.py": ("tests/runtime", "tests/simulation/analysis/test_rollout.py"),
+    "symofros/runtime/methods/identification.py": ("tests/runtime", "tests/simulation/analysis/test_regressor.py"),
+    "symofros/simulation/simulate_batch.py": ("tests/simulation", "tests/simulation/test_prescribed_motions.py"),
 }
 # What watches the whole of the mechanics, of motions.
 _GENERAL = {
+    "symofros/blocks": ("tests/blocks/test_units.py", "tests/blocks/test_models.py"),
     "symofros/mechanics": ("tests/identities/test_dynamics.py", "tests/identities/test_frames.py"),
     "symofros/expr": ("tests/identities/test_dynamics.py", "tests/generator/codegen/test_c_equals_interpreter.py"),
     "symofros/generator": ("tests/generator/codegen/test_c_equals_interpreter.py",),

@@ -173,5 +173,5 @@ class JointReader:
         if m.jnt_limited[j]:
             what = "limits of ball joints ignored" if m.jnt_type[j] == BALL else "limits kept as data, without a stop"
             self.remarks.add(what, "joint", name)
-        if m.jnt_springyield[j]:
+        if m.jnt_springyield[j] and (m.jnt_stiffness[j] or np.any(m.jnt_stiffnesspoly[j])):
             self.remarks.add("yield of springs ignored", "joint", name)

@@ -22,7 +22,7 @@ from symofros.description.remarks import Remarks
 from symofros.description.system import Inertia, RigidBody, System
 from symofros.errors import DescriptionError
 
-_NO_GRAVITY = 1 << 7  # mjDSBL_GRAVITY
+_NO_CONTACTS, _NO_GRAVITY = 1 << 4, 1 << 7  # mjDSBL_CONTACT, mjDSBL_GRAVITY
 
 
 @dataclass(frozen=True)
@@ -152,9 +152,15 @@ class Importer:
 
     def _remark_ignored(self) -> None:
         m = self.model
-        for g in range(m.ngeom):
+        for g in (g for g in range(m.ngeom) if self._touches(g)):
             self.remarks.add(
                 "contacts ignored, shapes count by their inertia only", "shape", m.geom(g).name or f"geom{g}"
             )
         if m.opt.density or m.opt.viscosity:
             self.remarks.add("forces of the medium ignored", "option", "density, viscosity")
+
+    def _touches(self, g: int) -> bool:
+        """Whether MuJoCo looks for contacts of a shape with one of another body, by the bits of both."""
+        m = self.model
+        ours = (m.geom_contype & m.geom_conaffinity[g]) | (m.geom_conaffinity & m.geom_contype[g])
+        return not m.opt.disableflags & _NO_CONTACTS and bool(np.any(ours[m.geom_bodyid != m.geom_bodyid[g]]))

@@ -146,7 +146,10 @@ class JointReader:
         limits = [self._limits(joint, axis) for axis in axes]
         if kind == "revolute" and limits[0] == Limits(None, None, limits[0].velocity, limits[0].effort):
             kind = "continuous"
-        if kind == "universal" and any(axis.first("limit") for axis in axes):
+        # Where no axis has an effort the joint is not actuated, which tells their bounds.
+        actuated = not self._mimics(joint) and any(bound.effort != 0.0 for bound in limits)
+        kept = Limits(effort=None if actuated else 0.0)
+        if kind == "universal" and any(bound not in (Limits(), kept) for bound in limits):
             self.values.remarks.add("limits of universal joints ignored", "joint", joint.name)
         made = Joint(
             joint.name,
@@ -156,7 +159,7 @@ class JointReader:
             position,
             rotation,
             directions[0],
-            actuated=not self._mimics(joint) and any(bound.effort != 0.0 for bound in limits),
+            actuated=actuated,
             limits=limits[0] if kind != "universal" else None,
             axis2=directions[-1] if kind == "universal" else (0.0, 1.0, 0.0),
             pitch=self._pitch(joint) if kind == "screw" else 0.0,

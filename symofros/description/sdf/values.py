@@ -160,7 +160,8 @@ class SdfValues(Values):
                 "inertias are stated",
                 "run `gz sdf --print --expand-auto-inertials` on the file",
             )
-        if element.first("fluid_added_mass"):
+        added = element.first("fluid_added_mass")
+        if added and any(self.one(added, child.tag, owner, 0.0) for child in added.children):
             self.remarks.add("added mass of fluids ignored", "link", name)
         matrix = element.first("inertia") or Element("inertia", {}, element.line)
         moments = tuple(self.one(matrix, tag, owner, default) for tag, default in _MOMENTS)

@@ -143,7 +143,10 @@ class JointMaker:
             turned = Pose(np.zeros(3), _with_z(np.eye(3)[joint.axis]))
             own, other = own @ turned, other @ turned
             position, rotation = self.exact.placement(own.p, own.R)
-            return Joint(joint.name, kind, parent, None, position, rotation), other.inverse()
+            if self._armature(joint):
+                self.remarks.add("armature of planar joints ignored", "joint", joint.name)
+            elements = tuple(self._elements(joint, 3))
+            return Joint(joint.name, kind, parent, None, position, rotation, elements=elements), other.inverse()
         R = own.R @ other.R.T
         axis = self.exact.direction(other.R @ e)
         if kind in ("fixed", "prismatic"):  # A shift is the same wherever it is anchored.
@@ -160,6 +163,7 @@ class JointMaker:
                 None,
                 position,
                 rotation,
+                elements=tuple(self._elements(joint, 3)) if kind == "ball" else (),
                 armature=self._armature(joint) if kind == "ball" else 0.0,
             )
             return made, held

@@ -107,7 +107,9 @@ class Masses:
                 )
             )
             return None
-        self.remarks.add("masses or moments of inertia taken from collision shapes, as UsdPhysics has it", "body", name)
+        self.remarks.add(
+            "masses, centres or moments of inertia taken from collision shapes, as UsdPhysics has it", "body", name
+        )
         whole = _together([extent.times(self._density(body, shape, extent)) for shape, extent in parts])
         if mass is not None:
             whole = whole.times(mass * self.units.kilograms / whole.size)

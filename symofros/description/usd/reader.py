@@ -188,10 +188,6 @@ class _Importer:
             if motion[0] == "none":
                 self.remarks.add("joints that bind nothing ignored", "joint", name)
                 continue
-            if row["kind"] == "spherical" and any(
-                row["extensions"].get(key) is not None for key in ("newton:friction", "newton:damping")
-            ):
-                self.remarks.add("friction and damping of ball joints ignored", "joint", name)
             if motion[0] in ("ball", "cylindrical", "planar"):
                 self._remark_several(row, name)
             frames = (self._frame(row, "0", ends[0]), self._frame(row, "1", ends[1]))

@@ -18,13 +18,13 @@ from symofros.diagrams.program.lowered_block import Piece, piece_of
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.wiring import Source, Wired, located, wire
 from symofros.errors import CompileError, DescriptionError, Problem
-from symofros.expr.instants import formula_instants
 from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.program import Program
 from symofros.generator.beams import beams_at
 from symofros.generator.codegen.interpreted import InterpretedUnit
 from symofros.generator.codegen.model import model_source
 from symofros.generator.codegen.names import identifier
+from symofros.generator.instants import formula_instants
 from symofros.generator.passes import run_passes
 from symofros.native import native_text
 from symofros.runtime.beams import ElasticBeam

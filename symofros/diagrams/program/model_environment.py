@@ -33,6 +33,7 @@ from symofros.mechanics.topology.tree import SpanningTree, build_tree
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord
+from symofros.runtime.unit_quaternions import at_unit_length
 from symofros.simulation.analysis.kinematics.starts import closed_start, stated_names
 from symofros.simulation.analysis.state_space import StateSpace, state_space
 
@@ -142,7 +143,7 @@ class Models:
             else:
                 speed = speed_of(key, record.v_names) or key
                 v[self._index(name, "coordinate or speed", speed, record.v_names)] = value
-        return q, v
+        return at_unit_length(record, "q", q, "the start"), v
 
     def energies(self, name: str, options: Options) -> Model:
         """A model of a mechanism that has its energies only."""

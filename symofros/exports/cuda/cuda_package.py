@@ -17,6 +17,7 @@ from symofros.exports.functions import NamedFunction, cell, functions_table, nam
 from symofros.exports.limits import joints_of, limits_note
 from symofros.generator.codegen.cuda import device_code
 from symofros.generator.codegen.names import identifier
+from symofros.generator.instants import has_instants
 from symofros.native import header_files, native_text
 from symofros.runtime.calls.kernel import Precision
 from symofros.runtime.cuda.device_code import DeviceCode
@@ -101,6 +102,11 @@ def _notes(made: Compilation, left_out: Sequence[str]) -> tuple[str, ...]:
         )
     if any(isinstance(body, Beam) and body.modes for body in made.system.bodies):
         notes.append("rollouts do not judge how far beams bend, as sf.simulate does: judge their records")
+    if has_instants(made.tree):
+        notes.append(
+            "formulas of time bend, jump or are narrow at instants within steps of rollouts, which end at none of them:"
+            " what is shorter than a step may pass unseen"
+        )
     return tuple(notes)
 
 

@@ -23,6 +23,12 @@ from symofros.runtime.cuda.device_code import BLOCK, DeviceCode, DeviceKernel
 from symofros.runtime.record import ModelRecord
 
 _REAL: dict[Precision, str] = {"double": "double", "single": "float"}
+# A hand-written function of the device with the comment above it.
+_FUNCTION = re.compile(
+    r"(?:^/\*(?:(?!\*/).)*\*/\n)?^static __device__ [^;{}()]*\b(?P<name>sym_\w+)\([^;{}]*\) "
+    r"\{(?:[^\n]*\}\n|\n.*?^\}\n)\n?",
+    re.MULTILINE | re.DOTALL,
+)
 _STATIC = re.compile(r"^static ", re.MULTILINE)
 _DECIMAL = re.compile(r"(?<![\w.])\d+(?:\.\d+(?:e[-+]?\d+)?|e[-+]?\d+)(?![\w.])")
 # Methods that roll out, by their names in sf.simulate.
@@ -71,13 +77,23 @@ def device_code(
         texts.append(_on_device(_rollout(name, record, functions, precision)))
         rollouts = {method: f"{name}_rollout_{suffix}" for method, suffix in ROLLOUTS.items()}
     prepare = InterpretedKernel(program, program.functions[0]).prepare
-    whole = "\n\n".join([_on_device(head), *texts])
+    whole = _with_called_functions("\n\n".join([_on_device(head), *texts]))
     return DeviceCode(whole, precision, tuple(kernels), rollouts, prepare)
 
 
 def _on_device(text: str) -> str:
     """C text as functions of the device; constants within functions stay as they are."""
     return _STATIC.sub("static __device__ ", text)
+
+
+def _with_called_functions(text: str) -> str:
+    """The text without functions that nothing calls, of which nvcc warns, unlike compilers of C of inline ones."""
+    while True:
+        unused = [match for match in _FUNCTION.finditer(text) if text.count(f"{match['name']}(") == 1]
+        if not unused:
+            return text
+        for match in reversed(unused):
+            text = text[: match.start()] + text[match.end() :]
 
 
 def _called(texts: Iterable[str]) -> list[str]:

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 from symofros.base.functions import FUNCTIONS, INPUTS, ModelFunction, OutputArray, size_of
 from symofros.base.model_function import cotangents
 from symofros.expr.edges import ONE, ZERO, Edge
+from symofros.expr.instants import operands_function
 from symofros.expr.packs.pack import WIDTH
 from symofros.expr.program import Function, Output, Program, Solver
 from symofros.expr.substitute import substitute
@@ -22,6 +23,7 @@ from symofros.mechanics.dynamics.derivatives.hessians import hessian, stacked
 from symofros.mechanics.dynamics.derivatives.second_derivatives import hessian_vector_product, second_derivatives
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.dynamics.frame_equations import FrameEquations
+from symofros.mechanics.topology.formulas import timed_values
 from symofros.mechanics.topology.limbs import equal_limbs
 from symofros.mechanics.topology.tree import prescribed_speeds, section_names
 
@@ -299,6 +301,12 @@ def _beam_stiffness(e: Equations, row: ModelFunction, methods: Methods, known: M
     return Function(row.name, "", row.inputs, outputs)
 
 
+def _instant_operands(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[str, int]) -> Function:
+    """What is asked for instants at which steps end: of the description's own formulas of time."""
+    lower = e.kinematics.lowering.value
+    return operands_function(row.name, e.g, [lower(value) for value in timed_values(e.tree.system)])
+
+
 def _mass_matrix_values(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[str, int]) -> Function:
     """The entries of M that are not zero in every state, of the lower triangle."""
     values = [e.M[i][j] for i, j in _mass_pattern(e)]
@@ -370,4 +378,5 @@ _BUILDERS: dict[str, _Builder] = {
     "rest_forces": _rest_forces,
     "rest_damping": _rest_damping,
     "beam_stiffness": _beam_stiffness,
+    "instant_operands": _instant_operands,
 }

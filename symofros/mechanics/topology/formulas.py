@@ -72,6 +72,11 @@ _GIVEN_LENGTH = (
 )
 
 
+def timed_values(system: System) -> tuple[Value, ...]:
+    """The values of a description that depend on time."""
+    return tuple(stated.value for stated in stated_values(system) if TIME in symbols(stated.value))
+
+
 def stated_values(system: System) -> Iterator[Stated]:
     """Every value of a description."""
     for value in system.gravity:

@@ -7,14 +7,14 @@ from functools import partial
 
 from symofros.description.forces import Friction
 from symofros.description.system import System
-from symofros.description.values import Term, Value
+from symofros.description.values import Value
 from symofros.errors import Problem
 from symofros.mechanics.topology.conditions import Condition
 from symofros.mechanics.topology.numbers import Numbers
 
 
 def friction_conditions(system: System) -> Iterator[Condition]:
-    """Speeds that smooth friction are positive, and friction at the onset of motion is not below that at speed."""
+    """Speeds that smooth friction are positive."""
     for body in system.bodies:
         if body.joint is None:
             continue
@@ -29,9 +29,6 @@ def _conditions_of(friction: Friction, what: str, where: str) -> Iterator[Condit
         value = getattr(friction, label)
         if value is not None:
             yield Condition((value,), "positive", partial(_not_positive, f"{what} {label}", value, where))
-    if friction.static is not None:
-        margin = (Term(friction.static) - Term(friction.dynamic)).value
-        yield Condition((margin,), "not negative", partial(_rises, friction, what, where))
 
 
 def _not_positive(what: str, value: Value, where: str, numbers: Numbers) -> Problem:
@@ -40,17 +37,5 @@ def _not_positive(what: str, value: Value, where: str, numbers: Numbers) -> Prob
         f"'{value}'",
         "friction is smoothed, and falls, over a speed above zero",
         "give a speed that is small beside those of interest, such as 0.001",
-        where,
-    )
-
-
-def _rises(friction: Friction, what: str, where: str, numbers: Numbers) -> Problem:
-    assert friction.static is not None
-    static, dynamic = numbers.value(friction.static), numbers.value(friction.dynamic)
-    return Problem(
-        f"{what} rises with speed, from static to dynamic",
-        f"static {static:g}, dynamic {dynamic:g}",
-        "static, the maximum of dry friction, is not below dynamic, its value at speed",
-        "exchange them, or leave static out where both are alike; friction that grows with speed is viscous",
         where,
     )

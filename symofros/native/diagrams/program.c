@@ -165,17 +165,35 @@ SYM_EXPORT sym_program_instance *sym_program_init(void *memory, size_t size, con
     return instance;
 }
 
+/* Find the instants of formulas of time at which adaptive steps of the parts end. Returns up to when, at most t, they are
+ * known of all. */
+static double sym_program_find_stops(sym_program_instance *instance, double t) {
+    double known = t;
+    int32_t i;
+    for (i = 0; i < instance->program->n_parts; ++i) {
+        sym_instance *part = instance->parts[i];
+        double of_part;
+        if (!part->run.adaptive) continue;
+        sym_instance_look(part, sym_instance_span(part, part->run.t, t));
+        of_part = sym_instance_find_stops(part, part->run.t, t);
+        if (of_part < known) known = of_part;
+    }
+    return known;
+}
+
 SYM_EXPORT int32_t sym_program_advance(sym_program_instance *instance, double t) {
     sym_diagram *d = &instance->diagram;
-    int32_t i, status = SYM_RUNNING;
+    int32_t i, status = SYM_FINISHED;
     for (i = 0; i < instance->program->n_parts; ++i)
         if (instance->parts[i]->refused >= 0) return SYM_PARAMETERS_REFUSED;
-    d->t_end = t, d->finished = 0;
-    while (status == SYM_RUNNING || status == SYM_RECORDS_FULL) {
+    do {
+        d->t_end = sym_program_find_stops(instance, t), d->finished = 0;
+        do {
+            d->n_records = d->n_event_records = 0;
+            status = sym_diagram_advance(d, 1);
+        } while (status == SYM_RUNNING || status == SYM_RECORDS_FULL);
         d->n_records = d->n_event_records = 0;
-        status = sym_diagram_advance(d, 1);
-    }
-    d->n_records = d->n_event_records = 0;
+    } while (status == SYM_FINISHED && d->t_end < t);
     if (status != SYM_FINISHED) return status;
     status = sym_program_update_signals(instance);
     return status == 0 ? SYM_FINISHED : status;

@@ -149,8 +149,9 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *info) {
     fmu *f = c;
     ALLOWED(!f->cosim && f->phase == FMU_EVENT);
     info->newDiscreteStatesNeeded = info->terminateSimulation = info->nominalsOfContinuousStatesChanged = fmi2False;
-    info->valuesOfContinuousStatesChanged = info->nextEventTimeDefined = fmi2False;
+    info->valuesOfContinuousStatesChanged = fmi2False;
     info->nextEventTime = 0.0;
+    info->nextEventTimeDefined = fmu_next_event(f, &info->nextEventTime) ? fmi2True : fmi2False;
     return fmi2OK;
 }
 

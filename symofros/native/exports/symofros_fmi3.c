@@ -173,8 +173,9 @@ fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean *again, fmi3Bool
                                     fmi3Boolean *states, fmi3Boolean *has_next, fmi3Float64 *next) {
     fmu *f = c;
     ALLOWED(f->phase == FMU_EVENT);
-    *again = *terminate = *nominals = *states = *has_next = fmi3False;
+    *again = *terminate = *nominals = *states = fmi3False;
     *next = 0.0;
+    *has_next = fmu_next_event(f, next) ? fmi3True : fmi3False;
     return fmi3OK;
 }
 

@@ -200,30 +200,27 @@ static int fmu_set(fmu *f, size_t reference, double value) {
     return FMU_OK;
 }
 
-/* Whether the start quaternions are rotations; they are of unit length afterwards. */
-static int fmu_normalise_start(fmu *f) {
-    const sym_plant *plant = f->instance->plant;
-    int32_t k, i;
-    for (k = 0; k < plant->n_segments; ++k) {
-        const sym_segment *segment = &plant->segments[k];
-        double *p = f->instance->q + segment->q + (segment->kind == SYM_SEGMENT_POSE ? 3 : 0), length;
-        if (segment->kind == SYM_SEGMENT_LINEAR) continue;
-        if (!sym_is_rotation(p, &length)) return 0;
-        for (i = 0; i < 4; ++i) p[i] /= length;
-    }
-    return 1;
-}
-
 static int fmu_initialise(fmu *f) {
     int status = fmu_prepare(f);
     if (status != FMU_OK) return status;
-    if (!fmu_normalise_start(f)) return FMU_NO_ROTATION;
     f->rates_valid = 0;
-    if (sym_instance_project(f->instance) != 0) return FMU_SINGULAR;
+    status = sym_instance_project(f->instance);
+    if (status != 0) return status == SYM_NO_ROTATION ? FMU_NO_ROTATION : FMU_SINGULAR;
     status = fmu_refresh(f);
     if (status != FMU_OK) return status;
     f->phase = f->cosim ? FMU_STEPPING : FMU_EVENT;
     return FMU_OK;
+}
+
+/* Begin to integrate from the present time, in Model Exchange: whether the importer has to stop somewhere since a formula of time
+ * bends, jumps or changes fast there, or since instants are not known beyond -> *next. */
+static int fmu_next_event(fmu *f, double *next) {
+    sym_instance *instance = f->instance;
+    const double t = instance->t, end = f->has_stop ? f->stop : t + 0.5 * sym_instance_span(instance, t, t);
+    if (instance->operands.function == NULL || fmu_prepare(f) != FMU_OK || !(end > t)) return 0;
+    *next = sym_instance_begin_step(instance, end);
+    f->rates_valid = 0; /* those of a step that begins here */
+    return *next < end || !f->has_stop;
 }
 
 /* Estimated error of the beams' theory from which the log says so. */

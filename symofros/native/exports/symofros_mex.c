@@ -296,7 +296,10 @@ static void simulate(int nlhs, mxArray **plhs, int count, const mxArray *const *
     for (k = 0; k < n; ++k) {
         if (k > 0) {
             const double next = span[0] + (double)k * span[2];
-            if (sym_instance_advance(instance, next < span[1] ? next : span[1], span[2]) != SYM_FINISHED)
+            const int32_t status = sym_instance_advance(instance, next < span[1] ? next : span[1], span[2]);
+            if (status == SYM_NO_ROTATION)
+                refuse("rotation", "X or U holds a quaternion that is no rotation", "its length is 1, to 1e-3");
+            if (status != SYM_FINISHED)
                 refuse("motion", "the motion ends early", "accelerations exist and are finite, and loops can be closed");
         }
         t[k] = instance->t;

@@ -47,8 +47,8 @@ export class Model {
     throw new RangeError(`no function '${name}'${frame ? ` of frame '${frame}'` : ""}; there are: ${names}`);
   }
 
-  /** Evaluate a function of one state. `inputs`: arrays by name; t, u and others that are left out are zero. Returns
-   *  the outputs by name, as copies. */
+  /** Evaluate a function of one state. `inputs`: arrays by name; t, u and others that are left out are zero; quaternions
+   *  are of unit length, which is not looked at. Returns the outputs by name, as copies. */
   evaluate(name, inputs = {}, frame = null) {
     const f = this.find(name, frame), call = this.#call(f, 1);
     this.#fill(f, call, inputs, 1);
@@ -220,7 +220,7 @@ export class Instance {
       throw new RangeError(`refused: ${this.model.text(this.model.wasm.js_refused(this.at))}`);
   }
 
-  /** Bring the state onto the constraints. */
+  /** Bring the state onto the constraints, and quaternions near unit length to it. */
   project() { this.#check(this.model.wasm.js_project(this.at), "project"); }
 
   /** Accelerations `a` and multipliers `lam` at the present state. */
@@ -229,7 +229,7 @@ export class Instance {
   /** Simulate to `tEnd` [s] by steps of at most `dt` [s]; by default that of the export. */
   advance(tEnd, dt = 0) { this.#check(this.model.wasm.js_advance(this.at, tEnd, dt), "advance"); }
 
-  /** A function of the model at the present state. */
+  /** A function of the model at the present state, whose quaternions are of unit length: `project()`, `advance()`. */
   evaluate(name, frame = null) {
     // Copies: views of memory end where it grows.
     const [q, v, u, a] = [this.q, this.v, this.u, this.a].map((x) => x.slice()), inputs = { q, v, u, a, t: this.t };

@@ -2,7 +2,8 @@
  *
  * Call(eval, work, inputs, outputs, pre) is made by symofros/runtime/calls/single.py, which states what each is. A call
  * takes a dict of the inputs by name and gives a list of the outputs, or None where an input is no array of float64 of
- * the expected length, or a time no float: such calls are made elsewhere, and refused or converted there.
+ * the expected length, a time no float, or a quaternion not of unit length: such calls are made elsewhere, and refused
+ * or converted there. Call.are_unit looks at the quaternions of a batch. SYM_UNIT_ROUNDING is defined before this text.
  */
 #define PY_SSIZE_T_CLEAN
 #include <Python.h>
@@ -21,6 +22,8 @@ typedef struct {
     PyObject *fallback; /* what None stands for, an array; or NULL */
     npy_intp size;      /* -1 for the time, a number */
     double *copy;       /* where numbers go that do not lie in a row */
+    Py_ssize_t n_quaternions;
+    npy_intp *quaternions; /* first index of each */
 } input;
 
 typedef struct {
@@ -41,8 +44,15 @@ typedef struct {
     PyObject *kept; /* arguments that C points into */
 } call_object;
 
+static double squared_length(const double *p, npy_intp step) {
+    return p[0] * p[0] + p[step] * p[step] + p[2 * step] * p[2 * step] + p[3 * step] * p[3 * step];
+}
+
+/* Whether that is no unit quaternion's. What is no number goes through to what depends on it. */
+static int is_off(double squared) { return squared > 1.0 + SYM_UNIT_ROUNDING || squared < 1.0 - SYM_UNIT_ROUNDING; }
+
 /* The numbers of an array, in a row; NULL where it is not as expected. */
-static const double *numbers(const input *of, PyObject *value) {
+static const double *row_of(const input *of, PyObject *value) {
     PyArrayObject *array;
     npy_intp i, stride;
     const char *at;
@@ -60,6 +70,15 @@ static const double *numbers(const input *of, PyObject *value) {
     stride = PyArray_STRIDE(array, 0);
     for (i = 0; i < of->size; ++i) memcpy(of->copy + i, at + i * stride, sizeof(double));
     return of->copy;
+}
+
+/* The same, with quaternions of unit length. */
+static const double *numbers(const input *of, PyObject *value) {
+    const double *row = row_of(of, value);
+    Py_ssize_t k;
+    for (k = 0; row != NULL && k < of->n_quaternions; ++k)
+        if (is_off(squared_length(row + of->quaternions[k], 1))) row = NULL;
+    return row;
 }
 
 static PyObject *call(PyObject *callable, PyObject *const *args, size_t nargsf, PyObject *kwnames) {
@@ -113,6 +132,7 @@ static void release(call_object *self) {
     for (i = 0; self->in && i < self->n_in; ++i) {
         Py_CLEAR(self->in[i].name);
         Py_CLEAR(self->in[i].fallback);
+        PyMem_Free(self->in[i].quaternions);
     }
     Py_CLEAR(self->kept);
     PyMem_Free(self->in);
@@ -123,14 +143,38 @@ static void release(call_object *self) {
     Py_TYPE(self)->tp_free((PyObject *)self);
 }
 
-/* Inputs (name, length or -1 for the time, array in place of None or None) and outputs (length, ...). */
+/* First indices of quaternions, a tuple. */
+static int describe_quaternions(input *of, PyObject *places) {
+    Py_ssize_t k;
+    of->n_quaternions = PyTuple_GET_SIZE(places);
+    of->quaternions = PyMem_Calloc((size_t)of->n_quaternions + 1, sizeof(npy_intp));
+    if (of->quaternions == NULL) {
+        PyErr_NoMemory();
+        return -1;
+    }
+    for (k = 0; k < of->n_quaternions; ++k) {
+        of->quaternions[k] = PyLong_AsSsize_t(PyTuple_GET_ITEM(places, k));
+        if (of->quaternions[k] == -1 && PyErr_Occurred()) return -1;
+        if (of->quaternions[k] < 0 || of->quaternions[k] > of->size - 4) {
+            PyErr_SetString(PyExc_ValueError, "a quaternion lies within its input");
+            return -1;
+        }
+    }
+    return 0;
+}
+
+/* Inputs (name, length or -1 for the time, array in place of None or None, first indices of quaternions) and outputs
+ * (length, ...). */
 static int describe(call_object *self, PyObject *inputs, PyObject *outputs, Py_ssize_t work) {
     Py_ssize_t i, k, doubles = work;
     for (i = 0; i < self->n_in; ++i) {
-        PyObject *name, *fallback;
-        if (!PyArg_ParseTuple(PyTuple_GET_ITEM(inputs, i), "UnO", &name, &self->in[i].size, &fallback)) return -1;
+        PyObject *name, *fallback, *places;
+        if (!PyArg_ParseTuple(PyTuple_GET_ITEM(inputs, i), "UnOO!", &name, &self->in[i].size, &fallback, &PyTuple_Type,
+                              &places))
+            return -1;
         self->in[i].name = Py_NewRef(name);
         self->in[i].fallback = fallback == Py_None ? NULL : Py_NewRef(fallback);
+        if (describe_quaternions(&self->in[i], places) < 0) return -1;
         doubles += self->in[i].size < 1 ? 1 : self->in[i].size;
     }
     for (i = 0; i < self->n_out; ++i) {
@@ -190,6 +234,80 @@ static PyObject *make(PyTypeObject *type, PyObject *args, PyObject *kwargs) {
     return (PyObject *)self;
 }
 
+/* Two states at a time, by vectors of two. */
+typedef double pair __attribute__((vector_size(16)));
+typedef int64_t pair_mask __attribute__((vector_size(16)));
+
+static pair pair_at(const double *p) {
+    pair both;
+    memcpy(&both, p, sizeof both);
+    return both;
+}
+
+/* The squared lengths of the quaternions of two states. */
+static pair squared_lengths(const double *p, npy_intp by, npy_intp step) {
+    if (step == 1) {
+        const pair xy = pair_at(p), zw = pair_at(p + 2), next_xy = pair_at(p + by), next_zw = pair_at(p + by + 2);
+        const pair one = xy * xy + zw * zw, other = next_xy * next_xy + next_zw * next_zw;
+        return (pair){one[0], other[0]} + (pair){one[1], other[1]};
+    }
+    if (by == 1) {
+        const pair x = pair_at(p), y = pair_at(p + step), z = pair_at(p + 2 * step), w = pair_at(p + 3 * step);
+        return x * x + y * y + z * z + w * w;
+    }
+    return (pair){squared_length(p, step), squared_length(p + by, step)};
+}
+
+/* Whether a quaternion of n states is off unit length; strides in doubles. */
+static int any_off(npy_intp n, const double *p, npy_intp by, npy_intp step) {
+    const pair most = {1.0 + SYM_UNIT_ROUNDING, 1.0 + SYM_UNIT_ROUNDING};
+    const pair least = {1.0 - SYM_UNIT_ROUNDING, 1.0 - SYM_UNIT_ROUNDING};
+    pair_mask off = {0, 0};
+    npy_intp i;
+    for (i = 0; i + 1 < n; i += 2) {
+        const pair squared = squared_lengths(p + i * by, by, step);
+        off |= (squared > most) | (squared < least);
+    }
+    return off[0] || off[1] || (i < n && is_off(squared_length(p + i * by, step)));
+}
+
+/* are_unit(q, firsts): whether the quaternions that begin at these indices in an array of float64 (..., size) are known
+ * to be of unit length; of arrays that do not lie in even steps nothing is known here. */
+static PyObject *are_unit(PyObject *self, PyObject *const *args, Py_ssize_t n_args) {
+    PyArrayObject *array;
+    npy_intp n, size, by, step;
+    Py_ssize_t k;
+    int rank;
+    (void)self;
+    if (n_args != 2 || !PyArray_Check(args[0]) || !PyTuple_CheckExact(args[1])) {
+        PyErr_SetString(PyExc_TypeError, "are_unit takes an array and a tuple of indices");
+        return NULL;
+    }
+    array = (PyArrayObject *)args[0];
+    rank = PyArray_NDIM(array);
+    if (rank < 1 || PyArray_TYPE(array) != NPY_DOUBLE || !PyArray_ISBEHAVED_RO(array)) Py_RETURN_FALSE;
+    if (rank > 2 && !PyArray_IS_C_CONTIGUOUS(array)) Py_RETURN_FALSE;
+    size = PyArray_DIM(array, rank - 1), n = size ? PyArray_SIZE(array) / size : 0;
+    step = PyArray_STRIDE(array, rank - 1), by = rank == 1 ? 0 : rank == 2 ? PyArray_STRIDE(array, 0) : size * step;
+    if (step % (npy_intp)sizeof(double) || by % (npy_intp)sizeof(double)) Py_RETURN_FALSE;
+    step /= (npy_intp)sizeof(double), by /= (npy_intp)sizeof(double);
+    for (k = 0; k < PyTuple_GET_SIZE(args[1]); ++k) {
+        const Py_ssize_t first = PyLong_AsSsize_t(PyTuple_GET_ITEM(args[1], k));
+        if (first == -1 && PyErr_Occurred()) return NULL;
+        if (first < 0 || first > size - 4) {
+            PyErr_SetString(PyExc_ValueError, "a quaternion lies within its state");
+            return NULL;
+        }
+        if (any_off(n, (const double *)PyArray_DATA(array) + first * step, by, step)) Py_RETURN_FALSE;
+    }
+    Py_RETURN_TRUE;
+}
+
+static PyMethodDef methods[] = {
+    {"are_unit", (PyCFunction)(void (*)(void))are_unit, METH_FASTCALL | METH_STATIC, "Whether quaternions are unit ones."},
+    {NULL, NULL, 0, NULL},
+};
+
 static PyTypeObject call_type = {
     PyVarObject_HEAD_INIT(NULL, 0)
     .tp_name = "symofros_call.Call",
@@ -198,6 +316,7 @@ static PyTypeObject call_type = {
     .tp_flags = Py_TPFLAGS_DEFAULT | Py_TPFLAGS_HAVE_VECTORCALL,
     .tp_vectorcall_offset = offsetof(call_object, vectorcall),
     .tp_call = PyVectorcall_Call,
+    .tp_methods = methods,
     .tp_new = make,
     .tp_dealloc = (destructor)release,
 };

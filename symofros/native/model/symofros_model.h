@@ -16,7 +16,10 @@
  *     double work[...];                       // dynamics->work doubles, at least
  *     dynamics->eval(in, out, work);
  *
- * All quantities are SI, angles in radians; matrices are row by row.
+ * All quantities are SI, angles in radians; matrices are row by row. Quaternions (x, y, z, w) in q and u are of unit
+ * length, which no function checks or restores: results err by about twice the deviation. Divide those that an
+ * integrator of your own has moved by their lengths; sym_instance_project and all that evaluates at the state of an
+ * instance (symofros_instance.h) do so.
  */
 #ifndef SYMOFROS_MODEL_H
 #define SYMOFROS_MODEL_H

@@ -206,6 +206,7 @@ static void sym_batch_evaluate_acceleration(sym_batch *b) {
         for (i = 0; i < b->n_active; ++i)
             for (k = 0; k < n; ++k) b->systems[i].u[b->systems->law_inputs[k]] = b->law.out[0][SYM_INDEX(i, n, k)];
     }
+    for (i = 0; i < b->n_active; ++i) sym_normalize_inputs(b->systems + i);
     sym_batch_evaluate(b, &b->forward_dynamics);
 }
 

@@ -8,6 +8,13 @@ static const double sym_event_nodes[SYM_EVENT_NODES] = {0.0, 0.2319, 0.4876, 0.7
 #define SYM_EVENT_FINE 0.02
 /* Share of the values at four neighbouring nodes that their third difference has at most where an event is smooth. */
 #define SYM_EVENT_SMOOTH 0.05
+/* Where the rate of events is looked at beside a node: share of a step. Change between two points, as a share of the largest
+ * value in the step, of an event that turns often; the shortest such interval. An event is no cubic where its rate at the
+ * middle is off by more than the last share. */
+#define SYM_EVENT_BESIDE 1e-7
+#define SYM_EVENT_PACE 0.5
+#define SYM_EVENT_SHORTEST_PACE 1e-7
+#define SYM_EVENT_SMOOTH_RATE 0.5
 /* Shares of an event's largest value in the step: below one, what it does is rounding; turns nearer to zero are noted. */
 #define SYM_EVENT_ROUNDING 1e-14
 #define SYM_EVENT_NEAR 1e-3
@@ -22,6 +29,8 @@ typedef struct sym_event_rows { /* (n) each, in sym_event_search.memory */
     double *past, *past_value;     /* a point before it */
     double *size;                  /* the largest value at the nodes */
     double *earlier;               /* values at the start of the step before; NaN: they are unknown */
+    double *rate[SYM_EVENT_NODES]; /* by x, at the nodes; below 0 where it turns seldom */
+    double *pace;                  /* the largest rate by time where it was looked at last */
 } sym_event_rows;
 
 static sym_event_rows sym_rows_of_search(const sym_event_search *s) {
@@ -33,6 +42,8 @@ static sym_event_rows sym_rows_of_search(const sym_event_search *s) {
     rows.work = row, rows.before = row + n, rows.next_x = row + 2 * n;
     rows.past = row + 3 * n, rows.past_value = row + 4 * n, rows.size = row + 5 * n;
     rows.earlier = row + (SYM_EVENT_EARLIER - SYM_EVENT_NODES) * n;
+    for (k = 0; k < SYM_EVENT_NODES; ++k) rows.rate[k] = rows.earlier + (size_t)(1 + k) * n;
+    rows.pace = rows.earlier + (size_t)(1 + SYM_EVENT_NODES) * n;
     return rows;
 }
 
@@ -90,7 +101,7 @@ typedef struct sym_event_point {
 
 typedef struct sym_event_walk { /* one event, followed from left to right over intervals [a, b] */
     int32_t event, left;         /* evaluations that may still be made */
-    double longest;              /* interval */
+    double longest[SYM_EVENT_NODES - 1]; /* interval between two nodes */
     int32_t n_before, n;         /* points known before a, of which two are kept; points known behind it */
     sym_event_point before[2], a;
     sym_event_point behind[SYM_EVENT_POINTS]; /* the farthest first; the last one is b */
@@ -112,6 +123,13 @@ static int32_t sym_points_about(const sym_event_walk *w, sym_event_point *points
     return n;
 }
 
+/* The longest interval about x. */
+static double sym_longest_interval(const sym_event_walk *w, double x) {
+    int32_t k = 0;
+    while (k + 2 < SYM_EVENT_NODES && x >= sym_event_nodes[k + 1]) ++k;
+    return w->longest[k];
+}
+
 /* Whether the event has between a and b no zeros but the one that a change of sign shows. Its curve departs from the chord
  * by an eighth of `departure` at most, (4a), if it is as smooth as the points about it look; then it is monotonic, (4b), or
  * stays away from zero, (4c). */
@@ -122,7 +140,7 @@ static int32_t sym_hides_nothing(const sym_event_walk *w, double size) {
     double bend, other, departure;
     int32_t n;
     if (!(a.f == a.f) || !(b.f == b.f)) return 1; /* what is no number has none */
-    if (length > w->longest) return 0;
+    if (length > sym_longest_interval(w, a.x)) return 0;
     n = sym_points_about(w, p);
     if (n < 3) return 1;
     bend = sym_bend(p[0], p[1], p[2]), other = n > 3 ? sym_bend(p[1], p[2], p[3]) : bend;
@@ -180,6 +198,57 @@ static int32_t sym_is_smooth(const sym_event_rows *rows, int32_t i, int32_t firs
     return fabs(sym_bend(p[1], p[2], p[3]) - sym_bend(p[0], p[1], p[2])) * length * length <= 27.0 * SYM_EVENT_SMOOTH * largest;
 }
 
+/* Rates of all events at a node <- by their values beside it. Returns 0 or a status. */
+static int32_t sym_look_beside(const sym_event_search *s, const sym_event_rows *rows, int32_t k) {
+    const double beside = k + 1 < SYM_EVENT_NODES ? SYM_EVENT_BESIDE : -SYM_EVENT_BESIDE;
+    const int32_t status = s->evaluate(s->data, sym_event_nodes[k] + beside, rows->work);
+    int32_t i;
+    for (i = 0; i < s->n; ++i) rows->rate[k][i] = (rows->work[i] - rows->node[k][i]) / beside;
+    return status;
+}
+
+/* Whether event i looks like a cubic at the nodes, and has its rate at the middle. */
+static int32_t sym_turns_seldom(const sym_event_rows *rows, int32_t i) {
+    const double *x = sym_event_nodes, before = x[2] - x[1], behind = x[3] - x[2];
+    const double first = (rows->node[2][i] - rows->node[1][i]) / before, last = (rows->node[3][i] - rows->node[2][i]) / behind;
+    const double rate = (first * behind + last * before) / (before + behind);
+    if (fabs(rows->rate[2][i] - rate) > SYM_EVENT_SMOOTH_RATE * rows->size[i]) return 0;
+    return sym_is_smooth(rows, i, 0) && sym_is_smooth(rows, i, 1);
+}
+
+/* How fast each event changes about the nodes, which are evaluated; of those that turn seldom in the step one look beside
+ * the middle node is enough. Returns 0 or a status. */
+static int32_t sym_look_at_rates(sym_event_search *s) {
+    const sym_event_rows rows = sym_rows_of_search(s);
+    int32_t i, k, often = 0, status = sym_look_beside(s, &rows, 2);
+    for (i = 0; i < s->n; ++i) often = often || !sym_turns_seldom(&rows, i);
+    for (k = 0; k < SYM_EVENT_NODES && often && status == 0; ++k)
+        if (k != 2) status = sym_look_beside(s, &rows, k);
+    for (i = 0; i < s->n; ++i) {
+        const int32_t seldom = sym_turns_seldom(&rows, i);
+        rows.pace[i] = fabs(rows.rate[2][i]) / s->h;
+        for (k = 0; k < SYM_EVENT_NODES; ++k) {
+            if (often && fabs(rows.rate[k][i]) / s->h > rows.pace[i]) rows.pace[i] = fabs(rows.rate[k][i]) / s->h;
+            rows.rate[k][i] = seldom ? -1.0 : fabs(rows.rate[k][i]);
+        }
+    }
+    return status;
+}
+
+/* The longest intervals in which event i is looked at between the nodes. */
+static void sym_set_longest_intervals(sym_event_search *s, sym_event_walk *w) {
+    const sym_event_rows rows = sym_rows_of_search(s);
+    const int32_t i = w->event, seldom = rows.rate[0][i] < 0.0;
+    int32_t k;
+    for (k = 0; k + 1 < SYM_EVENT_NODES; ++k) {
+        const double a = rows.rate[k][i], b = rows.rate[k + 1][i], rate = a > b ? a : b;
+        double longest = seldom ? 1.0 : SYM_EVENT_FINE;
+        if (longest * rate > SYM_EVENT_PACE * rows.size[i] && rows.size[i] > 0.0) longest = SYM_EVENT_PACE * rows.size[i] / rate;
+        if (longest < SYM_EVENT_SHORTEST_PACE) longest = SYM_EVENT_SHORTEST_PACE, s->unresolved = i;
+        w->longest[k] = s->longest < longest ? s->longest : longest;
+    }
+}
+
 /* The next arrival of event i <- the one after it. Where it has arrived its value is zero, whatever rounding made of it.
  * Returns 0 or a status. */
 static int32_t sym_seek_arrival(sym_event_search *s, int32_t i, double value) {
@@ -188,8 +257,7 @@ static int32_t sym_seek_arrival(sym_event_search *s, int32_t i, double value) {
     sym_event_walk w;
     int32_t k, status;
     w.event = i, w.left = SYM_EVENT_BUDGET;
-    w.longest = sym_is_smooth(&rows, i, 0) && sym_is_smooth(&rows, i, 1) ? 1.0 : SYM_EVENT_FINE;
-    if (s->longest < w.longest) w.longest = s->longest;
+    sym_set_longest_intervals(s, &w);
     w.a.x = rows.next_x[i], w.a.f = value;
     w.n_before = w.a.x > rows.past[i], w.before[0].x = rows.past[i], w.before[0].f = rows.past_value[i];
     for (k = SYM_EVENT_NODES - 1, w.n = 0; k > 0 && sym_event_nodes[k] > w.a.x; --k, ++w.n)
@@ -248,20 +316,25 @@ static int32_t sym_event_is_met(const sym_event_search *s, int32_t i, double x, 
 #define SYM_EVENT_TURN 0.7
 #define SYM_EVENT_SHORTEST 0.004
 
-SYM_EXPORT void sym_event_search_set_step(sym_event_search *s, double h, double way) {
+/* Of steps whose events are far, one in so many has their rates looked at. */
+#define SYM_EVENT_LOOKS 8
+
+SYM_EXPORT void sym_event_search_set_step(sym_event_search *s, double h, double way, int64_t step) {
     const double longest = way > SYM_EVENT_TURN ? SYM_EVENT_TURN / way : 1.0;
+    s->h = h, s->looks = step % SYM_EVENT_LOOKS == 0;
     s->short_step = h <= SYM_EVENT_SHORT_TIME && way <= SYM_EVENT_SHORT_WAY;
     s->longest = longest > SYM_EVENT_SHORTEST ? longest : SYM_EVENT_SHORTEST;
 }
 
-/* Whether all events are so far from zero, at the ends of this step and of the one before, that they need no look within. */
+/* Whether all events are so far from zero, at the ends of this step and of the one before and by the rate that they had when
+ * it was looked at last, that they need no look within. */
 static int32_t sym_all_events_are_far(const sym_event_search *s, const sym_event_rows *rows) {
     int32_t i;
     for (i = 0; i < s->n; ++i) {
         const double a = rows->earlier[i], b = rows->before[i], c = rows->node[SYM_EVENT_NODES - 1][i];
         const double low = a < b ? (a < c ? a : c) : (b < c ? b : c), high = a > b ? (a > c ? a : c) : (b > c ? b : c);
         const double nearest = low > 0.0 ? low : -high; /* below 0 where the sign changes */
-        if (!(a == a) || !(nearest > SYM_EVENT_FAR * (high - low))) return 0;
+        if (!(a == a) || !(nearest > SYM_EVENT_FAR * (high - low)) || nearest < rows->pace[i] * s->h) return 0;
     }
     return 1;
 }
@@ -273,6 +346,12 @@ SYM_EXPORT int32_t sym_event_search_begin(sym_event_search *s) {
     if (status != 0) return status;
     memcpy(rows.before, rows.node[0], (size_t)s->n * sizeof(double));
     distant = s->short_step && sym_all_events_are_far(s, &rows);
+    if (distant && s->looks) {
+        status = sym_look_beside(s, &rows, SYM_EVENT_NODES - 1);
+        if (status != 0) return status;
+        for (i = 0; i < s->n; ++i) rows.pace[i] = fabs(rows.rate[SYM_EVENT_NODES - 1][i]) / s->h;
+        distant = sym_all_events_are_far(s, &rows);
+    }
     memcpy(rows.earlier, rows.before, (size_t)s->n * sizeof(double));
     for (i = 0; i < s->n; ++i) rows.next_x[i] = 2.0;
     if (distant) return 0;
@@ -281,10 +360,14 @@ SYM_EXPORT int32_t sym_event_search_begin(sym_event_search *s) {
         if (status != 0) return status;
     }
     for (i = 0; i < s->n; ++i) {
-        const double before = rows.before[i], start = rows.node[0][i];
         rows.size[i] = rows.next_x[i] = rows.past[i] = rows.past_value[i] = 0.0;
         for (k = 0; k < SYM_EVENT_NODES; ++k)
             if (fabs(rows.node[k][i]) > rows.size[i]) rows.size[i] = fabs(rows.node[k][i]);
+    }
+    status = sym_look_at_rates(s);
+    if (status != 0) return status;
+    for (i = 0; i < s->n; ++i) {
+        const double before = rows.before[i], start = rows.node[0][i];
         if (sym_arrives_at_zero(s->direction[i], before, start)) continue; /* by an input that changes there: at x = 0 */
         status = sym_seek_arrival(s, i, sym_arrives_at_zero(0, before, start) || before == 0.0 ? 0.0 : start);
         if (status != 0) return status;

@@ -54,6 +54,33 @@ static void sym_instance_prepare_beams(sym_instance *instance) {
     }
 }
 
+/* Values of an operand of formulas of time, for the search of their instants. */
+static void sym_instance_operand(void *data, int32_t operand, int32_t n, const double *t, double *value) {
+    sym_instance *instance = data;
+    const double kept = *instance->system.t;
+    int32_t i;
+    for (i = 0; i < n; ++i) {
+        *instance->system.t = t[i];
+        sym_evaluate(&instance->operands);
+        value[i] = instance->operands.out[0][operand];
+    }
+    *instance->system.t = kept;
+}
+
+/* Lay out what finds the instants of the model's formulas of time. */
+static void sym_instance_allocate_instants(sym_instance *instance, sym_arena *arena) {
+    sym_instant_search *search = &instance->instants;
+    memset(search, 0, sizeof *search), memset(&instance->operands, 0, sizeof instance->operands);
+    if (!sym_instance_bind(instance, arena, &instance->operands, "instant_operands")) return;
+    search->n = (int32_t)sym_array_size(&instance->operands.function->out[0]);
+    search->kind = instance->operands.out[1];
+    search->evaluate = sym_instance_operand, search->data = instance;
+    search->capacity = SYM_INSTANT_CAPACITY;
+    search->memory = sym_allocate(arena, (size_t)SYM_INSTANT_ROWS * SYM_INSTANT_CAPACITY);
+    instance->stops = sym_allocate(arena, SYM_INSTANT_CAPACITY);
+    instance->system.stops = instance->stops;
+}
+
 /* Lay out every array of the instance. Returns 0 where the model lacks a function that its method calls. */
 static int32_t sym_instance_allocate(sym_instance *instance, sym_arena *arena) {
     const sym_model *m = instance->model;
@@ -88,6 +115,7 @@ static int32_t sym_instance_allocate(sym_instance *instance, sym_arena *arena) {
     has_residual = sym_instance_bind(instance, arena, &s->residual, "residual");
     has_momentum = sym_instance_bind(instance, arena, &s->momentum, "momentum");
     has_beams = sym_instance_allocate_beams(instance, arena);
+    sym_instance_allocate_instants(instance, arena);
     return has_forward_dynamics && has_project && has_beams && (has_terms || p->method <= SYM_METHOD_SEMI_IMPLICIT) &&
            (has_residual || p->method != SYM_METHOD_ALPHA) && (has_momentum || p->method != SYM_METHOD_VARIATIONAL);
 }
@@ -128,23 +156,78 @@ SYM_EXPORT void sym_instance_reset(sym_instance *instance) {
     (void)sym_instance_prepare(instance); /* the defaults are allowed */
 }
 
+/* Instants that were found are of other parameters. */
+static void sym_instance_forget_stops(sym_instance *instance) {
+    instance->system.n_stops = 0, instance->system.in_step = 0;
+    instance->stops_begin = HUGE_VAL, instance->stops_end = -HUGE_VAL;
+}
+
 SYM_EXPORT int32_t sym_instance_prepare(sym_instance *instance) {
     instance->refused = instance->check_parameters ? instance->plant->violated(instance->par) : -1;
     if (instance->refused >= 0) return SYM_PARAMETERS_REFUSED;
     instance->model->init(instance->par, instance->pre);
     sym_instance_prepare_beams(instance);
+    sym_instance_forget_stops(instance);
     return 0;
 }
 
 /* Evaluation point <- the present state, its quaternions normalised. */
 static void sym_instance_load_state(sym_instance *instance) {
+    sym_system *s = &instance->system;
     instance->run.t = instance->t;
     sym_load_state(&instance->run);
-    sym_normalize_quaternions(&instance->system);
+    sym_normalize_quaternions(s);
+    if (s->in_step && (instance->t < sym_before(s->first_stage) || instance->t > sym_instant(s->step_end))) s->in_step = 0;
+    *s->t = sym_stage_time(s, instance->t);
+}
+
+/* Times the plant's step that instants are sought ahead at least, since a search over each short span of its own would cost
+ * more than its steps; in the second half, a narrow part may begin before the middle that tells of it. */
+#define SYM_AHEAD 1024.0
+/* Share of a span that is no span of its own. */
+#define SYM_AHEAD_REST 1e-6
+/* Halvings of the span, where its instants do not fit into the memory; formulas that still have more are followed by no step. */
+#define SYM_AHEAD_HALVINGS 20
+
+/* A span from t to t_end, or as long as instants are sought ahead at least. */
+static double sym_instance_span(const sym_instance *instance, double t, double t_end) {
+    const double ahead = SYM_AHEAD * instance->plant->h;
+    return t_end - t > ahead ? t_end - t : ahead;
+}
+
+/* Find the instants of the model's formulas from t on, to t_end if memory holds them. Returns up to when they are known. */
+static double sym_instance_find_stops(sym_instance *instance, double t, double t_end) {
+    double span = sym_instance_span(instance, t, t_end), known = t + 0.5 * span;
+    int32_t n = -1, halvings;
+    if (instance->operands.function == NULL || (t >= instance->stops_begin && t_end <= instance->stops_end)) return t_end;
+    sym_evaluate(&instance->operands); /* their kinds */
+    for (halvings = 0; halvings <= SYM_AHEAD_HALVINGS && n < 0; ++halvings, span *= 0.5) {
+        n = sym_find_instants(&instance->instants, t, t + span, instance->stops);
+        known = t + 0.5 * span;
+        if ((halvings == 0 || t_end - known < SYM_AHEAD_REST * span) && known < t_end) known = t_end;
+    }
+    instance->system.n_stops = n > 0 ? n : 0;
+    instance->stops_begin = t, instance->stops_end = known;
+    return known < t_end ? known : t_end;
+}
+
+/* Bring the quaternions of the state to unit length, if they are off by more than rounding; what is not finite stays.
+ * Returns 0, or SYM_NO_ROTATION where one is no rotation. */
+static int32_t sym_instance_normalize(sym_instance *instance) {
+    const sym_plant *plant = instance->plant;
+    int32_t k;
+    for (k = 0; k < plant->n_segments; ++k) {
+        const sym_segment *segment = &plant->segments[k];
+        double *p = instance->q + segment->q + (segment->kind == SYM_SEGMENT_POSE ? 3 : 0);
+        if (segment->kind == SYM_SEGMENT_LINEAR || !(0.0 * p[0] + 0.0 * p[1] + 0.0 * p[2] + 0.0 * p[3] == 0.0)) continue;
+        if (!sym_make_rotation(p)) return SYM_NO_ROTATION;
+    }
+    return 0;
 }
 
 SYM_EXPORT int32_t sym_instance_project(sym_instance *instance) {
     if (instance->refused >= 0) return SYM_PARAMETERS_REFUSED;
+    if (sym_instance_normalize(instance) != 0) return SYM_NO_ROTATION;
     if (instance->model->nc == 0) return 0;
     instance->run.t = instance->t;
     return sym_project_state(&instance->run);
@@ -180,13 +263,24 @@ SYM_EXPORT int32_t sym_instance_call(sym_instance *instance, const sym_function 
     return 1;
 }
 
-SYM_EXPORT int32_t sym_instance_advance(sym_instance *instance, double t_end, double h) {
+SYM_EXPORT double sym_instance_begin_step(sym_instance *instance, double t_end) {
+    const double known = sym_instance_find_stops(instance, instance->t, t_end);
+    const double stop = sym_next_stop(&instance->system, instance->t, known);
+    sym_begin_step(&instance->system, instance->t, stop);
+    return stop;
+}
+
+/* Adaptive steps in which nothing happens are looked into, as those of a run of that length are. */
+static void sym_instance_look(sym_instance *instance, double span) {
+    instance->run.look_every = instance->run.adaptive ? span / SYM_LOOKS : 0.0;
+}
+
+/* Integrate to t_end, between two instants of the model's formulas. Returns SYM_FINISHED or a status below zero. */
+static int32_t sym_instance_advance_between(sym_instance *instance, double t_end, double h) {
     sym_run *r = &instance->run;
     const double span = t_end - instance->t, longest = h > 0.0 ? h : instance->plant->h;
     double count = 1.0;
     int32_t status;
-    if (instance->refused >= 0) return SYM_PARAMETERS_REFUSED;
-    if (!(span > 0.0)) return span == 0.0 ? SYM_FINISHED : SYM_DIVERGED;
     r->t0 = r->t = instance->t, r->t_end = t_end, r->project = instance->project && instance->model->nc > 0;
     if (r->adaptive) {
         if (!(r->h > 0.0)) r->h = h > 0.0 ? h : instance->plant->h;
@@ -198,5 +292,21 @@ SYM_EXPORT int32_t sym_instance_advance(sym_instance *instance, double t_end, do
     while (status == SYM_RUNNING) status = sym_run_advance(r, INT32_MAX);
     if (r->adaptive) r->h = r->next_step; /* the next call continues with the controller's step */
     instance->t = status == SYM_FINISHED ? t_end : r->t;
+    return status;
+}
+
+SYM_EXPORT int32_t sym_instance_advance(sym_instance *instance, double t_end, double h) {
+    const double span = t_end - instance->t;
+    int32_t status = SYM_FINISHED;
+    if (instance->refused >= 0) return SYM_PARAMETERS_REFUSED;
+    if (!(span > 0.0)) return span == 0.0 ? SYM_FINISHED : SYM_DIVERGED;
+    if (sym_instance_normalize(instance) != 0) return SYM_NO_ROTATION;
+    sym_run_end_step(&instance->run);
+    sym_instance_look(instance, sym_instance_span(instance, instance->t, t_end));
+    while (status == SYM_FINISHED && instance->t < t_end) {
+        double end = sym_instance_find_stops(instance, instance->t, t_end);
+        if (!instance->run.adaptive) end = sym_next_stop(&instance->system, instance->t, end);
+        status = sym_instance_advance_between(instance, end, h);
+    }
     return status;
 }

@@ -8,6 +8,7 @@
 #include "arena.c"
 #include "manifold.c"
 #include "system.c"
+#include "formula_instants.c"
 #include "elimination.c"
 #include "workspace.c"
 #include "explicit.c"

@@ -10,6 +10,16 @@ SYM_EXPORT int32_t sym_instance_rates(sym_instance *instance, double *rates) {
     return status;
 }
 
+/* The unit quaternion p / |p| of a quaternion of any length, and its change where that changes by dp. */
+static void sym_unit_change(const double *p, const double *dp, double *unit, double *change) {
+    double size = 0.0, along = 0.0;
+    int32_t i;
+    for (i = 0; i < 4; ++i) size += p[i] * p[i];
+    size = sqrt(size);
+    for (i = 0; i < 4; ++i) unit[i] = p[i] / size, along += unit[i] * dp[i];
+    for (i = 0; i < 4; ++i) change[i] = (dp[i] - along * unit[i]) / size;
+}
+
 SYM_EXPORT void sym_instance_tangent(const sym_instance *instance, const double *dq, double *tangent) {
     const sym_system *s = &instance->system;
     int32_t k, i;
@@ -18,13 +28,10 @@ SYM_EXPORT void sym_instance_tangent(const sym_instance *instance, const double 
         const int32_t linear = seg->kind == SYM_SEGMENT_LINEAR ? seg->size : 0;
         const int32_t at = seg->kind == SYM_SEGMENT_POSE ? 3 : 0;
         const double *p = instance->q + seg->q + at, *dp = dq + seg->q + at;
-        double *into = tangent + seg->v, size = 0.0, unit[4], change[4], c[3], along = 0.0;
+        double *into = tangent + seg->v, unit[4], change[4], c[3];
         for (i = 0; i < linear; ++i) into[i] = dq[seg->q + i];
         if (seg->kind == SYM_SEGMENT_LINEAR) continue;
-        for (i = 0; i < 4; ++i) size += p[i] * p[i];
-        size = sqrt(size);
-        for (i = 0; i < 4; ++i) unit[i] = p[i] / size, along += unit[i] * dp[i];
-        for (i = 0; i < 4; ++i) change[i] = (dp[i] - along * unit[i]) / size; /* of the unit quaternion */
+        sym_unit_change(p, dp, unit, change);
         sym_cross(unit, change, c); /* 2 conj(unit) change, its vector part */
         for (i = 0; i < 3; ++i) into[at + i] = 2.0 * (unit[3] * change[i] - change[3] * unit[i] - c[i]);
         if (seg->kind == SYM_SEGMENT_POSE) { /* a displacement in world axes, in those of the body */
@@ -67,6 +74,7 @@ typedef struct sym_differentiate_workspace { /* n = nv + nc */
     double *scale;                      /* (n) */
     double *right, *solution, *scratch; /* (n) */
     double *theta;                      /* (nv) */
+    double *du;                         /* (nu) */
 } sym_differentiate_workspace;
 
 static sym_differentiate_workspace sym_allocate_differentiate_workspace(const sym_instance *instance,
@@ -76,6 +84,7 @@ static sym_differentiate_workspace sym_allocate_differentiate_workspace(const sy
     w.matrix = sym_allocate(arena, n * n), w.scale = sym_allocate(arena, n);
     w.right = sym_allocate(arena, n), w.solution = sym_allocate(arena, n);
     w.scratch = sym_allocate(arena, n), w.theta = sym_allocate(arena, nv);
+    w.du = sym_allocate(arena, (size_t)instance->model->nu);
     return w;
 }
 
@@ -99,13 +108,19 @@ SYM_EXPORT int32_t sym_instance_differentiate(sym_instance *instance, const doub
     if (s->implicit_terms.function == NULL) return SYM_SINGULAR;
     arena.base = work;
     w = sym_allocate_differentiate_workspace(instance, &arena);
+    memcpy(w.du, du, (size_t)nu * sizeof *du);
+    for (i = 0; i < s->n_quaternion_inputs; ++i) {
+        const int32_t at = s->quaternion_inputs[i];
+        double unit[4];
+        sym_unit_change(instance->u + at, du + at, unit, w.du + at);
+    }
     sym_instance_tangent(instance, dq, w.theta);
     sym_configuration_rate_derivative(instance, dq, dv, w.theta, rates);
     sym_evaluate(&s->implicit_terms);
     for (i = 0; i < n; ++i) {
         double sum = 0.0;
         for (j = 0; j < nv; ++j) sum -= R_q[SYM_INDEX(i, nv, j)] * w.theta[j] + R_v[SYM_INDEX(i, nv, j)] * dv[j];
-        for (j = 0; j < nu; ++j) sum -= R_u[SYM_INDEX(i, nu, j)] * du[j];
+        for (j = 0; j < nu; ++j) sum -= R_u[SYM_INDEX(i, nu, j)] * w.du[j];
         w.right[i] = sum;
         for (j = 0; j < nv; ++j)
             w.matrix[SYM_INDEX(i, n, j)] = i < nv ? M[SYM_INDEX(i, nv, j)] : G[SYM_INDEX(i - nv, nv, j)];

@@ -1,6 +1,8 @@
 /* Accepted steps in which next to nothing happens (docs/theory/simulation.md, (3d)): they grow without bound, and what acts
  * for a small part of one may lie between its stages. A few points of each are looked at along the dense output. */
 
+/* Intervals of a run in each of which a quiet step is looked into. */
+#define SYM_LOOKS 64
 /* Error norm up to which a step is quiet. */
 #define SYM_QUIET 1e-2
 /* Times the bound of a step's error that an acceleration may change the speeds by, if it lasted, before it counts as met. */

@@ -34,13 +34,9 @@ static void sym_chart_coordinates(const sym_system *s, const double *q0, const d
     }
 }
 
-/* Whether changes are brought back onto the constraints: a motion has none that leave them, where no gains pull it back. */
-static int32_t sym_keeps_to_constraints(const sym_system *s) {
-    int32_t i;
-    for (i = 0; i < 2 * s->nc; ++i)
-        if (s->gains[i] != 0.0) return 0;
-    return s->nc > 0 && s->project.function != NULL;
-}
+/* Whether changes are brought back onto the constraints, as a motion has none that leave them. The way by which gains pull
+ * it back is known without looking. */
+static int32_t sym_keeps_to_constraints(const sym_system *s) { return s->nc > 0 && s->project.function != NULL; }
 
 /* y = (theta, v) <- the nearest one on the constraints. Returns 0 or a status. */
 static int32_t sym_project_chart_state(sym_run *r, double *y) {
@@ -51,6 +47,21 @@ static int32_t sym_project_chart_state(sym_run *r, double *y) {
     sym_chart_coordinates(s, r->q, s->q, y);
     memcpy(y + s->nv, s->v, (size_t)s->nv * sizeof *y);
     return status;
+}
+
+/* The state <- the nearest one on the constraints: about another one, where gains or nothing keep the run to them, what is
+ * nearest is no smooth function where conditions repeat each other on the constraints alone. y: work (2 nv). Returns 0 or a
+ * status. */
+static int32_t sym_start_on_constraints(sym_run *r, double *y) {
+    const sym_system *s = r->system;
+    int32_t status;
+    memset(y, 0, (size_t)s->nv * sizeof *y);
+    memcpy(y + s->nv, r->v, (size_t)s->nv * sizeof *y);
+    status = sym_project_chart_state(r, y);
+    if (status != 0) return status;
+    memcpy(r->q, s->q, (size_t)s->nq * sizeof *r->q);
+    memcpy(r->v, s->v, (size_t)s->nv * sizeof *r->v);
+    return 0;
 }
 
 /* slope = (h theta', h^2 v') at x, (16a). y: work (2 nv). Returns 0 or a status. */
@@ -121,7 +132,8 @@ SYM_EXPORT int32_t sym_run_spectrum(sym_run *r, double h, int32_t dimension, dou
     int32_t i, j, k, status;
     memset(matrix, 0, (size_t)dimension * (size_t)dimension * sizeof *matrix);
     memset(x, 0, (size_t)n * sizeof *x);
-    status = sym_scaled_slope(r, h, x, y, slope);
+    status = sym_keeps_to_constraints(r->system) ? sym_start_on_constraints(r, y) : 0;
+    if (status == 0) status = sym_scaled_slope(r, h, x, y, slope);
     if (status != 0) return status;
     change = sym_first_direction(r, n, slope, basis);
     for (j = 0; j < dimension; ++j) {

@@ -112,7 +112,8 @@ static int32_t sym_too_short(const sym_run *r) {
 static int32_t sym_propose_step(sym_run *r, sym_workspace *w, double *h, double *t1) {
     *h = r->adaptive ? r->next_step : r->h;
     *t1 = r->adaptive ? r->t + *h : sym_multiple(r->t0 + (double)(r->steps + 1) * r->h, r->h);
-    if (r->adaptive && *h < 16.0 * 2.2e-16 * fabs(r->t) + 1e-300) return sym_too_short(r);
+    /* Of states too large for their squares not even the first step is a number. */
+    if (r->adaptive && !(*h >= 16.0 * 2.2e-16 * fabs(r->t) + 1e-300)) return sym_too_short(r);
     if (*t1 >= r->t_end - 1e-9 * *h) *t1 = r->t_end; /* no sliver of a last step */
     if (r->adaptive && r->max_step > 0.0 && *t1 - r->t > r->max_step) *t1 = r->t + r->max_step;
     if (r->adaptive) {

@@ -6,8 +6,10 @@
  *     arm->u[0] = 1.5;                                         // inputs, held until they are changed
  *     status = sym_instance_advance(arm, t_end, 1e-3);         // arm->t, arm->q, arm->v move on
  *
- * After sym_instance_init nothing allocates, and nothing is shared between instances: each may live in a thread of its
- * own. A status below zero is one of SYM_DIVERGED ... SYM_NO_ROTATION (symofros_stepper.h).
+ * Quaternions of arm->q may be of any length where a function, accelerations, rates or derivatives are asked for: these
+ * are evaluated at the quaternions divided by their lengths. After sym_instance_init nothing allocates, and nothing is
+ * shared between instances: each may live in a thread of its own. A status below zero is one of SYM_DIVERGED ...
+ * SYM_NO_ROTATION (symofros_stepper.h).
  */
 #ifndef SYMOFROS_INSTANCE_H
 #define SYMOFROS_INSTANCE_H
@@ -60,6 +62,10 @@ typedef struct sym_instance {
     sym_beam *beams;    /* (n_beams) at the present parameters, as are scale, reach and stiffness in `run` */
     double *beam_scale, *beam_reach;
     sym_call beam_stiffness;
+    sym_call operands;  /* of the model's own formulas of time; without a function where they have no instants */
+    sym_instant_search instants;
+    double *stops;      /* (instants.capacity) instants that are known, from one time up to another */
+    double stops_begin, stops_end;
     sym_system system;
     sym_run run;
 } sym_instance;
@@ -73,7 +79,8 @@ void sym_instance_reset(sym_instance *instance);
 /* Evaluate what depends on parameters alone. Returns 0, or SYM_PARAMETERS_REFUSED where they violate a condition of the
  * description (instance->refused): nothing moves then until this is called with parameters that are allowed. */
 int32_t sym_instance_prepare(sym_instance *instance);
-/* Project the state onto the constraints. Returns 0 or a status. */
+/* Project the state onto the constraints, after its quaternions, which are near unit length (1e-3), were divided by
+ * their lengths. Returns 0 or a status. */
 int32_t sym_instance_project(sym_instance *instance);
 /* Judge how far the beams of the present state bend, as sym_instance_advance does. Returns 0 or SYM_BEYOND_THEORY. */
 int32_t sym_instance_judge_beams(sym_instance *instance);
@@ -81,8 +88,14 @@ int32_t sym_instance_judge_beams(sym_instance *instance);
 double sym_instance_beam_error(sym_instance *instance, int32_t beam);
 /* Accelerations and multipliers at the present state. Returns 0 or a status. */
 int32_t sym_instance_accelerate(sym_instance *instance);
-/* Integrate to t_end by steps of at most h (0: the plant's). Returns SYM_FINISHED or a status below zero. */
+/* Integrate to t_end by steps of at most h (0: the plant's), from quaternions that are near unit length (1e-3), which
+ * have it then. Steps end where the model's formulas of time bend, jump or change fast. Returns SYM_FINISHED or a status
+ * below zero. */
 int32_t sym_instance_advance(sym_instance *instance, double t_end, double h);
+/* For integrators of others: the first instant after the present time, up to t_end, at which a step has to end because a
+ * formula of time bends, jumps or changes fast; t_end where there is none. The functions of a step between two such instants
+ * are those after the first and before the second; past the second, this is called anew. */
+double sym_instance_begin_step(sym_instance *instance, double t_end);
 /* Evaluate one function of the model at the present state; out: its outputs in order. Returns 0 where it is absent, or
  * asks for an input that an instance does not hold, or parameters are refused. */
 int32_t sym_instance_call(sym_instance *instance, const sym_function *function, double *const *out);

@@ -25,7 +25,7 @@ typedef enum sym_status {
     SYM_BEYOND_THEORY = -7,      /* a beam is bent beyond second-order theory */
     SYM_ENERGY_LOST = -8,        /* projection onto the constraints has taken the motion's energy */
     SYM_PARAMETERS_REFUSED = -9, /* parameters violate a condition of the description; of instances only */
-    SYM_NO_ROTATION = -10,       /* a quaternion among the inputs is not of unit length */
+    SYM_NO_ROTATION = -10,       /* a quaternion is not of unit length: of inputs, or of an instance's state */
     SYM_ENGAGED_APART = -11      /* conditions that engage are not fulfilled; of diagrams only */
 } sym_status;
 
@@ -133,7 +133,7 @@ typedef struct sym_system {
     int32_t events_free_of_inputs; /* 1: no event needs the inputs, which cost a call of the caller's */
 } sym_system;
 
-typedef enum sym_event_sizes { SYM_EVENT_NODES = 5, SYM_EVENT_EARLIER = 11, SYM_EVENT_ROWS = 13 } sym_event_sizes;
+typedef enum sym_event_sizes { SYM_EVENT_NODES = 5, SYM_EVENT_EARLIER = 11, SYM_EVENT_ROWS = 19 } sym_event_sizes;
 
 /* Events along one step (docs/theory/simulation.md, section 2), sought between x = 0, its start, and x = 1, its end. */
 typedef struct sym_event_search {
@@ -144,11 +144,33 @@ typedef struct sym_event_search {
     double *memory; /* (SYM_EVENT_ROWS, n): values at the end of the step before; row SYM_EVENT_EARLIER, at its start or NaN */
     int32_t short_step;           /* whether events far from zero need no look within the step */
     double longest;               /* interval between two points at which an event is looked at */
+    double h;                     /* length of the step [s] */
+    int32_t looks;                /* whether the rates of events are looked at that are far from zero */
     int32_t start_changes;        /* whether values at x = 0 may differ from those at the end of the step before */
     int32_t taken;                /* event that was returned last; -1: none */
     int32_t touched, unresolved;  /* the event that turns nearest to zero, one too fast to follow; -1: none */
     double touched_x, touched_share; /* where it turns, and its share there of its largest value in the step */
 } sym_event_search;
+
+/* What an operand of a formula of time does where it is small (docs/theory/simulation.md, (3a)). */
+typedef enum sym_instant_kind {
+    SYM_INSTANT_KINK = 0,   /* the formula bends or jumps where it passes zero */
+    SYM_INSTANT_NARROW = 1, /* the formula has a narrow part where it is small, zero or not */
+    SYM_INSTANT_END = 2     /* the same, but a zero is where the formula ends */
+} sym_instant_kind;
+
+/* Rows of a search's memory, and their length in packages. */
+typedef enum sym_instant_sizes { SYM_INSTANT_ROWS = 11, SYM_INSTANT_CAPACITY = 2048 } sym_instant_sizes;
+
+/* Instants of formulas of time, by the values of their operands. */
+typedef struct sym_instant_search {
+    int32_t n;          /* number of operands, those of inner formulas first */
+    const double *kind; /* (n) sym_instant_kind of each */
+    void (*evaluate)(void *data, int32_t operand, int32_t n, const double *t, double *value); /* at times (n) */
+    void *data;
+    int32_t capacity;   /* most instants, and most points at which an operand is looked at: more than 1025 */
+    double *memory;     /* (SYM_INSTANT_ROWS, capacity) */
+} sym_instant_search;
 
 /* One integration of a system: method, settings, present state, records. */
 typedef struct sym_run {
@@ -245,10 +267,12 @@ void sym_run_begin_step(sym_run *run, double t, double t1);
 void sym_run_end_step(sym_run *run);
 /* The first instant after t, up to t1, at which a step has to end; t1 where there is none. */
 double sym_run_next_stop(const sym_run *run, double t, double t1);
+/* Instants (capacity) within a span at which steps have to end, in order. Returns how many, or -1 where they do not fit. */
+int32_t sym_find_instants(const sym_instant_search *search, double t0, double t_end, double *instants);
 /* Values of the events (n_events) at a state. */
 int32_t sym_run_event_values(sym_run *run, double t, const double *y, double *values);
-/* Tell the search the length h of a step, and the largest way of a coordinate in it [rad or m]. */
-void sym_event_search_set_step(sym_event_search *search, double h, double way);
+/* Tell the search the length h of a step [s], the largest way of a coordinate in it [rad or m], and its number. */
+void sym_event_search_set_step(sym_event_search *search, double h, double way, int64_t step);
 /* Begin the search in one step, whose search->memory begins with the values at the end of the step before; the values at its
  * own end are row SYM_EVENT_NODES - 1 afterwards. Returns 0 or a status. */
 int32_t sym_event_search_begin(sym_event_search *search);

@@ -164,16 +164,49 @@ static void sym_evaluate_signals(sym_system *s) {
 /* The difference of time by which rates are taken. */
 static double sym_time_difference(double t) { return sqrt(2.2e-16 * (fabs(t) > 1e-5 ? fabs(t) : 1e-5)); }
 
+/* Deviation from unit length up to which a quaternion counts as a rotation written in few digits. */
+#define SYM_QUATERNION_TOLERANCE 1e-3
+
+/* Deviation of a squared length from one that is rounding: 16 units of it. Division by the length leaves 4 at most. */
+#define SYM_QUATERNION_ROUNDING 3.6e-15
+
+/* Whether four numbers are a rotation, up to a length that they are divided by. */
+static int32_t sym_is_rotation(const double *p, double *length) {
+    *length = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3]);
+    return fabs(*length - 1.0) <= SYM_QUATERNION_TOLERANCE;
+}
+
+/* Bring four numbers near a rotation to it: those off by more than rounding. Returns whether they are near one. */
+static int32_t sym_make_rotation(double *p) {
+    double length;
+    int32_t i;
+    if (!sym_is_rotation(p, &length)) return 0;
+    if (!(fabs(length * length - 1.0) <= SYM_QUATERNION_ROUNDING))
+        for (i = 0; i < 4; ++i) p[i] /= length;
+    return 1;
+}
+
+/* Bring the quaternions among the inputs at the evaluation point to unit length, which chords between samples and numbers
+ * of few digits miss; sym_check_inputs refuses others. */
+static void sym_normalize_inputs(sym_system *s) {
+    int32_t k;
+    for (k = 0; k < s->n_quaternion_inputs; ++k) (void)sym_make_rotation(s->u + s->quaternion_inputs[k]);
+}
+
 /* All inputs at the evaluation point. Not 0: the caller's function failed. */
 static int32_t sym_evaluate_inputs(sym_system *s) {
-    int32_t i;
-    if (s->callback != NULL) return s->callback(s->data, *s->t, s->q, s->v, s->u);
-    sym_evaluate_signals(s);
-    if (s->law.function != NULL) {
-        sym_evaluate(&s->law);
-        for (i = 0; i < s->n_law; ++i) s->u[s->law_inputs[i]] = s->law.out[0][i];
+    int32_t i, failed = 0;
+    if (s->callback != NULL) {
+        failed = s->callback(s->data, *s->t, s->q, s->v, s->u);
+    } else {
+        sym_evaluate_signals(s);
+        if (s->law.function != NULL) {
+            sym_evaluate(&s->law);
+            for (i = 0; i < s->n_law; ++i) s->u[s->law_inputs[i]] = s->law.out[0][i];
+        }
     }
-    return 0;
+    sym_normalize_inputs(s);
+    return failed;
 }
 
 /* Times a number beyond some 1e100 it overflows. Such a state is no motion any more in any unit, and the squares in its
@@ -188,15 +221,6 @@ static int32_t sym_all_finite(int32_t n, const double *x) {
     int32_t i;
     for (i = 0; i < n; ++i) s += x[i] * SYM_BEYOND_MOTION * 0.0;
     return s == 0.0;
-}
-
-/* Deviation from unit length up to which a quaternion counts as a rotation written in few digits. */
-#define SYM_QUATERNION_TOLERANCE 1e-3
-
-/* Whether four numbers are a rotation, up to a length that they are divided by. */
-static int32_t sym_is_rotation(const double *p, double *length) {
-    *length = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3]);
-    return fabs(*length - 1.0) <= SYM_QUATERNION_TOLERANCE;
 }
 
 /* Check the quaternions among the inputs at the evaluation point. Returns 0 or SYM_NO_ROTATION. */

@@ -25,7 +25,14 @@ from symofros.runtime.build.cache import cache_folder, create_cache_folder, inst
 _CDEF = re.compile(r"/\* cdef begin.*?\*/(?P<declarations>.*?)/\* cdef end \*/", re.DOTALL)
 # A second interface, of a thread that asks at the same time, would have types of its own.
 _ONE = threading.Lock()
-_ENUMS = ("sym_status", "sym_method", "sym_segment_kind", "sym_event_sizes")
+_ENUMS = (
+    "sym_status",
+    "sym_method",
+    "sym_segment_kind",
+    "sym_event_sizes",
+    "sym_instant_kind",
+    "sym_instant_sizes",
+)
 
 
 def interface() -> Any:

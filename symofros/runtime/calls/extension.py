@@ -23,13 +23,15 @@ import numpy as np
 
 from symofros.base.threads import try_to_start
 from symofros.errors import CompileError
-from symofros.native import native_text
+from symofros.native import native_number, native_text
 from symofros.runtime.build.build import build_library
 from symofros.runtime.build.toolchain import DEFAULT_FLAGS, find_toolchain
 from symofros.runtime.calls.declarations import interface
 
 LOGGER = logging.getLogger("symofros")
 _NAME = "symofros_call"
+# Deviation of the squared length of a quaternion from one that is rounding.
+UNIT_ROUNDING = native_number("stepping/system.c", "SYM_QUATERNION_ROUNDING")
 
 _begun = itertools.count()
 _waiting: list[weakref.WeakMethod[Callable[[], None]]] = []
@@ -50,6 +52,11 @@ def call_type(when_there: Callable[[], None]) -> Any:
     if _over.is_set():
         _tell()
     return None
+
+
+def type_at_hand() -> Any:
+    """The type `Call`, or None where it is not there, or not yet."""
+    return load() if _over.is_set() else None
 
 
 def begin() -> None:
@@ -85,6 +92,7 @@ def load() -> Any:
         return None
     # What the headers are is part of the text, which names the library in the cache folder.
     of = f"/* {sysconfig.get_config_var('SOABI')}, NumPy {np.__version__}, {sys.version!r} */\n"
+    of += f"#define SYM_UNIT_ROUNDING {UNIT_ROUNDING!r}\n"
     flags = (*DEFAULT_FLAGS, *(f"-I{folder}" for folder in headers))
     if sys.platform == "darwin":  # Symbols of Python are found as it is loaded.
         flags = (*flags, "-Wl,-undefined,dynamic_lookup")

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from symofros.runtime.calls.extension import call_type
+from symofros.runtime.calls.extension import UNIT_ROUNDING, call_type
 from symofros.runtime.calls.kernel import Array, Kernel
 from symofros.runtime.calls.library import CompiledKernel
 
@@ -16,25 +16,29 @@ from symofros.runtime.calls.library import CompiledKernel
 _ARRAY, _DOUBLE = np.ndarray, np.dtype(np.float64)
 
 
-# The outputs as new arrays; None unless all inputs are float64 arrays of one state, and the time a float. The argument
-# has the inputs by name; None for the default inputs.
+# The outputs as new arrays; None unless all inputs are float64 arrays of one state, the time a float, and
+# quaternions of unit length. The argument has the inputs by name; None for the default inputs.
 SingleCall = Callable[[Mapping[str, Any]], list[Array] | None]
 
 
-def single_call(kernel: Kernel, par: Array, u: Array, better: Callable[[], None]) -> SingleCall:
+def single_call(
+    kernel: Kernel, par: Array, u: Array, quaternions: Mapping[str, tuple[int, ...]], better: Callable[[], None]
+) -> SingleCall:
     """A function for one state, in memory of its own: for one thread.
 
     Args:
         kernel: The function.
         par: Run-time parameters (npar).
         u: Default inputs (nu).
+        quaternions: First index of each quaternion, by the input that holds it.
         better: A method that is called, by any thread, when another call of this function would be a faster one.
     """
     by_extension = call_type(better) if isinstance(kernel, CompiledKernel) else None
     if by_extension is None or not isinstance(kernel, CompiledKernel):
-        return _through_numpy(kernel, par, u)
+        return _through_numpy(kernel, par, u, quaternions)
     inputs = tuple(
-        (group, -1 if group == "t" else size, u if group == "u" else None) for group, size in kernel.signature.inputs
+        (group, -1 if group == "t" else size, u if group == "u" else None, quaternions.get(group, ()))
+        for group, size in kernel.signature.inputs
     )
     outputs = tuple(shape for _, shape in kernel.signature.outputs)
     call: SingleCall = by_extension(
@@ -43,7 +47,7 @@ def single_call(kernel: Kernel, par: Array, u: Array, better: Callable[[], None]
     return call
 
 
-def _through_numpy(kernel: Kernel, par: Array, u: Array) -> SingleCall:
+def _through_numpy(kernel: Kernel, par: Array, u: Array, quaternions: Mapping[str, tuple[int, ...]]) -> SingleCall:
     """A closure: its variables are reached, and itself is called, in half the time of an object's."""
     signature = kernel.signature
     pre = kernel.prepare(par[None])
@@ -56,6 +60,11 @@ def _through_numpy(kernel: Kernel, par: Array, u: Array) -> SingleCall:
         for (group, _), memory in zip(signature.inputs, read, strict=True)
     ]
     first, *others = [array.copy for array in written]
+    turned = [
+        memory[at : at + 4]
+        for (group, _), memory in zip(signature.inputs, read, strict=True)
+        for at in quaternions.get(group, ())
+    ]
 
     def call(given: Mapping[str, Any], _kept: object = (kernel, pre)) -> list[Array] | None:
         """As SingleCall says; C has the addresses of what is kept, and of all arrays."""
@@ -68,6 +77,10 @@ def _through_numpy(kernel: Kernel, par: Array, u: Array) -> SingleCall:
             elif shape is None and type(value) is float:
                 memory[0] = value
             else:
+                return None
+        for quaternion in turned:
+            x, y, z, w = quaternion.tolist()
+            if abs(x * x + y * y + z * z + w * w - 1.0) > UNIT_ROUNDING:
                 return None
         evaluate()
         results = [first()]

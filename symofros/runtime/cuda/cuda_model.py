@@ -9,6 +9,7 @@ from typing import Any, NoReturn, Self
 
 import numpy as np
 
+from symofros.base.arrays import real_array
 from symofros.base.functions import FRAME_FUNCTIONS, MODEL_FUNCTIONS
 from symofros.errors import Problem, ShapeError, SymofrosError, UnknownNameError, did_you_mean
 from symofros.runtime.calls.kernel import Array, BatchOptions, Precision
@@ -19,7 +20,7 @@ from symofros.runtime.cuda.nvrtc import KernelUsage, compile_cuda, usage_of
 from symofros.runtime.cuda.receivers import receivers, strided_result
 from symofros.runtime.cuda.streams import is_captured, refused_in_capture, stream_handle
 from symofros.runtime.record import ModelRecord
-from symofros.runtime.unit_quaternions import refuse_lengths
+from symofros.runtime.unit_quaternions import at_unit_length
 
 Key = tuple[str, str]
 
@@ -153,7 +154,8 @@ class CudaModel:
                 left out. It waits for what writes the inputs. A graph that is captured from it takes the call in,
                 where all arrays lie on the device, `out` has all outputs, the function was called before and
                 `wait=False`.
-            inputs: Inputs by name; `t` is 0 and `u` the default inputs where they are left out.
+            inputs: Inputs by name; `t` is 0 and `u` the default inputs where they are left out. Quaternions in arrays
+                of the host are taken at unit length, as by `Model`; those on the device must have it.
 
         Returns:
             Results by name.
@@ -169,6 +171,7 @@ class CudaModel:
         captured = is_captured(device, handle)
         if captured:
             self._check_capture(key, {} if out is None else out, wait, inputs)
+        inputs = {group: self._with_unit_quaternions(group, value) for group, value in inputs.items()}
         loaded = self._load(key)
         kernel = loaded.code.kernels[0]
         given = self._placed({size[0]: size[1] for size in kernel.signature.inputs}, inputs, device, handle, captured)
@@ -255,8 +258,7 @@ class CudaModel:
             )
         every = steps if every is None else every
         _check_rollout(dt, steps, every)
-        if not lies_on_device("q", q) and np.shape(q)[-1:] == (len(self.record.q_names),):
-            refuse_lengths(self.record, np.asarray(q, dtype=np.float64))
+        q, u = self._with_unit_quaternions("q", q), self._with_unit_quaternions("u", u)
         device, handle = driver(), stream_handle(stream)
         if is_captured(device, handle):
             raise refused_in_capture("a rollout", "its results, which it allocates", "roll out before the capture")
@@ -332,6 +334,15 @@ class CudaModel:
                 array = Placed(array.address, (*array.shape, 1), (*array.strides, 1), array.owner)
             arrays[group] = self._fitting(group, array, size)
         return arrays
+
+    def _with_unit_quaternions(self, group: str, value: Any) -> Any:
+        """An input with its quaternions at unit length, if it lies on the host; what fits no input is judged later."""
+        if value is None or group not in self.record.quaternions or lies_on_device(group, value):
+            return value
+        array = real_array(value)
+        if array is None or array.shape[-1:] != (len(self.record.vectors[group]),):
+            return value
+        return at_unit_length(self.record, group, array)
 
     def _default(self, group: str, device: Driver) -> DeviceArray:
         """What u and t are where they are left out, (size): copied once, as a copy waits for what was started."""

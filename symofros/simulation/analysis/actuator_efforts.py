@@ -18,8 +18,8 @@ from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import Eliminated, eliminate, free_motions, natural_sizes, pseudo_inverse
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.beam_theory import Motion, bendings_under_efforts, refuse_beyond
-from symofros.simulation.analysis.input_rotations import given_inputs
 from symofros.simulation.analysis.kinematics.consistency import consistent_jacobian, place_in_batch
+from symofros.simulation.analysis.states import given_inputs
 
 # Share of the terms of a sum below which it is their rounding.
 ROUNDING = 1e-12

@@ -22,10 +22,10 @@ from symofros.simulation.analysis.beam_theory import (
     refuse_beyond,
 )
 from symofros.simulation.analysis.friction import friction_curve
-from symofros.simulation.analysis.input_rotations import given_inputs
 from symofros.simulation.analysis.kinematics.assembly import free_speeds
 from symofros.simulation.analysis.kinematics.facing import refuse_opposite
 from symofros.simulation.analysis.rest_search import Balance, Search, search_rest
+from symofros.simulation.analysis.states import given_configuration, given_inputs
 
 # Estimated error of a beam's theory from which it is what a search without success is blamed on.
 _BLAMED = 0.05
@@ -108,7 +108,7 @@ def equilibrium(
     """
     model = model.with_precision("double")
     free = free_speeds(model, held)
-    q = model.neutral() if q is None else vector("q", model.by_name("q", q), model.nq)
+    q = model.neutral() if q is None else given_configuration(model, q)
     v = np.zeros(model.nv) if v is None else vector("v", model.by_name("v", v), model.nv)
     u = vector("u", given_inputs(model, u), model.nu)
     balance = Balance(model, free, v, u, par, t)

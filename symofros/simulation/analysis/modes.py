@@ -13,11 +13,11 @@ from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.beam_theory import bendings_in_motion, refuse_beyond
-from symofros.simulation.analysis.input_rotations import given_inputs
 from symofros.simulation.analysis.kinematics.facing import refuse_opposite
 from symofros.simulation.analysis.rest_linearisation import matrix_at_rest
 from symofros.simulation.analysis.rigid_motions import rigid_motions
 from symofros.simulation.analysis.state_space import state_space
+from symofros.simulation.analysis.states import given_configuration, given_inputs
 
 Complex = npt.NDArray[np.complex128]
 
@@ -74,7 +74,7 @@ def modes(
         BeamTheoryError: A beam is bent beyond the limit.
     """
     state = (
-        vector("q", model.by_name("q", q), model.nq),
+        given_configuration(model, q),
         np.zeros(model.nv) if v is None else vector("v", model.by_name("v", v), model.nv),
         vector("u", given_inputs(model, u), model.nu),
     )

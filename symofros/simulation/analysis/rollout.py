@@ -14,9 +14,9 @@ from symofros.errors import Problem, ShapeError, SymofrosError
 from symofros.runtime import manifold
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
+from symofros.runtime.unit_quaternions import at_unit_length
 from symofros.simulation.analysis.chart_derivatives import ChartSlopes, chart_slopes
-from symofros.simulation.analysis.input_rotations import refuse_no_rotation
-from symofros.simulation.settings import refuse_lengths, vector
+from symofros.simulation.settings import first_configuration, vector
 from symofros.simulation.stepping.methods import METHODS, method_meant
 from symofros.simulation.stepping.tableaus import Tableau
 
@@ -256,13 +256,11 @@ def rollout(
                 "np.zeros((n, model.nu)) for none",
             )
         )
-    held = held.copy()  # The derivatives read it later, when the caller may have moved on.
-    refuse_no_rotation(model, held)
+    # A copy: the derivatives read it later, when the caller may have moved on.
+    held = at_unit_length(model.record, "u", held.copy())
     values = model.parameter_values if par is None else vector(model, "par", model.checked_parameters(par), model.npar)
     tableau = METHODS[method].tableau
-    first_q, first_v = vector(model, "q0", q0, model.nq), vector(model, "v0", v0, model.nv)
-    refuse_lengths(model, first_q)
-    first = manifold.retract(model.record.segments, first_q, np.zeros(model.nv)), first_v  # Of unit length.
+    first = first_configuration(model, q0), vector(model, "v0", v0, model.nv)
     return _stepped(model, method, tableau, first, held, float(dt), np.array(values), t0)
 
 

@@ -13,9 +13,9 @@ from symofros.errors import Problem, SymofrosError
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import null_space, pseudo_inverse
 from symofros.runtime.model import ArrayLike, Model, Output
-from symofros.simulation.analysis.input_rotations import given_inputs
 from symofros.simulation.analysis.kinematics.facing import refuse_opposite
 from symofros.simulation.analysis.singular_mass import ADVICE, singular_mass
+from symofros.simulation.analysis.states import given_inputs
 
 
 @dataclass(frozen=True)

@@ -34,7 +34,7 @@ class EventSearch:
         self.stepper = stepper
         self._failure: BaseException | None = None
         self._step: tuple[float, float, Callable[[float], Array]]
-        n, memory = len(stepper.events), stepper.memory
+        self._steps, n, memory = 0, len(stepper.events), stepper.memory
         self._last = constants()["SYM_EVENT_NODES"] - 1
         self._values = np.zeros((constants()["SYM_EVENT_ROWS"], n))
         self._search = stepper.ffi.new("sym_event_search *")
@@ -62,7 +62,8 @@ class EventSearch:
         self._step = (t0, t1, state)
         nq, nv = stepper.model.nq, stepper.model.nv
         speeds = np.abs([state(t)[nq : nq + nv] for t in (t0, t1)])
-        native.sym_event_search_set_step(search, t1 - t0, (t1 - t0) * speeds.max(initial=0.0))
+        self._steps += 1
+        native.sym_event_search_set_step(search, t1 - t0, (t1 - t0) * speeds.max(initial=0.0), self._steps)
         which, x, met = stepper.ffi.new("int32_t *"), stepper.ffi.new("double *"), list[MetEvent]()
         status = native.sym_event_search_begin(search)
         while status == Status.RUNNING:

@@ -50,6 +50,35 @@ class Resolution:
 
 
 @dataclass(frozen=True)
+class Pull:
+    """What Baumgarte's gains do with a motion that has left the constraints.
+
+    Attributes:
+        rates: Rates of the ways back [1/s].
+        share: Share of the speed that leaves the constraints where most does.
+        t: Time at which that is first so [s].
+    """
+
+    rates: Sequence[complex] = ()
+    share: float = 0.0
+    t: float = 0.0
+
+
+def pull_rates(gains: Array, on_speeds: Sequence[bool]) -> tuple[complex, ...]:
+    """The rates z at which gains lead back to the constraints: z^2 + 2 alpha z + beta^2 = 0, of each of a pair one.
+
+    Args:
+        gains: Baumgarte's gains (2 nc) [1/s]: alphas, then betas.
+        on_speeds: Which constraints are conditions on speeds, whose way back is z + 2 alpha = 0 (nc).
+    """
+    rates = set()
+    for alpha, beta, on_speed in zip(*np.split(gains.astype(complex), 2), on_speeds, strict=True):
+        root = np.sqrt(alpha**2 - (0.0 if on_speed else beta**2))
+        rates |= {complex(-alpha + root), complex(-alpha - root)}
+    return tuple(z for z in rates if z and z.imag >= 0.0)
+
+
+@dataclass(frozen=True)
 class Mode:
     """The mode of a motion that a run of fixed steps resolves worst.
 
@@ -59,6 +88,7 @@ class Mode:
         error: Relative error of the motion by it over the run.
         share: Share of the mode in the motion's speed.
         t: Time of the state at which it was seen [s].
+        of_gains: Whether it is the way back to the constraints by Baumgarte's gains.
     """
 
     rate: complex
@@ -66,6 +96,7 @@ class Mode:
     error: float
     share: float
     t: float
+    of_gains: bool = False
 
     @property
     def amplified(self) -> bool:
@@ -92,6 +123,7 @@ def resolution(
     spectrum_at: Callable[[int], Spectrum | None],
     speeds: Sequence[float],
     metric: Array,
+    pull: Pull = Pull(),
 ) -> Resolution:
     """How well a run resolves the modes about some of its states; one is named where they err beyond TOLERANCE.
 
@@ -103,11 +135,17 @@ def resolution(
         spectrum_at: Linearised motion about a state, by its number.
         speeds: Largest speed of the motion about each state, in its metric.
         metric: Mass matrix at each state (number of states, nv, nv).
+        pull: The way back to the constraints, which no motion on them shows.
     """
     if max(speeds) == 0.0:  # Rest is kept exactly.
         return Resolution()
     part = max(1, steps // len(times))
-    total, worst, evident = 0.0, None, True
+    ways = [_judged(method, h * rate, pull.share, h, steps, pull.t) for rate in pull.rates]
+    worst = max((replace(mode, of_gains=True) for mode in ways), key=lambda mode: mode.error, default=None)
+    total = sum(mode.error for mode in ways)
+    evident = h * max(map(abs, pull.rates), default=0.0) <= _resolved_radius(method.name, part, _EVIDENT)
+    if worst is not None and total > TOLERANCE:
+        return Resolution(replace(worst, error=total), evident)
     for i, (t, speed, M) in enumerate(zip(times, speeds, metric, strict=True)):
         spectrum = spectrum_at(i)
         if spectrum is None:

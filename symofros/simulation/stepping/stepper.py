@@ -49,6 +49,7 @@ class Stepper:
         system: The sym_system: the model's functions and the evaluation point.
         run: The sym_run: settings, present state, counters.
         inputs: Inputs by how they are evaluated.
+        same_inputs_again: Whether an input function gives the run's inputs once more; None: not asked yet.
         kernels: Slot of the system, such as "forward_dynamics" -> the function bound to it.
         beams: Elastic beams at the parameters.
         failure: Exception that an input function raised; it ended the run.
@@ -61,6 +62,7 @@ class Stepper:
         self.ffi, self.native = interface(), native_library()
         self.model, self.method, self.events, self.par = model, method, events, par
         self.inputs = inputs
+        self.same_inputs_again: bool | None = None
         self.failure: BaseException | None = None
         self.beams = model.beams(par)
         self.memory = NativeMemory()

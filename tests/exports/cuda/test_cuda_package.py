@@ -8,10 +8,11 @@ from pathlib import Path
 import pytest
 
 import symofros as sf
+from reference_models import MODELS
 from symofros.errors import ExportError, UnknownNameError
-from tests.cuda_on_host import SHIM
+from tests.cuda_on_host import PLAIN, SHIM, WARNINGS
 from tests.exports.cases import STRICT, run
-from tests.late import require
+from tests.late import needs_program, require
 from tests.models import system
 
 HERE = Path(__file__).parent
@@ -35,13 +36,34 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_the_example_finds_the_numbers_of_the_c_code(package: Path, tmp_path: Path) -> None:
     """Run with kernels as loops; the launcher that is tested so is declared as in the header."""
     kernels = tmp_path / "kernels.cpp"
-    kernels.write_text(f'#include "{SHIM}"\n#include "{package}/double_pendulum_double.cu"\n{LAUNCHER}')
+    kernels.write_text(f'#include "{SHIM}"\n{PLAIN}\n#include "{package}/double_pendulum_double.cu"\n{LAUNCHER}')
     run("gcc", *STRICT, "-O0", "-c", "double_pendulum.c", "-o", tmp_path / "model.o", cwd=package)
-    flags = ("-std=c++17", "-O0", "-ffp-contract=off", "-Wall", "-Wno-unknown-pragmas", "-Wno-unused-function")
+    flags = ("-std=c++17", "-O0", "-ffp-contract=off", *WARNINGS)
     sources = ("-x", "c++", package / "main.cu", kernels, "-x", "none", tmp_path / "model.o")
     run("g++", *flags, f"-I{package}", f"-I{HERE}", *sources, "-lm", "-o", tmp_path / "example", cwd=tmp_path)
     output = run(tmp_path / "example", "1000", cwd=tmp_path)
     assert re.match(r"1000 states in 1 ms: 1e\+06 states/s, 0\.\d+ GB/s; against C at most 0\n", output), output
+
+
+@pytest.mark.tools
+@pytest.mark.parametrize("name", ["double_pendulum", "four_bar", "heavy_top", "cart_pole"])
+def test_nvcc_warns_of_nothing(name: str, tmp_path: Path) -> None:
+    """Where it is installed; CI's machines need no driver for that."""
+    needs_program("nvcc")
+    folder = sf.export(MODELS[name], "cuda", tmp_path / name).folder
+    for source in sorted(folder.glob("*.cu")):
+        run(
+            "nvcc",
+            "-c",
+            "-Werror",
+            "all-warnings",
+            "-Xcompiler",
+            "-Wall,-Wextra",
+            source,
+            "-o",
+            "/dev/null",
+            cwd=folder,
+        )
 
 
 @pytest.mark.parametrize("language", ["c", "c++"])
@@ -75,6 +97,12 @@ def test_constrained_motion_stays_in_c_and_the_notes_say_so(tmp_path: Path) -> N
     assert "no kernels of forward_dynamics, forward_dynamics_derivatives" in exported.notes[0]
     assert "no rollouts" in (tmp_path / "README.md").read_text()
     assert "four_bar_dynamics" in (tmp_path / "four_bar_double.cu").read_text()
+
+
+@pytest.mark.parametrize(("name", "bends"), [("double_pendulum", False), ("flexible_pendulum", True)])
+def test_rollouts_of_beams_are_said_not_to_be_judged(tmp_path: Path, name: str, bends: bool) -> None:
+    notes = sf.export(system(name), "cuda", tmp_path).notes
+    assert bool([note for note in notes if "rollouts do not judge how far beams bend" in note]) == bends
 
 
 def test_a_folder_of_something_else_is_left_alone(tmp_path: Path) -> None:

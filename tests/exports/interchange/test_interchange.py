@@ -140,6 +140,15 @@ def test_losses_are_listed(tmp_path: Path) -> None:
     assert "loops are open: loop" in "\n".join(sf.export(system_of("four_bar"), "urdf", tmp_path / "open").notes)
 
 
+@pytest.mark.parametrize(("moment", "said"), [(0.1, False), (0.0, True)])
+def test_the_inertia_of_a_line_is_raised_in_words(tmp_path: Path, moment: float, said: bool) -> None:
+    """MuJoCo refuses it as it is, and reads what is written."""
+    rod = sf.RigidBody("rod", sf.Joint("q", "revolute"), sf.Inertia(1.0, (0.5, 0, 0), (moment, 0.1, 0.1)))
+    done = sf.export(sf.System("rod", (rod,)), "mjcf", tmp_path)
+    assert done.notes == ("moments of inertia near zero raised to 1e-12: rod",) * said
+    assert mujoco.MjModel.from_xml_path(str(done.files[0])).body_inertia[1].min() >= 1e-12
+
+
 def test_a_rigid_beam_weighs_what_the_beam_weighs(tmp_path: Path) -> None:
     system = system_of("planar_robot")
     done = sf.export(system, "urdf", tmp_path)

@@ -111,7 +111,8 @@ def test_memory_of_the_caller_as_it_lies(n: int, rng: np.random.Generator) -> No
 @pytest.mark.parametrize("n", [6, MANY])
 def test_parameters_of_each_state_and_inputs_of_all(n: int, rng: np.random.Generator) -> None:
     m = model("parametrised0", "c")
-    q, v, par = rng.normal(size=(n, m.nq)), rng.normal(size=m.nv), m.parameter_values * rng.uniform(1, 2, (n, 1))
+    q, v = m.normalized(rng.normal(size=(n, m.nq))), rng.normal(size=m.nv)
+    par = m.parameter_values * rng.uniform(1, 2, (n, 1))
     bound = m.bind("bias", n=n, par=par, v=v)
     bound.inputs["q"][:] = q
     for _ in range(2):

@@ -44,7 +44,9 @@ def m() -> sf.Model:
 def forward(m: sf.Model, call_type: Any, monkeypatch: pytest.MonkeyPatch) -> Iterator[SingleCall]:
     """M, h and Q of one state by the extension."""
     monkeypatch.setattr("symofros.runtime.calls.single.call_type", lambda _: call_type)
-    call = single_call(m.kernel("dynamics"), m.parameter_values, np.zeros(m.nu), m._forget_single_calls)
+    call = single_call(
+        m.kernel("dynamics"), m.parameter_values, np.zeros(m.nu), m.record.quaternions, m._forget_single_calls
+    )
     assert type(call) is call_type
     return call
 
@@ -93,7 +95,8 @@ def test_calls_and_objects_leave_no_memory_behind(forward: SingleCall, m: sf.Mod
     def work() -> None:
         for _ in range(200):
             forward(given)
-            made = call_type(kernel.address, kernel.work + 1, (("q", m.nq, None),), ((m.nv, m.nv),), pre, kernel)
+            inputs = (("q", m.nq, None, m.record.quaternions["q"]),)
+            made = call_type(kernel.address, kernel.work + 1, inputs, ((m.nv, m.nv),), pre, kernel)
             made({"q": given["q"]})
 
     work()
@@ -175,12 +178,15 @@ def test_what_plain_calls_need_is_begun_as_the_c_compiler_starts(
 def test_its_arguments_are_checked(call_type: Any, m: sf.Model) -> None:
     kernel = callable_from_c(m.kernel("mass_matrix"))
     pre = kernel.prepare(m.parameter_values[None])
-    inputs = (("q", m.nq, None),)
+    inputs = (("q", m.nq, None, m.record.quaternions["q"]),)
     for wrong in (
         (kernel.address, 0, inputs, ((m.nv, m.nv),), pre, kernel),
         (kernel.address, 8, inputs * 17, ((m.nv, m.nv),), pre, kernel),
         (kernel.address, 8, inputs, ((1, 1, 1),), pre, kernel),
-        (kernel.address, 8, (("q", m.nq),), ((m.nv, m.nv),), pre, kernel),
+        (kernel.address, 8, (("q", m.nq, None),), ((m.nv, m.nv),), pre, kernel),
+        (kernel.address, 8, (("q", m.nq, None, (m.nq - 3,)),), ((m.nv, m.nv),), pre, kernel),
+        (kernel.address, 8, (("q", m.nq, None, (-1,)),), ((m.nv, m.nv),), pre, kernel),
+        (kernel.address, 8, (("q", m.nq, None, ("first",)),), ((m.nv, m.nv),), pre, kernel),
         (kernel.address, 8, inputs, (("one",),), pre, kernel),
         ("address", 8, inputs, ((m.nv, m.nv),), pre, kernel),
     ):

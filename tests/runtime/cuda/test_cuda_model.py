@@ -7,6 +7,7 @@ import ctypes
 import pickle
 import subprocess
 import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,10 +15,14 @@ import pytest
 
 import symofros as sf
 from symofros.errors import ShapeError, SymofrosError, UnknownNameError
+from symofros.runtime.cuda import cuda_model
 from symofros.runtime.cuda.cuda_model import CudaModel
 from symofros.runtime.cuda.driver import Driver, driver
+from tests.cuda_on_host import on_host
+from tests.interop.turning import SYSTEMS
 from tests.models import model
 from tests.runtime.cuda.foreign_arrays import STATES, Exchanged, OnDevice, WithGradient, WithGradientExchanged, states
+from tests.runtime.test_unit_quaternions import with_length
 
 
 @pytest.mark.parametrize("n", [1, 2, 128, 300])
@@ -165,6 +170,29 @@ def test_rollouts_refuse_quaternions_that_are_no_rotations_as_simulate_does(leng
     ):
         with pytest.raises(ShapeError, match=rf"a quaternion that is no rotation(.|\n)*length {length:g}"):
             start()
+
+
+def test_quaternions_of_the_host_are_taken_as_by_the_model(
+    on_device: CudaModel, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    swing = sf.compile(SYSTEMS["swing"]())
+    gpu = swing.cuda()
+
+    def compiled(text: str, architecture: str, contract: bool) -> bytes:
+        code = next(code for code in gpu._codes.values() if code.text == text)
+        return str(on_host(code, tmp_path)).encode() + b"\0"
+
+    monkeypatch.setattr(cuda_model, "compile_cuda", compiled)
+    q, v = (np.array(x) for x in zip(*(swing.random_state(np.random.default_rng(k)) for k in range(3)), strict=True))
+    expected = swing.bias(q, v)
+    for length in (1.0, 1.0 + 1e-6, 1.0 - 9e-4):
+        h = gpu.evaluate("bias", q=with_length(swing, q, length), v=v)["h"].numpy()
+        assert np.abs(h - expected).max() <= 1e-13 * np.abs(expected).max()
+    for length in (1.1, 0.0):
+        with pytest.raises(ShapeError, match=f"q holds a quaternion that is no rotation(.|\n)*length {length:g}"):
+            gpu.evaluate("bias", q=with_length(swing, q, length), v=v)
+    on_the_device = gpu.evaluate("bias", q=OnDevice(with_length(swing, q, 1.1)), v=v)["h"].numpy()
+    assert np.abs(on_the_device - expected).max() > 0.1 * np.abs(expected).max()  # As it is.
 
 
 def test_memory_that_runs_out_is_the_drivers_word(on_device: CudaModel, device: Driver) -> None:

@@ -288,3 +288,57 @@ def test_a_step_with_very_many_events_is_kept_once(thrown: sf.Model) -> None:
     """It is cut where their records are full; a state for the diagnosis at each cut doubled their spacing for ever."""
     run = sf.simulate(thrown, [0.0], [10.0], 0.5, method="dopri5", events={"many": "sin(2e5*z)"})
     assert len(run.events) > 100_000
+
+
+@pytest.fixture(scope="module")
+def fast() -> sf.Model:
+    """A body that falls, and the rate and level of a periodic event."""
+    body = sf.RigidBody("body", sf.Joint("z", "prismatic", axis=(0, 0, 1)), SOLID)
+    return sf.compile(sf.System("fast", (body,), parameters=(sf.Parameter("rate", 1.0), sf.Parameter("level", 0.0))))
+
+
+def crossings(rate: float, level: float, speed: float, end: float) -> int:
+    """How often sin(rate z) passes a level that is not zero, in a throw that begins at z = 0."""
+    turns = [0.0, *([speed / G] if 0.0 < speed / G < end else []), end]
+    angles = [rate * (speed * t - 0.5 * G * t**2) for t in turns]
+    bases = (np.arcsin(level), np.pi - np.arcsin(level))
+    laps = [[np.floor((angle - base) / (2 * np.pi)) for angle in angles] for base in bases]
+    return int(np.abs(np.diff(laps, axis=1)).sum())
+
+
+@pytest.mark.parametrize("method", ["rk4", "dop853", "dopri5", "rodas4", SUNDIALS[0]])
+def test_an_event_that_turns_often_in_a_step_loses_no_zero_in_silence(fast: sf.Model, method: str) -> None:
+    """Up to thousands of turns in one step, which look like any other function where they are looked at seldom."""
+    rng, silent = np.random.default_rng(5), 0
+    for _ in range(25):
+        rate, level, end, speed = (
+            10.0 ** rng.uniform(0, 3),
+            rng.uniform(0.1, 0.9),
+            rng.uniform(0.3, 2.0),
+            rng.uniform(-9, 9),
+        )
+        options = {"method": method, "par": [rate, level], "dt": 10.0 ** rng.uniform(-3, -1)}
+        run = sf.simulate(fast, [0.0], [speed], end, events={"often": "sin(rate*z) - level"}, **options)
+        noted = any("zeros may be missing" in note or "cannot tell" in note for note in run.outcome.notes)
+        assert noted or len(run.events) == crossings(rate, level, speed, end), (rate, level, end, speed)
+        silent += not noted
+    assert silent >= 20
+
+
+@pytest.mark.parametrize(("dt", "looks"), [(1e-3, 1.0), (0.1, 5.0)])
+def test_events_that_are_far_are_seldom_looked_at(dt: float, looks: float) -> None:
+    """Of short steps at their ends, of long ones at five points; at the rate of events in few places more."""
+    calls: list[float] = []
+
+    def push(t: float, q: np.ndarray, v: np.ndarray) -> list[float]:
+        calls.append(t)
+        return [0.0]
+
+    body = sf.RigidBody("body", sf.Joint("z", "prismatic", axis=(0, 0, 1)), SOLID, loads=(sf.Load((0, 0, "F")),))
+    model = sf.compile(sf.System("pushed", (body,), inputs=(sf.Input("F"),)))
+    counts = []
+    for events in ({}, {"far": "z - 50 + F"}):
+        calls.clear()
+        steps = sf.simulate(model, t_end=0.5, method="rk4", dt=dt, u=push, events=events).statistics.steps
+        counts.append(len(calls))
+    assert looks * steps <= counts[1] - counts[0] <= 1.3 * looks * steps + 10

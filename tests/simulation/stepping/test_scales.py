@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from tests.simulation.oscillator import oscillator
 
 _PARAMETERS = (sf.Parameter("L", 1.0), sf.Parameter("m", 1.0))
 
@@ -87,3 +88,11 @@ def test_notes_on_steps_are_the_same_at_all_scales() -> None:
             model, at.q, at.v, 3.0 * unit, par=[L, 1.0], method="generalized_alpha", dt=0.01 * unit, output=unit
         )
         assert any("follow a mode" in note for note in run.outcome.notes), L
+
+
+@pytest.mark.parametrize("method", ["dopri5", "dop853", "rodas4"])
+@pytest.mark.parametrize("speed", [1e120, 1e150, 1e200, 1e300])
+def test_adaptive_steps_do_not_begin_at_speeds_too_large_for_their_squares(method: str, speed: float) -> None:
+    """The first step is no number then, and would never be made."""
+    run = sf.simulate(oscillator(), v0=[speed], t_end=1.0, method=method)
+    assert run.outcome.kind == "diverged" and run.outcome.t == 0.0

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from symofros.studio.advice.search import _Search, _still_to_come
+from symofros.studio.advice.scene_runner import SceneRunner
+from symofros.studio.advice.search import REFINE, _Search, _still_to_come
 
 ROPE = sf.Beam("rope", sf.Joint("q", "revolute", axis=(0, 1, 0)), 1.2, 0.1, EI_y=0.01, bend_z=1, family="legendre")
 
@@ -57,6 +58,8 @@ def test_what_more_functions_still_change_counts(changes: list[float], unsettled
     search = settled(changes)
     assert search.unsettled == pytest.approx(unsettled)
     assert any("not converged" in note for note in search.notes) != converged
+    said = [" of the tolerance against one of more functions: refined" in note for note in search.notes]
+    assert sum(said) == sum(change > REFINE for change in changes)
     assert advice(0.02, search.unsettled).ok == (0.02 + unsettled <= 1.0)
     assert not advice(1.01, 0.0).ok and advice(1.0, 0.0).ok
 
@@ -70,3 +73,19 @@ def test_functions_of_the_users_have_none_to_be_judged_by() -> None:
     (note,) = settled([5.0], own).notes
     assert "'rope'" in note and "functions of yours" in note
     assert not settled([0.1]).notes
+
+
+@pytest.mark.parametrize("stiffness", [0.05, 20.0])
+def test_a_beam_beyond_its_theory_is_a_rod_in_the_full_model(stiffness: float) -> None:
+    """Let go of, its own weight bends it by a radian, where a run of second order ends, or by hundredths."""
+    pin = sf.Joint("pin", "revolute", axis=(0, 0, 1))
+    beam = sf.Beam("rope", pin, 1.0, 1.0, EI_z=stiffness, bend_y=2, family="legendre")
+    scene = sf.Scene(0.2, (sf.Output("end", "position", "tip", absolute=0.5),), samples=10)
+    search = object.__new__(_Search)
+    search.stated = search.full = search.current = sf.System("soft", (beam,), gravity=(0, -50.0, 0))
+    search.scene, search.runner, search.notes = scene, SceneRunner(scene), []
+    search._within_theory()
+    rod = search.full.body("rope")
+    assert isinstance(rod, sf.Beam) and (rod.theory == "strain") == (stiffness < 1.0)
+    said = ["the full model has geometrically exact rods in place of its beams" in note for note in search.notes]
+    assert said == [True] * (stiffness < 1.0), search.notes

@@ -27,10 +27,9 @@ from symofros.runtime.constrained import (
     step_factor,
 )
 from symofros.runtime.model import ArrayLike, Model
-from symofros.simulation.analysis.input_rotations import given_inputs
 from symofros.simulation.analysis.kinematics.facing import refuse_opposite
 from symofros.simulation.analysis.kinematics.targets import finite_array
-from symofros.simulation.settings import refuse_lengths
+from symofros.simulation.analysis.states import given_configuration, given_inputs
 
 Indices = npt.NDArray[np.intp]
 
@@ -103,8 +102,7 @@ def assemble(
     """
     free = free_speeds(model, held)
     model = model.with_precision("double")
-    q = model.neutral() if q is None else vector("q", model.by_name("q", q), model.nq)
-    refuse_lengths(model, q)
+    q = model.neutral() if q is None else given_configuration(model, q)
     speeds = np.zeros(model.nv) if v is None else model.by_name("v", v)
     wished = finite_array("assemble: v", speeds, (model.nv,), "give one number a speed")
     conditions = _Conditions(model, vector("u", given_inputs(model, u), model.nu), par, t)

@@ -15,13 +15,14 @@ from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import pseudo_inverse
 from symofros.runtime.model import ArrayLike, Model
+from symofros.runtime.unit_quaternions import at_unit_length
 from symofros.simulation.analysis.beam_theory import bendings_in_motion
-from symofros.simulation.analysis.input_rotations import given_inputs
 from symofros.simulation.analysis.kinematics.assembly import free_speeds
 from symofros.simulation.analysis.kinematics.posture_search import STARTS, Posture, PostureSearch
 from symofros.simulation.analysis.kinematics.restarts import default_start
 from symofros.simulation.analysis.kinematics.targets import CLOSED_TO, Task, finite_array, rotations_checked
 from symofros.simulation.analysis.kinematics.targets import Target as Target
+from symofros.simulation.analysis.states import given_inputs
 
 # Beyond so many starts a target counts as out of reach: hours would pass without an answer.
 _MOST_STARTS = 100_000
@@ -234,9 +235,7 @@ def _configuration(model: Model, name: str, values: ArrayLike) -> Array:
     """A configuration (nq) on the manifold."""
     remedy = f"give one number for each of {', '.join(model.names.q[:8])}" + (", …" if model.nq > 8 else "")
     q = finite_array(f"inverse kinematics: {name}", model.by_name("q", values), (model.nq,), remedy)
-    with np.errstate(all="ignore"):
-        on_manifold = model.integrate(q, np.zeros(model.nv))
-    return finite_array(f"inverse kinematics: {name}", on_manifold, (model.nq,), "give quaternions that are not zero")
+    return at_unit_length(model.record, "q", q, name)
 
 
 def _refuse_nan(task: Task, error: Array) -> None:

@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from symofros.runtime.calls.kernel import Array
-from symofros.simulation.analysis.input_rotations import given_inputs
 from symofros.simulation.analysis.kinematics.assembly import Indices
 from symofros.simulation.analysis.kinematics.facing import facings
 from symofros.simulation.analysis.kinematics.least_squares import End, FreeLimits, damped_least_squares, polished
 from symofros.simulation.analysis.kinematics.nearest_posture import FromRest, FromTargets, NearestPosture, Restore, pull
 from symofros.simulation.analysis.kinematics.restarts import drawn_starts, nearest_turns, used_speeds
 from symofros.simulation.analysis.kinematics.targets import Task
+from symofros.simulation.analysis.states import given_inputs
 
 # Most starts: of 300 reachable poses of each of five arms with six and seven joints the hardest took 73.
 STARTS = 96

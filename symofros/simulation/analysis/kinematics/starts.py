@@ -12,6 +12,7 @@ from symofros.base.names import coordinate_of, speed_of
 from symofros.errors import AssemblyError, Problem
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
+from symofros.runtime.unit_quaternions import at_unit_length
 from symofros.simulation.analysis.kinematics.assembly import assemble
 from symofros.simulation.analysis.kinematics.nearest_start import Instant, nearest_posture_to, nearest_speeds_to
 from symofros.simulation.settings import CLOSED
@@ -73,7 +74,9 @@ def closed_start(
     Raises:
         AssemblyError: No state on the constraints keeps what is stated; says by how much the nearest one that is found
             differs. Or there is none at all.
+        ShapeError: A quaternion is no rotation.
     """
+    q = at_unit_length(model.record, "q", q, "the start")
     if not model.nc:
         return ClosedStart(q, v)
 

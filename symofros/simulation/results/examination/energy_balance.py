@@ -20,6 +20,8 @@ from symofros.simulation.stepping.stepper import Stepper
 _MOMENT, _SHORTEST = 1e-3, 1e-60
 # Growth of speeds that no mechanism explains.
 EXPLODED = 1e6
+# Kinetic energy, over the first, up to which growth is held against the work of forces.
+_BEGUN = 1e3
 # States, about, whose power is looked at first.
 _FEW = 32
 # Change of energy, over the largest kinetic energy, that is worth a note; work that explains a change, over it.
@@ -48,20 +50,20 @@ def energy_note(stepper: Stepper, settings: Settings, states: Sequence[Array], s
         if energies is None or len(states[0]) < 2:
             return ""
         kinetic, energy = energies
+        span = float(states[0][-1] - states[0][0])
         cure = f"{'a smaller dt' if not settings.adaptive else 'tighter tolerances'}, or another method"
-        if not np.isfinite(energy).all():
-            return f"energy overflows, although the states do not: speeds have exploded; {cure}"
+        if not np.isfinite(energy).all():  # States beyond 1e100 have ended the run: it is a mass that is immense.
+            return "energy overflows, although the states do not, and is not judged: units in which it is smaller"
         gain = float(energy.max() - energy[0])
         if gain > 0.5 * kinetic.max() and not _acts(stepper):
-            # Angles may have no digits left, and power none.
-            growth = math.sqrt(float(kinetic.max()) / max(_first_energy(stepper, few), 1e-300))
-            if growth > EXPLODED:
+            first = max(_first_energy(stepper, few), 1e-300)
+            growth = math.sqrt(float(kinetic.max()) / first)
+            if growth > EXPLODED and not _driven(stepper, span / steps, states, energies, first):
                 return f"speeds grow {growth:.3g}-fold and energy by {gain:.3g} J although no input acts: {cure}"
         change, largest = float(np.abs(energy - energy[0]).max()), float(kinetic.max())
         if not change > _NOTED_CHANGE * largest > 0.0:
             return ""
         # Most forces that do work are seen at once; a short contact is seen among all states, or between them.
-        span = float(states[0][-1] - states[0][0])
         for shown in (few, states, *_between(stepper, settings, states, energy, steps)):
             if shown is None:
                 return ""
@@ -80,6 +82,20 @@ def _works_little(stepper: Stepper, step: float, shown: Sequence[Array], change:
     """Whether the power in these states explains no such change of energy [J] over their span."""
     work = float(np.abs(_power(stepper, step, shown)).max()) * float(shown[0].max() - shown[0].min())
     return work <= _NOTED_WORK * change
+
+
+def _driven(
+    stepper: Stepper, step: float, states: Sequence[Array], energies: tuple[Array, Array], first: float
+) -> bool:
+    """Whether forces do the work by which a motion begins to grow: where it has exploded power has no digits left."""
+    kinetic, energy = energies
+    begun = int(np.argmax(np.append(kinetic, np.inf) > _BEGUN * first))
+    if begun < 2:
+        return False
+    gain = float(energy[:begun].max() - energy[0])
+    return gain > 0.5 * float(kinetic[:begun].max()) and not _works_little(
+        stepper, step, [x[:begun] for x in states], gain
+    )
 
 
 def _acts(stepper: Stepper) -> bool:

@@ -20,17 +20,17 @@ from symofros.simulation.stepping.resolution import TOLERANCE
 from symofros.simulation.stepping.stepper import Stepper
 
 # Of a step: what happens nearer to one of its ends than this happens there.
-_AT_END = 1e-6
+AT_END = 1e-6
 # Steps about one within which an input bends: the one before it, and two after it, in which it is made good or not.
 _ABOUT = np.arange(-1, 3)
 # Samples that are looked at, at most: those at which a signal bends most.
 _MOST = 10_000
 # Points of Gauss by which formulas are integrated between instants.
-_POINTS = 5
+POINTS = 5
 # Intervals of a run in which formulas are integrated, besides those between their instants.
 _INTERVALS = 256
 # Of a step, the distance of two values that make a rate.
-_RATE = 1e-7
+RATE = 1e-7
 # Share of what an input gives in all below which a part of it is rounding.
 _ROUNDING = 1e-12
 # Share of the speeds at the start and of one by which formulas are asked whether they depend on the state.
@@ -161,7 +161,7 @@ def _sharpest(t: Array, changes: Array) -> Array:
 
 
 def _formula(stepper: Stepper, start: tuple[Array, Array], column: int, index: int, instants: Array) -> TimedInput:
-    x, weights = np.polynomial.legendre.leggauss(_POINTS)
+    x, weights = np.polynomial.legendre.leggauss(POINTS)
 
     def at(when: Array, before: bool) -> Array:
         return _law(stepper, start, when)[:, column]
@@ -180,10 +180,11 @@ def _formula(stepper: Stepper, start: tuple[Array, Array], column: int, index: i
 def _law(stepper: Stepper, state: tuple[Array, Array], t: Array) -> Array:
     """Values (n, number of formulas) of the inputs' formulas at a state and times (n)."""
     given = {"q": state[0], "v": state[1], "u": stepper.inputs.constant}
-    return _run(stepper, "law", {name: x[np.newaxis] for name, x in given.items()} | {"t": t[:, np.newaxis]}, len(t))
+    rows = {name: x[np.newaxis] for name, x in given.items()} | {"t": t[:, np.newaxis]}
+    return evaluated(stepper, "law", rows, len(t))
 
 
-def _run(stepper: Stepper, slot: str, given: dict[str, Array], n: int) -> Array:
+def evaluated(stepper: Stepper, slot: str, given: dict[str, Array], n: int) -> Array:
     """The first output of a function of the run at n states, given by group."""
     kernel = stepper.kernels[slot]
     inputs = [given[group] if group in given else np.zeros((1, size)) for group, size in kernel.signature.inputs]
@@ -211,8 +212,8 @@ def nodes(method: Method) -> tuple[Array, Array, float]:
 def _misjudged(one: TimedInput, method: Method, t0: float, t_end: float, h: float) -> _Misjudged | None:
     """Where the impulse that steps make is off most; None where no step has an instant within."""
     place = (one.instants - t0) / h
-    last = int(np.ceil((t_end - t0) / h - _AT_END)) - 1
-    within = np.unique(np.floor(place[np.abs(place - np.rint(place)) > _AT_END]).astype(np.int64))
+    last = int(np.ceil((t_end - t0) / h - AT_END)) - 1
+    within = np.unique(np.floor(place[np.abs(place - np.rint(place)) > AT_END]).astype(np.int64))
     within = within[(within >= 0) & (within <= last)]
     if not len(within):
         return None
@@ -244,7 +245,7 @@ def _made(one: TimedInput, method: Method, begin: Array, end: Array) -> Array:
         if weight:
             total += weight * h * one.at(end if node == 1.0 else begin + node * h, node == 1.0)
     if of_rate:
-        ahead = begin + _RATE * h
+        ahead = begin + RATE * h
         total += of_rate * h**2 * (one.at(ahead, True) - one.at(begin, False)) / (ahead - begin)
     return total
 
@@ -258,7 +259,7 @@ def _matters(stepper: Stepper, states: Sequence[Array], one: TimedInput, found: 
     given = {"q": q[row], "v": v[row], "u": pushed, "t": t[row][:, np.newaxis]}
     few = slice(None, None, -max(1, len(t) // _SPEEDS))
     with np.errstate(all="ignore"):
-        a = _run(stepper, "forward_dynamics", given, 2)
+        a = evaluated(stepper, "forward_dynamics", given, 2)
         change = float(energy_norms(stepper, q[row], u[row], h * (a[1:] - a[:1]))[0])
         fastest = float(energy_norms(stepper, q[few], u[few], v[few]).max())
     return change > TOLERANCE * fastest

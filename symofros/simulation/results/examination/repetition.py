@@ -14,6 +14,7 @@ import numpy as np
 
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.manifold import retract
+from symofros.simulation.inputs import Callback
 from symofros.simulation.results.examination.energy_norm import energies_of, energy_norms, metrics
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.loops import run_own
@@ -59,8 +60,8 @@ def repeatable(stepper: Stepper, settings: Settings, states: Sequence[Array]) ->
 def same_inputs_again(stepper: Stepper, settings: Settings, states: Sequence[Array]) -> bool:
     """Whether a function of the user's that gives the inputs gives the same again; True where there is none.
 
-    It is called at some of the recorded states, the last one first, so that what it keeps of the run shows. In real
-    time it is not called: what it serves may be hardware.
+    It is called at some of the recorded states, the last one first, so that what it keeps of the run shows: once a run,
+    whose stepper keeps the answer. In real time it is not called: what it serves may be hardware.
 
     Args:
         stepper: Stepper of the run.
@@ -68,10 +69,15 @@ def same_inputs_again(stepper: Stepper, settings: Settings, states: Sequence[Arr
         states: States of the run: t (n), q, v, u.
     """
     function = stepper.inputs.callback
-    if function is not None and settings.realtime:
-        return False
-    if function is None:
-        return True
+    if function is None or settings.realtime:
+        return function is None
+    if stepper.same_inputs_again is None:
+        stepper.same_inputs_again = _gives_again(function, states)
+    return stepper.same_inputs_again
+
+
+def _gives_again(function: Callback, states: Sequence[Array]) -> bool:
+    """Whether a function of the user's gives the recorded inputs once more, at some of the states t (n), q, v, u."""
     t, q, v, u = (array[:: -max(1, len(array) // _CALLED)] for array in states)
     try:
         again = [np.asarray(function(float(t[i]), q[i].copy(), v[i].copy()), float) for i in range(len(t))]
@@ -103,8 +109,7 @@ def repeated(
         max_steps: Number of steps after which it ends; None: no bound.
         method: Stepping method; the run's own if not given.
     """
-    t, q, v = start
-    method = method or stepper.method
+    (t, q, v), method = start, method or stepper.method
     part = replace(settings, t0=t, t_end=t_end, dt=dt, every=every, grid=np.zeros(0), max_steps=max_steps, realtime=0.0)
     part = replace(part, method=method, project=part.project or (method != stepper.method and stepper.model.nc > 0))
     again = Stepper(stepper.model, method, stepper.inputs, (), stepper.par)

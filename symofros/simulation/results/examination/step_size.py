@@ -7,11 +7,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from symofros.errors import SymofrosError
 from symofros.runtime.calls.kernel import Array
+from symofros.simulation.analysis.kinematics.postures import worst_violation
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.results.examination.creep import creep_note
 from symofros.simulation.results.examination.energy_balance import EXPLODED, energy_note, energy_that_appeared
 from symofros.simulation.results.examination.energy_norm import metrics, norms_in
+from symofros.simulation.results.examination.formula_impulses import formula_impulse_note
 from symofros.simulation.results.examination.input_impulses import input_impulse_note
 from symofros.simulation.results.examination.repetition import halved_step_note, percent, tolerance_note, windows_note
 from symofros.simulation.results.examination.stepped_over import stepped_over_note
@@ -19,10 +22,12 @@ from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.methods import Method
 from symofros.simulation.stepping.resolution import (
     Mode,
+    Pull,
     Resolution,
     Spectrum,
     directions,
     largest_stable_step,
+    pull_rates,
     resolution,
     states_to_examine,
 )
@@ -69,6 +74,8 @@ def examine_run(
         notes.append(windows_note(stepper, settings, states, steps))
     if ended_well:
         notes.append(input_impulse_note(stepper, settings, start, states))
+    if ended_well and not any(notes):
+        notes.append(formula_impulse_note(stepper, settings, states))
     if ended_well and mode is None and not any(notes):
         notes.append(stepped_over_note(stepper, settings, start, states, steps))
     if ended_well:
@@ -116,7 +123,22 @@ def examine_steps(
 
     with stepper.preserved(), np.errstate(all="ignore"):  # States that have exploded overflow.
         times = [when for when, *_ in examined]
-        return resolution(stepper.method, settings.dt, steps, times, spectrum, speeds, metric[chosen])
+        pull = _pull(stepper, settings, examined)
+        return resolution(stepper.method, settings.dt, steps, times, spectrum, speeds, metric[chosen], pull)
+
+
+def _pull(stepper: Stepper, settings: Settings, examined: Sequence[tuple[float, Array, Array, Array]]) -> Pull:
+    """The way back to the constraints by Baumgarte's gains, with how far the states t, q, v, u are from them."""
+    model = stepper.model
+    if not settings.gains.any():
+        return Pull()
+    rates = pull_rates(settings.gains, [name in model.record.speed_conditions for name in model.names.constraints])
+    t, q, v, u = (np.array(x) for x in zip(*examined, strict=True))
+    try:
+        worst = worst_violation(model, t, (q, v, u), stepper.par)
+    except SymofrosError:  # Options.functions left out what says it.
+        worst = None
+    return Pull(rates, min(worst.share, 1.0), worst.t) if worst is not None else Pull(rates)
 
 
 def _samples_within_steps(inputs: InputPlan, settings: Settings) -> bool:
@@ -160,6 +182,8 @@ def step_size_note(mode: Mode, method: Method, h: float, energy: str = "") -> st
         energy: Energy that appeared, in words that end in a semicolon.
     """
     motion = f"{_rate(mode.rate)} (seen at t = {mode.t:.4g} s)"
+    if mode.of_gains:
+        motion = f"leads back to the constraints by the gains, and {motion}"
     if not mode.amplified:
         return (
             f"steps of {h:.4g} s follow a mode of the motion to {percent(mode.error)} only: {motion} with"
@@ -177,7 +201,7 @@ def remedy(mode: Mode, method: Method) -> str:
     """What makes a run stable."""
     limit = largest_stable_step(method, mode.rate)
     if limit > 0.0:
-        return f"dt below {limit:.3g} s, or an implicit method"
+        return f"dt below {limit:.3g} s, or {'smaller gains' if mode.of_gains else 'an implicit method'}"
     return "another method, such as rk4"
 
 

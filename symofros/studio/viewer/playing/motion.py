@@ -287,7 +287,8 @@ def _checked(
         )
     if np.any(np.diff(t[:count]) < 0.0):
         _refuse(what, "times that fall", "times rise from state to state", "sort the states by time")
-    return PlayedMotion(model, t[:count], q[:count], u[:count], par)
+    # Those of other simulators may have left unit length.
+    return PlayedMotion(model, t[:count], model.normalized(q[:count]), u[:count], par)
 
 
 def _drawable(model: Model, q: Array) -> npt.NDArray[np.bool_]:

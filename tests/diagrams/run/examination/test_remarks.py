@@ -197,3 +197,30 @@ def test_no_more_than_the_first_20_000_steps_are_made_once_more_however_few_reco
     pushed("formula", "-2000*x[0]^3", dx=2.0).run(400.0, dt=4e-3, record=200.0)
     begin, end = spans[-1]
     assert begin == 0.0 and end == pytest.approx(20_000 * 4e-3)
+
+
+@pytest.mark.parametrize(
+    ("t_end", "dt", "instant", "said"),
+    [
+        (1.0, 0.05, 0.1125, "do not show the motion: with half of that it does not come to this end; a smaller dt"),
+        (15.0, 0.05, 0.1125, "do not show the motion: with half of that it does not come to this end from t = 0 s"),
+        (8.0, 0.01, 3.0025, "do not show the motion: with half of that it does not come to this end; a smaller dt"),
+        (15.0, 0.05, 0.1107, ""),
+    ],
+)
+def test_steps_that_leap_over_what_ends_the_motion_are_told(t_end: float, dt: float, instant: float, said: str) -> None:
+    """A force that is no number for an instant: half the step asks for it there, in a window or in all of the run.
+
+    The phase of the third one drifts, so that all of the run is made once more; in the last one no step asks.
+    """
+    spring = 1000.0 if t_end == 8.0 else 1.0
+    force = f"-{spring}*x[0]^3 + 1e-9*sqrt((t - {instant})^2 - 1e-8)"
+    run = pushed("formula", force, x=1.0).run(t_end, dt=dt, record=0.05)
+    assert [said in note for note in run.outcome.notes] == [True] * bool(said), run.outcome
+
+
+@pytest.mark.parametrize(("method", "said"), [("euler", True), ("rk4", False)])
+def test_steps_of_a_long_run_that_are_not_held_against_finer_ones_are_told(method: str, said: bool) -> None:
+    """An external block would have to answer again; where the steps are right nothing adds up."""
+    notes = sampled_loop("python").run(15.0, method=method, dt=1e-3, record=0.1).outcome.notes
+    assert [" are not held against " in note and "'law' is not called again" in note for note in notes] == [True] * said

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from symofros.simulation.analysis.kinematics.assembly import shift_scales
 from symofros.simulation.analysis.kinematics.starts import ClosedStart, closed_start
 
 FUNCTIONS = ("constraint", "constraint_rate", "constraint_jacobian", "frame_pose")
@@ -80,6 +81,32 @@ def test_no_consistent_speeds_are_nearer(name: str, rng: np.random.Generator) ->
         share = v[[0, 2]] @ motion[[0, 2]] / (motion[[0, 2]] @ motion[[0, 2]])
         nearest = np.linalg.norm(share * motion[[0, 2]] - v[[0, 2]])
         assert np.linalg.norm(list(changed.values())) == pytest.approx(nearest, rel=1e-3)
+
+
+@pytest.mark.parametrize("reach", [0.25, 4.0])
+def test_speeds_of_slides_count_by_the_reach_of_what_turns(reach: float, rng: np.random.Generator) -> None:
+    """A crank and slider: a metre a second is as much as 1/reach radians a second."""
+    crank = sf.Joint("q0", "revolute")
+    rod = sf.Joint("q1", "revolute", "crank", "end")
+    slide = sf.Joint("x", "prismatic", axis=(1, 0, 0))
+    bodies = (
+        sf.RigidBody("crank", crank, sf.Inertia(1.0), (sf.Frame("end", (0.5 * reach, 0, 0)),)),
+        sf.RigidBody("rod", rod, sf.Inertia(1.0), (sf.Frame("end", (reach, 0, 0)),)),
+        sf.RigidBody("slider", slide, sf.Inertia(1.0)),
+    )
+    shut = sf.Closure("shut", ("slider", None), ("rod", "end"), ("x", "y"))
+    m = sf.compile(sf.System("press", bodies, constraints=(shut,)), sf.Options(FUNCTIONS, backend="interpreter"))
+    closed = sf.assemble(m, [1.0, -1.4, reach]).q
+    G = m.constraint_jacobian(closed)
+    motion, rows = np.linalg.svd(G)[2][-1], [0, 2]
+    weights = 1.0 / shift_scales(m, G)[rows]
+    assert weights[0] == 1.0 and 0.5 / reach < weights[1] < 2.0 / reach
+    for _ in range(5):
+        v = rng.normal(size=3)
+        changed = reported(m, closed, v, [], ["q0", "x"])
+        along, wished = weights * motion[rows], weights * v[rows]
+        nearest = np.linalg.norm(wished - along * (along @ wished) / (along @ along))
+        assert np.linalg.norm(weights * [changed["dq0"], changed["dx"]]) == pytest.approx(nearest, rel=1e-3)
 
 
 def start(**stated: float) -> ClosedStart:

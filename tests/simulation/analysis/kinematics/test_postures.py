@@ -47,6 +47,34 @@ def test_a_row_that_stays_upright_is_not_near(row: sf.Model) -> None:
     assert nearest_to_singular(row, recorded(row, times, q), row.parameter_values, row.nc, nothing_between) is None
 
 
+def parallelogram(size: float) -> sf.Model:
+    """Four bars of one length [m], which all lie along the ground where the cranks' angle is zero."""
+    axis, end, rod = (0, -1, 0), (sf.Frame("end", (size, 0, 0)),), sf.Inertia(1.0)
+    bodies = (
+        sf.RigidBody("left", sf.Joint("crank0", "revolute", axis=axis), rod, end),
+        sf.RigidBody("link", sf.Joint("coupler0", "revolute", "left", "end", axis=axis), rod, end),
+        sf.RigidBody("right", sf.Joint("crank1", "revolute", position=(size, 0, 0), axis=axis), rod, end),
+    )
+    loop = sf.Closure("loop", ("right", "end"), ("link", "end"), ("x", "z"))
+    options = sf.Options(functions=("constraint_jacobian",), backend="interpreter")
+    return sf.compile(sf.System("parallelogram", bodies, constraints=(loop,)), options)
+
+
+@pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
+def test_what_is_met_between_two_records_does_not_depend_on_the_unit_of_length(size: float) -> None:
+    """The motion is asked for where the straight way comes near; it turns back there."""
+    m, lowest = parallelogram(size), 0.02
+    times, q = swept(m, np.array([1.0, -0.98]))
+
+    def along(first: int, last: int) -> list[np.ndarray]:
+        angles = np.concatenate([np.linspace(1.0, lowest, 60), np.linspace(lowest, 0.5, 60)])
+        return recorded(m, *swept(m, angles))
+
+    close = nearest_to_singular(m, recorded(m, times, q), m.parameter_values, m.nc, along)
+    assert close is not None and close[1] == pytest.approx(np.sin(lowest), rel=0.7)
+    assert nearest_to_singular(m, recorded(m, times, q), m.parameter_values, m.nc, nothing_between) is None
+
+
 A, B, SPEED = 0.3, 1.0, 20.0
 
 

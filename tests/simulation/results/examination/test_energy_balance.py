@@ -50,3 +50,34 @@ def test_energy_that_steps_make_is_noted(step: float) -> None:
     model = sf.compile(sf.System("oscillator", (sf.RigidBody("b", spring, sf.Inertia(1.0)),)))
     run = sf.simulate(model, [1.0], t_end=20.0, method="euler", dt=step)
     assert run.outcome.notes and run.energy[-1] > 2.0 * run.energy[0]
+
+
+def on_a_slide(mass: float, *elements: sf.Spring | sf.Damper) -> sf.Model:
+    """A mass that slides."""
+    slide = sf.Joint("x", "prismatic", axis=(1, 0, 0), elements=elements)
+    return sf.compile(sf.System("slide", (sf.RigidBody("b", slide, sf.Inertia(mass)),), gravity=(0, 0, 0)))
+
+
+@pytest.mark.parametrize("method", [*METHODS, "generalized_alpha"])
+def test_speeds_that_a_force_drives_grow_without_a_note(method: str) -> None:
+    """A damper of -2 N s/m, which feeds the motion, on 1 kg: its speed is exp(2 t)."""
+    run = sf.simulate(on_a_slide(1.0, sf.Damper(-2.0)), v0=[1.0], t_end=10.0, method=method)
+    right = pytest.approx(np.exp(20.0), rel=0.03 if method == "semi_implicit_euler" else 1e-3)
+    assert run.v[-1, 0] == right and not run.outcome.notes, run.outcome
+
+
+@pytest.mark.parametrize(("atol", "said"), [(1e9, True), (1e-9, False)])
+@pytest.mark.parametrize("method", ["dopri5", "dop853"])
+def test_speeds_that_steps_make_grow_are_noted(method: str, atol: float, said: bool) -> None:
+    """A spring that hardens keeps its energy; a tolerance that bounds nothing lets the steps explode."""
+    spring = on_a_slide(1.0, sf.Spring(1.0, 0.0, 1.0))
+    run = sf.simulate(spring, [1.0], t_end=50.0, method=method, atol=atol, max_steps=500)
+    assert bool([note for note in run.outcome.notes if "although no input acts" in note]) == said, run.outcome
+
+
+@pytest.mark.parametrize(("mass", "said"), [(1e250, True), (1.0, False)])
+def test_energy_beyond_all_numbers_is_said_not_to_be_judged(mass: float, said: bool) -> None:
+    run = sf.simulate(on_a_slide(mass), v0=[1e40], t_end=1.0, method="rk4", dt=0.1)
+    assert run.q[-1, 0] == pytest.approx(1e40)
+    notes = [note.startswith("energy overflows, although the states do not") for note in run.outcome.notes]
+    assert notes == [True] * said

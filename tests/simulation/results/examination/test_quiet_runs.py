@@ -45,6 +45,11 @@ SAMPLE = ("double_pendulum", "slider_crank", "flexible_pendulum")
 # What is said of the mechanism and not of the numbers: limits are data, friction is smooth, beams have their theory.
 OF_THE_MECHANISM = ("limits", "so that the joint creeps", "second-order theory errs")
 T_END = 0.5
+# Ends [s]: before a singular posture, in which rounding decides on the branch and two runs to 1e-13 differ by 4e-8;
+# of a rod that is pushed at all its modes, the fastest at 66 000 rad/s.
+SHORT = {"parallelogram": 0.1, "flexible_slider_crank": 2e-3}
+# What a method refuses: variational integrators take no motion that is prescribed.
+REFUSED = {("spinning_beam", "variational")}
 
 
 @cache
@@ -63,7 +68,8 @@ def start(name: str) -> tuple[sf.Model, np.ndarray, np.ndarray]:
 def truth(name: str) -> tuple[np.ndarray, np.ndarray]:
     """Configuration and speeds at the end: bounds of 1e-13, and the same by half of any step."""
     model, q, v = start(name)
-    ends = [sf.simulate(model, q, v, T_END, method="dop853", rtol=1e-13, atol=1e-15, max_step=h) for h in (1e-2, 5e-3)]
+    t_end = SHORT.get(name, T_END)
+    ends = [sf.simulate(model, q, v, t_end, method="dop853", rtol=1e-13, atol=1e-15, max_step=h) for h in (1e-2, 5e-3)]
     assert off(model, ends[0], (ends[1].q[-1], ends[1].v[-1])) < 0.1 * RIGHT
     return ends[1].q[-1], ends[1].v[-1]
 
@@ -81,9 +87,9 @@ def test_a_run_that_is_right_bears_no_note(name: str) -> None:
     quiet = 0
     for method, settings in METHODS.items():
         for options in settings:
-            if model.nc and method in ("variational", "cvode"):
+            if (model.nc and method in ("variational", "cvode")) or (name, method) in REFUSED:
                 continue
-            run = sf.simulate(model, q, v, T_END, method=method, **options)
+            run = sf.simulate(model, q, v, SHORT.get(name, T_END), method=method, **options)
             if not run.outcome.ok or off(model, run, truth(name)) > RIGHT:
                 continue
             notes = [note for note in run.outcome.notes if not any(one in note for one in OF_THE_MECHANISM)]

@@ -11,8 +11,9 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from symofros.simulation.stepping.methods import METHODS
+from symofros.simulation.stepping.methods import METHODS, stability_limit
 from symofros.simulation.stepping.resolution import TOLERANCE
+from tests.models import GUESSES
 from tests.simulation.oscillator import exact, fixed, oscillator
 
 JUDGED = tuple(name for name, method in METHODS.items() if method.family.judged)
@@ -208,3 +209,55 @@ def test_energy_of_motions_much_faster_than_the_step_is_judged(method: str, step
         if run.outcome.ok and not run.outcome.notes:
             change = np.abs(run.energy - run.energy[0]).max() / run.kinetic_energy.max()
             assert change < 0.1, (speed, change, str(run.outcome))
+
+
+def pushed(name: str) -> tuple[sf.Model, np.ndarray, np.ndarray]:
+    """A reference model with constraints, and a state of motion on them."""
+    model = sf.compile(MODELS[name])
+    first = sf.assemble(model, GUESSES.get(name, model.neutral()), np.linspace(-1.0, 1.0, model.nv))
+    return model, first.q, first.v
+
+
+@cache
+def motion_of_bricard() -> sf.Trajectory:
+    """Conditions that repeat each other on the constraints alone; to 1e-10."""
+    return sf.simulate(*pushed("bricard"), 0.5, method="dop853", rtol=1e-10, atol=1e-12)
+
+
+@pytest.mark.parametrize("gains", [None, (5, 5), (20, 20)])
+@pytest.mark.parametrize(
+    ("method", "dt", "error"),
+    [
+        ("rk4", 1e-3, 2e-8),
+        ("dopri5", 2e-2, 2e-6),
+        ("dopri5", 1e-3, 1e-9),
+        ("dop853", 1e-2, 1e-9),
+        ("semi_implicit_euler", 5e-3, 1e-2),
+    ],
+)
+def test_loops_that_gains_keep_bear_no_note_where_they_are_right(
+    method: str, dt: float, error: float, gains: tuple[float, float] | None
+) -> None:
+    """What leaves the constraints is no mode of the motion."""
+    right, options = motion_of_bricard(), {"adaptive": fixed(method), "stabilisation": "baumgarte", "gains": gains}
+    run = sf.simulate(*pushed("bricard"), 0.5, method=method, dt=dt, **options)  # type: ignore[arg-type]
+    assert np.abs(run.q[-1] - right.q[-1]).max() < error and np.abs(run.v[-1] - right.v[-1]).max() < error
+    assert not run.outcome.notes, run.outcome
+
+
+def test_loops_that_gains_keep_bear_a_note_where_they_are_wrong() -> None:
+    """Off by two thirds after two seconds."""
+    options = {"method": "semi_implicit_euler", "dt": 0.02, "stabilisation": "baumgarte", "gains": (5, 5)}
+    assert step_notes(sf.simulate(*pushed("bricard"), 2.0, **options))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("name", "times"), [("bricard", 1.0), ("four_bar", 1.0), ("sleigh", 2.0)])
+@pytest.mark.parametrize("share", [0.9, 1.15])
+@pytest.mark.parametrize("method", ["rk4", "dopri5"])
+def test_gains_past_the_limit_of_stability_are_named(name: str, times: float, share: float, method: str) -> None:
+    """With alpha = beta they lead back at alpha; conditions on speeds, such as a blade's, at twice that."""
+    gain = share * stability_limit(method, math.pi) / 2e-3 / times
+    options = {"adaptive": fixed(method), "stabilisation": "baumgarte", "gains": (gain, gain)}
+    run = sf.simulate(*pushed(name), 1.0, method=method, dt=2e-3, **options)  # type: ignore[arg-type]
+    said = ["back to the constraints by the gains" in note and "smaller gains" in note for note in step_notes(run)]
+    assert said == [True] * (share > 1.0), run.outcome

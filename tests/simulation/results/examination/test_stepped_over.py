@@ -56,6 +56,15 @@ def test_a_pulse_that_a_body_at_rest_sleeps_through_is_noted(method: str, law: s
         assert abs(again.v[-1, 0] - exact) < 1e-3 and not again.outcome.notes
 
 
+@pytest.mark.parametrize("method", ["dopri5", "rk4", "cvode"])
+def test_a_run_that_records_its_start_alone_says_nothing(method: str) -> None:
+    """A record is no interval: there is nothing to look into, and no division by its length."""
+    if method == "cvode":
+        pytest.importorskip("sksundae")
+    run = sf.simulate(sf.compile(CART), None, [1.0], 1e-3, u={"x": "t"}, method=method, output=[0.0])
+    assert run.outcome.kind == "finished" and len(run.t) == 1 and not run.outcome.notes
+
+
 def test_a_run_of_a_batch_says_so_too() -> None:
     many = sf.simulate_batch(sf.compile(CART), np.zeros((2, 1)), [[0.0], [0.1]], 10.0, u={"x": PULSE}, method="dopri5")
     exact = 20.0 * 0.05 * np.sqrt(np.pi)

@@ -1,0 +1,88 @@
+"""The first state of a diagram's package, that of a run from Python, and what is known beforehand of how it moves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from symofros.diagrams.program.compiled import Resolved, compile_diagram
+from symofros.diagrams.run.options import DiagramOptions
+from symofros.diagrams.run.parts import Placed, place_parts
+from symofros.diagrams.run.simulate import run_compiled
+from symofros.diagrams.run.starts import Start
+from symofros.exports.limits import joints_of, limits_note
+from symofros.exports.material import Stepping
+from symofros.runtime.calls.kernel import Array
+from symofros.simulation.analysis.kinematics.starts import singular_start
+
+# Instants and steps of the run that is compared.
+_CHECKED = 20
+
+
+@dataclass(frozen=True)
+class FirstMotion:
+    """How a package begins.
+
+    Attributes:
+        starts: First configuration and speeds of each part.
+        until: A time [s].
+        signals: The outputs then, one after the other, of a run from Python.
+        notes: Remarks for the user.
+    """
+
+    starts: tuple[tuple[Array, Array], ...]
+    until: float
+    signals: tuple[float, ...]
+    notes: tuple[str, ...]
+
+
+def first_motion(resolved: Resolved, outputs: Sequence[str], stepping: Stepping) -> FirstMotion:
+    """Begin a diagram as its package is to begin, and note what a run from Python notes there.
+
+    Args:
+        resolved: The diagram.
+        outputs: Signals that the program tells.
+        stepping: How the parts step.
+
+    Raises:
+        AssemblyError: A first state closes no loop.
+        SymofrosError: The first accelerations are not finite.
+    """
+    base = float(resolved.schedule.base) if resolved.schedule.instants else stepping.dt
+    until = _CHECKED * max(base, stepping.dt)
+    changes: dict[str, Any] = {name: getattr(stepping, name) for name in ("dt", "rtol", "atol", "beam_limit")}
+    changes |= {"method": stepping.method.name, "record": until}
+    compiled, options = compile_diagram(resolved), DiagramOptions().changed(changes)
+    par = np.array(resolved.layout.par)
+    placed = place_parts(compiled, lambda model: options.settings(model, until), par, Start.of(resolved, options.t0))
+    run = run_compiled(compiled, until, options)
+    noted = [*_of_models(resolved, placed), *(note for part in placed for note in part.notes)]
+    if run.outcome.kind != "finished":
+        noted.append(f"a run of the first {until:g} s ends at t = {run.outcome.t:g} s: {run.outcome.reason}")
+    noted += [f"in the first {until:g} s: {note}" for note in run.outcome.notes if note not in noted]
+    return FirstMotion(
+        tuple((part.q, part.v) for part in placed),
+        float(run.t[-1]),
+        tuple(float(x) for name in outputs for x in np.ravel(run[name][-1])),
+        tuple(dict.fromkeys(noted)),
+    )
+
+
+def _of_models(resolved: Resolved, placed: Sequence[Placed]) -> Iterator[str]:
+    """What is noted of the mechanisms: their descriptions, limits that nothing keeps, singular first postures."""
+    layout, models = resolved.layout, resolved.wired.models
+    for part, at in zip(layout.parts, placed, strict=True):
+        for block in part.blocks:
+            name = resolved.pieces[block].block.mechanism()
+            if not name:
+                continue
+            system, record = models.system(name), models.record(name)
+            said = [*system.notes, *limits_note(joints_of(system))]
+            if record.nc and not record.driven and not resolved.pieces[block].block.lock_inputs():
+                q = layout.q[block]
+                first = q.start - part.q.start
+                said += singular_start(models.constraints(name), at.q[first : first + q.size])
+            yield from (f"model '{name}': {note}" for note in said)

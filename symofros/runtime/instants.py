@@ -1,0 +1,59 @@
+"""Instants at which formulas of time bend, jump or change fast: the search of native/stepping/formula_instants.c."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from symofros.runtime.calls.binding import NativeMemory, native_library
+from symofros.runtime.calls.declarations import constants
+from symofros.runtime.calls.kernel import Array
+
+# Values of an operand, by its number, at times (n) [s].
+Operands = Callable[[int, Array], Array]
+
+_EVALUATE = "void(void *, int32_t, int32_t, const double *, double *)"
+
+
+def find_instants(kinds: Sequence[int], values: Operands, t0: float, t_end: float) -> Array:
+    """Instants within a span at which a step has to end, so that the next one begins with what begins there.
+
+    Args:
+        kinds: What formulas do where each operand is small, sym_instant_kind; inner operands first.
+        values: Values of the operands.
+        t0: Start of the span [s].
+        t_end: End of the span [s].
+
+    Returns:
+        Instants in order, between t0 and t_end (n) [s].
+
+    Raises:
+        CompileError: There is no C compiler.
+    """
+    capacity = constants()["SYM_INSTANT_CAPACITY"]
+    while (instants := _found(kinds, values, t0, t_end, capacity)) is None:
+        capacity *= 2
+    return instants
+
+
+def _found(kinds: Sequence[int], values: Operands, t0: float, t_end: float, capacity: int) -> Array | None:
+    """The instants; None where that memory does not hold them."""
+    memory, failures = NativeMemory(), list[BaseException]()
+
+    def evaluate(_: Any, operand: int, n: int, t: Any, value: Any) -> None:
+        try:
+            memory.view(value, n)[:] = values(operand, memory.view(t, n))
+        except BaseException as error:  # It may not pass through C.
+            failures.append(error)
+
+    search, instants = memory.own("sym_instant_search[]", 1), np.zeros(capacity)
+    search[0].n, search[0].kind = len(kinds), memory.doubles(kinds)
+    search[0].evaluate = memory.callback(_EVALUATE, evaluate)
+    search[0].capacity = capacity
+    search[0].memory = memory.zeros(constants()["SYM_INSTANT_ROWS"] * capacity)
+    n = int(native_library().sym_find_instants(search, t0, t_end, memory.shared(instants)))
+    if failures:
+        raise failures[0]
+    return instants[:n].copy() if n >= 0 else None

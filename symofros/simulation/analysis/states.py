@@ -1,0 +1,37 @@
+"""States of analyses: configurations and inputs as they are stated, or the defaults; quaternions of unit length."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from symofros.base.arrays import numeric, vector
+from symofros.errors import Problem, ShapeError
+from symofros.runtime.calls.kernel import Array
+from symofros.runtime.model import ArrayLike, Model
+from symofros.runtime.unit_quaternions import at_unit_length
+
+
+def given_configuration(model: Model, q: ArrayLike) -> Array:
+    """A configuration (nq).
+
+    Raises:
+        ShapeError: It is no vector of that size, or a quaternion is no rotation.
+    """
+    return at_unit_length(model.record, "q", vector("q", model.by_name("q", q), model.nq))
+
+
+def given_inputs(model: Model, u: ArrayLike | None) -> Array:
+    """The inputs stated, (nu) or several rows of them; the defaults if none are.
+
+    Raises:
+        ShapeError: They are no numbers, or a quaternion among them is no rotation.
+    """
+    stated = numeric("u", model.record.u_default if u is None else model.by_name("u", u))
+    if stated.shape[-1:] != (model.nu,):  # Refused by what they are for.
+        return stated
+    for first in model.record.quaternion_inputs:
+        if not np.isfinite(stated[..., first : first + 4]).all():
+            names = ", ".join(model.names.u[first : first + 4])
+            what, rule = "a number that is not finite", f"{names} are a rotation"
+            raise ShapeError(Problem(f"model '{model.record.name}': u is no motion", what, rule, "give finite numbers"))
+    return at_unit_length(model.record, "u", stated)

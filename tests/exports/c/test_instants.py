@@ -1,0 +1,103 @@
+"""Packages step through what their formulas of time do within a step, as sf.simulate does, whoever cuts the run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+import symofros as sf
+from tests.exports.cases import build, run, sources
+from tests.pulses import END, SHAPES, cart, drawn
+
+# What the methods leave between two instants, at the default bounds; rk4 of a bell, about which instants are half a
+# width apart in the middle and several at its ends.
+BOUND = {"dopri5": 1e-4, "rk4": 4e-3}
+# Lengths of a call: the run at once, parts of it, and parts that share no instant with the pulses.
+CALLS = (END, 0.1, 0.0130723)
+MAIN = r"""
+#include <stdio.h>
+#include <stdlib.h>
+#include "cart.h"
+int main(int n, char **word) {
+    const size_t size = sym_instance_size(cart_plant());
+    sym_instance *cart = sym_instance_init(malloc(size), size, cart_plant());
+    const double span = atof(word[1]);
+    int i, k, status = SYM_FINISHED;
+    for (i = 2; i + 1 < n; i += 2) { /* late and width of one run after the other, in the same instance */
+        sym_instance_reset(cart);
+        cart->par[0] = atof(word[i]), cart->par[1] = atof(word[i + 1]);
+        if (sym_instance_prepare(cart) != 0) return 1;
+        for (k = 1; status == SYM_FINISHED && cart->t < 10.0; ++k) {
+            const double end = (double)k * span;
+            status = sym_instance_advance(cart, end < 10.0 ? end : 10.0, 0.0);
+        }
+        printf("%d %.17g\n", status, cart->v[0]);
+    }
+    return 0;
+}
+"""
+
+
+Speeds = Callable[[str, str, float, list[tuple[float, float]]], list[float]]
+
+
+@pytest.fixture(scope="module")
+def speeds(tmp_path_factory: pytest.TempPathFactory) -> Speeds:
+    """Last speeds of a package of a force and a method, by length of a call and pulses; each package is built once."""
+    built: dict[tuple[str, str], Path] = {}
+
+    def last(force: str, method: str, span: float, pulses: list[tuple[float, float]]) -> list[float]:
+        if (force, method) not in built:
+            folder = tmp_path_factory.mktemp("cart") / "c"
+            sf.export(cart(force), "c", folder, method=method, dt=0.01, functions=["dynamics"])
+            (folder / "main.c").write_text(MAIN)
+            built[force, method] = build(folder, "../cart", *sources(folder))
+        words = [repr(number) for pulse in pulses for number in pulse]
+        lines = run(built[force, method], repr(span), *words, cwd=built[force, method].parent).splitlines()
+        assert all(line.split()[0] == "1" for line in lines)
+        return [float(line.split()[1]) for line in lines]
+
+    return last
+
+
+@pytest.mark.parametrize("method", BOUND)
+@pytest.mark.parametrize("shape", SHAPES)
+def test_a_pulse_gives_its_impulse_in_calls_of_any_length(speeds: Speeds, shape: str, method: str) -> None:
+    """A package whose steps do not end at instants leaves the cart at rest."""
+    force, impulse = SHAPES[shape]
+    pulses = drawn(12)
+    for span in CALLS:
+        for pulse, speed in zip(pulses, speeds(force, method, span, pulses), strict=True):
+            assert speed == pytest.approx(impulse, rel=BOUND[method]), (span, pulse)
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_a_run_at_once_is_that_of_simulate(speeds: Speeds, shape: str) -> None:
+    """To rounding; the middle of a bell is an extremum, which is found to the root of it."""
+    force, _ = SHAPES[shape]
+    model = sf.compile(cart(force))
+    for pulse in drawn(3):
+        par = dict(zip(("late", "width"), pulse, strict=True))
+        wanted = sf.simulate(model.with_parameters(**par), t_end=END, method="dopri5", dt=0.01, rtol=1e-6, atol=1e-8)
+        bound = 1e-6 if shape == "bell" else 1e-11
+        assert speeds(force, "dopri5", END, [pulse]) == pytest.approx([wanted.v[-1, 0]], abs=bound)
+
+
+def test_more_instants_than_memory_holds_shorten_the_search(speeds: Speeds) -> None:
+    """Three operands of a comb, with 9549 kinks in the run; each of its teeth counts."""
+    force = "max(abs(sin(1000*t)), max(cos(1000*t), 0)) + 0*late*width"
+    model = sf.compile(cart(force))
+    wanted = sf.simulate(model, t_end=END, method="rk4", dt=1e-5, output=[END]).v[-1, 0]
+    for span in (END, 0.1):
+        assert speeds(force, "dopri5", span, [(5.0, 1e-3)]) == pytest.approx([wanted], rel=1e-5)
+
+
+@pytest.mark.parametrize("target", ["sfunction", "cuda"])
+def test_targets_whose_steps_know_no_instants_say_so(target: str, tmp_path: Path) -> None:
+    force, _ = SHAPES["tent"]
+    stated = sf.export(cart(force), target, tmp_path / "tent").notes
+    assert any("formulas of time bend, jump or are narrow" in note for note in stated)
+    smooth = sf.export(cart("sin(t) + late + width"), target, tmp_path / "smooth").notes
+    assert not any("formulas of time" in note for note in smooth)

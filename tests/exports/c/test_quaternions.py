@@ -1,0 +1,84 @@
+"""Instances of packages: states near unit length are taken at it, others don't move."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from tests.exports.cases import build
+from tests.interop.turning import SYSTEMS
+from tests.runtime.test_unit_quaternions import with_length
+
+# Lines of q and v to lines of: status and q of a projection; status, q and v after a while; accelerations before it.
+DRIVER = """
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "hopper.h"
+static double q[HOPPER_NQ], v[HOPPER_NV];
+static void place(sym_instance *it) {
+    sym_instance_reset(it);
+    memcpy(it->q, q, sizeof q), memcpy(it->v, v, sizeof v);
+}
+static void show(int status, const double *x, int n) {
+    printf("%d", status);
+    for (int i = 0; i < n; ++i) printf(" %.17g", x[i]);
+    printf("\\n");
+}
+int main(void) {
+    const size_t size = sym_instance_size(hopper_plant());
+    sym_instance *it = sym_instance_init(malloc(size), size, hopper_plant());
+    int i;
+    while (scanf("%lf", &q[0]) == 1) {
+        for (i = 1; i < HOPPER_NQ; ++i) if (scanf("%lf", &q[i]) != 1) return 2;
+        for (i = 0; i < HOPPER_NV; ++i) if (scanf("%lf", &v[i]) != 1) return 2;
+        place(it);
+        i = sym_instance_accelerate(it);
+        show(i, it->a, HOPPER_NV);
+        place(it);
+        i = sym_instance_project(it);
+        show(i, it->q, HOPPER_NQ);
+        place(it);
+        i = sym_instance_advance(it, 0.02, 1e-3);
+        show(i, it->q, HOPPER_NQ);
+    }
+    free(it);
+    return 0;
+}
+"""
+
+
+@pytest.fixture(scope="module")
+def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("hopper") / "c"
+    sf.export(SYSTEMS["hopper"](), "c", folder)
+    (folder / "main.c").write_text(DRIVER)
+    return build(folder, "../move")
+
+
+def test_states_of_instances_are_rotations(package: Path) -> None:
+    m = sf.compile(SYSTEMS["hopper"]())
+    q, v = m.random_state(np.random.default_rng(4))
+    a = m.forward_dynamics(q, v, np.zeros(m.nu))
+    last = sf.simulate(m, q, v, 0.02, dt=1e-3).q[-1]
+    lengths = (1.0, 1.0 + 1e-12, 1.0 + 1e-6, 1.0 - 9e-4, 1.1, 1e-3, 1e150, float("nan"))
+    rows = [np.concatenate([with_length(m, q, length), v]) for length in lengths]
+    text = "\n".join(" ".join(map(repr, row.tolist())) for row in rows)
+    done = subprocess.run([package], input=text, capture_output=True, text=True, check=True)
+    said = np.array([line.split()[0] for line in done.stdout.splitlines()], dtype=int).reshape(len(lengths), 3)
+    numbers = [np.array(line.split()[1:], dtype=np.float64) for line in done.stdout.splitlines()]
+    for k, length in enumerate(lengths):
+        accelerations, projected, moved = numbers[3 * k : 3 * k + 3]
+        if np.isnan(length):
+            assert said[k].tolist() == [-1, 0, -1]  # A number that is none, as of other coordinates.
+            continue
+        assert said[k, 0] == 0 and accelerations == pytest.approx(a, rel=1e-12, abs=1e-12 * np.abs(a).max())
+        if abs(length - 1.0) < 1e-3:
+            assert said[k, 1:].tolist() == [0, 1]
+            assert projected == pytest.approx(q, abs=1e-14) and moved == pytest.approx(last, abs=1e-12)
+        else:
+            assert said[k, 1:].tolist() == [-10, -10]

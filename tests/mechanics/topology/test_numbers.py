@@ -1,0 +1,25 @@
+"""Which matrices are taken for rotations, and what is made of them."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+import symofros as sf
+from symofros.description.values import Rotation
+from symofros.mechanics.topology.numbers import ROTATION_TOLERANCE, Numbers
+
+
+@example(ROTATION_TOLERANCE)
+@example(float(np.nextafter(ROTATION_TOLERANCE, 1.0)))
+@given(st.floats(0.0, 2.0 * ROTATION_TOLERANCE))
+def test_a_matrix_is_refused_or_taken_for_the_nearest_rotation(shear: float) -> None:
+    """One whose digits are few, up to the bound itself, is used as a rotation to rounding."""
+    numbers = Numbers(sf.System("s", [sf.RigidBody("b", sf.Joint("q", "revolute"), sf.Inertia(1.0))]))
+    stated = Rotation("matrix", (1.0, shear, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0))
+    problems, R = list(numbers.rotation_problems("frame", stated, "")), numbers.rotation(stated)
+    assert bool(problems) == (shear > ROTATION_TOLERANCE)
+    if not problems:
+        np.testing.assert_allclose(R @ R.T, np.eye(3), rtol=0, atol=1e-15)
+        np.testing.assert_allclose(R, np.eye(3), rtol=0, atol=shear)

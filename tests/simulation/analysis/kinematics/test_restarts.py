@@ -1,0 +1,56 @@
+"""Solutions of drawn starts: the same posture, its angles turned by whole turns to where they are nearest."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import symofros as sf
+from symofros.simulation.analysis.kinematics.restarts import nearest_turns
+from symofros.simulation.analysis.kinematics.targets import Task
+
+LIMIT = 4.0  # Of the wrist, which has room for a little more than a turn.
+
+
+@cache
+def arm() -> sf.Model:
+    bodies = [
+        sf.RigidBody(
+            f"l{i}",
+            sf.Joint(f"q{i}", "revolute", *((f"l{i - 1}", "end") if i else ()), axis=(0, 1, 0), limits=limits),
+            sf.Inertia(1.0),
+            (sf.Frame("end", (1.0 - 0.2 * i, 0.0, 0.0)),),
+        )
+        for i, limits in enumerate((None, None, sf.Limits(-LIMIT, LIMIT)))
+    ]
+    functions = ("frame_pose", "frame_jacobian")
+    return sf.compile(sf.System("arm", tuple(bodies)), sf.Options(functions, backend="interpreter"))
+
+
+OFF = st.floats(-3.1, 3.1)  # Less than half a turn.
+
+
+@given(
+    guess=st.tuples(st.floats(-10.0, 10.0), st.floats(-10.0, 10.0), st.floats(-LIMIT, LIMIT)),
+    off=st.tuples(OFF, OFF),
+    turns=st.tuples(st.integers(-3, 3), st.integers(-3, 3)),
+    wrist=st.floats(-LIMIT, LIMIT),
+)
+def test_angles_end_within_half_a_turn_of_the_guess_where_limits_let_them(
+    guess: tuple[float, float, float], off: tuple[float, float], turns: tuple[int, int], wrist: float
+) -> None:
+    """Whatever whole turns a solution has more."""
+    m, near = arm(), np.add(guess[:2], off)
+    q = np.array([*(near + 2.0 * np.pi * np.array(turns)), wrist])
+    task = Task(m, {"l2.end": sf.Target(m.frame_pose("l2.end", q)[0])}, None, None)
+    found = nearest_turns(task, q, np.array(guess))
+    assert found[:2] == pytest.approx(near, abs=1e-12)
+    assert -LIMIT <= found[2] <= LIMIT
+    whole = (wrist - found[2]) / (2.0 * np.pi)
+    assert whole == pytest.approx(round(whole), abs=1e-12)
+    others = [x for k in (-1, 1) if abs(x := found[2] + 2.0 * np.pi * k) <= LIMIT]
+    assert all(abs(found[2] - guess[2]) <= abs(x - guess[2]) + 1e-12 for x in others)
