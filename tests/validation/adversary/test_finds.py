@@ -775,6 +775,21 @@ FINDS: list[tuple[str, Scene, str]] = [
         },
         "runs are repeated unless modes err by a ten-thousandth of what is noted",
     ),
+    (
+        "closed_dynamics",
+        {
+            "mechanism": "four_bar",
+            "form": "multipliers",
+            "L": 1.0,
+            "m1": 1.0,
+            "m2": 1e-4,
+            "m3": 1.0,
+            "J": 1.0,
+            "angles": [0.0, 0.01, 0.0, 0.5, 0.5, 0.5],
+            "speed": 1.0,
+        },
+        "the rank is that of the constraints where a state is beside them by two thousandths, not by a hundredth",
+    ),
 ]
 
 
