@@ -187,7 +187,7 @@ def test_rounded_numbers_are_made_exact_unless_asked_not_to(tmp_path: Path) -> N
         ('<keyframe><key qpos="1"/></keyframe>', "<keyframe> ignored"),
         ('<extension><plugin plugin="mujoco.pid"/></extension>' + FLOOR, "contacts ignored"),
         ('<option density="1.2" viscosity="0.1"/>', "forces of the medium ignored"),
-        ('<default><joint frictionloss="0.1"/></default>', "frictionloss ignored"),
+        ('<default><joint frictionloss="0.1"/></default>', "dry friction of joints ignored"),
         ('<default><joint range="-1 1"/></default>', "limits kept as data"),
         ('<default><joint stiffness="1 2"/></default>', "quadratic stiffness ignored"),
         ('<default><joint damping="1 2 3"/></default>', "damping of higher order ignored"),

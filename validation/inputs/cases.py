@@ -63,7 +63,9 @@ class Case:
             return Subject(self.label, system)
         verbatim = sf.load(self.path, **self.reading.keywords, snap_tol=0.0)
         if suffix == ".xml":
-            return Subject(self.label, system, mjcf=MjcfSource(self.path, verbatim))
+            # MuJoCo's own reading has the joints and the passive forces that the file states, and no others.
+            own = None if self.reading.changes_forces else MjcfSource(self.path, verbatim)
+            return Subject(self.label, system, mjcf=own)
         source = UrdfSource(self.path.read_bytes(), verbatim, self.reading.floating_base)
         return Subject(self.label, system, urdf=source)
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from symofros.description.mjcf.geometry import rotation_of
+from symofros.description.imported.geometry import rotation_of
 from symofros.description.values import Rotation
 from symofros.description.visual import MOST_VISUALS, Visual, VisualKind
 

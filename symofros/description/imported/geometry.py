@@ -1,8 +1,9 @@
-"""Placements of a compiled MJCF model: quaternions, turns, and exact numbers for rounded ones."""
+"""Placements in foreign files: quaternions, turns, angles, and exact numbers for rounded ones."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,18 @@ def rotation_of(quaternion: Any) -> Array:
 def about(axis: Array, angle: float) -> Array:
     """The rotation matrix (3, 3) by an angle [rad] about a unit axis (3,), the same on every machine."""
     return axis_rotation(axis, nearest("cos", angle), nearest("sin", angle))
+
+
+def roll_pitch_yaw(angles: Sequence[float]) -> Array:
+    """The rotation matrix (3, 3) of fixed-axis roll, pitch and yaw [rad]: Rz(yaw) Ry(pitch) Rx(roll)."""
+    x, y, z = (about(axis, angle) for axis, angle in zip(np.eye(3), angles, strict=True))
+    return np.asarray(z @ y @ x)
+
+
+def matrix_of(rotation: Rotation) -> Array:
+    """The matrix (3, 3) of a rotation that a reader made of numbers: by angles or by its entries."""
+    numbers = [float(value) for value in rotation.values if isinstance(value, int | float)]
+    return roll_pitch_yaw(numbers) if rotation.kind == "rpy" else np.reshape(numbers, (3, 3))
 
 
 class Exact:
