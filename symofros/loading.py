@@ -159,6 +159,22 @@ def _read(file: Path, asked: Asked) -> Reading:
         raise DescriptionError(_missing(file))
     suffix = file.suffix.lower()
     _refuse_idle(file, suffix, asked)
+    if suffix in _IMPORTED:
+        try:
+            return _accept_inertias(_imported(file, suffix, asked))
+        except DescriptionError as error:
+            return Reading(None, error.problems)
+    from symofros.description.yaml.files import read_yaml
+
+    return read_yaml(file)
+
+
+def _imported(file: Path, suffix: str, asked: Asked) -> Reading:
+    """A file of a foreign format. Readers of others are not loaded: pydantic alone takes a fifth of a second.
+
+    Raises:
+        DescriptionError: It can't be read.
+    """
     packages = Packages(file, asked.packages)
     if suffix in _URDF:
         text = None
@@ -166,23 +182,18 @@ def _read(file: Path, asked: Asked) -> Reading:
             from symofros.description.urdf.xacro_files import expanded
 
             text = expanded(file, asked.arguments, packages)
-        return _accept_inertias(read_urdf(file, asked, text=text, packages=packages))
-    # A reader of another format is not loaded with the one that is asked for: pydantic alone takes a fifth of a second.
+        return read_urdf(file, asked, text=text, packages=packages)
     if suffix == ".xml":
         from symofros.description.mjcf.reader import read_mjcf
 
-        return _accept_inertias(read_mjcf(file, asked, packages=packages))
+        return read_mjcf(file, asked, packages=packages)
     if suffix in _SDF:
         from symofros.description.sdf.reader import read_sdf
 
-        return _accept_inertias(read_sdf(file, asked, packages=packages))
-    if suffix in USD_SUFFIXES:
-        from symofros.description.usd.reader import read_usd
+        return read_sdf(file, asked, packages=packages)
+    from symofros.description.usd.reader import read_usd
 
-        return _accept_inertias(read_usd(file, asked))
-    from symofros.description.yaml.files import read_yaml
-
-    return read_yaml(file)
+    return read_usd(file, asked)
 
 
 def _refuse_idle(file: Path, suffix: str, asked: Asked) -> None:

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
+from symofros.base.sources import Source
 from symofros.description.forces import Damper, Friction, JointElement
 from symofros.description.imported.stops import with_stops
 from symofros.description.imported.tree import ImportedBody, ImportedJoint, ImportedTree
 from symofros.description.joints.joint import WORLD, Joint
-from symofros.description.reading import fresh_name
+from symofros.description.reading import Reading, fresh_name
 from symofros.description.system import RigidBody, System
-from symofros.errors import Problem
+from symofros.errors import DescriptionError, Problem
 
 _DAMPING = 'damping of joints ignored (dissipation="viscous" of load, or --dissipation viscous, keeps it)'
 _FRICTION = 'dry friction of joints ignored (dissipation="all" of load, or --dissipation all, keeps it)'
@@ -20,6 +21,23 @@ _SMOOTHED = (
     "so that what it holds at rest creeps"
 )
 _DATA = 'limits kept as data, without a stop (limits="stops" of load, or --limits stops, makes stops of them)'
+
+
+def reading_of(tree: ImportedTree, sources: tuple[Source, ...] = (), notes: tuple[str, ...] = ()) -> Reading:
+    """The outcome of reading a file that is read whole or not at all.
+
+    Args:
+        tree: The file.
+        sources: Files that it was made of.
+        notes: Notes that are no remarks, behind those.
+
+    Raises:
+        DescriptionError: With the problems of the tree.
+    """
+    system = system_of(tree)
+    if tree.problems:
+        raise DescriptionError(tree.problems)
+    return Reading(replace(system, notes=(*system.notes, *notes)), sources=sources)
 
 
 def system_of(tree: ImportedTree) -> System:

@@ -15,16 +15,16 @@ from pathlib import Path
 from typing import Any
 from xml.sax.saxutils import quoteattr
 
-from symofros.description.imported.building import system_of
+from symofros.description.imported.building import reading_of
 from symofros.description.imported.options import DEFAULT_OPTIONS, ImportOptions
 from symofros.description.mjcf.files import Folder
 from symofros.description.mjcf.meshes import Meshes
 from symofros.description.mjcf.model import Importer, Stated
 from symofros.description.mjcf.sections import Sections
 from symofros.description.packages import Packages
-from symofros.description.reading import Reading, in_order
+from symofros.description.reading import Reading
 from symofros.description.remarks import Remarks
-from symofros.description.xml_nodes import Element, XmlFault
+from symofros.description.xml_nodes import Element
 from symofros.errors import DescriptionError, Problem
 
 _LINE = re.compile(r",? ?line (\d+)")
@@ -43,20 +43,16 @@ def read_mjcf(
 
     Returns:
         The system, and every problem.
+
+    Raises:
+        DescriptionError: The file can't be read.
     """
     folder, remarks = Folder(Path(path), packages), Remarks()
-    try:
-        document = vetted(folder, remarks)
-        if folder.problems:
-            return Reading(None, in_order(folder.problems))
-        model = compiled(document, remarks)
-        tree = Importer(model, document.stated, remarks, options).tree()
-        system = system_of(tree)
-        return Reading(None if tree.problems else system, tuple(tree.problems))
-    except XmlFault as error:
-        return Reading(None, (error.problem,))
-    except DescriptionError as error:
-        return Reading(None, error.problems)
+    document = vetted(folder, remarks)
+    if folder.problems:
+        raise DescriptionError(folder.problems)
+    model = compiled(document, remarks)
+    return reading_of(Importer(model, document.stated, remarks, options).tree())
 
 
 @dataclass(frozen=True)
@@ -80,8 +76,7 @@ def vetted(folder: Folder, remarks: Remarks) -> Document:
     """Read the model's files and keep what describes a tree; the folder collects the faults.
 
     Raises:
-        XmlFault: A file is no XML.
-        DescriptionError: The main file can't be read, is too large, or is no MJCF.
+        DescriptionError: The main file can't be read, is too large, is no XML, or is no MJCF.
     """
     root = folder.document()
     if root.tag != "mujoco":

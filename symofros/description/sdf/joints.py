@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from symofros.description.closing import closing_remedy
-from symofros.description.constraints import AXES, AxisName, Closure, Coupling, mimicry
+from symofros.description.closing import BLOCKED, closing_remedy
+from symofros.description.constraints import Closure, Coupling, mimicry
 from symofros.description.forces import Spring
 from symofros.description.frames import Frame
 from symofros.description.imported.geometry import Exact
@@ -38,14 +38,7 @@ _KINDS: dict[str, JointKindName] = {
     "ball": "ball",
     "fixed": "fixed",
 }
-# Kind -> translations and rotations that it blocks, of a frame whose z axis is the joint's; of what can close a loop.
-_BLOCKED: dict[JointKindName, tuple[tuple[AxisName, ...], tuple[AxisName, ...]]] = {
-    "revolute": (AXES, ("x", "y")),
-    "continuous": (AXES, ("x", "y")),
-    "prismatic": (("x", "y"), AXES),
-    "ball": (AXES, ()),
-    "fixed": (AXES, AXES),
-}
+_CLOSING = ("revolute", "continuous", "prismatic", "ball", "fixed")
 _REVOLUTION = 2.0 * math.pi
 
 
@@ -175,14 +168,13 @@ class JointReader:
         """The closure of a joint whose child another joint carries; the frames that it needs go onto the two links."""
         bodies = {label: self.frames.body(getattr(joint, label)) for label in ("parent", "child")}
         self._closing.add(joint.name)
-        blocked = _BLOCKED.get(joint.kind)
-        if blocked is None:
+        if joint.kind not in _CLOSING:
             instead = closing_remedy(joint.name, joint.kind, *bodies.values())
             self.values.fault(
                 joint.element,
                 f"joint '{joint.name}' closes a loop",
                 f"type '{joint.element.attributes.get('type')}'",
-                f"a loop is closed by one of {', '.join(_BLOCKED)}",
+                f"a loop is closed by one of {', '.join(_CLOSING)}",
                 f"let another joint of the loop be the last one, or {instead}",
             )
             return None
@@ -200,7 +192,7 @@ class JointReader:
             pose = self.frames.relative(joint.name, body) @ Pose(np.zeros(3), R)
             on.setdefault(body, []).append(Frame(f"{joint.name}_{label}", *self.exact.placement(*pose)))
         first, second = ((body, f"{joint.name}_{label}") for label, body in bodies.items())
-        return Closure(joint.name, first, second, *blocked)
+        return Closure(joint.name, first, second, *BLOCKED[joint.kind])
 
     def couplings(self) -> Iterator[Coupling]:
         """What <mimic> states."""

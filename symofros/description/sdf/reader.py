@@ -13,13 +13,13 @@ from pathlib import Path
 from symofros.base.sources import Source
 from symofros.description.forces import Load
 from symofros.description.frames import Frame
-from symofros.description.imported.building import system_of
+from symofros.description.imported.building import reading_of
 from symofros.description.imported.geometry import Exact
 from symofros.description.imported.options import DEFAULT_OPTIONS, ImportOptions
 from symofros.description.imported.tree import GRAVITY, ImportedBody, ImportedTree
 from symofros.description.joints.joint import WORLD
 from symofros.description.packages import Packages
-from symofros.description.reading import Reading, in_order, read_bytes, resolved
+from symofros.description.reading import Reading, read_bytes, resolved
 from symofros.description.sdf.frames import MODEL, SEPARATOR, Frames
 from symofros.description.sdf.includes import Includes
 from symofros.description.sdf.joints import JointReader, SdfJoint
@@ -27,7 +27,7 @@ from symofros.description.sdf.values import SdfValues
 from symofros.description.sdf.visuals import as_urdf
 from symofros.description.urdf.visuals import Visuals
 from symofros.description.visual import Visual
-from symofros.description.xml_nodes import Element, XmlFault, parse_xml
+from symofros.description.xml_nodes import Element, parse_xml
 from symofros.errors import DescriptionError, Problem
 
 MAX_BYTES = 16 << 20
@@ -54,26 +54,24 @@ def read_sdf(
 
     Returns:
         The system, and every problem.
+
+    Raises:
+        DescriptionError: The file can't be read.
     """
     file = os.fspath(path)
     values = SdfValues(file, options.snap_tol)
-    try:
-        readable = packages or Packages(Path(path))
-        includes = Includes(readable, values)
-        content = read_bytes(Path(path), MAX_BYTES)
-        root = parse_xml(content, file)
-        if includes.version(root) is not None:
-            includes.expand(root, readable.folder, (resolved(Path(path)),))
-        # What refers to a model that is not there is no fault of its own.
-        world = None if values.problems else _world(root, values)
-        tree = _Importer(readable, values, world, options).tree() if world is not None else None
-        system = None if tree is None else system_of(tree)
-    except XmlFault as error:
-        return Reading(None, (error.problem,))
-    except DescriptionError as error:
-        return Reading(None, error.problems)
-    sources = (Source.of(Path(path), content), *includes.sources)
-    return Reading(None if values.problems else system, in_order(values.problems), sources=sources)
+    readable = packages or Packages(Path(path))
+    includes = Includes(readable, values)
+    content = read_bytes(Path(path), MAX_BYTES)
+    root = parse_xml(content, file)
+    if includes.version(root) is not None:
+        includes.expand(root, readable.folder, (resolved(Path(path)),))
+    # What refers to a model that is not there is no fault of its own.
+    world = None if values.problems else _world(root, values)
+    tree = None if world is None else _Importer(readable, values, world, options).tree()
+    if tree is None:
+        raise DescriptionError(values.problems)
+    return reading_of(tree, (Source.of(Path(path), content), *includes.sources))
 
 
 def _world(root: Element, values: SdfValues) -> Element | None:

@@ -21,7 +21,7 @@ from symofros.description.imported.tree import ImportedBody, ImportedJoint, Impo
 from symofros.description.joints.joint import WORLD, Joint
 from symofros.description.joints.joint_kinds import KINDS
 from symofros.description.packages import Packages
-from symofros.description.reading import Reading, in_order, read_bytes
+from symofros.description.reading import Reading, read_bytes
 from symofros.description.system import Inertia
 from symofros.description.urdf.extras import remark_extras
 from symofros.description.urdf.planar import planar_frames
@@ -29,7 +29,7 @@ from symofros.description.urdf.values import Values, finite_numbers
 from symofros.description.urdf.visuals import Visuals
 from symofros.description.values import ORIGIN, Rotation, Vector
 from symofros.description.visual import Visual
-from symofros.description.xml_nodes import Element, XmlFault, parse_xml
+from symofros.description.xml_nodes import Element, parse_xml
 from symofros.errors import DescriptionError, Problem, did_you_mean
 
 MAX_BYTES = 16 << 20
@@ -57,29 +57,24 @@ def read_urdf(
 
     Returns:
         The system without the links that could not be read, and every problem.
+
+    Raises:
+        DescriptionError: The file can't be read.
     """
     file = os.fspath(path) if text is None else f"{os.fspath(path)} (expanded)"
-    try:
-        content = read_bytes(Path(path), MAX_BYTES) if text is None else text
-        root = parse_xml(content, file)
-    except XmlFault as error:
-        return Reading(None, (error.problem,))
-    except DescriptionError as error:
-        return Reading(None, error.problems)
+    content = read_bytes(Path(path), MAX_BYTES) if text is None else text
+    root = parse_xml(content, file)
     if root.tag != "robot":
-        problem = Problem(
-            "the file is not a URDF",
-            f"the root element is <{root.tag:.60}>",
-            "the root element is <robot>",
-            "check that it is the file you meant",
-            f"{file}:{root.line}",
+        raise DescriptionError(
+            Problem(
+                "the file is not a URDF",
+                f"the root element is <{root.tag:.60}>",
+                "the root element is <robot>",
+                "check that it is the file you meant",
+                f"{file}:{root.line}",
+            )
         )
-        return Reading(None, (problem,))
-    try:
-        readable = packages or Packages(Path(path))
-        reading = _Importer(readable, Values(file, options.snap_tol), root, options).reading()
-    except DescriptionError as error:
-        return Reading(None, error.problems)
+    reading = _Importer(packages or Packages(Path(path)), Values(file, options.snap_tol), root, options).reading()
     return replace(reading, sources=(Source.of(Path(path), content),)) if text is None else reading
 
 
@@ -113,7 +108,7 @@ class _Importer:
         count = sum(1 for _ in self.robot.all("link"))
         if count > MAX_LINKS:
             self.values.fault(self.robot, "too many links", f"{count} links", f"at most {MAX_LINKS}", "split the robot")
-            return Reading(None, tuple(self.values.problems))
+            raise DescriptionError(self.values.problems)
         for element in self.robot.all("link"):
             self.link(element)
         for element in self.robot.all("joint"):
@@ -128,7 +123,7 @@ class _Importer:
             )
         remark_extras(self.robot, self.values.remarks)
         if not self.links:
-            return Reading(None, in_order(self.values.problems))
+            raise DescriptionError(self.values.problems)
         tree = ImportedTree(
             name,
             self.options,
@@ -142,7 +137,7 @@ class _Importer:
             visuals={name: shapes for name, shapes in self.looks.items() if shapes},
             problems=self.values.problems,
         )
-        return Reading(system_of(tree), in_order(tree.problems), frozenset(self.broken))
+        return Reading(system_of(tree), tuple(tree.problems), frozenset(self.broken))
 
     def link(self, element: Element) -> None:
         name = self.values.attribute(element, "name", "a link")

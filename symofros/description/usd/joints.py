@@ -16,7 +16,8 @@ from typing import Any, Literal
 import numpy as np
 
 from symofros.base.rotations import Array
-from symofros.description.constraints import AXES, AxisName, Closure, Constraint, Rod
+from symofros.description.closing import BLOCKED
+from symofros.description.constraints import Closure, Constraint, Rod
 from symofros.description.forces import Anchor
 from symofros.description.frames import Frame
 from symofros.description.imported.geometry import Exact
@@ -30,15 +31,6 @@ from symofros.description.usd.masses import Units
 Motion = Literal["fixed", "revolute", "prismatic", "cylindrical", "planar", "ball", "none"]
 _AXIS = {"X": 0, "Y": 1, "Z": 2}
 _FREEDOMS = ("transX", "transY", "transZ", "rotX", "rotY", "rotZ")
-# What a closure blocks, of a frame whose z axis is the joint's.
-_BLOCKED: dict[Motion, tuple[tuple[AxisName, ...], tuple[AxisName, ...]]] = {
-    "fixed": (AXES, AXES),
-    "revolute": (AXES, ("x", "y")),
-    "prismatic": (("x", "y"), AXES),
-    "cylindrical": (("x", "y"), ("x", "y")),
-    "planar": (("z",), ("x", "y")),
-    "ball": (AXES, ()),
-}
 # Entries that extensions of UsdPhysics have for the same, the first that is authored counts.
 _ARMATURE = ("physxJoint:armature", "newton:armature")
 _VELOCITY = ("physxJoint:maxJointVelocity", "newton:velocityLimit")
@@ -191,7 +183,7 @@ class JointMaker:
         self.remarks.add("joints that close loops have no coordinate, input, damper or limit", "joint", joint.name)
         turned = Pose(np.zeros(3), _with_z(np.eye(3)[joint.axis]))
         first, second = self._anchors(joint, names, [pose @ turned for pose in joint.frames], on)
-        return Closure(joint.name, first, second, *_BLOCKED[joint.motion])
+        return Closure(joint.name, first, second, *BLOCKED[joint.motion])
 
     def rod(self, joint: UsdJoint, names: tuple[str, str], length: float, on: dict[str, list[Frame]]) -> Constraint:
         """A joint that keeps a distance.

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +16,7 @@ import numpy as np
 
 from symofros.description.constraints import Constraint
 from symofros.description.frames import Frame
-from symofros.description.imported.building import system_of
+from symofros.description.imported.building import reading_of
 from symofros.description.imported.geometry import Exact
 from symofros.description.imported.options import DEFAULT_OPTIONS, ImportOptions
 from symofros.description.imported.tree import ImportedBody, ImportedTree
@@ -59,25 +58,19 @@ def read_usd(path: str | os.PathLike[str], options: ImportOptions = DEFAULT_OPTI
 
     Returns:
         The system, and every problem.
+
+    Raises:
+        DescriptionError: The file can't be read.
     """
     file = os.fspath(path)
-    try:
-        stage = stage_of(path)
-        bad = tuple(
-            Problem(f"{name} of <{prim}> can't be read", f"{value!r:.80}", rule, "mend the value", f"{file}:<{prim}>")
-            for prim, name, value, rule in faults(stage)
-        )
-        if bad:
-            return Reading(None, bad)
-        importer = _Importer(file, stage, options)
-        tree = importer.tree()
-        system = None if tree is None else system_of(tree)
-    except DescriptionError as error:
-        return Reading(None, error.problems)
-    problems = (*importer.problems, *importer.masses.problems)
-    if problems or system is None:
-        return Reading(None, problems)
-    return Reading(replace(system, notes=(*system.notes, *_told(stage["warnings"]))))
+    stage = stage_of(path)
+    bad = tuple(
+        Problem(f"{name} of <{prim}> can't be read", f"{value!r:.80}", rule, "mend the value", f"{file}:<{prim}>")
+        for prim, name, value, rule in faults(stage)
+    )
+    if bad:
+        raise DescriptionError(bad)
+    return reading_of(_Importer(file, stage, options).tree(), notes=tuple(_told(stage["warnings"])))
 
 
 def _told(warnings: Sequence[str]) -> Iterator[str]:
@@ -97,7 +90,7 @@ class _Importer:
         self.placements = {path: affine(rows, self.units.meters) for path, rows in placements.items()}
         self.bodies: dict[str, Mapping[str, Any]] = {body["path"]: body for body in stage["bodies"]}
         self.names = names_of(self.bodies)
-        self.masses = Masses(self.units, self.placements, self.remarks)
+        self.masses = Masses(self.units, self.placements, self.remarks, self.problems)
         drives = any(joint["drives"] for joint in stage["joints"])
         self.maker = JointMaker(self.units, self.exact, self.remarks, drives)
 
@@ -105,12 +98,15 @@ class _Importer:
         """Place in the file."""
         return f"{self.file}:<{path}>"
 
-    def tree(self) -> ImportedTree | None:
-        """The bodies of the stage; problems are noted on the way."""
+    def tree(self) -> ImportedTree:
+        """The bodies of the stage; problems are noted on the way.
+
+        Raises:
+            DescriptionError: There is no body, or some have no frame.
+        """
         if not self.bodies:
             rule, remedy = "a mechanism has prims with PhysicsRigidBodyAPI", "apply UsdPhysics to the stage"
-            self.problems.append(Problem("there is no rigid body", "no such prim", rule, remedy, self.file))
-            return None
+            raise DescriptionError(Problem("there is no rigid body", "no such prim", rule, remedy, self.file))
         for path, name in self.names.items():
             self._remark_body(self.bodies[path], name)
             if not self.placements[path].is_rigid:
@@ -119,7 +115,7 @@ class _Importer:
                 what = f"body '{name}' has no frame"
                 self.problems.append(Problem(what, stated, rule, remedy, self.where(path)))
         if self.problems:
-            return None
+            raise DescriptionError(self.problems)
         joints = list(self._joints())
         fixed = [path for path, body in self.bodies.items() if body["enabled"] is False or body["kinematic"]]
         edges, closing = spanning_tree(list(self.bodies), joints, fixed, self._roots())
