@@ -317,11 +317,6 @@ def test_without_mujoco_the_remedy_is_said(tmp_path: Path, monkeypatch: pytest.M
     assert "pip install 'symofros[mjcf]'" in faults(write(tmp_path, world(PENDULUM)))
 
 
-def test_floating_base_is_not_for_mjcf(tmp_path: Path) -> None:
-    with pytest.raises(sf.DescriptionError, match="floating_base applies to URDF files only"):
-        sf.load(write(tmp_path, world(PENDULUM)), floating_base=True)
-
-
 # Hostile files.
 
 

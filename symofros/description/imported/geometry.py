@@ -37,6 +37,11 @@ def matrix_of(rotation: Rotation) -> Array:
     return roll_pitch_yaw(numbers) if rotation.kind == "rpy" else np.reshape(numbers, (3, 3))
 
 
+def stated_rotation(R: Array) -> Rotation:
+    """A rotation matrix (3, 3) as a description states it; none for the identity."""
+    return IDENTITY if np.array_equal(R, np.eye(3)) else Rotation.matrix(R.tolist())
+
+
 class Exact:
     """Replaces numbers that rounding put beside exact ones.
 
@@ -69,8 +74,7 @@ class Exact:
 
     def rotation(self, R: Array) -> Rotation:
         """A rotation matrix (3, 3): zeros and ones."""
-        R = nearest_rotation(self._snapped(R, (0.0, 1.0, -1.0)))
-        return IDENTITY if np.array_equal(R, np.eye(3)) else Rotation.matrix(R.tolist())
+        return stated_rotation(nearest_rotation(self._snapped(R, (0.0, 1.0, -1.0))))
 
     def placement(self, p: Array, R: Array) -> tuple[Vector, Rotation]:
         """A position and a rotation."""

@@ -8,11 +8,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from symofros.base.rotations import normalized, quaternion_matrix
-from symofros.description.imported.geometry import roll_pitch_yaw
+from symofros.description.imported.geometry import roll_pitch_yaw, stated_rotation
 from symofros.description.pose import IDENTITY_POSE, Pose
 from symofros.description.system import Inertia
 from symofros.description.urdf.values import Values, finite_numbers
-from symofros.description.values import Rotation
 from symofros.description.xml_nodes import Element
 from symofros.errors import Problem
 
@@ -174,6 +173,5 @@ class SdfValues(Values):
                 "state it so, and drop the attribute",
             )
         x, y, z = map(float, pose.p)
-        R = pose.R
-        turned = Rotation() if np.array_equal(R, np.eye(3)) else Rotation.matrix(R.tolist())
-        return Inertia(self.one(element, "mass", owner, 1.0), (x, y, z), moments, rotation=turned)
+        mass = self.one(element, "mass", owner, 1.0)
+        return Inertia(mass, (x, y, z), moments, rotation=stated_rotation(pose.R))
