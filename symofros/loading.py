@@ -30,7 +30,7 @@ _READABLE = (*MODEL_SUFFIXES, ".xacro", ".world")
 _URDF, _SDF = (".urdf", ".xacro"), (".sdf", ".world")
 _IMPORTED = (*_URDF, *_SDF, ".xml", *USD_SUFFIXES)
 _ALL_IMPORTED = "URDF, xacro, SDF, MJCF and USD"
-_UNASKED = (None, False, {}, "data")
+_UNASKED: tuple[Any, ...] = (None, False, {}, "data")
 # Argument -> formats that have a use for it, their suffixes, what to do about another.
 _OF_FORMATS = {
     "floating_base": (_ALL_IMPORTED, _IMPORTED, "give the base a free joint in the file"),

@@ -267,4 +267,4 @@ def test_an_unknown_choice_is_refused(tmp_path: Path, asked: dict[str, Any], mea
     path = written(tmp_path, ".urdf")
     for read in (sf.load, load_with_sources):  # The second by commands.
         with pytest.raises(sf.ArgumentError, match=f"did you mean '{meant}'"):
-            read(path, **asked)  # type: ignore[operator]
+            read(path, **asked)

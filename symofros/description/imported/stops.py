@@ -20,7 +20,8 @@ from symofros.description.imported.geometry import matrix_of
 from symofros.description.joints.joint import Joint
 from symofros.description.pose import IDENTITY_POSE, Pose
 from symofros.description.remarks import Remarks
-from symofros.description.system import RigidBody
+from symofros.description.system import Inertia, RigidBody
+from symofros.description.values import Value
 
 PERIOD = 0.02  # [s]
 _OMEGA = 2.0 * math.pi / PERIOD
@@ -35,11 +36,11 @@ def with_stops(bodies: Sequence[RigidBody], remarks: Remarks) -> tuple[RigidBody
         bodies: Bodies, parents first.
         remarks: Takes the stiffness chosen, joint by joint.
     """
-    limited = [body.name for body in bodies if body.joint is not None and _is_limited(body.joint)]
-    inertias = apparent_inertias(bodies) if limited else None
-    for body in (body for body in bodies if inertias is None and body.name in limited and body.joint is not None):
-        remarks.add(_SINGULAR, "joint", body.joint.name)
+    limited = {b.name: b.joint.name for b in bodies if b.joint is not None and _is_limited(b.joint)}
+    inertias = apparent_inertias(bodies) if limited else {}
     if inertias is None:
+        for name in limited.values():
+            remarks.add(_SINGULAR, "joint", name)
         return tuple(bodies)
     return tuple(_stopped(b, inertias[b.name], remarks) if b.name in limited else b for b in bodies)
 
@@ -63,34 +64,25 @@ def apparent_inertias(bodies: Sequence[RigidBody]) -> dict[str, float] | None:
     Args:
         bodies: Bodies of an open tree of numbers, parents first; all coordinates are zero.
     """
-    poses: dict[str, Pose] = {}
-    twists: dict[str, Array] = {}  # Of each body's own speeds, at the origin of the world (6, nv).
-    parents: dict[str, str] = {}
-    inertias: dict[str, Array] = {}  # What the body carries, itself too, about the origin of the world (6, 6).
-    for body in bodies:
-        joint = body.joint or Joint("", "fixed")
-        p, R = np.array(joint.position, dtype=float), matrix_of(joint.rotation)
-        poses[body.name] = poses.get(joint.parent, IDENTITY_POSE) @ Pose(p, R)
-        parents[body.name], twists[body.name] = joint.parent, _twists(joint, poses[body.name])
-        inertias[body.name] = _inertia(body, poses[body.name])
+    twists, inertias = _in_world(bodies)
+    parents = {body.name: body.joint.parent if body.joint is not None else "" for body in bodies}
     for body in reversed(bodies):
-        if parents[body.name] in inertias and parents[body.name] != body.name:
+        if parents[body.name] in inertias:
             inertias[parents[body.name]] = inertias[parents[body.name]] + inertias[body.name]
     first, count = dict[str, int](), 0
     for name, own in twists.items():
         first[name], count = count, count + own.shape[1]
     M = np.zeros((count, count))
     for body in bodies:
-        own, at = twists[body.name], first[body.name]
-        momentum, name = inertias[body.name] @ own, body.name
-        while own.shape[1] and name in twists:
-            block = twists[name].T @ momentum
-            M[first[name] : first[name] + block.shape[0], at : at + own.shape[1]] = block
-            M[at : at + own.shape[1], first[name] : first[name] + block.shape[0]] = block.T
-            name = parents[name] if parents[name] != name else ""
+        columns = slice(first[body.name], first[body.name] + twists[body.name].shape[1])
+        momentum, name = inertias[body.name] @ twists[body.name], body.name
+        while name in twists:
+            rows = slice(first[name], first[name] + twists[name].shape[1])
+            M[rows, columns] = twists[name].T @ momentum
+            M[columns, rows] = M[rows, columns].T
+            name = parents[name]
         if body.joint is not None:
-            armature = float(body.joint.armature) if isinstance(body.joint.armature, float) else 0.0
-            M[range(at, at + own.shape[1]), range(at, at + own.shape[1])] += armature
+            M[columns, columns] += _number(body.joint.armature) * np.eye(twists[body.name].shape[1])
     try:
         inverse = np.linalg.inv(np.linalg.cholesky(M))
     except np.linalg.LinAlgError:
@@ -99,10 +91,27 @@ def apparent_inertias(bodies: Sequence[RigidBody]) -> dict[str, float] | None:
     return {name: float(apparent[k]) for name, k in first.items() if twists[name].shape[1]}
 
 
+def _number(value: Value) -> float:
+    """A number of a file, in which there are no formulas."""
+    assert isinstance(value, float)
+    return value
+
+
+def _in_world(bodies: Sequence[RigidBody]) -> tuple[dict[str, Array], dict[str, Array]]:
+    """Twists of each body's own speeds (6, nv), and spatial inertias (6, 6), at the origin of the world."""
+    poses, twists, inertias = dict[str, Pose](), dict[str, Array](), dict[str, Array]()
+    for body in bodies:
+        joint = body.joint or Joint("", "fixed")
+        placed = Pose(np.array(joint.position, dtype=float), matrix_of(joint.rotation))
+        poses[body.name] = pose = poses.get(joint.parent, IDENTITY_POSE) @ placed
+        twists[body.name], inertias[body.name] = _twists(joint, pose), _inertia(body.inertia, pose)
+    return twists, inertias
+
+
 def _twists(joint: Joint, pose: Pose) -> Array:
     """Twists (linear; angular) (6, nv) of unit speeds at zero coordinates, along the world's axes at its origin."""
-    along = [[float(x) for x in axis] for axis in (joint.axis, joint.axis2)]
-    axes = dict(zip(("axis", "axis2"), (np.array(e) / (np.linalg.norm(e) or 1.0) for e in along), strict=True))
+    along = [np.array(list(map(_number, axis))) for axis in (joint.axis, joint.axis2)]
+    axes = dict(zip(("axis", "axis2"), (e / (np.linalg.norm(e) or 1.0) for e in along), strict=True))
     axes |= dict(zip("xyz", np.eye(3), strict=True))
     turns, slides = list[Array](), list[Array]()
     if joint.traits.quasi_velocities:
@@ -110,20 +119,20 @@ def _twists(joint: Joint, pose: Pose) -> Array:
         turns, slides = [*free, *np.eye(3)], [*np.eye(3)[: len(free)], *[np.zeros(3)] * 3]
     for coordinate in joint.traits.coordinates if not turns else ():
         e, slope = axes[coordinate.axis or "axis"], float(coordinate.measure == "length")
-        pitch = float(joint.pitch) if joint.kind == "screw" and isinstance(joint.pitch, float) else 0.0
+        pitch = _number(joint.pitch) if "pitch" in joint.traits.entries else 0.0
         turns.append((1.0 - slope) * e)
         slides.append((slope + pitch) * e)
     w, v = (pose.R @ np.array(columns).reshape(-1, 3).T for columns in (turns, slides))
     return np.vstack([v + skew(pose.p) @ w, w])
 
 
-def _inertia(body: RigidBody, pose: Pose) -> Array:
+def _inertia(stated: Inertia | None, pose: Pose) -> Array:
     """Spatial inertia (6, 6) of a body about the world's origin, by twists (linear; angular)."""
-    if body.inertia is None:
+    if stated is None:
         return np.zeros((6, 6))
-    numbers = [float(x) for x in (body.inertia.mass, *body.inertia.center_of_mass, *body.inertia.moments)]  # type: ignore[arg-type]
-    m, p, (xx, yy, zz, xy, xz, yz) = numbers[0], np.array(numbers[1:4]), numbers[4:]
-    R = pose.R @ matrix_of(body.inertia.rotation)
+    m, p = _number(stated.mass), np.array(list(map(_number, stated.center_of_mass)))
+    xx, yy, zz, xy, xz, yz = map(_number, stated.moments)
+    R = pose.R @ matrix_of(stated.rotation)
     K = skew(pose.p + pose.R @ p)
     J = R @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ R.T
     return np.block([[m * np.eye(3), -m * K], [m * K, J - m * K @ K]])
