@@ -70,8 +70,8 @@ class ReadingOptions:
 
     @property
     def changes_forces(self) -> bool:
-        """Whether an engine that reads the file by itself has other passive efforts, or other joints."""
-        return bool(self.floating_base or self.dissipation or self.limits)
+        """Whether an engine that reads the file by itself has other passive forces."""
+        return bool(self.dissipation or self.limits)
 
     def without(self, names: Collection[str]) -> ReadingOptions:
         """The same without options of some names."""
