@@ -790,6 +790,36 @@ FINDS: list[tuple[str, Scene, str]] = [
         },
         "the rank is that of the constraints where a state is beside them by two thousandths, not by a hundredth",
     ),
+    (
+        "closed_dynamics",
+        {
+            "mechanism": "four_bar",
+            "form": "multipliers",
+            "L": 1.0,
+            "m1": 1.0,
+            "m2": 0.001,
+            "m3": 1.0,
+            "J": 1.0,
+            "angles": [3.141592653589793, 3.142592653589793, 3.141592653589793, 0.5, 0.5, 0.5],
+            "speed": 1.0,
+        },
+        "what a deviation may have left of a row is no condition of its own: the attack asks for no more",
+    ),
+    (
+        "loop_runs",
+        {
+            "L": 0.0001,
+            "m": 1.0,
+            "a": 0.9999,
+            "angle": 0.3,
+            "speed": 0.0,
+            "method": "generalized_alpha",
+            "step": 1.0,
+            "records": 7,
+            "span": 1.0,
+        },
+        "a step over a posture in which short steps lose the constraints is noted",
+    ),
 ]
 
 
