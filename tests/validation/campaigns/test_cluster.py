@@ -23,7 +23,6 @@ from typer.testing import CliRunner
 from tests.late import late
 from tests.validation.campaigns.test_killed import busy_worker, events, journal
 from validation.__main__ import app
-from validation.campaigns.errors import ClusterError
 from validation.campaigns.plan import make
 from validation.campaigns.tasks import tasks
 
@@ -165,12 +164,6 @@ def test_a_dead_worker_leaves_its_batches_to_the_others(tmp_path: Path) -> None:
         assert sorted(worker.poll() is None for worker in made.workers) == [False, True]
     assert set(events(folder, "done").values()) == {1}
     assert rows(folder).equals(here())
-
-
-@pytest.mark.slow
-def test_a_cluster_without_workers_is_told(tmp_path: Path) -> None:
-    with cluster(tmp_path / "cluster", workers=0) as made, pytest.raises(ClusterError, match="no worker for 0.5 s"):
-        session.begin(make(PLAN, "test"), tmp_path / "c", runner.Pool(scheduler=made.address, patience=0.5))
 
 
 @pytest.mark.parametrize(

@@ -7,10 +7,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from matplotlib.figure import Figure
 
 from validation.dashboard.catalogue import TOPICS
-from validation.pareto.figures import MOST
 from validation.reporting.command import code
 
 REPORTS = Path(__file__).parents[3] / "reports"
@@ -94,23 +92,6 @@ def test_a_report_turns_bad(name: str, spoil: Any, says: str) -> None:
     spoil(data)
     report = TOPICS[name].compose(data)
     assert report.ok is False and code(report) == 1 and says in report.summary
-
-
-def test_the_index_says_of_timing_what_its_page_says() -> None:
-    report = TOPICS["timing"].compose(stored("timing"))
-    met = report.facts[0]
-    assert report.summary.startswith(f"{met.value} targets are met") and report.ok is met.ok
-
-
-def test_no_two_methods_look_alike() -> None:
-    report = TOPICS["pareto"].compose(stored("pareto"))
-    drawings = [c for section in report.sections for block in section.blocks for c in getattr(block, "charts", ())]
-    assert len(drawings) == 2 * (len(report.sections) - 1)
-    for drawing in drawings:
-        axes = Figure().subplots()
-        drawing.paint(axes)
-        series = axes.get_legend_handles_labels()[0]
-        assert 1 <= len({line.get_color() for line in series}) == len({line.get_marker() for line in series}) <= MOST
 
 
 def test_an_interrupt_comes_before_a_verdict() -> None:
