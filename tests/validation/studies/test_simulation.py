@@ -40,8 +40,3 @@ def test_report(tmp_path: Path) -> None:
     assert found.exit_code == 0
     assert json.loads((tmp_path / "simulation.json").read_text())["races"][0]["motion"].startswith("planar")
     assert "| planar flexible robot with friction |" in (tmp_path / "simulation.md").read_text()
-
-
-def test_unknown_motion() -> None:
-    found = CliRunner().invoke(app, ["simulation", "--motion", "moon"])
-    assert found.exit_code == 2 and "no motion 'moon'" in found.output
