@@ -49,14 +49,6 @@ def test_every_kink_of_a_wave(model: sf.Model) -> None:
     assert len(instants(model, "cos(t)*max(0, sin(t))")) == 4  # One of them just after the start.
 
 
-@pytest.mark.parametrize(
-    "formula", ["sin(50*t)", "exp(-t)", "t^3 - t", "1/sqrt(0.5 - t)", "log(t)", "max(0, q0) + abs(v0)", "3*t + 1"]
-)
-def test_smooth_formulas_and_those_of_the_state_have_none(model: sf.Model, formula: str) -> None:
-    formula = formula.replace("q0", model.names.q[0]).replace("v0", f"d{model.names.q[0]}")
-    assert len(instants(model, formula)) == 0
-
-
 def test_parameters_move_them_and_factors_of_the_state_do_not() -> None:
     parameter = sf.Parameter("late", 3.0)
     slide = sf.Joint("x", "prismatic", axis=(1, 0, 0), actuated=True)
