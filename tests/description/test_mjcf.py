@@ -11,8 +11,8 @@ import pytest
 
 import symofros as sf
 from symofros.description.mjcf import files as mjcf_files
-from symofros.description.yaml.files import read_yaml
 from tests.description.mjcf_models import MODELS, document
+from tests.description.reading import faults
 from validation.mechanics.geometry import quaternion_matrix
 
 PENDULUM = '<body name="a"><joint name="q" axis="0 1 0"/><geom size="0.1" pos="1 0 0"/></body>'
@@ -31,12 +31,6 @@ def write(folder: Path, body: str, name: str = "model.xml") -> Path:
 
 def world(text: str) -> str:
     return f"<worldbody>{text}</worldbody>"
-
-
-def faults(path: Path) -> str:
-    with pytest.raises(sf.DescriptionError) as caught:
-        sf.load(path)
-    return str(caught.value)
 
 
 def notes(folder: Path, body: str) -> str:
@@ -116,13 +110,6 @@ def test_mujoco_has_the_same_equations(tmp_path: Path, name: str) -> None:
             p, R = model.frame_pose(m.site(site).name or f"site{site}", q)
             close(p, d.site_xpos[site], 1.0)
             close(R, d.site_xmat[site].reshape(3, 3))
-
-
-@pytest.mark.parametrize("name", MODELS)
-def test_native_files_hold_what_is_imported(tmp_path: Path, name: str) -> None:
-    system = sf.load(write(tmp_path, MODELS[name]))
-    sf.save(system, tmp_path / "model.yaml")
-    assert read_yaml(tmp_path / "model.yaml").system == system
 
 
 def test_names_and_places(tmp_path: Path) -> None:

