@@ -33,45 +33,10 @@ MODEL_EXCHANGE = 1e-6
 # Central differences of a function of size 1 by a step of 1e-6.
 DIFFERENCES = 1e-6
 
-FLOATING = sf.System(
-    "floating",
-    (
-        sf.RigidBody(
-            "hull", sf.Joint("float", "free"), sf.Inertia(2.0, (0.1, 0, 0), (1, 2, 1.5)), (sf.Frame("top", (1, 0, 0)),)
-        ),
-        sf.RigidBody(
-            "arm",
-            sf.Joint("s", "ball", "hull", "top"),
-            sf.Inertia(1.0, (0.1, 0.2, 0), (1, 2, 1.5)),
-            (sf.Frame("end", (1, 0, 0.2)),),
-        ),
-    ),
-)
+FLOATING = sf.load(Path(__file__).with_name("floating.yaml"))
 
 # The importer moves the first joint and the last; the tip moves with them.
-DRIVEN = sf.System(
-    "driven",
-    (
-        sf.RigidBody(
-            "base",
-            sf.Joint("crank", "revolute", axis=(1, 0.5, 0), prescribed=True),
-            None,
-            (sf.Frame("end", (0.7, 0, 0.1)),),
-        ),
-        sf.RigidBody(
-            "arm",
-            sf.Joint("q1", "revolute", "base", "end", axis=(0, 1, 0), actuated=True),
-            sf.Inertia(1.0, (0.3, 0.1, 0)),
-            (sf.Frame("end", (0.8, 0, 0)),),
-        ),
-        sf.RigidBody(
-            "head",
-            sf.Joint("neck", "universal", "arm", "end", prescribed=True),
-            sf.Inertia(0.5, (0.1, 0, 0.2)),
-            (sf.Frame("tip", (0.2, 0.3, 0.1)),),
-        ),
-    ),
-)
+DRIVEN = sf.load(Path(__file__).with_name("driven.yaml"))
 # The importer turns the base by a quaternion.
 TURNED = sf.System(
     "turned",
