@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from reference_models import MODELS
 from symofros.expr.instants import InstantKind
 from symofros.runtime.calls.declarations import constants
 from symofros.runtime.instants import find_instants
+from tests.models import compiled
 
 
 @pytest.fixture(scope="module")
 def model() -> sf.Model:
-    return sf.compile(MODELS["cart_pole"])
+    return compiled("cart_pole")
 
 
 def instants(model: sf.Model, formula: str, t_end: float = 10.0) -> np.ndarray:
