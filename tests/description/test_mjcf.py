@@ -118,7 +118,7 @@ def test_names_and_places(tmp_path: Path) -> None:
     names = ["world", "a_at_x", "a_at_z", "a_at_turn", "a", "b_at_q1", "b_at_q2", "b_at_q3", "b"]
     assert [body.name for body in system.bodies] == names
     assert sf.compile(system, sf.Options(backend="interpreter")).names.q == ("x", "z", "turn", "q1", "q2", "q3")
-    assert system.origin["body", "b"].endswith("model.xml:8")
+    assert system.origin["body", "b"].endswith("model.xml:7")
 
 
 def test_nameless_things_get_free_names(tmp_path: Path) -> None:
