@@ -11,6 +11,7 @@ import symofros as sf
 from reference_models.rigid.random_tree import MORE_KINDS, random_tree
 from symofros.description.yaml.files import MAX_BYTES, read_yaml
 from symofros.description.yaml.yaml_pieces import compose_text
+from tests.exports.interchange.stated_trees import stated_tree
 
 HEAD = "symofros: 1\nsystem: {name: arm}\n"
 LINK = "  link: {joint: {name: q1, kind: revolute}, inertia: {mass: 1, moments: [1, 1, 1]}}\n"
@@ -155,9 +156,10 @@ def test_reading_keeps_what_it_can(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("seed", range(100, 112))
 def test_every_joint_kind_round_trips(seed: int, tmp_path: Path) -> None:
-    tree = random_tree(seed, kinds=MORE_KINDS)
-    sf.save(tree, tmp_path / "tree.yaml")
-    assert sf.load(tmp_path / "tree.yaml") == tree
+    """Also with noise in all that is stated, limits on one side, springs, dampers and friction."""
+    for tree in (random_tree(seed, kinds=MORE_KINDS), stated_tree(seed)):
+        sf.save(tree, tmp_path / "tree.yaml")
+        assert sf.load(tmp_path / "tree.yaml") == tree
 
 
 EVERYTHING = Path(__file__).with_name("all_forces.yaml").read_text()
