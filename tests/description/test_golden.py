@@ -1,10 +1,14 @@
-"""How formulas are read, or why they are not, as text; cases: formulas.txt and unclear.txt, one formula a line."""
+"""How formulas are read, or why they are not, and what is wrong with files, as text.
+
+Cases: formulas.txt and unclear.txt, one formula a line; faults.txt, one change a line of a sound file, "old => new".
+"""
 
 from __future__ import annotations
 
 import ast
 import re
 from functools import cache
+from pathlib import Path
 
 import pytest
 
@@ -48,6 +52,25 @@ def clearness(line: str) -> str:
     return "clear"
 
 
+ARM = """symofros: 1
+system: {name: arm}
+bodies:
+  link: {joint: {name: q1, kind: revolute}, inertia: {mass: 1, moments: [1, 1, 1]}}
+"""
+FORCES = Path(__file__).with_name("all_forces.yaml").read_text()
+
+
+def fault(change: str, folder: Path) -> str:
+    """What loading says of the file with a change; "$" is its end."""
+    old, new = change.encode().decode("unicode_escape").split(" => ")
+    text = next(text for text in (ARM, FORCES) if old == "$" or old in text)
+    path = folder / "arm.yaml"
+    path.write_text(text + new if old == "$" else text.replace(old, new))
+    with pytest.raises(sf.DescriptionError) as caught:
+        sf.load(path)
+    return str(caught.value).replace(f"{folder}/", "")
+
+
 @pytest.mark.parametrize("case", golden_cases(__file__, "formulas"))
 def test_formulas_are_read_or_refused_as_stated(case: Case, request: pytest.FixtureRequest) -> None:
     assert_golden(case, lambda lines: "\n".join(map(reading, lines.split("\n"))), request)
@@ -58,3 +81,8 @@ def test_formulas_that_could_mean_something_else_are_refused_as_stated(
     case: Case, request: pytest.FixtureRequest
 ) -> None:
     assert_golden(case, lambda lines: "\n".join(map(clearness, lines.split("\n"))), request)
+
+
+@pytest.mark.parametrize("case", golden_cases(__file__, "faults"))
+def test_faults_of_files_are_named_with_their_lines(case: Case, request: pytest.FixtureRequest, tmp_path: Path) -> None:
+    assert_golden(case, lambda lines: "\n".join(fault(line, tmp_path) for line in lines.split("\n")), request)

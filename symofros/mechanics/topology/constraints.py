@@ -72,7 +72,7 @@ def constraint_problems(
                         f"{what}: '{speed}' is not a speed",
                         ", ".join(sorted(speeds)[:12]),
                         "a coefficient is given for a free speed: d and the coordinate's name",
-                        did_you_mean(speed, sorted(speeds)),
+                        did_you_mean(speed, speeds),
                         where,
                     )
             if not any(_slopes(value, None) for _, value in item.coefficients):

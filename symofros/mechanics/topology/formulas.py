@@ -341,7 +341,7 @@ def power_problems(system: System, broken: frozenset[str]) -> Iterator[Problem]:
                     f"virtual power '{power.name}': '{speed}' is not a speed",
                     ", ".join(sorted(speeds)[:12]),
                     "a force is given for a free speed: d and the coordinate's name",
-                    did_you_mean(speed, sorted(speeds)),
+                    did_you_mean(speed, speeds),
                     system.origin.get(("virtual_power", power.name), ""),
                 )
 
