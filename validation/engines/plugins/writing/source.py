@@ -207,17 +207,16 @@ class SourcePlugin:
             return self.write(tree)
         return self.write_reading(tree, form, text) if self.write_reading else Unsupported("", offered=False)
 
-    def building(self, tree: Tree, form: str = "", text: str = "", *, whole: bool = True) -> str:
+    def building(self, tree: Tree, form: str = "", text: str = "") -> str:
         """The text that would build a tree, or have a file read; "" for none.
 
         Args:
             tree: The tree.
             form: Format of the file; "" for none.
             text: The file.
-            whole: With what only functions need.
         """
         made = self.written(tree, form, text)
-        return "" if isinstance(made, Unsupported) else "\n".join(made.text("" if whole else "pass"))
+        return "" if isinstance(made, Unsupported) else "\n".join(made.text())
 
     def _made(self, source: Source | Unsupported) -> EngineModel | Unsupported:
         if not self.version():
