@@ -39,7 +39,7 @@ from .contract.quantities import CONSTRAINED, FRAME_QUANTITIES, LOOPS, MOTION_EN
 from .contract.raised import Raised, attempted, not_installed, words
 from .inputs.frames import chosen_frames
 from .inputs.sampling import DEFAULT_STATES, sample, special_states
-from .mechanics.assembly import Assembly, assemble
+from .mechanics.assembly import Assembly
 from .mechanics.geometry import Array
 from .mechanics.parts import has_quaternion
 
@@ -170,7 +170,7 @@ def check(subject: Subject, settings: Settings, factories: Factories | None = No
     Raises:
         SymofrosError: Our own model can't be made.
     """
-    assembly = assemble(subject.system)
+    assembly = subject.assembly
     subject = replace(subject, frames=subject.frames or chosen_frames(assembly))
     obstacle = _unsampled_motion(subject.system, assembly)
     if obstacle:
