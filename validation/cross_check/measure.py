@@ -84,23 +84,22 @@ def measure(
     compiled = [case for case in cases if case.label in results and results[case.label].sizes]
     wanted = (speed or (stored is not None and bool(stored.record.speeds))) and not unfinished
     speeds = _speeds(run, compiled, stored) if wanted else []
-    data = as_data(settings, finished, run.seconds, unfinished, speeds)
+    data: Data = as_data(settings, finished, run.seconds, unfinished, speeds)
     regressions: list[Regression] = []
     if stored is not None:
-        regressions = _held_to(stored, data)
+        data, regressions = _held_to(stored, data)
     if junit is not None:
         junit.parent.mkdir(parents=True, exist_ok=True)
         write_atomically(junit, to_junit(finished, run.seconds, regressions))
     return data
 
 
-def _held_to(stored: Baseline, data: Data) -> list[Regression]:
-    """Where a run is worse than a stored one; its data gets them, and what it was held to."""
+def _held_to(stored: Baseline, data: Data) -> tuple[Data, list[Regression]]:
+    """A run's data with what it was held to, and where it is worse than the stored one."""
     regressions, notes = stored.judge(Record.of(data), machine_of(data))
     origin = {"file": stored.name, "revision": stored.revision, "date": stored.date, "notes": notes}
-    data |= {"ok": data["ok"] and not regressions, "baseline": origin}
-    data["baseline"]["regressions"] = [asdict(worse) for worse in regressions]
-    return regressions
+    baseline = origin | {"regressions": [asdict(worse) for worse in regressions]}
+    return {**data, "ok": data["ok"] and not regressions, "baseline": baseline}, regressions
 
 
 def _cases(models: list[str], reading: ReadingOptions) -> list[Case]:

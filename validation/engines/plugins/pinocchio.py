@@ -38,14 +38,6 @@ _CLOSING = ("d = m.createData()",)
 
 
 def _array(values: Any) -> str:
-    if np.array_equal(values, np.eye(3)):
-        return "np.eye(3)"
-    if not np.any(values):
-        return f"np.zeros({np.shape(values) if np.ndim(values) > 1 else len(values)})"
-    if np.ndim(values) == 1 and len(values) == 3 and sorted(values) == [0.0, 0.0, 1.0]:
-        return f"np.eye(3)[{list(values).index(1.0)}]"
-    if np.ndim(values) == 2 and np.array_equal(values, np.diag(np.diagonal(values))):
-        return f"np.diag({np.diagonal(values).tolist()!r})"
     return f"np.array({np.asarray(values, dtype=float).tolist()!r})"
 
 
@@ -174,9 +166,9 @@ class _ModelText:
             lines.append(f"m.armature = {_array(self.armature)}")
         if tree.transformations:
             lines += [*self.frames, *_transformed(self.locked, len(self.own_model) > 0)]
-            optional = {"fs": (_NAMED_FRAMES.format(len(tree.links)),)}
-            return Source(tuple(lines), slots, self.nq, self.nv, optional, closing=_CLOSING)
-        optional = {"fs": (f"fs = [{', '.join(self.frames)}]",)}
+            named = {"fs": (_NAMED_FRAMES.format(len(tree.links)),)}
+            return Source(tuple(lines), slots, self.nq, self.nv, named, closing=_CLOSING)
+        optional: dict[str, tuple[str, ...]] = {"fs": (f"fs = [{', '.join(self.frames)}]",)}
         if all(self.joints) and len(set(self.joints)) == len(self.joints):
             optional["js"] = (f"js = [{', '.join(self.joints)}]",)
         optional |= constrained.optional(tree.constraints, self.place)
