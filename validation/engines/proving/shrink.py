@@ -8,7 +8,6 @@ from typing import Any
 
 from ..interface import IDENTITY, ORIGIN, Joint, Link, Rows, Tree, Vector
 from ..models.formats import texts
-from . import closing
 from .pieces import Piece, Pieces
 
 # Cases that are tried for one fault.
@@ -99,9 +98,6 @@ def _simpler(case: Case) -> Iterator[Case]:
 
 
 def _simpler_built(case: Case) -> Iterator[Case]:
-    if case.tree.constraints:
-        for tree, pieces in closing.at_zero(case.tree, case.pieces):
-            yield Case(tree, pieces)
     yield from _without_links(case)
     yield from _all_at_once(case)
     yield from _without_joints(case)
