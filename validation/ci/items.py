@@ -164,13 +164,7 @@ def cross_checks(session: Any, config: Any) -> Iterator[pytest.Item]:
             yield from engine_checks(parent, engine, tier)
     if not engines:
         return
-    models = named_models or TIERS[tier].models
-    try:
-        cases = named(list(models), _reading(config))
-    except (LookupError, FileNotFoundError) as error:
-        raise pytest.UsageError(f"--symofros-model: {error.args[0]}") from None
-    except sf.SymofrosError as error:
-        raise pytest.UsageError(error.in_shell("--symofros-")) from None
+    cases = _cases(list(named_models or TIERS[tier].models), config)
     states = TIERS[tier].states
     stored = _stored(config.getoption("--symofros-baseline"))
 
@@ -187,6 +181,20 @@ def cross_checks(session: Any, config: Any) -> Iterator[pytest.Item]:
         if stored is not None:
             settings = Settings(stored.record.states, stored.record.seed, tuple(_engines(stored)))
             yield test(BaselineCheck, case, "baseline", settings, stored=stored)
+
+
+def _cases(models: list[str], config: Any) -> list[Case]:
+    """The models of some names or files.
+
+    Raises:
+        UsageError: There is none of a name, or it can't be read.
+    """
+    try:
+        return named(models, _reading(config))
+    except (LookupError, FileNotFoundError) as error:
+        raise pytest.UsageError(f"--symofros-model: {error.args[0]}") from None
+    except sf.SymofrosError as error:
+        raise pytest.UsageError(error.in_shell("--symofros-")) from None
 
 
 def _reading(config: Any) -> ReadingOptions:
