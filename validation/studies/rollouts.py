@@ -18,11 +18,9 @@ from ..contract.interface import Subject, Unsupported
 from ..mechanics.geometry import Array
 from ..reporting.command import Run
 from ..reporting.record import Data
-from ..timing.models import TIMED_MODELS
+from ..timing.models import DAMPING, STIFFNESS, TARGET, TIMED_MODELS
 
 TRAJECTORIES, STEPS, STEP = 10_000, 100, 1e-3
-# Of each joint [N m/rad, N m s/rad, rad]; RK4 with a millisecond holds them at the wrist, of the smallest inertia.
-STIFFNESS, DAMPING, TARGET = 20.0, 1.0, 0.4
 # Starts about the neutral posture: of each joint [rad], of each speed [rad/s].
 _SPREAD, _SPEED = 0.5, 0.5
 
