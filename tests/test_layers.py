@@ -11,9 +11,8 @@ from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
+from tests.borders import ROOT, absolute, import_statements, modules_of
 from validation.adapters import ROUTES
-
-ROOT = Path(__file__).parent.parent
 
 
 def table(text: str) -> dict[str, set[str]]:
@@ -149,21 +148,6 @@ ADAPTERS = {name: name for name in ENGINES} | {
 
 
 @cache
-def import_statements(path: Path) -> tuple[ast.Import | ast.ImportFrom, ...]:
-    """Those of a file, within functions, too; found once for all rules."""
-    return tuple(
-        node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Import | ast.ImportFrom)
-    )
-
-
-def absolute(path: Path, node: ast.ImportFrom) -> str:
-    """The module that a statement of a file imports from, in a checkout."""
-    package = path.relative_to(ROOT).parent.parts
-    above = package[: len(package) + 1 - node.level] if node.level else ()
-    return ".".join([*above, *filter(None, [node.module])])
-
-
-@cache
 def imported(path: Path) -> tuple[str, ...]:
     modules: list[str] = []
     for node in import_statements(path):
@@ -260,6 +244,21 @@ def test_the_package_imports_absolutely_and_what_is_installed_within_it_relative
     check_all((*SOURCES, *HARNESS_SOURCES, *REFERENCE_SOURCES), faults)
 
 
+def test_an_import_within_a_function_states_its_reason_on_its_line() -> None:
+    """A package that may be missing, or seconds that others need not wait; a circle is cured by structure."""
+
+    def faults(path: Path) -> Iterator[str]:
+        lines = path.read_text().splitlines()
+        kinds = ast.FunctionDef | ast.AsyncFunctionDef
+        functions = [node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, kinds)]
+        for node in import_statements(path):
+            within = any(f.lineno < node.lineno <= (f.end_lineno or 0) for f in functions)
+            if within and "  # " not in lines[node.lineno - 1]:
+                yield f"line {node.lineno}: an import within a function, without its reason"
+
+    check_all((*SOURCES, *HARNESS_SOURCES), faults)
+
+
 def test_sympy_is_at_the_doors_only() -> None:
     """Where its expressions come in, and where people read them."""
     doors = {"symofros/expr/freeze.py", "symofros/exports/equations/formulas.py"}
@@ -337,15 +336,6 @@ def test_importing_the_package_loads_no_other_package() -> None:
     assert packages == {"symofros"}
 
 
-def _modules() -> dict[str, Path]:
-    """Module -> file, of all packages."""
-    files = [
-        path for package in ("symofros", "validation", "reference_models") for path in (ROOT / package).rglob("*.py")
-    ]
-    dotted = {".".join(path.relative_to(ROOT).with_suffix("").parts): path for path in files}
-    return {name.removesuffix(".__init__"): path for name, path in dotted.items()}
-
-
 def _imported_modules(path: Path, known: Collection[str]) -> set[str]:
     """The modules of ours that a file imports, for type checkers and within functions, too."""
     names: set[str] = set()
@@ -360,6 +350,6 @@ def _imported_modules(path: Path, known: Collection[str]) -> set[str]:
 
 def test_no_modules_import_each_other_in_a_circle() -> None:
     """Imports for type checkers count: what two modules share belongs into a lower one."""
-    modules = _modules()
+    modules = modules_of(ROOT, "symofros", "validation", "reference_models")
     order = TopologicalSorter({name: _imported_modules(path, modules) - {name} for name, path in modules.items()})
     order.prepare()

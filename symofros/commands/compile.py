@@ -42,8 +42,7 @@ def compile_command(
     name = _known_name(model, request) if output is None else None
     result: dict[str, Any] = {"name": name, "functions": names, "seconds": time.perf_counter() - start}
     if name is None:
-        # The generator is loaded where there is something to generate: that takes longer than all above.
-        from symofros.commands.compilation import compile_description
+        from symofros.commands.compilation import compile_description  # The generator takes longer than all above.
 
         chosen = names if functions or frames else None
         result |= compile_description(model, reading, chosen, frames, request, output)

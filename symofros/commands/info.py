@@ -70,7 +70,7 @@ def info(
 def _counts(system: sf.System, frame: str) -> dict[str, Operations]:
     """Operations of every function, keyed by its name, and the frame of frame functions."""
     from symofros.compiler import Compilation  # The generator takes as long to import as all that is shown without it.
-    from symofros.generator.passes.count import count_program
+    from symofros.generator.passes.count import count_program  # Part of it.
 
     compilation = Compilation(system, sf.Options(functions=DEFAULT_FUNCTIONS))
     compilation.request(DEFAULT_FRAME_FUNCTIONS, [frame])

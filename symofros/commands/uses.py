@@ -139,7 +139,7 @@ def edit(
 ) -> None:
     """Draw, edit, check, compile and simulate a model in the browser."""
     try:
-        from symofros.studio.editor.command import serve
+        from symofros.studio.editor.command import serve  # The editor's server is an extra.
     except ModuleNotFoundError as error:
         if error.name not in ("starlette", "uvicorn", "anyio"):
             raise
