@@ -13,7 +13,7 @@ import argparse
 import ast
 import json
 import re
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
@@ -62,7 +62,13 @@ def modules_of(root: Path, *packages: str) -> dict[str, Path]:
     return {name.removesuffix(".__init__"): path for name, path in dotted.items()}
 
 
-def taken(root: Path, user: str, path: Path, known: Collection[str]) -> Iterator[Taken]:
+@cache
+def names_offered(path: Path) -> frozenset[str]:
+    """Names that the `__init__` of a package imports for others."""
+    return frozenset(alias.asname for node in import_statements(path) for alias in node.names if alias.asname)
+
+
+def taken(root: Path, user: str, path: Path, known: Mapping[str, Path]) -> Iterator[Taken]:
     """Names that a module imports of known ones, and what it reads of `symofros` under another name (`sf.load`)."""
     aliases: set[str] = set()
     for node in import_statements(path):
@@ -72,9 +78,11 @@ def taken(root: Path, user: str, path: Path, known: Collection[str]) -> Iterator
             continue
         module = absolute(path, node, root)
         for alias in node.names:
-            if f"{module}.{alias.name}" in known:
+            if module not in known:
+                continue
+            if f"{module}.{alias.name}" in known and alias.name not in names_offered(known[module]):
                 yield Taken(user, f"{module}.{alias.name}", "")
-            elif module in known:
+            else:
                 yield Taken(user, module, alias.name)
     for read in ast.walk(ast.parse(path.read_text())) if aliases else ():
         if isinstance(read, ast.Attribute) and isinstance(read.value, ast.Name) and read.value.id in aliases:
@@ -102,8 +110,8 @@ def over_the_waist(root: Path = ROOT) -> list[Taken]:
 def listed(heading: str, root: Path = ROOT) -> dict[str, str]:
     """Module -> what it offers: the table under a heading of the map."""
     text = (root / "docs" / "architecture.md").read_text(encoding="utf-8")
-    section = re.search(rf"^### {re.escape(heading)}\n((?:(?!^##).*\n)*)", text, re.MULTILINE)
-    return dict(re.findall(r"^\| `([\w.]+)` \| (.+?) \|", section[1] if section else "", re.MULTILINE))
+    section = re.search(rf"^## {re.escape(heading)}\n((?:(?!^## ).*\n)*)", text, re.MULTILINE)
+    return dict(re.findall(r"^\| `([\w.]+)`.*? \| (.+?) \|", section[1] if section else "", re.MULTILINE))
 
 
 def _counted(items: Iterable[Taken]) -> dict[str, int]:

@@ -13,8 +13,7 @@ from symofros.base.functions import DEFAULT_FUNCTIONS
 from symofros.commands.reading import ReadingOptions, reads_models
 from symofros.commands.shared import AsJson, ModelPath
 from symofros.errors import SymofrosError
-from symofros.runtime.build.prepared import recall_prepared
-from symofros.runtime.build.toolchain import find_toolchain
+from symofros.runtime.build import find_toolchain, recall_prepared
 
 
 @reads_models

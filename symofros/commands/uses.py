@@ -23,7 +23,7 @@ from symofros.commands.shared import (
     refuse,
 )
 from symofros.commands.terminal import out
-from symofros.description.reading import YAML_SUFFIXES
+from symofros.description import YAML_SUFFIXES
 from symofros.diagrams.files.kind import is_diagram
 from symofros.exports.exporting import TARGETS
 from symofros.studio.advice.report import table_of

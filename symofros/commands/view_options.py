@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from symofros.blocks.graphics.view import View3D, with_view
-from symofros.description.system import System
+from symofros.description import System
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.result import DiagramRun
 from symofros.errors import Problem, SymofrosError

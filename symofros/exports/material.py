@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from symofros.description.system import System
+from symofros.description import System
 from symofros.exports.c.parameter_check import Judged
 from symofros.runtime.beams import BEAM_LIMIT, ElasticBeam
 from symofros.runtime.calls.kernel import Signature

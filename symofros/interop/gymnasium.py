@@ -18,9 +18,7 @@ import numpy as np
 
 import symofros.interop.rules as rules
 from symofros.compiler import compile_system
-from symofros.description.joints.joint import Joint
-from symofros.description.system import Inertia, Input, RigidBody, System
-from symofros.description.values import as_value
+from symofros.description import Inertia, Input, Joint, RigidBody, System, as_value
 from symofros.errors import Problem
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model

@@ -23,8 +23,7 @@ from symofros.interop.coordinates import Operations
 from symofros.interop.rules import RULES, InteropError, framework, second_derivatives
 from symofros.interop.wrapped import WrappedDynamics
 from symofros.native import native_text
-from symofros.runtime.build.build import build_library
-from symofros.runtime.build.toolchain import NO_COMPILER, find_toolchain
+from symofros.runtime.build import NO_COMPILER, build_library, find_toolchain
 from symofros.runtime.calls.declarations import interface
 from symofros.runtime.calls.library import MANY, CompiledKernel
 from symofros.runtime.model import Model

@@ -14,7 +14,7 @@ import numpy as np
 
 from symofros.blocks.quantities import motion_port
 from symofros.blocks.turns import Turn
-from symofros.description.system import System
+from symofros.description import System
 from symofros.diagrams.block import Environment, Ports
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.external_block import ExternalBlock, Running

@@ -12,9 +12,7 @@ from symofros.diagrams.external_block import ExternalBlock
 from symofros.diagrams.tensor import Tensor
 from symofros.diagrams.wiring import Wired, surroundings
 from symofros.errors import DescriptionError, Problem
-from symofros.expr.edges import Edge
-from symofros.expr.graph import Graph
-from symofros.expr.numerics.evaluate import needed_nodes
+from symofros.expr import Edge, Graph, needed_nodes
 from symofros.runtime.calls.kernel import Array
 
 # Groups of inputs of a piece that belong to one port, state, memory or parameter begin with these.

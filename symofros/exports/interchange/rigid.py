@@ -12,14 +12,10 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.rotations import matrix_product, skew
-from symofros.description.beams.beam import PRE_STRAINS, STATION, Beam
-from symofros.description.forces import Damper
-from symofros.description.joints.joint import WORLD, Joint
-from symofros.description.system import Body, Inertia, RigidBody, System
+from symofros.description import PRE_STRAINS, STATION, WORLD, Beam, Body, Damper, Inertia, Joint, RigidBody, System
 from symofros.errors import ExportError, Problem
 from symofros.exports.limits import listed
-from symofros.mechanics.topology.coordinates import coordinate_names
-from symofros.mechanics.topology.numbers import Numbers
+from symofros.mechanics.topology import Numbers, coordinate_names
 
 Array = npt.NDArray[np.float64]
 

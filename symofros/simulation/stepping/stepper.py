@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from symofros.base.user_functions import named_function
 from symofros.errors import CompileError
 from symofros.runtime.beams import BeamBending, worst_bendings
 from symofros.runtime.calls.binding import NativeMemory, native_library
@@ -22,6 +21,7 @@ from symofros.simulation.inputs import InputPlan
 from symofros.simulation.stepping.methods import Method
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.tableaus import fill_tableau
+from symofros.simulation.user_functions import named_function
 
 # Events recorded between two calls that take them.
 _EVENT_ROWS = 64

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from symofros.base.user_functions import raised_where
 from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.program.layout import Layout
 from symofros.diagrams.run.engaging import engaged_apart, engaging_notes
@@ -23,6 +22,7 @@ from symofros.simulation.results.outcome import Kind, Outcome
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.resolution import Resolution
 from symofros.simulation.stepping.status import Status
+from symofros.simulation.user_functions import raised_where
 
 _ENDS: dict[int, tuple[Kind, str, str]] = {
     Status.DIVERGED: ("diverged", "a state has grown without bound", "a smaller dt; look for gains that are too high"),

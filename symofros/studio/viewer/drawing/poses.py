@@ -11,11 +11,9 @@ import numpy as np
 from symofros.base.arrays import real_array
 from symofros.base.options import Options
 from symofros.compiler import compile_system
-from symofros.description.constraints import Closure, Rolling
-from symofros.description.system import System
+from symofros.description import Closure, Rolling, System
 from symofros.errors import AssemblyError, Problem, ShapeError
-from symofros.mechanics.topology.numbers import Numbers
-from symofros.mechanics.topology.tree import SpanningTree, build_tree, frame_of
+from symofros.mechanics.topology import Numbers, SpanningTree, build_tree, frame_of
 from symofros.runtime.beams import BeamBending
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.beam_theory import bendings_in_motion

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from symofros.errors import Problem, ShapeError
-from symofros.mechanics.topology.tree import BASE
+from symofros.mechanics.topology import BASE
 from symofros.studio.viewer.drawing.drawing import Color, DrawnPart
 from symofros.studio.viewer.drawing.meshes import Array, Mesh, axes_along, ellipse, tube
 

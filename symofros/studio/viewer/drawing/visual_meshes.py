@@ -11,8 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from symofros.description.reading import kind_of
-from symofros.description.visual import Visual
+from symofros.description import Visual, kind_of
 from symofros.studio.viewer.drawing.collada import read_collada
 from symofros.studio.viewer.drawing.meshes import Array, Mesh, box, cylinder, merged, sphere
 

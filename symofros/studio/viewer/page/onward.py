@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from symofros.description.system import System
+from symofros.description import System
 from symofros.errors import Problem, SymofrosError
 from symofros.exports.exporting import export
 from symofros.simulation.results.trajectory import Trajectory

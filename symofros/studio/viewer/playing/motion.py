@@ -16,9 +16,9 @@ import numpy.typing as npt
 
 from symofros.base.arrays import numeric
 from symofros.base.names import TIME, symbol_of
-from symofros.base.npz import TooLargeError, read_npz
 from symofros.errors import Problem, ShapeError, SymofrosError
 from symofros.runtime.model import ArrayLike, Model
+from symofros.simulation.results.npz import TooLargeError, read_npz
 from symofros.simulation.results.trajectory import Trajectory
 from symofros.studio.viewer.drawing.meshes import Array
 
