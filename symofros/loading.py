@@ -11,7 +11,7 @@ from typing import Any
 
 from symofros.base.arguments import checked
 from symofros.base.atomic import write_atomically
-from symofros.base.sources import Source
+from symofros.base.sources import Source as Source
 from symofros.description.packages import Folders, Packages
 from symofros.description.reading import MODEL_SUFFIXES, USD_SUFFIXES, YAML_SUFFIXES, Reading, in_order
 from symofros.description.remarks import note

@@ -41,7 +41,7 @@ from symofros.generator import InterpretedUnit
 from symofros.loading import load
 from symofros.mechanics.topology import OTHER_FUNCTIONS
 from symofros.runtime.beams import BEAM_LIMIT
-from symofros.runtime.calls.kernel import LaneOptions
+from symofros.runtime.calls import LaneOptions
 from symofros.runtime.model import Model
 from symofros.simulation.analysis.kinematics.starts import ClosedStart, closed_start, singular_start, stated_names
 from symofros.simulation.stepping.methods import METHODS, method_meant

@@ -11,3 +11,4 @@ from symofros.generator.passes import run_passes as run_passes
 from symofros.generator.passes.count import Operations as Operations
 from symofros.generator.passes.count import count_operations as count_operations
 from symofros.generator.passes.count import count_program as count_program
+from symofros.runtime.cuda.device_code import DeviceCode as DeviceCode

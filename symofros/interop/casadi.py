@@ -24,7 +24,6 @@ from symofros.base.arguments import check_argument
 from symofros.base.atomic import write_atomically
 from symofros.base.c_names import identifier
 from symofros.base.functions import FUNCTIONS
-from symofros.base.model_function import cotangents
 from symofros.base.options import Options
 from symofros.compiler import Compilation
 from symofros.description import System
@@ -72,7 +71,7 @@ class _Differentiable:
     @property
     def cotangent(self) -> str:
         """Input group of the value's cotangent."""
-        names = {output.name: group for group, output in cotangents(FUNCTIONS[self.value[0]]).items()}
+        names = {output.name: group for group, output in FUNCTIONS[self.value[0]].cotangents.items()}
         return names[self.value[1]]
 
     def functions(self, second_order: bool) -> list[str]:

@@ -8,7 +8,7 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from symofros.expr.instants import InstantKind
-from symofros.runtime.calls.declarations import constants
+from symofros.runtime.calls.binding import constants
 from symofros.runtime.instants import find_instants
 
 

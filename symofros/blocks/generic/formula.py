@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.blocks.checks import numbers, refuse
 from symofros.blocks.generic.sampling import needs_period
 from symofros.description import ExpressionError, parse
@@ -18,7 +19,6 @@ from symofros.diagrams.external_block import ExternalBlock, Running
 from symofros.diagrams.tensor import Tensor
 from symofros.errors import DescriptionError
 from symofros.expr import Expression, lower
-from symofros.runtime.calls.kernel import Array
 
 _ENTRY = re.compile(r"(?P<name>\w+)\[(?P<index>\d+)\]$", re.ASCII)
 _NAME = re.compile(r"[A-Za-z]\w*$", re.ASCII)

@@ -9,6 +9,7 @@ from functools import partial
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.base.c_names import identifier
 from symofros.base.options import Options
 from symofros.diagrams.diagram import Diagram
@@ -24,8 +25,7 @@ from symofros.generator import InterpretedUnit, formula_instants, model_source, 
 from symofros.native import native_text
 from symofros.runtime.beams import ElasticBeam
 from symofros.runtime.build import NO_COMPILER, Toolchain, build_library, find_toolchain
-from symofros.runtime.calls.kernel import Array, Kernel, Unit
-from symofros.runtime.calls.library import CompiledUnit
+from symofros.runtime.calls import CompiledUnit, Kernel, Unit
 from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.base.functions import FRAME_FUNCTIONS
 from symofros.base.names import coordinate_of, speed_of
 from symofros.base.options import Options
@@ -17,7 +18,6 @@ from symofros.diagrams.program.variants import FRICTION, friction_only
 from symofros.diagrams.tensor import Tensor
 from symofros.errors import DescriptionError, ParameterError, Problem, ShapeError, did_you_mean
 from symofros.expr import Edge, Factors, Graph, Program, copy_into
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord
 from symofros.runtime.unit_quaternions import at_unit_length

@@ -15,10 +15,9 @@ from symofros.exports.c.c_text import comment, doubles
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.functions import NamedFunction, cell, functions_table, names_table
 from symofros.exports.limits import joints_of, limits_note
-from symofros.generator import device_code
+from symofros.generator import DeviceCode, device_code
 from symofros.native import header_files, native_text
-from symofros.runtime.calls.kernel import Precision
-from symofros.runtime.cuda.device_code import DeviceCode
+from symofros.runtime.calls import Precision
 
 # What users of batches ask for; each kernel takes seconds to compile.
 FUNCTIONS = (

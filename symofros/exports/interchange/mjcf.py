@@ -9,13 +9,14 @@ from xml.etree import ElementTree as Tree
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.base.c_names import identifier
 from symofros.base.rotations import matrix_product
 from symofros.description import Anchor, Closure, Damper, Joint, Limits, Spring, System
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.interchange.couplings import DEGREE, PolynomialCoupling, polynomial_couplings
 from symofros.exports.interchange.joint_series import GatheredBody, JointPlace, gathered
-from symofros.exports.interchange.rigid import Array, RigidLink, numbers_text, rigid_links
+from symofros.exports.interchange.rigid import RigidLink, numbers_text, rigid_links
 from symofros.exports.limits import limits_note, listed, measures
 from symofros.mechanics.topology import Numbers
 

@@ -9,11 +9,12 @@ from xml.etree import ElementTree as Tree
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.base.c_names import identifier
 from symofros.description import Damper, Joint, JointElement, Limits, System
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.interchange.couplings import PolynomialCoupling, polynomial_couplings
-from symofros.exports.interchange.rigid import Array, Axis, RigidLink, numbers_text, rigid_links
+from symofros.exports.interchange.rigid import Axis, RigidLink, numbers_text, rigid_links
 from symofros.exports.limits import MEASURES, limits_note, listed, measures
 from symofros.mechanics.topology import Numbers
 

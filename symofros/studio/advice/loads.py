@@ -9,12 +9,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.base.options import Options
 from symofros.compiler import compile_system
 from symofros.description import DIRECTIONS, STATION, Beam, Body, Direction, System, Value
 from symofros.expr import evaluate
 from symofros.mechanics.beams import AXES, TURNING, section_law
-from symofros.runtime.calls.kernel import Array
 from symofros.studio.advice import estimators
 from symofros.studio.advice.scene import Scene
 from symofros.studio.advice.scene_runner import ReferenceSolution

@@ -10,6 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.base.names import coordinate_of, speed_of
 from symofros.base.options import Options
 from symofros.compiler import compile_system, program_of
@@ -25,7 +26,6 @@ from symofros.errors import (
 from symofros.errors import did_you_mean as near
 from symofros.generator import count_program
 from symofros.runtime.beams import BeamBending, largest_bending
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
 from symofros.simulation.analysis.kinematics.starts import closed_start, stated_names
 from symofros.simulation.results.trajectory import Trajectory

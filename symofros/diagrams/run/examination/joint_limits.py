@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from symofros.base.arrays import Array
 from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.program.layout import Part
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.record import JointLimit
 from symofros.simulation.analysis.kinematics.postures import limit_notes
 

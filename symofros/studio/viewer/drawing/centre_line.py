@@ -8,9 +8,9 @@ from fractions import Fraction
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.description import Beam
 from symofros.mechanics.beams import Deformation, Field, Monomial, RodShape, deformation_of
-from symofros.studio.viewer.drawing.meshes import Array
 
 STATIONS = 17  # Of a beam, ends included: four an arch of the fourth mode. Each costs two messages a picture.
 

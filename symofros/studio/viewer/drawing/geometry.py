@@ -17,6 +17,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.description import STATION, Anchor, Beam, Closure, Connection, KnifeEdge, RigidBody, Rod, Rolling
 from symofros.mechanics.topology import BASE, Link, NamedFrame, Numbers, Placement, SpanningTree, frame_of
 from symofros.studio.viewer.drawing.centre_line import CentreLine, RodLine
@@ -30,7 +31,7 @@ from symofros.studio.viewer.drawing.drawing import (
     Triad,
 )
 from symofros.studio.viewer.drawing.inertia_box import inertia_box, longest_edges
-from symofros.studio.viewer.drawing.meshes import Array, Mesh, axes_along, box, cylinder, disc, ellipse, merged, sphere
+from symofros.studio.viewer.drawing.meshes import Mesh, axes_along, box, cylinder, disc, ellipse, merged, sphere
 from symofros.studio.viewer.drawing.visual_meshes import visual_mesh
 
 # Distinct on white and on grey, also to people with red-green blindness.

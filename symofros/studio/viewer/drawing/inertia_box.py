@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.description import RigidBody, System
 from symofros.mechanics.topology import Numbers, moments_about_center
-from symofros.studio.viewer.drawing.meshes import Array
 
 
 class InertiaBox(NamedTuple):

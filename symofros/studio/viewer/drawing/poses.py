@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from symofros.base.arrays import real_array
+from symofros.base.arrays import Array, real_array
 from symofros.base.options import Options
 from symofros.compiler import compile_system
 from symofros.description import Closure, Rolling, System
@@ -21,7 +21,7 @@ from symofros.simulation.analysis.kinematics.assembly import assemble
 from symofros.studio.viewer.drawing.drawing import Drawing, DrawnBeam, DrawnConnector, LinkPoint
 from symofros.studio.viewer.drawing.geometry import draw, landmarks
 from symofros.studio.viewer.drawing.inertia_box import longest_edges
-from symofros.studio.viewer.drawing.meshes import Array, axes_along
+from symofros.studio.viewer.drawing.meshes import axes_along
 from symofros.studio.viewer.drawing.tracks import Track, track_part
 
 _LEAST_SIZE = 1e-6  # [m]; what is smaller is drawn as if it were a metre, for want of anything to go by.
