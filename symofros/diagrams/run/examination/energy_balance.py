@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.run.examination.step_check import Repeat, States
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.manifold import retract
 from symofros.runtime.model import Model
 from symofros.simulation.results.examination.repetition import HALVINGS, SETTLED
