@@ -11,7 +11,7 @@ from typing import Any
 
 from symofros.base.arguments import checked
 from symofros.base.atomic import write_atomically
-from symofros.base.sources import Source
+from symofros.base.sources import Source as Source
 from symofros.description.imported.options import SNAP_TOL, Dissipation, ImportOptions, LimitsAs
 from symofros.description.packages import Folders, Packages
 from symofros.description.reading import MODEL_SUFFIXES, USD_SUFFIXES, YAML_SUFFIXES, Reading, in_order
@@ -164,13 +164,13 @@ def _read(file: Path, asked: Asked) -> Reading:
             return _accept_inertias(_imported(file, suffix, asked))
         except DescriptionError as error:
             return Reading(None, error.problems)
-    from symofros.description.yaml.files import read_yaml
+    from symofros.description.yaml.files import read_yaml  # No foreign format waits for it: pydantic takes 0.2 s.
 
     return read_yaml(file)
 
 
 def _imported(file: Path, suffix: str, asked: Asked) -> Reading:
-    """A file of a foreign format. Readers of others are not loaded: pydantic alone takes a fifth of a second.
+    """A file of a foreign format.
 
     Raises:
         DescriptionError: It can't be read.
@@ -179,19 +179,19 @@ def _imported(file: Path, suffix: str, asked: Asked) -> Reading:
     if suffix in _URDF:
         text = None
         if suffix == ".xacro":
-            from symofros.description.urdf.xacro_files import expanded
+            from symofros.description.urdf.xacro_files import expanded  # As other readers, below.
 
             text = expanded(file, asked.arguments, packages)
         return read_urdf(file, asked, text=text, packages=packages)
     if suffix == ".xml":
-        from symofros.description.mjcf.reader import read_mjcf
+        from symofros.description.mjcf.reader import read_mjcf  # No format waits for the reader of another.
 
         return read_mjcf(file, asked, packages=packages)
     if suffix in _SDF:
-        from symofros.description.sdf.reader import read_sdf
+        from symofros.description.sdf.reader import read_sdf  # As above.
 
         return read_sdf(file, asked, packages=packages)
-    from symofros.description.usd.reader import read_usd
+    from symofros.description.usd.reader import read_usd  # As above.
 
     return read_usd(file, asked)
 
@@ -224,7 +224,7 @@ def save(system: System, path: str | os.PathLike[str]) -> None:
     """
     file = Path(path)
     _refuse_suffix(file, YAML_SUFFIXES, "written")
-    from symofros.description.yaml.yaml_writer import write_yaml
+    from symofros.description.yaml.yaml_writer import write_yaml  # As above; nor does who reads wait for a writer.
 
     if problems := name_problems(system):
         raise DescriptionError(problems)

@@ -128,6 +128,10 @@ def of_joint(kind: Callable[..., str], *entries: str, **physics: Any) -> tuple[s
     [
         ((body("arm", CUBE, mass=2.0), REVOLUTE()), "masses, centres or moments of inertia taken from"),
         ((body("arm", CUBE, **ARM), REVOLUTE()), ""),
+        (
+            (body("arm", **ARM), REVOLUTE(), body("mark"), joint("Fixed", "f", "arm", "mark")),
+            "bodies without mass and without collision shapes are massless",
+        ),
         ((*of_joint(REVOLUTE), SCENE, prim("PhysicsScene", "other")), "physics scenes after the first ignored"),
         ((*of_joint(REVOLUTE), SCENE), ""),
         (

@@ -14,7 +14,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from symofros.base.rotations import Array, skew
+from symofros.base.arrays import Array
+from symofros.base.rotations import skew
 from symofros.description.forces import Stop
 from symofros.description.imported.geometry import matrix_of
 from symofros.description.joints.joint import Joint

@@ -15,7 +15,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from symofros.base.rotations import Array
+from symofros.base.arrays import Array
 from symofros.description.closing import BLOCKED
 from symofros.description.constraints import Closure, Constraint, Rod
 from symofros.description.forces import Anchor
