@@ -28,9 +28,11 @@ from symofros.description.system import System
 from symofros.errors import CompileError, CompilerMissingWarning, DescriptionError, InconsistentModelWarning, Problem
 from symofros.expr.program import Program
 from symofros.generator.beams import beams_at
+from symofros.generator.codegen.cuda import device_code
 from symofros.generator.codegen.model import model_source
 from symofros.generator.held_beams import held_beams, may_be_held
 from symofros.generator.instants import has_instants, instants_at
+from symofros.generator.passes.count import Operations, count_program
 from symofros.generator.programs import ProgramBuilder, requested
 from symofros.generator.record import GENERATOR as GENERATOR
 from symofros.generator.record import model_record
@@ -44,6 +46,7 @@ from symofros.mechanics.topology.tree import SpanningTree, build_tree
 from symofros.runtime.beams import ElasticBeam
 from symofros.runtime.build.toolchain import NO_COMPILER, Toolchain, find_toolchain
 from symofros.runtime.calls.kernel import Array, LaneOptions, Precision, Unit
+from symofros.runtime.cuda.device_code import DeviceCode
 from symofros.runtime.functions import Key
 from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord
@@ -179,6 +182,15 @@ class Compilation:
     def program(self) -> Program:
         """The requested functions, optimised."""
         return self.programs.program(self.requests)
+
+    @property
+    def operations(self) -> dict[Key, Operations]:
+        """Operations of each requested function, keyed by (name, frame), and of the stage "init"."""
+        return count_program(self.program)
+
+    def device_code(self, precision: Precision, c_name: str) -> DeviceCode:
+        """The requested functions as kernels for graphics processors; see `source`."""
+        return device_code(self.program, self.record, GENERATOR, precision, c_name)
 
     def source(self, c_name: str | None = None, lanes: LaneOptions | None = None) -> str:
         """C text of the requested functions.

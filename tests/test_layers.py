@@ -60,7 +60,7 @@ ALLOWED = table("""
         generator.passes generator.codegen
     generator.units: base errors native expr description mechanics.dynamics generator.passes runtime
         generator.codegen generator.record generator.programs
-    compiler: base errors expr description mechanics.topology mechanics.dynamics runtime generator.codegen
+    compiler: base errors expr description mechanics.topology mechanics.dynamics runtime generator.passes generator.codegen
         generator.record generator.beams generator.held_beams generator.instants generator.programs
         generator.units
     loading: base errors description mechanics.topology

@@ -70,11 +70,10 @@ def info(
 def _counts(system: sf.System, frame: str) -> dict[str, Operations]:
     """Operations of every function, keyed by its name, and the frame of frame functions."""
     from symofros.compiler import Compilation  # The generator takes as long to import as all that is shown without it.
-    from symofros.generator import count_program  # Part of it.
 
     compilation = Compilation(system, sf.Options(functions=DEFAULT_FUNCTIONS))
     compilation.request(DEFAULT_FRAME_FUNCTIONS, [frame])
-    return {" of ".join(filter(None, key)): count for key, count in count_program(compilation.program).items()}
+    return {" of ".join(filter(None, key)): count for key, count in compilation.operations.items()}
 
 
 def _operations(counts: dict[str, Operations]) -> Table:

@@ -10,7 +10,7 @@ from string import Template
 
 import numpy as np
 
-from symofros.base.c_names import c_string, identifier
+from symofros.base.names import c_string, identifier
 from symofros.diagrams.external_block import ExternalBlock
 from symofros.diagrams.program.compiled import (
     Resolved,

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from symofros.base.c_names import identifier
+from symofros.base.names import identifier
 from symofros.base.options import Options
 from symofros.errors import CompileError
 from symofros.expr.program import Program

@@ -9,7 +9,7 @@ from string import Template
 from textwrap import wrap
 from typing import Literal
 
-from symofros.base.c_names import c_string, identifier
+from symofros.base.names import c_string, identifier
 from symofros.expr.edges import Edge
 from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.program import Function, Output, Program

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from symofros.mechanics.topology.beams import section_values as section_values
+from symofros.mechanics.topology.beams import beam_mass as beam_mass
 from symofros.mechanics.topology.conditions import Condition as Condition
 from symofros.mechanics.topology.coordinates import coordinate_names as coordinate_names
 from symofros.mechanics.topology.coordinates import coordinate_symbols as coordinate_symbols
