@@ -51,7 +51,8 @@ def test_json_is_all_there_is_on_stdout(run: Any, arm: Path) -> None:
 def test_what_is_not_there_is_said_in_four_parts_and_disagrees_with_nothing(tmp_path: Path) -> None:
     for arguments, words in (
         (["check", str(tmp_path / "nosuch.urdf")], "does not exist"),
-        (["simulatoin"], "did you mean 'simulation'?"),
+        (["stabiltiy"], "did you mean 'stability'?"),
+        (["simulation"], "its question is answered by 'pareto'"),
     ):
         result = CliRunner().invoke(app, arguments)
         assert result.exit_code == 2 and words in result.output and "DISAGREES" not in result.output, result.output

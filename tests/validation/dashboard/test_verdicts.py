@@ -33,7 +33,6 @@ SPOILT: dict[str, tuple[str, dict[str, Any]]] = {
     "diagrams": ("1 miss their bounds", STUDY),
     "stability": ("1 miss their bounds", STUDY),
     "timing": ("1 could not be timed", {"failed": [["panda", "dynamics", "pinocchio", "no compiler"]]}),
-    "simulation": ("1 of the IFToMM benchmarks are beyond", {"iftomm/0/error": 1.0}),
     "pareto": ("targets met", {"ok": False, "problems/*/targets/0/found": None, "problems/*/targets/0/ok": False}),
 }
 
