@@ -11,8 +11,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.base.rotations import (
-    Array,
     conjugate,
     normalized,
     quaternion_exp,
