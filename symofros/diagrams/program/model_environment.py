@@ -217,10 +217,8 @@ class Models:
             if model not in self._builders:
                 self._builders[model] = ProgramBuilder(tree, Options())
                 self._equations[model] = self._builders[model].equations()
-            method = self._builders[model].forward_method if function == "forward_dynamics" else "factors"
-            self._programs[key] = form_program(
-                self._equations[model], [Request(function, frame)], Methods(trees=method)
-            )
+            methods = Methods(self._builders[model].trees) if function == "forward_dynamics" else Methods()
+            self._programs[key] = form_program(self._equations[model], [Request(function, frame)], methods)
         program = self._programs[key]
         stated = program.functions[0]
         replacement = self._bound(g, model, program, stated.inputs, groups)
