@@ -99,10 +99,12 @@ def _routes(choices: dict[str, tuple[Choice, ...]]) -> Table:
     for name, of in choices.items():
         for choice in of:
             if choice.others:
-                others = [f"{route.method} by {route.option}" for route in choice.others if route.option]
+                others = [f"{route.method}:\n{route.option}" for route in choice.others if route.option]
                 key = choice.quantity, choice.method, "\n".join([choice.reason, *(f"else {other}" for other in others)])
                 functions.setdefault(key, {}).setdefault(choice.counted, []).append(name)
-    table = Table("method", "functions: figures", title="Methods where there are several (--json tells all)")
+    table = Table(title="Methods where there are several (--json tells all)")
+    table.add_column("method", width=39, overflow="fold")  # Options stand in one line.
+    table.add_column("functions: figures", overflow="fold")
     for key in sorted(functions, key=lambda key: [*ROUTES].index(key[0])):
         quantity, method, reason = key
         lines = (", ".join(names) + (f": {counted}" if counted else "") for counted, names in functions[key].items())
