@@ -25,7 +25,6 @@ from symofros.runtime.calls.library import CompiledKernel
 from symofros.runtime.calls.single import SingleCall, SingleCalls, single_call
 from symofros.runtime.cuda.device_code import DeviceCode
 from symofros.runtime.record import ModelRecord
-from symofros.runtime.routes import Routes
 from symofros.runtime.unit_quaternions import at_unit_length
 
 Key = tuple[str, str]
@@ -194,29 +193,6 @@ class Functions(Arguments):
     def libraries(self) -> frozenset[Path]:
         """The shared libraries of the functions made so far; none of those that are interpreted."""
         return frozenset(kernel.library for kernel in self._kernels.values() if isinstance(kernel, CompiledKernel))
-
-    @property
-    def routes(self) -> Routes:
-        """Which method computes each function made so far, and why: the choices by name of the function.
-
-        A choice names the quantity, the method taken, the figures that decided (counts of operations, say), the
-        accuracy, where the theory is, and the other methods that apply with the options that ask for them;
-        docs/operations.md has the table of all. `routes["forward_dynamics"]` tells of a function before its first call,
-        too. What the cache holds was chosen by the same code from the same description: the choices are derived again
-        when they are first asked for, which takes as long as generating the function. Batches and graphics processors
-        compute by the same methods, without packs, loops or vectors of limbs.
-
-        Raises:
-            SymofrosError: The model came without its description.
-        """
-        return Routes(lambda: self._kernels, self._choices)
-
-    def _choices(self, name: str, frame: str) -> tuple[Choice, ...]:
-        if self._routes_of is None:
-            raise SymofrosError(f"model '{self.record.name}': a model without its description tells no routes")
-        public = self._frame_or_none(frame)
-        self._check_name(name, public, "functions of frames are named with their frame: 'frame_pose of tip'")
-        return self._routes_of(self._unit_of(name, public))[name, public]
 
     def _check_name(self, name: str, frame: str, rule: str) -> None:
         known = FRAME_FUNCTIONS if frame else MODEL_FUNCTIONS

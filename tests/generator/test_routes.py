@@ -18,7 +18,8 @@ from reference_models import MODELS
 from reference_models.closed.four_bars import n_four_bar
 from reference_models.rigid.random_tree import random_tree
 from symofros.base import routes
-from symofros.base.routes import ROUTES, Choice, Route, choose
+from symofros.base.route import Choice, Route
+from symofros.base.routes import ROUTES, choose
 from symofros.compiler import Compilation
 from symofros.generator import units
 from symofros.generator.codegen.model import model_text
@@ -93,7 +94,7 @@ def test_the_last_row_of_each_quantity_serves_always() -> None:
     for quantity, methods in ROUTES.items():
         unconditional = [row.method for row in methods.values() if row.applies == "always"]
         assert unconditional, quantity
-        assert [*methods.values()][-1].applies == "always" or quantity == "values by vectors"
+        assert [*methods.values()][-1].applies == "always" or quantity == "values by vectors"  # Scalars: no vectors.
 
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: f"{row.quantity} - {row.method}")
@@ -106,9 +107,9 @@ def test_the_theory_is_where_the_row_says(row: Route) -> None:
 
 
 def test_an_unknown_quantity_method_or_figure_is_an_error() -> None:
-    for wrong in (("nothing",), ("acceleration of trees", None, "nothing"), ("acceleration of trees", {})):
+    for quantity, asked in (("nothing", ""), ("acceleration of trees", "nothing"), ("acceleration of trees", "")):
         with pytest.raises(KeyError):
-            choose(*wrong)  # type: ignore[arg-type]
+            choose(quantity, {}, asked)
 
 
 @pytest.mark.parametrize("way", ["articulated", "factors"])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 from string import Template
@@ -78,47 +78,23 @@ def model_text(
     """
     name = c_name or identifier(record.name)
     vectors = in_lanes if any(function.solver is None for function in program.functions) else None
-    texts = [
-        "\n".join(
-            [
-                *legend(
-                    record,
-                    "parameters -> pre, all that depends on them alone",
-                    ["par"],
-                    described=_described_pre(program, record),
-                ),
-                _init_function(program, name),
-            ]
-        )
-    ]
+    described = _described_pre(program, record)
+    head = legend(record, "parameters -> pre, all that depends on them alone", ["par"], described=described)
+    texts = ["\n".join([*head, _init_function(program, name)])]
     rows, (sparse, system) = [], sparse_systems(program)
-    choices = {}
     for i, function in enumerate(program.functions):
         c_function = f"{name}_{identifier(function.name)}_f{i}"
-        text, row = _one_function(program, record, function, c_function, vectors, packs, sparse.get(function.name))
+        chosen = (*function.choices, *([system] if system is not None and solves_system(function) else []))
+        solved = sparse.get(function.name)
+        text, row = _one_function(program, record, function, c_function, vectors, packs, solved, chosen)
         texts.append(text)
         rows.append(row)
-        solved = (system,) if system is not None and solves_system(function) else ()
-        choices[function.name, function.frame] = (*function.choices, *solved, *row.choices)
     code = Template(native_text("model/model.c.in")).substitute(
         title=comment(record.name),
         generator=generator,
         hash=record.hash,
         operations=operations_text(program),
-        functions="\n\n".join(
-            [
-                *trigonometry.routines(texts, vectors is not None),
-                *([lanes.routines(vectors)] if vectors is not None else []),
-                *([native_text("model/pack.c.in")] if any("sym_pack " in text for text in texts) else []),
-                *(
-                    [native_text("model/limbs.c.in")]
-                    if any(f"{t} " in text for t in TYPES.values() for text in texts)
-                    else []
-                ),
-                *routines(program, bool(sparse)),
-                *texts,
-            ]
-        ),
+        functions="\n\n".join([*_called(texts, vectors), *routines(program, bool(sparse)), *texts]),
         tables="\n".join(
             [*(row.tables for row in rows), _function_table(name, rows), *_lane_table(name, rows, vectors)]
         ),
@@ -139,7 +115,18 @@ def model_text(
         par_default=_numbers(record.par_default),
         q_neutral=_numbers(record.q_neutral),
     )
-    return ModelText(code, choices)
+    return ModelText(code, {(f.name, f.frame): row.choices for f, row in zip(program.functions, rows, strict=True)})
+
+
+def _called(texts: Sequence[str], vectors: LaneOptions | None) -> Iterator[str]:
+    """Texts of what functions of vectors, sines and cosines call."""
+    yield from trigonometry.routines(texts, vectors is not None)
+    if vectors is not None:
+        yield lanes.routines(vectors)
+    if any("sym_pack " in text for text in texts):
+        yield native_text("model/pack.c.in")
+    if any(f"{kind} " in text for kind in TYPES.values() for text in texts):
+        yield native_text("model/limbs.c.in")
 
 
 def operations_text(program: Program) -> str:
@@ -261,8 +248,9 @@ def _one_function(
     in_lanes: LaneOptions | None,
     packs: Packs,
     sparse: SparseSystem | None,
+    chosen: tuple[Choice, ...],
 ) -> tuple[str, _Row]:
-    """The code of a function, with its rows of tables."""
+    """The code of a function, with its rows of tables; `chosen` is how it is formed."""
     inputs = ["pre", *function.inputs]
     vectors, scratch = [], 0
     if function.solver is not None:
@@ -294,7 +282,7 @@ def _one_function(
         f"static const sym_array {c_name}_out[] = {{{arrays_out}}};"
     )
     of_lanes = f"    {{sizeof(sym_number), SYM_OWN, {work}, {c_name}_lanes}}" if vectors else "    {0, 0, 0, NULL}"
-    return code, _Row(tables, _row(function, c_name, len(inputs), work), of_lanes, text.choices)
+    return code, _Row(tables, _row(function, c_name, len(inputs), work), of_lanes, chosen + text.choices)
 
 
 def _text_of_one_state(packed: FunctionWriter, without: FunctionWriter) -> FunctionText:

@@ -107,10 +107,13 @@ def _function(e: Equations, request: Request, methods: Methods, known: Mapping[s
     source: Any = FrameEquations(e, e.tree.frame(request.frame)) if row.of_frame else e
     outputs = tuple(_output(array, getattr(source, array.source), known) for array in row.outputs)
     implicit = tuple(name for name in e.implicit_inputs if name not in row.inputs)
-    choices = (e.slopes_route,) if any(array.source in _BY_STATE for array in row.outputs) else ()
-    if row.name == "inverse_dynamics":
-        choices = (choose("inertia forces"),)
+    choices = (choose("inertia forces"),) if row.name == "inverse_dynamics" else _slopes_routes(e, row)
     return Function(row.name, request.frame, (*row.inputs, *implicit), outputs, choices=choices)
+
+
+def _slopes_routes(e: Equations, row: ModelFunction) -> tuple[Choice, ...]:
+    """The route of the inertia forces' derivatives among a function's outputs, once these are formed."""
+    return (e.slopes_route,) if any(array.source in _BY_STATE for array in row.outputs) else ()
 
 
 def _transposed(e: Equations, row: ModelFunction, of: Function, methods: Methods, known: Mapping[str, int]) -> Function:
@@ -197,21 +200,20 @@ def _jacobian(e: Equations) -> Output:
 
 def _forward_slopes(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[str, int]) -> Function:
     """Derivatives of forward dynamics: da/dx = -M^-1 dR/dx at the motion that a = M^-1 (Q - h) makes."""
-    by_state = (e.slopes_route,) if any(array.source in _BY_STATE for array in row.outputs) else ()
     if e.constraints:
-        return _forward_slopes_by_routine(e, row, (choose("derivatives of constrained motion"), *by_state), known)
+        return _forward_slopes_by_routine(e, row, choose("derivatives of constrained motion"), known)
     columns = sum(array.sizes(known)[1] for array in row.outputs)
-    figures = {**e.route_figures, "elimination_steps": lambda: e.factors.entries * columns}
-    choice = choose("derivatives of the acceleration", figures, methods.slopes)
+    steps = {} if methods.slopes else {"elimination_steps": e.factors.entries * columns}
+    choice = choose("derivatives of the acceleration", steps | e.route_figures, methods.slopes)
     if choice.method == "articulated":
         return replace(_articulated_slopes(e, row, known), choices=(choice,))
     if choice.method == "routine":
-        return _forward_slopes_by_routine(e, row, (choice, *by_state), known)
+        return _forward_slopes_by_routine(e, row, choice, known)
     outputs = []
     for array in row.outputs:
         solved = e.factors.solve_columns(e.slopes_in_motion(array.name))
         outputs.append(_matrix(array.name, (e.nv, array.sizes(known)[1]), [[-edge for edge in of] for of in solved]))
-    return Function(row.name, "", row.inputs, tuple(outputs), choices=(choice, *by_state))
+    return Function(row.name, "", row.inputs, tuple(outputs), choices=(choice, *_slopes_routes(e, row)))
 
 
 def _articulated_slopes(e: Equations, row: ModelFunction, known: Mapping[str, int]) -> Function:
@@ -226,9 +228,7 @@ def _articulated_slopes(e: Equations, row: ModelFunction, known: Mapping[str, in
     return Function(row.name, "", row.inputs, tuple(outputs))
 
 
-def _forward_slopes_by_routine(
-    e: Equations, row: ModelFunction, choices: tuple[Choice, ...], known: Mapping[str, int]
-) -> Function:
+def _forward_slopes_by_routine(e: Equations, row: ModelFunction, choice: Choice, known: Mapping[str, int]) -> Function:
     """Derivatives with constraints, or where generated code would be long: terms and slopes, for a routine."""
     if not e.constraints:
         e.refuse_massless()
@@ -236,7 +236,9 @@ def _forward_slopes_by_routine(
     # The routine calls this part with the inputs of the residual, in that order.
     part = Function("slopes", "", FUNCTIONS["residual_derivatives"].inputs, slopes)
     solver = Solver("differentiate", _returns(row, known), (part,), measures_of(e.tree))
-    return Function(row.name, "", row.inputs, _constrained_terms(e, e.gamma), solver, choices=choices)
+    return Function(
+        row.name, "", row.inputs, _constrained_terms(e, e.gamma), solver, choices=(choice, *_slopes_routes(e, row))
+    )
 
 
 def _forward_hessian(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[str, int]) -> Function:
