@@ -138,7 +138,7 @@ def test_graphics_processors_take_the_method_of_the_function(function: str) -> N
     """The kernel's text is another one by each method, and that of "auto" is the one that is told."""
     texts = {}
     for way in ("articulated", "factors", "auto"):
-        made = Compilation(MODELS["planar_robot"], sf.Options(forward_dynamics=way))  # type: ignore[arg-type]
+        made = Compilation(MODELS["planar_robot"], sf.Options(forward_dynamics=way))
         code = made._units(None).device_code((function, ""), "double").text
         texts[way] = code.replace(made.record.hash, "")
     method = sf.compile(MODELS["planar_robot"]).routes[function][0].method
@@ -188,7 +188,7 @@ def test_what_random_trees_tell_is_in_their_text(seed: int, n: int) -> None:
     method = told(sf.compile(tree), FORWARD)["acceleration of trees"].method
     texts = {}
     for way in ("auto", "articulated", "factors"):
-        made = Compilation(tree, sf.Options((FORWARD,), (), forward_dynamics=way))  # type: ignore[arg-type]
+        made = Compilation(tree, sf.Options((FORWARD,), (), forward_dynamics=way))
         texts[way] = made.source().replace(made.record.hash, "")
     assert texts["auto"] == texts[method]
 

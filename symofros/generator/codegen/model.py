@@ -9,6 +9,7 @@ from string import Template
 from textwrap import wrap
 from typing import NamedTuple
 
+from symofros.base.names import c_string, identifier
 from symofros.base.routes import Choice
 from symofros.expr.edges import Edge
 from symofros.expr.numerics.evaluate import needed_nodes
@@ -17,7 +18,6 @@ from symofros.generator.codegen import lanes, trigonometry
 from symofros.generator.codegen.function import FunctionText, FunctionWriter
 from symofros.generator.codegen.function import Packs as Packs
 from symofros.generator.codegen.limbs.vector import TYPES
-from symofros.generator.codegen.names import c_string, identifier
 from symofros.generator.codegen.solvers import routines, solves_system, sparse_systems, with_solver
 from symofros.generator.codegen.sparse import SparseSystem
 from symofros.generator.passes.count import count_program
