@@ -15,8 +15,8 @@ from symofros.description.beams.beam import DIRECTIONS, STATION, Beam, Direction
 from symofros.description.system import Body, System
 from symofros.description.values import Value
 from symofros.expr.expression import evaluate
-from symofros.mechanics.beams.section_law import section_law
-from symofros.mechanics.beams.strains import AXES, TURNING
+from symofros.mechanics.beams.strain.section_law import section_law
+from symofros.mechanics.beams.strain.strains import AXES, TURNING
 from symofros.runtime.calls.kernel import Array
 from symofros.studio.advice import estimators
 from symofros.studio.advice.scene import Scene

@@ -21,10 +21,11 @@ from symofros.description.beams.beam import STATION, Beam
 from symofros.description.constraints import Closure, KnifeEdge, Rod, Rolling
 from symofros.description.forces import Anchor, Connection
 from symofros.description.system import RigidBody
+from symofros.mechanics.beams.theories import theory_of
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.tree import BASE, Link, NamedFrame, Placement, SpanningTree, frame_of
-from symofros.studio.viewer.drawing.centre_line import CentreLine, RodLine
 from symofros.studio.viewer.drawing.drawing import (
+    STATIONS,
     Color,
     Drawing,
     DrawnBeam,
@@ -250,15 +251,12 @@ class _DrawingBuilder:
                     link.name,
                     i,
                     tip.q if tip else (0, 0),
-                    self._line(link.beam),
+                    theory_of(link.beam).shape(self.values, STATIONS),
                     self.numbers.value(link.beam.length),
                     self._outline(link.beam),
                     self._color(i),
                     self._element(link.name),
                 )
-
-    def _line(self, beam: Beam) -> CentreLine | RodLine:
-        return RodLine(beam, self.values) if beam.theory == "strain" else CentreLine(beam)
 
     def _outline(self, beam: Beam) -> Array:
         """The section at mid-length: that of its rotary inertia, or a guess with the proportions of its stiffnesses."""

@@ -10,7 +10,7 @@ from symofros.description.beams.beam import Direction, Family, Samples, UserShap
 from symofros.description.values import as_value
 from symofros.errors import DescriptionError, Problem, did_you_mean
 from symofros.mechanics.beams.shape_functions import MAX_MODES, FamilyError, shapes
-from symofros.mechanics.beams.strains import strain_functions
+from symofros.mechanics.beams.strain.strains import strain_functions
 from symofros.studio.editor.editing.data_edits import EditError
 
 POINTS = 65

@@ -12,7 +12,7 @@ from functools import reduce
 
 from symofros.description.beams.beam import MATRIX_ORDER, Beam
 from symofros.description.values import Term, Value
-from symofros.mechanics.beams.strains import TURNING
+from symofros.mechanics.beams.strain.strains import TURNING
 
 _STRAINS = len(MATRIX_ORDER)
 Coefficients = dict[tuple[int, int], Value]

@@ -1,4 +1,4 @@
-"""A geometrically exact rod in a graph: its sections' frames and their partial velocities (docs/theory/rods.md)."""
+"""A geometrically exact beam in a graph: its sections' frames and their partial velocities (docs/theory/rods.md)."""
 
 from __future__ import annotations
 
@@ -7,25 +7,25 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 
-from symofros.description.beams.beam import PRE_STRAINS, STATION, Beam
+from symofros.description.beams.beam import PRE_STRAINS, STATION
 from symofros.description.values import Term, Value, symbols
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.expression import Expression
-from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Vec3
 from symofros.mechanics.beams.fields import Form, no_form
-from symofros.mechanics.beams.integrals import LengthIntegrator, at_station
+from symofros.mechanics.beams.integrals import at_station
 from symofros.mechanics.beams.quadrature import gauss
-from symofros.mechanics.beams.section_law import SectionLaw, section_law
-from symofros.mechanics.beams.strains import TURNING, Strains
-from symofros.mechanics.beams.turn import Moments, Turn
+from symofros.mechanics.beams.strain.section_law import SectionLaw, section_law
+from symofros.mechanics.beams.strain.strains import TURNING, Strains
+from symofros.mechanics.beams.strain.turn import Moments, Turn
+from symofros.mechanics.beams.theory import BeamEquations
 
 # Gauss nodes for the integral of a pre-strain between two sections.
 _PRE_STRAIN_POINTS = 4
 
 
 @dataclass(frozen=True)
-class Section:
+class SectionFrame:
     """One section S of a rod, seen from the root's frame B.
 
     Attributes:
@@ -53,28 +53,14 @@ class InertiaAxis:
 
 
 @dataclass(frozen=True, eq=False)
-class Rod:
-    """What the equations of motion need of one rod.
+class BeamSections(BeamEquations):
+    """Frames, mass and stiffness of the sections of one geometrically exact beam, a rod.
 
     Attributes:
-        beam: The rod as described.
-        along: Integration over its length.
         strains: Strain fields, with their tables at the sections.
     """
 
-    beam: Beam
-    along: LengthIntegrator
     strains: Strains
-
-    @property
-    def g(self) -> Graph:
-        """The graph."""
-        return self.along.g
-
-    @property
-    def coordinates(self) -> tuple[Edge, ...]:
-        """Edges of the strain coordinates."""
-        return self.along.coordinates
 
     @cached_property
     def axis(self) -> int | None:
@@ -96,12 +82,12 @@ class Rod:
     # Sections.
 
     @cached_property
-    def root(self) -> Section:
+    def root(self) -> SectionFrame:
         """The section at the root."""
-        return Section(Mat3.identity(self.g), tuple(Vec3(self.g) for _ in self.coordinates))
+        return SectionFrame(Mat3.identity(self.g), tuple(Vec3(self.g) for _ in self.coordinates))
 
     @cached_property
-    def sections(self) -> tuple[Section, ...]:
+    def sections(self) -> tuple[SectionFrame, ...]:
         """The sections at which the motion is integrated, from the root on."""
         if self.axis is not None:
             return tuple(map(self.section_at, self.strains.sections.stations))
@@ -110,7 +96,7 @@ class Rod:
             chain.append(self._after(chain[-1], step))
         return tuple(chain)
 
-    def section_at(self, xi: float) -> Section:
+    def section_at(self, xi: float) -> SectionFrame:
         """The section at any station."""
         if self.axis is not None:
             return self._turned(self.axis, xi)
@@ -119,7 +105,7 @@ class Rod:
         start, section = stations[before - 1], self.sections[before - 1]
         return self._after(section, self._step(start, xi)) if xi > start else section
 
-    def _turned(self, axis: int, xi: float) -> Section:
+    def _turned(self, axis: int, xi: float) -> SectionFrame:
         """The section at a station of a rod whose sections turn about one axis (4)."""
         g = self.g
         (row,) = self.strains.turns([xi])
@@ -132,7 +118,7 @@ class Rod:
         entries[3 * i + i] = entries[3 * j + j] = c
         entries[3 * i + j], entries[3 * j + i] = -s, s
         spins = tuple(Vec3.unit(g, axis).scaled(g.constant(turn)) for turn in row)
-        return Section(Mat3(g, tuple(entries)), spins)
+        return SectionFrame(Mat3(g, tuple(entries)), spins)
 
     @cached_property
     def _steps(self) -> tuple[Turn, ...]:
@@ -192,7 +178,7 @@ class Rod:
         zeroth, first, second = moments
         return zeroth, first, second
 
-    def _after(self, section: Section, step: Turn) -> Section:
+    def _after(self, section: SectionFrame, step: Turn) -> SectionFrame:
         """The section at the end of a step (8), (9)."""
         g, none = self.g, Vec3(self.g)
         end = section.R_BS @ step.rotation
@@ -206,7 +192,7 @@ class Rod:
         for i, ((axis, _), *weights) in enumerate(zip(self.strains.axes, *step.tables, strict=True)):
             if axis in of_axis:
                 spins[i] = spins[i] + self.combined(weights, of_axis[axis])
-        return Section(end, tuple(spins))
+        return SectionFrame(end, tuple(spins))
 
     # Positions: sums of tangents, with weights that are numbers.
 
@@ -320,7 +306,7 @@ class Rod:
             rates.append((w, alpha))
         return rates
 
-    def spin(self, section: Section, speeds: Sequence[Edge]) -> Vec3:
+    def spin(self, section: SectionFrame, speeds: Sequence[Edge]) -> Vec3:
         """Angular velocity of a section in B."""
         total = Vec3(self.g)
         for spin, speed in zip(section.spins, speeds, strict=True):
