@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from symofros.description.beams.beam import STRAINS, Beam
+from symofros.description.beams.beam import Beam
+from symofros.description.beams.elastic import STRAINS
 from symofros.description.forces import Friction
 from symofros.description.system import Body, System
 
@@ -18,7 +19,7 @@ def with_functions(system: System, count: int) -> System:
 
     With none it is the equivalent rigid robot of the paper's section 8: the control model.
     """
-    return system.with_bodies(*(_counted(body, count) for body in system.bodies if isinstance(body, Beam)))
+    return system.with_bodies(*(_counted(body, count) for body in system.beams))
 
 
 def _counted(beam: Beam, count: int) -> Beam:

@@ -9,7 +9,6 @@ from string import Template
 from symofros.base.functions import FRAME_FUNCTIONS
 from symofros.base.options import Options
 from symofros.compiler import GENERATOR, Compilation
-from symofros.description.beams.beam import Beam
 from symofros.description.system import System
 from symofros.exports.c.c_text import comment, doubles
 from symofros.exports.folder import Exported, write_folder
@@ -100,7 +99,7 @@ def _notes(made: Compilation, left_out: Sequence[str]) -> tuple[str, ...]:
         notes.append(
             f"no kernels of {', '.join(left_out)}: a routine with pivots finishes them; they are in the C file"
         )
-    if any(isinstance(body, Beam) and body.modes for body in made.system.bodies):
+    if any(body.modes for body in made.system.beams):
         notes.append("rollouts do not judge how far beams bend, as sf.simulate does: judge their records")
     if has_instants(made.tree):
         notes.append(

@@ -12,7 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.rotations import matrix_product, skew
-from symofros.description.beams.beam import PRE_STRAINS, STATION, Beam
+from symofros.description.beams.beam import STATION, Beam
+from symofros.description.beams.elastic import PRE_STRAINS
 from symofros.description.forces import Damper
 from symofros.description.joints.joint import WORLD, Joint
 from symofros.description.system import Body, Inertia, RigidBody, System
@@ -95,11 +96,7 @@ def rigid_links(system: System, form: Literal["URDF", "MJCF"]) -> tuple[list[Rig
                 "export the model as an FMU, or replace these joints",
             )
         )
-    curved = [
-        body.name
-        for body in system.bodies
-        if isinstance(body, Beam) and any(getattr(body, label) != 0.0 for label in PRE_STRAINS)
-    ]
+    curved = [body.name for body in system.beams if any(getattr(body, label) != 0.0 for label in PRE_STRAINS)]
     if curved:
         raise ExportError(
             Problem(
@@ -222,7 +219,7 @@ def _beam_inertia(beam: Beam, numbers: Numbers) -> tuple[float, Array, Array]:
 
 def _lost(system: System) -> Iterator[str]:
     """What no format of numbers holds."""
-    beams = [body.name for body in system.bodies if isinstance(body, Beam) and body.modes]
+    beams = [body.name for body in system.beams if body.modes]
     if beams:
         yield f"beams as rigid bodies, without their elastic coordinates: {listed(beams)}"
     if system.parameters:

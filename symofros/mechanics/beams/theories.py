@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from symofros.description.beams.beam import Beam, Theory
+from symofros.description.beams.beam import Beam
 from symofros.mechanics.beams.second_order.theory import SecondOrderTheory
 from symofros.mechanics.beams.strain.theory import StrainTheory
 from symofros.mechanics.beams.theory import BeamTheory
 
-_THEORIES: dict[Theory, type[BeamTheory]] = {
+THEORIES: dict[str, type[BeamTheory]] = {
     "second_order": SecondOrderTheory,
     "strain": StrainTheory,
 }
@@ -15,4 +15,4 @@ _THEORIES: dict[Theory, type[BeamTheory]] = {
 
 def theory_of(beam: Beam) -> BeamTheory:
     """A beam by the theory that it states."""
-    return _THEORIES[beam.theory](beam)
+    return THEORIES[beam.theory](beam)

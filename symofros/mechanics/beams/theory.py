@@ -15,7 +15,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from symofros.description.beams.beam import Beam, BeamLoad
+from symofros.description.beams.beam import Beam, BeamLoad, Family, UserShape
+from symofros.description.beams.elastic import Direction
 from symofros.description.values import Value
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
@@ -231,6 +232,23 @@ class BeamTheory(ABC):
 
     def __init__(self, beam: Beam) -> None:
         self.beam = beam
+
+    @classmethod
+    @abstractmethod
+    def family_functions(
+        cls, family: Family, direction: Direction, count: int, user: tuple[UserShape, ...] = ()
+    ) -> Sequence[tuple[Piecewise, bool]]:
+        """The first functions of a family for one direction, each with whether its coordinate is a length.
+
+        Args:
+            family: Name of the family.
+            direction: Direction of the functions.
+            count: Number of functions.
+            user: Functions stated by the user, for family "user".
+
+        Raises:
+            FamilyError: The family has none, or not as many.
+        """
 
     @property
     @abstractmethod

@@ -7,7 +7,8 @@ from dataclasses import dataclass, fields
 from typing import Literal, NamedTuple
 
 from symofros.base.names import RESERVED, TIME, name_of, quoted, symbol_of
-from symofros.description.beams.beam import MATRIX_ORDER, STATION, STRAINS, Beam, BeamLoad, Samples
+from symofros.description.beams.beam import MATRIX_ORDER, STATION, Beam, BeamLoad, Samples
+from symofros.description.beams.elastic import STRAINS
 from symofros.description.constraints import Constraint, Coupling, Nonholonomic, Rod
 from symofros.description.entry_units import units_of
 from symofros.description.forces import Connection, Load, Rotor

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from symofros.description.beams.beam import DIRECTIONS, Beam
+from symofros.description.beams.beam import Beam
+from symofros.description.beams.elastic import DIRECTIONS
 from symofros.description.system import System
 
 
 def refined(system: System) -> System:
     """One function more in every direction that bends or twists, and rotary inertia wherever it is stated."""
-    return system.with_bodies(*(_refined(body) for body in system.bodies if isinstance(body, Beam) and body.modes))
+    return system.with_bodies(*(_refined(body) for body in system.beams if body.modes))
 
 
 def _refined(beam: Beam) -> Beam:

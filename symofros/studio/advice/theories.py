@@ -6,7 +6,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any, get_args
 
-from symofros.description.beams.beam import PRE_STRAINS, Beam, Direction
+from symofros.description.beams.beam import Beam
+from symofros.description.beams.elastic import PRE_STRAINS, Direction
 from symofros.description.system import System
 from symofros.runtime.beams import BeamBending, slope_error
 from symofros.studio.advice.candidates import Reduction, changed_beam
@@ -27,8 +28,8 @@ def as_rods(system: System, names: Iterable[str], start: Mapping[str, float]) ->
         start: First coordinates by name; beams whose elastic coordinates are among them stay, as those of rods are
             others.
     """
-    bodies = (system.body(name) for name in names)
-    beams = (body for body in bodies if isinstance(body, Beam) and body.theory != "strain")
+    chosen = frozenset(names)
+    beams = (beam for beam in system.beams if beam.name in chosen and not beam.elastic.is_exact)
     return system.with_bodies(
         *(
             replace(

@@ -87,7 +87,7 @@ class Translation:
             assert isinstance(beam, sf.Beam)
             return Node(
                 mover.parent,
-                self._rod(beam) if beam.theory == "strain" else self._flexible(beam),
+                {"second_order": self._flexible, "strain": self._rod}[beam.theory](beam),
                 motion=lambda _: _constant(mover.X_AP),
                 tip=solid,
                 at=self._first(mover),

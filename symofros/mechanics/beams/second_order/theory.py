@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from symofros.description.beams.beam import Family, UserShape
+from symofros.description.beams.elastic import Direction
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3
@@ -12,11 +14,19 @@ from symofros.mechanics.beams.piecewise import Piecewise
 from symofros.mechanics.beams.second_order.deformation import deformation_of, small_coordinates
 from symofros.mechanics.beams.second_order.equations import second_order_equations
 from symofros.mechanics.beams.second_order.shape import FieldShape
+from symofros.mechanics.beams.shape_functions import shapes
 from symofros.mechanics.beams.theory import BeamEquations, BeamShape, BeamTheory, Judged
 
 
 class SecondOrderTheory(BeamTheory):
     """A beam whose displacements are kept to second order: it errs by its bending."""
+
+    @classmethod
+    def family_functions(
+        cls, family: Family, direction: Direction, count: int, user: tuple[UserShape, ...] = ()
+    ) -> Sequence[tuple[Piecewise, bool]]:
+        """Of displacements and twist angles, which meet the clamped end."""
+        return [(shape.phi, shape.length) for shape in shapes(family, direction, count, user)]
 
     @property
     def functions(self) -> Sequence[Piecewise]:

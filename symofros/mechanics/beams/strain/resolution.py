@@ -8,7 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from symofros.description.beams.beam import MOST_SECTIONS, PRE_STRAINS, Beam
+from symofros.description.beams.beam import MOST_SECTIONS, Beam
+from symofros.description.beams.elastic import PRE_STRAINS
 from symofros.description.values import Value
 from symofros.mechanics.beams.strain.strains import strains_of
 

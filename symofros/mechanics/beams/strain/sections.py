@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 
-from symofros.description.beams.beam import PRE_STRAINS, STATION
+from symofros.description.beams.beam import STATION
+from symofros.description.beams.elastic import PRE_STRAINS
 from symofros.description.values import Term, Value, symbols
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.expression import Expression

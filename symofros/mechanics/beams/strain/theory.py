@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
-from symofros.description.beams.beam import STRAINS, Beam
+from symofros.description.beams.beam import Beam, Family, UserShape
+from symofros.description.beams.elastic import STRAINS, Direction
 from symofros.description.values import Value
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
@@ -16,7 +17,7 @@ from symofros.mechanics.beams.strain.planar import strain_equations
 from symofros.mechanics.beams.strain.resolution import with_sections
 from symofros.mechanics.beams.strain.section_law import section_law
 from symofros.mechanics.beams.strain.shape import IntegrationError, StrainShape
-from symofros.mechanics.beams.strain.strains import AXES, TURNING, strains_of
+from symofros.mechanics.beams.strain.strains import AXES, TURNING, strain_functions, strains_of
 from symofros.mechanics.beams.theory import BeamEquations, BeamShape, BeamTheory, Interpolated, Judged
 
 # Intervals between the stations at which a rod's turn is judged.
@@ -25,6 +26,13 @@ _INTERVALS = 16
 
 class StrainTheory(BeamTheory):
     """A rod: its strains are sums of functions, and it errs by the number of its sections alone."""
+
+    @classmethod
+    def family_functions(
+        cls, family: Family, direction: Direction, count: int, user: tuple[UserShape, ...] = ()
+    ) -> Sequence[tuple[Piecewise, bool]]:
+        """Of strains, the same for all directions."""
+        return [(function, False) for function in strain_functions(family, count, user)]
 
     @property
     def functions(self) -> Sequence[Piecewise]:

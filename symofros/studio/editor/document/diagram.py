@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from symofros.description.beams.beam import DIRECTIONS, STRAINS
+from symofros.description.beams.elastic import DIRECTIONS, STRAINS
 from symofros.description.joints.joint import WORLD
 from symofros.description.yaml.schema import default_joint_name
 

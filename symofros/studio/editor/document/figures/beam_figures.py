@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from symofros.description.beams.beam import CENTERS
+from symofros.description.beams.elastic import CENTERS, ELASTIC
 from symofros.description.values import Value
 from symofros.description.yaml.schema_beam import BeamEntry
 from symofros.errors import DescriptionError
@@ -69,7 +69,7 @@ def beam_figures(entry: Any, known: Mapping[str, float]) -> Json:
         if is_plain and length > 0.0 and figures.get(stiffness, 0.0) > 0.0 and figures.get(inertia, 0.0) > 0.0
     }
     finite = {direction: values for direction, values in frequencies.items() if all(map(isfinite, values))}
-    errs = stated.get("theory") != "strain" and length > 0.0
+    errs = not ELASTIC[stated["theory"]].is_exact and length > 0.0
     return {
         "section": figures,
         "frequencies": finite,
