@@ -8,7 +8,7 @@ from functools import lru_cache, partial, reduce
 import numpy as np
 
 from symofros.base.rotations import Array
-from symofros.description.beams.beam import MATRIX_ORDER, STATION, Beam
+from symofros.description.beams.beam import IN_MATRIX, MATRIX_ORDER, STATION, Beam
 from symofros.description.beams.elastic import STRAINS
 from symofros.description.values import ORIGIN, Term, Value, substituted, symbols
 from symofros.errors import Problem
@@ -112,19 +112,21 @@ class _Section:
             "positive",
             partial(self._wrong_number, "length", "the length of a beam is positive", "give a positive length"),
         )
-        by_entries = not beam.stiffness  # A matrix has all stiffnesses: `stiffness_problems`.
-        for label, needed, why in (
+        # A matrix has all stiffnesses: `stiffness_problems`.
+        elsewhere = IN_MATRIX if beam.stiffness else beam.elastic.lacking
+        for label, counts, why in (
             ("rhoA", True, "a beam has mass all along"),
-            ("EI_z", by_entries and bool(beam.bend_y), "bending along y bends against EI_z"),
-            ("EI_y", by_entries and bool(beam.bend_z), "bending along z bends against EI_y"),
-            ("GJ", by_entries and bool(beam.twist), "twist acts against GJ"),
-            ("EA", by_entries and bool(beam.stretch), "a rod stretches against EA"),
-            ("GA_y", by_entries and bool(beam.shear_y), "shear along y is against GA_y"),
-            ("GA_z", by_entries and bool(beam.shear_z), "shear along z is against GA_z"),
-            ("rhoJ", bool(beam.twist), "a twist coordinate moves the polar inertia rhoJ"),
+            ("EI_z", beam.bend_y, "bending along y bends against EI_z"),
+            ("EI_y", beam.bend_z, "bending along z bends against EI_y"),
+            ("GJ", beam.twist, "twist acts against GJ"),
+            ("EA", beam.stretch, "a rod stretches against EA"),
+            ("GA_y", beam.shear_y, "shear along y is against GA_y"),
+            ("GA_z", beam.shear_z, "shear along z is against GA_z"),
+            ("rhoJ", beam.twist, "a twist coordinate moves the polar inertia rhoJ"),
             ("rhoI_y", False, "no moment of inertia is negative"),
             ("rhoI_z", False, "no moment of inertia is negative"),
         ):
+            needed = bool(counts) and label not in elsewhere
             rule = f"{label} is {'positive' if needed else 'not negative'}: {why}"
             sign: Sign = "positive" if needed else "not negative"
             yield Condition(self._margins(getattr(beam, label)), sign, partial(self._wrong_sign, label, rule))
