@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import re
+import shutil
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
@@ -30,6 +33,35 @@ def test_the_changelog_is_by_version_and_begins_with_this_one() -> None:
     assert versions[0] == sf.__version__ and len(versions) == text.count("\n## ")
     entries = [" ".join(entry.split()) for entry in re.split(r"\n(?=- |#)", text) if entry.startswith("- ")]
     assert len(entries) == len(set(entries)), "an entry stands there twice"
+
+
+def test_news_are_fragments_of_a_known_kind() -> None:
+    kinds = {kind["directory"] for kind in PROJECT["tool"]["towncrier"]["type"]}
+    fragments = [path for path in (ROOT / "changelog").iterdir() if path.name != "README.md"]
+    for path in fragments:
+        name, kind, suffix = path.name.split(".")
+        assert re.fullmatch(r"\+\w+", name) and kind in kinds and suffix == "md" and path.read_text().strip(), path.name
+    listed = re.findall(r"^\| `(\w+)` \|", (ROOT / "changelog/README.md").read_text(), re.MULTILINE)
+    assert set(listed) == kinds
+
+
+def test_a_release_gathers_the_fragments_above_the_last_version(tmp_path: Path) -> None:
+    require("towncrier", "release")
+    for name in ("CHANGELOG.md", "pyproject.toml"):
+        shutil.copy(ROOT / name, tmp_path / name)
+    (tmp_path / "changelog").mkdir()
+    (tmp_path / "changelog/+a_name.fixed.md").write_text("What was wrong.\n")
+    command = ["-m", "towncrier", "build", "--yes", "--version", "9.9.9", "--date", "2030-01-02"]
+    subprocess.run(["git", "init", "-q", tmp_path], check=True)
+    subprocess.run([sys.executable, *command], cwd=tmp_path, check=True, capture_output=True)
+    text = (tmp_path / "CHANGELOG.md").read_text()
+    news, _, rest = text.partition("## 0.1.0 (")
+    assert "## 9.9.9 (2030-01-02)\n\n### Fixed\n\n- What was wrong." in news and "### Migration" in rest
+    assert not list((tmp_path / "changelog").glob("+*"))
+
+
+def test_the_readme_stays_a_page() -> None:
+    assert len((ROOT / "README.md").read_text().splitlines()) <= 120
 
 
 def test_the_licence_is_the_same_everywhere() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import signal
 import subprocess
 import sys
@@ -435,6 +436,17 @@ def test_a_passage_close_to_a_singular_posture_is_noted() -> None:
     # It is flat at 0.70845 s.
     assert len(notes) == 1 and "t = 0.708" in notes[0]
     assert sf.simulate(model, np.pi / 2 * upright, -upright, 0.3, dt=2e-3).outcome.notes == ()
+
+
+@pytest.mark.parametrize("t0", [0.0, 100.0])
+def test_a_passage_within_a_step_is_dated_to_a_sixteenth_of_it(t0: float) -> None:
+    model = sf.compile(n_four_bar(1))
+    upright = np.array([1.0 if name.startswith("crank") else -1.0 for name in model.names.q])
+    run = sf.simulate(model, np.pi / 2 * upright, -upright, t0 + 1.0, t0=t0, dt=0.05)
+    (when,) = (
+        float(found[1]) for note in run.outcome.notes if (found := re.search(r"posture at t = ([\d.]+) s", note))
+    )
+    assert abs(when - t0 - 0.70845) < 0.05 / 16 + 1e-3 * (t0 > 0)
 
 
 def test_progress_is_told_to_a_function(pendulum: sf.Model) -> None:

@@ -1,4 +1,4 @@
-"""Entries -> index.html (one self-contained page), summary.md, and the same summary in the README."""
+"""Entries -> index.html (one self-contained page), summary.md, and the summary's main lines in the README."""
 
 from __future__ import annotations
 
@@ -19,6 +19,9 @@ from .history import history, stored
 from .trends import trends
 
 BEGIN, END = "<!-- reports/summary.md begins -->", "<!-- reports/summary.md ends -->"
+
+# Reports whose lines the README quotes.
+QUOTED = ("check", "oracle", "mutants", "engines", "accuracy", "stability", "timing")
 
 # Verdict of an entry -> whether what was asked for is met.
 _VERDICTS = {"good": True, "missed": False, "measured": None, "absent": None}
@@ -123,8 +126,16 @@ def _section(name: str, entry: Entry) -> Section:
     return Section(title, tuple(blocks), name, _VERDICTS[entry.verdict], badge=entry.verdict)
 
 
+def brief(summary: str) -> str:
+    """The headline of summary.md and, of its table, the lines of the main reports."""
+    headline, _, rest = summary.partition("\n")
+    rows = [line for line in rest.splitlines() if line.startswith(("| report", "|---"))]
+    rows += [line for name in QUOTED for line in rest.splitlines() if line.startswith(f"| {name} |")]
+    return "\n".join([headline, "", *rows, ""])
+
+
 def quote(readme: Path, summary: str) -> bool:
-    """Put the summary between the marks of a README; whether there is such a file.
+    """Put the main lines of summary.md between the marks of a README; whether there is such a file.
 
     Raises:
         QuoteError: It has no marks, or they are out of order.
@@ -136,5 +147,5 @@ def quote(readme: Path, summary: str) -> bool:
     _, end, after = rest.partition(END)
     if not begin or not end:
         raise QuoteError(f"{readme.name}: no '{BEGIN}' with '{END}' after it, between which the summary would go")
-    write_atomically(readme, f"{before}{BEGIN}\n{summary}{END}{after}")
+    write_atomically(readme, f"{before}{BEGIN}\n{brief(summary)}{END}{after}")
     return True

@@ -11,7 +11,7 @@ from tests.validation.dashboard.test_gather import DIGEST, FUZZ, digest, write
 from validation.__main__ import app
 from validation.dashboard.catalogue import TOPICS
 from validation.dashboard.gather import gather
-from validation.dashboard.index import BEGIN, END, QuoteError, headline, quote, write_index
+from validation.dashboard.index import BEGIN, END, QUOTED, QuoteError, brief, headline, quote, write_index
 from validation.reporting.command import present
 from validation.reporting.html import prose
 
@@ -22,8 +22,12 @@ def quoted(readme: Path) -> str:
     return readme.read_text(encoding="utf-8").partition(f"{BEGIN}\n")[2].partition(END)[0]
 
 
-def test_the_readme_quotes_the_summary() -> None:
-    assert quoted(ROOT / "README.md") == (ROOT / "reports" / "summary.md").read_text(encoding="utf-8")
+def test_the_readme_quotes_the_main_lines_of_the_summary() -> None:
+    summary = (ROOT / "reports" / "summary.md").read_text(encoding="utf-8")
+    assert quoted(ROOT / "README.md") == brief(summary)
+    lines = brief(summary).splitlines()
+    assert lines[0] == summary.splitlines()[0] and len(lines) == len(QUOTED) + 4
+    assert set(lines) <= set(summary.splitlines())
 
 
 def test_the_list_of_reports_has_each_with_its_command() -> None:
@@ -75,8 +79,8 @@ def test_the_index_begins_with_what_decides_and_says_what_is_missed() -> None:
 def test_a_readme_keeps_what_stands_around_the_summary(tmp_path: Path) -> None:
     readme = tmp_path / "README.md"
     readme.write_text(f"before\n{BEGIN}\nold\n{END}\nafter\n")
-    assert quote(readme, "new\n") and readme.read_text() == f"before\n{BEGIN}\nnew\n{END}\nafter\n"
-    assert quoted(readme) == "new\n"
+    assert quote(readme, "new\n") and readme.read_text() == f"before\n{BEGIN}\nnew\n\n{END}\nafter\n"
+    assert quoted(readme) == "new\n\n"
     readme.write_text(f"{END}\n{BEGIN}\n")
     with pytest.raises(QuoteError, match="no '<!-- "):
         quote(readme, "new\n")
@@ -89,7 +93,7 @@ def test_the_command_gathers_what_is_there(tmp_path: Path) -> None:
     readme.write_text(f"{BEGIN}\n{END}\n")
     result = CliRunner().invoke(app, ["dashboard", "--report", str(tmp_path), "--readme", str(readme)])
     assert result.exit_code == 0 and "fuzz       good" in result.output, result.output
-    assert quoted(readme) == (tmp_path / "summary.md").read_text()
+    assert quoted(readme) == brief((tmp_path / "summary.md").read_text())
     write(tmp_path, FUZZ | {"ok": False})
     assert CliRunner().invoke(app, ["dashboard", "--report", str(tmp_path), "--readme", "none"]).exit_code == 1
 
