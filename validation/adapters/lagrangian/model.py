@@ -87,7 +87,7 @@ class Translation:
             assert isinstance(beam, sf.Beam)
             return Node(
                 mover.parent,
-                {"second_order": self._flexible, "strain": self._rod}[beam.theory](beam),
+                self._rod(beam) if beam.elastic.is_exact else self._flexible(beam),
                 motion=lambda _: _constant(mover.X_AP),
                 tip=solid,
                 at=self._first(mover),
