@@ -16,8 +16,8 @@ from symofros.expr.expression import Expression, lower
 from symofros.expr.graph import Graph
 from symofros.generator.passes.count import count_program
 from symofros.mechanics.beams.fields import Field, Form
-from symofros.mechanics.beams.second_order.equations import second_order_equations
 from symofros.mechanics.beams.second_order.forms import BeamForms
+from symofros.mechanics.beams.second_order.theory import SecondOrderTheory
 from symofros.mechanics.spatial.inertia import PAIRS
 
 L = 1.7
@@ -58,7 +58,7 @@ def forms(section: str, family: str = "spline", **more: Any) -> BeamForms:
     def lowered(value: Value) -> Edge:
         return lower(value, g, {"L": g.constant(L)}) if isinstance(value, Expression) else g.constant(value)
 
-    return second_order_equations(g, lowered, beam, tuple(g.constant(x) for x in STATE))
+    return SecondOrderTheory(beam).equations(g, lowered, tuple(g.constant(x) for x in STATE))
 
 
 def number(form: Form, upto: float = np.inf) -> float:
@@ -140,7 +140,8 @@ def test_uniform_integrals_are_rounded_once() -> None:
     g = Graph()
     given: dict[str, Any] = {"rhoA": 1.0, "EI_z": 1.0, "bend_y": 2, "family": "polynomial", "retain": "zeroth_order"}
     beam = sf.Beam("b", sf.Joint("j"), 1.0, **given)
-    made = second_order_equations(g, lambda value: g.constant(float(value)), beam, (g.input("q", 0), g.input("q", 1)))  # type: ignore[arg-type]
+    edges = g.input("q", 0), g.input("q", 1)
+    made = SecondOrderTheory(beam).equations(g, lambda value: g.constant(float(value)), edges)  # type: ignore[arg-type]
     found = {pair: g.number(form.value(0)) for pair, form in made.modal_masses.items()}
     assert found == {(0, 0): 1 / 5, (0, 1): 1 / 6, (1, 1): 1 / 7}
     stiffness = {mono: g.number(edge) for mono, edge in made.strain_energy.terms.items()}
@@ -159,8 +160,8 @@ def test_quadrature_follows_polynomials_of_any_degree(count: int) -> None:
         given: dict[str, Any] = {"EI_z": 3.0, "bend_y": count, "family": "legendre", "retain": "all"}
         stated = sf.Beam("b", sf.Joint("j"), L, rhoA, **given)
         edges = tuple(g.input("q", k) for k in range(count))
-        return second_order_equations(
-            g, lambda x: lower(x, g, {}) if isinstance(x, Expression) else g.constant(x), stated, edges
+        return SecondOrderTheory(stated).equations(
+            g, lambda x: lower(x, g, {}) if isinstance(x, Expression) else g.constant(x), edges
         )
 
     uniform, roundabout = beam(2.0), beam("2*cos(x)^2 + 2*sin(x)^2")

@@ -13,15 +13,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from symofros.description.beams.beam import Beam, BeamLoad
+from symofros.description.beams.beam import BeamLoad
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Sym3, Vec3
 from symofros.mechanics.beams.fields import Form
-from symofros.mechanics.beams.integrals import LengthIntegrator, Lower, at_middle, points_for
+from symofros.mechanics.beams.integrals import at_middle
 from symofros.mechanics.beams.second_order import loads
-from symofros.mechanics.beams.second_order.deformation import deformation_of
-from symofros.mechanics.beams.second_order.forms import ORDERS, BeamForms, Vector
+from symofros.mechanics.beams.second_order.forms import BeamForms, Vector
 from symofros.mechanics.spatial.across import (
     AcrossJoint,
     JointRotation,
@@ -250,14 +249,3 @@ def _moment_rate(g: Graph, E_rate: Sequence[Edge]) -> Mat3:
     """J' = tr(E') 1 - E'."""
     xx, yy, zz, xy, xz, yz = E_rate
     return Mat3(g, (g.add(yy, zz), -xy, -xz, -xy, g.add(xx, zz), -yz, -xz, -yz, g.add(xx, yy)))
-
-
-def second_order_equations(
-    g: Graph, lower: Lower, beam: Beam, coordinates: tuple[Edge, ...], R_LB: Mat3 | None = None
-) -> SecondOrderEquations:
-    """A beam of second order in a graph; arguments as of `BeamTheory.equations`."""
-    shape = deformation_of(beam)
-    knots = tuple(sorted({knot for function in shape.functions for knot in function.phi.knots} or {0, 1}))
-    points = points_for([function.phi for function in shape.functions])
-    along = LengthIntegrator(g, lower, beam.length, coordinates, knots, points)
-    return SecondOrderEquations(beam, along, R_LB or Mat3.identity(g), ORDERS[beam.retain], shape)

@@ -9,13 +9,14 @@ from symofros.description.beams.elastic import Direction
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3
-from symofros.mechanics.beams.integrals import Lower, at_middle
+from symofros.mechanics.beams.integrals import LengthIntegrator, Lower, at_middle, points_for
 from symofros.mechanics.beams.piecewise import Piecewise
 from symofros.mechanics.beams.second_order.deformation import deformation_of, small_coordinates
-from symofros.mechanics.beams.second_order.equations import second_order_equations
+from symofros.mechanics.beams.second_order.equations import SecondOrderEquations
+from symofros.mechanics.beams.second_order.forms import ORDERS
 from symofros.mechanics.beams.second_order.shape import FieldShape
 from symofros.mechanics.beams.shape_functions import shapes
-from symofros.mechanics.beams.theory import BeamEquations, BeamShape, BeamTheory, Judged
+from symofros.mechanics.beams.theory import BeamShape, BeamTheory, Judged
 
 
 class SecondOrderTheory(BeamTheory):
@@ -56,6 +57,10 @@ class SecondOrderTheory(BeamTheory):
 
     def equations(
         self, g: Graph, lower: Lower, coordinates: tuple[Edge, ...], R_LB: Mat3 | None = None
-    ) -> BeamEquations:
+    ) -> SecondOrderEquations:
         """The beam in a graph."""
-        return second_order_equations(g, lower, self.beam, coordinates, R_LB)
+        beam, shape = self.beam, deformation_of(self.beam)
+        knots = tuple(sorted({knot for function in shape.functions for knot in function.phi.knots} or {0, 1}))
+        points = points_for([function.phi for function in shape.functions])
+        along = LengthIntegrator(g, lower, beam.length, coordinates, knots, points)
+        return SecondOrderEquations(beam, along, R_LB or Mat3.identity(g), ORDERS[beam.retain], shape)
