@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, fields
-from itertools import combinations, pairwise
+from itertools import pairwise
 from numbers import Real
 from typing import Any, Literal, get_args
 
@@ -23,14 +22,14 @@ from symofros.description.beams.elastic import (
     Point,
     Theory,
 )
+from symofros.description.beams.shapes import FAMILIES, Family, UserShape, as_shape
+from symofros.description.beams.stiffness import IN_MATRIX, stiffness_rows
 from symofros.description.entries import pairs_of, refuses_unknown_entries
 from symofros.description.frames import Frame
 from symofros.description.joints.joint import Joint
 from symofros.description.values import ORIGIN, Value, Vector, as_value, as_values, as_vector
 from symofros.errors import DescriptionError, Problem, did_you_mean
 
-Family = Literal["spline", "polynomial", "legendre", "clamped_free", "hermite", "user"]
-FAMILIES: tuple[Family, ...] = get_args(Family)
 Retain = Literal["zeroth_order", "first_order", "all"]
 RETAIN: tuple[Retain, ...] = get_args(Retain)
 MOST_SECTIONS = 64
@@ -39,56 +38,7 @@ STATIONS = tuple(k / 8 for k in range(9))
 
 # What may depend on the station x, and so taper.
 SECTION = ("rhoA", "EI_y", "EI_z", "GJ", *STRAIN_STIFFNESSES, "rhoJ", "rhoI_y", "rhoI_z", "EI_yz", "rhoI_yz")
-# Strains in the order of a matrix of stiffness, and what such a matrix takes the place of.
-MATRIX_ORDER = ("stretch", "shear_y", "shear_z", "twist_rate", "curvature_y", "curvature_z")
-IN_MATRIX = ("EI_y", "EI_z", "GJ", *STRAIN_STIFFNESSES, "EI_yz", "tension_center", "shear_center")
 STATION = "x"
-
-
-@refuses_unknown_entries
-@dataclass(frozen=True)
-class Samples:
-    """A shape function by its values at stations; a cubic spline goes through them, the cubic itself where it is one.
-
-    Attributes:
-        xi: Stations x/L of the samples, rising from 0 to 1.
-        values: Values of the function at the stations.
-    """
-
-    xi: tuple[float, ...]
-    values: tuple[float, ...]
-
-    def __post_init__(self) -> None:
-        """Convert, and check the stations."""
-        object.__setattr__(self, "xi", tuple(float(x) for x in self.xi))
-        object.__setattr__(self, "values", tuple(float(x) for x in self.values))
-        rising = all(a < b for a, b in zip(self.xi, self.xi[1:], strict=False))
-        if len(self.xi) < 4 or len(self.xi) != len(self.values) or not rising or (self.xi[0], self.xi[-1]) != (0, 1):
-            raise DescriptionError(
-                Problem(
-                    "sampled shape function: unusable stations",
-                    f"{len(self.xi)} stations, {len(self.values)} values",
-                    "at least 4 stations that rise from 0 to 1, and one value for each",
-                    "sort the stations, divide them by the length, and give each its value",
-                )
-            )
-        if not all(map(math.isfinite, self.values)):
-            at = next(i for i, value in enumerate(self.values) if not math.isfinite(value))
-            raise DescriptionError(
-                Problem(
-                    "sampled shape function: a value is not a finite number",
-                    f"{self.values[at]} at xi = {self.xi[at]:g}",
-                    "values of shape functions are finite numbers",
-                    "mend or leave out the sample",
-                )
-            )
-
-
-# Difference of two entries across the diagonal of a matrix of stiffness, over the root of the product of the
-# diagonal's: programs for sections write seven digits.
-_ASYMMETRY = 1e-6
-
-UserShape = Value | Samples
 
 
 @refuses_unknown_entries
@@ -249,7 +199,7 @@ class Beam:
         entries = {key: entries_of(listed) for key, listed in given.items()}
         functions = {key: [given[key]] if listed is None else listed for key, listed in entries.items()}
         directions = [key for key in STRAINS if key in functions]
-        shapes = tuple((key, tuple(_shape(x, f"{what}: {key}") for x in functions[key])) for key in directions)
+        shapes = tuple((key, tuple(as_shape(x, f"{what}: {key}") for x in functions[key])) for key in directions)
         object.__setattr__(self, "shapes", shapes)
         choices = (
             ("family", self.family, FAMILIES),
@@ -443,43 +393,6 @@ class Beam:
     def plain_values(self) -> list[tuple[str, Value]]:
         """What may depend on parameters only, by label."""
         return [(item.name, getattr(self, item.name)) for item in fields(self) if item.name in ("length", "damping")]
-
-
-def stiffness_rows(stated: Any, label: str) -> tuple[tuple[Value, ...], ...]:
-    """A matrix of stiffness (6, 6), made symmetric where rounding left a difference; empty where none is stated.
-
-    Args:
-        stated: Its rows, or nothing.
-        label: What it is, for errors.
-
-    Raises:
-        DescriptionError: It has other rows, or is not symmetric.
-    """
-    listed = entries_of(stated)
-    listed = [stated] if listed is None else listed
-    if not listed:
-        return ()
-    size = len(MATRIX_ORDER)
-    if len(listed) != size:
-        rule = f"{size} rows of {size} entries: {', '.join(MATRIX_ORDER)}"
-        raise DescriptionError(Problem(label, f"{len(listed)} rows", rule, "give all, zeros included"))
-    rows = [list(as_values(row, size, f"{label}[{i}]")) for i, row in enumerate(listed)]
-    for i, j in combinations(range(size), 2):
-        a, b, first, second = rows[i][j], rows[j][i], rows[i][i], rows[j][j]
-        if a == b:
-            continue
-        if isinstance(a, float) and isinstance(b, float) and isinstance(first, float) and isinstance(second, float):
-            if abs(a - b) <= _ASYMMETRY * math.sqrt(abs(first * second)):
-                rows[i][j] = rows[j][i] = 0.5 * (a + b)
-                continue
-        rule = "a matrix of stiffness is symmetric: forces have the strain energy as their potential"
-        found = f"[{i}][{j}] is {a}, [{j}][{i}] is {b}"
-        raise DescriptionError(Problem(f"{label} is not symmetric", found, rule, "state the same value for both"))
-    return tuple(map(tuple, rows))
-
-
-def _shape(stated: Any, what: str) -> UserShape:
-    return stated if isinstance(stated, Samples) else as_value(stated, what)
 
 
 def _is_count(stated: Any, least: int) -> bool:

@@ -15,8 +15,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from symofros.description.beams.beam import Beam, BeamLoad, Family, UserShape
+from symofros.description.beams.beam import Beam, BeamLoad
 from symofros.description.beams.elastic import Direction
+from symofros.description.beams.shapes import Family, UserShape
 from symofros.description.values import Value
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph

@@ -8,8 +8,9 @@ from functools import lru_cache, partial, reduce
 import numpy as np
 
 from symofros.base.rotations import Array
-from symofros.description.beams.beam import IN_MATRIX, MATRIX_ORDER, STATION, Beam
+from symofros.description.beams.beam import STATION, Beam
 from symofros.description.beams.elastic import STRAINS
+from symofros.description.beams.stiffness import IN_MATRIX, MATRIX_ORDER
 from symofros.description.values import ORIGIN, Term, Value, substituted, symbols
 from symofros.errors import Problem
 from symofros.expr.expression import Expression

@@ -7,7 +7,7 @@ import pytest
 from numpy.polynomial import chebyshev
 
 import symofros as sf
-from symofros.description.beams.beam import FAMILIES
+from symofros.description.beams.shapes import FAMILIES
 from symofros.mechanics.beams.second_order.deformation import small_coordinates
 from symofros.mechanics.beams.second_order.shape import FieldShape
 from symofros.studio.viewer.drawing.drawing import STATIONS

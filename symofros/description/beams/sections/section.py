@@ -9,9 +9,10 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from symofros.description.beams.beam import IN_MATRIX, SECTION, stiffness_rows
+from symofros.description.beams.beam import SECTION
 from symofros.description.beams.elastic import CENTERS, ELASTIC, PRODUCTS, STRAIN_STIFFNESSES, Theory
 from symofros.description.beams.sections.shear import ShearShape, is_inside, unit_stresses
+from symofros.description.beams.stiffness import IN_MATRIX, stiffness_rows
 from symofros.description.entries import refuses_unknown_entries
 from symofros.description.values import Term, Value, as_value, as_values, symbols
 from symofros.errors import DescriptionError, Problem, did_you_mean

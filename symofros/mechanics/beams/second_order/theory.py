@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from symofros.description.beams.beam import Family, UserShape
 from symofros.description.beams.elastic import Direction
+from symofros.description.beams.shapes import Family, UserShape
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3

@@ -8,7 +8,8 @@ from typing import NamedTuple
 from symofros.description.beams.beam import BeamLoad
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.vector import Vec3
-from symofros.mechanics.beams.strain.sections import BeamSections, SectionFrame
+from symofros.mechanics.beams.strain.frames import SectionFrame
+from symofros.mechanics.beams.strain.sections import BeamSections
 from symofros.mechanics.spatial.wrench import Wrench, no_wrench
 
 

@@ -10,7 +10,8 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from functools import reduce
 
-from symofros.description.beams.beam import MATRIX_ORDER, Beam
+from symofros.description.beams.beam import Beam
+from symofros.description.beams.stiffness import MATRIX_ORDER
 from symofros.description.values import Term, Value
 from symofros.mechanics.beams.strain.strains import TURNING
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
-from symofros.description.beams.beam import Beam, Family, UserShape
+from symofros.description.beams.beam import Beam
 from symofros.description.beams.elastic import STRAINS, Direction
+from symofros.description.beams.shapes import Family, UserShape
 from symofros.description.values import Value
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph

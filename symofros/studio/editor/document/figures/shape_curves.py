@@ -6,8 +6,8 @@ from typing import Any, get_args
 
 import numpy as np
 
-from symofros.description.beams.beam import Family, Samples, UserShape
 from symofros.description.beams.elastic import Direction
+from symofros.description.beams.shapes import Family, Samples, UserShape
 from symofros.description.values import as_value
 from symofros.errors import DescriptionError, Problem, did_you_mean
 from symofros.mechanics.beams.shape_functions import MAX_MODES, FamilyError
