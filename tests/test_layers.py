@@ -129,8 +129,8 @@ STUDIES = table("""
     environments: timing
     cuda:        timing
     stability:   accuracy
-    studies:     accuracy oracle stability timing
-    pareto:      stability studies timing
+    studies:     oracle timing
+    pareto:      stability timing
     adversary:   accuracy
     mutation:
     dashboard:   adversary cross_check cuda engines environments campaigns diagrams accuracy timing passes stability

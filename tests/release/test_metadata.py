@@ -77,14 +77,6 @@ def test_the_conda_recipe_needs_what_the_package_needs() -> None:
     assert entry == f"symofros = {PROJECT['project']['scripts']['symofros']}"
 
 
-def test_commands_of_the_conda_recipe_name_files_that_its_tests_get() -> None:
-    """Files keep their folders there, as the build's log shows."""
-    (test,) = (test for test in RECIPE["tests"] if "script" in test)
-    given = set(test["files"]["source"])
-    named = {word for line in test["script"] for word in line.split() if word.endswith(".yaml")}
-    assert named == given and all((ROOT / name).is_file() for name in given)
-
-
 def test_the_conda_recipe_renders() -> None:
     rattler = require("rattler_build", "release")
     recipe = rattler.Stage0Recipe.from_file(ROOT / "recipe/recipe.yaml")
@@ -135,14 +127,3 @@ def test_the_extra_all_brings_what_it_says() -> None:
     wanted = {extra for extra in EXTRAS if extra not in left_out and not extra.startswith("engine-")}
     assert {extra for extra in wanted if not packages(extra) <= packages("all")} == set()
     assert not packages("torch") & packages("all") and "ruff>=0.5,<1" not in packages("all")
-
-
-def test_the_readme_says_what_its_commands_take_before_it_uses_them() -> None:
-    """Downloads, disk, time of each; and which environment the lines after them are for."""
-    text = (ROOT / "README.md").read_text()
-    for command in ("the first", "the second"):
-        (row,) = re.findall(rf"^\| {command} \|.*$", text, re.MULTILINE)
-        assert len(re.findall(r"[\d.]+ GB", row)) == 2 and len(re.findall(r"\d+ to \d+ minutes", row)) == 2
-    first = re.search(r"^symofros ", text, re.MULTILINE)
-    assert first and text.index(". .venv/bin/activate") < first.start()
-    assert "come next" not in text

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 
 from symofros.tools import write_atomically
@@ -15,8 +14,6 @@ from ..reporting.evidence import revision, said_of
 from ..reporting.figures import Figure
 from ..reporting.record import Block, Bullets, Report, Section, Table, Text, verdict
 from .gather import Entry
-from .history import history, stored
-from .trends import trends
 
 BEGIN, END = "<!-- reports/summary.md begins -->", "<!-- reports/summary.md ends -->"
 
@@ -25,7 +22,6 @@ QUOTED = ("check", "oracle", "mutants", "engines", "accuracy", "stability", "tim
 
 # Verdict of an entry -> whether what was asked for is met.
 _VERDICTS = {"good": True, "missed": False, "measured": None, "absent": None}
-_TREND = "What the summaries of earlier commits said otherwise, the latest change first."
 # Reports whose decisions the index shows, in this order: first the sentences of some, then all of the others.
 _SAID = {"check": "The opinions on our C, engine by engine:", "engines": "What engines are wrong about:"}
 _SHOWN = ("pareto", "timing")
@@ -42,11 +38,8 @@ def write_index(entries: Mapping[str, Entry], folder: Path, date: str) -> Path:
         OSError: The folder can't be written to.
     """
     report = index(entries)
-    summaries = stored(folder / "summary.md")
-    changes = history(summaries, tuple(entries))
-    trend = Section("What changed", (trends(summaries), _TREND, changes), "history")
     closing = f"Gathered {date} by `{PROGRAM} dashboard`; `{PROGRAM} all` makes reports anew."
-    page = html.page(replace(report, sections=(trend, *report.sections)), closing=closing, listed=False)
+    page = html.page(report, closing=closing, listed=False)
     source = f" of revision {revision()[:9]}" if revision() else ""
     said = f"**{report.summary}** (gathered {date}{source})", markdown.table(summary_table(entries)), origins(entries)
     write_atomically(folder / "index.html", page)

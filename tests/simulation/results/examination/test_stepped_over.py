@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from reference_models import MODELS
 from symofros.simulation.inputs import plan_inputs
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.results.examination.paths import path_within
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.methods import METHODS
 from symofros.simulation.stepping.stepper import Stepper
+from tests.models import compiled
 
 ADAPTIVE = ("dopri5", "dop853", "rodas4")
 SLIDE = sf.Joint("x", "prismatic", axis=(1, 0, 0), actuated=True)
@@ -75,7 +75,7 @@ def test_a_run_of_a_batch_says_so_too() -> None:
 @pytest.mark.parametrize("name", ["torque_free_body", "slider_crank", "space_arm"])
 def test_a_path_between_records_is_the_motion(name: str) -> None:
     """Of rotations and loops as well: the states within steps are those of a run with short steps, to h^4."""
-    model = sf.compile(MODELS[name])
+    model = compiled(name)
     if model.nc:
         start = sf.assemble(model, {"crank": 0.6} if "crank" in model.names.q else model.neutral())
         q, v = start.q, start.v
