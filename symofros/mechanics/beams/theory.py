@@ -158,13 +158,6 @@ class BeamEquations(ABC):
     def load_beyond(self, load: BeamLoad, k: int, d: Vec3, xi: float) -> Iterator[Wrench]:
         """Wrenches about the root, in B, that component k of a load adds up to beyond a station."""
 
-    # Judgement.
-
-    @property
-    @abstractmethod
-    def judged_stiffness(self) -> tuple[Edge, Edge]:
-        """EI_z and EI_y at mid-length, by which bending is judged; zeros of a theory that does not err by bending."""
-
 
 class Interpolated(NamedTuple):
     """What a theory knows at some stations alone, and takes between them by interpolation.
@@ -190,7 +183,7 @@ class Judged(NamedTuple):
         xi: Stations x/L (s).
         angles: Yaw, pitch or twist of the section at each station by each coordinate, of a beam of unit length (s, n).
         displacements: Whether each coordinate is a displacement (n), which counts by the length.
-        EI_z: Stiffness against bending in the x-y plane at mid-length, which the error depends on.
+        EI_z: Stiffness against bending in the x-y plane at mid-length; 0 of a theory that does not err by bending.
         EI_y: Stiffness against bending in the x-z plane at mid-length.
         sections: Number of sections, of a theory that errs by their number alone; else 0.
         integration_error: Of such a theory: numbers of the parameters -> elastic coordinates (n) -> error of the shape

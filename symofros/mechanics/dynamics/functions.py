@@ -14,6 +14,7 @@ from symofros.expr.instants import operands_function
 from symofros.expr.packs.pack import WIDTH
 from symofros.expr.program import Function, Output, Program, Solver
 from symofros.expr.substitute import substitute
+from symofros.mechanics.beams.theories import theory_of
 from symofros.mechanics.dynamics.constraints.measures import measures_of
 from symofros.mechanics.dynamics.constraints.rows import retracted
 from symofros.mechanics.dynamics.constraints.wrenches import acts_on_bodies
@@ -292,7 +293,8 @@ def _beam_stiffness(e: Equations, row: ModelFunction, methods: Methods, known: M
             continue
         beam, first = moving.equations.beam, e.kinematics.links[moving.tip].first_speed
         lengths.append(lower(beam.length))
-        stiffnesses.append(moving.equations.judged_stiffness)
+        judged = theory_of(beam).judged
+        stiffnesses.append([lower(judged.EI_z), lower(judged.EI_y)])
         for i, stiffness in enumerate(moving.equations.strain_energy.second_derivatives(), first):
             K[i][first : first + beam.modes] = stiffness
     outputs = _vector("L", lengths), _matrix("EI", (len(lengths), 2), stiffnesses), _matrix("K", (e.nv, e.nv), K)

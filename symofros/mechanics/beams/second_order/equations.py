@@ -18,7 +18,6 @@ from symofros.expr.edges import ZERO, Edge
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Sym3, Vec3
 from symofros.mechanics.beams.fields import Form
-from symofros.mechanics.beams.integrals import at_middle
 from symofros.mechanics.beams.second_order import loads
 from symofros.mechanics.beams.second_order.forms import BeamForms, Vector
 from symofros.mechanics.spatial.across import (
@@ -135,12 +134,6 @@ class SecondOrderEquations(BeamForms):
         """The wrench about the root, in B, of component k of a load beyond a station."""
         part = self if load.at is not None else self.beyond(xi)
         yield loads.wrench_along(part, load.at, d, load.force[k], load.torque[k])
-
-    @property
-    def judged_stiffness(self) -> tuple[Edge, Edge]:
-        """EI_z and EI_y at mid-length."""
-        EI_z, EI_y = (self.along.lower(at_middle(EI, self.beam)) for EI in (self.beam.EI_z, self.beam.EI_y))
-        return EI_z, EI_y
 
 
 def _turns(forms: BeamForms, xi: float) -> list[JointRotation]:

@@ -212,11 +212,6 @@ class StrainEquations(BeamSections):
         """Wrenches about the root, in B, that component k of a load adds up to beyond a station."""
         return loads.beyond(self, load, k, d, xi)
 
-    @property
-    def judged_stiffness(self) -> tuple[Edge, Edge]:
-        """Zeros: a rod does not err by its bending."""
-        return ZERO, ZERO
-
 
 class _SectionMotion(NamedTuple):
     """Angular velocity and acceleration of each section in the world; second derivative of each mass vector, in B."""
