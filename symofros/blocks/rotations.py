@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from symofros.diagrams.tensor import Tensor, joined, stacked
-from symofros.expr.quaternion import Quaternion
+from symofros.expr import Quaternion
 
 # Its root is 1e-150: lost beside any length that is not zero itself.
 _TINY = 1e-300

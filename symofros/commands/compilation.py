@@ -9,19 +9,16 @@ from typing import Any
 
 from symofros.base.atomic import write_atomically
 from symofros.base.functions import DEFAULT_FUNCTIONS
-from symofros.base.garbage import collect_rarely
+from symofros.base.names import identifier
 from symofros.base.options import Options
-from symofros.base.sources import Source
 from symofros.commands.reading import ReadingOptions
 from symofros.commands.shared import refuse, refusing_descriptions
 from symofros.compiler import Compilation, inconsistencies
 from symofros.errors import SymofrosError
-from symofros.generator.codegen.names import identifier
-from symofros.generator.passes.count import count_program
-from symofros.loading import load_with_sources
+from symofros.expr import collect_rarely
+from symofros.loading import Source, load_with_sources
 from symofros.native import native_text
-from symofros.runtime.build.prepared import note_prepared
-from symofros.runtime.build.toolchain import find_toolchain
+from symofros.runtime.build import find_toolchain, note_prepared
 
 
 def compile_description(
@@ -83,6 +80,5 @@ def _write(compilation: Compilation, text: str, output: Path) -> dict[str, Any]:
     files = [output / f"{identifier(compilation.system.name)}.c", output / "symofros_model.h"]
     for file, content in zip(files, (text, native_text("model/symofros_model.h")), strict=True):
         write_atomically(file, content)
-    counts = count_program(compilation.program)
-    operations = sum(count.total for key, count in counts.items() if key[0] != "init")
+    operations = sum(count.total for key, count in compilation.operations.items() if key[0] != "init")
     return {"operations": operations, "bytes": len(text), "files": list(map(str, files))}

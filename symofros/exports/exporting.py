@@ -13,10 +13,10 @@ import numpy as np
 
 from symofros.base.arguments import checked
 from symofros.base.functions import FRAME_FUNCTIONS, exported
-from symofros.base.names import coordinate_of, speed_of
+from symofros.base.names import coordinate_of, identifier, speed_of
 from symofros.base.options import Options
 from symofros.compiler import GENERATOR, Compilation, compile_system
-from symofros.description.system import System
+from symofros.description import System
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.program.compiled import resolve
 from symofros.errors import DescriptionError, ExportError, Problem, UnknownNameError, did_you_mean
@@ -35,14 +35,12 @@ from symofros.exports.limits import joints_of, limits_note
 from symofros.exports.material import Material, Stepping
 from symofros.exports.wasm import wasm
 from symofros.exports.wasm.wasm import write_wasm
-from symofros.generator.codegen.interpreted import InterpretedUnit
-from symofros.generator.codegen.names import identifier
-from symofros.generator.instants import OPERANDS, has_instants
+from symofros.expr import OPERANDS
+from symofros.generator import InterpretedUnit
 from symofros.loading import load
-from symofros.mechanics.topology.physics import OTHER_FUNCTIONS
-from symofros.mechanics.topology.tree import build_tree
+from symofros.mechanics.topology import OTHER_FUNCTIONS
 from symofros.runtime.beams import BEAM_LIMIT
-from symofros.runtime.calls.kernel import LaneOptions
+from symofros.runtime.calls import LaneOptions
 from symofros.runtime.model import Model
 from symofros.simulation.analysis.kinematics.starts import ClosedStart, closed_start, singular_start, stated_names
 from symofros.simulation.stepping.methods import METHODS, method_meant
@@ -146,7 +144,7 @@ def export(
             )
         )
     if target in _DESCRIBED:
-        build_tree(system)
+        Compilation(system).tree  # noqa: B018 - refuses what is no mechanism
         return _DESCRIBED[target](system, name, place, GENERATOR)
     with _with_stepping():
         if target == "cuda":
@@ -222,7 +220,7 @@ def _material(
     needs = (*stepping.method.family.functions, *reactions)
     if any(body.modes for body in system.beams):
         needs = (*needs, "beam_stiffness", "mass_matrix")
-    instants = has_instants(build_tree(system))
+    instants = Compilation(system).has_instants
     if target in _STEPPED and instants:
         needs = (*needs, OPERANDS)
     constrained = bool(system.constraints)

@@ -23,8 +23,8 @@ from symofros.runtime.calls.layout import by_columns, flat, states
 from symofros.runtime.calls.library import CompiledKernel
 from symofros.runtime.calls.single import SingleCall, SingleCalls, single_call
 from symofros.runtime.cuda.device_code import DeviceCode
+from symofros.runtime.manifold import at_unit_length
 from symofros.runtime.record import ModelRecord
-from symofros.runtime.unit_quaternions import at_unit_length
 
 Key = tuple[str, str]
 ParameterCheck = Callable[[Array], Sequence[Problem]]

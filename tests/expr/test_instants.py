@@ -7,7 +7,7 @@ import pytest
 
 import symofros as sf
 from symofros.expr.instants import InstantKind
-from symofros.runtime.calls.declarations import constants
+from symofros.runtime.calls.binding import constants
 from symofros.runtime.instants import find_instants
 from tests.models import compiled
 

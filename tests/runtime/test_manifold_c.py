@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from symofros.native import native_text
 from symofros.runtime.build.build import build_library
 from symofros.runtime.build.toolchain import DEFAULT_FLAGS, find_toolchain
-from symofros.runtime.calls.declarations import constants
+from symofros.runtime.calls.binding import constants
 from symofros.runtime.manifold import chart_rate, integrate, retract
 from tests.runtime.test_manifold import (
     ANGLES,

@@ -25,7 +25,7 @@ SCOPE = (
     "symofros/description/urdf/reader.py",
     "symofros/description/urdf/values.py",
     "symofros/description/mjcf/joints.py",
-    "symofros/description/mjcf/geometry.py",
+    "symofros/description/imported/geometry.py",
     "symofros/description/mjcf/numbers.py",
     "symofros/expr/**/*.py",
     "symofros/mechanics/**/*.py",

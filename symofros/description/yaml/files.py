@@ -17,7 +17,7 @@ from symofros.description.forces import Connection, Potential, VirtualPower
 from symofros.description.reading import YAML_SUFFIXES, in_order, kind_of, read_bytes, refuse_size, resolved
 from symofros.description.reading import Reading as Reading
 from symofros.description.system import Body, Input, Parameter, System
-from symofros.description.yaml.faults import line_of, path_of, problem_of
+from symofros.description.yaml.faults import placed_problems
 from symofros.description.yaml.schema import BodyEntry, InputEntry, NativeFile, SystemEntry, default_joint_name
 from symofros.description.yaml.yaml_nodes import Node, YamlFault
 from symofros.description.yaml.yaml_pieces import compose
@@ -306,10 +306,10 @@ def _validate(root: Node, shown: str) -> tuple[NativeFile | None, list[Problem],
     try:
         return NativeFile.model_validate(data), [], set()
     except ValidationError as error:
-        faults = error.errors(include_url=False)
-    problems = first_of(problem_of(fault, f"{shown}:{line_of(fault, root)}", data) for fault in faults)
+        placed = placed_problems(error, root, shown, data)
+    problems = first_of(problem for problem, _ in placed)
     broken: set[str] = set()
-    for path in map(path_of, faults):
+    for _, path in placed:
         section = path[0] if path else ""
         if section in _SECTIONS and len(path) > 1:
             broken |= _names_of(str(section), str(path[1]), data[section].pop(path[1], None))

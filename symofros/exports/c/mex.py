@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from symofros.base.names import c_string
 from symofros.exports.c.c_package import model_files
 from symofros.exports.c.c_text import comment
 from symofros.exports.c.unity import unity
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.material import Material
-from symofros.generator.codegen.names import c_string
 from symofros.native import native_text
 
 _HELP = """{name}  {title}: {nq} coordinates, {nv} speeds, {nu} inputs, {npar} parameters, {nc} constraints.

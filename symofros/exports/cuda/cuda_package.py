@@ -7,19 +7,17 @@ from pathlib import Path
 from string import Template
 
 from symofros.base.functions import FRAME_FUNCTIONS
+from symofros.base.names import identifier
 from symofros.base.options import Options
 from symofros.compiler import GENERATOR, Compilation
-from symofros.description.system import System
+from symofros.description import System
 from symofros.exports.c.c_text import comment, doubles
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.functions import NamedFunction, cell, functions_table, names_table
 from symofros.exports.limits import joints_of, limits_note
-from symofros.generator.codegen.cuda import device_code
-from symofros.generator.codegen.names import identifier
-from symofros.generator.instants import has_instants
+from symofros.generator import DeviceCode
 from symofros.native import header_files, native_text
-from symofros.runtime.calls.kernel import Precision
-from symofros.runtime.cuda.device_code import DeviceCode
+from symofros.runtime.calls import Precision
 
 # What users of batches ask for; each kernel takes seconds to compile.
 FUNCTIONS = (
@@ -57,9 +55,7 @@ def write_cuda_package(system: System, name: str | None, frames: Sequence[str] |
     program, record = made.program, made.record
     c_name = identifier(name or record.name)
     prefixes: dict[Precision, str] = {"double": c_name, "single": f"{c_name}_single"}
-    codes = {
-        precision: device_code(program, record, GENERATOR, precision, prefix) for precision, prefix in prefixes.items()
-    }
+    codes = {precision: made.device_code(precision, prefix) for precision, prefix in prefixes.items()}
     left_out = [function.name for function in program.functions if function.solver is not None]
     fields = {
         "name": c_name,
@@ -101,7 +97,7 @@ def _notes(made: Compilation, left_out: Sequence[str]) -> tuple[str, ...]:
         )
     if any(body.modes for body in made.system.beams):
         notes.append("rollouts do not judge how far beams bend, as sf.simulate does: judge their records")
-    if has_instants(made.tree):
+    if made.has_instants:
         notes.append(
             "formulas of time bend, jump or are narrow at instants within steps of rollouts, which end at none of them:"
             " what is shorter than a step may pass unseen"

@@ -7,7 +7,7 @@ from functools import lru_cache, partial, reduce
 
 import numpy as np
 
-from symofros.base.rotations import Array
+from symofros.base.arrays import Array
 from symofros.description.beams.beam import STATION, Beam
 from symofros.description.beams.elastic import STRAINS
 from symofros.description.beams.stiffness import IN_MATRIX, MATRIX_ORDER
@@ -228,6 +228,13 @@ def section_values(beam: Beam, value: Value, xi: Array, values: Mapping[str, Arr
     x = Formulas([beam.length])(columns)[0] * xi[None, :]
     (along,) = Formulas([value])({**columns, STATION: x})
     return np.array(np.broadcast_to(along, np.broadcast_shapes(np.shape(along), x.shape)))
+
+
+def beam_mass(beam: Beam, numbers: Numbers) -> float:
+    """Mass of a beam [kg], by Gauss's quadrature where its section changes."""
+    xi, w = stations((0.0, 1.0), _POINTS[0])
+    along = section_values(beam, beam.rhoA, np.array(xi), numbers.parameters)[0]
+    return numbers.value(beam.length) * float(along @ np.array(w))
 
 
 def least_stiffness(beam: Beam, values: Mapping[str, Array | float]) -> tuple[Array, Array]:

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from symofros.description.beams.beam import Beam
-from symofros.description.beams.elastic import DIRECTIONS
-from symofros.description.system import System
+from symofros.description import DIRECTIONS, Beam, System
 
 
 def refined(system: System) -> System:

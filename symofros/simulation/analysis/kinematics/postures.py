@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from symofros.runtime.calls.kernel import Array
+from symofros.base.arrays import Array
 from symofros.runtime.model import Model
 from symofros.runtime.record import JointLimit
 

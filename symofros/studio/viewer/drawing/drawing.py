@@ -7,8 +7,9 @@ from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 
-from symofros.mechanics.beams.theory import BeamShape
-from symofros.studio.viewer.drawing.meshes import Array, Mesh
+from symofros.base.arrays import Array
+from symofros.mechanics.beams import BeamShape
+from symofros.studio.viewer.drawing.meshes import Mesh
 
 Kind = Literal["bodies", "inertias", "joints", "constraints", "paths", "visuals"]
 KINDS: tuple[Kind, ...] = get_args(Kind)

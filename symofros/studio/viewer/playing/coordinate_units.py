@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from symofros.mechanics.beams.theories import theory_of
-from symofros.mechanics.topology.coordinates import joint_units
-from symofros.mechanics.topology.tree import SpanningTree
+from symofros.mechanics.beams import theory_of
+from symofros.mechanics.topology import SpanningTree, joint_units
 
 
 def coordinate_units(tree: SpanningTree) -> dict[str, str]:

@@ -6,12 +6,9 @@ from typing import Any, get_args
 
 import numpy as np
 
-from symofros.description.beams.elastic import Direction
-from symofros.description.beams.shapes import Family, Samples, UserShape
-from symofros.description.values import as_value
+from symofros.description import Direction, Family, Samples, UserShape, as_value
 from symofros.errors import DescriptionError, Problem, did_you_mean
-from symofros.mechanics.beams.shape_functions import MAX_MODES, FamilyError
-from symofros.mechanics.beams.theories import THEORIES
+from symofros.mechanics.beams import MAX_MODES, THEORIES, FamilyError
 from symofros.studio.editor.editing.data_edits import EditError
 
 POINTS = 65

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 
-from symofros.base.user_functions import named_function, raised_where
+from symofros.simulation.user_functions import named_function, raised_where
 
 
 class Law:

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from symofros.base.npz import TooLargeError, read_npz
+from symofros.simulation.results.npz import TooLargeError, read_npz
 
 ARRAYS = {
     "t": np.linspace(0.0, 1.0, 5),

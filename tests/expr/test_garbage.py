@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from symofros.base.garbage import collect_rarely
+from symofros.expr.garbage import collect_rarely
 
 
 @pytest.fixture(autouse=True)

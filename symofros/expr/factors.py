@@ -1,4 +1,4 @@
-"""Forward dynamics: M v' = Q - h by the factorisation M = L^T D L, which keeps the zeros between branches.
+"""Linear systems M x = r by the factorisation M = L^T D L, which keeps the zeros between branches of a tree.
 
 Eliminating from the tips to the base fills nothing in: L has an entry where M has one (Featherstone 2005, "Efficient
 factorization of the joint-space inertia matrix for branched kinematic trees"; docs/theory/rigid.md, section 7.1).
@@ -12,22 +12,23 @@ from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.graph import Graph
 from symofros.expr.packs.combine import linear_combination
 from symofros.expr.packs.pack import MIN_LANES, WIDTH, Pack, SignedPack
-from symofros.mechanics.dynamics.mass_matrix import Matrix
+
+Matrix = list[list[Edge]]
 
 # Rows of short matrices are cheaper by scalars, measured: from so many speeds on, packs of so many lanes pay.
 _MANY, _LANES = 16, 4
 
 
-class SingularMassMatrixError(ArithmeticError):
-    """M has no inverse in any state.
+class SingularMatrixError(ArithmeticError):
+    """A matrix has no inverse, whatever its inputs are.
 
     Attributes:
-        speed: Index of one whose row depends on those of the speeds after it.
+        row: Index of a row that depends on those after it.
     """
 
-    def __init__(self, speed: int) -> None:
-        super().__init__(f"row {speed} depends on the rows after it")
-        self.speed = speed
+    def __init__(self, row: int) -> None:
+        super().__init__(f"row {row} depends on the rows after it")
+        self.row = row
 
 
 class Factors:
@@ -38,7 +39,7 @@ class Factors:
         M: Symmetric, with tree-shaped zeros; not changed.
 
     Raises:
-        SingularMassMatrixError: A pivot is the number zero.
+        SingularMatrixError: A pivot is the number zero.
     """
 
     def __init__(self, g: Graph, M: Matrix) -> None:
@@ -50,7 +51,7 @@ class Factors:
         self._L: list[_Row] = []
         for k in reversed(range(self._n)):
             if rows[k][k] == ZERO:
-                raise SingularMassMatrixError(k)
+                raise SingularMatrixError(k)
             self._inverse[k] = g.div(ONE, rows[k][k])
             self._L.insert(0, rows[k].times(self._inverse[k], k))
             for i in reversed(range(k)):
@@ -62,7 +63,7 @@ class Factors:
         return sum(self._L[k][i] != ZERO for k in range(self._n) for i in range(k))
 
     def solve(self, right: Sequence[Edge]) -> list[Edge]:
-        """The solution x of M x = right (nv)."""
+        """The solution x of M x = right (n)."""
         g, L = self._g, self._L
         residue = _Row.of(g, right, L[0].min_lanes) if L else _Row.of(g, right)
         x: list[Edge] = [ZERO] * self._n
@@ -75,7 +76,7 @@ class Factors:
         return x
 
     def solve_columns(self, right: Matrix) -> Matrix:
-        """The solution X of M X = right (nv rows), column by column."""
+        """The solution X of M X = right (n rows), column by column."""
         count = len(right[0]) if right else 0
         rows = [_Row.of(self._g, row) for row in right]
         for k in reversed(range(self._n)):
