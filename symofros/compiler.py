@@ -221,7 +221,7 @@ class Compilation:
     def model_by_vectors(self, functions: Collection[str]) -> Model:
         """Some of the requested functions, which C evaluates for several states at a time, in one library."""
         units = self._units(find_toolchain(self.options.compiler))
-        return self._model(units, None, units.by_vectors(self.requests, functions))
+        return self._model(units, None, units.by_vectors(self.requests, functions), tell=False)
 
     def interpreted_model(self) -> Model:
         """The requested functions on the NumPy interpreter, by the program that C is written of."""
@@ -236,6 +236,7 @@ class Compilation:
         units: UnitCompiler,
         on_demand: Callable[[Sequence[Key], Callable[[], None] | None], Unit] | None,
         *made: Unit,
+        tell: bool = True,
     ) -> Model:
         return Model(
             self.record,
@@ -247,6 +248,7 @@ class Compilation:
             origin=partial(compile_system, self.system, self.options),
             device_code=units.device_code,
             instants=instants_at(self.tree),
+            routes=units.routes if tell else None,
         )
 
     def library(self, precision: Precision = "double") -> tuple[Path, str]:

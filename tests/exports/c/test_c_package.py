@@ -215,3 +215,18 @@ def test_other_methods(tmp_path: Path, method: str) -> None:
     build(tmp_path, "example")
     found = last_state(run("./example", "0.2", "0.001", "--fast", cwd=tmp_path))
     assert relative(found["q"], trajectory("four_bar", 0.2).q[-1]) < (1e-2 if "euler" in method else 1e-5)
+
+
+def test_directional_derivatives_under_sanitizers(tmp_path: Path) -> None:
+    """Along quaternions of a prescribed ball joint, too, whose lengths are taken out of what they change."""
+    ball = sf.Joint("ball", "ball", prescribed=True)
+    hinge = sf.Joint("hinge", "revolute", "base", "end", axis=(0, 1, 0), actuated=True)
+    bodies = (
+        sf.RigidBody("base", ball, sf.Inertia(1.0, (0.1, 0, 0), (1, 1, 1)), (sf.Frame("end", (0.5, 0, 0)),)),
+        sf.RigidBody("arm", hinge, sf.Inertia(1.0, (0.3, 0, 0.1), (0.1, 0.2, 0.2))),
+    )
+    sf.export(sf.System("driven", bodies), "c", tmp_path)
+    (tmp_path / "main.c").write_text((HERE / "directional.c").read_text())
+    flags = (*STRICT, "-O0", "-g", *sanitizers("gcc", "undefined,address"))
+    run("gcc", *flags, "-o", "directional", *sources(tmp_path), "-lm", cwd=tmp_path)
+    assert float(run("./directional", cwd=tmp_path)) < 1e-6
