@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from symofros.description.beams import sections as sections
     from symofros.description.beams.beam import Beam as Beam
     from symofros.description.beams.beam import BeamLoad as BeamLoad
-    from symofros.description.beams.beam import Samples as Samples
+    from symofros.description.beams.shapes import Samples as Samples
     from symofros.description.constraints import Closure as Closure
     from symofros.description.constraints import Constraint as Constraint
     from symofros.description.constraints import Coupling as Coupling

@@ -23,7 +23,6 @@ from pathlib import Path
 
 from symofros.base.arguments import check_argument
 from symofros.base.options import Options
-from symofros.description.beams.beam import Beam
 from symofros.description.system import System
 from symofros.errors import CompileError, CompilerMissingWarning, DescriptionError, InconsistentModelWarning, Problem
 from symofros.expr.program import Program
@@ -264,7 +263,7 @@ class Compilation:
 
 def inconsistencies(system: System) -> Iterator[str]:
     """What is warned of: beams that soften when they spin, as they lack what would stiffen them; unused inertia."""
-    beams = [body for body in system.bodies if isinstance(body, Beam)]
+    beams = system.beams
     if not beams:
         return
     numbers = Numbers(system)

@@ -37,10 +37,12 @@ ALLOWED = table("""
     native:
     expr: base errors
     description: base errors expr
-    mechanics.beams: expr description
+    # What the mechanics of one frame are made of; a theory of beams answers in it.
+    mechanics.spatial: base expr description
+    mechanics.beams: expr description mechanics.spatial
     mechanics.topology: base errors expr description mechanics.beams
-    mechanics.kinematics: base expr description mechanics.beams mechanics.topology
-    mechanics.dynamics: base errors expr description mechanics.beams mechanics.topology
+    mechanics.kinematics: base expr description mechanics.spatial mechanics.beams mechanics.topology
+    mechanics.dynamics: base errors expr description mechanics.spatial mechanics.beams mechanics.topology
         mechanics.kinematics
     generator.passes: expr
     # Declarations and constants are read from the headers of native.
@@ -87,7 +89,7 @@ ALLOWED = table("""
     studio.editor: base errors expr description mechanics.beams mechanics.topology
         runtime compiler simulation diagrams diagrams.files exports studio.viewer harness __init__
     # Passes left out in turn, for studies: their context managers reach into every stage.
-    generator.ablation: base expr mechanics.kinematics mechanics.dynamics generator.passes generator.codegen
+    generator.ablation: base expr mechanics.spatial mechanics.dynamics generator.passes generator.codegen
         runtime
     # What tools that look inside may use; nothing in the package imports it.
     tools: base description compiler expr generator.passes generator.ablation runtime simulation diagrams

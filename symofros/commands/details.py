@@ -24,7 +24,7 @@ def details(tree: SpanningTree) -> dict[str, Any]:
             "kind": "beam" if isinstance(body, Beam) else "rigid",
             "mass": None,
         }
-        inertia = None if isinstance(body, Beam) else body.inertia
+        inertia = body.inertia
         if isinstance(body, Beam):
             stated["mass"] = _finite(beam_mass(body, numbers))
         elif inertia is not None:

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from symofros.description.beams.beam import CENTERS as CENTERS
-from symofros.description.beams.beam import DIRECTIONS as DIRECTIONS
-from symofros.description.beams.beam import PRE_STRAINS as PRE_STRAINS
 from symofros.description.beams.beam import STATION as STATION
 from symofros.description.beams.beam import STATIONS as STATIONS
-from symofros.description.beams.beam import STRAINS as STRAINS
 from symofros.description.beams.beam import Beam as Beam
-from symofros.description.beams.beam import Direction as Direction
-from symofros.description.beams.beam import Family as Family
-from symofros.description.beams.beam import Samples as Samples
-from symofros.description.beams.beam import UserShape as UserShape
+from symofros.description.beams.elastic import CENTERS as CENTERS
+from symofros.description.beams.elastic import DIRECTIONS as DIRECTIONS
+from symofros.description.beams.elastic import ELASTIC as ELASTIC
+from symofros.description.beams.elastic import PRE_STRAINS as PRE_STRAINS
+from symofros.description.beams.elastic import STRAINS as STRAINS
+from symofros.description.beams.elastic import Direction as Direction
+from symofros.description.beams.shapes import Family as Family
+from symofros.description.beams.shapes import Samples as Samples
+from symofros.description.beams.shapes import UserShape as UserShape
 from symofros.description.constraints import Closure as Closure
 from symofros.description.constraints import Coupling as Coupling
 from symofros.description.constraints import KnifeEdge as KnifeEdge

@@ -216,7 +216,7 @@ class System:
             "notes",
         ):
             object.__setattr__(self, name, tuple(getattr(self, name)))
-        if any(isinstance(body, Beam) and body.segments > 1 for body in self.bodies):
+        if any(body.segments > 1 for body in self.beams):
             self._divide_beams()
         # What binds coordinates comes first, as it does in files.
         ordered = sorted(self.constraints, key=section_order)
@@ -225,9 +225,14 @@ class System:
         object.__setattr__(self, "origin", MappingProxyType(dict(self.origin)))
         object.__setattr__(self, "visuals", MappingProxyType(dict(self.visuals)))
 
+    @property
+    def beams(self) -> tuple[Beam, ...]:
+        """The bodies that are beams, in their order."""
+        return tuple(body for body in self.bodies if isinstance(body, Beam))
+
     def _divide_beams(self) -> None:
         """Put the segments of beams in their places, and what is fixed to a beam's tip on the last of them."""
-        divided = [body for body in self.bodies if isinstance(body, Beam) and body.segments > 1]
+        divided = [body for body in self.beams if body.segments > 1]
         anchors, bodies, origin = SegmentAnchors(divided), list[Body](), dict(self.origin)
         for body in self.bodies:
             placed = body if body.joint is None else replace(body, joint=anchors.joint(body.joint))

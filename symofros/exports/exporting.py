@@ -16,7 +16,7 @@ from symofros.base.functions import FRAME_FUNCTIONS, exported
 from symofros.base.names import coordinate_of, identifier, speed_of
 from symofros.base.options import Options
 from symofros.compiler import GENERATOR, Compilation, compile_system
-from symofros.description import Beam, System
+from symofros.description import System
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.program.compiled import resolve
 from symofros.errors import DescriptionError, ExportError, Problem, UnknownNameError, did_you_mean
@@ -218,7 +218,7 @@ def _material(
     chosen = target == "c" and bool(further)
     reactions = _reactions(system) if target == "c" and not chosen else ()
     needs = (*stepping.method.family.functions, *reactions)
-    if any(isinstance(body, Beam) and body.modes for body in system.bodies):
+    if any(body.modes for body in system.beams):
         needs = (*needs, "beam_stiffness", "mass_matrix")
     instants = Compilation(system).has_instants
     if target in _STEPPED and instants:
@@ -267,7 +267,7 @@ def _material(
 def _reactions(system: System) -> tuple[str, ...]:
     """Names of the functions of reactions: efforts of drives and forces inside beams where there are any."""
     prescribed = any(body.joint is not None and body.joint.prescribed for body in system.bodies)
-    inside = any(isinstance(body, Beam) and body.modes and body.stations for body in system.bodies)
+    inside = any(body.modes and body.stations for body in system.beams)
     wanted = {"joint_wrenches": True, "prescribed_efforts": prescribed, "section_forces": inside}
     return tuple(name for name in REACTIONS if wanted[name])
 

@@ -22,8 +22,8 @@ from symofros.generator.codegen.statements import StatementWriter
 from symofros.generator.passes import stage
 from symofros.generator.passes.chain import chain_sums
 from symofros.mechanics.dynamics.bodies import inertia
-from symofros.mechanics.kinematics import rotations
-from symofros.mechanics.kinematics.rotations import MatrixRotation, RotationProduct
+from symofros.mechanics.spatial import rotations
+from symofros.mechanics.spatial.rotations import MatrixRotation, RotationProduct
 from symofros.runtime.build.toolchain import DEFAULT_FLAGS
 
 Without = Callable[[], AbstractContextManager[object]]

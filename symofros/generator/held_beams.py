@@ -6,7 +6,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from symofros.description.beams.beam import Beam
 from symofros.description.constraints import Closure
 from symofros.mechanics.topology.tree import SpanningTree
 from symofros.runtime.model import Model
@@ -68,5 +67,5 @@ def held_beams(tree: SpanningTree, model: Model) -> Iterator[str]:
 def _unstretched(tree: SpanningTree) -> Iterator[tuple[str, tuple[int, int]]]:
     """Elastic beams without functions of stretch: name, first speed and number of elastic coordinates."""
     for link in tree.links:
-        if isinstance(link.tip_of, Beam) and link.tip_of.modes and not link.tip_of.stretch:
+        if link.tip_of is not None and link.tip_of.modes and not link.tip_of.stretch:
             yield link.tip_of.name, link.v

@@ -7,14 +7,12 @@ import math
 
 from symofros.base.names import TIME
 from symofros.base.options import Options
-from symofros.description.beams.beam import Beam
 from symofros.description.constraints import AXES, Closure
 from symofros.description.forces import Friction, Stop
 from symofros.description.system import System
 from symofros.description.values import symbols
 from symofros.expr.expression import evaluate
-from symofros.mechanics.beams.deformation import small_coordinates
-from symofros.mechanics.beams.strains import strains_of
+from symofros.mechanics.beams.theories import theory_of
 from symofros.mechanics.dynamics.constraints.measures import measures_of
 from symofros.mechanics.dynamics.constraints.wrenches import acts_on_bodies
 from symofros.mechanics.kinematics.joint import neutral_coordinates
@@ -44,7 +42,7 @@ def model_record(tree: SpanningTree, options: Options) -> ModelRecord:
             driven += (*neutral_coordinates(link.joint, nq), *(0.0,) * (2 * nv))
             continue
         if link.tip_of is not None:
-            sizes = _sizes(tree, link.tip_of)
+            sizes = theory_of(link.tip_of).sizes(evaluate(link.tip_of.length, tree.system.parameter_values()))
             lower += [-size for size in sizes]
             upper += sizes
             neutral += (0.0,) * n
@@ -118,13 +116,6 @@ def _friction_speeds(tree: SpanningTree) -> tuple[int, ...]:
         for element in link.joint.elements
         if isinstance(element, Friction)
     )
-
-
-def _sizes(tree: SpanningTree, beam: Beam) -> tuple[float, ...]:
-    """Sizes of elastic coordinates up to which a beam's theory holds; of a rod, what turns it by a right angle."""
-    if beam.theory == "strain":
-        return strains_of(beam).sizes
-    return small_coordinates(beam, evaluate(beam.length, tree.system.parameter_values()))
 
 
 def _closure(tree: SpanningTree, closure: Closure) -> ClosureRecord:

@@ -257,8 +257,8 @@ class ElasticBeam:
 
 
 @dataclass(frozen=True)
-class ElasticRod(ElasticBeam):
-    """A geometrically exact rod: only the integration over its sections errs (docs/theory/rods.md, section 6).
+class ExactElasticBeam(ElasticBeam):
+    """A geometrically exact beam, a rod: only the integration over its sections errs (docs/theory/rods.md, section 6).
 
     Angles are those by which each coordinate alone turns sections, made small: runs keep the state that turns a rod
     most, and no such angle reaches a limit, which is one of second-order theory.

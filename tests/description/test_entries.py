@@ -9,7 +9,8 @@ from typing import Any
 import pytest
 
 import symofros as sf
-from symofros.description.beams.beam import BeamLoad, Samples
+from symofros.description.beams.beam import BeamLoad
+from symofros.description.beams.shapes import Samples
 
 CLASSES: tuple[Any, ...] = (
     sf.Beam,

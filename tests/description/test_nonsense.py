@@ -12,7 +12,8 @@ import pytest
 import sympy
 
 import symofros as sf
-from symofros.description.beams.beam import BeamLoad, Samples
+from symofros.description.beams.beam import BeamLoad
+from symofros.description.beams.shapes import Samples
 
 NOUNS: tuple[Any, ...] = (
     *(sf.System, sf.RigidBody, sf.Beam, sf.Joint, sf.Frame, sf.Inertia, sf.Parameter, sf.Input, sf.Limits),

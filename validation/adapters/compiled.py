@@ -189,7 +189,7 @@ def untruncated(system: sf.System) -> sf.System:
     Geometrically exact rods keep every term.
     """
     bodies = [
-        replace(body, retain="all") if isinstance(body, sf.Beam) and body.theory == "second_order" else body
+        replace(body, retain="all") if isinstance(body, sf.Beam) and not body.elastic.is_exact else body
         for body in system.bodies
     ]
     return replace(system, bodies=tuple(bodies))
@@ -205,7 +205,7 @@ def without_rotary(system: sf.System) -> sf.System:
 
 
 def _of_elements(beam: sf.Beam) -> sf.Beam:
-    if beam.theory == "strain":
+    if beam.elastic.is_exact:
         return replace(beam, sections=max(beam.sections, max(beam.counts) + MORE_SECTIONS))
     return replace(beam, rotary_inertia=False)
 

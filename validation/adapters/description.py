@@ -182,7 +182,7 @@ def build(subject: Subject) -> StatedForces | Unsupported:
         "loads": any(body.loads for body in subject.system.bodies),
         "connections": subject.system.connections,
         "potentials": subject.system.potentials,
-        "beams": any(isinstance(body, sf.Beam) for body in subject.system.bodies),
+        "beams": bool(subject.system.beams),
     }
     beyond = [name for name, stated in kinds.items() if stated]
     if beyond:

@@ -61,5 +61,5 @@ def stores_energy(system: sf.System) -> bool:
     """Whether anything but the weight has potential energy."""
     joints = [body.joint for body in system.bodies if body.joint is not None]
     springs = any(isinstance(element, (sf.Spring, sf.Stop)) for joint in joints for element in joint.elements)
-    strained = any(isinstance(body, sf.Beam) and body.modes for body in system.bodies)
+    strained = any(body.modes for body in system.beams)
     return springs or strained or bool(system.connections or system.potentials)

@@ -117,7 +117,7 @@ def clamped(system: sf.System, name: str) -> sf.Model:
     assert isinstance(beam, sf.Beam)
     held = sf.Joint("clamp", "fixed")
     alone = replace(beam, joint=held, frames=(), loads=())
-    if beam.theory == "second_order":
+    if not beam.elastic.is_exact:
         alone = replace(alone, retain="all")
     described = sf.System(f"{name}, clamped", (alone,), system.parameters, gravity=(0.0, 0.0, 0.0))
     return sf.compile(described, sf.Options(functions=("generalized_force",)))

@@ -35,7 +35,7 @@ STATES = 50
 
 def omitted_orders(system: sf.System) -> list[str]:
     """The orders below "all" of beams that deform, lowest first."""
-    beams = [body for body in system.bodies if isinstance(body, sf.Beam) and body.theory == "second_order"]
+    beams = [beam for beam in system.beams if not beam.elastic.is_exact]
     retained = {body.retain for body in beams if body.modes}
     return [order for order in POWERS if order in retained]
 

@@ -7,8 +7,6 @@ from functools import cached_property
 
 import numpy as np
 
-import symofros as sf
-
 from ..adapters import Route, compiled, interpreted
 from ..adapters.compiled import SymofrosEngine
 from ..contract.interface import States, Subject
@@ -79,7 +77,7 @@ class ModelVariants:
         if system == compiled.untruncated(self.subject.system):
             return self.untruncated
         subject = replace(self.subject, system=system)
-        finer = any(isinstance(body, sf.Beam) and body.theory == "strain" for body in system.bodies)
+        finer = any(beam.elastic.is_exact for beam in system.beams)
         return interpreted.build(subject) if finer else compiled.build(subject, compiled.UNOPTIMISED)
 
     @cached_property

@@ -29,7 +29,7 @@ MOTORS = ("q1", "q2", "q3")
 def softened(foreshortening: bool) -> sf.System:
     """The robot with foreshortening on or off in both links."""
     system = MODELS["planar_robot"]
-    beams = [body for body in system.bodies if isinstance(body, sf.Beam)]
+    beams = system.beams
     stated: dict[str, str] = {} if foreshortening else {"retain": "zeroth_order"}
     changed = (replace(beam, foreshortening=foreshortening, **stated) for beam in beams)  # type: ignore[arg-type]
     return system.with_bodies(*changed)

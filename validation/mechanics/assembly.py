@@ -285,7 +285,7 @@ class _AssemblyBuilder:
         part, along_x = Part("elastic", joint.axis, 0, n, n), np.array([1.0, 0.0, 0.0])
         length = float(self.numbers([beam.length])[0])
         own = described.q, described.v
-        is_rod = beam.theory == "strain"
+        is_rod = beam.elastic.is_exact
         mover = Mover(
             beam.name, joint.name, joint, part, False, root, X_BF, along_x, *own, length=length, is_rod=is_rod
         )

@@ -65,6 +65,16 @@ _MIRRORS = {
         "tests/diagrams/run/test_runs.py",
         "tests/diagrams/run/examination/test_controllers.py",
     ),
+    "symofros/mechanics/beams/second_order": (
+        "tests/mechanics/beams",
+        "tests/mechanics/beams/test_integrals.py",
+        "tests/mechanics/dynamics/bodies/test_beams.py",
+    ),
+    "symofros/mechanics/beams/strain": (
+        "tests/mechanics/beams",
+        "tests/mechanics/beams/test_rod.py",
+        "tests/mechanics/beams/test_rod_outputs.py",
+    ),
     "symofros/mechanics/topology/beams.py": (
         "tests/mechanics/topology",
         "tests/mechanics/topology/test_beams.py",

@@ -170,7 +170,7 @@ def first_scene(system: sf.System, assembly: Assembly) -> Scene:
     if model.nc:
         start = sf.assemble(model, q, v)
         q, v = start.q, start.v
-    if any(isinstance(body, sf.Beam) for body in system.bodies):  # Small, as its theory asks for.
+    if bool(system.beams):  # Small, as its theory asks for.
         q, v = SMALL * q, SMALL * v
     u = np.linspace(0.3, 0.5, model.nu)
     return Scene(model, system, Manifold.of(assembly), q, v, lambda *_: u, u)

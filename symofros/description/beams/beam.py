@@ -2,94 +2,43 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, fields
-from itertools import combinations, pairwise
+from itertools import pairwise
 from numbers import Real
 from typing import Any, Literal, get_args
 
 from symofros.base.arguments import entries_of
+from symofros.description.beams.elastic import (
+    AXIS,
+    CENTERS,
+    ELASTIC,
+    PRE_STRAINS,
+    STRAIN_STIFFNESSES,
+    STRAINS,
+    THEORIES,
+    Direction,
+    ElasticDescription,
+    Point,
+    Theory,
+)
+from symofros.description.beams.shapes import FAMILIES, Family, UserShape, as_shape
+from symofros.description.beams.stiffness import IN_MATRIX, stiffness_rows
 from symofros.description.entries import pairs_of, refuses_unknown_entries
 from symofros.description.frames import Frame
 from symofros.description.joints.joint import Joint
 from symofros.description.values import ORIGIN, Value, Vector, as_value, as_values, as_vector
 from symofros.errors import DescriptionError, Problem, did_you_mean
 
-Direction = Literal["bend_y", "bend_z", "twist", "stretch", "shear_y", "shear_z"]
-# Strains of a geometrically exact rod; a beam of second order deforms in the first three directions.
-STRAINS: tuple[Direction, ...] = get_args(Direction)
-DIRECTIONS = STRAINS[:3]
-Family = Literal["spline", "polynomial", "legendre", "clamped_free", "hermite", "user"]
-FAMILIES: tuple[Family, ...] = get_args(Family)
 Retain = Literal["zeroth_order", "first_order", "all"]
 RETAIN: tuple[Retain, ...] = get_args(Retain)
-Theory = Literal["second_order", "strain"]
-THEORIES: tuple[Theory, ...] = get_args(Theory)
 MOST_SECTIONS = 64
 # Stations x/L of section forces, where none are stated.
 STATIONS = tuple(k / 8 for k in range(9))
 
-# Stiffnesses that rods alone have.
-ROD_STIFFNESSES = ("EA", "GA_y", "GA_z")
 # What may depend on the station x, and so taper.
-SECTION = ("rhoA", "EI_y", "EI_z", "GJ", *ROD_STIFFNESSES, "rhoJ", "rhoI_y", "rhoI_z", "EI_yz", "rhoI_yz")
-# Points (y, z) of the section, of rods alone, which may depend on it too.
-CENTERS = ("tension_center", "shear_center", "mass_center")
-# Strains of a rod without stress: functions of the station as well.
-PRE_STRAINS = ("twist_rate", "curvature_y", "curvature_z")
-# Strains in the order of a matrix of stiffness, and what such a matrix takes the place of.
-MATRIX_ORDER = ("stretch", "shear_y", "shear_z", "twist_rate", "curvature_y", "curvature_z")
-IN_MATRIX = ("EI_y", "EI_z", "GJ", *ROD_STIFFNESSES, "EI_yz", "tension_center", "shear_center")
+SECTION = ("rhoA", "EI_y", "EI_z", "GJ", *STRAIN_STIFFNESSES, "rhoJ", "rhoI_y", "rhoI_z", "EI_yz", "rhoI_yz")
 STATION = "x"
-
-
-@refuses_unknown_entries
-@dataclass(frozen=True)
-class Samples:
-    """A shape function by its values at stations; a cubic spline goes through them, the cubic itself where it is one.
-
-    Attributes:
-        xi: Stations x/L of the samples, rising from 0 to 1.
-        values: Values of the function at the stations.
-    """
-
-    xi: tuple[float, ...]
-    values: tuple[float, ...]
-
-    def __post_init__(self) -> None:
-        """Convert, and check the stations."""
-        object.__setattr__(self, "xi", tuple(float(x) for x in self.xi))
-        object.__setattr__(self, "values", tuple(float(x) for x in self.values))
-        rising = all(a < b for a, b in zip(self.xi, self.xi[1:], strict=False))
-        if len(self.xi) < 4 or len(self.xi) != len(self.values) or not rising or (self.xi[0], self.xi[-1]) != (0, 1):
-            raise DescriptionError(
-                Problem(
-                    "sampled shape function: unusable stations",
-                    f"{len(self.xi)} stations, {len(self.values)} values",
-                    "at least 4 stations that rise from 0 to 1, and one value for each",
-                    "sort the stations, divide them by the length, and give each its value",
-                )
-            )
-        if not all(map(math.isfinite, self.values)):
-            at = next(i for i, value in enumerate(self.values) if not math.isfinite(value))
-            raise DescriptionError(
-                Problem(
-                    "sampled shape function: a value is not a finite number",
-                    f"{self.values[at]} at xi = {self.xi[at]:g}",
-                    "values of shape functions are finite numbers",
-                    "mend or leave out the sample",
-                )
-            )
-
-
-# Difference of two entries across the diagonal of a matrix of stiffness, over the root of the product of the
-# diagonal's: programs for sections write seven digits.
-_ASYMMETRY = 1e-6
-
-UserShape = Value | Samples
-Point = tuple[Value, Value]
-_AXIS: Point = (0.0, 0.0)
 
 
 @refuses_unknown_entries
@@ -231,9 +180,9 @@ class Beam:
     shear_z: int = 0
     EI_yz: Value = 0.0
     rhoI_yz: Value = 0.0
-    tension_center: Point = _AXIS
-    shear_center: Point = _AXIS
-    mass_center: Point = _AXIS
+    tension_center: Point = AXIS
+    shear_center: Point = AXIS
+    mass_center: Point = AXIS
     stiffness: tuple[tuple[Value, ...], ...] = ()
 
     def __post_init__(self) -> None:
@@ -250,7 +199,7 @@ class Beam:
         entries = {key: entries_of(listed) for key, listed in given.items()}
         functions = {key: [given[key]] if listed is None else listed for key, listed in entries.items()}
         directions = [key for key in STRAINS if key in functions]
-        shapes = tuple((key, tuple(_shape(x, f"{what}: {key}") for x in functions[key])) for key in directions)
+        shapes = tuple((key, tuple(as_shape(x, f"{what}: {key}") for x in functions[key])) for key in directions)
         object.__setattr__(self, "shapes", shapes)
         choices = (
             ("family", self.family, FAMILIES),
@@ -294,7 +243,7 @@ class Beam:
         """Convert the matrix of stiffness, and check that it stands alone."""
         rows = stiffness_rows(self.stiffness, f"{what}: stiffness")
         object.__setattr__(self, "stiffness", rows)
-        stated = [name for name in IN_MATRIX if getattr(self, name) not in (0.0, _AXIS)]
+        stated = [name for name in IN_MATRIX if getattr(self, name) not in (0.0, AXIS)]
         if rows and stated:
             rule = "a matrix has all stiffnesses, about the axis"
             raise DescriptionError(
@@ -357,7 +306,8 @@ class Beam:
                     "leave it out",
                 )
             )
-        if self.theory != "strain" and any(load.axes == "section" for load in self.loads):
+        elastic = self.elastic
+        if not elastic.is_exact and any(load.axes == "section" for load in self.loads):
             raise DescriptionError(
                 Problem(
                     f"{what}: a load along the axes of the sections",
@@ -366,38 +316,24 @@ class Beam:
                     "state theory: strain, or put a rigid body with a load on a frame of the beam",
                 )
             )
-        lacking_direction = next((key for key, _ in self.shapes if key not in DIRECTIONS), None)
-        if self.theory != "strain" and lacking_direction is not None:
+        lacking_direction = next((key for key, _ in self.shapes if key not in elastic.directions), None)
+        if lacking_direction is not None:
             raise DescriptionError(
                 Problem(
                     f"{what}: shapes for {lacking_direction}",
                     f"theory '{self.theory}'",
-                    f"a beam of second order in its displacements has functions for {', '.join(DIRECTIONS)}",
+                    f"{elastic.noun} has functions for {', '.join(elastic.directions)}",
                     f"leave shapes for {lacking_direction} out, or state theory: strain",
                 )
             )
-        if self.theory == "strain":
-            plain: dict[str, Any] = {"retain": "first_order", "foreshortening": True}
-            theory, lacking = "a geometrically exact rod (theory 'strain')", "keeps every term, and shortens by itself"
-        else:
-            plain = (
-                {"sections": 0, "stiffness": ()}
-                | dict.fromkeys((*PRE_STRAINS, *ROD_STIFFNESSES, "EI_yz", "rhoI_yz"), 0.0)
-                | dict.fromkeys(STRAINS[3:], 0)
-                | dict.fromkeys(CENTERS, _AXIS)
-            )
-            theory, lacking = (
-                "a beam of second order in its displacements",
-                "is straight without stress, neither stretches nor shears, has its centres on the axis, and principal"
-                " axes y and z",
-            )
-        for label, value in plain.items():
-            if getattr(self, label) != value:
+        defaults = {item.name: item.default for item in fields(self)}
+        for label in elastic.lacking:
+            if getattr(self, label) != defaults[label]:
                 raise DescriptionError(
                     Problem(
                         f"{what}: {label} = {getattr(self, label)}",
                         f"theory '{self.theory}'",
-                        f"{theory} {lacking}: it has no entry {label}",
+                        f"{elastic.noun} {elastic.lacks}: it has no entry {label}",
                         f"leave {label} out, or state the other theory",
                     )
                 )
@@ -408,9 +344,14 @@ class Beam:
         return None
 
     @property
+    def elastic(self) -> ElasticDescription:
+        """The theory by which it is elastic."""
+        return ELASTIC[self.theory]
+
+    @property
     def is_coupled(self) -> bool:
         """Whether the section has a centre off the axis, axes that are no principal ones, or a matrix of stiffness."""
-        off = any(getattr(self, label) != _AXIS for label in CENTERS)
+        off = any(getattr(self, label) != AXIS for label in CENTERS)
         return off or bool(self.stiffness) or self.EI_yz != 0.0 or self.rhoI_yz != 0.0
 
     @property
@@ -452,43 +393,6 @@ class Beam:
     def plain_values(self) -> list[tuple[str, Value]]:
         """What may depend on parameters only, by label."""
         return [(item.name, getattr(self, item.name)) for item in fields(self) if item.name in ("length", "damping")]
-
-
-def stiffness_rows(stated: Any, label: str) -> tuple[tuple[Value, ...], ...]:
-    """A matrix of stiffness (6, 6), made symmetric where rounding left a difference; empty where none is stated.
-
-    Args:
-        stated: Its rows, or nothing.
-        label: What it is, for errors.
-
-    Raises:
-        DescriptionError: It has other rows, or is not symmetric.
-    """
-    listed = entries_of(stated)
-    listed = [stated] if listed is None else listed
-    if not listed:
-        return ()
-    size = len(MATRIX_ORDER)
-    if len(listed) != size:
-        rule = f"{size} rows of {size} entries: {', '.join(MATRIX_ORDER)}"
-        raise DescriptionError(Problem(label, f"{len(listed)} rows", rule, "give all, zeros included"))
-    rows = [list(as_values(row, size, f"{label}[{i}]")) for i, row in enumerate(listed)]
-    for i, j in combinations(range(size), 2):
-        a, b, first, second = rows[i][j], rows[j][i], rows[i][i], rows[j][j]
-        if a == b:
-            continue
-        if isinstance(a, float) and isinstance(b, float) and isinstance(first, float) and isinstance(second, float):
-            if abs(a - b) <= _ASYMMETRY * math.sqrt(abs(first * second)):
-                rows[i][j] = rows[j][i] = 0.5 * (a + b)
-                continue
-        rule = "a matrix of stiffness is symmetric: forces have the strain energy as their potential"
-        found = f"[{i}][{j}] is {a}, [{j}][{i}] is {b}"
-        raise DescriptionError(Problem(f"{label} is not symmetric", found, rule, "state the same value for both"))
-    return tuple(map(tuple, rows))
-
-
-def _shape(stated: Any, what: str) -> UserShape:
-    return stated if isinstance(stated, Samples) else as_value(stated, what)
 
 
 def _is_count(stated: Any, least: int) -> bool:

@@ -6,16 +6,9 @@ from typing import Annotated, Any, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from symofros.description.beams.beam import (
-    CENTERS,
-    MOST_SECTIONS,
-    SECTION,
-    STATIONS,
-    Beam,
-    BeamLoad,
-    Direction,
-    Samples,
-)
+from symofros.description.beams.beam import MOST_SECTIONS, SECTION, STATIONS, Beam, BeamLoad
+from symofros.description.beams.elastic import CENTERS, Direction
+from symofros.description.beams.shapes import Samples
 from symofros.description.yaml.derived import NounEntry
 from symofros.description.yaml.fields import Formula, Number, Six, fault
 from symofros.description.yaml.schema_section import SectionEntry

@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 from symofros.description.beams import sections
-from symofros.description.beams.beam import Theory
+from symofros.description.beams.elastic import Theory
 from symofros.description.yaml.fields import Formula, Number, ShapedEntry
 
 ShapeName = Literal["rectangle", "circle", "tube", "ellipse", "box", "i_section", "l_section", "polygon"]

@@ -16,7 +16,7 @@ def with_functions(system: System, count: int) -> System:
 
     With none it is the equivalent rigid robot of the paper's section 8: the control model.
     """
-    return system.with_bodies(*(_counted(body, count) for body in system.bodies if isinstance(body, Beam)))
+    return system.with_bodies(*(_counted(body, count) for body in system.beams))
 
 
 def _counted(beam: Beam, count: int) -> Beam:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 from symofros.base.names import c_string
-from symofros.description import Beam
 from symofros.exports.c.c_package import model_files
 from symofros.exports.c.c_text import comment
 from symofros.exports.c.unity import unity
@@ -61,7 +60,7 @@ def write_mex(material: Material, folder: Path) -> Exported:
         nc=record.nc,
     )
     shown = "\n".join(f"    {c_string(line)} {c_string(chr(10))}" for line in text.splitlines())
-    beams = [body for body in material.system.bodies if isinstance(body, Beam) and body.modes]
+    beams = [body for body in material.system.beams if body.modes]
     rows = [
         f"    {{{c_string(beam.name)}, {record.q_names.index(beam.coordinates[0])}, {beam.modes}}}" for beam in beams
     ]

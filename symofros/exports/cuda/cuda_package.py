@@ -10,7 +10,7 @@ from symofros.base.functions import FRAME_FUNCTIONS
 from symofros.base.names import identifier
 from symofros.base.options import Options
 from symofros.compiler import GENERATOR, Compilation
-from symofros.description import Beam, System
+from symofros.description import System
 from symofros.exports.c.c_text import comment, doubles
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.functions import NamedFunction, cell, functions_table, names_table
@@ -95,7 +95,7 @@ def _notes(made: Compilation, left_out: Sequence[str]) -> tuple[str, ...]:
         notes.append(
             f"no kernels of {', '.join(left_out)}: a routine with pivots finishes them; they are in the C file"
         )
-    if any(isinstance(body, Beam) and body.modes for body in made.system.bodies):
+    if any(body.modes for body in made.system.beams):
         notes.append("rollouts do not judge how far beams bend, as sf.simulate does: judge their records")
     if made.has_instants:
         notes.append(

@@ -90,11 +90,7 @@ def rigid_links(system: System, form: Literal["URDF", "MJCF"]) -> tuple[list[Rig
                 "export the model as an FMU, or replace these joints",
             )
         )
-    curved = [
-        body.name
-        for body in system.bodies
-        if isinstance(body, Beam) and any(getattr(body, label) != 0.0 for label in PRE_STRAINS)
-    ]
+    curved = [body.name for body in system.beams if any(getattr(body, label) != 0.0 for label in PRE_STRAINS)]
     if curved:
         raise ExportError(
             Problem(
@@ -217,7 +213,7 @@ def _beam_inertia(beam: Beam, numbers: Numbers) -> tuple[float, Array, Array]:
 
 def _lost(system: System) -> Iterator[str]:
     """What no format of numbers holds."""
-    beams = [body.name for body in system.bodies if isinstance(body, Beam) and body.modes]
+    beams = [body.name for body in system.beams if body.modes]
     if beams:
         yield f"beams as rigid bodies, without their elastic coordinates: {listed(beams)}"
     if system.parameters:

@@ -20,7 +20,8 @@ from functools import cache, lru_cache
 from itertools import pairwise
 from typing import NamedTuple
 
-from symofros.description.beams.beam import Direction, UserShape
+from symofros.description.beams.elastic import Direction
+from symofros.description.beams.shapes import UserShape
 from symofros.expr.expression import Expression, evaluate_extended
 from symofros.expr.numerics.extended import Extended, extended_context
 from symofros.mechanics.beams.piecewise import XI, Number, Piecewise, fitted, polynomial

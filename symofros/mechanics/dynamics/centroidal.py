@@ -9,11 +9,12 @@ from symofros.errors import DescriptionError, Problem
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.substitute import substitute
 from symofros.expr.vector import Vec3
-from symofros.mechanics.dynamics.acceleration import base_to_tip, no_wrench
-from symofros.mechanics.dynamics.bodies.inertia import first_moment_change, stated_inertias
+from symofros.mechanics.dynamics.acceleration import base_to_tip
+from symofros.mechanics.dynamics.bodies.inertia import stated_inertias
 from symofros.mechanics.dynamics.bodies.rotors import MovingRotor
 from symofros.mechanics.dynamics.jourdain import link_wrenches, subtree_wrenches, wrench_in_parent
 from symofros.mechanics.kinematics.links import TreeKinematics
+from symofros.mechanics.spatial.wrench import no_wrench
 from symofros.mechanics.topology.tree import BASE
 
 
@@ -41,7 +42,7 @@ def central_mass(kinematics: TreeKinematics) -> CentralMass:
     mass, moment = [body.m for body in stated], [body.mp_LLcm for body in stated]
     for beam in kinematics.beams:
         if beam.tip is not None:
-            moment[beam.root] = moment[beam.root] + first_moment_change(kinematics, beam)
+            moment[beam.root] = moment[beam.root] + beam.equations.first_moment_change()
     total, total_moment = ZERO, Vec3(g)
     for i, link in reversed(list(enumerate(kinematics.links))):
         in_parent = link.R_AL.apply(moment[i]) + link.p_AL.scaled(mass[i])

@@ -5,13 +5,13 @@ from __future__ import annotations
 from symofros.expr.edges import ZERO
 from symofros.expr.substitute import substitute
 from symofros.expr.vector import Vec3
-from symofros.mechanics.dynamics.bodies.inertia import LinkInertia
 from symofros.mechanics.dynamics.bodies.rotors import MovingRotor, is_on_turning_axes
 from symofros.mechanics.dynamics.derivatives.differentiation import by_inputs
 from symofros.mechanics.dynamics.jourdain import inertia_forces
 from symofros.mechanics.dynamics.mass_matrix import Matrix, mass_matrix
 from symofros.mechanics.dynamics.momentum import coadjoint
 from symofros.mechanics.kinematics.links import TreeKinematics
+from symofros.mechanics.spatial.inertia import LinkInertia
 
 
 def coriolis_matrix(

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.vector import Vec3
-from symofros.mechanics.dynamics.bodies.beams import kinetic_energy_twice
-from symofros.mechanics.dynamics.bodies.inertia import LinkInertia, first_moment_change
 from symofros.mechanics.dynamics.bodies.rotors import MovingRotor
 from symofros.mechanics.kinematics.links import TreeKinematics
+from symofros.mechanics.spatial.inertia import LinkInertia
 from symofros.mechanics.topology.tree import BASE
 
 
@@ -27,7 +26,7 @@ def kinetic_energy(kinematics: TreeKinematics, inertias: list[LinkInertia], roto
     for beam in kinematics.beams:
         if beam.tip is not None:
             w, v = speeds[beam.root]
-            twice_T = g.add(twice_T, kinetic_energy_twice(kinematics, beam, w, v, kinematics.links[beam.tip].speeds))
+            twice_T = g.add(twice_T, beam.equations.kinetic_energy_twice(w, v, kinematics.links[beam.tip].speeds))
     for rotor in rotors:
         spin = rotor.spin(kinematics)
         carrier_spin = ZERO if rotor.carrier == BASE else speeds[rotor.carrier][0].dot(rotor.axis)
@@ -44,7 +43,7 @@ def potential_energy(kinematics: TreeKinematics, inertias: list[LinkInertia], ba
     mass = [body.m for body in inertias]
     moment = [body.mp_LLcm for body in inertias]
     for beam in kinematics.beams:
-        moment[beam.root] = moment[beam.root] + first_moment_change(kinematics, beam)
+        moment[beam.root] = moment[beam.root] + beam.equations.first_moment_change()
     total = base.mp_LLcm
     for i, link in reversed(list(enumerate(kinematics.links))):
         about_Ao = link.R_AL.apply(moment[i]) + link.p_AL.scaled(mass[i])

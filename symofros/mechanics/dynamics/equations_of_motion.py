@@ -15,9 +15,9 @@ from symofros.expr.factors import Factors, SingularMatrixError
 from symofros.expr.graph import Graph
 from symofros.expr.substitute import substitute
 from symofros.expr.vector import Vec3
-from symofros.mechanics.dynamics.acceleration import LinkMotion, Wrench, base_to_tip
+from symofros.mechanics.dynamics.acceleration import base_to_tip
 from symofros.mechanics.dynamics.applied.forces import applied_wrenches, generalized_forces
-from symofros.mechanics.dynamics.bodies.inertia import LinkInertia, link_inertias
+from symofros.mechanics.dynamics.bodies.inertia import link_inertias
 from symofros.mechanics.dynamics.bodies.rotors import MovingRotor, rotors_of
 from symofros.mechanics.dynamics.constraints.rows import Constraints, Row
 from symofros.mechanics.dynamics.constraints.wrenches import closure_wrenches, wrenches_on_links
@@ -28,6 +28,8 @@ from symofros.mechanics.dynamics.wrenches.reactions import in_body_frames, presc
 from symofros.mechanics.dynamics.wrenches.section_forces import section_forces
 from symofros.mechanics.kinematics.frames import FrameKinematics
 from symofros.mechanics.kinematics.links import TreeKinematics, tree_kinematics
+from symofros.mechanics.spatial.inertia import LinkInertia
+from symofros.mechanics.spatial.wrench import LinkMotion, Wrench
 from symofros.mechanics.topology.physics import OTHER_FUNCTIONS
 from symofros.mechanics.topology.tree import SpanningTree
 
@@ -333,7 +335,7 @@ class EquationsOfMotion:
     @cached_property
     def frames(self) -> FrameKinematics:
         """Kinematics of the frames, at their deflected places."""
-        is_deflected = all(beam.order > 0 for beam in self.kinematics.beams)
+        is_deflected = all(beam.equations.order > 0 for beam in self.kinematics.beams)
         return FrameKinematics(
             self.kinematics if is_deflected else tree_kinematics(self.g, self.tree, deflected_tips=True)
         )

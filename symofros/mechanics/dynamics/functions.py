@@ -13,7 +13,7 @@ from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.instants import operands_function
 from symofros.expr.program import Function, Output, Program, Solver
 from symofros.expr.substitute import substitute
-from symofros.mechanics.beams.integrals import at_middle
+from symofros.mechanics.beams.theories import theory_of
 from symofros.mechanics.dynamics.constraints.measures import measures_of
 from symofros.mechanics.dynamics.constraints.rows import retracted
 from symofros.mechanics.dynamics.constraints.wrenches import acts_on_bodies
@@ -299,11 +299,11 @@ def _beam_stiffness(e: Equations, row: ModelFunction, methods: Methods, known: M
     for moving in e.kinematics.beams:
         if moving.tip is None:
             continue
-        beam, first = moving.forms.beam, e.kinematics.links[moving.tip].first_speed
+        beam, first = moving.equations.beam, e.kinematics.links[moving.tip].first_speed
         lengths.append(lower(beam.length))
-        judged = beam.theory != "strain"  # A rod does not err by its bending.
-        stiffnesses.append([lower(at_middle(EI, beam)) if judged else ZERO for EI in (beam.EI_z, beam.EI_y)])
-        for i, stiffness in enumerate(moving.forms.strain_energy.second_derivatives(), first):
+        judged = theory_of(beam).judged
+        stiffnesses.append([lower(judged.EI_z), lower(judged.EI_y)])
+        for i, stiffness in enumerate(moving.equations.strain_energy.second_derivatives(), first):
             K[i][first : first + beam.modes] = stiffness
     outputs = _vector("L", lengths), _matrix("EI", (len(lengths), 2), stiffnesses), _matrix("K", (e.nv, e.nv), K)
     return Function(row.name, "", row.inputs, outputs)

@@ -10,12 +10,12 @@ from collections.abc import Iterator, Sequence
 
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.vector import Vec3
-from symofros.mechanics.dynamics.acceleration import LinkMotion, Wrench, base_to_tip, inertia_wrench
-from symofros.mechanics.dynamics.bodies.beams import beam_forces
-from symofros.mechanics.dynamics.bodies.inertia import LinkInertia
+from symofros.mechanics.dynamics.acceleration import base_to_tip
 from symofros.mechanics.dynamics.bodies.rotors import MovingRotor
-from symofros.mechanics.kinematics.joint import PartialVelocity
 from symofros.mechanics.kinematics.links import MovingLink, TreeKinematics
+from symofros.mechanics.spatial.across import PartialVelocity
+from symofros.mechanics.spatial.inertia import LinkInertia
+from symofros.mechanics.spatial.wrench import LinkMotion, Wrench, inertia_wrench
 from symofros.mechanics.topology.tree import BASE
 
 
@@ -67,7 +67,8 @@ def link_wrenches(
     for beam in kinematics.beams:
         if beam.tip is not None:
             tip = kinematics.links[beam.tip]
-            deformation, modal = beam_forces(kinematics, beam, motions[beam.root], tip.speeds, tip.speed_rates(v_rate))
+            rates = tip.speed_rates(v_rate)
+            deformation, modal = beam.equations.inertia_forces(motions[beam.root], tip.speeds, rates)
             wrenches[beam.root] = wrenches[beam.root] + deformation
             total[tip.first_speed : tip.first_speed + len(modal)] = modal
     for rotor in rotors:

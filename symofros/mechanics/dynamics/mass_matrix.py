@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.packs.pack import WIDTH, SignedPack
 from symofros.expr.vector import Vec3
-from symofros.mechanics.dynamics.bodies.beams import added_momentum, modal_mass
-from symofros.mechanics.dynamics.bodies.inertia import LinkInertia, deformed, inertia_in_parent
+from symofros.mechanics.dynamics.bodies.inertia import inertia_in_parent
 from symofros.mechanics.dynamics.bodies.rotors import MovingRotor
 from symofros.mechanics.dynamics.wrenches.wrench_packs import (
     NO_WRENCHES,
@@ -16,8 +15,9 @@ from symofros.mechanics.dynamics.wrenches.wrench_packs import (
     with_wrench,
     wrenches_in_parent,
 )
-from symofros.mechanics.kinematics.joint import PartialVelocity
 from symofros.mechanics.kinematics.links import MovingLink, TreeKinematics, speeds_by_path
+from symofros.mechanics.spatial.across import PartialVelocity
+from symofros.mechanics.spatial.inertia import LinkInertia
 from symofros.mechanics.topology.tree import BASE
 
 Matrix = list[list[Edge]]
@@ -110,7 +110,7 @@ def _own_blocks(
     # Momenta of what a beam's sections before the tip carry, by speed; those links come after the tip.
     at_stations: dict[int, tuple[Vec3, Vec3]] = {}
     for beam in beam_at_tip.values():
-        composite[beam.root] = composite[beam.root] + deformed(kinematics, beam)
+        composite[beam.root] = composite[beam.root] + beam.equations.deformed()
     for i, link in reversed(list(enumerate(kinematics.links))):
         body = composite[i]
         body.mp_LLcm.named(f"mp_LKcm[{link.name}]")
@@ -119,12 +119,12 @@ def _own_blocks(
             f, n = _momentum(body, partial)
             row = link.first_speed + k
             for j, other in enumerate(link.partial_velocities[: k + 1], start=link.first_speed):
-                modal = modal_mass(beam_at_tip[i], j - link.first_speed, k) if i in beam_at_tip else ZERO
+                modal = beam_at_tip[i].equations.modal_mass(j - link.first_speed, k) if i in beam_at_tip else ZERO
                 _set(M, j, row, g.add(M[j][row], g.add(_virtual_power(other, f, n), modal)))
             if link.tip is not None:
                 at_stations[row] = _across_beam(link, f, n, at_stations.get(row, (Vec3(g), Vec3(g))))
                 continue
-            added = added_momentum(kinematics, beam_at_tip[i], k) if i in beam_at_tip else None
+            added = beam_at_tip[i].equations.momentum(k) if i in beam_at_tip else None
             if added is not None and row in at_stations:
                 added = added[0] + at_stations[row][0], added[1] + at_stations[row][1]
             momenta[row] = Momentum(i, row, f, n, added)

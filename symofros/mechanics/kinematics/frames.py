@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.vector import Mat3, Vec3
-from symofros.mechanics.kinematics.joint import PartialVelocity
 from symofros.mechanics.kinematics.links import TreeKinematics
+from symofros.mechanics.spatial.across import PartialVelocity
 from symofros.mechanics.topology.tree import BASE, NamedFrame
 
 

@@ -12,14 +12,12 @@ from dataclasses import dataclass
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Vec3
-from symofros.mechanics.beams.elastic import BeamForms, beam_forms
-from symofros.mechanics.beams.fields import EVERY_DEGREE
-from symofros.mechanics.beams.rod import Rod
-from symofros.mechanics.beams.rod_plane import rod_of
-from symofros.mechanics.kinematics.flexible import across_beam, across_rod
-from symofros.mechanics.kinematics.joint import AcrossJoint, Axis, PartialVelocity, across_joint
+from symofros.mechanics.beams.theories import theory_of
+from symofros.mechanics.beams.theory import BeamEquations
+from symofros.mechanics.kinematics.joint import Axis, across_joint
 from symofros.mechanics.kinematics.lowering import Lowering
-from symofros.mechanics.kinematics.rotations import (
+from symofros.mechanics.spatial.across import PartialVelocity
+from symofros.mechanics.spatial.rotations import (
     RotationProduct,
     constant_rotation,
     frame_with_axis,
@@ -90,19 +88,13 @@ class MovingBeam:
         root: Index of the link at its root.
         tip: Index of the link at its tip, which its elastic coordinates move; None for a rigid beam.
         stations: Indices of the links at its stations before the tip, which the same coordinates move.
-        forms: Inertia, strain energy and displacements of the beam as functions of the elastic coordinates; of a
-            geometrically exact rod its sections.
+        equations: What the equations of motion need of it, by its theory.
     """
 
     root: int
     tip: int | None
     stations: tuple[int, ...]
-    forms: BeamForms | Rod
-
-    @property
-    def order(self) -> float:
-        """Degree in elastic coordinates and speeds up to which terms of the equations of motion are kept."""
-        return EVERY_DEGREE if isinstance(self.forms, Rod) else self.forms.order
+    equations: BeamEquations
 
 
 @dataclass(frozen=True)
@@ -176,19 +168,19 @@ def tree_kinematics(g: Graph, tree: SpanningTree, deflected_tips: bool = False) 
         rates = lowering.rates_of(link.joint) if link.joint.prescribed else None
         if link.beam is not None:
             elastic = tuple(map(lowering.symbol, link.beam.coordinates))
-            make = rod_of if link.beam.theory == "strain" else beam_forms
             tip = i + 1 if elastic else None
             stations = tuple(k for k, x in enumerate(tree.links) if x.station is not None and x.station.tip == tip)
-            beams.append(MovingBeam(i, tip, stations, make(g, lowering.value, link.beam, elastic)))
+            equations = theory_of(link.beam).equations(g, lowering.value, elastic, R_BL.T)
+            beams.append(MovingBeam(i, tip, stations, equations))
         first_speed = link.v[0]
         if not link.is_section:
             across = across_joint(lowering, link.joint, q, speeds, axis)
         else:
             if link.station is not None:
                 joint, first_speed = tree.links[link.station.tip].joint, links[link.station.tip].first_speed
-                q, speeds = lowering.coordinates_of(joint), lowering.speeds_of(joint)
+                speeds = lowering.speeds_of(joint)
             xi = 1.0 if link.station is None else link.station.xi
-            across = _across_deformation(beams[-1], xi, q, speeds, deflected_tips)
+            across = beams[-1].equations.across(xi, speeds, deflected_tips)
         constant = constant_rotation(snapped(R_AP @ R_BL))
         links.append(
             MovingLink(
@@ -207,15 +199,6 @@ def tree_kinematics(g: Graph, tree: SpanningTree, deflected_tips: bool = False) 
             )
         )
     return TreeKinematics(g, lowering, tree, tuple(links), len(tree.coordinates.v), tuple(beams))
-
-
-def _across_deformation(
-    beam: MovingBeam, xi: float, q: tuple[Edge, ...], speeds: Sequence[Edge], deflected: bool
-) -> AcrossJoint:
-    """The motion of a beam's section in the frame of its root."""
-    if isinstance(beam.forms, Rod):
-        return across_rod(beam.forms, xi, speeds)
-    return across_beam(beam.forms, xi, q, speeds, deflected or beam.order > 0)
 
 
 def _aligned(lowering: Lowering, link: Link) -> tuple[Mat3, Axis]:

@@ -8,7 +8,7 @@ from symofros.expr.edges import Edge
 from symofros.expr.expression import Expression, lower
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Vec3
-from symofros.mechanics.kinematics.rotations import snapped, stated_rotation
+from symofros.mechanics.spatial.rotations import snapped, stated_rotation
 from symofros.mechanics.topology.coordinates import CoordinateMap, coordinate_symbols, rate_keys, speed_keys
 from symofros.mechanics.topology.tree import Placement
 

@@ -8,16 +8,17 @@ from functools import lru_cache, partial, reduce
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.description.beams.beam import MATRIX_ORDER, STATION, STRAINS, Beam
+from symofros.description.beams.beam import STATION, Beam
+from symofros.description.beams.elastic import STRAINS
+from symofros.description.beams.stiffness import IN_MATRIX, MATRIX_ORDER
 from symofros.description.values import ORIGIN, Term, Value, substituted, symbols
 from symofros.errors import Problem
 from symofros.expr.expression import Expression
-from symofros.mechanics.beams.deformation import deformation_of
 from symofros.mechanics.beams.piecewise import Piecewise
 from symofros.mechanics.beams.quadrature import stations
-from symofros.mechanics.beams.section_law import section_law
 from symofros.mechanics.beams.shape_functions import FamilyError
-from symofros.mechanics.beams.strains import AXES, strains_of
+from symofros.mechanics.beams.theories import theory_of
+from symofros.mechanics.beams.theory import Interpolated
 from symofros.mechanics.topology.conditions import Condition, Formulas, Sign
 from symofros.mechanics.topology.numbers import Numbers
 
@@ -47,7 +48,7 @@ def beam_problems(beam: Beam, where: str) -> Iterator[Problem]:
                 where,
             )
     try:
-        _functions(beam)
+        _ = theory_of(beam).functions
     except FamilyError as error:
         yield Problem(
             f"{what}: family '{beam.family}' can't give its functions",
@@ -112,19 +113,21 @@ class _Section:
             "positive",
             partial(self._wrong_number, "length", "the length of a beam is positive", "give a positive length"),
         )
-        by_entries = not beam.stiffness  # A matrix has all stiffnesses: `stiffness_problems`.
-        for label, needed, why in (
+        # A matrix has all stiffnesses: `stiffness_problems`.
+        elsewhere = IN_MATRIX if beam.stiffness else beam.elastic.lacking
+        for label, counts, why in (
             ("rhoA", True, "a beam has mass all along"),
-            ("EI_z", by_entries and bool(beam.bend_y), "bending along y bends against EI_z"),
-            ("EI_y", by_entries and bool(beam.bend_z), "bending along z bends against EI_y"),
-            ("GJ", by_entries and bool(beam.twist), "twist acts against GJ"),
-            ("EA", by_entries and bool(beam.stretch), "a rod stretches against EA"),
-            ("GA_y", by_entries and bool(beam.shear_y), "shear along y is against GA_y"),
-            ("GA_z", by_entries and bool(beam.shear_z), "shear along z is against GA_z"),
-            ("rhoJ", bool(beam.twist), "a twist coordinate moves the polar inertia rhoJ"),
+            ("EI_z", beam.bend_y, "bending along y bends against EI_z"),
+            ("EI_y", beam.bend_z, "bending along z bends against EI_y"),
+            ("GJ", beam.twist, "twist acts against GJ"),
+            ("EA", beam.stretch, "a rod stretches against EA"),
+            ("GA_y", beam.shear_y, "shear along y is against GA_y"),
+            ("GA_z", beam.shear_z, "shear along z is against GA_z"),
+            ("rhoJ", beam.twist, "a twist coordinate moves the polar inertia rhoJ"),
             ("rhoI_y", False, "no moment of inertia is negative"),
             ("rhoI_z", False, "no moment of inertia is negative"),
         ):
+            needed = bool(counts) and label not in elsewhere
             rule = f"{label} is {'positive' if needed else 'not negative'}: {why}"
             sign: Sign = "positive" if needed else "not negative"
             yield Condition(self._margins(getattr(beam, label)), sign, partial(self._wrong_sign, label, rule))
@@ -186,8 +189,9 @@ class _Section:
 
     def interpolation_problems(self, numbers: Numbers) -> Iterator[Problem]:
         """What a rod's few sections do not follow along the axis (docs/theory/rods.md, section 6)."""
-        for labels, values in _through_sections(self.beam):
-            error = float(_interpolation_error(self.beam, values, numbers.parameters)[0])
+        interpolated = theory_of(self.beam).interpolated
+        for labels, values in interpolated.properties:
+            error = float(_interpolation_error(self.beam, interpolated, values, numbers.parameters)[0])
             if not error <= INTERPOLATION_TOLERANCE:
                 yield Problem(
                     f"{self.what}: {labels} changes more along x than the rod's sections follow",
@@ -258,7 +262,7 @@ def quadrature_error(beam: Beam, value: Value, values: Mapping[str, Array | floa
     """Relative difference of a property's total by two quadratures, which is the error of the coarser one (states)."""
     if STATION not in symbols(value):
         return np.zeros(1)
-    knots = sorted({float(k) for f in _functions(beam) for k in f.knots} or {0.0, 1.0})
+    knots = sorted({float(k) for f in theory_of(beam).functions for k in f.knots} or {0.0, 1.0})
     totals = []
     for points in _POINTS:
         xi, w = stations(knots, points)
@@ -269,42 +273,27 @@ def quadrature_error(beam: Beam, value: Value, values: Mapping[str, Array | floa
 
 
 def interpolation_error(beam: Beam, values: Mapping[str, Array | float]) -> Array:
-    """Largest relative error of what is taken through a rod's sections (states)."""
-    errors = [_interpolation_error(beam, stated, values) for _, stated in _through_sections(beam)]
+    """Largest relative error of what is taken through a beam's sections (states)."""
+    interpolated = theory_of(beam).interpolated
+    errors = [_interpolation_error(beam, interpolated, stated, values) for _, stated in interpolated.properties]
     return np.asarray(reduce(np.maximum, errors, np.zeros(1)))
 
 
-def _through_sections(beam: Beam) -> Iterator[tuple[str, list[Value]]]:
-    """What a rod has at its sections alone: mass centres, and how strains without functions follow others; labels."""
-    if beam.theory != "strain" or not beam.modes:
-        return
-    yield "mass_center", list(beam.mass_center)
-    with_functions = {AXES[direction][0] for direction, n in zip(STRAINS, beam.counts, strict=True) if n}
-    labels = "stiffness" if beam.stiffness else "tension_center or shear_center"
-    yield labels, list(section_law(beam, with_functions).following.values())
-
-
-def _interpolation_error(beam: Beam, stated: Sequence[Value], values: Mapping[str, Array | float]) -> Array:
-    """Largest difference of values to polynomials through a rod's sections, over the largest value (states)."""
+def _interpolation_error(
+    beam: Beam, interpolated: Interpolated, stated: Sequence[Value], values: Mapping[str, Array | float]
+) -> Array:
+    """Largest difference of values to polynomials through a beam's sections, over the largest value (states)."""
     if not any(STATION in symbols(value) for value in stated):
         return np.zeros(1)
-    strains, off, largest = strains_of(beam), np.zeros(1), np.zeros(1)
+    off, largest = np.zeros(1), np.zeros(1)
     for value in stated:
         known, between = (
-            section_values(beam, value, np.array(nodes.stations), values)
-            for nodes in (strains.sections, strains.masses)
+            section_values(beam, value, np.array(xi), values) for xi in (interpolated.known, interpolated.between)
         )
-        through = known @ np.array(strains.interpolation).T
+        through = known @ np.array(interpolated.weights).T
         off = np.maximum(off, np.abs(through - between).max(axis=1))
         largest = np.maximum(largest, np.abs(between).max(axis=1))
     return np.asarray(off / np.where(largest > 0.0, largest, 1.0))
-
-
-def _functions(beam: Beam) -> list[Piecewise]:
-    """Shape functions of a beam's displacements, or a rod's strains."""
-    if beam.theory == "strain":
-        return list(strains_of(beam).functions)
-    return [shape.phi for shape in deformation_of(beam).functions]
 
 
 def _conditioning(beam: Beam, where: str) -> Iterator[Problem]:
@@ -312,7 +301,7 @@ def _conditioning(beam: Beam, where: str) -> Iterator[Problem]:
 
     Of a rod it is that of the strain functions themselves: that of the strain energy.
     """
-    start, every = 0, _functions(beam)
+    start, every = 0, theory_of(beam).functions
     for direction, count in zip(STRAINS, beam.counts, strict=True):
         functions = tuple(every[start : start + count])
         start += count

@@ -7,7 +7,10 @@ from dataclasses import dataclass, fields
 from typing import Literal, NamedTuple
 
 from symofros.base.names import RESERVED, TIME, name_of, quoted, symbol_of
-from symofros.description.beams.beam import MATRIX_ORDER, STATION, STRAINS, Beam, BeamLoad, Samples
+from symofros.description.beams.beam import STATION, Beam, BeamLoad
+from symofros.description.beams.elastic import STRAINS
+from symofros.description.beams.shapes import Samples
+from symofros.description.beams.stiffness import MATRIX_ORDER
 from symofros.description.constraints import Constraint, Coupling, Nonholonomic, Rod
 from symofros.description.entry_units import units_of
 from symofros.description.forces import Connection, Load, Rotor

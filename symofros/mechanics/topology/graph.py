@@ -179,7 +179,7 @@ class _Checker:
     def _symbols_unique(self) -> Iterator[Problem]:
         """Parameters, inputs, coordinates and speeds share the name space of formulas."""
         taken: dict[str, str] = {TIME: "the time", **dict.fromkeys(CONSTANTS, "a constant")}
-        if any(isinstance(body, Beam) for body in self.system.bodies):
+        if self.system.beams:
             taken[STATION] = "the station along a beam"
         # Inputs and joints of files may be called t or pi; a parameter is its author's own, and has no other symbol.
         stated = [("parameter", item.name, item.name) for item in self.system.parameters]
@@ -236,7 +236,7 @@ class _Checker:
                 yield from self._joint(body, body.joint)
         yield from self._cycles()
         moving = any(joint.kind != "fixed" for joint in self.joints)
-        moving = moving or any(isinstance(body, Beam) and body.modes for body in self.system.bodies)
+        moving = moving or any(body.modes for body in self.system.beams)
         if not moving and not self.broken:
             yield Problem(
                 f"system '{self.system.name}': nothing moves",
@@ -355,9 +355,8 @@ class _Checker:
                 yield from numbers.rotation_problems(what, rotation, where)
             if body.joint is not None:
                 yield from joint_number_problems(body.joint, numbers, self.where("joint", body.joint.name))
-        for body in self.system.bodies:
-            if isinstance(body, Beam):
-                where = self.where("body", body.name)
-                sections = list(violations(beam_conditions(body, where), numbers))
-                yield from sections or beam_number_problems(body, numbers, where)
+        for beam in self.system.beams:
+            where = self.where("body", beam.name)
+            sections = list(violations(beam_conditions(beam, where), numbers))
+            yield from sections or beam_number_problems(beam, numbers, where)
         yield from violations(chain(constraint_conditions(self.system), friction_conditions(self.system)), numbers)

@@ -55,7 +55,7 @@ def rotations_of(system: System, body: Body) -> Iterator[tuple[str, Rotation, st
     if body.joint is not None:
         joint = body.joint
         yield f"joint '{joint.name}': rotation", joint.rotation, system.origin.get(("joint", joint.name), "")
-    if not isinstance(body, Beam) and body.inertia is not None:
+    if body.inertia is not None:
         where = system.origin.get(("body", body.name), "")
         yield f"body '{body.name}': inertia rotation", body.inertia.rotation, where
     for frame in body.frames:
@@ -79,9 +79,8 @@ class RunTimeCheck:
         """Conditions that depend on the parameters; they hold at the defaults."""
         system, names = self.system, frozenset(self.names)
         conditions = [*value_conditions(system), *constraint_conditions(system), *friction_conditions(system)]
-        for body in system.bodies:
-            if isinstance(body, Beam):
-                conditions += beam_conditions(body, system.origin.get(("body", body.name), ""))
+        for beam in system.beams:
+            conditions += beam_conditions(beam, system.origin.get(("body", beam.name), ""))
         conditions += [*inertia_conditions(system), *massless_tip_conditions(system), *moment_conditions(system)]
         stated = Conditions(c for c in conditions if c.symbols & names)
         violated = stated.violated(system.parameter_values())[:, 0]
@@ -166,7 +165,7 @@ class RunTimeCheck:
     @cached_property
     def _sections(self) -> list[Beam]:
         """Beams with section properties that depend on parameters, and change along the beam or are a matrix."""
-        beams = [body for body in self.system.bodies if isinstance(body, Beam)]
+        beams = self.system.beams
         return [
             beam
             for beam in beams

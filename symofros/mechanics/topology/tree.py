@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from symofros.description.beams.beam import Beam
+from symofros.description.beams.beam import STATION, Beam
 from symofros.description.joints.joint import WORLD, Joint
 from symofros.description.system import Body, Inertia, RigidBody, System
 from symofros.description.values import IDENTITY, Rotation, Term, Vector
+from symofros.mechanics.beams.theories import theory_of
 from symofros.mechanics.topology.coordinates import CoordinateMap, joint_sizes, map_coordinates, speed_names
 from symofros.mechanics.topology.graph import check
 from symofros.mechanics.topology.numbers import Numbers
-from symofros.mechanics.topology.rod_sections import with_sections
 
 BASE = -1
 
@@ -169,12 +169,17 @@ def build_tree(system: System) -> SpanningTree:
     for body in system.bodies:
         if body.joint is not None:
             parent = WORLD if body.joint.parent in base_names else body.joint.parent
-            children.setdefault(parent, []).append(with_sections(body, numbers) if isinstance(body, Beam) else body)
+            children.setdefault(parent, []).append(_resolved(body, numbers) if isinstance(body, Beam) else body)
     base = next((body for body in system.bodies if body.joint is None), RigidBody(WORLD))
     builder = _Builder(children)
     builder.place(base, BASE, (), WORLD)
     links = tuple(builder.links[i].freeze(builder.inertias[i]) for i in range(len(builder.links)))
     return SpanningTree(system, links, _public_names(builder.frames), map_coordinates(system, [x.joint for x in links]))
+
+
+def _resolved(beam: Beam, numbers: Numbers) -> Beam:
+    """A beam with what it leaves to the generator chosen by its theory."""
+    return theory_of(beam).resolved(lambda value, x: numbers.extended({STATION: x}).value(value))
 
 
 class _Draft(NamedTuple):

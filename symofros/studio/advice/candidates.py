@@ -68,9 +68,7 @@ def fewer_functions(loads: BeamLoads, current: Beam) -> Iterator[Reduction]:
         return  # A user's functions are chosen by the user; two of hermite's are the least.
     most = max(getattr(current, direction) for direction in DIRECTIONS)
     for count in range(1, most + 1):
-        for family in dict.fromkeys(
-            ("clamped_free", current.family) if current.theory != "strain" else (current.family,)
-        ):
+        for family in dict.fromkeys((current.elastic.mode_family or current.family, current.family)):
             counts = {direction: min(count, getattr(current, direction)) for direction in DIRECTIONS}
             if sum(counts.values()) >= current.modes:
                 continue
@@ -161,7 +159,7 @@ def _bent(loads: BeamLoads, direction: Direction) -> tuple[float, str, dict[str,
 def lower_orders(loads: BeamLoads) -> Iterator[Reduction]:
     """Terms of second order and foreshortening left out, of a beam that has them."""
     beam, what, bending = loads.beam, f"beam '{loads.beam.name}'", _bending(loads.beam)
-    if not bending or beam.retain == "zeroth_order" or beam.theory == "strain":
+    if not bending or beam.retain == "zeroth_order" or beam.elastic.is_exact:
         return
     if beam.retain == "all":
         slope = max(loads.deflection(direction).displacement for direction in bending) / loads.length

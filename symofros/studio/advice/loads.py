@@ -135,7 +135,7 @@ class Observed:
     @classmethod
     def of(cls, system: System, scene: Scene, reference: ReferenceSolution) -> Observed:
         """Poses by the interpreter: 400 of them take less time than compiling them."""
-        beams = [body for body in system.bodies if isinstance(body, Beam)]
+        beams = system.beams
         names = [body.name for body in system.bodies if body.joint is not None]
         names += [f"{beam.name}.{frame.name}" for beam in beams for frame in beam.frames] + list(scene.frames)
         names = list(dict.fromkeys(names))

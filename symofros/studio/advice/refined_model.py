@@ -9,7 +9,7 @@ from symofros.description import DIRECTIONS, Beam, System
 
 def refined(system: System) -> System:
     """One function more in every direction that bends or twists, and rotary inertia wherever it is stated."""
-    return system.with_bodies(*(_refined(body) for body in system.bodies if isinstance(body, Beam) and body.modes))
+    return system.with_bodies(*(_refined(body) for body in system.beams if body.modes))
 
 
 def _refined(beam: Beam) -> Beam:

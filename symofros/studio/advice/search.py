@@ -69,7 +69,7 @@ class _Search:
         self.current = system
         self.reference = self._settle()
         self.seen = Observed.of(self.current, scene, self.reference)
-        self.loads = {b.name: self.seen.beam(b) for b in self.current.bodies if isinstance(b, Beam) and b.modes}
+        self.loads = {b.name: self.seen.beam(b) for b in self.current.beams if b.modes}
 
     def advice(self) -> Advice:
         """Reduce, then choose the stepping, of the full model as well."""
@@ -135,7 +135,7 @@ class _Search:
 
     def _note_what_is_not_judged(self) -> None:
         """Say of which beams no richer model exists: those whose functions the user gives."""
-        own = [f"'{b.name}'" for b in self.current.bodies if isinstance(b, Beam) and b.modes and b.family == "user"]
+        own = [f"'{b.name}'" for b in self.current.beams if b.modes and b.family == "user"]
         if own:
             self.notes.append(
                 f"{', '.join(own)}: functions of yours, of which there are no more to judge them by: errors are"
@@ -144,7 +144,7 @@ class _Search:
 
     def _within_theory(self) -> Trial:
         """The described motion; where second-order theory misses too much of it, rods take the place of its beams."""
-        beams = [b for b in self.full.bodies if isinstance(b, Beam) and b.modes and b.theory != "strain"]
+        beams = [b for b in self.full.beams if b.modes and not b.elastic.is_exact]
         try:
             described = self.runner.exact(self.full)[0]
         except BeamTheoryError as error:
@@ -179,7 +179,7 @@ class _Search:
         self._simpler_theories()
         self._fewer()
         for beam in self._beams():
-            if self.loads[beam.name].beam.theory == "strain" != beam.theory:
+            if self.loads[beam.name].beam.elastic.is_exact and not beam.elastic.is_exact:
                 rest += lower_orders(replace(self.loads[beam.name], beam=beam))
         for one in sorted(rest, key=_order):
             if one.kind in ("foreshortening", "order"):
@@ -191,13 +191,13 @@ class _Search:
 
     def _beams(self) -> list[Beam]:
         """Elastic beams that the motion was observed of: no segments."""
-        return [b for b in self.current.bodies if isinstance(b, Beam) and b.modes and b.name not in self.divided]
+        return [b for b in self.current.beams if b.modes and b.name not in self.divided]
 
     def _simpler_theories(self) -> None:
         """Beams of second order in place of rods: one if it serves, or the segments of the fewest operations."""
         bendings = {bending.beam: bending for bending in self.reference.run.bendings}
         for beam in self._beams():
-            if beam.theory != "strain":
+            if not beam.elastic.is_exact:
                 continue
             of_rod = self._evaluation(self.current)
             stated = simpler_theories(self.loads[beam.name], beam, bendings[beam.name])
@@ -273,9 +273,7 @@ class _Search:
 
     def _rigid(self, one: Reduction) -> bool:
         """Whether it is about a beam that bends no more."""
-        return any(
-            isinstance(b, Beam) and not b.modes and one.subject == f"beam '{b.name}'" for b in self.current.bodies
-        )
+        return any(not b.modes and one.subject == f"beam '{b.name}'" for b in self.current.beams)
 
     def _worse(self, one: Reduction) -> Reduction:
         """A refused "no foreshortening", with what becomes of a model that keeps the softening alone."""

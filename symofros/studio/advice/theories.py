@@ -26,8 +26,8 @@ def as_rods(system: System, names: Iterable[str], start: Mapping[str, float]) ->
         start: First coordinates by name; beams whose elastic coordinates are among them stay, as those of rods are
             others.
     """
-    bodies = (system.body(name) for name in names)
-    beams = (body for body in bodies if isinstance(body, Beam) and body.theory != "strain")
+    chosen = frozenset(names)
+    beams = (beam for beam in system.beams if beam.name in chosen and not beam.elastic.is_exact)
     return system.with_bodies(
         *(
             replace(

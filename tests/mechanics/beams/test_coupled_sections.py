@@ -12,7 +12,7 @@ from scipy.optimize import brentq, fsolve
 
 import symofros as sf
 from symofros.description.beams.sections import Section
-from symofros.mechanics.beams.section_law import section_law
+from symofros.mechanics.beams.strain.section_law import section_law
 from tests.mechanics.beams.rods import BODY, COUPLED, GRAVITY, HUB, MATRIX, STIFF, rod
 from validation.mechanics.geometry import skew
 

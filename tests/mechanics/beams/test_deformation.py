@@ -10,8 +10,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import symofros as sf
-from symofros.mechanics.beams.deformation import Deformation, deformation_of
 from symofros.mechanics.beams.fields import Field
+from symofros.mechanics.beams.second_order.deformation import Deformation, deformation_of
 
 L = 1.3
 RNG = np.random.default_rng(4)

@@ -15,8 +15,10 @@ from symofros.expr.edges import Edge
 from symofros.expr.expression import Expression, lower
 from symofros.expr.graph import Graph
 from symofros.generator.passes.count import count_program
-from symofros.mechanics.beams.elastic import PAIRS, BeamForms, beam_forms
 from symofros.mechanics.beams.fields import Field, Form
+from symofros.mechanics.beams.second_order.forms import BeamForms
+from symofros.mechanics.beams.second_order.theory import SecondOrderTheory
+from symofros.mechanics.spatial.inertia import PAIRS
 
 L = 1.7
 STATE = np.array([0.11, -0.07, 0.05, 0.13, 0.21, -0.17])
@@ -56,7 +58,7 @@ def forms(section: str, family: str = "spline", **more: Any) -> BeamForms:
     def lowered(value: Value) -> Edge:
         return lower(value, g, {"L": g.constant(L)}) if isinstance(value, Expression) else g.constant(value)
 
-    return beam_forms(g, lowered, beam, tuple(g.constant(x) for x in STATE))
+    return SecondOrderTheory(beam).equations(g, lowered, tuple(g.constant(x) for x in STATE))
 
 
 def number(form: Form, upto: float = np.inf) -> float:
@@ -101,7 +103,7 @@ def test_mass_and_its_moments(section: str, family: str) -> None:
 def test_modal_mass(section: str, rotary: bool) -> None:
     beam, known = forms(section, rotary_inertia=rotary), SECTIONS[section]
     r, spins = beam.shape.position, beam.shape.partial_spins
-    for (i, j), form in beam.modal_mass.items():
+    for (i, j), form in beam.modal_masses.items():
 
         def integrand(x: float, i: int = i, j: int = j) -> float:
             total = known["rhoA"](x) * sum(at(f.by(i), x) * at(f.by(j), x) for f in r)
@@ -138,8 +140,9 @@ def test_uniform_integrals_are_rounded_once() -> None:
     g = Graph()
     given: dict[str, Any] = {"rhoA": 1.0, "EI_z": 1.0, "bend_y": 2, "family": "polynomial", "retain": "zeroth_order"}
     beam = sf.Beam("b", sf.Joint("j"), 1.0, **given)
-    made = beam_forms(g, lambda value: g.constant(float(value)), beam, (g.input("q", 0), g.input("q", 1)))  # type: ignore[arg-type]
-    found = {pair: g.number(form.value(0)) for pair, form in made.modal_mass.items()}
+    edges = g.input("q", 0), g.input("q", 1)
+    made = SecondOrderTheory(beam).equations(g, lambda value: g.constant(float(value)), edges)  # type: ignore[arg-type]
+    found = {pair: g.number(form.value(0)) for pair, form in made.modal_masses.items()}
     assert found == {(0, 0): 1 / 5, (0, 1): 1 / 6, (1, 1): 1 / 7}
     stiffness = {mono: g.number(edge) for mono, edge in made.strain_energy.terms.items()}
     assert stiffness == {(0, 0): 2.0, (0, 1): 6.0, (1, 1): 6.0}
@@ -157,7 +160,9 @@ def test_quadrature_follows_polynomials_of_any_degree(count: int) -> None:
         given: dict[str, Any] = {"EI_z": 3.0, "bend_y": count, "family": "legendre", "retain": "all"}
         stated = sf.Beam("b", sf.Joint("j"), L, rhoA, **given)
         edges = tuple(g.input("q", k) for k in range(count))
-        return beam_forms(g, lambda x: lower(x, g, {}) if isinstance(x, Expression) else g.constant(x), stated, edges)
+        return SecondOrderTheory(stated).equations(
+            g, lambda x: lower(x, g, {}) if isinstance(x, Expression) else g.constant(x), edges
+        )
 
     uniform, roundabout = beam(2.0), beam("2*cos(x)^2 + 2*sin(x)^2")
     for exact, form in zip(uniform.second_moment, roundabout.second_moment, strict=True):

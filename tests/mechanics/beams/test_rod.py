@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from symofros.mechanics.beams.rod_shape import RodShape
+from symofros.mechanics.beams.strain.shape import StrainShape
 from tests.mechanics.beams.rods import CASES, HUB, integrated, rod, rod_system
 
 FUNCTIONS = ("mass_matrix", "bias", "generalized_force", "kinetic_energy", "potential_energy", "coriolis_matrix")
@@ -49,7 +49,7 @@ def test_sections_are_those_of_an_integrated_frame(
 ) -> None:
     stations = np.array([0.3, 0.75, 1.0])
     q = 0.5 * rng.standard_normal(sum(counts))
-    p, R = RodShape(rod(counts, sections=sections), {}, stations.tolist()).sections(q)
+    p, R = StrainShape(rod(counts, sections=sections), {}, stations.tolist()).sections(q)
     expected_p, expected_R = integrated(counts, q, stations)
     assert np.abs(p - expected_p).max() < error
     assert np.abs(R - expected_R).max() < error
@@ -62,7 +62,9 @@ def test_turns_converge_with_the_sixth_power_of_the_number_of_sections(counts: t
     if counts[0] == 2:
         q = q[[0, 1, 3, 4, 6, 7]]
     _, (expected,) = integrated(counts, q, np.array([1.0]))
-    errors = [np.abs(RodShape(rod(counts, sections=n), {}, [1.0]).sections(q)[1][0] - expected).max() for n in (8, 16)]
+    errors = [
+        np.abs(StrainShape(rod(counts, sections=n), {}, [1.0]).sections(q)[1][0] - expected).max() for n in (8, 16)
+    ]
     assert 5.4 < np.log2(errors[0] / errors[1]) < 7.5
 
 
@@ -71,7 +73,7 @@ def test_two_functions_at_the_sections_chosen_take_the_fourth_order() -> None:
     q = np.array([0.4, -0.3, 0.5, 0.2, -0.3, 0.2])
     _, (expected,) = integrated((2, 2, 2), q, np.array([1.0]))
     fourth, sixth = (
-        np.abs(RodShape(rod((2, 2, 2), sections=n), {}, [1.0]).sections(q)[1][0] - expected).max() for n in (0, 3)
+        np.abs(StrainShape(rod((2, 2, 2), sections=n), {}, [1.0]).sections(q)[1][0] - expected).max() for n in (0, 3)
     )
     assert sixth < 0.1 * fourth and fourth < 1e-4
 
@@ -136,7 +138,7 @@ def test_a_load_between_sections_and_one_along_the_rod_do_their_work(rng: np.ran
     q, eps = 0.4 * rng.standard_normal(4), 1e-5
     xi, w = np.polynomial.legendre.leggauss(12)
     stations = np.concatenate([(xi + 1) / 2, [0.37]])
-    shape = RodShape(rod((2, 1, 1)), {}, stations.tolist())
+    shape = StrainShape(rod((2, 1, 1)), {}, stations.tolist())
     work = np.zeros(4)
     for i, step in enumerate(eps * np.eye(4)):
         (ahead, R_ahead), (behind, R_behind) = shape.sections(q + step), shape.sections(q - step)

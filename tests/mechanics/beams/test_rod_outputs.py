@@ -10,7 +10,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import symofros as sf
-from symofros.mechanics.beams.rod_shape import RodShape
+from symofros.mechanics.beams.strain.shape import StrainShape
 from tests.exports.cases import build, run
 from tests.mechanics.beams.rods import HUB, STIFF, rod
 
@@ -48,7 +48,7 @@ def test_strains_of_the_user_that_are_legendres_give_the_same_equations(rng: np.
 def test_strains_of_the_user_that_are_no_polynomials_place_the_tip() -> None:
     """A curvature cos(pi xi) in one plane: its angle is q/pi sin(pi xi)."""
     stated = rod((1, 0, 0), family="user", shapes={"bend_y": ("cos(pi*xi)",)}, sections=14)
-    (tip,), _ = RodShape(stated, {}, [1.0]).sections(np.array([2.5]))
+    (tip,), _ = StrainShape(stated, {}, [1.0]).sections(np.array([2.5]))
 
     def slope(xi: float, _: np.ndarray) -> list[float]:
         angle = 2.5 / np.pi * np.sin(np.pi * xi)

@@ -10,8 +10,8 @@ import pytest
 import symofros as sf
 from symofros.compiler import program_of
 from symofros.generator.passes.count import count_program
-from symofros.mechanics.beams import rod_plane
-from symofros.mechanics.beams.rod import Rod
+from symofros.mechanics.beams.strain import planar
+from symofros.mechanics.beams.strain.equations import StrainEquations
 from tests.mechanics.beams.rods import GRAVITY, HUB, rod
 
 FREE = sf.Joint("base", "free")
@@ -36,7 +36,7 @@ def test_a_rod_in_a_plane_has_the_inertia_of_one_in_space(
     system = sf.System("s", (rod(counts, joint, **more),), gravity=GRAVITY)
     options = sf.Options(("mass_matrix", "bias", "inverse_dynamics", "kinetic_energy"), backend="interpreter")
     plane = sf.compile(system, options)
-    monkeypatch.setattr(rod_plane, "PlaneRod", Rod)
+    monkeypatch.setattr(planar, "PlanarStrainEquations", StrainEquations)
     space = sf.compile(system, options)
     q = plane.integrate(plane.neutral(), 0.7 * rng.standard_normal(plane.nv))
     v, a = rng.standard_normal((2, plane.nv))

@@ -13,7 +13,8 @@ import symofros as sf
 from reference_models import MODELS
 from symofros.compiler import program_of
 from symofros.generator.passes.count import count_program
-from symofros.studio.viewer.drawing.centre_line import RodLine
+from symofros.mechanics.beams.theories import theory_of
+from symofros.studio.viewer.drawing.drawing import STATIONS
 from tests.mechanics.beams.rods import integrated, rod
 
 
@@ -28,7 +29,7 @@ def test_the_stated_error_of_a_rod_is_that_of_its_sections(rng: np.random.Genera
         q = size * rng.standard_normal(3)
         stations = np.arange(1, 9) / 8
         p, _ = integrated((0, 3, 0), q, stations)
-        own = RodLine(rod((0, 3, 0), sections=judged.bending(q).sections), {}).points(1.0, q)[2::2]
+        own = theory_of(rod((0, 3, 0), sections=judged.bending(q).sections)).shape({}, STATIONS).points(1.0, q)[2::2]
         error = np.linalg.norm(own - p, axis=-1).max()
         assert judged.bending(q).error == pytest.approx(error, rel=0.1, abs=1e-9)
 
@@ -46,7 +47,7 @@ def test_the_viewer_draws_a_rod_where_its_tip_is() -> None:
     q = np.array([0.4, 1.1, -0.3, 0.2])
     stated = MODELS["soft_pendulum"].bodies[0]
     assert isinstance(stated, sf.Beam)
-    line = RodLine(stated, {"L": 1.0, "rhoA": 0.5, "EI": 0.4, "bob": 0.05})
+    line = theory_of(stated).shape({"L": 1.0, "rhoA": 0.5, "EI": 0.4, "bob": 0.05}, STATIONS)
     p_root, R_root = pendulum().frame_pose("rod", q)
     p_tip, R_tip = pendulum().frame_pose("tip", q)
     assert p_root + R_root @ line.points(1.0, q[1:])[-1] == pytest.approx(p_tip, abs=1e-14)

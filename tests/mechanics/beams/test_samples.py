@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import symofros as sf
-from symofros.description.beams.beam import Direction
+from symofros.description.beams.elastic import Direction
 from symofros.mechanics.beams.piecewise import Piecewise
 from symofros.mechanics.beams.shape_functions import shapes
 from symofros.runtime.calls.kernel import Array

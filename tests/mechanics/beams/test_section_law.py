@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from symofros.description.beams.sections import Section
-from symofros.mechanics.beams.section_law import section_law
+from symofros.mechanics.beams.strain.section_law import section_law
 from tests.mechanics.beams.rods import rod
 
 # Zero and one, which sums and products leave out, and others.

@@ -11,7 +11,7 @@ import scipy.linalg
 import sympy
 
 import symofros as sf
-from symofros.description.beams.beam import Direction
+from symofros.description.beams.elastic import Direction
 from symofros.mechanics.beams.piecewise import Piecewise
 from symofros.mechanics.beams.shape_functions import MAX_MODES, FamilyError, cantilever_root, shapes
 from validation.mechanics.shape_functions import cantilever_roots, clamped_free, legendre, monomials, splines

@@ -168,7 +168,7 @@ def test_each_fault_is_settled_by_the_cheaper_judge_but_for_a_sample(
         ("symofros/native/stepping/events.c", "tests/simulation/stepping/"),
         # No file of the same name: one with the words of it, which eight smaller files stood before.
         ("symofros/mechanics/dynamics/applied/beam_loads.py", "tests/mechanics/beams/test_loads.py"),
-        ("symofros/mechanics/beams/rod_inertia.py", "tests/mechanics/beams/test_rod"),
+        ("symofros/mechanics/beams/strain/equations.py", "tests/mechanics/beams/test_rod"),
         ("symofros/native/stepping/axial_loads.c", "tests/simulation/test_"),
     ],
 )

@@ -29,6 +29,8 @@ MESHES = 5
 CUBIC, LINEAR = (4, 6, 8, 10), (2, 4, 6, 8)
 # Coordinates of a node that turns.
 _NODAL = 7
+# Beams as numbers, by their theory.
+_NUMBERS: dict[str, type[ElasticBeam] | type[StrainRod]] = {"second_order": ElasticBeam, "strain": StrainRod}
 # Stations at which a section is looked at to find whether it varies.
 _SAMPLES = 33
 
@@ -178,8 +180,7 @@ def elements(system: sf.System, mover: Mover, slot: tuple[slice, slice], gravity
     """
     described = system.body(mover.body)
     assert isinstance(described, sf.Beam)
-    kind = StrainRod if described.theory == "strain" else ElasticBeam
-    beam = kind(described, system.parameter_values())
+    beam = _NUMBERS[described.theory](described, system.parameter_values())
     between = np.linspace(0.0, beam.length, _SAMPLES)
     tapered = {name for name in ("rhoA", "EI_y", "EI_z") if np.any(np.diff(beam.section(name, between)))}
     # The more functions, the shorter their waves; a taper leaves errors of a lower power.

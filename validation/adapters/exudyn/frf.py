@@ -142,7 +142,7 @@ def _obstacle(system: sf.System) -> Unsupported | None:
             or joint.rotors
             or joint.armature != 0.0
         ),
-        f"beam '{beam.name}': a geometrically exact rod": beam.theory == "strain",
+        f"beam '{beam.name}': a geometrically exact rod": beam.elastic.is_exact,
         f"beam '{beam.name}': loads along it": bool(beam.loads),
         f"beam '{beam.name}': no bending": not beam.bend_y + beam.bend_z,
         f"beam '{beam.name}': shape functions of the user": beam.family == "user",

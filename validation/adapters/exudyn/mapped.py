@@ -182,7 +182,7 @@ def engine(subject: Subject, name: str) -> MappedEngine | Unsupported:
             )
     plain = without_rotary(subject.system)
     approximate = any(
-        isinstance(body, sf.Beam) and body.theory == "second_order" and body.rotary_inertia
+        isinstance(body, sf.Beam) and not body.elastic.is_exact and body.rotary_inertia
         for body in subject.system.bodies
     )
     turning = _engine(subject, subject.system, assembly, name) if approximate else None

@@ -33,7 +33,7 @@ _FIRST_BAR = 1
 
 
 @dataclass(frozen=True)
-class Rod:
+class SlenderBeam:
     """A cantilever on the axis of a hub that spins up.
 
     Attributes:
@@ -58,7 +58,7 @@ class Rod:
         return np.asarray(self.rate / self.duration * (t**2 / 2.0 + (np.cos(k * t) - 1.0) / k**2))
 
 
-def spinning(rod: Rod, elements: int) -> Timed:
+def spinning(rod: SlenderBeam, elements: int) -> Timed:
     """The rod of ANCFCable2D elements on a driven hub, with the position of its tip as sensor.
 
     The hub's angle is one of Exudyn's symbolic functions, evaluated in its C++: a Python function in its place makes
@@ -87,7 +87,7 @@ def spinning(rod: Rod, elements: int) -> Timed:
     return Timed(build)
 
 
-def swinging_rod(rod: Rod, gravity: float, damping: float, elements: int) -> Timed:
+def swinging_rod(rod: SlenderBeam, gravity: float, damping: float, elements: int) -> Timed:
     """A rod of ANCFCable2D elements, along x at first, that swings about its root under its weight; its tip.
 
     Args:

@@ -15,8 +15,6 @@ import exudyn
 import numpy as np
 from exudyn import itemInterface as items
 
-import symofros as sf
-
 from ...contract.conventions import times
 from ...contract.interface import Engine, States, Subject, Unsupported
 from ...mechanics import carried
@@ -162,7 +160,7 @@ class KinematicTreeEngine:
 def build(subject: Subject) -> Engine | Unsupported:
     """Exudyn's tree of a rigid description; one of bodies, where a joint is not of its kinds."""
     system = subject.system
-    beam = next((body for body in system.bodies if isinstance(body, sf.Beam)), None)
+    beam = next((body for body in system.beams), None)
     if beam is not None:
         return Unsupported(f"beam '{beam.name}': left to finite elements, exudyn-beams")
     assembly = subject.assembly

@@ -163,7 +163,7 @@ def _evaluated(function: Any, *arguments: Array) -> Array:
 def build(subject: Subject) -> TreeEngine | Unsupported:
     """The energies of a description that has beams."""
     system = subject.system
-    if not any(isinstance(body, sf.Beam) for body in system.bodies):
+    if not bool(system.beams):
         return Unsupported("no beams: rigid trees are left to faster engines")
     assembly = subject.assembly
     obstacle = _obstacle(assembly)

@@ -87,7 +87,7 @@ class Translation:
             assert isinstance(beam, sf.Beam)
             return Node(
                 mover.parent,
-                self._rod(beam) if beam.theory == "strain" else self._flexible(beam),
+                self._rod(beam) if beam.elastic.is_exact else self._flexible(beam),
                 motion=lambda _: _constant(mover.X_AP),
                 tip=solid,
                 at=self._first(mover),

@@ -13,17 +13,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...adapters.exudyn.timed_systems import Rod
+from ...adapters.exudyn.timed_systems import SlenderBeam
 from ...mechanics.geometry import Array
 
 
-def tip(rod: Rod, times: Array, links: int) -> Array:
+def tip(rod: SlenderBeam, times: Array, links: int) -> Array:
     """Displacement of the tip (n, 2), along and across the hub's x, extrapolated from `links` and twice as many [m]."""
     coarse, fine = linked(rod, times, links), linked(rod, times, 2 * links)
     return (4.0 * fine - coarse) / 3.0
 
 
-def linked(rod: Rod, times: Array, links: int) -> Array:
+def linked(rod: SlenderBeam, times: Array, links: int) -> Array:
     """The same of one number of links, by the classical Runge-Kutta method between times that are evenly spaced."""
     h = rod.length / links
     at_node = np.full(links, rod.rhoA * h)

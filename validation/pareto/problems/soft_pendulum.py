@@ -10,13 +10,13 @@ import numpy as np
 import symofros as sf
 
 from ...adapters.exudyn.steps import Solver
-from ...adapters.exudyn.timed_systems import Rod, swinging_rod
+from ...adapters.exudyn.timed_systems import SlenderBeam, swinging_rod
 from ...mechanics.geometry import Array
 from ..contestants.exudyn import ExudynModel
 from ..contestants.symofros import SymofrosModel
 from ..problem import BenchmarkProblem, Contestant, Prepared, Target
 
-ROD = Rod(length=1.0, EI=1.0, EA=4e6, rhoA=1.0, duration=0.0, rate=0.0)
+ROD = SlenderBeam(length=1.0, EI=1.0, EA=4e6, rhoA=1.0, duration=0.0, rate=0.0)
 # Without damping, waves that the release starts have fronts, which neither side resolves to 1e-5.
 GRAVITY, DAMPING = 9.81, 0.01
 END, OUTPUT = 2.0, 0.02

@@ -11,13 +11,13 @@ import numpy as np
 import symofros as sf
 
 from ...adapters.exudyn.steps import Recorded, Solver
-from ...adapters.exudyn.timed_systems import Rod, spinning
+from ...adapters.exudyn.timed_systems import SlenderBeam, spinning
 from ...mechanics.geometry import Array
 from ..contestants.exudyn import ExudynModel
 from ..contestants.symofros import SymofrosModel
 from ..problem import BenchmarkProblem, Contestant, Prepared, Target
 
-ROD = Rod(length=10.0, EI=1.4e4, EA=2.8e7, rhoA=1.2, duration=15.0, rate=6.0)
+ROD = SlenderBeam(length=10.0, EI=1.4e4, EA=2.8e7, rhoA=1.2, duration=15.0, rate=6.0)
 RHO_I = 6e-4  # Moment of inertia of sections per length [kg m].
 END, OUTPUT = 15.0, 0.1
 TIMES = np.arange(round(END / OUTPUT) + 1, dtype=np.float64) * OUTPUT

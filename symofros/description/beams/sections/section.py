@@ -9,15 +9,10 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from symofros.description.beams.beam import (
-    CENTERS,
-    IN_MATRIX,
-    ROD_STIFFNESSES,
-    SECTION,
-    Theory,
-    stiffness_rows,
-)
+from symofros.description.beams.beam import SECTION
+from symofros.description.beams.elastic import CENTERS, ELASTIC, PRODUCTS, STRAIN_STIFFNESSES, Theory
 from symofros.description.beams.sections.shear import ShearShape, is_inside, unit_stresses
+from symofros.description.beams.stiffness import IN_MATRIX, stiffness_rows
 from symofros.description.entries import refuses_unknown_entries
 from symofros.description.values import Term, Value, as_value, as_values, symbols
 from symofros.errors import DescriptionError, Problem, did_you_mean
@@ -29,7 +24,6 @@ _ON_AXIS = 1e-4
 # What counts as a matrix of a section's form, relative to its diagonal: programs write six or seven digits.
 _OF_SECTION = 1e-6
 _CHECK = "check the order of the axes (axis='x' or 'z'), and the units"
-_PRODUCTS = ("EI_yz", "rhoI_yz")
 
 
 @refuses_unknown_entries
@@ -193,8 +187,8 @@ class Section:
             DescriptionError: For a beam of second order the axis does not go through all three centres, y and z are no
                 principal axes, or strains are coupled.
         """
-        if theory == "strain":
-            return self._rod_properties()
+        if ELASTIC[theory].has_coupled_sections:
+            return self._coupled_properties()
         for label, value, size in self._off_axis():
             if not _is_small(value, size):
                 raise DescriptionError(
@@ -211,13 +205,13 @@ class Section:
             rule = "a beam of second order in its displacements has no such couplings"
             found = "a matrix of stiffness"
             raise DescriptionError(Problem("section: couples strains", found, rule, "state theory: strain"))
-        return {label: getattr(self, label) for label in SECTION if label not in (*ROD_STIFFNESSES, *_PRODUCTS)}
+        return {label: getattr(self, label) for label in SECTION if label not in (*STRAIN_STIFFNESSES, *PRODUCTS)}
 
-    def _rod_properties(self) -> dict[str, Any]:
+    def _coupled_properties(self) -> dict[str, Any]:
         """Of a geometrically exact rod all that differs from a rod's defaults; small distances are the mesh's."""
         off_axis = {label for label, value, size in self._off_axis() if not _is_small(value, size)}
         centers = {label for label in CENTERS if {f"{label}'s y", f"{label}'s z"} & off_axis}
-        labels = [label for label in SECTION if label not in _PRODUCTS or label in off_axis]
+        labels = [label for label in SECTION if label not in PRODUCTS or label in off_axis]
         labels += [label for label in CENTERS if label in centers]
         if self.stiffness:
             labels = [label for label in labels if label not in IN_MATRIX] + ["stiffness"]

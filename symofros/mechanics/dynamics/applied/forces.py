@@ -9,15 +9,14 @@ from symofros.expr.derivative import along
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.graph import Graph
 from symofros.expr.quaternion import Quaternion
-from symofros.mechanics.dynamics.acceleration import Wrench, no_wrench
 from symofros.mechanics.dynamics.applied.beam_loads import beam_loads
 from symofros.mechanics.dynamics.applied.elements import element_energy, element_force
 from symofros.mechanics.dynamics.applied.loads import connection_energy, wrenches
-from symofros.mechanics.dynamics.bodies.beams import elastic_forces
 from symofros.mechanics.dynamics.jourdain import virtual_power
 from symofros.mechanics.kinematics.frames import FrameKinematics
 from symofros.mechanics.kinematics.links import MovingBeam, TreeKinematics
 from symofros.mechanics.kinematics.lowering import Lowering
+from symofros.mechanics.spatial.wrench import Wrench, no_wrench
 from symofros.mechanics.topology.coordinates import joint_sizes
 from symofros.mechanics.topology.tree import Link
 
@@ -46,7 +45,8 @@ def generalized_forces(kinematics: TreeKinematics, frames: FrameKinematics) -> l
     acting, modal = applied_wrenches(kinematics, frames)
     for beam, forces in zip(kinematics.beams, modal, strict=True):
         _add_modal(kinematics, beam, total, forces)
-        _add_modal(kinematics, beam, total, elastic_forces(kinematics, beam))
+        speeds = () if beam.tip is None else kinematics.links[beam.tip].speeds
+        _add_modal(kinematics, beam, total, beam.equations.elastic_forces(speeds))
     if acting is not None:
         total = [g.add(a, b) for a, b in zip(total, virtual_power(kinematics, acting), strict=True)]
     return total
@@ -65,7 +65,7 @@ def applied_wrenches(
     modal: list[list[Edge]] = []
     for beam in kinematics.beams:
         forces: list[Edge] = []
-        if beam.forms.beam.loads:
+        if beam.equations.beam.loads:
             wrench, forces = beam_loads(kinematics, frames, beam)
             acting = acting or [no_wrench(kinematics.g) for _ in kinematics.links]
             acting[beam.root] = acting[beam.root] + wrench
@@ -86,7 +86,7 @@ def stored_energy(kinematics: TreeKinematics, frames: FrameKinematics) -> Edge:
     for link in kinematics.tree.links:
         for element in link.joint.elements:
             parts.append(element_energy(lowering, element, _coordinate(lowering, link, element.coordinate)))
-    parts += [beam.forms.strain_energy.value() for beam in kinematics.beams]
+    parts += [beam.equations.strain_energy.value() for beam in kinematics.beams]
     return g.sum([*parts, connection_energy(kinematics, frames)])
 
 

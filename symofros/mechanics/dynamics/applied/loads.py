@@ -7,9 +7,9 @@ from symofros.description.forces import Connection, Load
 from symofros.description.system import RigidBody
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.vector import Mat3, Vec3
-from symofros.mechanics.dynamics.acceleration import Wrench, no_wrench
 from symofros.mechanics.kinematics.frames import FrameKinematics
 from symofros.mechanics.kinematics.links import TreeKinematics
+from symofros.mechanics.spatial.wrench import Wrench, no_wrench
 from symofros.mechanics.topology.tree import BASE, NamedFrame, Step, frame_of
 
 

@@ -7,91 +7,14 @@ output unchanged, and makes entries of the link's inertia vanish. All of it happ
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from symofros.description.system import Inertia
-from symofros.expr.edges import ZERO, Edge
-from symofros.expr.graph import Graph
+from symofros.expr.edges import ZERO
 from symofros.expr.vector import Mat3, Sym3, Vec3
-from symofros.mechanics.beams.elastic import BeamForms
-from symofros.mechanics.beams.fields import Form
-from symofros.mechanics.beams.rod import Rod
-from symofros.mechanics.beams.rod_inertia import rod_moments
-from symofros.mechanics.kinematics.links import MovingBeam, MovingLink, TreeKinematics
-from symofros.mechanics.kinematics.rotations import MatrixRotation
+from symofros.mechanics.kinematics.links import MovingLink, TreeKinematics
+from symofros.mechanics.spatial.inertia import LinkInertia, no_inertia, point_inertia, rotated, shifted
 from symofros.mechanics.topology.tree import BASE
-
-
-@dataclass(frozen=True)
-class LinkInertia:
-    """Inertia of a link L with all that is fixed to it, or of the composite body that it carries, in L.
-
-    Attributes:
-        m: Mass [kg].
-        mp_LLcm: First moment of mass about Lo, S in the theory [kg m].
-        I_LLo_L: Inertia tensor about Lo, J in the theory [kg m^2].
-    """
-
-    m: Edge
-    mp_LLcm: Vec3
-    I_LLo_L: Sym3
-
-    def __add__(self, other: LinkInertia) -> LinkInertia:
-        return LinkInertia(
-            self.mp_LLcm.g.add(self.m, other.m), self.mp_LLcm + other.mp_LLcm, self.I_LLo_L + other.I_LLo_L
-        )
-
-    def second_moment(self) -> Sym3:
-        """Second moment E = int r r^T dm about Lo, in L: 1/2 tr(J) 1 - J."""
-        g, J = self.mp_LLcm.g, self.I_LLo_L
-        half = g.mul(g.constant(0.5), g.add(g.add(J.xx, J.yy), J.zz))
-        return Sym3(g, g.sub(half, J.xx), g.sub(half, J.yy), g.sub(half, J.zz), -J.xy, -J.xz, -J.yz)
-
-
-def no_inertia(g: Graph) -> LinkInertia:
-    """Zero inertia."""
-    return LinkInertia(ZERO, Vec3(g), Sym3(g))
-
-
-def point_inertia(m: Edge, p: Vec3) -> Sym3:
-    """Inertia tensor of a point mass: m (p.p 1 - p p^T)."""
-    mp = p.scaled(m)
-    return _shift_form(mp, p)
-
-
-def _shift_form(a: Vec3, b: Vec3) -> Sym3:
-    """The symmetric matrix (a.b) 1 - a b^T for parallel a, b."""
-    g = a.g
-    xx, yy, zz = (g.mul(i, j) for i, j in zip(a, b, strict=True))
-    return Sym3(g, g.add(yy, zz), g.add(xx, zz), g.add(xx, yy), -g.mul(a.x, b.y), -g.mul(a.x, b.z), -g.mul(a.y, b.z))
-
-
-def shifted(S: Vec3, J: Sym3, p: Vec3) -> Sym3:
-    """Inertia tensor about a new origin, for matter of first moment S and no net mass (eq. 15).
-
-    Args:
-        S: First moment about the old origin.
-        J: Inertia tensor about the old origin.
-        p: Position of the old origin from the new one [m].
-    """
-    g = S.g
-    twice = p + p
-    xx, yy, zz = (g.mul(a, b) for a, b in zip(twice, S, strict=True))
-
-    def off(a: Edge, Sb: Edge, b: Edge, Sa: Edge) -> Edge:
-        return -g.add(g.mul(a, Sb), g.mul(b, Sa))
-
-    shift = Sym3(
-        g,
-        g.add(yy, zz),
-        g.add(xx, zz),
-        g.add(xx, yy),
-        off(p.x, S.y, p.y, S.x),
-        off(p.x, S.z, p.z, S.x),
-        off(p.y, S.z, p.z, S.y),
-    )
-    return J + shift
 
 
 def inertia_in_parent(link: MovingLink, inertia: LinkInertia) -> LinkInertia:
@@ -133,7 +56,7 @@ def inertia_inputs(kinematics: TreeKinematics) -> list[LinkInertia]:
     for i, link in enumerate(kinematics.links):
         m, sx, sy, sz, xx, xy, yy, xz, yz, zz = (g.input("pi", 10 * i + k) for k in range(10))
         S, J = Vec3(g, sx, sy, sz), Sym3(g, xx, yy, zz, xy, xz, yz)
-        inertias.append(LinkInertia(m, link.R_LB.times(S), _rotated(link.R_LB, J)))
+        inertias.append(LinkInertia(m, link.R_LB.times(S), rotated(link.R_LB, J)))
     return inertias
 
 
@@ -147,55 +70,11 @@ def _stated(kinematics: TreeKinematics, index: int) -> LinkInertia:
     total = no_inertia(kinematics.g)
     for beam in kinematics.beams:
         if beam.root == index:
-            total = total + undeformed(kinematics, beam)
+            total = total + beam.equations.undeformed()
     for placement, inertia in kinematics.tree.links[index].inertias:
         R_LB, p_LB = kinematics.lowering.placement(placement, kinematics.links[index].R_LB)
         total = total + _one_body(kinematics, inertia, R_LB, p_LB)
     return total
-
-
-def undeformed(kinematics: TreeKinematics, beam: MovingBeam) -> LinkInertia:
-    """The inertia of a straight beam; what deformation adds changes with time and is not regrouped.
-
-    A rod's mass is put at its root: nothing else of it is constant.
-    """
-    if isinstance(beam.forms, Rod):
-        return LinkInertia(beam.forms.mass, Vec3(kinematics.g), Sym3(kinematics.g))
-    return _from_forms(kinematics, beam.root, beam.forms, lambda form: form.terms.get((), ZERO), beam.forms.mass)
-
-
-def deformed(kinematics: TreeKinematics, beam: MovingBeam) -> LinkInertia:
-    """Change of a beam's inertia by deformation, to the beam's order; of a rod all but its mass."""
-    if isinstance(beam.forms, Rod):
-        R_LB = kinematics.links[beam.root].R_LB
-        S, J = rod_moments(beam.forms)
-        return LinkInertia(ZERO, R_LB.times(S), _rotated(R_LB, J))
-    order = beam.order
-
-    def change(form: Form) -> Edge:
-        return form.without_constant().value(order)
-
-    return _from_forms(kinematics, beam.root, beam.forms, change, ZERO)
-
-
-def first_moment_change(kinematics: TreeKinematics, beam: MovingBeam) -> Vec3:
-    """Change of a beam's first moment by deformation, one order further: its gradient is the weight's force."""
-    if isinstance(beam.forms, Rod):
-        return kinematics.links[beam.root].R_LB.times(beam.forms.first_moment(beam.forms.mass_vectors))
-    upto = beam.order + 1
-    S = Vec3(kinematics.g, *(form.without_constant().value(upto) for form in beam.forms.first_moment))
-    return kinematics.links[beam.root].R_LB.times(S)
-
-
-def _from_forms(
-    kinematics: TreeKinematics, root: int, forms: BeamForms, value: Callable[[Form], Edge], m: Edge
-) -> LinkInertia:
-    """Moments of a beam about its root, from its frame B to the link frame."""
-    g, R = kinematics.g, kinematics.links[root].R_LB
-    S = R.times(Vec3(g, *map(value, forms.first_moment)))
-    xx, yy, zz, xy, xz, yz = map(value, forms.second_moment)
-    J = Sym3(g, g.add(yy, zz), g.add(xx, zz), g.add(xx, yy), -xy, -xz, -yz)
-    return LinkInertia(m, S, _rotated(R, J))
 
 
 def _one_body(kinematics: TreeKinematics, inertia: Inertia, R_LB: Mat3, p_LB: Vec3) -> LinkInertia:
@@ -206,17 +85,13 @@ def _one_body(kinematics: TreeKinematics, inertia: Inertia, R_LB: Mat3, p_LB: Ve
     J = Sym3(g, *map(lowering.value, inertia.moments))
     p_LC = p_LB + p_BC
     if inertia.about == "body":
-        J = _rotated(R_LB, J)
+        J = rotated(R_LB, J)
         if not p_LB.is_zero:
             # From Bo to Lo: remove the mass centre's part about Bo, add it about Lo.
             J = J + -point_inertia(m, p_BC) + point_inertia(m, p_LC)
     else:
-        J = _rotated(R_LB @ lowering.rotation(inertia.rotation), J) + point_inertia(m, p_LC)
+        J = rotated(R_LB @ lowering.rotation(inertia.rotation), J) + point_inertia(m, p_LC)
     return LinkInertia(m, p_LC.scaled(m), J)
-
-
-def _rotated(R: Mat3, J: Sym3) -> Sym3:
-    return MatrixRotation(R).conjugate(R.g, J) if R != Mat3.identity(R.g) else J
 
 
 def _if_clamped(link: MovingLink, inertia: LinkInertia) -> tuple[LinkInertia, LinkInertia | None]:
@@ -260,5 +135,5 @@ def _share_in_parent(link: MovingLink, share: LinkInertia) -> LinkInertia:
     p = link.p_AL if link.fixed_origin else Vec3(g)
     R = constant.matrix()
     S = R.times(share.mp_LLcm)
-    J = shifted(S, _rotated(R, share.I_LLo_L), p)
+    J = shifted(S, rotated(R, share.I_LLo_L), p)
     return LinkInertia(share.m, S + p.scaled(share.m), J + point_inertia(share.m, p))

@@ -12,7 +12,7 @@ from symofros.description.forces import Rotor
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.vector import Vec3
 from symofros.mechanics.kinematics.links import TreeKinematics
-from symofros.mechanics.kinematics.rotations import unit_vector
+from symofros.mechanics.spatial.rotations import unit_vector
 from symofros.mechanics.topology.tree import BASE
 
 

@@ -8,11 +8,11 @@ from symofros.description.constraints import BETWEEN_FRAMES, BY_FORMULA, Constra
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Vec3
-from symofros.mechanics.dynamics.acceleration import Wrench, no_wrench
 from symofros.mechanics.dynamics.applied.loads import at_frame
 from symofros.mechanics.dynamics.constraints.rows import Row
 from symofros.mechanics.kinematics.frames import FrameKinematics
 from symofros.mechanics.kinematics.links import TreeKinematics
+from symofros.mechanics.spatial.wrench import Wrench, no_wrench
 from symofros.mechanics.topology.tree import BASE, frame_of
 
 # Force and moment about a frame's origin, in world axes (6).

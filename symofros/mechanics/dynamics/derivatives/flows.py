@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 from symofros.expr.edges import ZERO
 from symofros.expr.vector import Mat3, Vec3
-from symofros.mechanics.dynamics.acceleration import LinkMotion, relative_motion
-from symofros.mechanics.dynamics.bodies.inertia import LinkInertia
+from symofros.mechanics.dynamics.acceleration import relative_motion
 from symofros.mechanics.kinematics.links import TreeKinematics
+from symofros.mechanics.spatial.inertia import LinkInertia
+from symofros.mechanics.spatial.wrench import LinkMotion
 from symofros.mechanics.topology.tree import BASE
 
 

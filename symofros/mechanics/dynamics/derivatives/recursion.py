@@ -16,9 +16,8 @@ from symofros.expr.graph import Graph
 from symofros.expr.packs.combine import linear_combination
 from symofros.expr.packs.pack import SignedPack
 from symofros.expr.vector import Mat3, Vec3
-from symofros.mechanics.dynamics.acceleration import Wrench, base_motion, base_to_tip
+from symofros.mechanics.dynamics.acceleration import base_motion, base_to_tip
 from symofros.mechanics.dynamics.applied.forces import rates_per_speed
-from symofros.mechanics.dynamics.bodies.inertia import LinkInertia
 from symofros.mechanics.dynamics.bodies.rotors import MovingRotor
 from symofros.mechanics.dynamics.derivatives.flows import Flow, composite_flows, origin_velocities
 from symofros.mechanics.dynamics.derivatives.variations import JointVariations, Variation
@@ -31,6 +30,8 @@ from symofros.mechanics.dynamics.wrenches.wrench_packs import (
     wrenches_in_parent,
 )
 from symofros.mechanics.kinematics.links import TreeKinematics
+from symofros.mechanics.spatial.inertia import LinkInertia
+from symofros.mechanics.spatial.wrench import Wrench
 from symofros.mechanics.topology.tree import BASE
 
 

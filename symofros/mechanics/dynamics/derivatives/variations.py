@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from symofros.expr.derivative import along, partials
 from symofros.expr.edges import Edge
 from symofros.expr.vector import Vec3
-from symofros.mechanics.dynamics.acceleration import LinkMotion, Wrench, parent_acceleration, relative_motion
+from symofros.mechanics.dynamics.acceleration import parent_acceleration, relative_motion
 from symofros.mechanics.dynamics.mass_matrix import Matrix
 from symofros.mechanics.kinematics.links import MovingLink
+from symofros.mechanics.spatial.wrench import LinkMotion, Wrench
 
 
 @dataclass(frozen=True)

@@ -14,9 +14,7 @@ from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.factors import SingularMatrixError
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Vec3
-from symofros.mechanics.dynamics.acceleration import Acceleration, Wrench, base_to_tip, no_wrench, velocities
-from symofros.mechanics.dynamics.bodies.beams import added_momentum, modal_mass
-from symofros.mechanics.dynamics.bodies.inertia import LinkInertia, deformed
+from symofros.mechanics.dynamics.acceleration import Acceleration, base_to_tip, velocities
 from symofros.mechanics.dynamics.bodies.rotors import MovingRotor
 from symofros.mechanics.dynamics.forward.articulated_inertia import (
     ArticulatedInertia,
@@ -25,8 +23,10 @@ from symofros.mechanics.dynamics.forward.articulated_inertia import (
     wrench_in_parent,
 )
 from symofros.mechanics.dynamics.jourdain import link_wrenches, subtree_wrenches
-from symofros.mechanics.kinematics.joint import PartialVelocity
 from symofros.mechanics.kinematics.links import MovingLink, TreeKinematics
+from symofros.mechanics.spatial.across import PartialVelocity
+from symofros.mechanics.spatial.inertia import LinkInertia
+from symofros.mechanics.spatial.wrench import Wrench, no_wrench
 from symofros.mechanics.topology.tree import BASE
 
 
@@ -197,7 +197,7 @@ def _inertias(kinematics: TreeKinematics, inertias: list[LinkInertia]) -> list[A
     articulated = [ArticulatedInertia.of(inertia) for inertia in inertias]
     for beam in kinematics.beams:
         if beam.tip is not None:
-            articulated[beam.root] = articulated[beam.root] + ArticulatedInertia.of(deformed(kinematics, beam))
+            articulated[beam.root] = articulated[beam.root] + ArticulatedInertia.of(beam.equations.deformed())
     return articulated
 
 
@@ -384,8 +384,8 @@ def _coupling(kinematics: TreeKinematics, rotors: Sequence[MovingRotor], index: 
     direct, wrenches = [[ZERO for _ in n] for _ in n], [no_wrench(g) for _ in n]
     for beam in kinematics.beams:
         if beam.tip == index:
-            direct = [[modal_mass(beam, i, j) for j in n] for i in n]
-            wrenches = [Wrench(*added_momentum(kinematics, beam, i)) for i in n]
+            direct = [[beam.equations.modal_mass(i, j) for j in n] for i in n]
+            wrenches = [Wrench(*beam.equations.momentum(i)) for i in n]
     for rotor in rotors:
         if rotor.link == index and rotor.k is not None:
             c, per_spin = rotor.coordinate, g.mul(rotor.inertia, rotor.ratio)

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Sym3, Vec3
-from symofros.mechanics.dynamics.acceleration import Acceleration, Wrench
-from symofros.mechanics.dynamics.bodies.inertia import LinkInertia
+from symofros.mechanics.dynamics.acceleration import Acceleration
 from symofros.mechanics.kinematics.links import MovingLink
+from symofros.mechanics.spatial.inertia import LinkInertia
+from symofros.mechanics.spatial.wrench import Wrench
 
 Rows = list[list[Edge]]
 

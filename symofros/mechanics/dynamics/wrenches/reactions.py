@@ -6,12 +6,12 @@ from collections.abc import Sequence
 
 from symofros.expr.derivative import along
 from symofros.expr.edges import Edge
-from symofros.mechanics.dynamics.acceleration import LinkMotion, Wrench
 from symofros.mechanics.dynamics.applied.forces import prescribed_rates_per_speed
 from symofros.mechanics.dynamics.bodies.inertia import stated_inertias
 from symofros.mechanics.dynamics.bodies.rotors import MovingRotor
 from symofros.mechanics.dynamics.jourdain import link_wrenches, power, spin_effort, subtree_wrenches
 from symofros.mechanics.kinematics.links import TreeKinematics
+from symofros.mechanics.spatial.wrench import LinkMotion, Wrench
 
 
 def transmitted_wrenches(

@@ -8,8 +8,8 @@ from symofros.expr.edges import ONE, Edge
 from symofros.expr.packs.combine import linear_combination
 from symofros.expr.packs.pack import EMPTY, SignedPack
 from symofros.expr.vector import Vec3
-from symofros.mechanics.kinematics.joint import PartialVelocity
 from symofros.mechanics.kinematics.links import MovingLink
+from symofros.mechanics.spatial.across import PartialVelocity
 
 # Six components: force (or linear momentum), then moment (or angular momentum) about the link's origin, in its frame.
 NO_WRENCHES: list[SignedPack] = [(ONE, EMPTY)] * 6

@@ -8,12 +8,14 @@ from typing import Literal, NamedTuple, get_args
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.studio.viewer.drawing.centre_line import CentreLine, RodLine
+from symofros.mechanics.beams import BeamShape
 from symofros.studio.viewer.drawing.meshes import Mesh
 
 Kind = Literal["bodies", "inertias", "joints", "constraints", "paths", "visuals"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
 Color = tuple[int, int, int]
+# Of a beam, ends included: four an arch of the fourth mode. Each costs two messages a picture.
+STATIONS = tuple(k / 16 for k in range(17))
 
 
 class LinkPoint(NamedTuple):
@@ -53,7 +55,7 @@ class DrawnBeam:
         name: Name of the beam.
         link: Link at its root.
         q: Range of its elastic coordinates in q, as (start, size).
-        line: Centre line, on which its sections stand.
+        line: Where its sections are, at STATIONS.
         length: Length [m].
         outline: Outline of its section, y and z (K, 2) [m].
         color: Red, green, blue.
@@ -63,7 +65,7 @@ class DrawnBeam:
     name: str
     link: int
     q: tuple[int, int]
-    line: CentreLine | RodLine
+    line: BeamShape
     length: float
     outline: Array
     color: Color

@@ -19,9 +19,10 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.description import STATION, Anchor, Beam, Closure, Connection, KnifeEdge, RigidBody, Rod, Rolling
+from symofros.mechanics.beams import theory_of
 from symofros.mechanics.topology import BASE, Link, NamedFrame, Numbers, Placement, SpanningTree, frame_of
-from symofros.studio.viewer.drawing.centre_line import CentreLine, RodLine
 from symofros.studio.viewer.drawing.drawing import (
+    STATIONS,
     Color,
     Drawing,
     DrawnBeam,
@@ -247,15 +248,12 @@ class _DrawingBuilder:
                     link.name,
                     i,
                     tip.q if tip else (0, 0),
-                    self._line(link.beam),
+                    theory_of(link.beam).shape(self.values, STATIONS),
                     self.numbers.value(link.beam.length),
                     self._outline(link.beam),
                     self._color(i),
                     self._element(link.name),
                 )
-
-    def _line(self, beam: Beam) -> CentreLine | RodLine:
-        return RodLine(beam, self.values) if beam.theory == "strain" else CentreLine(beam)
 
     def _outline(self, beam: Beam) -> Array:
         """The section at mid-length: that of its rotary inertia, or a guess with the proportions of its stiffnesses."""

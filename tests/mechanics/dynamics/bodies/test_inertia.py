@@ -10,11 +10,12 @@ from symofros.expr.edges import ZERO
 from symofros.expr.graph import Graph
 from symofros.expr.numerics.evaluate import interpret
 from symofros.expr.program import Function, Output, Program
-from symofros.mechanics.dynamics.bodies.inertia import LinkInertia, _stated, link_inertias, no_inertia
+from symofros.mechanics.dynamics.bodies.inertia import _stated, link_inertias
 from symofros.mechanics.dynamics.energy import kinetic_energy, potential_energy
 from symofros.mechanics.dynamics.jourdain import inertia_forces
 from symofros.mechanics.dynamics.mass_matrix import mass_matrix
 from symofros.mechanics.kinematics.links import tree_kinematics
+from symofros.mechanics.spatial.inertia import LinkInertia, no_inertia
 from symofros.mechanics.topology.tree import build_tree
 from tests.models import CASES, sampled, system
 

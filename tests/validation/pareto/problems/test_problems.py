@@ -11,7 +11,7 @@ from scipy.special import ellipk
 import symofros as sf
 from tests.models import sampled
 from validation.adapters.exudyn.steps import Solver
-from validation.adapters.exudyn.timed_systems import Rod, pendulum
+from validation.adapters.exudyn.timed_systems import SlenderBeam, pendulum
 from validation.pareto.catalogue import PROBLEMS
 from validation.pareto.front import usable
 from validation.pareto.problems import andrews, arm, closed_forms, four_bar, robot, rod, soft_pendulum, spin_up
@@ -47,7 +47,7 @@ def test_closed_form_of_the_four_bar_against_its_equation() -> None:
 
 
 def test_the_chain_of_links_converges_with_the_square_of_their_length() -> None:
-    soft = Rod(1.0, 1.0, 1e6, 1.0, 2.0, 2.0)
+    soft = SlenderBeam(1.0, 1.0, 1e6, 1.0, 2.0, 2.0)
     t = np.linspace(0.0, 2.0, 21)
     fine = rod.linked(soft, t, 24)
     errors = [float(np.abs(rod.linked(soft, t, n) - fine).max()) for n in (3, 6)]

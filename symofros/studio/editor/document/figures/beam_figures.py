@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from symofros.description import CENTERS, Value
+from symofros.description import CENTERS, ELASTIC, Value
 from symofros.description.yaml import BeamEntry
 from symofros.errors import DescriptionError
 from symofros.expr import Expression, evaluate
@@ -68,7 +68,7 @@ def beam_figures(entry: Any, known: Mapping[str, float]) -> Json:
         if is_plain and length > 0.0 and figures.get(stiffness, 0.0) > 0.0 and figures.get(inertia, 0.0) > 0.0
     }
     finite = {direction: values for direction, values in frequencies.items() if all(map(isfinite, values))}
-    errs = stated.get("theory") != "strain" and length > 0.0
+    errs = not ELASTIC[stated["theory"]].is_exact and length > 0.0
     return {
         "section": figures,
         "frequencies": finite,

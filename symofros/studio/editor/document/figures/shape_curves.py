@@ -8,7 +8,7 @@ import numpy as np
 
 from symofros.description import Direction, Family, Samples, UserShape, as_value
 from symofros.errors import DescriptionError, Problem, did_you_mean
-from symofros.mechanics.beams import MAX_MODES, FamilyError, shapes, strain_functions
+from symofros.mechanics.beams import MAX_MODES, THEORIES, FamilyError
 from symofros.studio.editor.editing.data_edits import EditError
 
 POINTS = 65
@@ -30,12 +30,9 @@ def curves(body: dict[str, Any]) -> dict[str, Any]:
     stations = np.linspace(0.0, 1.0, POINTS).tolist()
     try:
         stated = _user(body.get("shapes"))
-        if body.get("theory") == "strain":
-            strains = strain_functions(family, count, stated)
-            lines = [{"values": function.rounded(stations), "length": False} for function in strains]
-        else:
-            functions = shapes(family, direction, count, stated)
-            lines = [{"values": shape.phi.rounded(stations), "length": shape.length} for shape in functions]
+        theory = THEORIES.get(body.get("theory", ""), THEORIES["second_order"])
+        functions = theory.family_functions(family, direction, count, stated)
+        lines = [{"values": function.rounded(stations), "length": length} for function, length in functions]
     except FamilyError as error:
         raise _wrong(
             f"family '{family}'",

@@ -10,7 +10,7 @@ from symofros.description.values import Rotation
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Sym3, Vec3
 from symofros.generator.passes.count import count_operations
-from symofros.mechanics.kinematics.rotations import (
+from symofros.mechanics.spatial.rotations import (
     AxisRotation,
     RotationProduct,
     constant_rotation,

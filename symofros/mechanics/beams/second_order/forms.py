@@ -7,19 +7,18 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, partial
 from itertools import combinations_with_replacement
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
-from symofros.description.beams.beam import Beam, Retain
+from symofros.description.beams.beam import Retain
 from symofros.description.values import Value
 from symofros.expr.edges import Edge
-from symofros.expr.graph import Graph
-from symofros.mechanics.beams.deformation import Deformation, deformation_of
 from symofros.mechanics.beams.fields import EVERY_DEGREE, Field, Form, UnitIntegral, no_form, unit_field
-from symofros.mechanics.beams.integrals import LengthIntegrator, Lower, is_uniform, points_for
+from symofros.mechanics.beams.integrals import is_uniform
+from symofros.mechanics.beams.second_order.deformation import Deformation
+from symofros.mechanics.beams.theory import BeamEquations
+from symofros.mechanics.spatial.inertia import PAIRS
 
 ORDERS: dict[Retain, float] = {"zeroth_order": 0, "first_order": 1, "all": EVERY_DEGREE}
-# Pairs of axes in the order of Sym3: xx, yy, zz, xy, xz, yz.
-PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 
 Vector = tuple[Form, Form, Form]
 
@@ -41,20 +40,14 @@ class SectionInertia(NamedTuple):
 
 
 @dataclass(frozen=True)
-class BeamForms:
-    """What the equations of motion need of one beam (eqs. 8-13).
+class BeamForms(BeamEquations):
+    """Inertia, strain energy and places of sections as forms of the elastic coordinates (eqs. 8-13).
 
     Attributes:
-        beam: The beam as described.
-        along: Integration over its length.
         shape: Displacement field.
-        order: Degree in elastic coordinates and speeds up to which terms of the equations of motion are kept.
     """
 
-    beam: Beam
-    along: LengthIntegrator
     shape: Deformation
-    order: float
 
     @cached_property
     def _sections(self) -> tuple[SectionInertia, ...]:
@@ -90,7 +83,7 @@ class BeamForms:
     def _summed(self, forms: Iterable[Form]) -> Form:
         return sum(forms, start=no_form(self.along.g, self.along.coordinates))
 
-    def beyond(self, xi: float) -> BeamForms:
+    def beyond(self, xi: float) -> Self:
         """The same of the part beyond a station, whose moments stay about the root."""
         return replace(self, along=replace(self.along, start=Fraction(xi)))
 
@@ -142,7 +135,7 @@ class BeamForms:
             yield self._integral(("K", i, a, section.about), spin, section.per_length)
 
     @cached_property
-    def modal_mass(self) -> dict[tuple[int, int], Form]:
+    def modal_masses(self) -> dict[tuple[int, int], Form]:
         """Modal mass M_ij for i <= j (eqs. 11, 13)."""
         pairs = combinations_with_replacement(range(self.beam.modes), 2)
         return {(i, j): self._summed(self._masses(i, j)) for i, j in pairs}
@@ -188,19 +181,3 @@ class BeamForms:
 
 def _cut(field: Field, upto: float) -> Field:
     return Field(field.power, field.lengths, {mono: f for mono, f in field.terms.items() if len(mono) <= upto})
-
-
-def beam_forms(g: Graph, lower: Lower, beam: Beam, coordinates: tuple[Edge, ...]) -> BeamForms:
-    """The forms of a beam in a graph.
-
-    Args:
-        g: The graph that operations are added to.
-        lower: Lowering of values of the description to edges.
-        beam: The beam as described.
-        coordinates: Edges of the elastic coordinates.
-    """
-    shape = deformation_of(beam)
-    knots = tuple(sorted({knot for function in shape.functions for knot in function.phi.knots} or {0, 1}))
-    points = points_for([function.phi for function in shape.functions])
-    along = LengthIntegrator(g, lower, beam.length, coordinates, knots, points)
-    return BeamForms(beam, along, shape, ORDERS[beam.retain])

@@ -1,4 +1,4 @@
-"""The sections of a geometrically exact rod in numbers, from the frames that its equations come from."""
+"""The sections of a geometrically exact beam in numbers, from the frames that its equations come from."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
 from symofros.description.beams.beam import MOST_SECTIONS, Beam
 from symofros.description.values import Value
@@ -15,16 +14,15 @@ from symofros.expr.expression import evaluate
 from symofros.expr.graph import Graph
 from symofros.expr.numerics.evaluate import Evaluation
 from symofros.expr.program import Program
-from symofros.mechanics.beams.rod_plane import rod_of
-from symofros.mechanics.beams.strains import strains_of
-
-Array = npt.NDArray[np.float64]
+from symofros.mechanics.beams.strain.planar import strain_equations
+from symofros.mechanics.beams.strain.strains import strains_of
+from symofros.mechanics.beams.theory import Array, BeamShape
 
 # Stations at which the shapes of a rod by its own sections and by twice as many are compared.
 _COMPARED = tuple(k / 8 for k in range(1, 9))
 
 
-class RodShape:
+class StrainShape(BeamShape):
     """Where sections of a rod are, for given strain coordinates (docs/theory/rods.md, section 3).
 
     Args:
@@ -39,7 +37,7 @@ class RodShape:
         def lower(value: Value) -> Edge:
             return g.constant(evaluate(value, values))
 
-        rod = rod_of(g, lower, beam, tuple(g.input("q", i) for i in range(beam.modes)))
+        rod = strain_equations(g, lower, beam, tuple(g.input("q", i) for i in range(beam.modes)))
         inverse = g.div(g.constant(1.0), rod.along.L)
         edges: list[Edge] = []
         for xi in stations:
@@ -57,6 +55,14 @@ class RodShape:
         table = table.reshape(*q.shape[:-1], self._stations, 12)
         return table[..., :3], table[..., 3:].reshape(*q.shape[:-1], self._stations, 3, 3)
 
+    def points(self, length: float, q: Array) -> Array:
+        """p_BS of the stations, in the axes of the root (..., S, 3) [m]."""
+        return length * self.sections(q)[0]
+
+    def axes(self, length: float, q: Array) -> Array:
+        """R_BS of the sections (..., S, 3, 3)."""
+        return self.sections(q)[1]
+
 
 class IntegrationError:
     """Error of a rod's shape by its number of sections, as the difference to that of twice as many, or of half.
@@ -70,8 +76,8 @@ class IntegrationError:
         points = strains_of(beam).points
         # Of half as many, which err by more, where twice as many are more than a rod may have.
         compared = 2 * points if 2 * points <= MOST_SECTIONS else points // 2
-        self._own = RodShape(beam, values, _COMPARED)
-        self._other = RodShape(replace(beam, sections=compared), values, _COMPARED)
+        self._own = StrainShape(beam, values, _COMPARED)
+        self._other = StrainShape(replace(beam, sections=compared), values, _COMPARED)
 
     def __call__(self, q: Array) -> float:
         """Largest error of a position over the length, for coordinates (n)."""

@@ -15,10 +15,11 @@ from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.graph import Graph
 from symofros.expr.packs.combine import linear_combination
 from symofros.expr.packs.pack import WIDTH, Pack
-from symofros.expr.vector import Sym3, Vec3
+from symofros.expr.vector import Mat3, Sym3, Vec3
+from symofros.mechanics.beams.fields import EVERY_DEGREE
 from symofros.mechanics.beams.integrals import LengthIntegrator, Lower
-from symofros.mechanics.beams.rod import Rod
-from symofros.mechanics.beams.strains import strains_of
+from symofros.mechanics.beams.strain.equations import StrainEquations
+from symofros.mechanics.beams.strain.strains import strains_of
 
 # Terms of a sum in packs at most: their check descends term by term.
 _LONGEST_IN_PACKS = 64
@@ -53,7 +54,7 @@ class _RootMotion(NamedTuple):
     ej: Edge
 
 
-class PlaneRod(Rod):
+class PlanarStrainEquations(StrainEquations):
     """A rod whose tangents turn in one plane, and that neither stretches nor shears."""
 
     def _split(self, vector: Vec3) -> _Plane:
@@ -167,14 +168,19 @@ class PlaneRod(Rod):
         ii, _, ji, jj = map(self.g.sum, zip(*self._products, strict=True))  # ji is ij, and zero at the root.
         return ii, jj, ji
 
-    def inertia(self) -> Sym3:
-        """Inertia tensor about the root, in B (16c)."""
-        g, (ii, jj, ij), (_, spheres, axial) = self.g, self._E, self._rotary
+    def moments(self) -> tuple[Vec3, Sym3]:
+        """First moment and inertia tensor about the root, in B (13), (16c)."""
+        g, S = self.g, self.first_moment_about_root()
+        (ii, jj, ij), (_, spheres, axial) = self._E, self._rotary
         sphere = g.sum(spheres)
         J_ii, J_jj, J_ee = g.add(sphere, jj), g.add(sphere, ii), g.add(g.add(sphere, g.sum(axial)), g.add(ii, jj))
         if self.axis == 2:
-            return Sym3(g, J_ii, J_jj, J_ee, -ij, ZERO, ZERO)
-        return Sym3(g, J_ii, J_ee, J_jj, ZERO, ij, ZERO)
+            return S, Sym3(g, J_ii, J_jj, J_ee, -ij, ZERO, ZERO)
+        return S, Sym3(g, J_ii, J_ee, J_jj, ZERO, ij, ZERO)
+
+    def modal_mass(self, i: int, j: int) -> Edge:
+        """M_ij of two strain coordinates (16d)."""
+        return self.modal_masses[min(i, j), max(i, j)]
 
     @cached_property
     def modal_masses(self) -> dict[tuple[int, int], Edge]:
@@ -234,16 +240,16 @@ class PlaneRod(Rod):
         """First moment, in B (13)."""
         return self._joined(*self._linear[1])
 
-    def momentum(self, i: int) -> tuple[Vec3, Vec3]:
+    def root_momentum(self, i: int) -> tuple[Vec3, Vec3]:
         """Linear momentum and angular momentum about the root, in B, per unit rate of a coordinate (16d)."""
         return self._joined(*self._linear[2][i]), self._joined(ZERO, ZERO, self._about_root[i])
 
     # Forces.
 
-    def forces(
+    def root_forces(
         self, w: Vec3, alpha: Vec3, a: Vec3, speeds: Sequence[Edge], rates: Sequence[Edge]
     ) -> tuple[Vec3, Vec3, list[Edge]]:
-        """Force and moment on the root, and the force on each coordinate, as `rod_forces` has them (16e), (16f)."""
+        """Force and moment on the root, and the force on each coordinate, as of `StrainEquations` (16e), (16f)."""
         g, motion = self.g, self._root_motion(w, alpha)
         turn_rates = [ZERO, *self._sums(speeds, list(zip(*self._columns, strict=True)))]
         twice = _Plane(*(g.add(x, x) for x in motion.w))
@@ -256,9 +262,9 @@ class PlaneRod(Rod):
         n, forces = n + self.first_moment_about_root().cross(a), []
         elastic = self._sums(self._torques(motion, inward)[1:], self._columns)
         for i, (torque, rate) in enumerate(zip(elastic, rates, strict=True)):
-            linear, angular = self.momentum(i)
+            linear, angular = self.root_momentum(i)
             f, n = f + linear.scaled(rate), n + angular.scaled(rate)
-            own = g.sum(g.mul(self.modal_masses[min(i, j), max(i, j)], other) for j, other in enumerate(rates))
+            own = g.sum(g.mul(self.modal_mass(i, j), other) for j, other in enumerate(rates))
             root = g.add(linear.dot(a), g.mul(self._about_root[i], motion.alpha.e))
             forces.append(g.add(own, g.add(root, torque)))
         return f, n, forces
@@ -324,17 +330,14 @@ class PlaneRod(Rod):
         return torques
 
 
-def rod_of(g: Graph, lower: Lower, beam: Beam, coordinates: tuple[Edge, ...]) -> Rod:
-    """A rod in a graph.
-
-    Args:
-        g: The graph that operations are added to.
-        lower: Lowering of values of the description to edges.
-        beam: The rod as described.
-        coordinates: Edges of the strain coordinates.
-    """
+def strain_equations(
+    g: Graph, lower: Lower, beam: Beam, coordinates: tuple[Edge, ...], R_LB: Mat3 | None = None
+) -> StrainEquations:
+    """A rod in a graph, by the formulas for a plane where they hold; arguments as of `BeamTheory.equations`."""
     strains = strains_of(beam)
-    rod = Rod(beam, LengthIntegrator(g, lower, beam.length, coordinates, strains.knots), strains)
+    along = LengthIntegrator(g, lower, beam.length, coordinates, strains.knots)
+    given = beam, along, R_LB or Mat3.identity(g), EVERY_DEGREE, strains
+    rod = StrainEquations(*given)
     is_plane = rod.axis in (1, 2) and {k for k, _ in strains.axes} == {rod.axis}
     is_plane = is_plane and not rod.law.following and rod.mass_center is None and beam.rhoI_yz == 0.0
-    return PlaneRod(beam, rod.along, strains) if is_plane else rod
+    return PlanarStrainEquations(*given) if is_plane else rod

@@ -7,9 +7,10 @@ import pytest
 from numpy.polynomial import chebyshev
 
 import symofros as sf
-from symofros.description.beams.beam import FAMILIES
-from symofros.mechanics.beams.deformation import small_coordinates
-from symofros.studio.viewer.drawing.centre_line import STATIONS, CentreLine
+from symofros.description.beams.shapes import FAMILIES
+from symofros.mechanics.beams.second_order.deformation import small_coordinates
+from symofros.mechanics.beams.second_order.shape import FieldShape
+from symofros.studio.viewer.drawing.drawing import STATIONS
 
 LENGTH = 1.5
 
@@ -26,22 +27,22 @@ def test_the_tip_is_where_the_model_has_it(family: str, more: dict, rng: np.rand
     model = sf.compile(sf.System("s", [stated]), sf.Options(("frame_pose",), ("tip",), backend="interpreter"))
     q = 3 * rng.uniform(-1, 1, (4, stated.modes)) * small_coordinates(stated, LENGTH)
     p, R = model.frame_pose("tip", q)
-    line = CentreLine(stated)
+    line = FieldShape(stated, STATIONS)
     assert np.allclose(line.points(LENGTH, q)[:, -1], p, atol=1e-13)
     assert np.allclose(line.axes(LENGTH, q)[:, -1], R, atol=1e-13)
 
 
 def test_it_starts_at_the_root_and_is_straight_at_rest() -> None:
-    line = CentreLine(beam())
-    expected = np.zeros((STATIONS, 3))
-    expected[:, 0] = np.linspace(0.0, LENGTH, STATIONS)
+    line = FieldShape(beam(), STATIONS)
+    expected = np.zeros((len(STATIONS), 3))
+    expected[:, 0] = LENGTH * np.array(STATIONS)
     assert np.allclose(line.points(LENGTH, np.zeros(5)), expected)
     assert np.allclose(line.axes(LENGTH, np.zeros(5)), np.eye(3))
 
 
 def curve(q: np.ndarray) -> tuple[chebyshev.Chebyshev, ...]:
     """The axis of a beam of polynomial shapes as the polynomials that it consists of."""
-    points, xi = CentreLine(beam("polynomial")).points(LENGTH, q), np.linspace(0, 1, STATIONS)
+    points, xi = FieldShape(beam("polynomial"), STATIONS).points(LENGTH, q), np.array(STATIONS)
     return tuple(chebyshev.Chebyshev.fit(xi, points[:, k], 8) for k in range(3))
 
 
@@ -62,7 +63,7 @@ def test_sections_stand_across_the_axis_up_to_the_third_order() -> None:
     q = np.array([0.2, -0.1, 0.15, 0.1, 0.3])
     errors = []
     for eps in (0.4, 0.2):
-        slopes = np.stack([part.deriv()(np.linspace(0, 1, STATIONS)) for part in curve(eps * q)], axis=1)
-        across = CentreLine(beam("polynomial")).axes(LENGTH, eps * q)[:, :, 1:]
+        slopes = np.stack([part.deriv()(np.array(STATIONS)) for part in curve(eps * q)], axis=1)
+        across = FieldShape(beam("polynomial"), STATIONS).axes(LENGTH, eps * q)[:, :, 1:]
         errors.append(float(np.abs(np.einsum("si,sij->sj", slopes, across)).max()))
     assert np.log2(errors[0] / errors[1]) == pytest.approx(3.0, abs=0.15)

@@ -12,7 +12,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, lru_cache
 
-from symofros.description.beams.beam import STRAINS, Beam, Direction, Family, Samples, UserShape
+from symofros.description.beams.beam import Beam
+from symofros.description.beams.elastic import STRAINS, Direction
+from symofros.description.beams.shapes import Family, Samples, UserShape
 from symofros.mechanics.beams.fields import Field, Monomial
 from symofros.mechanics.beams.piecewise import Number, Piecewise, fitted, polynomial
 from symofros.mechanics.beams.quadrature import Nodes, gauss, radau

@@ -10,9 +10,10 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from functools import reduce
 
-from symofros.description.beams.beam import MATRIX_ORDER, Beam
+from symofros.description.beams.beam import Beam
+from symofros.description.beams.stiffness import MATRIX_ORDER
 from symofros.description.values import Term, Value
-from symofros.mechanics.beams.strains import TURNING
+from symofros.mechanics.beams.strain.strains import TURNING
 
 _STRAINS = len(MATRIX_ORDER)
 Coefficients = dict[tuple[int, int], Value]

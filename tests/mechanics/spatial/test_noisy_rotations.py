@@ -14,7 +14,7 @@ from reference_models.rigid.random_tree import MORE_KINDS, noisy_rotation, rando
 from symofros.base.rotations import nearest_rotation
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3
-from symofros.mechanics.kinematics.rotations import Factor, constant_rotation, stated_rotation
+from symofros.mechanics.spatial.rotations import Factor, constant_rotation, stated_rotation
 from symofros.mechanics.topology.numbers import Numbers
 
 # Products of three matrices of doubles, each entry a sum of three roundings, after snapping entries within 1e-15.

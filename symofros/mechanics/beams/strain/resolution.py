@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
-from symofros.description.beams.beam import MOST_SECTIONS, PRE_STRAINS, STATION, Beam
-from symofros.mechanics.beams.strains import strains_of
-from symofros.mechanics.topology.numbers import Numbers
+from symofros.description.beams.beam import MOST_SECTIONS, Beam
+from symofros.description.beams.elastic import PRE_STRAINS
+from symofros.description.values import Value
+from symofros.mechanics.beams.strain.strains import strains_of
 
+Number = Callable[[Value, float], float]
 # Bound of the distance between frames within the rod and where its strains without stress put them, over its length: a
 # fifth of what a note begins at, and less than two functions a strain leave of Bathe's arc.
 _BOUND = 2e-3
@@ -18,16 +21,16 @@ _BOUND = 2e-3
 _STATIONS = 33
 
 
-def with_sections(beam: Beam, numbers: Numbers) -> Beam:
-    """The same beam; a rod whose sections are left to the generator with those that its own curvature needs, too.
+def with_sections(beam: Beam, number: Number) -> Beam:
+    """The same rod; where its sections are left to the generator, with those that its own curvature needs, too.
 
     Args:
-        beam: Beam of a checked system.
-        numbers: Values of its parameters.
+        beam: Rod of a checked system.
+        number: The number of a value at a station x [m]; NaN where it has none.
     """
-    if beam.theory != "strain" or not beam.modes or beam.sections:
+    if not beam.modes or beam.sections:
         return beam
-    needed = sections_of_turn(*_turn(beam, numbers))
+    needed = sections_of_turn(*_turn(beam, number))
     if needed <= 2:
         return beam
     chosen = len(strains_of(beam).sections.stations) - 1
@@ -48,16 +51,13 @@ def sections_of_turn(turn: float, amplitude: float) -> int:
     return count
 
 
-def _turn(beam: Beam, numbers: Numbers) -> tuple[float, float]:
+def _turn(beam: Beam, number: Number) -> tuple[float, float]:
     """Angle by which the sections turn without stress, and the largest share of that which bends the axis."""
-    length = numbers.value(beam.length)
+    length = number(beam.length, 0.0)
     if all(isinstance(getattr(beam, label), (int, float)) and not getattr(beam, label) for label in PRE_STRAINS):
         return 0.0, 0.0
     rows = np.array(
-        [
-            [numbers.extended({STATION: float(x)}).value(getattr(beam, label)) for label in PRE_STRAINS]
-            for x in np.linspace(0.0, length, _STATIONS)
-        ]
+        [[number(getattr(beam, label), float(x)) for label in PRE_STRAINS] for x in np.linspace(0.0, length, _STATIONS)]
     )
     if not np.all(np.isfinite(rows)):
         return 0.0, 0.0

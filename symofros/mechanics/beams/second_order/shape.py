@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
 
-from symofros.base.arrays import Array
-from symofros.description import Beam
-from symofros.mechanics.beams import Deformation, Field, Monomial, RodShape, deformation_of
-
-STATIONS = 17  # Of a beam, ends included: four an arch of the fourth mode. Each costs two messages a picture.
+from symofros.description.beams.beam import Beam
+from symofros.mechanics.beams.fields import Field, Monomial
+from symofros.mechanics.beams.second_order.deformation import deformation_of
+from symofros.mechanics.beams.theory import Array, BeamShape
 
 
 @dataclass(frozen=True)
@@ -20,65 +19,41 @@ class _Sampled:
     """A field at stations.
 
     Attributes:
+        count: Number of stations S.
         values: Monomial -> its coefficient without the power of L (S).
         powers: Monomial -> that power.
     """
 
+    count: int
     values: Mapping[Monomial, Array]
     powers: Mapping[Monomial, int]
 
     def at(self, length: float, q: Array) -> Array:
         """Values for coordinates (..., n) at every station (..., S)."""
-        total = np.zeros((*q.shape[:-1], STATIONS))
+        total = np.zeros((*q.shape[:-1], self.count))
         for mono, values in self.values.items():
             factor = length ** self.powers[mono] * np.prod(q[..., list(mono)], axis=-1)
             total = total + np.asarray(factor)[..., None] * values
         return total
 
 
-class RodLine:
-    """Where the sections of a geometrically exact rod are, for given strain coordinates.
-
-    Args:
-        beam: Rod as the user stated it.
-        values: Number of each parameter.
-    """
-
-    def __init__(self, beam: Beam, values: Mapping[str, float]) -> None:
-        self.modes = beam.modes
-        self._shape = RodShape(beam, values, [k / (STATIONS - 1) for k in range(STATIONS)])
-
-    def points(self, length: float, q: Array) -> Array:
-        """p_BS of the stations, in the axes of the root (..., S, 3) [m]."""
-        return length * self._shape.sections(q)[0]
-
-    def axes(self, length: float, q: Array) -> Array:
-        """R_BS of the sections (..., S, 3, 3)."""
-        return self._shape.sections(q)[1]
-
-
-class CentreLine:
+class FieldShape(BeamShape):
     """Where a beam's sections are, for given elastic coordinates (docs/theory/beams.md, eqs. 1-3).
 
-    The last station is the tip, and has the pose that the model's own `frame_pose` gives the tip's frame.
+    A station at the tip has the pose that the model's own `frame_pose` gives the tip's frame.
 
     Args:
         beam: Beam as the user stated it.
+        stations: Stations x/L (S).
     """
 
-    def __init__(self, beam: Beam) -> None:
-        shape: Deformation = deformation_of(beam)
-        self.modes = beam.modes
-        self._position = [_sampled(field) for field in shape.position]
-        self._angles = [_sampled(field) for field in (shape.yaw, shape.pitch, shape.roll)]
+    def __init__(self, beam: Beam, stations: Sequence[float]) -> None:
+        shape, exact = deformation_of(beam), tuple(map(Fraction, stations))
+        self._position = [_sampled(field, exact) for field in shape.position]
+        self._angles = [_sampled(field, exact) for field in (shape.yaw, shape.pitch, shape.roll)]
 
     def points(self, length: float, q: Array) -> Array:
-        """p_BS of the stations, in the axes of the root (..., S, 3) [m].
-
-        Args:
-            length: Length of the beam [m].
-            q: Elastic coordinates (..., modes).
-        """
+        """p_BS of the stations, in the axes of the root (..., S, 3) [m]."""
         return np.stack([field.at(length, q) for field in self._position], axis=-1)
 
     def axes(self, length: float, q: Array) -> Array:
@@ -87,10 +62,9 @@ class CentreLine:
         return _about(2, yaw) @ _about(1, pitch) @ _about(0, roll)
 
 
-def _sampled(field: Field) -> _Sampled:
-    stations = [Fraction(k, STATIONS - 1) for k in range(STATIONS)]
+def _sampled(field: Field, stations: Sequence[Fraction]) -> _Sampled:
     values = {mono: np.array([float(f(xi)) for xi in stations]) for mono, f in field.terms.items()}
-    return _Sampled(values, {mono: field.exponent(mono) for mono in values})
+    return _Sampled(len(stations), values, {mono: field.exponent(mono) for mono in values})
 
 
 def _about(axis: int, angle: Array) -> Array:

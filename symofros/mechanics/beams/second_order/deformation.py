@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, lru_cache
 
-from symofros.description.beams.beam import DIRECTIONS, Beam, Family, UserShape
+from symofros.description.beams.beam import Beam
+from symofros.description.beams.elastic import DIRECTIONS
+from symofros.description.beams.shapes import Family, UserShape
 from symofros.mechanics.beams.fields import Field, UnitIntegral, unit_field
 from symofros.mechanics.beams.piecewise import XI
 from symofros.mechanics.beams.shape_functions import Shape, shapes

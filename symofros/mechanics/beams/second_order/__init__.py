@@ -1,0 +1,1 @@
+"""Beams of second order in their displacements (docs/theory/beams.md)."""

@@ -1,0 +1,1 @@
+"""Geometrically exact beams by their strains, rods (docs/theory/rods.md)."""
