@@ -28,7 +28,7 @@ _INIT = "init_par"
 _WIDTH, _SPACE = 112, "\x00"
 # Names of parameters that a value without a name is described by.
 _MOST_NAMES = 4
-# Which packs a text has: those of functions that are faster with them by count, or all, for builds that are timed;
+# Which packs a text has: those of functions that are faster with them by count, or all;
 # where there are any, equal limbs share vectors, too.
 Packs = Literal["none", "where they pay", "all"]
 
