@@ -167,7 +167,7 @@ def choose(sign: Array, at_least_zero: Any, below: Any) -> Array:
     """One of two arrays, or numbers, entry by entry: the first where `sign` is at least zero."""
     if sign.dtype == object:
         return np.asarray(_choose_terms(sign, at_least_zero, below))
-    return np.where(sign >= 0.0, at_least_zero, below)
+    return np.asarray(np.where(sign >= 0.0, at_least_zero, below))
 
 
 _choose_terms = np.frompyfunc(lambda sign, at_least_zero, below: sign.choose(at_least_zero, below), 3, 1)
@@ -199,7 +199,8 @@ def _angles(w: Array) -> tuple[Array, Array, Array]:
 def _polynomial(angle: Array, small: Array, *coefficients: float) -> Array:
     """The polynomial in the angle's square; at zero where the series doesn't hold, so that nothing overflows."""
     angle = choose(small, angle, 0.0)
-    square, total = angle * angle, coefficients[-1]
+    square = angle * angle
+    total: Any = coefficients[-1]
     for coefficient in reversed(coefficients[:-1]):
         total = total * square + coefficient
     return np.asarray(total)

@@ -84,7 +84,9 @@ class Term:
     def choose(self, at_least_zero: Any, below: Any) -> Term:
         """The first where this term is at least zero, or else the second, as a sum without branches."""
         step = self._call("step")
-        return step * at_least_zero + (1.0 - step) * below
+        rest: Term = 1.0 - step
+        chosen: Term = step * at_least_zero + rest * below
+        return chosen
 
 
 def terms(g: Graph, edges: Iterable[Edge]) -> Terms:
