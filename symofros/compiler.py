@@ -30,7 +30,7 @@ from symofros.expr.program import Program
 from symofros.generator.beams import beams_at
 from symofros.generator.codegen.model import model_source
 from symofros.generator.held_beams import held_beams, may_be_held
-from symofros.generator.instants import instants_at
+from symofros.generator.instants import has_instants, instants_at
 from symofros.generator.programs import ProgramBuilder, requested
 from symofros.generator.record import GENERATOR as GENERATOR
 from symofros.generator.record import model_record
@@ -41,8 +41,9 @@ from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.remarks import rounded_rotations
 from symofros.mechanics.topology.run_time import RunTimeCheck
 from symofros.mechanics.topology.tree import SpanningTree, build_tree
+from symofros.runtime.beams import ElasticBeam
 from symofros.runtime.build.toolchain import NO_COMPILER, Toolchain, find_toolchain
-from symofros.runtime.calls.kernel import LaneOptions, Precision, Unit
+from symofros.runtime.calls.kernel import Array, LaneOptions, Precision, Unit
 from symofros.runtime.functions import Key
 from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord
@@ -154,6 +155,27 @@ class Compilation:
         return ProgramBuilder(self.tree, self.options)
 
     @property
+    def has_instants(self) -> bool:
+        """Whether formulas of time bend, jump or change fast at instants, which steps of a run end at."""
+        return has_instants(self.tree)
+
+    def beams(self, par: Array) -> tuple[ElasticBeam, ...]:
+        """The elastic beams at run-time parameters (npar)."""
+        return self._beams_at(par)
+
+    @cached_property
+    def _beams_at(self) -> Callable[[Array], tuple[ElasticBeam, ...]]:
+        return beams_at(self.tree)
+
+    def parameter_problems(self, par: Array) -> list[Problem]:
+        """What the description does not allow of sets of run-time parameters (m, npar)."""
+        return self._parameter_check.problems(par)
+
+    @cached_property
+    def _parameter_check(self) -> RunTimeCheck:
+        return RunTimeCheck(self.system, self.record.par_names)
+
+    @property
     def program(self) -> Program:
         """The requested functions, optimised."""
         return self.programs.program(self.requests)
@@ -209,8 +231,8 @@ class Compilation:
             on_demand,
             made,
             formulas=units.formulas,
-            beams=beams_at(self.tree),
-            parameter_check=RunTimeCheck(self.system, self.record.par_names).problems,
+            beams=self._beams_at,
+            parameter_check=self._parameter_check.problems,
             origin=partial(compile_system, self.system, self.options),
             device_code=units.device_code,
             instants=instants_at(self.tree),

@@ -257,13 +257,13 @@ def did_you_mean(name: str, known: Iterable[str], spelling: Callable[[str], str]
 
     Args:
         name: Name as it was written.
-        known: Names that exist.
+        known: Names that exist, in the order in which they are listed; by the alphabet if they have none.
         spelling: How a name is written there; as it is by default.
 
     Returns:
         "did you mean 'tip'?", or "use one of: …", or "" when nothing is known.
     """
-    known = list(known)
+    known = sorted(known) if isinstance(known, set | frozenset) else list(known)
     near = near_name(name, known, spelling)
     if near:
         return near

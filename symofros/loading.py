@@ -11,7 +11,7 @@ from typing import Any
 
 from symofros.base.arguments import checked
 from symofros.base.atomic import write_atomically
-from symofros.base.sources import Source
+from symofros.base.sources import Source as Source
 from symofros.description.packages import Folders, Packages
 from symofros.description.reading import MODEL_SUFFIXES, USD_SUFFIXES, YAML_SUFFIXES, Reading, in_order
 from symofros.description.remarks import note
@@ -154,26 +154,25 @@ def _read(file: Path, asked: Asked) -> Reading:
     if suffix in _URDF:
         text = None
         if suffix == ".xacro":
-            from symofros.description.urdf.xacro_files import expanded
+            from symofros.description.urdf.xacro_files import expanded  # As other readers, below.
 
             text = expanded(file, asked.arguments, packages)
         base, mimic = asked.floating_base, asked.mimic
         reading = read_urdf(file, floating_base=base, snap_tol=snap_tol, mimic=mimic, text=text, packages=packages)
         return _accept_inertias(reading)
-    # A reader of another format is not loaded with the one that is asked for: pydantic alone takes a fifth of a second.
     if suffix == ".xml":
-        from symofros.description.mjcf.reader import read_mjcf
+        from symofros.description.mjcf.reader import read_mjcf  # No format waits for the reader of another.
 
         return _accept_inertias(read_mjcf(file, snap_tol=snap_tol, packages=packages))
     if suffix in _SDF:
-        from symofros.description.sdf.reader import read_sdf
+        from symofros.description.sdf.reader import read_sdf  # As above.
 
         return _accept_inertias(read_sdf(file, snap_tol=snap_tol, packages=packages))
     if suffix in USD_SUFFIXES:
-        from symofros.description.usd.reader import read_usd
+        from symofros.description.usd.reader import read_usd  # As above.
 
         return _accept_inertias(read_usd(file, snap_tol=snap_tol))
-    from symofros.description.yaml.files import read_yaml
+    from symofros.description.yaml.files import read_yaml  # As above: pydantic takes a fifth of a second.
 
     return read_yaml(file)
 
@@ -206,7 +205,7 @@ def save(system: System, path: str | os.PathLike[str]) -> None:
     """
     file = Path(path)
     _refuse_suffix(file, YAML_SUFFIXES, "written")
-    from symofros.description.yaml.yaml_writer import write_yaml
+    from symofros.description.yaml.yaml_writer import write_yaml  # As above; nor does who reads wait for a writer.
 
     if problems := name_problems(system):
         raise DescriptionError(problems)

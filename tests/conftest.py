@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime
 import gc
 import os
 import shutil
@@ -18,6 +19,7 @@ import numpy as np
 import pytest
 
 from symofros.harness import claim
+from tests import draw
 from tests.absent import CACHED, by_need, summary
 from tests.progress import Progress
 
@@ -46,7 +48,8 @@ os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
 
 # Compiling is half of a run's time, and half of that is optimisation. Tests of other things than generated code and its
-# compilation do without, but for runs with --slow or a part of it and for benchmarks, which compile as users do.
+# compilation do without, but for files that are drawn by the day, for runs with --slow or a part of it and for
+# benchmarks, which compile as users do.
 _STATED_FLAGS = os.environ.get("SYMOFROS_CFLAGS")
 _OPTIMISED = {"docs", "generator", "native"}
 
@@ -58,6 +61,8 @@ collect_ignore = [] if _PLAYWRIGHT else ["studio/editor/browser"]
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--slow", action="store_true", help="also run what a run leaves out for its time")
     parser.addoption("--slow-part", metavar="I/N", help="only every N-th of the slow tests, from the I-th on")
+    parser.addoption("--draw", metavar="WORD", help="what tests of many cases and flags are drawn by; else the date")
+    parser.addoption("--update-seconds", action="store_true", help="write what a case takes to tests/seconds.txt")
     parser.addoption("--tools", action="store_true", help="also run tests of programs that .ci/run installs")
     parser.addoption("--browser", action="store_true", help="also run tests that look at pages with Chromium")
     parser.addoption("--update-golden", action="store_true", help="rewrite the expected texts that tests compare with")
@@ -66,6 +71,10 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def pytest_configure(config: pytest.Config) -> None:
     if config.getoption("--browser") and not _PLAYWRIGHT:
         raise pytest.UsageError("--browser needs Playwright: pip install -e '.[dev]'")
+    if config.option.draw is None:  # Workers are given it, so that midnight does not divide them.
+        config.option.draw = datetime.datetime.now(datetime.UTC).date().isoformat()
+    if config.getoption("--update-seconds") and not hasattr(config, "workerinput"):
+        config.pluginmanager.register(draw.Measurement())
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -86,6 +95,10 @@ def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> Non
     needs = by_need(skipped)
     if said := summary(needs):
         terminalreporter.write_line(said)
+    if terminalreporter.stats.keys() & {"failed", "error"}:
+        terminalreporter.write_line(
+            f"the same cases and flags of the compiler again: --draw {config.getoption('--draw')}"
+        )
     cache = getattr(config, "cache", None)
     if cache is not None:
         cache.set(CACHED, {need: sorted(set(tests)) for need, tests in needs.items() if need.startswith("extra ")})
@@ -107,27 +120,20 @@ def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def slow_cases(text: str) -> set[str]:
-    """Node ids of the cases that slow_cases.txt lists."""
-    blocks = [block.splitlines() for block in text.split("\n\n")[1:]]
-    return {f"tests/{block[0]}[{case.strip()}]" for block in blocks for case in block[1:]}
-
-
-def _mark_slow_cases(config: pytest.Config, items: list[pytest.Item]) -> None:
-    listed = slow_cases(Path(__file__).with_name("slow_cases.txt").read_text())
+def _draw(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Mark the cases that are not drawn as slow; cases that are asked for by their ids stay."""
+    if any("[" in argument for argument in config.args):
+        return
+    cases = [item.nodeid for item in items if "slow" not in item.keywords]
+    gone = draw.left_out(cases, draw.read(draw.FILE.read_text()), config.getoption("--draw"))
     for item in items:
-        if item.nodeid in listed:
+        if item.nodeid in gone:
             item.add_marker("slow")
-    if not any("::" in argument for argument in config.args):  # Whole files: their cases are all there.
-        files = {item.nodeid.partition("::")[0] for item in items}
-        gone = {case for case in listed if case.partition("::")[0] in files}.difference(item.nodeid for item in items)
-        if gone:
-            raise pytest.UsageError(f"tests/slow_cases.txt lists cases that are not there: {', '.join(sorted(gone))}")
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    _mark_slow_cases(config, items)
+    _draw(config, items)
     if config.getoption("--slow-part"):
         _keep_a_part_of_the_slow(config, items)
         return
@@ -144,7 +150,9 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
     """Flags of the compiler for a test, its fixtures and the processes that it starts."""
     if _STATED_FLAGS is None:
         asked = any(map(item.config.getoption, ("--slow", "--slow-part", "--benchmark-enable")))
-        as_users_do = asked or item.path.relative_to(Path(__file__).parent).parts[0] in _OPTIMISED
+        file = item.path.relative_to(Path(__file__).parent)
+        drawn = draw.is_optimised(file.as_posix(), item.config.getoption("--draw"))
+        as_users_do = asked or drawn or file.parts[0] in _OPTIMISED
         os.environ["SYMOFROS_CFLAGS"] = "" if as_users_do else "-O0"
 
 

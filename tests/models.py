@@ -123,6 +123,16 @@ def model(case: str, backend: str = "interpreter") -> sf.Model:
     return sf.compile(system(case), sf.Options(backend=backend))
 
 
+@cache
+def compiled(name: str) -> sf.Model:
+    """A reference model as C, once in a process: it does not change."""
+    return sf.compile(MODELS[name])
+
+
+def interpreted(system: sf.System) -> sf.Model:
+    return sf.compile(system, sf.Options(backend="interpreter"))
+
+
 def parametrised(system: sf.System, seed: int = 0) -> sf.System:
     """The same mechanism with masses, positions and moments as run-time parameters."""
     parameters: list[sf.Parameter] = []

@@ -11,9 +11,8 @@ from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
+from tests.borders import ROOT, absolute, import_statements, listed, modules_of, names_offered, over_the_waist
 from validation.adapters import ROUTES
-
-ROOT = Path(__file__).parent.parent
 
 
 def table(text: str) -> dict[str, set[str]]:
@@ -56,37 +55,36 @@ ALLOWED = table("""
     generator.held_beams: description mechanics.topology runtime
     # When formulas of time bend or jump, which steps end at.
     generator.instants: base expr description mechanics.topology mechanics.kinematics mechanics.dynamics
-        runtime
-    generator.programs: base errors expr mechanics.topology mechanics.dynamics generator.passes
-        generator.codegen
+        generator.codegen runtime
+    generator.programs: base errors expr mechanics.topology mechanics.kinematics mechanics.dynamics
+        generator.passes generator.codegen
     generator.units: base errors native expr description mechanics.dynamics generator.passes runtime
         generator.codegen generator.record generator.programs
     compiler: base errors expr description mechanics.topology mechanics.dynamics runtime generator.codegen
         generator.record generator.beams generator.held_beams generator.instants generator.programs
         generator.units
     loading: base errors description mechanics.topology
-    simulation: base errors native runtime generator.codegen
+    # What follows are the wings, which take of these folders what the waist offers; see `WAIST`.
+    simulation: base errors native runtime
     # A diagram is one more program over the graph: its blocks are written beside the models' equations.
-    diagrams: base errors native expr description mechanics.topology mechanics.kinematics
-        mechanics.dynamics generator.passes runtime generator.codegen generator.record generator.beams
-        generator.instants generator.programs compiler simulation
+    diagrams: base errors native expr description generator runtime compiler simulation
     # Formulas of blocks go through the parser of model files; one of them shows its model.
     blocks: base errors expr description runtime simulation diagrams studio.viewer
     diagrams.files: base errors description loading simulation diagrams blocks
     # Packages carry the stepping loop and its methods; the front door, exporting.py, compiles the model.
     # URDF and MJCF hold numbers, which topology's Numbers makes of formulas.
     # A diagram's package is made of its parts' C, written as the diagram is resolved.
-    exports: base errors native expr description mechanics.topology
-        generator.passes runtime generator.codegen generator.instants compiler loading simulation diagrams
+    exports: base errors native expr description mechanics.topology generator runtime compiler loading
+        simulation diagrams
     # Models in other frameworks, each of them imported by its own module alone.
-    interop: base errors native expr description compiler generator.codegen runtime simulation
+    interop: base errors native expr description compiler runtime simulation
     # Advice compiles and simulates reduced systems, and counts what they take; rods tell what their sections resist.
-    studio.advice: base errors expr description mechanics.beams generator.passes runtime compiler simulation
+    studio.advice: base errors expr description mechanics.beams generator runtime compiler simulation
     # The picture compiles its own frame poses, plays trajectories, and closes loops; beams lend their shape.
     studio.viewer: base errors description mechanics.beams mechanics.topology runtime compiler loading
-        simulation diagrams exports __init__
+        simulation diagrams exports
     # The editor checks documents itself, and hands the rest to workers that use the front doors.
-    studio.editor: base errors expr description mechanics.beams mechanics.topology generator.passes
+    studio.editor: base errors expr description mechanics.beams mechanics.topology generator
         runtime compiler simulation diagrams diagrams.files exports studio.viewer harness __init__
     # Passes left out in turn, for studies: their context managers reach into every stage.
     generator.ablation: base expr mechanics.kinematics mechanics.dynamics generator.passes generator.codegen
@@ -127,8 +125,8 @@ STUDIES = table("""
     environments: timing
     cuda:        timing
     stability:   accuracy
-    studies:     accuracy oracle stability timing
-    pareto:      stability studies timing
+    studies:     oracle timing
+    pareto:      stability timing
     adversary:   accuracy
     mutation:
     dashboard:   adversary cross_check cuda engines environments campaigns diagrams accuracy timing passes stability
@@ -146,21 +144,6 @@ ENGINES = {route.package for route in ROUTES.values()} - {""}
 ADAPTERS = {name: name for name in ENGINES} | {
     route.module.split(".")[2]: route.package for route in ROUTES.values() if route.package
 }
-
-
-@cache
-def import_statements(path: Path) -> tuple[ast.Import | ast.ImportFrom, ...]:
-    """Those of a file, within functions, too; found once for all rules."""
-    return tuple(
-        node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Import | ast.ImportFrom)
-    )
-
-
-def absolute(path: Path, node: ast.ImportFrom) -> str:
-    """The module that a statement of a file imports from, in a checkout."""
-    package = path.relative_to(ROOT).parent.parts
-    above = package[: len(package) + 1 - node.level] if node.level else ()
-    return ".".join([*above, *filter(None, [node.module])])
 
 
 @cache
@@ -205,7 +188,7 @@ def test_imports_run_one_way() -> None:
     def faults(path: Path) -> Iterator[str]:
         own = layer(".".join(path.relative_to(ROOT).with_suffix("").parts))
         # The command line may use all.
-        if own in ("__main__", "commands") or path.name == "__init__.py" and own in DIVIDED:
+        if own in ("__main__", "commands") or path.name == "__init__.py" and path.parent.name in DIVIDED:
             return
         for module in imported(path):
             if module.partition(".")[0] in {"validation", "reference_models"}:
@@ -214,6 +197,28 @@ def test_imports_run_one_way() -> None:
                 yield f"{own} may not import {module}"
 
     check_all(SOURCES, faults)
+
+
+def test_wings_import_of_the_core_what_the_waist_offers() -> None:
+    waist = listed("The waist")
+    taken = {item.module.removeprefix("symofros."): item for item in over_the_waist()}
+    beside = sorted(taken[module] for module in taken.keys() - waist.keys())
+    assert not beside, "\n".join(f"{user}: '{name}' of {module} is not on the waist" for user, module, name in beside)
+    assert waist.keys() <= taken.keys(), "the waist offers what nobody takes"
+
+
+def test_folders_of_the_waist_offer_what_wings_take() -> None:
+    """A face is no store: what no wing imports of a folder's `__init__` leaves it."""
+    packages = {f"symofros.{name}" for name in listed("The waist")}
+    taken = {(item.module, item.name) for item in over_the_waist()}
+    unused = [
+        f"{module}: {name}"
+        for module, path in modules_of(ROOT, "symofros").items()
+        if module in packages and path.name == "__init__.py"
+        for name in sorted(names_offered(path))
+        if (module, name) not in taken
+    ]
+    assert not unused, "\n".join(unused)
 
 
 # Names of modules that are installed under another name than that of their folder.
@@ -260,6 +265,21 @@ def test_the_package_imports_absolutely_and_what_is_installed_within_it_relative
     check_all((*SOURCES, *HARNESS_SOURCES, *REFERENCE_SOURCES), faults)
 
 
+def test_an_import_within_a_function_states_its_reason_on_its_line() -> None:
+    """A package that may be missing, or seconds that others need not wait; a circle is cured by structure."""
+
+    def faults(path: Path) -> Iterator[str]:
+        lines = path.read_text().splitlines()
+        kinds = ast.FunctionDef | ast.AsyncFunctionDef
+        functions = [node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, kinds)]
+        for node in import_statements(path):
+            within = any(f.lineno < node.lineno <= (f.end_lineno or 0) for f in functions)
+            if within and "  # " not in lines[node.lineno - 1]:
+                yield f"line {node.lineno}: an import within a function, without its reason"
+
+    check_all((*SOURCES, *HARNESS_SOURCES), faults)
+
+
 def test_sympy_is_at_the_doors_only() -> None:
     """Where its expressions come in, and where people read them."""
     doors = {"symofros/expr/freeze.py", "symofros/exports/equations/formulas.py"}
@@ -268,16 +288,7 @@ def test_sympy_is_at_the_doors_only() -> None:
 
 
 # What the harness, as any tool beside the package, may import of it: the rest may change without notice.
-# Its command line is one program with the package's: the same words of refusal, the same options of reading.
-# Its own name in a process is told by the package, which starts it.
-PUBLIC = {
-    "symofros",
-    "symofros.blocks",
-    "symofros.tools",
-    "symofros.commands.grammar",
-    "symofros.commands.reading",
-    "symofros.harness",
-}
+PUBLIC = set(listed("What others may import"))
 PACKAGE_MODULES = {".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__") for path in SOURCES}
 
 
@@ -337,15 +348,6 @@ def test_importing_the_package_loads_no_other_package() -> None:
     assert packages == {"symofros"}
 
 
-def _modules() -> dict[str, Path]:
-    """Module -> file, of all packages."""
-    files = [
-        path for package in ("symofros", "validation", "reference_models") for path in (ROOT / package).rglob("*.py")
-    ]
-    dotted = {".".join(path.relative_to(ROOT).with_suffix("").parts): path for path in files}
-    return {name.removesuffix(".__init__"): path for name, path in dotted.items()}
-
-
 def _imported_modules(path: Path, known: Collection[str]) -> set[str]:
     """The modules of ours that a file imports, for type checkers and within functions, too."""
     names: set[str] = set()
@@ -360,6 +362,6 @@ def _imported_modules(path: Path, known: Collection[str]) -> set[str]:
 
 def test_no_modules_import_each_other_in_a_circle() -> None:
     """Imports for type checkers count: what two modules share belongs into a lower one."""
-    modules = _modules()
+    modules = modules_of(ROOT, "symofros", "validation", "reference_models")
     order = TopologicalSorter({name: _imported_modules(path, modules) - {name} for name, path in modules.items()})
     order.prepare()

@@ -17,7 +17,7 @@ from typer.core import TyperCommand
 import symofros as sf
 from symofros.commands.grammar import BAD_INPUT, Group, program
 
-from .commands import COMMANDS, EXTRAS
+from .commands import COMMANDS, EXTRAS, RETIRED
 
 
 def imported(name: str) -> ModuleType:
@@ -64,6 +64,8 @@ class Commands(Group):
         if args[0] not in COMMANDS and not ctx.resilient_parsing:
             near = difflib.get_close_matches(args[0], COMMANDS, n=1)
             remedy = f"did you mean '{near[0]}'?" if near else "check MODEL cross-checks a model"
+            if args[0] in RETIRED:
+                remedy = f"its question is answered by '{RETIRED[args[0]]}'"
             print(sf.Problem(f"no command '{args[0]}'", args[0], ", ".join(COMMANDS), remedy), file=sys.stderr)
             raise SystemExit(BAD_INPUT)
         return super().resolve_command(ctx, args)

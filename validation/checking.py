@@ -39,7 +39,7 @@ from .contract.quantities import CONSTRAINED, FRAME_QUANTITIES, LOOPS, MOTION_EN
 from .contract.raised import Raised, attempted, not_installed, words
 from .inputs.frames import chosen_frames
 from .inputs.sampling import DEFAULT_STATES, sample, special_states
-from .mechanics.assembly import Assembly, assemble
+from .mechanics.assembly import Assembly
 from .mechanics.geometry import Array
 from .mechanics.parts import has_quaternion
 
@@ -170,7 +170,7 @@ def check(subject: Subject, settings: Settings, factories: Factories | None = No
     Raises:
         SymofrosError: Our own model can't be made.
     """
-    assembly = assemble(subject.system)
+    assembly = subject.assembly
     subject = replace(subject, frames=subject.frames or chosen_frames(assembly))
     obstacle = _unsampled_motion(subject.system, assembly)
     if obstacle:
@@ -217,16 +217,21 @@ def _comparisons(bench: _Bench) -> Iterator[Comparison]:
             rows = attempted(lambda one: list(judge_elements(one, bench.assembly, bench.variants)), one)
             yield from [raised(bench.label, one.name, "elements", rows)] if isinstance(rows, Raised) else rows
         if bench.settings.engines is None and bench.subject.system is references.MODELS.get(bench.label):
-            start = time.perf_counter()
-            # Others have none, and their checks do without SciPy's integrators, which take half a second to import.
-            try:
-                judge_procedures = import_module(".procedures.catalogue", __package__).judge_procedures
-            except ModuleNotFoundError as error:
-                note = f"{error}; pip install 'symofros[validation]'"
-                yield Comparison(bench.label, "symofros", "procedures", "unsupported", note=note)
-            else:
-                yield from judge_procedures(bench.label, bench.subject.system, bench.assembly)
-            bench.seconds["procedures"] = time.perf_counter() - start
+            yield from _procedures(bench)
+
+
+def _procedures(bench: _Bench) -> Iterator[Comparison]:
+    """What is done with the equations of a reference model: other models have no procedures."""
+    start = time.perf_counter()
+    # Others have none, and their checks do without SciPy's integrators, which take half a second to import.
+    try:
+        judge_procedures = import_module(".procedures.catalogue", __package__).judge_procedures
+    except ModuleNotFoundError as error:
+        note = f"{error}; pip install 'symofros[validation]'"
+        yield Comparison(bench.label, "symofros", "procedures", "unsupported", note=note)
+    else:
+        yield from judge_procedures(bench.label, bench.subject.system, bench.assembly)
+    bench.seconds["procedures"] = time.perf_counter() - start
 
 
 def _unsampled_motion(system: sf.System, assembly: Assembly) -> str:

@@ -51,10 +51,6 @@ COMMANDS = {
         "timing.report",
         "Time generated C against Pinocchio's C++, MuJoCo's C, C by CasADi and by SymPy, and Exudyn's flexible robot.",
     ),
-    "simulation": Command(
-        "studies.reports.simulation",
-        "Time motions: times real time, and against MuJoCo and Exudyn at equal accuracy.",
-    ),
     "rollouts": Command("studies.reports.rollouts", "Time thousands of motions of an arm, against mujoco.rollout."),
     "realtime": Command("studies.reports.realtime", "Keep pace with the clock, and say how well."),
     "passes": Command(
@@ -89,6 +85,9 @@ COMMANDS = {
     ),
     "campaign": Command("campaigns.command", "Long campaigns: checkpointed, resumable, over processes or a cluster."),
 }
+
+# Command that is gone -> what answers its question.
+RETIRED = {"simulation": "pareto"}
 
 # Package, by the name that it is imported under -> the extra that brings it, of those that `validation` does not.
 EXTRAS = {"dask": "campaign", "distributed": "campaign", "pyarrow": "parquet", "pytest": "test"}

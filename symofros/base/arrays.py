@@ -11,6 +11,8 @@ from numpy.typing import ArrayLike
 
 from symofros.errors import Problem, ShapeError
 
+Array = npt.NDArray[np.float64]
+
 # Of NumPy's search for an element that two arrays share: of rows or columns of one array it takes a few steps.
 _OVERLAP_WORK = 100_000
 
@@ -41,7 +43,7 @@ def _is_masked(values: Any) -> bool:
     return any(isinstance(part, np.ma.MaskedArray) and bool(np.ma.getmaskarray(part).any()) for part in parts)
 
 
-def numeric(what: str, values: ArrayLike) -> npt.NDArray[np.float64]:
+def numeric(what: str, values: ArrayLike) -> Array:
     """The values as a new array of real numbers of any shape.
 
     Args:
@@ -64,7 +66,7 @@ def numeric(what: str, values: ArrayLike) -> npt.NDArray[np.float64]:
     return np.array(array)
 
 
-def vector(what: str, values: ArrayLike, size: int) -> npt.NDArray[np.float64]:
+def vector(what: str, values: ArrayLike, size: int) -> Array:
     """The values as a new array (size) of real numbers.
 
     Args:

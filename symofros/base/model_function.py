@@ -67,18 +67,18 @@ class ModelFunction:
         """Whether it is a function of one frame."""
         return self.group == "frames"
 
-
-def cotangents(row: ModelFunction) -> dict[str, OutputArray]:
-    """The outputs of a function that have derivatives, keyed by the input group of their cotangents."""
-    of = "_WF" if row.of_frame else ""
-    return {f"{output.name}{of}_bar": output for output in row.outputs if output.name != "rank"}
+    @property
+    def cotangents(self) -> dict[str, OutputArray]:
+        """The outputs that have derivatives, keyed by the input group of their cotangents."""
+        of = "_WF" if self.of_frame else ""
+        return {f"{output.name}{of}_bar": output for output in self.outputs if output.name != "rank"}
 
 
 def cotangent_inputs(row: ModelFunction) -> dict[str, tuple[str, str]]:
     """Input groups of the cotangents of a function: their sizes, and what they hold."""
     return {
         group: (" ".join(output.shape) or "1", f"cotangent of {output.name}, row by row")
-        for group, output in cotangents(row).items()
+        for group, output in row.cotangents.items()
     }
 
 
@@ -92,7 +92,7 @@ def transposed(row: ModelFunction) -> ModelFunction:
     return replace(
         row,
         name=f"{row.name}_vjp",
-        inputs=(*(group for group in row.inputs if group != "gains"), *cotangents(row)),
+        inputs=(*(group for group in row.inputs if group != "gains"), *row.cotangents),
         outputs=tuple(OutputArray(f"by_{group}", (sizes[group],), f"by_{group}") for group in by),
         summary=f"vector-Jacobian product of {row.name}: derivatives of the sum of cotangents times outputs",
         group=row.group if row.of_frame else "derivatives",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
+from symofros.base.arrays import Array
 
 # It is xi (TERMS[0] + TERMS[1] xi^2 + TERMS[2] xi^4) of xi = v / max(|v|, peak), the peak at PEAK minimum velocities.
 PEAK = 15.0 / 8.0

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.errors import DescriptionError, Problem, did_you_mean
-from symofros.runtime.calls.kernel import Array
 
 
 def refuse(name: str, what: str, found: object, rule: str, remedy: str) -> DescriptionError:

@@ -11,8 +11,7 @@ import typer
 import symofros as sf
 from symofros.commands.shared import AsJson, refuse
 from symofros.commands.terminal import out
-from symofros.runtime.build.cache import cache_folder
-from symofros.runtime.build.cache_size import LIMIT_VARIABLE, Entry, entries, limit, prune
+from symofros.runtime.build import LIMIT_VARIABLE, Entry, cache_folder, entries, limit, prune
 
 _MEGABYTE, _DAY = 1e6, 86400.0
 

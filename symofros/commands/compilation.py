@@ -8,20 +8,18 @@ from pathlib import Path
 from typing import Any
 
 from symofros.base.atomic import write_atomically
+from symofros.base.c_names import identifier
 from symofros.base.functions import DEFAULT_FUNCTIONS
-from symofros.base.garbage import collect_rarely
 from symofros.base.options import Options
-from symofros.base.sources import Source
 from symofros.commands.reading import ReadingOptions
 from symofros.commands.shared import refuse, refusing_descriptions
 from symofros.compiler import Compilation, inconsistencies
 from symofros.errors import SymofrosError
-from symofros.generator.codegen.names import identifier
-from symofros.generator.passes.count import count_program
-from symofros.loading import load_with_sources
+from symofros.expr import collect_rarely
+from symofros.generator import count_program
+from symofros.loading import Source, load_with_sources
 from symofros.native import native_text
-from symofros.runtime.build.prepared import note_prepared
-from symofros.runtime.build.toolchain import find_toolchain
+from symofros.runtime.build import find_toolchain, note_prepared
 
 
 def compile_description(

@@ -13,8 +13,7 @@ from symofros.base.functions import DEFAULT_FUNCTIONS
 from symofros.commands.reading import ReadingOptions, reads_models
 from symofros.commands.shared import AsJson, ModelPath
 from symofros.errors import SymofrosError
-from symofros.runtime.build.prepared import recall_prepared
-from symofros.runtime.build.toolchain import find_toolchain
+from symofros.runtime.build import find_toolchain, recall_prepared
 
 
 @reads_models
@@ -42,8 +41,7 @@ def compile_command(
     name = _known_name(model, request) if output is None else None
     result: dict[str, Any] = {"name": name, "functions": names, "seconds": time.perf_counter() - start}
     if name is None:
-        # The generator is loaded where there is something to generate: that takes longer than all above.
-        from symofros.commands.compilation import compile_description
+        from symofros.commands.compilation import compile_description  # The generator takes longer than all above.
 
         chosen = names if functions or frames else None
         result |= compile_description(model, reading, chosen, frames, request, output)

@@ -8,11 +8,9 @@ from typing import Any
 import numpy as np
 from rich.table import Table
 
-from symofros.description.beams.beam import Beam
-from symofros.mechanics.beams.quadrature import stations
-from symofros.mechanics.topology.beams import section_values
-from symofros.mechanics.topology.numbers import Numbers
-from symofros.mechanics.topology.tree import SpanningTree
+from symofros.description import Beam
+from symofros.mechanics.beams import stations
+from symofros.mechanics.topology import Numbers, SpanningTree, section_values
 
 # Frames of a model that are named; the rest are counted.
 _FRAMES = 20

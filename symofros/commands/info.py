@@ -16,10 +16,10 @@ from symofros.commands.reading import ReadingOptions, reads_models
 from symofros.commands.shared import OF_A_DIAGRAM, AsJson, FilePath, Network, load, refuse
 from symofros.commands.terminal import out
 from symofros.diagrams.files.kind import is_diagram
-from symofros.mechanics.topology.tree import BASE, SpanningTree, build_tree
+from symofros.mechanics.topology import BASE, SpanningTree, build_tree
 
 if TYPE_CHECKING:
-    from symofros.generator.passes.count import Operations
+    from symofros.generator import Operations
 
 
 @reads_models
@@ -70,7 +70,7 @@ def info(
 def _counts(system: sf.System, frame: str) -> dict[str, Operations]:
     """Operations of every function, keyed by its name, and the frame of frame functions."""
     from symofros.compiler import Compilation  # The generator takes as long to import as all that is shown without it.
-    from symofros.generator.passes.count import count_program
+    from symofros.generator import count_program  # Part of it.
 
     compilation = Compilation(system, sf.Options(functions=DEFAULT_FUNCTIONS))
     compilation.request(DEFAULT_FRAME_FUNCTIONS, [frame])

@@ -28,7 +28,7 @@ from symofros.commands.shared import (
 from symofros.commands.states import stated_state
 from symofros.commands.terminal import err, out
 from symofros.compiler import compile_system
-from symofros.description.system import System
+from symofros.description import System
 from symofros.diagrams.files import command as diagrams
 from symofros.diagrams.files.kind import is_diagram
 from symofros.simulation.analysis.kinematics.starts import closed_start, stated_names

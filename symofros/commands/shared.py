@@ -16,7 +16,7 @@ import symofros as sf
 from symofros.commands.reading import ReadingOptions, pairs
 
 if TYPE_CHECKING:
-    from symofros.description.system import System
+    from symofros.description import System
 
 ModelPath = Annotated[Path, typer.Argument(help="A model: .yaml, .urdf, .sdf, .xml (MJCF) or .usd", show_default=False)]
 FilePath = Annotated[Path, typer.Argument(help="A model, or a diagram's .yaml.", show_default=False)]

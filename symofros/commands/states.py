@@ -7,10 +7,10 @@ from collections.abc import Collection, Mapping
 import numpy as np
 
 import symofros as sf
+from symofros.base.arrays import Array
 from symofros.base.names import coordinate_of, quoted, speed_of
 from symofros.commands.shared import number, refuse
 from symofros.errors import did_you_mean
-from symofros.runtime.calls.kernel import Array
 
 
 def stated_state(model: sf.Model, given: Mapping[str, str]) -> tuple[sf.Model, Array, Array]:

@@ -23,7 +23,7 @@ from symofros.commands.shared import (
     refuse,
 )
 from symofros.commands.terminal import out
-from symofros.description.reading import YAML_SUFFIXES
+from symofros.description import YAML_SUFFIXES
 from symofros.diagrams.files.kind import is_diagram
 from symofros.exports.exporting import TARGETS
 from symofros.studio.advice.report import table_of
@@ -139,7 +139,7 @@ def edit(
 ) -> None:
     """Draw, edit, check, compile and simulate a model in the browser."""
     try:
-        from symofros.studio.editor.command import serve
+        from symofros.studio.editor.command import serve  # The editor's server is an extra.
     except ModuleNotFoundError as error:
         if error.name not in ("starlette", "uvicorn", "anyio"):
             raise

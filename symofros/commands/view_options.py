@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from symofros.blocks.graphics.view import View3D, with_view
-from symofros.description.system import System
+from symofros.description import System
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.result import DiagramRun
 from symofros.errors import Problem, SymofrosError
@@ -48,11 +48,9 @@ class ViewOptions:
                 stated = str(self.output or "no --record-view")
                 rule, remedy = "the page of a replay simulates on", "--record-view FILE.html"
                 raise SymofrosError(Problem("--interactive: there is no page", stated, rule, remedy))
-            from symofros.exports.wasm.wasm import (
-                check_compiler,  # Exports take long to import: no run else needs them.
-            )
+            from symofros.exports.wasm import wasm  # Exports take long to import: no run else needs them.
 
-            check_compiler()
+            wasm.check_compiler()
         if self.output is not None:
             check_suffix(self.output)
         if self.view:

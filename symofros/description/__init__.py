@@ -1,1 +1,52 @@
 """What the user states: frozen dataclasses, the formula parser, files in and out. No computation."""
+
+from __future__ import annotations
+
+from symofros.description.beams.beam import CENTERS as CENTERS
+from symofros.description.beams.beam import DIRECTIONS as DIRECTIONS
+from symofros.description.beams.beam import PRE_STRAINS as PRE_STRAINS
+from symofros.description.beams.beam import STATION as STATION
+from symofros.description.beams.beam import STATIONS as STATIONS
+from symofros.description.beams.beam import STRAINS as STRAINS
+from symofros.description.beams.beam import Beam as Beam
+from symofros.description.beams.beam import Direction as Direction
+from symofros.description.beams.beam import Family as Family
+from symofros.description.beams.beam import Samples as Samples
+from symofros.description.beams.beam import UserShape as UserShape
+from symofros.description.constraints import Closure as Closure
+from symofros.description.constraints import Coupling as Coupling
+from symofros.description.constraints import KnifeEdge as KnifeEdge
+from symofros.description.constraints import Rod as Rod
+from symofros.description.constraints import Rolling as Rolling
+from symofros.description.forces import Anchor as Anchor
+from symofros.description.forces import Connection as Connection
+from symofros.description.forces import Damper as Damper
+from symofros.description.forces import Friction as Friction
+from symofros.description.forces import JointElement as JointElement
+from symofros.description.forces import Spring as Spring
+from symofros.description.joints.joint import WORLD as WORLD
+from symofros.description.joints.joint import Joint as Joint
+from symofros.description.joints.joint import Limits as Limits
+from symofros.description.joints.joint_kinds import KINDS as KINDS
+from symofros.description.parser import ExpressionError as ExpressionError
+from symofros.description.parser import parse as parse
+from symofros.description.parser import tokenize as tokenize
+from symofros.description.reading import MODEL_SUFFIXES as MODEL_SUFFIXES
+from symofros.description.reading import YAML_SUFFIXES as YAML_SUFFIXES
+from symofros.description.reading import in_order as in_order
+from symofros.description.reading import kind_of as kind_of
+from symofros.description.reading import read_bytes as read_bytes
+from symofros.description.reading import resolved as resolved
+from symofros.description.system import Body as Body
+from symofros.description.system import Inertia as Inertia
+from symofros.description.system import Input as Input
+from symofros.description.system import Parameter as Parameter
+from symofros.description.system import RigidBody as RigidBody
+from symofros.description.system import System as System
+from symofros.description.values import ORIGIN as ORIGIN
+from symofros.description.values import Rotation as Rotation
+from symofros.description.values import Value as Value
+from symofros.description.values import as_value as as_value
+from symofros.description.values import as_vector as as_vector
+from symofros.description.values import symbols as symbols
+from symofros.description.visual import Visual as Visual

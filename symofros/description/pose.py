@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from symofros.base.rotations import Array
+from symofros.base.arrays import Array
 
 
 class Pose(NamedTuple):

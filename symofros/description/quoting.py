@@ -104,7 +104,7 @@ def unknown_symbol_remedy(name: str, written: str, symbols: Collection[str]) -> 
     meant = with_quotes(written, symbols)
     if meant:
         return quotes_remedy(meant)
-    return did_you_mean(name, [symbol for symbol in symbols if not is_rate_symbol(symbol)], spelled)
+    return did_you_mean(name, {symbol for symbol in symbols if not is_rate_symbol(symbol)}, spelled)
 
 
 def quotes_remedy(meant: str) -> str:

@@ -50,8 +50,7 @@ def as_value(value: Any, what: str = "value") -> Value:
             )
         return number
     if type(value).__module__.partition(".")[0] == "sympy":
-        # SymPy costs a third of a second to import; only those who use it pay.
-        from symofros.expr.freeze import freeze
+        from symofros.expr.freeze import freeze  # SymPy takes a third of a second, from those who use it alone.
 
         try:
             frozen = freeze(value)

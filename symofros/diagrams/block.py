@@ -14,11 +14,11 @@ from typing import Any, ClassVar, Literal, Protocol
 import numpy as np
 
 from symofros.base.arguments import CheckedCalls
-from symofros.description.system import System
+from symofros.base.arrays import Array
+from symofros.description import System
 from symofros.diagrams.settings import Plot
 from symofros.diagrams.tensor import Tensor
-from symofros.expr.graph import Graph
-from symofros.runtime.calls.kernel import Array
+from symofros.expr import Graph
 from symofros.runtime.record import ModelRecord
 from symofros.simulation.analysis.state_space import StateSpace
 from symofros.simulation.inputs import Signal

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from symofros.base.arguments import CheckedCalls, checked
-from symofros.description.system import System
+from symofros.description import System
 from symofros.diagrams.block import Block, ModelFile, ModelSetup
 from symofros.diagrams.program.variants import with_functions
 from symofros.diagrams.settings import RunSettings

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from symofros.base.arrays import Array
 from symofros.diagrams.block import Block, Environment
-from symofros.runtime.calls.kernel import Array
 
 
 class Running(ABC):

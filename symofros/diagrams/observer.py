@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Protocol
 
-from symofros.runtime.calls.kernel import Array
+from symofros.base.arrays import Array
 
 
 class Observer(Protocol):

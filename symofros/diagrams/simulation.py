@@ -28,7 +28,7 @@ from symofros.diagrams.run.simulate import run_compiled
 from symofros.diagrams.run.values import parameter_values, record_interval
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.beams import BEAM_LIMIT
-from symofros.runtime.build.toolchain import find_toolchain
+from symofros.runtime.build import find_toolchain
 from symofros.simulation.inputs import ROUNDED_ZERO
 from symofros.simulation.progress import bar
 from symofros.simulation.stepping.methods import METHODS

@@ -9,9 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from symofros.expr.edges import Edge
-from symofros.expr.graph import Graph
-from symofros.expr.terms import Terms, edges_of, terms
+from symofros.expr import Edge, Graph, Terms, edges_of, terms
 
 Edges = npt.NDArray[np.object_]
 

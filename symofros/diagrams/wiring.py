@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from symofros.description.system import System
+from symofros.base.arrays import Array
+from symofros.description import System
 from symofros.diagrams.block import Block, Port, Ports, Shape
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.fit import check_fit
@@ -16,7 +17,6 @@ from symofros.diagrams.program.model_environment import Models
 from symofros.diagrams.settings import Plot
 from symofros.diagrams.signals import check_entry, split
 from symofros.errors import DescriptionError, Problem, did_you_mean
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.record import ModelRecord
 from symofros.simulation.analysis.state_space import StateSpace
 

@@ -10,6 +10,7 @@ from string import Template
 
 import numpy as np
 
+from symofros.base.c_names import c_string, identifier
 from symofros.diagrams.external_block import ExternalBlock
 from symofros.diagrams.program.compiled import (
     Resolved,
@@ -29,10 +30,8 @@ from symofros.exports.diagram_start import first_motion
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.functions import cell, names_table
 from symofros.exports.material import Stepping
-from symofros.generator.codegen.model import model_source
-from symofros.generator.codegen.names import c_string, identifier
-from symofros.generator.instants import with_instants
-from symofros.generator.passes import run_passes
+from symofros.expr import with_instants
+from symofros.generator import model_source, run_passes
 from symofros.native import amalgamated, header_files, native_text
 from symofros.runtime.beams import ElasticBeam
 from symofros.runtime.record import ModelRecord

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.diagrams.program.compiled import Resolved, compile_diagram
 from symofros.diagrams.run.options import DiagramOptions
 from symofros.diagrams.run.parts import Placed, place_parts
@@ -15,7 +16,6 @@ from symofros.diagrams.run.simulate import run_compiled
 from symofros.diagrams.run.starts import Start
 from symofros.exports.limits import joints_of, limits_note
 from symofros.exports.material import Stepping
-from symofros.runtime.calls.kernel import Array
 from symofros.simulation.analysis.kinematics.starts import singular_start
 
 # Instants and steps of the run that is compared.

@@ -12,12 +12,12 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from symofros.base.arguments import checked
+from symofros.base.c_names import identifier
 from symofros.base.functions import FRAME_FUNCTIONS, exported
 from symofros.base.names import coordinate_of, speed_of
 from symofros.base.options import Options
 from symofros.compiler import GENERATOR, Compilation, compile_system
-from symofros.description.beams.beam import Beam
-from symofros.description.system import System
+from symofros.description import Beam, System
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.program.compiled import resolve
 from symofros.errors import DescriptionError, ExportError, Problem, UnknownNameError, did_you_mean
@@ -36,14 +36,12 @@ from symofros.exports.limits import joints_of, limits_note
 from symofros.exports.material import Material, Stepping
 from symofros.exports.wasm import wasm
 from symofros.exports.wasm.wasm import write_wasm
-from symofros.generator.codegen.interpreted import InterpretedUnit
-from symofros.generator.codegen.names import identifier
-from symofros.generator.instants import OPERANDS, has_instants
+from symofros.expr import OPERANDS
+from symofros.generator import InterpretedUnit
 from symofros.loading import load
-from symofros.mechanics.topology.physics import OTHER_FUNCTIONS
-from symofros.mechanics.topology.tree import build_tree
+from symofros.mechanics.topology import OTHER_FUNCTIONS
 from symofros.runtime.beams import BEAM_LIMIT
-from symofros.runtime.calls.kernel import LaneOptions
+from symofros.runtime.calls import LaneOptions
 from symofros.runtime.model import Model
 from symofros.simulation.analysis.kinematics.starts import ClosedStart, closed_start, singular_start, stated_names
 from symofros.simulation.stepping.methods import METHODS, method_meant
@@ -147,7 +145,7 @@ def export(
             )
         )
     if target in _DESCRIBED:
-        build_tree(system)
+        Compilation(system).tree  # noqa: B018 - refuses what is no mechanism
         return _DESCRIBED[target](system, name, place, GENERATOR)
     with _with_stepping():
         if target == "cuda":
@@ -223,7 +221,7 @@ def _material(
     needs = (*stepping.method.family.functions, *reactions)
     if any(isinstance(body, Beam) and body.modes for body in system.bodies):
         needs = (*needs, "beam_stiffness", "mass_matrix")
-    instants = has_instants(build_tree(system))
+    instants = Compilation(system).has_instants
     if target in _STEPPED and instants:
         needs = (*needs, OPERANDS)
     constrained = bool(system.constraints)

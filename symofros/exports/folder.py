@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from symofros.base.atomic import write_atomically
+from symofros.base.c_names import identifier
 from symofros.errors import ExportError, Problem
-from symofros.generator.codegen.names import identifier
 
 MANIFEST = "symofros-export.json"
 _FORMAT = 1

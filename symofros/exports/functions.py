@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from symofros.base.functions import FUNCTIONS, INPUTS
 from symofros.exports.c.c_text import comment
-from symofros.runtime.calls.kernel import Signature
+from symofros.runtime.calls import Signature
 from symofros.runtime.record import ModelRecord
 
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable
 
-from symofros.description.joints.joint import Joint, Limits
-from symofros.description.system import System
+from symofros.description import Joint, Limits, System
 
 # What limits bound, in the order of the description.
 MEASURES = ("travel", "speed", "effort")

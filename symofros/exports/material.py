@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from symofros.description.system import System
+from symofros.description import System
 from symofros.exports.c.parameter_check import Judged
 from symofros.runtime.beams import BEAM_LIMIT, ElasticBeam
-from symofros.runtime.calls.kernel import Signature
+from symofros.runtime.calls import Signature
 from symofros.runtime.record import ModelRecord
 from symofros.simulation.stepping.methods import Method
 

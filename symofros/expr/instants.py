@@ -9,6 +9,7 @@ native/stepping/formula_instants.c, for runs and in packages.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from enum import IntEnum
 from itertools import chain
 from typing import NamedTuple
@@ -16,7 +17,10 @@ from typing import NamedTuple
 from symofros.expr.edges import ONE, Edge
 from symofros.expr.graph import Graph
 from symofros.expr.numerics.evaluate import needed_nodes
-from symofros.expr.program import Function, Output
+from symofros.expr.program import Function, Output, Program
+
+# Function of models and packages that gives operands of formulas of time; row of base/functions.py.
+OPERANDS = "instant_operands"
 
 
 class InstantKind(IntEnum):
@@ -69,6 +73,17 @@ def operands_function(name: str, graph: Graph, edges: Sequence[Edge]) -> Functio
     kinds = tuple(graph.constant(float(operand.kind)) for operand in operands)
     shape, values = (len(operands),), tuple(operand.edge for operand in operands)
     return Function(name, "", ("t",), (Output("operand", shape, values), Output("kind", shape, kinds)))
+
+
+def with_instants(program: Program) -> Program:
+    """A program, and what packages ask for the instants of the formulas of time in its functions, if they have any.
+
+    Args:
+        program: Functions, not staged yet.
+    """
+    edges = [edge for function in program.functions for edge in function.edges()]
+    function = operands_function(OPERANDS, program.graph, edges)
+    return replace(program, functions=(*program.functions, function)) if function.outputs[0].edges else program
 
 
 def _operands(graph: Graph, edges: Sequence[Edge]) -> Iterator[Operand]:

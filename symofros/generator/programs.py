@@ -9,11 +9,14 @@ from functools import cached_property
 from symofros.base.functions import FUNCTIONS
 from symofros.base.options import Options
 from symofros.errors import DescriptionError, Problem, UnknownNameError, did_you_mean
-from symofros.expr.program import Program
+from symofros.expr.graph import Graph
+from symofros.expr.program import Function, Output, Program
 from symofros.generator.codegen.effort import cheapest
 from symofros.generator.passes import run_passes
+from symofros.mechanics.dynamics.constraints.rows import retracted
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.dynamics.functions import Methods, Request, form_program, forward_methods
+from symofros.mechanics.kinematics.links import tree_kinematics
 from symofros.mechanics.topology.tree import SpanningTree
 
 # What a C text or a library holds where the options name no functions.
@@ -66,6 +69,29 @@ class ProgramBuilder:
         """The cheaper way to the forward dynamics, by count of operations: "articulated" or "factors"."""
         with self._lock:
             return self._cheapest[0]
+
+    def formulas(self, function: str, frame: str = "") -> Program:
+        """One function as it is formed, for a graph that takes its formulas over; all share a graph.
+
+        Args:
+            function: Name of the function.
+            frame: Frame of a function of frames.
+        """
+        equations = self._taken_over
+        method = self.forward_method if function == _FORWARD.name else "factors"
+        return form_program(equations, [Request(function, frame)], Methods(trees=method))
+
+    @cached_property
+    def _taken_over(self) -> Equations:
+        return self.equations()
+
+    def retraction(self) -> Program:
+        """The function q (+) step of the groups "q" and "step"."""
+        kinematics = tree_kinematics(Graph(), self.tree)
+        edges = tuple(retracted(kinematics))
+        sizes = {"q": len(edges), "step": len(self.tree.coordinates.v)}
+        function = Function("retraction", "", tuple(sizes), (Output("q", (len(edges),), edges),))
+        return Program(self.tree.system.name, kinematics.g, sizes, (function,))
 
     def _formed(self, requests: tuple[Request, ...]) -> Program:
         method: str = self._options.forward_dynamics

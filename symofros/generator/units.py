@@ -11,13 +11,13 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.c_names import identifier
 from symofros.base.options import Options
 from symofros.errors import CompileError
 from symofros.expr.program import Program
 from symofros.generator.codegen.cuda import device_code
 from symofros.generator.codegen.interpreted import InterpretedUnit
 from symofros.generator.codegen.model import Packs, model_source
-from symofros.generator.codegen.names import identifier
 from symofros.generator.passes import run_passes
 from symofros.generator.programs import ProgramBuilder
 from symofros.generator.record import GENERATOR

@@ -22,20 +22,18 @@ from typing import Any
 
 from symofros.base.arguments import check_argument
 from symofros.base.atomic import write_atomically
+from symofros.base.c_names import identifier
 from symofros.base.functions import FUNCTIONS
-from symofros.base.model_function import cotangents
 from symofros.base.options import Options
 from symofros.compiler import Compilation
-from symofros.description.system import System
+from symofros.description import System
 from symofros.errors import CompileError, Problem, UnknownNameError, did_you_mean
-from symofros.generator.codegen.names import identifier
 from symofros.interop.casadi_externals import External, Input, Output, gathered, slopes_of
 from symofros.interop.casadi_sources import Sources
 from symofros.interop.coordinates import Coordinates, Operations
 from symofros.interop.rules import RULES, check_record, framework
 from symofros.native import native_text
-from symofros.runtime.build.build import build_library
-from symofros.runtime.build.toolchain import NO_COMPILER, find_toolchain
+from symofros.runtime.build import NO_COMPILER, build_library, find_toolchain
 
 casadi = framework("casadi", "casadi")
 _OPERATIONS = Operations(
@@ -73,7 +71,7 @@ class _Differentiable:
     @property
     def cotangent(self) -> str:
         """Input group of the value's cotangent."""
-        names = {output.name: group for group, output in cotangents(FUNCTIONS[self.value[0]]).items()}
+        names = {output.name: group for group, output in FUNCTIONS[self.value[0]].cotangents.items()}
         return names[self.value[1]]
 
     def functions(self, second_order: bool) -> list[str]:

@@ -9,8 +9,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from symofros.expr.edges import ZERO
-from symofros.expr.program import Function
+from symofros.expr import ZERO, Function
 from symofros.runtime.record import Segment
 
 Pattern = npt.NDArray[np.bool_]

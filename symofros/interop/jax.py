@@ -23,10 +23,8 @@ from symofros.interop.coordinates import Operations
 from symofros.interop.rules import RULES, InteropError, framework, second_derivatives
 from symofros.interop.wrapped import WrappedDynamics
 from symofros.native import native_text
-from symofros.runtime.build.build import build_library
-from symofros.runtime.build.toolchain import NO_COMPILER, find_toolchain
-from symofros.runtime.calls.declarations import interface
-from symofros.runtime.calls.library import MANY, CompiledKernel
+from symofros.runtime.build import NO_COMPILER, build_library, find_toolchain
+from symofros.runtime.calls import MANY, CompiledKernel, NativeMemory
 from symofros.runtime.model import Model
 
 jax = framework("jax", "jax")
@@ -181,7 +179,7 @@ def _register(name: str, kernel: CompiledKernel, slot: int) -> None:
 
 def _address(pointer: Any) -> int:
 
-    return int(interface().cast("uintptr_t", pointer))
+    return int(NativeMemory().ffi.cast("uintptr_t", pointer))
 
 
 @cache

@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from symofros.runtime.calls.binding import NativeMemory, native_library
-from symofros.runtime.calls.declarations import constants
+from symofros.runtime.calls.binding import NativeMemory, constants, native_library
 from symofros.runtime.calls.kernel import Array
 
 # Values of an operand, by its number, at times (n) [s].

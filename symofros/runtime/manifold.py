@@ -14,8 +14,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.base.rotations import (
-    Array,
     common_type,
     conjugate,
     normalized,

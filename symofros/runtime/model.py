@@ -16,6 +16,7 @@ from symofros.runtime.calls.bound import Bound, Layout, bind, bind_batch
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.functions import ArrayLike as ArrayLike
 from symofros.runtime.functions import Key as Key
+from symofros.runtime.functions import Rate as Rate
 from symofros.runtime.methods import linear
 from symofros.runtime.methods.adjoint import AdjointFunctions
 from symofros.runtime.methods.configurations import ConfigurationFunctions
@@ -23,6 +24,7 @@ from symofros.runtime.methods.constraints import ConstraintFunctions
 from symofros.runtime.methods.copies import CopyFunctions
 from symofros.runtime.methods.frames import FrameFunctions
 from symofros.runtime.methods.identification import IdentificationFunctions
+from symofros.runtime.methods.identification import JointTerm as JointTerm
 from symofros.runtime.methods.linear import FrameDerivatives as FrameDerivatives
 from symofros.runtime.methods.linear import Output as Output
 from symofros.runtime.methods.linear import StateMatrices as StateMatrices

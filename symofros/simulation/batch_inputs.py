@@ -8,9 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from symofros.base.arrays import numeric
+from symofros.base.arrays import Array, numeric
 from symofros.errors import Problem, ShapeError, SymofrosError
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
 from symofros.simulation.inputs import InputPlan, Inputs, Signal, plan_inputs
 

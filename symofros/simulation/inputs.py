@@ -12,12 +12,10 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arguments import CheckedCalls, check_fields
-from symofros.base.arrays import numeric
+from symofros.base.arrays import Array, numeric
 from symofros.base.names import coordinate_of
 from symofros.errors import Problem, ShapeError, UnknownNameError, did_you_mean
-from symofros.runtime.calls.kernel import Array
-from symofros.runtime.functions import Rate
-from symofros.runtime.model import Model
+from symofros.runtime.model import Model, Rate
 
 Indices = npt.NDArray[np.intp]
 

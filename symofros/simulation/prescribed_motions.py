@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.base.rotations import conjugate, normalized, quaternion_log, quaternion_product
 from symofros.errors import Problem, SymofrosError
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord
 from symofros.simulation.inputs import InputPlan

@@ -8,10 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from symofros.base.arrays import numeric, real_array
+from symofros.base.arrays import Array, numeric, real_array
 from symofros.errors import AssemblyError, Problem, ShapeError, SymofrosError, UnknownNameError
 from symofros.native import native_number
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
 from symofros.runtime.unit_quaternions import UNIT_TOLERANCE as UNIT_TOLERANCE
 from symofros.runtime.unit_quaternions import at_unit_length

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from symofros.base.arguments import checked
-from symofros.runtime.calls.binding import native_library
+from symofros.runtime.calls import native_library
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.events import event_notes, named_events
 from symofros.simulation.inputs import Inputs, plan_inputs

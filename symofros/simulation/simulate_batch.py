@@ -11,10 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arguments import checked
-from symofros.base.arrays import real_array
+from symofros.base.arrays import Array, real_array
 from symofros.errors import Problem, ShapeError, SymofrosError
-from symofros.runtime.calls.kernel import Array
-from symofros.runtime.calls.layout import flat
+from symofros.runtime.calls import flat
 from symofros.runtime.model import ArrayLike, Model
 from symofros.runtime.unit_quaternions import at_unit_length
 from symofros.simulation.analysis.kinematics.facing import facings

@@ -46,21 +46,6 @@ def test_it_serves_until_it_is_interrupted(motion: Path, monkeypatch: pytest.Mon
     assert f"double_pendulum is at {url} (Ctrl-C ends)" in found.output and "127.0.0.1" in url
 
 
-@pytest.mark.parametrize(
-    ("arguments", "expected"),
-    [
-        (["none.yaml"], "'none.yaml' does not exist"),
-        ([PENDULUM, "--trajectory", "none.npz"], "trajectory: 'none.npz' does not exist"),
-        ([PENDULUM, "--record", "run.gif"], "nothing moves"),
-        ([PENDULUM, "--record", "run.avi"], "one of .html, .mp4, .gif, .png"),
-        ([PENDULUM, "--port", "99999", "--no-browser"], "can't serve at 127.0.0.1:99999"),
-    ],
-)
-def test_bad_input_is_said_and_ends_with_2(arguments: list[object], expected: str) -> None:
-    found = run(*arguments)
-    assert found.exit_code == 2 and expected in found.output and "Traceback" not in found.output
-
-
 def test_a_motion_of_another_model_is_refused(motion: Path, tmp_path: Path) -> None:
     found = run(FOUR_BAR, "--trajectory", motion, "--record", tmp_path / "run.gif")
     assert found.exit_code == 2 and "coordinates q1, q2" in found.output and "q1, q2, q3" in found.output

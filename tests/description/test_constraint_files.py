@@ -32,7 +32,9 @@ def test_written_and_read(tmp_path: Path, name: str) -> None:
 def test_conditions_by_formula(tmp_path: Path) -> None:
     body = sf.RigidBody("b", sf.Joint("p", "planar"), sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)))
     edge = sf.Nonholonomic("n", {"dp.x": "-sin(p.angle)", "dp.y": "cos(p.angle)"}, "0.1*t")
-    system = sf.System("s", (body,), constraints=(edge, sf.KnifeEdge("e", ("b", None), "x")))
+    system = sf.System(
+        "s", (body,), constraints=(edge, sf.KnifeEdge("e", ("b", None), "x"), sf.Coupling("c", "p.x - 2*sin(p.angle)"))
+    )
     sf.save(system, tmp_path / "model.yaml")
     assert sf.load(tmp_path / "model.yaml") == system
 

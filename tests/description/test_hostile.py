@@ -21,9 +21,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import symofros as sf
-from symofros.description.urdf import reader as urdf
 from symofros.description.yaml import files, yaml_nodes
 from symofros.errors import MAX_PROBLEMS
+from tests.description.reading import faults
 from tests.models import sampled
 
 SECONDS = 120.0
@@ -33,27 +33,7 @@ MEBIBYTES = 700
 EVERYTHING = Path(__file__).parents[2] / "validation" / "corpus" / "everything.yaml"
 
 # A process that has the readers ready, their validators too, forks one process a file, whose memory is its own.
-_READERS = """
-import json, os, resource, sys
-import symofros as sf
-sf.load(sys.argv[1])
-for line in sys.stdin:
-    folder, name = json.loads(line)
-    process = os.fork()
-    if not process:
-        os.chdir(folder)
-        try:
-            sf.load(name)
-            answer = "read"
-        except sf.DescriptionError as error:
-            answer = str(error)
-        peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-        print(json.dumps([answer, peak / (1 << (20 if sys.platform == "darwin" else 10))]), flush=True)
-        os._exit(0)
-    status = os.waitpid(process, 0)[1]
-    if status:
-        sys.exit(f"reading {name} ended with status {status}")
-"""
+_READERS = Path(__file__).with_name("readers.py.in").read_text()
 
 
 def body(name: str, parent: str = "world", mass: str = "1") -> str:
@@ -216,12 +196,6 @@ def test_a_changed_file_is_read_or_refused(
         assert sf.load(path.with_name("again.yaml")) == system
 
 
-def faults(path: Path) -> str:
-    with pytest.raises(sf.DescriptionError) as caught:
-        sf.load(path)
-    return str(caught.value)
-
-
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no pipes with names")
 @pytest.mark.parametrize("name", ["pipe.yaml", "pipe.urdf"])
 def test_a_pipe_does_not_block_the_reader(name: str, tmp_path: Path) -> None:
@@ -262,12 +236,6 @@ def test_values_are_counted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.setattr(yaml_nodes, "MAX_NODES", 100)
     (tmp_path / "a.yaml").write_text("symofros: 1\nsystem: [" + "1, " * 200 + "]\n")
     assert "too many values" in faults(tmp_path / "a.yaml")
-
-
-def test_links_are_counted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(urdf, "MAX_LINKS", 3)
-    (tmp_path / "a.urdf").write_text('<robot name="r">' + "".join(map(link, "abcd")) + "</robot>")
-    assert "4 links" in faults(tmp_path / "a.urdf")
 
 
 def test_a_long_chain_of_links_is_read_in_linear_time(tmp_path: Path) -> None:

@@ -11,8 +11,8 @@ import pytest
 
 import symofros as sf
 from symofros.description.mjcf import files as mjcf_files
-from symofros.description.yaml.files import read_yaml
 from tests.description.mjcf_models import MODELS, document
+from tests.description.reading import faults
 from validation.mechanics.geometry import quaternion_matrix
 
 PENDULUM = '<body name="a"><joint name="q" axis="0 1 0"/><geom size="0.1" pos="1 0 0"/></body>'
@@ -31,12 +31,6 @@ def write(folder: Path, body: str, name: str = "model.xml") -> Path:
 
 def world(text: str) -> str:
     return f"<worldbody>{text}</worldbody>"
-
-
-def faults(path: Path) -> str:
-    with pytest.raises(sf.DescriptionError) as caught:
-        sf.load(path)
-    return str(caught.value)
 
 
 def notes(folder: Path, body: str) -> str:
@@ -118,20 +112,13 @@ def test_mujoco_has_the_same_equations(tmp_path: Path, name: str) -> None:
             close(R, d.site_xmat[site].reshape(3, 3))
 
 
-@pytest.mark.parametrize("name", MODELS)
-def test_native_files_hold_what_is_imported(tmp_path: Path, name: str) -> None:
-    system = sf.load(write(tmp_path, MODELS[name]))
-    sf.save(system, tmp_path / "model.yaml")
-    assert read_yaml(tmp_path / "model.yaml").system == system
-
-
 def test_names_and_places(tmp_path: Path) -> None:
     system = sf.load(write(tmp_path, MODELS["several_joints_on_a_body"]))
     assert system.name == "test"
     names = ["world", "a_at_x", "a_at_z", "a_at_turn", "a", "b_at_q1", "b_at_q2", "b_at_q3", "b"]
     assert [body.name for body in system.bodies] == names
     assert sf.compile(system, sf.Options(backend="interpreter")).names.q == ("x", "z", "turn", "q1", "q2", "q3")
-    assert system.origin["body", "b"].endswith("model.xml:8")
+    assert system.origin["body", "b"].endswith("model.xml:7")
 
 
 def test_nameless_things_get_free_names(tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ import pytest
 
 import symofros as sf
 from symofros.description.packages import Packages
+from tests.description.reading import refused
 
 ROBOT = '<robot name="arm" xmlns:xacro="http://ros.org/wiki/xacro">{}</robot>'
 INERTIAL = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
@@ -28,12 +29,6 @@ def package(folder: Path, name: str, **files: str) -> Path:
     for file, text in files.items():
         (folder / f"{file}.xacro").write_text(ROBOT.format(text))
     return folder / "arm.xacro"
-
-
-def refused(path: Path, **given: object) -> sf.DescriptionError:
-    with pytest.raises(sf.DescriptionError) as caught:
-        sf.load(path, **given)  # type: ignore[arg-type]
-    return caught.value
 
 
 def test_packages_of_a_workspace_find_each_other_by_their_manifests(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import symofros as sf
 from symofros.base.names import RESERVED, coordinate_of, rate_symbol, speed_of, symbol_in, symbol_of
-from symofros.description.parser import ExpressionError, parse
+from symofros.description.parser import parse
 from symofros.description.quoting import readings, text_among, with_quotes
 from symofros.expr.expression import CONSTANTS, Expression, always_quoted, spelled
 from tests.description.hostile_names import HOSTILE
@@ -56,29 +56,6 @@ def test_names_are_looked_up_with_quotes_and_without(name: str, other: str) -> N
         assert speed_of(f"d{quoted}", known) == name
 
 
-@pytest.mark.parametrize(
-    ("text", "symbols"),
-    [
-        ("-20*`left-hip` - 2*d`left-hip`", {"left-hip", "d`left-hip`"}),
-        ("`dleft-hip`", {"dleft-hip"}),
-        ("`left-hip`.qx + `left beam`.bend_y[0]", {"left-hip.qx", "left beam.bend_y[0]"}),
-        ("dd`a`", {"dd`a`"}),
-        ("t + `t` + pi + `pi` + `sin` + sin(x)", {"t", "`t`", "`pi`", "sin", "x"}),
-        ("`q1` + q1", {"q1"}),
-        ("`a``b`", {"a`b"}),
-    ],
-)
-def test_readings_of_quotes(text: str, symbols: set[str]) -> None:
-    assert parse(text).symbols() == symbols
-
-
-@pytest.mark.parametrize("text", ["`a", "``", "`a`b", "`sin`(1)", "xd`a`", "a`b`", "`a\tb`", "`a\nb`"])
-def test_what_is_no_quoted_name(text: str) -> None:
-    with pytest.raises(ExpressionError) as caught:
-        parse(text)
-    assert caught.value.problem_of("formula").remedy
-
-
 def test_reserved_names_are_those_of_formulas() -> None:
     assert RESERVED == {"t", *CONSTANTS}
 
@@ -101,26 +78,6 @@ def hips() -> sf.System:
         for k, name in enumerate(joints)
     ]
     return sf.System("hips", bodies, inputs=[sf.Input("sin"), sf.Input("u/1")])
-
-
-@pytest.mark.parametrize(
-    ("formula", "says"),
-    [
-        ("left-hip", "between backquotes: `left-hip`"),
-        ("-20*left-hip - 2*dleft-hip", "-20*`left-hip` - 2*`dleft-hip`"),
-        ("u/1", "between backquotes: `u/1`"),
-        ("2*(a-b)", "write 2*(`a-b`) for what is called 'a-b', or 2*(`a` - `b`)"),
-        ("da-b", "could also mean 'da-b'"),
-        ("door", "write `door` for the coordinate, d`oor` for the rate"),
-        ("`lefthip`", "did you mean '`left-hip`'?"),
-        ("2*sin", "between backquotes: 2*`sin`"),
-    ],
-)
-def test_unclear_formulas_are_refused_with_what_can_be_written(formula: str, says: str) -> None:
-    model = sf.compile(hips(), sf.Options(backend="interpreter"))
-    with pytest.raises(sf.SymofrosError) as caught:
-        model.formulas([formula])
-    assert says in str(caught.value)
 
 
 def test_the_same_is_refused_in_a_description() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
@@ -118,13 +117,9 @@ def mjcf(names: list[str], actuators: list[str]) -> str:
     )
 
 
-def chunks(names: list[str], size: int = 4) -> list[list[str]]:
+def chunks(names: list[str], size: int = 16) -> list[list[str]]:
     """Names in groups, each of a chain."""
-    return (
-        [list(group) for group in itertools.batched(names, size)]
-        if hasattr(itertools, "batched")
-        else [names[i : i + size] for i in range(0, len(names), size)]
-    )
+    return [names[i : i + size] for i in range(0, len(names), size)]
 
 
 # What XML changes in attributes, or libraries in names, is no name of a file: blanks at the ends.

@@ -8,18 +8,14 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from symofros.description.yaml.files import read_yaml
 from tests.description.sdf_models import MODELS, document, link
+from tests.models import interpreted
 
 
 def load(folder: Path, text: str, name: str = "model.sdf") -> sf.System:
     path = folder / name
     path.write_text(text)
     return sf.load(path)
-
-
-def interpreted(system: sf.System) -> sf.Model:
-    return sf.compile(system, sf.Options(backend="interpreter"))
 
 
 def faults(folder: Path, text: str) -> str:
@@ -41,12 +37,6 @@ def test_drake_has_the_same_equations(tmp_path: Path, name: str) -> None:
     # Poses of frames are products of a few rotations; measured: 2e-15 of the largest entry.
     np.testing.assert_allclose(model.mass_matrix(q), M, atol=1e-13 * np.abs(M).max())
     np.testing.assert_allclose(model.bias(q, v), h, atol=1e-13 * np.abs(h).max())
-
-
-def test_native_files_hold_what_is_imported(tmp_path: Path) -> None:
-    system = load(tmp_path, MODELS["frames that refer to each other"].text)
-    sf.save(system, tmp_path / "model.yaml")
-    assert read_yaml(tmp_path / "model.yaml").system == system
 
 
 JOINT = '<joint name="{name}" type="{kind}"><parent>{parent}</parent><child>{child}</child>{inside}</joint>'

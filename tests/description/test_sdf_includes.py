@@ -10,7 +10,9 @@ import pytest
 
 import symofros as sf
 from symofros.description.sdf import includes
+from tests.description.reading import refused
 from tests.description.sdf_models import MODELS, document, link
+from tests.models import interpreted
 
 WHEEL = '<sdf version="1.9"><model name="wheel">{}</model></sdf>'
 CONFIG = '<model><name>x</name><sdf version="1.5">old.sdf</sdf><sdf version="1.9">new.sdf</sdf></model>'
@@ -25,16 +27,6 @@ def write(folder: Path, text: str, name: str = "model.sdf") -> Path:
 def including(inside: str, **attributes: str) -> str:
     stated = "".join(f' {name}="{value}"' for name, value in attributes.items())
     return f'<sdf version="1.11"><model name="outer"><include{stated}>{inside}</include></model></sdf>'
-
-
-def refused(path: Path, **given: object) -> sf.DescriptionError:
-    with pytest.raises(sf.DescriptionError) as caught:
-        sf.load(path, **given)  # type: ignore[arg-type]
-    return caught.value
-
-
-def interpreted(system: sf.System) -> sf.Model:
-    return sf.compile(system, sf.Options(backend="interpreter"))
 
 
 @pytest.mark.parametrize("merge", ["false", "true"])

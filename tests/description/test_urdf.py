@@ -10,7 +10,6 @@ import pytest
 
 import symofros as sf
 from symofros.description.closing import closing_remedy
-from tests.late import require
 from validation.inputs.cases import robot_case
 
 INERTIAL = (
@@ -125,12 +124,6 @@ def test_each_fault_names_its_line(change: tuple[str, str], line: int, part: str
     assert f"arm.urdf:{line}" in message or line == 0, message
 
 
-def test_faults_come_together(tmp_path: Path) -> None:
-    text = ROBOT.replace('value="2"', 'value="x"', 1).replace('type="fixed"', 'type="glued"')
-    message = faults(tmp_path, text)
-    assert "arm.urdf:3" in message and "arm.urdf:7" in message
-
-
 # Robots of the package that are no mechanisms as they stand, and why.
 REFUSED = {
     "quadrotor_base.urdf": "nothing moves",
@@ -152,23 +145,6 @@ def test_every_robot_of_the_package_loads_or_says_why() -> None:
         else:
             sf.load(file)
     assert sf.load(robots_folder() / "romeo_description/urdf/romeo.urdf", waive=["massless_tip"]).bodies
-
-
-@pytest.mark.parametrize("robot", ["talos_data/robots/talos_reduced.urdf", "panda_description/urdf/panda.urdf"])
-def test_inertias_equal_pinocchios(robot: str) -> None:
-    pinocchio = require("pinocchio", "validation")
-    from validation.mechanics.assembly import assemble
-
-    theirs = pinocchio.buildModelFromUrdf(str(robots_folder() / robot))
-    for mover in assemble(sf.load(robots_folder() / robot, snap_tol=0.0)).movers:
-        merged = mover.merged()
-        index = theirs.getJointId(mover.name)
-        inertia, placement = theirs.inertias[index], theirs.jointPlacements[index]
-        assert merged.mass == pytest.approx(inertia.mass, rel=1e-14)
-        np.testing.assert_allclose(merged.p_BC, inertia.lever, atol=1e-14)
-        np.testing.assert_allclose(merged.J_BC, inertia.inertia, atol=1e-13)
-        np.testing.assert_allclose(mover.X_AP.R, placement.rotation, atol=1e-14)
-        np.testing.assert_allclose(mover.X_AP.p, placement.translation, atol=1e-14)
 
 
 FOLLOWER = (

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 import symofros as sf
 from symofros.description.urdf.planar import planar_frames
+from tests.models import interpreted
 
 INERTIAL = (
     '<inertial><origin xyz="0.1 -0.05 0.2" rpy="0.3 0.1 -0.2"/><mass value="2"/>'
@@ -34,10 +35,6 @@ def joint(name: str, kind: str, parent: str, child: str, inside: str = "") -> st
 def load(folder: Path, text: str, **given: object) -> sf.System:
     (folder / "r.urdf").write_text(f"{text}</robot>")
     return sf.load(folder / "r.urdf", **given)  # type: ignore[arg-type]
-
-
-def interpreted(system: sf.System) -> sf.Model:
-    return sf.compile(system, sf.Options(backend="interpreter"))
 
 
 ORIGIN = '<origin xyz="0.3 -0.2 0.5" rpy="0.4 -0.3 0.7"/>'

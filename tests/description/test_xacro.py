@@ -14,6 +14,7 @@ import pytest
 import symofros as sf
 from symofros.description.packages import Packages
 from symofros.description.urdf import xacro_expressions, xacro_files, xacro_worker
+from tests.description.reading import faults
 from tests.late import require
 
 require("xacro", "xacro")
@@ -34,12 +35,6 @@ def write(folder: Path, inside: str, name: str = "arm.urdf.xacro") -> Path:
         f'<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="base"/>{inside}</robot>'
     )
     return path
-
-
-def faults(path: Path) -> str:
-    with pytest.raises(sf.DescriptionError) as caught:
-        sf.load(path)
-    return str(caught.value)
 
 
 def test_macros_properties_conditions_arguments_and_files(tmp_path: Path) -> None:

@@ -30,6 +30,7 @@ DIRECTIVES = {"code-cell", "eval-rst", "include", "literalinclude", "report-figu
 CART_POLE = "reference_models/rigid/cart_pole.yaml"
 GIVEN = {
     "docs/diagrams.md": {"arm.yaml": "reference_models/rigid/double_pendulum.yaml"},
+    "docs/tour.md": {"arm.yaml": CART_POLE, "robot.urdf": "reference_models/arm.urdf"},
     "docs/view.md": {"arm.yaml": "reference_models/rigid/double_pendulum.yaml"},
     "docs/howto/fmu.md": {"arm.yaml": CART_POLE},
     "docs/howto/parameters.md": {"arm.yaml": CART_POLE},

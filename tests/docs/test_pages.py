@@ -190,10 +190,3 @@ def test_the_first_example_is_short_and_does_all_that_it_says(capsys: pytest.Cap
     assert len(first.text.strip().splitlines()) <= 25
     exec(compile(first.text, "README.md", "exec"), {})
     assert "(1000, 2, 2) (6, 2)" in capsys.readouterr().out
-
-
-@pytest.mark.parametrize("page", [page for page in pages() if page.startswith("docs/howto/")])
-def test_a_guide_says_where_the_model_of_its_commands_comes_from(page: str) -> None:
-    text = (ROOT / page).read_text(encoding="utf-8")
-    made = "`cp reference_models/rigid/cart_pole.yaml arm.yaml`"
-    assert "arm.yaml" not in text or text.index(made) < text.index(" arm.yaml", text.index("```sh"))

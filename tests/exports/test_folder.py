@@ -9,8 +9,8 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from symofros.base.c_names import identifier
 from symofros.exports.folder import MANIFEST, check_same, write_folder
-from symofros.generator.codegen.names import identifier
 
 PENDULUM = MODELS["pendulum"]
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from symofros.description.parser import parse
-from symofros.expr.derivative import directional, partials
+from symofros.expr.derivative import partials
 from symofros.expr.expression import lower
 from symofros.expr.graph import Graph
 from symofros.expr.numerics.evaluate import evaluate_edges
@@ -69,9 +69,3 @@ def test_where_operands_are_equal_the_lesser_and_the_greater_have_the_mean_of_th
     (row,) = partials(g, [lower(parse(formula), g, {"x": x, "y": y})], [x, y])
     values = evaluate_edges(Program("p", g, {}, ()), row, {"q": np.full((3, 2), 0.7)}, {})
     assert [np.unique(value).tolist() for value in values] == [[0.5], [0.5]]
-
-
-def test_what_does_not_vary_has_no_derivative() -> None:
-    g = Graph()
-    x, y = g.input("q", 0), g.input("q", 1)
-    assert directional(g, [g.call("sin", y), g.constant(2.0), -x], {x: g.input("v", 0)}) == [0, 0, -g.input("v", 0)]

@@ -48,16 +48,6 @@ def test_constants_fold_through_products(g: Graph) -> None:
     assert g.number(g.call("sqrt", g.constant(9.0))) == 3.0
 
 
-def test_small_powers_are_products(g: Graph) -> None:
-    x = g.input("q", 0)
-    x2 = g.mul(x, x)
-    assert g.power(x, g.constant(4.0)) == g.mul(x2, x2)
-    assert g.power(x, g.constant(0.5)) == g.sqrt(x)
-    assert g.power(x, g.constant(-1.0)) == g.div(ONE, x)
-    assert g.power(x, ZERO) == ONE
-    assert g.op[g.power(x, g.constant(1e9))] == "pow"
-
-
 def test_division_by_the_number_zero_is_refused(g: Graph) -> None:
     with pytest.raises(ZeroDivisionError, match="constant zero"):
         g.div(g.input("q", 0), g.add(ONE, -ONE))
@@ -66,15 +56,6 @@ def test_division_by_the_number_zero_is_refused(g: Graph) -> None:
 def test_a_constant_outside_a_domain_is_refused(g: Graph) -> None:
     with pytest.raises(ArithmeticError, match="log"):
         g.call("log", g.constant(-1.0))
-
-
-def test_labels_stay_on_computed_nodes(g: Graph) -> None:
-    x = g.input("q", 0)
-    g.name(x, "input")
-    g.name(ONE, "one")
-    edge = g.name(g.mul(x, x), "square")
-    g.name(edge, "again")
-    assert g.label == {edge: "square"}
 
 
 @given(st.lists(st.floats(-1e3, 1e3), min_size=2, max_size=2), st.sampled_from([n for n, op in OPS.items()]))

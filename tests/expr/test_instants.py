@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from reference_models import MODELS
 from symofros.expr.instants import InstantKind
-from symofros.runtime.calls.declarations import constants
+from symofros.runtime.calls.binding import constants
 from symofros.runtime.instants import find_instants
+from tests.models import compiled
 
 
 @pytest.fixture(scope="module")
 def model() -> sf.Model:
-    return sf.compile(MODELS["cart_pole"])
+    return compiled("cart_pole")
 
 
 def instants(model: sf.Model, formula: str, t_end: float = 10.0) -> np.ndarray:
@@ -47,14 +47,6 @@ def test_every_kink_of_a_wave(model: sf.Model) -> None:
     zeros = np.arange(1, 64) * np.pi / 20
     assert np.abs(found[found > 0.1][:, np.newaxis] - zeros).min(axis=0).max() < 1e-12
     assert len(instants(model, "cos(t)*max(0, sin(t))")) == 4  # One of them just after the start.
-
-
-@pytest.mark.parametrize(
-    "formula", ["sin(50*t)", "exp(-t)", "t^3 - t", "1/sqrt(0.5 - t)", "log(t)", "max(0, q0) + abs(v0)", "3*t + 1"]
-)
-def test_smooth_formulas_and_those_of_the_state_have_none(model: sf.Model, formula: str) -> None:
-    formula = formula.replace("q0", model.names.q[0]).replace("v0", f"d{model.names.q[0]}")
-    assert len(instants(model, formula)) == 0
 
 
 def test_parameters_move_them_and_factors_of_the_state_do_not() -> None:

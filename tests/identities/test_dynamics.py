@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 import symofros as sf
-from tests.models import CASES, model, sampled, system
+from tests.models import CASES, model, sampled
 
 STATES = 20
 # Sums of some hundred terms of size one: their rounding.
@@ -95,40 +93,6 @@ def test_the_fused_function_returns_what_the_single_ones_do(case: str, rng: np.r
     for fused, single in zip(m.dynamics(q, v, u), alone, strict=True):
         # Sums are added up in an order that depends on who else reads their parts: the last bits may differ.
         np.testing.assert_allclose(fused, single, rtol=0, atol=ROUNDING * np.abs(single).max(initial=1.0))
-
-
-@pytest.mark.parametrize("case", ["tree0", "tree1", "tree2"])
-def test_turning_the_world_changes_nothing(case: str, rng: np.random.Generator) -> None:
-    """The same mechanism mounted on a turned base, under turned gravity, has the same M and h."""
-    stated = system(case)
-    turn = sf.Rotation.rpy(0.3, -0.7, 1.9)
-    frame = sf.Frame("turned", (0.4, -0.2, 0.9), turn)
-    bodies = [
-        replace(body, joint=replace(body.joint, parent="carrier"))
-        if body.joint is not None and body.joint.parent == "base" and body.joint.frame is None
-        else body
-        for body in stated.bodies
-    ]
-    # What sat on the base, or on its frame, now sits on a fixed carrier that is turned and shifted.
-    base = stated.body("base")
-    bodies = [
-        replace(body, joint=replace(body.joint, parent="carrier"))
-        if body.joint is not None and body.joint.parent == "base"
-        else body
-        for body in bodies
-        if body.name != "base"
-    ]
-    carrier = sf.RigidBody("carrier", sf.Joint("weld", "fixed", "ground", "turned"), None, base.frames)
-    from symofros.mechanics.topology.numbers import Numbers
-
-    R = Numbers(stated).rotation(turn)
-    gravity = tuple(R @ np.array(stated.gravity, dtype=float))
-    turned = replace(stated, bodies=(sf.RigidBody("ground", frames=[frame]), carrier, *bodies), gravity=gravity)
-    one, other = model(case), sf.compile(turned, sf.Options(backend="interpreter"))
-    _, q, v = states(case, rng)
-    scale = np.abs(one.bias(q, v)).max()
-    np.testing.assert_allclose(other.mass_matrix(q), one.mass_matrix(q), atol=ROUNDING * scale)
-    np.testing.assert_allclose(other.bias(q, v), one.bias(q, v), atol=ROUNDING * scale)
 
 
 @pytest.mark.parametrize("case", [case for case in CASES if case.startswith("parametrised")])

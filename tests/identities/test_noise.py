@@ -83,27 +83,6 @@ def test_the_mass_matrix_is_that_of_inverse_dynamics_and_of_energy(case: str) ->
     assert np.array_equal(M, M.T) and np.linalg.eigvalsh(M).min() > -ROUNDING * np.abs(M).max()
 
 
-@pytest.mark.parametrize("case", sampled(TREES, SOME_TREES))
-def test_the_mass_matrix_is_the_sum_of_turned_inertias(case: str) -> None:
-    """M = sum J^T diag(m, I) J over the bodies, with J at their mass centres, by matrices alone."""
-    m, (q, _) = model(case), state(case)
-    M, numbers = np.zeros((m.nv, m.nv)), Numbers(system(case))
-    for body in system(case).bodies:
-        inertia = body.inertia if isinstance(body, sf.RigidBody) else None
-        if inertia is None:
-            continue
-        (_, R), J = m.frame_pose(body.name, q), m.frame_jacobian(body.name, q)
-        mass, center = numbers.value(inertia.mass), R @ numbers.values(inertia.center_of_mass)
-        xx, yy, zz, xy, xz, yz = numbers.values(inertia.moments)
-        turned = R @ numbers.rotation(inertia.rotation)
-        moments = turned @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ turned.T
-        if inertia.about == "body":
-            moments -= mass * (center @ center * np.eye(3) - np.outer(center, center))
-        at_center = J[:3] - np.cross(center, J[3:], axisb=0).T if m.nv else J[:3]
-        M += mass * at_center.T @ at_center + J[3:].T @ moments @ J[3:]
-    assert_same(m.mass_matrix(q), M)
-
-
 def _turned(stated: sf.System, rng: np.random.Generator) -> sf.System:
     """All of it in another place, gravity included; nothing but the roots and weight knows of the world."""
     rotation = noisy_rotation(rng)
@@ -255,10 +234,3 @@ def test_runs_repeat_their_bits_and_converge_by_their_order(case: str) -> None:
     rounding = 1e-12 * np.abs(third).max()
     # Of order four sixteen; a half of it where the next term still counts.
     assert fine <= coarse / 8.0 + rounding
-
-
-def test_a_matrix_further_from_a_rotation_is_refused_with_its_size() -> None:
-    matrix = sf.Rotation.matrix([[1.0, 3e-6, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
-    body = sf.RigidBody("b", sf.Joint("q", "revolute", rotation=matrix), sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)))
-    with pytest.raises(sf.DescriptionError, match=r"not a rotation\n.*\|R R\^T - 1\| = 3e-06"):
-        sf.compile(sf.System("s", (body,)), sf.Options(backend="interpreter"))

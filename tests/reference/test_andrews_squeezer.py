@@ -7,13 +7,15 @@ them, without joints and loops of ours.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import symofros as sf
-from reference_models import MODELS
+from tests.models import compiled
 
 Array = np.ndarray
 # The coordinates in the order of the literature.
@@ -28,101 +30,19 @@ START = (
     1.2305474445498212,
 )
 # Angles, rates, and the point F at the end of K1, by time.
-MOTION: dict[float, tuple[tuple[float, ...], tuple[float, ...], tuple[float, float]]] = {
-    0.01: (
-        (
-            2.1601131315315003,
-            -1.8833642311070153,
-            0.15851675800123177,
-            -0.3286410751746613,
-            0.5251547747977293,
-            0.3286410751746618,
-            1.0684272046324026,
-        ),
-        (
-            711.9231528310936,
-            -786.7700808599232,
-            -136.43819137811892,
-            -240.2930292678634,
-            4.791548225371493,
-            240.29302926786346,
-            -41.14056696161159,
-        ),
-        (-0.00389055238864928, 0.005819244118541117),
-    ),
-    0.02: (
-        (
-            8.184905889661628,
-            -7.890505363730401,
-            0.20953691338470706,
-            -0.2383255965958343,
-            0.5225369171559957,
-            0.23832559659583485,
-            1.0862751085998767,
-        ),
-        (
-            726.5583426091152,
-            -748.632420632306,
-            -145.73923758440236,
-            -259.5007994767715,
-            9.790501855163754,
-            259.5007994767715,
-            -57.7574717427475,
-        ),
-        (-0.002274420924160187, 0.0066201970861706465),
-    ),
-    0.03: (
-        (
-            15.81077119629904,
-            -15.75637105984298,
-            0.04082224013073101,
-            -0.5347301163226948,
-            0.5244099658805303,
-            0.5347301163226948,
-            1.048080741042263,
-        ),
-        (
-            1139.920302151208,
-            -1424.379294994111,
-            11.03291221937134,
-            19.29337464421385,
-            0.5735699284790808,
-            -19.29337464421385,
-            0.3231791658026955,
-        ),
-        (-0.00696303942704718, -0.0007183884307159248),
-    ),
-    0.05: (
-        (
-            33.82586776695381,
-            -33.58343151746305,
-            0.1133950738127163,
-            -0.40785286560167894,
-            0.5260604449169953,
-            0.40785286560167866,
-            1.0569024294349871,
-        ),
-        (
-            1144.535502653594,
-            -1336.0337226507193,
-            -190.93706860435904,
-            -334.31706087098087,
-            0.8758650829591876,
-            334.3170608709809,
-            -39.61728897841592,
-        ),
-        (-0.005208504722293426, 0.004676695260314391),
-    ),
+MOTION = {
+    float(head[0]): (angles, rates, head[1:3])
+    for head, angles, rates in np.loadtxt(Path(__file__).with_name("andrews_squeezer.txt")).reshape(-1, 3, 7)
 }
 TORQUE = 0.033  # On K1 [N m].
 
 
 @cache
 def model() -> sf.Model:
-    return sf.compile(MODELS["andrews_squeezer"])
+    return compiled("andrews_squeezer")
 
 
-def ours(values: tuple[float, ...]) -> Array:
+def ours(values: Sequence[float] | Array) -> Array:
     """Numbers in the order of the literature, in that of the model."""
     return np.array([values[ORDER.index(name)] for name in model().names.q])
 
@@ -164,9 +84,9 @@ def test_accelerations_on_the_way(t: float) -> None:
     angles, rates, _ = MOTION[t]
     m = model()
     a = m.forward_dynamics(ours(angles), ours(rates), [])
-    wanted = literature(np.array(angles), np.array(rates))
+    wanted = literature(angles, rates)
     # Accelerations of 1e6 rad/s^2 in loops of centimetres: the condition of the equations is 1e5.
-    assert np.abs(a - ours(tuple(wanted))).max() < 1e-9 * np.abs(wanted).max()
+    assert np.abs(a - ours(wanted)).max() < 1e-9 * np.abs(wanted).max()
 
 
 # The mechanism as the literature has it, in plain trigonometry.

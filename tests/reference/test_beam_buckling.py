@@ -37,13 +37,6 @@ def test_euler_load_function_by_function(basis: str, modes: int) -> None:
     assert found == pytest.approx(REFERENCE["convergence_with_modes"][str(modes)][basis], rel=1e-8)
 
 
-@pytest.mark.parametrize("family", ["legendre", "polynomial", "spline", "clamped_free"])
-def test_euler_load_with_five_functions(family: str) -> None:
-    m = loaded(bend_z=5, family=family)
-    K = stiffness(m)
-    assert critical(K, K - stiffness(m, P=1.0)) == pytest.approx(np.pi**2 / 4, rel=1e-3)
-
-
 def heavy(**changed: object) -> sf.Model:
     """Under gravity along the beam, positive if it hangs."""
     return compiled(cantilever(**changed), gravity=("g", 0, 0), parameters=[sf.Parameter("g", 0.0)])

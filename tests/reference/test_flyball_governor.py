@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-import symofros as sf
-from reference_models import MODELS
+from tests.models import compiled
 
 # Speed of the shaft -> fastest eigenvalue, and shaft, rods, slider after 0.5 s.
 RUNS = {
@@ -23,7 +22,7 @@ RUNS = {
 @pytest.mark.parametrize("speed", RUNS)
 def test_against_reduced_equations(speed: float) -> None:
     fastest, (phi, beta, s) = RUNS[speed]
-    m = sf.compile(MODELS["flyball_governor"])
+    m = compiled("flyball_governor")
     assert m.names.q == ("phi", "beta_right", "beta_left", "s")
     q, v = np.array([0.0, np.pi / 6, np.pi / 6, 0.5]), np.array([speed, 0.0, 0.0, 0.0])
     A, _ = m.linearize(q, v, [])

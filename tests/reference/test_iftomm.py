@@ -10,9 +10,8 @@ import pytest
 from scipy.special import ellipj, ellipk
 
 import symofros as sf
-from reference_models import MODELS
 from reference_models.closed.four_bars import n_four_bar
-from tests.models import sampled
+from tests.models import compiled, sampled
 from tests.reference import test_andrews_squeezer as andrews
 from tests.reference import test_bricard as bricard
 from tests.reference import test_n_four_bar as four_bars
@@ -137,9 +136,9 @@ class TestBricard:
     )
     def test_ten_seconds(self, method: str, settings: dict[str, float]) -> None:
         times = [row[0] for row in bricard.MOTION]
-        run = sf.simulate(sf.compile(MODELS["bricard"]), t_end=10.0, method=method, output=times, **settings)  # type: ignore[arg-type]
+        run = sf.simulate(compiled("bricard"), t_end=10.0, method=method, output=times, **settings)  # type: ignore[arg-type]
         assert run.outcome.ok
-        wanted = np.array([(a, b, a, b, a) for _, _, a, b in bricard.MOTION])
+        wanted = np.array([(a, b, a, b, a) for *_, a, b in bricard.MOTION])
         np.testing.assert_allclose(run.q, wanted, atol=1e-7)
         assert np.ptp(run.energy) < 1e-6
 
@@ -148,7 +147,7 @@ class TestGovernor:
     """A05: springs of 8e5 N/m, a mode of -8117 1/s: an explicit method needs steps of a third of a millisecond."""
 
     def run(self, method: str, **settings: float) -> sf.Trajectory:
-        model = sf.compile(MODELS["flyball_governor"])
+        model = compiled("flyball_governor")
         start = [0.0, np.pi / 6, np.pi / 6, 0.5]
         return sf.simulate(model, start, [2 * np.pi, 0, 0, 0], 10.0, method=method, output=1.0, **settings)  # type: ignore[arg-type]
 

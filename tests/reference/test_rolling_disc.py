@@ -18,7 +18,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import symofros as sf
-from reference_models import MODELS
+from tests.models import compiled
 from tests.reference.motion import free, move
 
 Array = np.ndarray
@@ -29,7 +29,7 @@ UP = np.array([0.0, 0.0, 1.0])
 
 @cache
 def model() -> sf.Model:
-    return sf.compile(MODELS["rolling_disc"])
+    return compiled("rolling_disc")
 
 
 def axes(R: Array) -> Array:

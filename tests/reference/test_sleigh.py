@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from reference_models import MODELS
+from tests.models import compiled
 from tests.reference.motion import move
 
 Array = np.ndarray
@@ -22,7 +22,7 @@ ROLL = J + m * a**2
 
 @cache
 def model() -> sf.Model:
-    return sf.compile(MODELS["sleigh"])
+    return compiled("sleigh")
 
 
 def state(angle: float, u: float, w: float) -> tuple[Array, Array]:

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import re
+import shutil
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
@@ -32,6 +35,35 @@ def test_the_changelog_is_by_version_and_begins_with_this_one() -> None:
     assert len(entries) == len(set(entries)), "an entry stands there twice"
 
 
+def test_news_are_fragments_of_a_known_kind() -> None:
+    kinds = {kind["directory"] for kind in PROJECT["tool"]["towncrier"]["type"]}
+    fragments = [path for path in (ROOT / "changelog").iterdir() if path.name != "README.md"]
+    for path in fragments:
+        name, kind, suffix = path.name.split(".")
+        assert re.fullmatch(r"\+\w+", name) and kind in kinds and suffix == "md" and path.read_text().strip(), path.name
+    listed = re.findall(r"^\| `(\w+)` \|", (ROOT / "changelog/README.md").read_text(), re.MULTILINE)
+    assert set(listed) == kinds
+
+
+def test_a_release_gathers_the_fragments_above_the_last_version(tmp_path: Path) -> None:
+    require("towncrier", "release")
+    for name in ("CHANGELOG.md", "pyproject.toml"):
+        shutil.copy(ROOT / name, tmp_path / name)
+    (tmp_path / "changelog").mkdir()
+    (tmp_path / "changelog/+a_name.fixed.md").write_text("What was wrong.\n")
+    command = ["-m", "towncrier", "build", "--yes", "--version", "9.9.9", "--date", "2030-01-02"]
+    subprocess.run(["git", "init", "-q", tmp_path], check=True)
+    subprocess.run([sys.executable, *command], cwd=tmp_path, check=True, capture_output=True)
+    text = (tmp_path / "CHANGELOG.md").read_text()
+    news, _, rest = text.partition("## 0.1.0 (")
+    assert "## 9.9.9 (2030-01-02)\n\n### Fixed\n\n- What was wrong." in news and "### Migration" in rest
+    assert not list((tmp_path / "changelog").glob("+*"))
+
+
+def test_the_readme_stays_a_page() -> None:
+    assert len((ROOT / "README.md").read_text().splitlines()) <= 120
+
+
 def test_the_licence_is_the_same_everywhere() -> None:
     assert PROJECT["project"]["license"] == CITATION["license"] == RECIPE["about"]["license"] == "MIT"
     assert (ROOT / "LICENSE").read_text().startswith("MIT License")
@@ -43,14 +75,6 @@ def test_the_conda_recipe_needs_what_the_package_needs() -> None:
     assert stated == {python, *PROJECT["project"]["dependencies"]}
     (entry,) = RECIPE["build"]["python"]["entry_points"]
     assert entry == f"symofros = {PROJECT['project']['scripts']['symofros']}"
-
-
-def test_commands_of_the_conda_recipe_name_files_that_its_tests_get() -> None:
-    """Files keep their folders there, as the build's log shows."""
-    (test,) = (test for test in RECIPE["tests"] if "script" in test)
-    given = set(test["files"]["source"])
-    named = {word for line in test["script"] for word in line.split() if word.endswith(".yaml")}
-    assert named == given and all((ROOT / name).is_file() for name in given)
 
 
 def test_the_conda_recipe_renders() -> None:
@@ -103,14 +127,3 @@ def test_the_extra_all_brings_what_it_says() -> None:
     wanted = {extra for extra in EXTRAS if extra not in left_out and not extra.startswith("engine-")}
     assert {extra for extra in wanted if not packages(extra) <= packages("all")} == set()
     assert not packages("torch") & packages("all") and "ruff>=0.5,<1" not in packages("all")
-
-
-def test_the_readme_says_what_its_commands_take_before_it_uses_them() -> None:
-    """Downloads, disk, time of each; and which environment the lines after them are for."""
-    text = (ROOT / "README.md").read_text()
-    for command in ("the first", "the second"):
-        (row,) = re.findall(rf"^\| {command} \|.*$", text, re.MULTILINE)
-        assert len(re.findall(r"[\d.]+ GB", row)) == 2 and len(re.findall(r"\d+ to \d+ minutes", row)) == 2
-    first = re.search(r"^symofros ", text, re.MULTILINE)
-    assert first and text.index(". .venv/bin/activate") < first.start()
-    assert "come next" not in text

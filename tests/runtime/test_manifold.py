@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from symofros.base.rotations import Array, axis_rotation, cross, normalized, quaternion_exp, quaternion_matrix
+from symofros.base.arrays import Array
+from symofros.base.rotations import axis_rotation, cross, normalized, quaternion_exp, quaternion_matrix
 from symofros.expr.derivative import directional
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import cffi
@@ -15,7 +16,7 @@ from symofros.generator.codegen.manifold import rotations_text
 from symofros.native import native_text
 from symofros.runtime.build.build import build_library
 from symofros.runtime.build.toolchain import DEFAULT_FLAGS, find_toolchain
-from symofros.runtime.calls.declarations import constants
+from symofros.runtime.calls.binding import constants
 from symofros.runtime.manifold import chart_coordinates, chart_rate, integrate, retract
 from tests.runtime.test_manifold import (
     ANGLES,
@@ -37,40 +38,7 @@ void coordinates(int32_t n, const int32_t *segments, const double *q0, const dou
 void rates(int32_t n, const int32_t *segments, double *q, const double *v, double *rate);
 void displacements(int32_t n, const int32_t *segments, double *theta);
 """
-_WRAPPER = """
-#include <math.h>
-#include <string.h>
-#include "symofros_stepper.h"
-#include "manifold.c"
-static sym_system system_of(int32_t n, const int32_t *segments) {
-    sym_system s;
-    memset(&s, 0, sizeof s);
-    s.n_segments = n, s.segments = (const sym_segment *)segments;
-    return s;
-}
-SYM_EXPORT void retracted(int32_t n, const int32_t *segments, const double *q0, const double *theta, double *q) {
-    sym_system s = system_of(n, segments);
-    sym_retract(&s, q0, theta, q);
-}
-SYM_EXPORT void chart_rates(int32_t n, const int32_t *segments, const double *theta, const double *v, double *rate) {
-    sym_system s = system_of(n, segments);
-    sym_chart_rate(&s, theta, v, rate);
-}
-SYM_EXPORT void coordinates(int32_t n, const int32_t *segments, const double *q0, const double *q1, double *theta) {
-    sym_system s = system_of(n, segments);
-    sym_chart_coordinates(&s, q0, q1, theta);
-}
-SYM_EXPORT void rates(int32_t n, const int32_t *segments, double *q, const double *v, double *rate) {
-    sym_system s = system_of(n, segments);
-    s.q = q;
-    sym_normalize_quaternions(&s);
-    sym_configuration_rate(&s, q, v, rate);
-}
-SYM_EXPORT void displacements(int32_t n, const int32_t *segments, double *theta) {
-    sym_system s = system_of(n, segments);
-    sym_twist_to_displacement(&s, theta);
-}
-"""
+_WRAPPER = Path(__file__).with_name("manifold_wrapper.c").read_text()
 
 
 def test_the_file_is_what_the_formulas_give() -> None:

@@ -1,7 +1,5 @@
 from __future__ import annotations
 
-import threading
-
 import numpy as np
 import pytest
 
@@ -58,13 +56,6 @@ def test_parameters_override_and_batch(m: sf.Model, rng: np.random.Generator) ->
     assert grid.shape == (3, 2, m.nv, m.nv) and np.array_equal(grid[2], both)
 
 
-def test_unknown_parameters_are_refused(m: sf.Model) -> None:
-    with pytest.raises(sf.UnknownNameError, match="did you mean 'p0'"):
-        m.with_parameters(p00=1.0)
-    with pytest.raises(ValueError, match="finite"):
-        m.with_parameters(p0=float("nan"))
-
-
 def test_wrong_shapes_say_what_was_expected(m: sf.Model) -> None:
     with pytest.raises(sf.ShapeError, match=rf"q has the wrong shape\n  found:  \(2,\)\n  rule:   .*\.\.\., {m.nq}\)"):
         m.mass_matrix([0.0, 1.0])
@@ -114,37 +105,6 @@ def test_only_what_was_asked_for_is_there() -> None:
         sf.compile(system("tree0"), sf.Options(functions=("mass_matrx",)))
     with pytest.raises(sf.UnknownNameError, match="no frame 'mont'"):
         sf.compile(system("tree0"), sf.Options(functions=("frame_pose",), frames=("mont",)))
-
-
-def test_threads_share_a_model(rng: np.random.Generator) -> None:
-    m = model("tree4", "c")
-    q = np.array([m.random_state(rng)[0] for _ in range(200)])
-    expected = m.mass_matrix(q)
-    wrong: list[int] = []
-
-    def work(i: int) -> None:
-        for _ in range(50):
-            if not np.array_equal(m.mass_matrix(q), expected):
-                wrong.append(i)
-
-    threads = [threading.Thread(target=work, args=(i,)) for i in range(4)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert not wrong
-
-
-def test_difference_undoes_integrate(m: sf.Model, rng: np.random.Generator) -> None:
-    for scale in (1e-9, 1e-3, 1.0):
-        q, v = m.random_state(rng)
-        dq = scale * v / max(1.0, np.abs(v).max())
-        np.testing.assert_allclose(m.difference(q, m.integrate(q, dq)), dq, atol=1e-14, rtol=1e-9)
-    q1 = m.random_state(rng)[0]
-    back = m.integrate(q, m.difference(q, q1))
-    # A quaternion and its negative are one rotation.
-    for frame in m.names.frames:
-        np.testing.assert_allclose(m.frame_pose(frame, back)[1], m.frame_pose(frame, q1)[1], atol=1e-12)
 
 
 def test_time_enters_where_a_formula_names_it() -> None:

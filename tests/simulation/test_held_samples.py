@@ -9,6 +9,7 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from tests.models import compiled
 
 PERIOD = 0.05
 VALUES = np.array([1.0, -2.0, 3.0, -1.0, 4.0, -3.0, 2.0, 5.0, -4.0])
@@ -25,7 +26,7 @@ ADAPTIVE = ["dopri5", "dop853", "rodas4"]
 
 @pytest.fixture(scope="module")
 def cart() -> sf.Model:
-    return sf.compile(MODELS["cart_pole"])
+    return compiled("cart_pole")
 
 
 @pytest.fixture(scope="module")
@@ -93,19 +94,6 @@ def test_projected_steps_are_those_of_constant_inputs(sleigh: sf.Model, method: 
     np.testing.assert_allclose(run.v[-1], pieces.v[-1], rtol=0, atol=1e-9 if method == "dopri5" else 1e-12)
 
 
-@pytest.mark.parametrize("method", ["semi_implicit_euler", "rk4", "dopri5"])
-def test_batches_read_samples_as_single_runs_do(cart: sf.Model, method: str) -> None:
-    options = {"method": method} | ({} if method == "dopri5" else {"dt": PERIOD})
-    values = np.stack([VALUES, -VALUES, VALUES[::-1]])[..., np.newaxis] * np.eye(cart.nu)[0]
-    start = np.zeros(cart.nq), np.zeros(cart.nv)
-    t = INSTANTS["products"]
-    batch = sf.simulate_batch(cart, *start, u=sf.Signal(t, values, "hold"), t_end=END, output=t, **options)
-    for i, one in enumerate(values):
-        run = sf.simulate(cart, *start, u=sf.Signal(t, one, "hold"), t_end=END, output=t, **options)
-        np.testing.assert_allclose(batch.q[i], run.q, rtol=0, atol=1e-12)
-        np.testing.assert_array_equal(batch.u[i], run.u)
-
-
 def test_steps_that_samples_fall_within_are_held_against_half_of_that(cart: sf.Model) -> None:
     t = 1.37 * INSTANTS["products"]
     coarse = sf.simulate(
@@ -114,20 +102,6 @@ def test_steps_that_samples_fall_within_are_held_against_half_of_that(cart: sf.M
     assert any("half of that changes it" in note for note in coarse.outcome.notes)
     along = sf.simulate(cart, t_end=END, u={cart.names.u[0]: sf.Signal(t, VALUES, "linear")}, dt=1e-3, method="rk4")
     assert not along.outcome.notes
-
-
-@pytest.mark.parametrize("method", [*ADAPTIVE, "cvode", "cvode_adams", "ida"])
-def test_a_short_pulse_is_not_stepped_over(cart: sf.Model, method: str) -> None:
-    """Half a second of rest, then 2 N s within a millisecond, where steps are a hundred times as long."""
-    pulse = sf.Signal([0.0, 0.5, 0.501], [0.0, 2000.0, 0.0], "hold")
-    F, rest = cart.names.u[0], cart.neutral()
-    run = sf.simulate(cart, rest, t_end=1.0, u={F: pulse}, method=method)
-    state: tuple[np.ndarray, ...] = (rest,)
-    for force, time in ((0.0, 0.5), (2000.0, 0.001), (0.0, 0.499)):
-        piece = sf.simulate(cart, *state, t_end=time, u={F: force}, method="dop853", rtol=1e-12, atol=1e-13)
-        state = piece.q[-1], piece.v[-1]
-    assert np.abs(state[1]).max() > 1.0
-    np.testing.assert_allclose(run.v[-1], state[1], rtol=0, atol=1e-3)
 
 
 @pytest.mark.parametrize("method", ["rk4", "dopri5", "cvode"])

@@ -6,14 +6,13 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from reference_models import MODELS
-from tests.models import GUESSES, model
+from tests.models import GUESSES, compiled, model
 
 G = 9.81
 
 
 def pair(name: str) -> tuple[sf.Model, sf.Model]:
-    exact = sf.compile(MODELS[name])
+    exact = compiled(name)
     return exact, exact.with_precision("single")
 
 

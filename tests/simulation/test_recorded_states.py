@@ -11,7 +11,7 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from symofros.simulation.settings import CLOSED
-from tests.models import GUESSES
+from tests.models import GUESSES, compiled
 
 # Of |phi| and |G v - b| after a projection.
 PROJECTED = 1e-12
@@ -27,7 +27,7 @@ TREES = ("gyroscope", "space_arm")
 
 @cache
 def scene(name: str) -> tuple[sf.Model, np.ndarray, np.ndarray]:
-    model = sf.compile(MODELS[name])
+    model = compiled(name)
     q, v = model.random_state(np.random.default_rng(3))
     if model.nc:
         assembled = sf.assemble(model, GUESSES[name], 0.5 * v)

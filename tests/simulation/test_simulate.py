@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 import signal
 import subprocess
 import sys
 import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,21 +17,22 @@ from scipy.special import ellipk
 import symofros as sf
 from reference_models import MODELS
 from reference_models.closed.four_bars import n_four_bar
+from tests.models import compiled
 
 
 @pytest.fixture(scope="module")
 def pendulum() -> sf.Model:
-    return sf.compile(MODELS["pendulum"])
+    return compiled("pendulum")
 
 
 @pytest.fixture(scope="module")
 def cart_pole() -> sf.Model:
-    return sf.compile(MODELS["cart_pole"])
+    return compiled("cart_pole")
 
 
 @pytest.fixture(scope="module")
 def four_bar() -> sf.Model:
-    return sf.compile(MODELS["four_bar"])
+    return compiled("four_bar")
 
 
 def moving_four_bar(model: sf.Model) -> tuple[np.ndarray, np.ndarray]:
@@ -55,7 +58,7 @@ def scipy_end(model: sf.Model, q, v, t_end: float, law) -> np.ndarray:
 
 def test_period_of_the_pendulum(pendulum: sf.Model) -> None:
     amplitude = 1.2
-    model = sf.compile(MODELS["pendulum"])
+    model = compiled("pendulum")
     # A quarter of the period: from rest at the amplitude to the lowest point.
     run = sf.simulate(
         model,
@@ -87,18 +90,6 @@ class TestInputs:
         np.testing.assert_allclose([*run.q[-1], *run.v[-1]], end, atol=1e-9)
         given = [same(*state)[0] for state in zip(run.t, run.q, run.v, strict=True)]
         np.testing.assert_allclose(run.u[:, 0], given, atol=1e-14)
-
-    def test_a_function_and_its_formula_agree(self, cart_pole: sf.Model) -> None:
-        names = cart_pole.names
-        by_formula = sf.simulate(cart_pole, t_end=0.5, u={names.u[0]: "cos(t) - dx" if "x" in names.q else "cos(t)"})
-        index = names.q.index("x") if "x" in names.q else None
-
-        def call(t, q, v):
-            out = np.zeros(cart_pole.nu)
-            out[0] = np.cos(t) - (v[index] if index is not None else 0.0)
-            return out
-
-        np.testing.assert_allclose(sf.simulate(cart_pole, t_end=0.5, u=call).q, by_formula.q, atol=1e-14)
 
     def test_samples_between_and_beyond_their_ends(self, cart_pole: sf.Model) -> None:
         name = cart_pole.names.u[0]
@@ -186,28 +177,6 @@ class TestOutput:
 
 
 class TestEvents:
-    def test_directions(self, pendulum: sf.Model) -> None:
-        run = sf.simulate(
-            pendulum,
-            [1.0],
-            [0.0],
-            6.0,
-            method="dop853",
-            rtol=1e-11,
-            atol=1e-11,
-            events={"down": sf.Event("q", "falling"), "up": sf.Event("q", "rising"), "any": "q"},
-        )
-        names = [event.name for event in run.events]
-        assert names.count("any") == names.count("up") + names.count("down") >= 4
-        assert [e.t for e in run.events] == sorted(e.t for e in run.events)
-        assert all(abs(e.q[0]) < 1e-11 and (e.v[0] > 0) == (e.name == "up") for e in run.events if e.name != "any")
-
-    @pytest.mark.parametrize("method", ["rk4", "semi_implicit_euler", "rodas4", "variational"])
-    def test_every_method_finds_them(self, pendulum: sf.Model, method: str) -> None:
-        fine = sf.simulate(pendulum, [1.0], [0.0], 1.0, method="dop853", rtol=1e-12, atol=1e-12, events={"low": "q"})
-        run = sf.simulate(pendulum, [1.0], [0.0], 1.0, method=method, dt=1e-3, events={"low": "q"}, rtol=1e-9)
-        assert run.events[0].t == pytest.approx(fine.events[0].t, abs=1e-3)
-
     def test_unknown_direction(self) -> None:
         with pytest.raises(ValueError, match="direction is not one of"):
             sf.Event("q", "sideways")  # type: ignore[arg-type]
@@ -216,7 +185,7 @@ class TestEvents:
 class TestConstraints:
     def test_projection_keeps_them_exactly_and_nothing_lets_them_drift(self) -> None:
         """A crank that turns five times: left to accelerations alone, phi drifts as h^4."""
-        model = sf.compile(MODELS["slider_crank"])
+        model = compiled("slider_crank")
         turning = sf.assemble(model, [0.3, -0.1, -0.2], [10.0, 0.0, 0.0])
 
         def worst(kind, dt: float) -> float:
@@ -233,7 +202,7 @@ class TestConstraints:
         assert any("singular posture" in note for note in run.outcome.notes)
 
     def test_a_first_state_that_is_open(self) -> None:
-        model = sf.compile(MODELS["slider_crank"])
+        model = compiled("slider_crank")
         turning = sf.assemble(model, [0.3, -0.1, -0.2], [10.0, 0.0, 0.0])
         q, v = turning.q, turning.v
         for start in ((q + [0.1, 0, 0], v), (q, v + [0.1, 0, 0])):
@@ -334,7 +303,7 @@ class TestEnds:
             sf.simulate(pendulum, **settings)
 
     def test_a_rejected_step_leaves_the_derivatives_as_they_are(self) -> None:
-        run = sf.simulate(sf.compile(MODELS["double_pendulum"]), [0.5, -1.0], [0.3, 1.0], 1.0, method="rodas4", dt=0.5)
+        run = sf.simulate(compiled("double_pendulum"), [0.5, -1.0], [0.3, 1.0], 1.0, method="rodas4", dt=0.5)
         found = run.statistics
         assert found.rejected > 5 and found.jacobians == found.steps
         # One at the state, one for the derivative by time; five more stages of each attempt.
@@ -366,22 +335,7 @@ class TestEnds:
             sf.simulate(model)
 
 
-CTRL_C = """
-import signal
-import symofros as sf
-from reference_models import MODELS
-signal.signal(signal.SIGINT, signal.default_int_handler)  # A shell's background jobs start with it ignored.
-model = sf.compile(MODELS["double_pendulum"])
-told = []
-
-def reached(t):
-    if t > 10 and not told:
-        told.append(t)
-        print("moving", flush=True)
-
-run = sf.simulate(model, [1.0, 0.5], t_end=1e7, dt=1e-3, every=1000, progress=reached)
-print(run.outcome.kind, 0 < run.t[-1] < 1e7, len(run) > 1)
-"""
+CTRL_C = Path(__file__).with_name("ctrl_c.py.in").read_text()
 
 
 def test_a_real_ctrl_c() -> None:
@@ -395,7 +349,7 @@ def test_a_real_ctrl_c() -> None:
 class TestStructure:
     def test_variational_keeps_energy_where_rk4_loses_it(self) -> None:
         """Over 2000 periods: bounded against drifting."""
-        model = sf.compile(MODELS["double_pendulum"])
+        model = compiled("double_pendulum")
         spans = {}
         for method in ("variational", "rk4"):
             run = sf.simulate(model, [0.6, 0.3], [0.0, 0.0], 400.0, method=method, dt=0.02, every=10)
@@ -408,7 +362,7 @@ class TestStructure:
         assert late > 1.5 * early
 
     def test_variational_keeps_the_momentum_of_a_free_body(self) -> None:
-        model = sf.compile(MODELS["torque_free_body"])
+        model = compiled("torque_free_body")
         q, v = model.random_state(np.random.default_rng(0))
         run = sf.simulate(model, q, 3 * v, 20.0, method="variational", dt=0.01)
         name = model.names.frames[-1]
@@ -419,7 +373,7 @@ class TestStructure:
         assert np.ptp(wrench[:, :3], axis=0).max() < 1e-11
 
     def test_quaternions_stay_of_unit_length(self) -> None:
-        model = sf.compile(MODELS["heavy_top"])
+        model = compiled("heavy_top")
         q, v = model.random_state(np.random.default_rng(2))
         for method in ("rk4", "dopri5", "rodas4", "variational", "generalized_alpha", "semi_implicit_euler"):
             run = sf.simulate(model, q, v, 2.0, method=method, dt=5e-3)
@@ -435,6 +389,17 @@ def test_a_passage_close_to_a_singular_posture_is_noted() -> None:
     # It is flat at 0.70845 s.
     assert len(notes) == 1 and "t = 0.708" in notes[0]
     assert sf.simulate(model, np.pi / 2 * upright, -upright, 0.3, dt=2e-3).outcome.notes == ()
+
+
+@pytest.mark.parametrize("t0", [0.0, 100.0])
+def test_a_passage_within_a_step_is_dated_to_a_sixteenth_of_it(t0: float) -> None:
+    model = sf.compile(n_four_bar(1))
+    upright = np.array([1.0 if name.startswith("crank") else -1.0 for name in model.names.q])
+    run = sf.simulate(model, np.pi / 2 * upright, -upright, t0 + 1.0, t0=t0, dt=0.05)
+    (when,) = (
+        float(found[1]) for note in run.outcome.notes if (found := re.search(r"posture at t = ([\d.]+) s", note))
+    )
+    assert abs(when - t0 - 0.70845) < 0.05 / 16 + 1e-3 * (t0 > 0)
 
 
 def test_progress_is_told_to_a_function(pendulum: sf.Model) -> None:

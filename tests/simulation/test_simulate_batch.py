@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import signal
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -11,15 +10,11 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from tests.models import compiled as model
 
 # Steps are the same and so are the formulas; only fused multiply-adds may fall on other pairs (docs/theory/code.md).
 ALIKE = 1e-11
 GRID = (0.0, 0.013, 0.1, 0.2371, 0.3)
-
-
-@cache
-def model(name: str) -> sf.Model:
-    return sf.compile(MODELS[name])
 
 
 def starts(m: sf.Model, n: int, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:

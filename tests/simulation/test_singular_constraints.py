@@ -10,8 +10,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import symofros as sf
-from reference_models import MODELS
 from tests.models import GUESSES
+from tests.models import compiled as model
 
 # Ways of stepping that must not fail in silence, with their options.
 WAYS: tuple[tuple[str, dict[str, object]], ...] = (
@@ -22,11 +22,6 @@ WAYS: tuple[tuple[str, dict[str, object]], ...] = (
     ("rodas4", {}),
     ("generalized_alpha", {"dt": 1e-3}),
 )
-
-
-@cache
-def model(name: str) -> sf.Model:
-    return sf.compile(MODELS[name])
 
 
 def disc(tilt: float, spin: float, turn: float) -> tuple[np.ndarray, np.ndarray]:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from reference_models import MODELS
+from tests.models import compiled
 
 END = 10.0
 RTOL, ATOL = 1e-6, 1e-9
@@ -110,17 +110,6 @@ def test_a_push_and_a_pull_leave_a_way(cart: sf.Model, method: str) -> None:
     assert run.q[-1, 0] == pytest.approx(impulse * apart, rel=1e-3)
 
 
-@pytest.mark.parametrize("method", OWN)
-def test_a_swing_under_a_push_is_that_of_short_steps(method: str) -> None:
-    rod = sf.Inertia(1.0, (0, 0, -0.5), (0.08, 0.08, 0.01))
-    joint = sf.Joint("q", "revolute", axis=(0, -1, 0), actuated=True)
-    pendulum = sf.compile(sf.System("pendulum", (sf.RigidBody("a", joint, rod),)))
-    for law in (sf.Signal([0, 4.7, 5, 5.3, 10], [0, 0, 10 / 3, 0, 0]), "10/3*max(0, 1 - abs(t - 5)/0.3)"):
-        want = sf.simulate(pendulum, t_end=END, method="rk4", dt=1e-3, u={"q": law})
-        run = sf.simulate(pendulum, t_end=END, method=method, u={"q": law})
-        np.testing.assert_allclose(run.v[-1], want.v[-1], rtol=0, atol=1e-4)
-
-
 @pytest.mark.parametrize("method", ["dopri5", "dop853"])
 @pytest.mark.parametrize("share", [0.05, 0.1, 0.3])
 @pytest.mark.parametrize("begin", [2.3, 6.1])
@@ -145,7 +134,7 @@ def test_what_no_formula_of_time_says_is_met(cart: sf.Model, method: str, share:
 @pytest.mark.parametrize("name", ["cart_pole", "gyroscope"])
 def test_what_is_smooth_costs_no_steps(name: str, method: str) -> None:
     """Neither corners that no step can tell from a curve, nor looks within steps, nor kinks of formulas."""
-    model = sf.compile(MODELS[name])
+    model = compiled(name)
     q, v = model.random_state(np.random.default_rng(3))
     t = np.linspace(0.0, 2.0, 20001)
     x = model.names.u[0]
@@ -191,7 +180,7 @@ def test_a_model_s_own_formula_of_time_is_not_stepped_over(pull: str) -> None:
 @pytest.mark.parametrize("name", ["double_pendulum", "four_bar", "heavy_top", "planar_robot"])
 def test_looks_into_quiet_steps_cut_no_smooth_motion(name: str, method: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """The dense output, whose last slope is that of the end of the step under way, has nothing to hide there."""
-    model = sf.compile(MODELS[name])
+    model = compiled(name)
     q, v = model.random_state(np.random.default_rng(3))
     if model.nc:
         start = sf.assemble(model, q, v)

@@ -16,7 +16,7 @@ import symofros as sf
 from ..contract.interface import States, Subject, TreeEngine
 from ..contract.memory import LatestResults
 from ..contract.quantities import CONSTRAINED
-from ..mechanics.assembly import Assembly, anchor_name, assemble
+from ..mechanics.assembly import Assembly, anchor_name
 from ..mechanics.geometry import Array
 from . import by_formula
 
@@ -64,7 +64,7 @@ class ConstrainedEngine:
         self._tree, self._anchored, self._subject, self._names = tree, anchored, subject, names
         self.name, self.version = tree.name, tree.version
         self.capabilities = tree.capabilities | CONSTRAINED
-        self._assembly: Assembly = assemble(subject.system)
+        self._assembly = subject.assembly
         self._latest_rows: LatestResults[Rows] = LatestResults()
         self._latest_solutions: LatestResults[tuple[Array, Array]] = LatestResults()
 

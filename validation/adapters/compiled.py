@@ -14,7 +14,6 @@ from symofros.tools import DEFAULT_FLAGS, Evaluators
 from ..contract.conventions import times
 from ..contract.interface import States, Subject
 from ..contract.quantities import CONSTRAINED, FRAME_QUANTITIES, LOOPS, MJCF_ROUTE, QUANTITIES, SECOND_ROUTE
-from ..mechanics.assembly import assemble
 from ..mechanics.geometry import Array
 from .reach import stores_energy
 
@@ -228,7 +227,7 @@ def options(subject: Subject) -> sf.Options:
     absent = (frozenset() if subject.frames else FRAME_QUANTITIES) | (
         frozenset() if subject.system.constraints else CONSTRAINED
     )
-    if any("massless_tip" in body.waive for body in subject.system.bodies) and assemble(subject.system).moves_no_mass:
+    if any("massless_tip" in body.waive for body in subject.system.bodies) and subject.assembly.moves_no_mass:
         absent |= {"forward_dynamics"}
     functions = tuple(f for f in _FUNCTIONS if f not in absent)
     return sf.Options(functions=functions, frames=subject.frames)

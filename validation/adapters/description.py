@@ -12,7 +12,7 @@ import symofros as sf
 
 from ..contract.interface import States, Subject, Unsupported
 from ..contract.quantities import FORCES_STATED
-from ..mechanics.assembly import Assembly, assemble
+from ..mechanics.assembly import Assembly
 from ..mechanics.geometry import Array
 from ..mechanics.parts import coordinate_symbols, input_symbol, rate_symbols, rates_by_coordinate, speed_symbols
 
@@ -187,4 +187,4 @@ def build(subject: Subject) -> StatedForces | Unsupported:
     beyond = [name for name, stated in kinds.items() if stated]
     if beyond:
         return Unsupported(f"{' and '.join(beyond)}: their forces take kinematics or derivatives, not formulas alone")
-    return StatedForces(subject.system, assemble(subject.system))
+    return StatedForces(subject.system, subject.assembly)

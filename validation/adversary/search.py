@@ -133,16 +133,7 @@ def hunt(
                 smallest.append((scene, verdict))
             raise _Contradiction
 
-    search = settings(
-        database=DirectoryBasedExampleDatabase(folder / "examples" / attack.name),
-        max_examples=min(ROUND, max(1, budget.examples - budget.tried)),
-        deadline=None,
-        suppress_health_check=list(HealthCheck),
-        verbosity=Verbosity.quiet,
-        phases=(Phase.reuse, Phase.generate, Phase.shrink),
-        report_multiple_bugs=False,
-        print_blob=False,
-    )
+    search = _settings(folder / "examples" / attack.name, min(ROUND, max(1, budget.examples - budget.tried)))
     try:
         search(seed(first_seed + tally.rounds)(given(attack.scenes)(one)))()
     except (_Contradiction, _Spent, Flaky):
@@ -156,6 +147,20 @@ def hunt(
         return None
     scene, verdict = smallest[-1]
     return Find(attack.name, scene, verdict.said, quantity_of(scene, verdict))
+
+
+def _settings(folder: Path, count: int) -> settings:
+    """Settings of a search for at most so many scenes, whose examples are kept in a folder."""
+    return settings(
+        database=DirectoryBasedExampleDatabase(folder),
+        max_examples=count,
+        deadline=None,
+        suppress_health_check=list(HealthCheck),
+        verbosity=Verbosity.quiet,
+        phases=(Phase.reuse, Phase.generate, Phase.shrink),
+        report_multiple_bugs=False,
+        print_blob=False,
+    )
 
 
 def quantity_of(scene: Scene, verdict: Verdict) -> str:

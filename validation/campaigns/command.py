@@ -64,8 +64,8 @@ def run_command(
             names = [case.label for case in standard_set()] if models == "all" else (models or "").split(",")
             given = {"kind": "check", "models": names, "states": states, "batch": batch, "seed": seed}
             asked = make(given | ({"engines": engines.split(",")} if engines else {}), "the command line")
-        from .runner import Pool
-        from .session import begin
+        from .runner import Pool  # dask is an extra.
+        from .session import begin  # As the runner: dask is an extra.
 
         _tell(begin(asked, output, Pool(workers, scheduler, dashboard)), output, report, as_json)
 
@@ -81,8 +81,8 @@ def resume(
 ) -> None:
     """Go on with a campaign: only the batches that are not finished are done."""
     with _refusing():
-        from .runner import Pool
-        from .session import go_on
+        from .runner import Pool  # dask is an extra.
+        from .session import go_on  # As the runner: dask is an extra.
 
         _tell(go_on(folder, Pool(workers, scheduler, dashboard)), folder, report, as_json)
 
@@ -91,7 +91,7 @@ def resume(
 def show(folder: Annotated[Path, typer.Argument(help="Of the campaign.")], as_json: AsJson = False) -> None:
     """Say what a campaign found, or how far it is."""
     with _refusing():
-        from .session import standing
+        from .session import standing  # As the runner: dask is an extra.
 
         data = standing(folder)
         if "finished" not in data:

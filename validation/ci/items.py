@@ -131,6 +131,22 @@ class CrossChecks(pytest.Collector):
         return []
 
 
+def _require(engine: str, of_models: bool) -> None:
+    """Refuse an engine that there is not, or that checks no models where models are named.
+
+    Raises:
+        UsageError: It is of no use; the message says why.
+    """
+    if engine in ROUTES:
+        return
+    if of_models:
+        raise pytest.UsageError(f"--symofros-engine {engine}: models are checked by {', '.join(ROUTES)}")
+    if engine not in registry().plugins:
+        known = ", ".join(dict.fromkeys([*ROUTES, *registry().plugins]))
+        why = "".join(f"; {name}: {reason}" for name, reason in registry().failures.items())
+        raise pytest.UsageError(f"--symofros-engine {engine}: no such engine; there are {known}{why}")
+
+
 def cross_checks(session: Any, config: Any) -> Iterator[pytest.Item]:
     """The tests that the options ask for.
 
@@ -143,23 +159,12 @@ def cross_checks(session: Any, config: Any) -> Iterator[pytest.Item]:
     engines = [name for name in asked if name in ROUTES]
     parent = CrossChecks.from_parent(session, name="symofros", nodeid="symofros")
     for engine in asked:
-        if named_models and engine not in ROUTES:
-            raise pytest.UsageError(f"--symofros-engine {engine}: models are checked by {', '.join(ROUTES)}")
-        if engine not in ROUTES and engine not in registry().plugins:
-            known = ", ".join(dict.fromkeys([*ROUTES, *registry().plugins]))
-            why = "".join(f"; {name}: {reason}" for name, reason in registry().failures.items())
-            raise pytest.UsageError(f"--symofros-engine {engine}: no such engine; there are {known}{why}")
+        _require(engine, bool(named_models))
         if not named_models and engine in registry().plugins:
             yield from engine_checks(parent, engine, tier)
     if not engines:
         return
-    models = named_models or TIERS[tier].models
-    try:
-        cases = named(list(models), _reading(config))
-    except (LookupError, FileNotFoundError) as error:
-        raise pytest.UsageError(f"--symofros-model: {error.args[0]}") from None
-    except sf.SymofrosError as error:
-        raise pytest.UsageError(error.in_shell("--symofros-")) from None
+    cases = _cases(list(named_models or TIERS[tier].models), config)
     states = TIERS[tier].states
     stored = _stored(config.getoption("--symofros-baseline"))
 
@@ -176,6 +181,20 @@ def cross_checks(session: Any, config: Any) -> Iterator[pytest.Item]:
         if stored is not None:
             settings = Settings(stored.record.states, stored.record.seed, tuple(_engines(stored)))
             yield test(BaselineCheck, case, "baseline", settings, stored=stored)
+
+
+def _cases(models: list[str], config: Any) -> list[Case]:
+    """The models of some names or files.
+
+    Raises:
+        UsageError: There is none of a name, or it can't be read.
+    """
+    try:
+        return named(models, _reading(config))
+    except (LookupError, FileNotFoundError) as error:
+        raise pytest.UsageError(f"--symofros-model: {error.args[0]}") from None
+    except sf.SymofrosError as error:
+        raise pytest.UsageError(error.in_shell("--symofros-")) from None
 
 
 def _reading(config: Any) -> ReadingOptions:

@@ -6,11 +6,13 @@ Everything crosses this border in SYMOFROS conventions (`symofros/NOTATION.md`);
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Literal, Protocol
 
 import symofros as sf
 
+from ..mechanics.assembly import Assembly, assemble
 from ..mechanics.geometry import Array
 
 # Of files that engines read themselves; "" for none.
@@ -168,6 +170,11 @@ class Subject:
     def format(self) -> Format:
         """Format of the file that engines can read themselves."""
         return "urdf" if self.urdf is not None else "mjcf" if self.mjcf is not None else ""
+
+    @cached_property
+    def assembly(self) -> Assembly:
+        """The system as numbers, which all engines' models are built from."""
+        return assemble(self.system)
 
     @property
     def verbatim(self) -> sf.System:

@@ -61,16 +61,7 @@ def measure(
     known(engine, ROUTES, "--engine", "engine")
     settings = Settings(states, seed, tuple(engine) if engine else None)
     stored = _baseline(baseline, settings)
-    try:
-        cases = named(models or [], reading)
-        files = [case.path for case in cases if case.path is not None]
-        if len(files) == len(cases) and not any(path.exists() for path in files):
-            sf.load(files[0])  # Says that it is missing, and what is there; beside others it is one that fails.
-    except (LookupError, FileNotFoundError) as error:
-        raise typer.BadParameter(str(error.args[0]), param_hint="MODEL") from None
-    except sf.SymofrosError as error:
-        typer.echo(error.in_shell(), err=True)
-        raise typer.Exit(Exit.BAD_INPUT) from None
+    cases = _cases(models or [], reading)
     first = ", ".join(case.label for case in sorted(cases, key=lambda case: -case.weight)[:workers])
     run.expect(len(cases), f"cross-checking {first}")
     results: dict[str, ModelResult] = {}
@@ -93,17 +84,42 @@ def measure(
     compiled = [case for case in cases if case.label in results and results[case.label].sizes]
     wanted = (speed or (stored is not None and bool(stored.record.speeds))) and not unfinished
     speeds = _speeds(run, compiled, stored) if wanted else []
-    data = as_data(settings, finished, run.seconds, unfinished, speeds)
+    data: Data = as_data(settings, finished, run.seconds, unfinished, speeds)
     regressions: list[Regression] = []
     if stored is not None:
-        regressions, notes = stored.judge(Record.of(data), machine_of(data))
-        origin = {"file": stored.name, "revision": stored.revision, "date": stored.date, "notes": notes}
-        data |= {"ok": data["ok"] and not regressions, "baseline": origin}
-        data["baseline"]["regressions"] = [asdict(worse) for worse in regressions]
+        data, regressions = _held_to(stored, data)
     if junit is not None:
         junit.parent.mkdir(parents=True, exist_ok=True)
         write_atomically(junit, to_junit(finished, run.seconds, regressions))
     return data
+
+
+def _held_to(stored: Baseline, data: Data) -> tuple[Data, list[Regression]]:
+    """A run's data with what it was held to, and where it is worse than the stored one."""
+    regressions, notes = stored.judge(Record.of(data), machine_of(data))
+    origin = {"file": stored.name, "revision": stored.revision, "date": stored.date, "notes": notes}
+    baseline = origin | {"regressions": [asdict(worse) for worse in regressions]}
+    return {**data, "ok": data["ok"] and not regressions, "baseline": baseline}, regressions
+
+
+def _cases(models: list[str], reading: ReadingOptions) -> list[Case]:
+    """The models that are named.
+
+    Raises:
+        typer.BadParameter: There is none of a name.
+        typer.Exit: The only file is missing.
+    """
+    try:
+        cases = named(models, reading)
+        files = [case.path for case in cases if case.path is not None]
+        if len(files) == len(cases) and not any(path.exists() for path in files):
+            sf.load(files[0])  # Says that it is missing, and what is there; beside others it is one that fails.
+    except (LookupError, FileNotFoundError) as error:
+        raise typer.BadParameter(str(error.args[0]), param_hint="MODEL") from None
+    except sf.SymofrosError as error:
+        typer.echo(error.in_shell(), err=True)
+        raise typer.Exit(Exit.BAD_INPUT) from None
+    return cases
 
 
 def _baseline(path: Path | None, settings: Settings) -> Baseline | None:

@@ -26,7 +26,6 @@ from ..adapters import compiled
 from ..contract.interface import Subject
 from ..inputs.frames import chosen_frames
 from ..inputs.sampling import sample
-from ..mechanics.assembly import assemble
 
 # Functions that are timed, by the harness's names of quantities.
 TIMED = ("mass_matrix", "bias", "inverse_dynamics", "forward_dynamics")
@@ -72,7 +71,7 @@ def measure(subject: Subject) -> list[Speed]:
         SymofrosError: The model can't be made.
         YardstickError: There is no compiler, or it refuses the yardstick.
     """
-    assembly = assemble(subject.system)
+    assembly = subject.assembly
     subject = Subject(subject.label, subject.system, subject.frames or chosen_frames(assembly))
     engine = compiled.build(subject)
     states = sample(assembly, engine.model.nu, STATES)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -36,8 +36,6 @@ _COPY = """extern "C" __global__ void copy(long long n, const double *from, doub
     long long k = (long long)blockIdx.x * blockDim.x + threadIdx.x;
     if (k < n) to[k] = from[k];
 }"""
-# Told of what could not be done: model, function, reason.
-Fail = Callable[[str, str, str], object]
 
 
 @dataclass(frozen=True)

@@ -15,9 +15,9 @@ from ..pareto import report as pareto
 from ..passes import report as passes
 from ..reporting.record import Topic
 from ..stability import report as stability
-from ..studies.reports import exports, fuzz, mutation, oracle, realtime, rollouts, simulation
+from ..studies.reports import exports, fuzz, mutation, oracle, realtime, rollouts
 from ..timing import report as timing
 
 _CORRECTNESS = (check, oracle, mutation, mutants, fuzz, adversary, engines, campaign, accuracy, diagrams, stability)
-_SPEED = (timing, simulation, rollouts, realtime, passes, exports, environments, cuda, pareto)
+_SPEED = (timing, rollouts, realtime, passes, exports, environments, cuda, pareto)
 TOPICS: dict[str, Topic] = {module.TOPIC.name: module.TOPIC for module in (*_CORRECTNESS, *_SPEED)}

@@ -1,10 +1,9 @@
-"""Entries -> index.html (one self-contained page), summary.md, and the same summary in the README."""
+"""Entries -> index.html (one self-contained page), summary.md, and the summary's main lines in the README."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 
 from symofros.tools import write_atomically
@@ -15,14 +14,14 @@ from ..reporting.evidence import revision, said_of
 from ..reporting.figures import Figure
 from ..reporting.record import Block, Bullets, Report, Section, Table, Text, verdict
 from .gather import Entry
-from .history import history, stored
-from .trends import trends
 
 BEGIN, END = "<!-- reports/summary.md begins -->", "<!-- reports/summary.md ends -->"
 
+# Reports whose lines the README quotes.
+QUOTED = ("check", "oracle", "mutants", "engines", "accuracy", "stability", "timing")
+
 # Verdict of an entry -> whether what was asked for is met.
 _VERDICTS = {"good": True, "missed": False, "measured": None, "absent": None}
-_TREND = "What the summaries of earlier commits said otherwise, the latest change first."
 # Reports whose decisions the index shows, in this order: first the sentences of some, then all of the others.
 _SAID = {"check": "The opinions on our C, engine by engine:", "engines": "What engines are wrong about:"}
 _SHOWN = ("pareto", "timing")
@@ -39,11 +38,8 @@ def write_index(entries: Mapping[str, Entry], folder: Path, date: str) -> Path:
         OSError: The folder can't be written to.
     """
     report = index(entries)
-    summaries = stored(folder / "summary.md")
-    changes = history(summaries, tuple(entries))
-    trend = Section("What changed", (trends(summaries), _TREND, changes), "history")
     closing = f"Gathered {date} by `{PROGRAM} dashboard`; `{PROGRAM} all` makes reports anew."
-    page = html.page(replace(report, sections=(trend, *report.sections)), closing=closing, listed=False)
+    page = html.page(report, closing=closing, listed=False)
     source = f" of revision {revision()[:9]}" if revision() else ""
     said = f"**{report.summary}** (gathered {date}{source})", markdown.table(summary_table(entries)), origins(entries)
     write_atomically(folder / "index.html", page)
@@ -123,8 +119,16 @@ def _section(name: str, entry: Entry) -> Section:
     return Section(title, tuple(blocks), name, _VERDICTS[entry.verdict], badge=entry.verdict)
 
 
+def brief(summary: str) -> str:
+    """The headline of summary.md and, of its table, the lines of the main reports."""
+    headline, _, rest = summary.partition("\n")
+    rows = [line for line in rest.splitlines() if line.startswith(("| report", "|---"))]
+    rows += [line for name in QUOTED for line in rest.splitlines() if line.startswith(f"| {name} |")]
+    return "\n".join([headline, "", *rows, ""])
+
+
 def quote(readme: Path, summary: str) -> bool:
-    """Put the summary between the marks of a README; whether there is such a file.
+    """Put the main lines of summary.md between the marks of a README; whether there is such a file.
 
     Raises:
         QuoteError: It has no marks, or they are out of order.
@@ -136,5 +140,5 @@ def quote(readme: Path, summary: str) -> bool:
     _, end, after = rest.partition(END)
     if not begin or not end:
         raise QuoteError(f"{readme.name}: no '{BEGIN}' with '{END}' after it, between which the summary would go")
-    write_atomically(readme, f"{before}{BEGIN}\n{summary}{END}{after}")
+    write_atomically(readme, f"{before}{BEGIN}\n{brief(summary)}{END}{after}")
     return True

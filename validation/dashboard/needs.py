@@ -59,7 +59,6 @@ NEEDS: dict[str, Needs] = {
     "engines": Needs(besides=_engines),
     "campaign": Needs((*_ENGINES, "pyarrow", "distributed")),
     "timing": Needs(_ENGINES, ("c++",)),
-    "simulation": Needs(("mujoco", "exudyn")),
     "rollouts": Needs(("mujoco",)),
     "exports": Needs(programs=("octave-cli", "mkoctfile")),
     "environments": Needs(("jax", "torch", "casadi"), ("node", "clang")),

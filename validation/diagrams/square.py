@@ -62,42 +62,19 @@ def study(quick: bool) -> Study:
     flexible, rigid = simulation.run(T_END, dt=DT, record=RECORD), traced(square(functions=0))
     counts = (1, 2, 3) if quick else tuple(range(1, MOST + 1))
     runs = {n: traced(square(functions=n)) for n in counts}
-    finest = runs[counts[-1]]
-    distances = {n: float(np.abs(run["tip.p"] - finest["tip.p"]).max()) for n, run in runs.items() if n < counts[-1]}
-    plain = traced(square(robot=softened(False)))
-    shortened = float(np.abs(plain["tip.p"] - traced(square(robot=softened(True)))["tip.p"]).max())
+    finest = runs[counts[-1]]["tip.p"]
+    distances = {n: float(np.abs(run["tip.p"] - finest).max()) for n, run in runs.items() if n < counts[-1]}
+    plain, foreshortened = (traced(square(robot=softened(shortens)))["tip.p"] for shortens in (False, True))
     bare = simulation.run(T_END, dt=DT, record=RECORD, parameters={"friction.factor": 0.0})
     speed, ratio, agreement = _speed(simulation, 0.5 if quick else 2.0)
-    joints = np.abs(flexible["q_desired"] - flexible["q"])
+    lag = float(np.abs(flexible["q_desired"] - flexible["q"]).max())
     worst, stiff = float(off(flexible).max()), float(off(rigid).max())
-    corners = [float(np.linalg.norm(flexible["tip.p"][at, :2] - point)) for at, point in _corners(flexible)]
-    layout = simulation.resolved.layout
     control = len(simulation.resolved.wired.models.record("control").v_names)
     findings = (
-        Finding(
-            "flexible robot: largest distance of the tool from its path [m]",
-            worst,
-            0.1,
-            0.01,
-            "of the size that links of spring steel bend by; a rigid model's controller does not know of it",
-        ),
-        Finding(
-            "rigid robot, same controller: largest distance [m]",
-            stiff,
-            5e-3,
-            reason="what is left is the elastic joint, 1200 N m/rad, which the plant keeps and the controller"
-            " holds at zero, and the friction of the sampled law",
-        ),
-        Finding(
-            "largest error of a motor's angle [rad]",
-            float(joints.max()),
-            5e-3,
-            reason="the PD acts on the motors: the tool is off because links bend, not because motors lag",
-        ),
-        Finding("error of the tool at the corners, largest [m]", max(corners), 0.04, reason="it stops there and rings"),
+        *_tracking(flexible, rigid),
         Finding(
             "speeds of the plant less those of the control model",
-            float(layout.v["plant"].size - control),
+            float(simulation.resolved.layout.v["plant"].size - control),
             20.0,
             1.0,
             "two models in one run: the rigid one is the same description without shape functions",
@@ -110,18 +87,40 @@ def study(quick: bool) -> Study:
         ),
         Finding(
             "foreshortening on and off, tool's largest difference [m]",
-            shortened,
+            float(np.abs(plain - foreshortened).max()),
             1e-2,
             5e-4,
             "a clamped beam whose end moves aside by d shortens by 3 d^2/(5 L): 5 mm for 60 mm on 0.5 m",
         ),
         Finding(
             "without friction compensation: motors' largest error over that with it",
-            float(np.abs(bare["q_desired"] - bare["q"]).max() / joints.max()),
+            float(np.abs(bare["q_desired"] - bare["q"]).max() / lag),
             10.0,
             0.9,
             "the harmonic drives' friction is small against the other efforts",
         ),
+        *_speeds(speed, ratio, agreement),
+    )
+    answer = (
+        f"The tool follows the square within {1e3 * worst:.0f} mm, the same controller guides a rigid plant within"
+        f" {1e3 * stiff:.1f} mm. Motors are never off by more than {1e3 * lag:.1f} mrad, so the path bulges"
+        " where links bend: along accelerations in the middle of sides, and back as they stop, with the ringing of the"
+        " first bending shapes at corners. As the paper says of its figure 9, this is the controller's, not the"
+        f" simulation's. One second of motion takes {1e3 / speed:.2f} ms, controller, inverse kinematics and plant"
+        f" included; block by block from Python {ratio:.0f} times as long."
+    )
+    return Study(
+        "How does the flexible robot trace the paper's square?",
+        answer,
+        (_path(flexible, rigid), _errors(flexible, rigid), _effects(distances, runs, flexible)),
+        findings,
+        ("the SYMOFROS paper, section 8: start, corner, side, friction; gains and times are ours",),
+    )
+
+
+def _speeds(speed: float, ratio: float, agreement: float) -> tuple[Finding, ...]:
+    """The compiled run beside the clock and the interpreted one (`_speed`)."""
+    return (
         Finding(
             "compiled and interpreted run: largest difference of the tool [m]", agreement, 1e-11, reason="rounding"
         ),
@@ -134,20 +133,33 @@ def study(quick: bool) -> Study:
             "asked for: 30",
         ),
     )
-    answer = (
-        f"The tool follows the square within {1e3 * worst:.0f} mm, the same controller guides a rigid plant within"
-        f" {1e3 * stiff:.1f} mm. Motors are never off by more than {1e3 * joints.max():.1f} mrad, so the path bulges"
-        " where links bend: along accelerations in the middle of sides, and back as they stop, with the ringing of the"
-        " first bending shapes at corners. As the paper says of its figure 9, this is the controller's, not the"
-        f" simulation's. One second of motion takes {1e3 / speed:.2f} ms, controller, inverse kinematics and plant"
-        f" included; block by block from Python {ratio:.0f} times as long."
-    )
-    return Study(
-        "How does the flexible robot trace the paper's square?",
-        answer,
-        (_path(flexible, rigid), _errors(flexible, rigid), _effects(distances, runs, flexible)),
-        findings,
-        ("the SYMOFROS paper, section 8: start, corner, side, friction; gains and times are ours",),
+
+
+def _tracking(flexible: sf.DiagramRun, rigid: sf.DiagramRun) -> tuple[Finding, ...]:
+    """How far tool and motors are from where they should be."""
+    corners = [float(np.linalg.norm(flexible["tip.p"][at, :2] - point)) for at, point in _corners(flexible)]
+    return (
+        Finding(
+            "flexible robot: largest distance of the tool from its path [m]",
+            float(off(flexible).max()),
+            0.1,
+            0.01,
+            "of the size that links of spring steel bend by; a rigid model's controller does not know of it",
+        ),
+        Finding(
+            "rigid robot, same controller: largest distance [m]",
+            float(off(rigid).max()),
+            5e-3,
+            reason="what is left is the elastic joint, 1200 N m/rad, which the plant keeps and the controller"
+            " holds at zero, and the friction of the sampled law",
+        ),
+        Finding(
+            "largest error of a motor's angle [rad]",
+            float(np.abs(flexible["q_desired"] - flexible["q"]).max()),
+            5e-3,
+            reason="the PD acts on the motors: the tool is off because links bend, not because motors lag",
+        ),
+        Finding("error of the tool at the corners, largest [m]", max(corners), 0.04, reason="it stops there and rings"),
     )
 
 

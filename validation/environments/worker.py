@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import asdict
 from functools import partial
 from importlib import import_module, metadata
-from typing import Any
 
 from ..reporting.numbers import counted
+from ..timing.processes import Say, say
 from . import in_node
 from .in_casadi import CASADI
 from .in_jax import JAX
@@ -24,7 +24,6 @@ from .record import OURS, Absent
 from .sides import Environment, Offer, Peer, Subject
 
 ENVIRONMENTS = {one.name: one for one in (JAX, TORCH, CASADI)}
-Say = Callable[[str, Any], object]
 
 
 def work(environment: Environment, models: list[str], states: list[int], turns: int, say: Say) -> None:
@@ -119,13 +118,9 @@ def _offers(
             )
 
 
-def _print(kind: str, value: Any) -> None:
-    print(json.dumps({kind: value}), flush=True)
-
-
 if __name__ == "__main__":
     job = json.loads(sys.argv[1])
-    asked = job["models"], job["states"], job["turns"], _print
+    asked = job["models"], job["states"], job["turns"], say
     if job["environment"] == in_node.NAME:
         work_in_node(*asked)
     else:

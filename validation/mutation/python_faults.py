@@ -148,6 +148,11 @@ class _Planter:
                 yield self._between(COMPARISON, left, right, wrong)
             case ast.BoolOp(op=op, values=[first, second, *_]):
                 yield self._between(COMPARISON, first, second, "or" if isinstance(op, ast.And) else "and")
+            case _:
+                yield from self._in_names(node)
+
+    def _in_names(self, node: ast.AST) -> Iterator[SourceFault]:
+        match node:
             case ast.AugAssign(op=ast.Add() | ast.Sub()):
                 yield self._node(DROPPED, node, "pass")
             case ast.Subscript(slice=index):

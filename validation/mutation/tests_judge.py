@@ -111,7 +111,17 @@ class _Listener:
 
 
 def _run(files: list[str], options: list[str], listener: _Listener) -> int:
-    stated = ["-q", "-n0", "-p", "no:cacheprovider", "-o", "addopts=", "--benchmark-disable", "--tb=short"]
+    stated = [
+        "-q",
+        "-n0",
+        "-p",
+        "no:cacheprovider",
+        "-o",
+        "addopts=",
+        "--benchmark-disable",
+        "--tb=short",
+        "--draw=faults",
+    ]
     # In a process of its own, and part of the extra `test`: the harness starts without it.
     pytest: Any = import_module("pytest")
     return int(pytest.main([*stated, *options, *files], plugins=[listener]))

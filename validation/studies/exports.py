@@ -128,8 +128,8 @@ def _mex(system: sf.System, folder: Path, name: str) -> dict[str, float | None]:
 
 
 def _fmu(system: sf.System, folder: Path) -> float:
-    import fmpy
-    from fmpy.fmi2 import FMU2Slave
+    import fmpy  # Of an extra: other targets are measured without it.
+    from fmpy.fmi2 import FMU2Slave  # As above.
 
     done = sf.export(system, "fmu2", folder, frames=None)
     place = folder / "unzipped"

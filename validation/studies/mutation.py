@@ -31,7 +31,6 @@ from ..contract.quantities import FORCES_STATED, FRAME_QUANTITIES, QUANTITIES, Q
 from ..inputs.cases import standard_set
 from ..inputs.frames import chosen_frames
 from ..inputs.sampling import sample
-from ..mechanics.assembly import assemble
 from ..mechanics.geometry import Array
 from ..reporting.command import Run
 from ..reporting.record import Data
@@ -94,7 +93,7 @@ def mutate(label: str, system: sf.System, count: int, seed: int = 0) -> Mutation
 
 class _Harness:
     def __init__(self, subject: Subject, seed: int) -> None:
-        assembly = assemble(subject.system)
+        assembly = subject.assembly
         # One frame at a tip stands for all: faults in others would be the same faults.
         self.subject = replace(subject, frames=chosen_frames(assembly)[:1])
         self.rng = np.random.default_rng(seed)

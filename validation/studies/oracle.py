@@ -21,9 +21,8 @@ def measure(
 
     With --model, the report is that of these models alone, in the subfolder oracle.
     """
-    # SymPy's mechanics cost a second to import; only this command pays.
-    from ..oracle.compare import check
-    from ..oracle.models import MODELS
+    from ..oracle.compare import check  # SymPy's mechanics take a second, from this command alone.
+    from ..oracle.models import MODELS  # As above.
 
     models = known(chosen, MODELS, "--model", "model")
     if chosen:

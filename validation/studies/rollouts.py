@@ -18,8 +18,7 @@ from ..contract.interface import Subject, Unsupported
 from ..mechanics.geometry import Array
 from ..reporting.command import Run
 from ..reporting.record import Data
-from ..timing.models import TIMED_MODELS
-from .simulation import DAMPING, STIFFNESS, TARGET
+from ..timing.models import DAMPING, STIFFNESS, TARGET, TIMED_MODELS
 
 TRAJECTORIES, STEPS, STEP = 10_000, 100, 1e-3
 # Starts about the neutral posture: of each joint [rad], of each speed [rad/s].

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from statistics import median
 
@@ -56,6 +56,11 @@ def times(path: str, floating: bool) -> dict[str, float]:
         pass
     else:
         calls["pinocchio"] = (mass_matrix_call(Path(path), floating), CALLS, 1)
+    return _medians(calls)
+
+
+def _medians(calls: Mapping[str, tuple[Callable[[], object], int, int]]) -> dict[str, float]:
+    """Median seconds of each call, given with its repetitions in a turn and its states, all in turns."""
     taken: dict[str, list[float]] = {name: [] for name in calls}
     for _ in range(REPEATS):
         for name, (call, count, states) in calls.items():

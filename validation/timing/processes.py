@@ -8,6 +8,8 @@ import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+Say = Callable[[str, Any], object]
+
 
 class WorkerError(RuntimeError):
     """A worker ended before its time; with its status and last words."""
@@ -43,6 +45,11 @@ def follow(command: Sequence[str], take: Callable[[str], None], environment: Map
             complaints.seek(0)
             last = (complaints.read().strip() or "no word").splitlines()[-1]
             raise WorkerError(f"ended with {status}: {last}")
+
+
+def say(kind: str, value: Any) -> None:
+    """In a worker: print a message."""
+    print(json.dumps({kind: value}), flush=True)
 
 
 def message(line: str) -> tuple[str, Any]:

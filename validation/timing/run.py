@@ -8,6 +8,7 @@ import subprocess
 import tempfile
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -40,15 +41,8 @@ def run_job(job: Job, record: Record, doing: Doing = lambda model, function, par
         record: Record that the results are added to.
         doing: Told the model, the function and the part of its race that is under way; "" where a function begins.
     """
-    stated = {
-        "model": job.model,
-        "peers": job.peers,
-        "functions": job.functions,
-        "repeats": job.repeats,
-        "states": job.states,
-    }
     record.forget([job.model], [LEFT], [])
-    command = worker_command("timing.worker", [json.dumps(stated)])
+    command = worker_command("timing.worker", [json.dumps(asdict(job))])
     try:
         follow(command, partial(take, job=job, record=record, doing=doing))
     except WorkerError as error:

@@ -13,22 +13,22 @@ import sys
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict, dataclass
-from typing import Any
 
 import numpy as np
 
 import symofros as sf
 
+from ..reporting.plain import restored
 from .contestants.arrays import first_compiler
 from .contestants.engines import mujoco_loops, pinocchio_loops
 from .contestants.generated import casadi_loops, sympy_loops
 from .contestants.programs import BuildError, Skipped
 from .contestants.symofros import BATCH, COLUMNS, NAME, SINGLE, our_loops
+from .processes import Say, say
 from .race import OF_FLOATS, DisagreementError, checked, race
 from .record import Entry, Made
 from .task import Loop, Task, task
 
-Say = Callable[[str, Any], None]
 PEERS = ("pinocchio", "mujoco", "casadi", "sympy")
 
 
@@ -130,10 +130,6 @@ def _offered(given: Task, job: Job, function: str, peer: str, say: Say) -> Itera
     return []
 
 
-def _print(kind: str, value: Any) -> None:
-    print(json.dumps({kind: value}), flush=True)
-
-
 def _end_with_parent() -> None:
     """Whatever it computes, the process ends with the one that started it, which holds the other end of the pipe."""
     while os.read(sys.stdin.fileno(), 1):  # Not by `sys.stdin`, the lock of which Python asks for at its own end.
@@ -144,8 +140,4 @@ def _end_with_parent() -> None:
 if __name__ == "__main__":
     threading.Thread(target=_end_with_parent, daemon=True).start()
     np.seterr(all="ignore")
-    stated = json.loads(sys.argv[1])
-    work(
-        Job(stated["model"], tuple(stated["peers"]), tuple(stated["functions"]), stated["repeats"], stated["states"]),
-        _print,
-    )
+    work(restored(Job, json.loads(sys.argv[1])), say)

@@ -138,8 +138,8 @@ def _rows(everything: Sequence[dict[str, Any]]) -> Iterator[dict[str, Any]]:
 
 
 def _parquet(everything: Sequence[dict[str, Any]]) -> bytes:
-    import pyarrow
-    import pyarrow.parquet
+    import pyarrow  # An extra: files of text are written without it.
+    import pyarrow.parquet  # As above.
 
     numbers_of, text = pyarrow.list_(pyarrow.float64()), pyarrow.string()
     fields = [

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.blocks.checks import numbers, refuse
 from symofros.blocks.controllers.riccati import continuous_gain, held_inputs, sampled_gain
 from symofros.blocks.manifold import difference
 from symofros.blocks.quantities import entry_units, motion_port, of_units
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.tensor import joined
-from symofros.runtime.calls.kernel import Array
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from symofros.runtime.calls.kernel import Array
+from symofros.base.arrays import Array
 
 # Doubling: 2^40 is more than any time constant of a mechanism takes.
 _ROUNDS = 60

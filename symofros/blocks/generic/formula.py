@@ -10,15 +10,15 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.blocks.checks import numbers, refuse
 from symofros.blocks.generic.sampling import needs_period
-from symofros.description.parser import ExpressionError, parse
+from symofros.description import ExpressionError, parse
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.external_block import ExternalBlock, Running
 from symofros.diagrams.tensor import Tensor
 from symofros.errors import DescriptionError
-from symofros.expr.expression import Expression, lower
-from symofros.runtime.calls.kernel import Array
+from symofros.expr import Expression, lower
 
 _ENTRY = re.compile(r"(?P<name>\w+)\[(?P<index>\d+)\]$", re.ASCII)
 _NAME = re.compile(r"[A-Za-z]\w*$", re.ASCII)

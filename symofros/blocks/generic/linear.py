@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.blocks.checks import numbers, refuse
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.tensor import Tensor
-from symofros.runtime.calls.kernel import Array
 
 # States of one block, whose formula has as many squared terms.
 MOST_STATES = 200

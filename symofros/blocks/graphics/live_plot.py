@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.blocks.graphics.recorders import open_ports
 from symofros.blocks.network.exchange import LOCALHOST, check_size
 from symofros.blocks.network.packets import pack
@@ -23,7 +24,6 @@ from symofros.diagrams.block import Environment, Ports
 from symofros.diagrams.external_block import ExternalBlock, Running
 from symofros.diagrams.signals import entries
 from symofros.errors import Problem, SymofrosError
-from symofros.runtime.calls.kernel import Array
 
 
 @dataclass(frozen=True, kw_only=True)

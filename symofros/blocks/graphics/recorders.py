@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.blocks.quantities import frame_ports, motion_port
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.external_block import ExternalBlock, Running
 from symofros.diagrams.settings import Plot
 from symofros.errors import DescriptionError, Problem
-from symofros.runtime.calls.kernel import Array
 
 
 def open_ports(name: str, signals: tuple[str, ...], environment: Environment) -> Ports:

@@ -12,14 +12,14 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.blocks.quantities import motion_port
 from symofros.blocks.turns import Turn
-from symofros.description.system import System
+from symofros.description import System
 from symofros.diagrams.block import Environment, Ports
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.external_block import ExternalBlock, Running
 from symofros.errors import DescriptionError, Problem
-from symofros.runtime.calls.kernel import Array
 from symofros.studio.viewer.playing.diagram_motion import chosen_block
 from symofros.studio.viewer.viewer import Viewer
 

@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.diagrams.tensor import Tensor, joined
-from symofros.runtime.calls.kernel import Array
 
 
 class Share(NamedTuple):

@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from symofros.base.npz import TooLargeError, read_npz
+from symofros.base.arrays import Array
 from symofros.blocks.checks import choice, increasing, known_name, numbers, refuse
 from symofros.diagrams.block import Block, Environment, Port, Ports
 from symofros.errors import DescriptionError, Problem
-from symofros.runtime.calls.kernel import Array
 from symofros.simulation.inputs import Signal
+from symofros.simulation.results.npz import TooLargeError, read_npz
 
 # A file is read whole.
 MOST_BYTES = 256_000_000

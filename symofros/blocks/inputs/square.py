@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.blocks.checks import choice, number, numbers, refuse, whole
 from symofros.blocks.inputs.laws import LAWS, moves, through
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.tensor import Tensor, joined
-from symofros.runtime.calls.kernel import Array
 
 _AXES = "xyz"
 

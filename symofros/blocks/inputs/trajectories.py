@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.base.units import parse
 from symofros.blocks.checks import choice, increasing, number, numbers, refuse
 from symofros.blocks.inputs.laws import LAWS, Share, moves, spline
@@ -15,7 +16,6 @@ from symofros.blocks.quantities import ACCELERATION, NO_UNIT, VELOCITY
 from symofros.blocks.rotations import matrix_of_quaternion, matrix_of_vector, quaternion_of_matrix, vector_of_matrix
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.tensor import Tensor, joined
-from symofros.runtime.calls.kernel import Array
 
 # Formulas grow with the points; tables over time (`Sequence`) take as many as there are.
 MOST_POINTS = 64

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.blocks.checks import known_name, refuse
 from symofros.blocks.quantities import NO_UNIT, actuated_names, of_units, scalar_coordinates
 from symofros.blocks.rotations import error_vector
 from symofros.diagrams.block import Environment, EvaluationContext, Port
 from symofros.diagrams.tensor import Tensor, joined, solved, stacked
-from symofros.runtime.calls.kernel import Array
 
 ROWS = ("x", "y", "z", "rx", "ry", "rz")
 

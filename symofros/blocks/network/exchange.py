@@ -9,11 +9,11 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from symofros.base.arrays import Array
 from symofros.blocks.network.packets import MAX_VALUES, Reception, Silence, receiver_ports
 from symofros.diagrams.block import Environment, Port, Ports
 from symofros.diagrams.external_block import ExternalBlock, Running
 from symofros.errors import DescriptionError, Problem
-from symofros.runtime.calls.kernel import Array
 
 LOCALHOST = "127.0.0.1"
 # Packets that one sample takes: a flood may not stop the loop.

@@ -13,8 +13,8 @@ from typing import Any, Literal
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.diagrams.block import Port
-from symofros.runtime.calls.kernel import Array
 
 MAGIC = b"SYMO"
 VERSION = 1

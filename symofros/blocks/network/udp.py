@@ -14,12 +14,12 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.blocks.network.exchange import LOCALHOST, MAX_TAKEN, Exchange, Receiver, Receiving, Transmitter
 from symofros.blocks.network.packets import pack
 from symofros.diagrams.block import Environment
 from symofros.diagrams.external_block import Running
 from symofros.errors import Problem, SymofrosError
-from symofros.runtime.calls.kernel import Array
 
 
 @dataclass(frozen=True, kw_only=True)

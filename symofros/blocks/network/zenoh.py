@@ -15,12 +15,12 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.blocks.network.exchange import MAX_TAKEN, Exchange, Receiver, Receiving, Transmitter
 from symofros.blocks.network.packets import pack
 from symofros.diagrams.block import Environment
 from symofros.diagrams.external_block import Running
 from symofros.errors import DescriptionError, Problem, SymofrosError
-from symofros.runtime.calls.kernel import Array
 
 _ADDRESS = "127.0.0.1:7447"
 

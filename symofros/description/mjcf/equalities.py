@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.base.names import symbol_of
-from symofros.base.rotations import Array
 from symofros.description.constraints import AXES, Closure, Coupling
 from symofros.description.forces import Anchor
 from symofros.description.frames import Frame

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from symofros.base.rotations import Array, axis_rotation, nearest_rotation, quaternion_matrix
+from symofros.base.arrays import Array
+from symofros.base.rotations import axis_rotation, nearest_rotation, quaternion_matrix
 from symofros.description.values import IDENTITY, Rotation, Vector
 from symofros.expr.numerics.extended import nearest
 

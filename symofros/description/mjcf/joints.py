@@ -18,7 +18,8 @@ from typing import Any
 
 import numpy as np
 
-from symofros.base.rotations import Array, matrix_product
+from symofros.base.arrays import Array
+from symofros.base.rotations import matrix_product
 from symofros.description.forces import Damper, JointElement, Spring
 from symofros.description.joints.joint import WORLD, Joint, Limits
 from symofros.description.joints.joint_kinds import JointKindName

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from symofros.base.rotations import Array
+from symofros.base.arrays import Array
 from symofros.description.closing import closing_remedy
 from symofros.description.constraints import AXES, AxisName, Closure, Coupling, mimicry
 from symofros.description.forces import Damper, JointElement, Spring

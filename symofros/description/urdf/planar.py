@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from symofros.base.rotations import Array, skew
+from symofros.base.arrays import Array
+from symofros.base.rotations import skew
 from symofros.description.mjcf.geometry import about
 from symofros.description.values import Rotation, Vector
 

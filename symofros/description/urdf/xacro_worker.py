@@ -88,7 +88,7 @@ def guard(folders: Collection[str]) -> None:
 def bound() -> None:
     """Bound memory and time, where the system can."""
     try:
-        import resource
+        import resource  # Windows has none.
     except ImportError:
         return
     for what, most in ((resource.RLIMIT_AS, MEMORY), (resource.RLIMIT_CPU, SECONDS), (resource.RLIMIT_FSIZE, 0)):
@@ -109,9 +109,9 @@ def expanded(file: str, folders: list[str], packages: Mapping[str, str], argumen
         packages: Name -> folder that `$(find NAME)` gives, in which files may be opened from then on.
         arguments: Values of <xacro:arg>.
     """
-    import xacro
+    import xacro  # An extra: its absence is the answer of `main`.
     import yaml  # noqa: F401 - loaded before files are guarded
-    from xacro import substitution_args
+    from xacro import substitution_args  # Of the same extra.
 
     functions = {
         "load_yaml": lambda file: unfolded(xacro.load_yaml(file), file),

@@ -15,7 +15,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from symofros.base.rotations import Array
+from symofros.base.arrays import Array
 from symofros.description.constraints import AXES, AxisName, Closure, Constraint, Rod
 from symofros.description.forces import Damper, JointElement
 from symofros.description.frames import Frame

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from symofros.base.rotations import Array
+from symofros.base.arrays import Array
 from symofros.description.remarks import Remarks
 from symofros.description.system import Inertia
 from symofros.description.usd.placement import Affine, turn

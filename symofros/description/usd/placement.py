@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from symofros.base.rotations import Array
+from symofros.base.arrays import Array
 from symofros.description.mjcf.geometry import rotation_of
 from symofros.description.pose import Pose
 

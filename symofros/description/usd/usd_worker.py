@@ -61,7 +61,7 @@ _EXTENSIONS = (
 def bound() -> None:
     """Bound memory and time, where the system can."""
     try:
-        import resource
+        import resource  # Windows has none.
     except ImportError:
         return
     for what, most in ((resource.RLIMIT_AS, MEMORY), (resource.RLIMIT_CPU, SECONDS), (resource.RLIMIT_FSIZE, 0)):
@@ -115,7 +115,7 @@ def authored(prim: Any, name: str) -> Any:
 
 
 def _time() -> Any:
-    from pxr import Usd
+    from pxr import Usd  # An extra, looked for by `main`.
 
     return Usd.TimeCode.EarliestTime()
 
@@ -126,7 +126,7 @@ def stage_data(file: str) -> dict[str, Any]:
     Args:
         file: Path of its root layer.
     """
-    from pxr import Usd, UsdGeom, UsdPhysics
+    from pxr import Usd, UsdGeom, UsdPhysics  # An extra, looked for by `main`.
 
     stage = Usd.Stage.Open(file)
     layers = sorted({place for layer in stage.GetUsedLayers() if not layer.anonymous for place in places(layer)})
@@ -183,7 +183,7 @@ def places(layer: Any) -> list[str]:
 
     A file may have brackets in its name: both are said, and both have to lie where files may be read.
     """
-    from pxr import Ar
+    from pxr import Ar  # An extra, looked for by `main`.
 
     path = layer.realPath
     package = Ar.SplitPackageRelativePathOuter(path)[0]
@@ -218,7 +218,7 @@ def _scene(prim: Any) -> dict[str, Any]:
 
 
 def _joint(prim: Any, kind: str) -> dict[str, Any]:
-    from pxr import UsdPhysics
+    from pxr import UsdPhysics  # An extra, looked for by `main`.
 
     ends = []
     for relationship in (UsdPhysics.Joint(prim).GetBody0Rel(), UsdPhysics.Joint(prim).GetBody1Rel()):
@@ -256,7 +256,7 @@ def _joint(prim: Any, kind: str) -> dict[str, Any]:
 
 
 def _shape(prim: Any, kind: str, body: str) -> dict[str, Any]:
-    from pxr import UsdGeom, UsdPhysics, UsdShade
+    from pxr import UsdGeom, UsdPhysics, UsdShade  # An extra, looked for by `main`.
 
     density = None
     material = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial("physics")[0]
@@ -290,7 +290,7 @@ def main() -> None:
     os.environ["PXR_WORK_THREAD_LIMIT"] = "1"
     bound()
     try:
-        import pxr.Usd  # noqa: F401
+        import pxr.Usd  # noqa: F401 - an extra, whose absence is an answer
     except ImportError:
         answer: dict[str, Any] = {"absent": "usd-core"}
     else:

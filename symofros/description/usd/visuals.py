@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from symofros.base.rotations import Array
+from symofros.base.arrays import Array
 from symofros.description.pose import Pose
 from symofros.description.usd.placement import Affine
 from symofros.description.values import IDENTITY, Rotation

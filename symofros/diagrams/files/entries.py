@@ -6,7 +6,7 @@ import math
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
-from symofros.description.yaml.yaml_nodes import Node
+from symofros.description.yaml import Node
 from symofros.errors import MAX_PROBLEMS, Problem, did_you_mean
 
 

@@ -10,7 +10,7 @@ from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 
-from symofros.description.yaml.yaml_nodes import Node
+from symofros.description.yaml import Node
 
 MISSING = dataclasses.MISSING
 # What a field of any type may be: numbers of any shape, texts, true and false.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from symofros.description.reading import kind_of, resolved
+from symofros.description import kind_of, resolved
 from symofros.errors import Problem, did_you_mean
 
 DIAGRAMS = (".yaml", ".yml")

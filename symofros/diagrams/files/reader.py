@@ -10,11 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from symofros.base.arguments import checked
-from symofros.description.reading import MODEL_SUFFIXES, in_order, read_bytes, resolved
-from symofros.description.system import System
-from symofros.description.yaml.files import DIAGRAM
-from symofros.description.yaml.yaml_nodes import Node, YamlFault
-from symofros.description.yaml.yaml_pieces import compose
+from symofros.description import MODEL_SUFFIXES, System, in_order, read_bytes, resolved
+from symofros.description.yaml import DIAGRAM, Node, YamlFault, compose
 from symofros.diagrams.block import Block, ModelFile
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.files.entries import Entries

@@ -6,7 +6,7 @@ import math
 from dataclasses import fields
 from typing import Any
 
-from symofros.description.yaml.yaml_nodes import Node
+from symofros.description.yaml import Node
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.files.entries import Entries
 from symofros.diagrams.settings import Plot, RunSettings

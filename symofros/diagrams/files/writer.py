@@ -12,8 +12,8 @@ from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
 from symofros.base.arguments import checked
 from symofros.base.atomic import write_atomically
-from symofros.description.reading import resolved
-from symofros.description.yaml.yaml_output import key_text, value_text, yaml_text
+from symofros.description import resolved
+from symofros.description.yaml import key_text, value_text, yaml_text
 from symofros.diagrams.block import Block, ModelSetup
 from symofros.diagrams.diagram import INSIDE, Diagram, Part
 from symofros.diagrams.files.fields import MISSING, same, write

@@ -9,6 +9,8 @@ from functools import partial
 
 import numpy as np
 
+from symofros.base.arrays import Array
+from symofros.base.c_names import identifier
 from symofros.base.options import Options
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.order import groups_in_motion, order_of
@@ -18,20 +20,12 @@ from symofros.diagrams.program.lowered_block import Piece, piece_of
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.wiring import Source, Wired, located, wire
 from symofros.errors import CompileError, DescriptionError, Problem
-from symofros.expr.numerics.evaluate import needed_nodes
-from symofros.expr.program import Program
-from symofros.generator.beams import beams_at
-from symofros.generator.codegen.interpreted import InterpretedUnit
-from symofros.generator.codegen.model import model_source
-from symofros.generator.codegen.names import identifier
-from symofros.generator.instants import formula_instants
-from symofros.generator.passes import run_passes
+from symofros.expr import Program, needed_nodes
+from symofros.generator import InterpretedUnit, formula_instants, model_source, run_passes
 from symofros.native import native_text
 from symofros.runtime.beams import ElasticBeam
-from symofros.runtime.build.build import build_library
-from symofros.runtime.build.toolchain import NO_COMPILER, Toolchain, find_toolchain
-from symofros.runtime.calls.kernel import Array, Kernel, Unit
-from symofros.runtime.calls.library import CompiledUnit
+from symofros.runtime.build import NO_COMPILER, Toolchain, build_library, find_toolchain
+from symofros.runtime.calls import CompiledUnit, Kernel, Unit
 from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord
 
@@ -224,7 +218,7 @@ def part_beams(resolved: Resolved, part: Part, par: Array) -> tuple[ElasticBeam,
         if name in layout.q:
             model = resolved.pieces[name].block.mechanism()
             q, v = layout.q[name].start - part.q.start, layout.v[name].start - part.v.start
-            for beam in beams_at(models.tree(model))(par[layout.parameters["", model].slice]):
+            for beam in models.compilation(model).beams(par[layout.parameters["", model].slice]):
                 beams.append(replace(beam, name=f"{name}.{beam.name}", q=beam.q + q, v=beam.v + v))
     return tuple(beams)
 

@@ -12,10 +12,7 @@ from symofros.diagrams.program.model_environment import parameter_group
 from symofros.diagrams.tensor import Tensor
 from symofros.diagrams.wiring import Source, Wired
 from symofros.errors import DescriptionError, Problem
-from symofros.expr.edges import ONE, ZERO, Edge
-from symofros.expr.graph import Graph
-from symofros.expr.program import Function, Output, Program, Solver
-from symofros.expr.substitute import copy_into
+from symofros.expr import ONE, ZERO, Edge, Function, Graph, Output, Program, Solver, copy_into
 
 AT = ("q", "v", "u", "t")
 # What is known once the accelerations of an instant are.

@@ -13,12 +13,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.base.measures import Measures
 from symofros.diagrams.block import Shape
 from symofros.diagrams.program.lowered_block import Piece
 from symofros.diagrams.wiring import Source, Wired
 from symofros.errors import DescriptionError, Problem
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.record import Segment
 from symofros.simulation.inputs import Signal
 

@@ -7,15 +7,13 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.diagrams.block import Block, Crossing, EvaluationContext, Port, Terms, Values
 from symofros.diagrams.external_block import ExternalBlock
 from symofros.diagrams.tensor import Tensor
 from symofros.diagrams.wiring import Wired, surroundings
 from symofros.errors import DescriptionError, Problem
-from symofros.expr.edges import Edge
-from symofros.expr.graph import Graph
-from symofros.expr.numerics.evaluate import needed_nodes
-from symofros.runtime.calls.kernel import Array
+from symofros.expr import Edge, Graph, needed_nodes
 
 # Groups of inputs of a piece that belong to one port, state, memory or parameter begin with these.
 INPUT, STATE, MEMORY, PARAMETER = "in_", "x_", "z_", "p_"

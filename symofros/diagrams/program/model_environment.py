@@ -7,30 +7,17 @@ from dataclasses import replace
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.base.functions import FRAME_FUNCTIONS
 from symofros.base.names import coordinate_of, speed_of
 from symofros.base.options import Options
-from symofros.compiler import compile_system
-from symofros.description.forces import Friction
-from symofros.description.system import System
+from symofros.compiler import Compilation, compile_system
+from symofros.description import Friction, System
 from symofros.diagrams.block import ModelSetup
 from symofros.diagrams.program.variants import FRICTION, friction_only
 from symofros.diagrams.tensor import Tensor
 from symofros.errors import DescriptionError, ParameterError, Problem, ShapeError, did_you_mean
-from symofros.expr.edges import Edge
-from symofros.expr.graph import Graph
-from symofros.expr.program import Program
-from symofros.expr.substitute import copy_into
-from symofros.generator.programs import ProgramBuilder
-from symofros.generator.record import model_record
-from symofros.mechanics.dynamics.constraints.rows import retracted
-from symofros.mechanics.dynamics.equations import Equations
-from symofros.mechanics.dynamics.forward.factors import Factors
-from symofros.mechanics.dynamics.functions import Methods, Request, form_program
-from symofros.mechanics.kinematics.links import tree_kinematics
-from symofros.mechanics.topology.run_time import RunTimeCheck
-from symofros.mechanics.topology.tree import SpanningTree, build_tree
-from symofros.runtime.calls.kernel import Array
+from symofros.expr import Edge, Factors, Graph, Program, copy_into
 from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord
 from symofros.runtime.unit_quaternions import at_unit_length
@@ -54,10 +41,7 @@ class Models:
     def __init__(self, diagram: str, setups: Mapping[str, ModelSetup]) -> None:
         self._diagram = diagram
         self._setups = setups
-        self._trees: dict[str, SpanningTree] = {}
-        self._records: dict[str, ModelRecord] = {}
-        self._builders: dict[str, ProgramBuilder] = {}
-        self._equations: dict[str, Equations] = {}
+        self._compilations: dict[str, Compilation] = {}
         self._energies: dict[tuple[str, str], Model] = {}
         self._constraints: dict[str, Model] = {}
         self._programs: dict[tuple[str, str, str], Program] = {}
@@ -91,17 +75,15 @@ class Models:
         """The description of a model."""
         return self.setup(name).system
 
-    def tree(self, name: str) -> SpanningTree:
-        """A model's description, checked and numbered."""
-        if name not in self._trees:
-            self._trees[name] = build_tree(self.system(name))
-        return self._trees[name]
+    def compilation(self, name: str) -> Compilation:
+        """A model's description, checked and numbered, and what can be formed of it."""
+        if name not in self._compilations:
+            self._compilations[name] = Compilation(self.system(name))
+        return self._compilations[name]
 
     def record(self, name: str) -> ModelRecord:
         """Sizes and names of a model."""
-        if name not in self._records:
-            self._records[name] = model_record(self.tree(name), Options())
-        return self._records[name]
+        return self.compilation(name).record
 
     def parameters(self, name: str) -> Array:
         """The run-time parameters of a model (npar).
@@ -129,7 +111,7 @@ class Models:
             raise ParameterError(problems)
 
     def _parameter_problems(self, name: str, values: Array) -> list[Problem]:
-        problems = RunTimeCheck(self.tree(name).system, self.record(name).par_names).problems(values[None])
+        problems = self.compilation(name).parameter_problems(values[None])
         what = f"diagram '{self._diagram}': model '{name}'"
         return [replace(problem, what=f"{what}: {problem.what}") for problem in problems]
 
@@ -213,14 +195,7 @@ class Models:
             frame = self.frame(model, frame)
         key = model, function, frame
         if key not in self._programs:
-            tree = self.tree(model)
-            if model not in self._builders:
-                self._builders[model] = ProgramBuilder(tree, Options())
-                self._equations[model] = self._builders[model].equations()
-            method = self._builders[model].forward_method if function == "forward_dynamics" else "factors"
-            self._programs[key] = form_program(
-                self._equations[model], [Request(function, frame)], Methods(trees=method)
-            )
+            self._programs[key] = self.compilation(model).programs.formulas(function, frame)
         program = self._programs[key]
         stated = program.functions[0]
         replacement = self._bound(g, model, program, stated.inputs, groups)
@@ -238,12 +213,12 @@ class Models:
 
     def has_elastic_beams(self, model: str) -> bool:
         """Whether a model has beams that bend or twist."""
-        return any(link.tip_of is not None and link.tip_of.modes > 0 for link in self.tree(model).links)
+        return any(link.tip_of is not None and link.tip_of.modes > 0 for link in self.compilation(model).tree.links)
 
     def has_friction(self, model: str) -> list[bool]:
         """Which speeds (nv) have friction."""
-        tree, rubs = self.tree(model), [False] * len(self.record(model).v_names)
-        for link in tree.links:
+        rubs = [False] * len(self.record(model).v_names)
+        for link in self.compilation(model).tree.links:
             for element in link.joint.elements:
                 if isinstance(element, Friction):
                     rubs[link.v[0] + element.coordinate] = True
@@ -251,13 +226,12 @@ class Models:
 
     def retract(self, g: Graph, model: str, q: Tensor, step: Tensor) -> Tensor:
         """The configuration q (+) step, for a step (nv) along the manifold."""
-        kinematics = tree_kinematics(Graph(), self.tree(model))
-        edges = retracted(kinematics)
+        program = self.compilation(model).programs.retraction()
         groups = {"q": q, "step": step}
         replacement = {
-            kinematics.g.input(group, i): edge for group, values in groups.items() for i, edge in enumerate(values.flat)
+            program.graph.input(name, i): edge for name, values in groups.items() for i, edge in enumerate(values.flat)
         }
-        return Tensor.of(g, copy_into(g, kinematics.g, edges, replacement), (len(edges),))
+        return Tensor.of(g, copy_into(g, program.graph, program.functions[0].edges(), replacement), (q.size,))
 
     def _bound(
         self, g: Graph, model: str, program: Program, inputs: tuple[str, ...], groups: Mapping[str, Tensor]

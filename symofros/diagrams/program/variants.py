@@ -5,9 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from symofros.description.beams.beam import STRAINS, Beam
-from symofros.description.forces import Friction
-from symofros.description.system import Body, System
+from symofros.description import STRAINS, Beam, Body, Friction, System
 
 # A model's name and this name its variant in which friction is the only force.
 FRICTION = "(friction)"

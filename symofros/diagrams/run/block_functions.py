@@ -8,16 +8,17 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.diagrams.program.compiled import Resolved, bare_record, unit_of
 from symofros.diagrams.program.lowered_block import INPUT, MEMORY, PARAMETER, STATE, Piece
 from symofros.diagrams.program.model_environment import parameter_group
 from symofros.diagrams.run.python_blocks import Called
 from symofros.diagrams.run.starts import Start, close_loops
 from symofros.diagrams.wiring import Source
-from symofros.expr.program import Function, Output, Program
-from symofros.generator.passes import run_passes
-from symofros.runtime.build.toolchain import Toolchain
-from symofros.runtime.calls.kernel import Array, Kernel
+from symofros.expr import Function, Output, Program
+from symofros.generator import run_passes
+from symofros.runtime.build import Toolchain
+from symofros.runtime.calls import Kernel
 from symofros.runtime.constrained import constrained
 from symofros.simulation.inputs import held_sample
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.diagrams.observer import NoObserver, Observer
 from symofros.diagrams.program.compiled import Resolved, part_beams
 from symofros.diagrams.run.block_functions import Blocks
@@ -18,7 +19,6 @@ from symofros.diagrams.run.projection import engage, project_all
 from symofros.diagrams.run.python_blocks import Called
 from symofros.diagrams.wiring import Source
 from symofros.runtime.beams import BeamBending, ElasticBeam, amplification_of, bending_notes, largest_bending
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.manifold import chart_rate, retract
 from symofros.simulation.analysis.beam_theory import UNAMPLIFIED, amplifying
 from symofros.simulation.results.outcome import Outcome

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.diagrams.run.recording import Cost
 from symofros.errors import Problem, SymofrosError
-from symofros.runtime.calls.kernel import Array
 from symofros.simulation.results.plots import figure_class
 
 

@@ -11,14 +11,12 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.diagrams.program.layout import Layout, Place
 from symofros.diagrams.rates import Schedule
 from symofros.diagrams.run.python_blocks import ExternalCalls
 from symofros.errors import CompileError
-from symofros.runtime.calls.binding import NativeMemory, native_library
-from symofros.runtime.calls.declarations import interface
-from symofros.runtime.calls.kernel import Array
-from symofros.runtime.calls.library import CompiledKernel
+from symofros.runtime.calls import CompiledKernel, NativeMemory, native_library
 from symofros.simulation.stepping.stepper import Stepper
 
 # Name of the recording of an instant in a schedule.
@@ -75,7 +73,8 @@ class Loop:
         reads_accelerations: bool,
     ) -> None:
         self.native, self.parts = native_library(), parts
-        self._ffi, self._memory = interface(), NativeMemory()
+        self._memory = NativeMemory()
+        self._ffi = self._memory.ffi
         self._external, self._par = external, par
         self.failure: BaseException | None = None
         self.failed_block = self.fault = ""

@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.diagrams.program.compiled import CompiledDiagram, Resolved
 from symofros.diagrams.program.layout import Part
 from symofros.diagrams.program.lowered_block import watched
 from symofros.diagrams.run.examination.faults import fault_at
 from symofros.diagrams.run.starts import Start, changes_of_driven, close_loops, stated_entries
 from symofros.errors import AssemblyError, Problem, SymofrosError
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
 from symofros.simulation.analysis.beam_theory import refuse_beyond
 from symofros.simulation.events import Event

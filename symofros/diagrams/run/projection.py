@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.diagrams.program.layout import Part
 from symofros.diagrams.run.block_functions import Blocks
 from symofros.diagrams.run.engaging import ENGAGE_TOLERANCE, EngagedApartError
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import project
 from symofros.runtime.manifold import retract
 

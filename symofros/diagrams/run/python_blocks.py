@@ -8,14 +8,14 @@ from contextlib import ExitStack, contextmanager
 
 import numpy as np
 
-from symofros.base.user_functions import named_function
+from symofros.base.arrays import Array
 from symofros.diagrams.block import Port
 from symofros.diagrams.external_block import ExternalBlock, Running
 from symofros.diagrams.program.compiled import Resolved, fuser
 from symofros.diagrams.program.layout import Place
 from symofros.diagrams.wiring import Wired, surroundings
 from symofros.errors import Problem, SymofrosError
-from symofros.runtime.calls.kernel import Array
+from symofros.simulation.user_functions import named_function
 
 # Calls whose outputs are kept for the parts of a run that are made once more.
 _KEPT_CALLS = 100_000

@@ -10,13 +10,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.diagrams.block import Shape
 from symofros.diagrams.program.compiled import CompiledDiagram
 from symofros.diagrams.program.fused_functions import AFTER
 from symofros.diagrams.wiring import Source
 from symofros.errors import Problem, UnknownNameError, did_you_mean
 from symofros.runtime.beams import BeamBending
-from symofros.runtime.calls.kernel import Array
 from symofros.simulation.results.outcome import Outcome
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
+from symofros.base.arrays import Array
 from symofros.diagrams.run.recording import Recording
 from symofros.diagrams.signals import check_entry, entries, split
-from symofros.runtime.calls.kernel import Array
 from symofros.simulation.results.saving import refuse_suffix, write_columns, write_npz
 
 

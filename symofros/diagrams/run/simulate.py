@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.diagrams.observer import NoObserver, Observer
 from symofros.diagrams.program.compiled import CompiledDiagram, rates_of
 from symofros.diagrams.program.layout import Place
@@ -30,8 +31,7 @@ from symofros.diagrams.run.starts import Start
 from symofros.diagrams.run.values import parameter_values, record_interval
 from symofros.errors import SymofrosError
 from symofros.runtime.beams import BeamBending
-from symofros.runtime.calls.kernel import Array
-from symofros.runtime.calls.library import CompiledKernel
+from symofros.runtime.calls import CompiledKernel
 from symofros.runtime.model import Model
 from symofros.simulation.progress import bar
 from symofros.simulation.results.outcome import Outcome

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.program.layout import Part
-from symofros.runtime.calls.kernel import Array
 from symofros.simulation.analysis.kinematics.starts import changes, closed_start, stated_names
 
 

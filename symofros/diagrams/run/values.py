@@ -8,11 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from symofros.base.arrays import real_array
+from symofros.base.arrays import Array, real_array
 from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.program.layout import Place
 from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
-from symofros.runtime.calls.kernel import Array
 
 # Recorded by default at about so many times.
 _RECORDS = 2000

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from symofros.errors import CompileError
-from symofros.runtime.build.toolchain import NO_COMPILER, call_compiler, find_toolchain
+from symofros.runtime.build import NO_COMPILER, call_compiler, find_toolchain
 
 # No -march=native: what is exported runs on other machines of the kind.
 FLAGS = ("-O2", "-fno-math-errno", "-std=c99", "-fPIC", "-shared", "-fvisibility=hidden")

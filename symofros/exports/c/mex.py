@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from symofros.description.beams.beam import Beam
+from symofros.base.c_names import c_string
+from symofros.description import Beam
 from symofros.exports.c.c_package import model_files
 from symofros.exports.c.c_text import comment
 from symofros.exports.c.unity import unity
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.material import Material
-from symofros.generator.codegen.names import c_string
 from symofros.native import native_text
 
 _HELP = """{name}  {title}: {nq} coordinates, {nv} speeds, {nu} inputs, {npar} parameters, {nc} constraints.

@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from symofros.description.system import System
-from symofros.expr.ops import OPS
-from symofros.generator.codegen.names import c_string
-from symofros.mechanics.topology.conditions import Condition
-from symofros.mechanics.topology.numbers import Numbers
-from symofros.mechanics.topology.run_time import RunTimeCheck
+from symofros.base.c_names import c_string
+from symofros.description import System
+from symofros.expr import OPS
+from symofros.mechanics.topology import Condition, Numbers, RunTimeCheck
 
 _C = {"sub": "{0} - {1}", "neg": "-{0}"}
 _HOLDS = {"positive": " && {0} > 0.0", "not negative": " && {0} >= 0.0", "any": ""}

@@ -6,10 +6,10 @@ import math
 from collections.abc import Sequence
 from typing import Protocol
 
+from symofros.base.c_names import c_string
 from symofros.exports.c.c_text import comment, doubles, integers, strings
 from symofros.exports.c.parameter_check import Judged, parameter_check_text
 from symofros.exports.material import Material, Stepping
-from symofros.generator.codegen.names import c_string
 from symofros.runtime.beams import ElasticBeam
 from symofros.runtime.record import ModelRecord
 from symofros.simulation.stepping.tableaus import Tableau

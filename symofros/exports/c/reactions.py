@@ -6,7 +6,7 @@ from string import Template
 
 from symofros.exports.c.c_text import comment, doubles, integers, strings
 from symofros.exports.material import Material
-from symofros.generator.codegen.solvers import ROUTINES
+from symofros.generator import ROUTINES
 from symofros.native import native_text
 
 

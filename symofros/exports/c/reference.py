@@ -6,9 +6,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.exports.material import Check
 from symofros.runtime import manifold
-from symofros.runtime.calls.kernel import Array, Kernel
+from symofros.runtime.calls import Kernel
 from symofros.runtime.record import ModelRecord
 
 POINTS = 2

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from symofros.base.c_names import c_string
 from symofros.exports.c.c_package import model_files
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.material import Material
-from symofros.generator.codegen.names import c_string
 from symofros.native import native_text
 
 _BUILD = """% Builds the block: run it in this folder, in Matlab. For several models copy NAME.c, NAME_plant.c and

@@ -7,9 +7,9 @@ from math import prod
 from string import Template
 from textwrap import wrap
 
+from symofros.base.c_names import function_symbols
 from symofros.exports.functions import NamedFunction
 from symofros.exports.material import Material
-from symofros.generator.codegen.names import function_symbols
 from symofros.native import native_text
 
 # Passed by value, not as an array of one.

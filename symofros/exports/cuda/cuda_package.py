@@ -6,21 +6,18 @@ from collections.abc import Sequence
 from pathlib import Path
 from string import Template
 
+from symofros.base.c_names import identifier
 from symofros.base.functions import FRAME_FUNCTIONS
 from symofros.base.options import Options
 from symofros.compiler import GENERATOR, Compilation
-from symofros.description.beams.beam import Beam
-from symofros.description.system import System
+from symofros.description import Beam, System
 from symofros.exports.c.c_text import comment, doubles
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.functions import NamedFunction, cell, functions_table, names_table
 from symofros.exports.limits import joints_of, limits_note
-from symofros.generator.codegen.cuda import device_code
-from symofros.generator.codegen.names import identifier
-from symofros.generator.instants import has_instants
+from symofros.generator import DeviceCode, device_code
 from symofros.native import header_files, native_text
-from symofros.runtime.calls.kernel import Precision
-from symofros.runtime.cuda.device_code import DeviceCode
+from symofros.runtime.calls import Precision
 
 # What users of batches ask for; each kernel takes seconds to compile.
 FUNCTIONS = (
@@ -102,7 +99,7 @@ def _notes(made: Compilation, left_out: Sequence[str]) -> tuple[str, ...]:
         )
     if any(isinstance(body, Beam) and body.modes for body in made.system.bodies):
         notes.append("rollouts do not judge how far beams bend, as sf.simulate does: judge their records")
-    if has_instants(made.tree):
+    if made.has_instants:
         notes.append(
             "formulas of time bend, jump or are narrow at instants within steps of rollouts, which end at none of them:"
             " what is shorter than a step may pass unseen"

@@ -10,21 +10,19 @@ from functools import cached_property
 from typing import Any
 
 from symofros.base.arguments import checked
+from symofros.base.c_names import identifier
 from symofros.base.names import TIME
 from symofros.base.options import Options
 from symofros.compiler import GENERATOR, Compilation
-from symofros.description.system import Parameter, System
-from symofros.description.values import Value, as_vector
+from symofros.description import Parameter, System, Value, as_vector
 from symofros.errors import ExportError, Problem
 from symofros.exports.equations import formulas
 from symofros.exports.equations.harmonics import TooManyTermsError
 from symofros.exports.equations.reading import Reader
 from symofros.exports.equations.recursion import recursion_text
-from symofros.expr.expression import Expression
-from symofros.expr.graph import Slot
-from symofros.generator.codegen.names import identifier
-from symofros.generator.passes.count import count_operations
-from symofros.mechanics.topology.tree import SpanningTree, build_tree
+from symofros.expr import Expression, Slot
+from symofros.generator import count_operations
+from symofros.mechanics.topology import SpanningTree, build_tree
 
 # Operations of M, h, Q and G in the recursive form: beyond these, no grouping makes the entries readable.
 LIMIT = 300

@@ -13,9 +13,7 @@ import sympy
 from symofros.base.names import name_of
 from symofros.exports.equations.harmonics import Frequency, Harmonics, Monomial, real_waves
 from symofros.exports.equations.reading import Call
-from symofros.expr.expression import Expression, spelled
-from symofros.expr.graph import Slot
-from symofros.expr.ops import DIV
+from symofros.expr import DIV, Expression, Slot, spelled
 
 # Denominators of numbers that are written as fractions; others are written as decimals.
 _DENOMINATORS = (1, 2, 3, 4, 6, 8, 12, 16, 24)

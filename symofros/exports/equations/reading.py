@@ -16,10 +16,7 @@ from symofros.exports.equations.harmonics import (
     number,
     wave,
 )
-from symofros.expr.edges import Edge
-from symofros.expr.graph import Graph, Slot
-from symofros.expr.numerics.evaluate import needed_nodes
-from symofros.expr.ops import ADD, DIV, MUL, STOP_GRADIENT
+from symofros.expr import ADD, DIV, MUL, STOP_GRADIENT, Edge, Graph, Slot, needed_nodes
 
 
 @dataclass(frozen=True)

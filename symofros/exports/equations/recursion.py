@@ -5,13 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from symofros.description.beams.beam import Beam
-from symofros.description.system import Inertia
-from symofros.description.values import ORIGIN, Rotation, Value
+from symofros.description import ORIGIN, Beam, Inertia, Rotation, Value
 from symofros.exports.equations import formulas
 from symofros.exports.equations.formulas import latex_text
-from symofros.mechanics.topology.coordinates import coordinate_symbols, speed_symbols
-from symofros.mechanics.topology.tree import BASE, Link, SpanningTree
+from symofros.mechanics.topology import BASE, Link, SpanningTree, coordinate_symbols, speed_symbols
 
 _AXES = ("axis", "axis2")
 # What the recursion does at each link, with the equations' numbers in docs/theory/rigid.md.

@@ -13,6 +13,7 @@ from pathlib import Path
 from string import Template
 from uuid import UUID
 
+from symofros.base.c_names import c_string
 from symofros.errors import ExportError, Problem
 from symofros.exports.c.c_package import model_files
 from symofros.exports.c.c_text import comment, strings
@@ -22,7 +23,6 @@ from symofros.exports.fmi.fmu_description import build_xml, description_xml
 from symofros.exports.fmi.fmu_variables import variables
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.material import Material
-from symofros.generator.codegen.names import c_string
 from symofros.native import native_text
 
 _MACHINES = {"x86_64": "x86_64", "amd64": "x86_64", "aarch64": "aarch64", "arm64": "aarch64"}

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from symofros.exports.material import Material
-from symofros.mechanics.topology.coordinates import coordinate_names
+from symofros.mechanics.topology import coordinate_names
 
 _PLAIN = re.compile(r"[A-Za-z_][A-Za-z_0-9]*")
 _UNQUOTED = re.compile(r"[^A-Za-z0-9_!#$%&()*+,\-./:;<>=@\[\]^{}|~ ]")

@@ -8,12 +8,10 @@ from dataclasses import dataclass
 from itertools import product
 
 from symofros.base.names import symbol_of
-from symofros.description.constraints import Coupling
-from symofros.description.system import System
-from symofros.description.values import Value
+from symofros.description import Coupling, System, Value
 from symofros.exports.interchange.rigid import RigidLink
-from symofros.expr.expression import Expression
-from symofros.mechanics.topology.numbers import Numbers
+from symofros.expr import Expression
+from symofros.mechanics.topology import Numbers
 
 # Largest degree of a polynomial that is looked for: MuJoCo's.
 DEGREE = 4

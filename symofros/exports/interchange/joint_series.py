@@ -6,8 +6,9 @@ from collections import Counter
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
+from symofros.base.arrays import Array
 from symofros.base.rotations import matrix_product
-from symofros.exports.interchange.rigid import Array, RigidLink
+from symofros.exports.interchange.rigid import RigidLink
 
 # Axes of the joints of one body, which MuJoCo takes no more of.
 _MOST_AXES = 6

@@ -9,18 +9,16 @@ from xml.etree import ElementTree as Tree
 
 import numpy as np
 
+from symofros.base.arrays import Array
+from symofros.base.c_names import identifier
 from symofros.base.rotations import matrix_product
-from symofros.description.constraints import Closure
-from symofros.description.forces import Anchor, Damper, Spring
-from symofros.description.joints.joint import Joint, Limits
-from symofros.description.system import System
+from symofros.description import Anchor, Closure, Damper, Joint, Limits, Spring, System
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.interchange.couplings import DEGREE, PolynomialCoupling, polynomial_couplings
 from symofros.exports.interchange.joint_series import GatheredBody, JointPlace, gathered
-from symofros.exports.interchange.rigid import Array, RigidLink, numbers_text, rigid_links
+from symofros.exports.interchange.rigid import RigidLink, numbers_text, rigid_links
 from symofros.exports.limits import limits_note, listed, measures
-from symofros.generator.codegen.names import identifier
-from symofros.mechanics.topology.numbers import Numbers
+from symofros.mechanics.topology import Numbers
 
 # Of a moment of inertia, of the largest one or of 1 kg m^2; MuJoCo's own bound is 1e-14.
 _LEAST = 1e-12

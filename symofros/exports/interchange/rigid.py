@@ -11,17 +11,12 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
+from symofros.base.arrays import Array
 from symofros.base.rotations import matrix_product, skew
-from symofros.description.beams.beam import PRE_STRAINS, STATION, Beam
-from symofros.description.forces import Damper
-from symofros.description.joints.joint import WORLD, Joint
-from symofros.description.system import Body, Inertia, RigidBody, System
+from symofros.description import PRE_STRAINS, STATION, WORLD, Beam, Body, Damper, Inertia, Joint, RigidBody, System
 from symofros.errors import ExportError, Problem
 from symofros.exports.limits import listed
-from symofros.mechanics.topology.coordinates import coordinate_names
-from symofros.mechanics.topology.numbers import Numbers
-
-Array = npt.NDArray[np.float64]
+from symofros.mechanics.topology import Numbers, coordinate_names
 
 # Enough for the sixth power of x in each of so many pieces: sections are polynomials of low degree, or smooth.
 _PIECES, _NODES = 16, 8

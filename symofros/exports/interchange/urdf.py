@@ -9,15 +9,14 @@ from xml.etree import ElementTree as Tree
 
 import numpy as np
 
-from symofros.description.forces import Damper, JointElement
-from symofros.description.joints.joint import Joint, Limits
-from symofros.description.system import System
+from symofros.base.arrays import Array
+from symofros.base.c_names import identifier
+from symofros.description import Damper, Joint, JointElement, Limits, System
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.interchange.couplings import PolynomialCoupling, polynomial_couplings
-from symofros.exports.interchange.rigid import Array, Axis, RigidLink, numbers_text, rigid_links
+from symofros.exports.interchange.rigid import Axis, RigidLink, numbers_text, rigid_links
 from symofros.exports.limits import MEASURES, limits_note, listed, measures
-from symofros.generator.codegen.names import identifier
-from symofros.mechanics.topology.numbers import Numbers
+from symofros.mechanics.topology import Numbers
 
 # URDF wants both bounds of a slide, effort and speed wherever one of them is stated; these bind nothing.
 _FAR = 1e9

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from symofros.description.beams.beam import Beam
-from symofros.description.values import Value
+from symofros.description import Beam, Value
 from symofros.exports.material import Material
-from symofros.expr.expression import Expression
-from symofros.mechanics.topology.tree import build_tree, frame_of
+from symofros.expr import Expression
+from symofros.mechanics.topology import build_tree, frame_of
 
 
 def segments(material: Material) -> list[dict[str, str | bool]]:

@@ -20,7 +20,7 @@ from symofros.exports.folder import Exported, write_folder
 from symofros.exports.material import Material
 from symofros.exports.wasm.drawing import segments, up
 from symofros.native import native_text
-from symofros.runtime.build.toolchain import call_compiler
+from symofros.runtime.build import call_compiler
 
 # Small code is as fast as that of -O2 in V8. No products are fused: the numbers are those of any machine that does not
 # fuse them either.

@@ -7,10 +7,37 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from symofros.base.measures import Measures
-from symofros.expr.numerics.evaluate import FunctionEvaluation, evaluate_edges
+from symofros.expr.edges import Edge
+from symofros.expr.instants import instant_operands
+from symofros.expr.numerics.evaluate import Evaluation, FunctionEvaluation, evaluate_edges
 from symofros.expr.program import Function, Program, Solver
 from symofros.runtime.calls.kernel import DEFAULT_OPTIONS, Array, BatchOptions, Kernel, Numbers, Signature
 from symofros.runtime.constrained import constrained, differentiate, motion, project
+from symofros.runtime.instants import find_instants
+
+
+def formula_instants(program: Program, edges: Sequence[Edge], par: Array, t0: float, t_end: float) -> Array:
+    """Instants within a span at which formulas of time bend, jump or change fast.
+
+    Args:
+        program: Program whose graph holds the formulas.
+        edges: Their edges.
+        par: Run-time parameters (npar).
+        t0: Start of the span [s].
+        t_end: End of the span [s].
+
+    Returns:
+        Instants in order, between t0 and t_end (n) [s].
+    """
+    operands = instant_operands(program.graph, edges)
+    if not operands or not t_end > t0:
+        return np.zeros(0)
+    evaluations = [Evaluation(program, [operand.edge], {}) for operand in operands]
+
+    def values(operand: int, t: Array) -> Array:
+        return np.broadcast_to(evaluations[operand]({"t": t[:, np.newaxis], "par": par[np.newaxis]})[0], t.shape)
+
+    return find_instants([operand.kind for operand in operands], values, t0, t_end)
 
 
 class InterpretedUnit:

@@ -9,13 +9,13 @@ from string import Template
 from textwrap import wrap
 from typing import Literal
 
+from symofros.base.c_names import c_string, identifier
 from symofros.expr.edges import Edge
 from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.program import Function, Output, Program
 from symofros.generator.codegen import lanes, trigonometry
 from symofros.generator.codegen.function import FunctionText, FunctionWriter
 from symofros.generator.codegen.limbs.vector import TYPES
-from symofros.generator.codegen.names import c_string, identifier
 from symofros.generator.codegen.solvers import routines, sparse_systems, with_solver
 from symofros.generator.codegen.sparse import SparseSystem
 from symofros.generator.passes.count import count_program

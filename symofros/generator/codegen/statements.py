@@ -12,12 +12,12 @@ from copy import copy
 from dataclasses import dataclass
 from heapq import merge
 
+from symofros.base.c_names import local_name
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph, Slot
 from symofros.expr.ops import ADD, DIV, MUL, OPS, STOP_GRADIENT
 from symofros.generator.codegen.limbs.plan import LimbPlan
 from symofros.generator.codegen.limbs.vector import LimbVector
-from symofros.generator.codegen.names import local_name
 from symofros.generator.codegen.packs import PackPlan, Store, Vector
 
 # Operations per statement at most: long lines help neither people nor compilers.

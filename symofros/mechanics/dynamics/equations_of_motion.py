@@ -11,6 +11,7 @@ from typing import Self
 
 from symofros.errors import DescriptionError, Problem
 from symofros.expr.edges import ZERO, Edge
+from symofros.expr.factors import Factors, SingularMatrixError
 from symofros.expr.graph import Graph
 from symofros.expr.substitute import substitute
 from symofros.expr.vector import Vec3
@@ -21,7 +22,6 @@ from symofros.mechanics.dynamics.bodies.rotors import MovingRotor, rotors_of
 from symofros.mechanics.dynamics.constraints.rows import Constraints, Row
 from symofros.mechanics.dynamics.constraints.wrenches import closure_wrenches, wrenches_on_links
 from symofros.mechanics.dynamics.forward.articulated import articulated_acceleration, articulated_solution, is_local
-from symofros.mechanics.dynamics.forward.factors import Factors, SingularMassMatrixError
 from symofros.mechanics.dynamics.jourdain import inertia_forces
 from symofros.mechanics.dynamics.mass_matrix import MassMatrix, Matrix, mass_matrix
 from symofros.mechanics.dynamics.wrenches.reactions import in_body_frames, prescribed_efforts, transmitted_wrenches
@@ -171,9 +171,9 @@ class EquationsOfMotion:
         """Turns a mass matrix that is singular in every state into a DescriptionError that names the speed."""
         try:
             yield
-        except SingularMassMatrixError as error:
+        except SingularMatrixError as error:
             self.refuse_massless()
-            name = self.tree.coordinates.v[error.speed]
+            name = self.tree.coordinates.v[error.row]
             raise DescriptionError(
                 Problem(
                     f"system '{self.tree.system.name}': speed '{name}' moves nothing that those after it do not"

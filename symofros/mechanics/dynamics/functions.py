@@ -8,7 +8,6 @@ from itertools import chain
 from typing import Any, NamedTuple
 
 from symofros.base.functions import FUNCTIONS, INPUTS, ModelFunction, OutputArray, size_of
-from symofros.base.model_function import cotangents
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.instants import operands_function
 from symofros.expr.packs.pack import WIDTH
@@ -128,7 +127,7 @@ def _transposed(e: Equations, row: ModelFunction, of: Function, methods: Methods
         part = Function("slopes", "", (*FUNCTIONS["residual_derivatives"].inputs, "a_bar", "lam_bar"), slopes)
         solver = Solver("transpose", _returns(row, known), (part,), measures_of(e.tree))
         return Function(row.name, "", inputs, _constrained_terms(e, e.gamma), solver)
-    groups = {array.name: group for group, array in cotangents(FUNCTIONS[row.transposes]).items()}
+    groups = {array.name: group for group, array in FUNCTIONS[row.transposes].cotangents.items()}
     weighted = [(output, groups[output.name]) for output in of.outputs]
     weights = [e.g.input(group, k) for output, group in weighted for k in range(len(output.edges))]
     if of.name == "forward_dynamics":

@@ -7,7 +7,7 @@ from functools import lru_cache, partial, reduce
 
 import numpy as np
 
-from symofros.base.rotations import Array
+from symofros.base.arrays import Array
 from symofros.description.beams.beam import MATRIX_ORDER, STATION, STRAINS, Beam
 from symofros.description.values import ORIGIN, Term, Value, substituted, symbols
 from symofros.errors import Problem

@@ -12,7 +12,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from symofros.base.rotations import Array
+from symofros.base.arrays import Array
 from symofros.description.values import Value, symbols
 from symofros.errors import Problem
 from symofros.expr.expression import CONSTANTS, Expression

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from symofros.base.rotations import Array, axis_rotation, nearest_rotation, quaternion_matrix, unit_scale
+from symofros.base.arrays import Array
+from symofros.base.rotations import axis_rotation, nearest_rotation, quaternion_matrix, unit_scale
 from symofros.description.joints.joint import Joint
 from symofros.description.system import System
 from symofros.description.values import Rotation, Value, symbols

@@ -8,7 +8,7 @@ from itertools import chain
 
 import numpy as np
 
-from symofros.base.rotations import Array
+from symofros.base.arrays import Array
 from symofros.description.beams.beam import STATION, Beam
 from symofros.description.system import Body, Inertia, RigidBody, System
 from symofros.description.values import Term, Value, substituted, symbols

@@ -8,7 +8,7 @@ from functools import cached_property, partial, reduce
 
 import numpy as np
 
-from symofros.base.rotations import Array
+from symofros.base.arrays import Array
 from symofros.description.beams.beam import STATION, Beam
 from symofros.description.joints.joint import Joint
 from symofros.description.system import Body, System

@@ -18,6 +18,14 @@ from symofros.runtime.calls.declarations import interface
 from symofros.runtime.calls.kernel import Array, Kernel
 from symofros.runtime.calls.library import CompiledKernel
 
+_ENUMS = (
+    "sym_status",
+    "sym_method",
+    "sym_segment_kind",
+    "sym_event_sizes",
+    "sym_instant_kind",
+    "sym_instant_sizes",
+)
 _FLAGS = (*DEFAULT_FLAGS, "-O3", "-pthread")
 
 
@@ -35,6 +43,13 @@ def native_library() -> Any:
     for name in reversed(HEADERS[1:]):  # One file, as the cache keeps it; the model's header stays beside it.
         source = source.replace(f'#include "{PurePosixPath(name).name}"', native_text(name))
     return interface().dlopen(str(build_library(source, native_text(HEADERS[0]), toolchain, _FLAGS)))
+
+
+@cache
+def constants() -> Mapping[str, int]:
+    """Name, such as "SYM_FINISHED" -> value of the constants in the enumerations of symofros_stepper.h."""
+    ffi = interface()
+    return {name: value for enum in _ENUMS for name, value in ffi.typeof(enum).relements.items()}
 
 
 # Keyed by the type itself, whose name takes NumPy as long as all that is done with it.

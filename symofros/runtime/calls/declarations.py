@@ -1,4 +1,4 @@
-"""What the headers of native/ declare, as one cffi interface: structs, functions, and constants by name.
+"""What the headers of native/ declare, as one cffi interface: structs, functions, constants.
 
 Only the part of a header between its cdef marks is read. Nothing is compiled for it.
 """
@@ -9,7 +9,6 @@ import hashlib
 import re
 import tempfile
 import threading
-from collections.abc import Mapping
 from contextlib import suppress
 from functools import cache
 from importlib import import_module
@@ -25,14 +24,6 @@ from symofros.runtime.build.cache import cache_folder, create_cache_folder, inst
 _CDEF = re.compile(r"/\* cdef begin.*?\*/(?P<declarations>.*?)/\* cdef end \*/", re.DOTALL)
 # A second interface, of a thread that asks at the same time, would have types of its own.
 _ONE = threading.Lock()
-_ENUMS = (
-    "sym_status",
-    "sym_method",
-    "sym_segment_kind",
-    "sym_event_sizes",
-    "sym_instant_kind",
-    "sym_instant_sizes",
-)
 
 
 def interface() -> Any:
@@ -84,10 +75,3 @@ def _parsed(declared: str) -> str:
 def model_abi() -> int:
     """Version of the struct sym_model, SYM_ABI of symofros_model.h."""
     return int(native_number(HEADERS[0], "SYM_ABI"))
-
-
-@cache
-def constants() -> Mapping[str, int]:
-    """Name, such as "SYM_FINISHED" -> value of the constants in the enumerations of symofros_stepper.h."""
-    ffi = interface()
-    return {name: value for enum in _ENUMS for name, value in ffi.typeof(enum).relements.items()}

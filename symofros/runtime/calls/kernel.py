@@ -8,12 +8,11 @@ from math import prod
 from typing import Literal, Protocol, runtime_checkable
 
 import numpy as np
-import numpy.typing as npt
 
+from symofros.base.arrays import Array as Array
 from symofros.runtime.calls.layout import Numbers as Numbers
 from symofros.runtime.calls.layout import columns
 
-Array = npt.NDArray[np.float64]
 Precision = Literal["double", "single"]
 
 

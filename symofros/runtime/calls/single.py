@@ -1,7 +1,7 @@
 """Plain calls for one state: arrays of the expected kind go straight to the function, without a look at batches.
 
-The extension makes them. Where it is not there, not yet or at all, and for functions that NumPy interprets, a plain call
-is a batch of one state: the same bits, in some ten times as long (`Model.bind` is as fast without the extension).
+The extension makes them. Where it is not there, not yet or at all, and for functions that NumPy interprets, a plain
+call is a batch of one state: the same bits, in some ten times as long (`Model.bind` is as fast without the extension).
 """
 
 from __future__ import annotations

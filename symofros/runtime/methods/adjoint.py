@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from symofros.base.functions import FUNCTIONS
-from symofros.base.model_function import OutputArray, cotangents, size_of
+from symofros.base.model_function import OutputArray, size_of
 from symofros.errors import Problem, ShapeError
 from symofros.runtime.calls.kernel import Array, Numbers
 from symofros.runtime.functions import ArrayLike, Functions
@@ -68,7 +68,7 @@ class AdjointFunctions(Functions):
         if not isinstance(name, str) or name not in known:
             what = "differentiable function"
             raise self._unknown(what, str(name)[:80], known, "vector-Jacobian products are of smooth functions")
-        weights = cotangents(FUNCTIONS[name])
+        weights = FUNCTIONS[name].cotangents
         if all(arrays.get(group) is None for group in weights):
             raise ShapeError(
                 Problem(

@@ -11,10 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arguments import checked
-from symofros.base.arrays import numeric, vector
+from symofros.base.arrays import Array, numeric, vector
 from symofros.errors import ActuationError, Problem, ShapeError, UnknownNameError, did_you_mean
 from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import Eliminated, eliminate, free_motions, natural_sizes, pseudo_inverse
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.beam_theory import Motion, bendings_under_efforts, refuse_beyond

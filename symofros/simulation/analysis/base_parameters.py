@@ -8,10 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from symofros.base.arguments import checked
+from symofros.base.arrays import Array
 from symofros.errors import ArgumentError, Problem
-from symofros.runtime.calls.kernel import Array
-from symofros.runtime.methods.identification import JointTerm
-from symofros.runtime.model import Model
+from symofros.runtime.model import JointTerm, Model
 
 # Of the largest pivot: what is left of a column that others determine.
 _RANK = 1e-9

@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from symofros.base.arrays import Array
 from symofros.errors import BeamTheoryError, Problem, SymofrosError
 from symofros.runtime.beams import BeamBending, ElasticBeam, amplification_of, largest_bending
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.mass_matrix import mass_matrix
 

@@ -11,7 +11,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from symofros.base.rotations import Array, cross, quaternion_exp, rotate, rotation_vector_rate, skew
+from symofros.base.arrays import Array
+from symofros.base.rotations import cross, quaternion_exp, rotate, rotation_vector_rate, skew
 from symofros.runtime.record import Segment
 
 

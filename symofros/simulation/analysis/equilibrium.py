@@ -9,10 +9,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from symofros.base.arguments import checked
-from symofros.base.arrays import vector
+from symofros.base.arrays import Array, vector
 from symofros.errors import ActuationError, BeamTheoryError, EquilibriumError, Problem, UnknownNameError
 from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes, largest_bending
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.actuator_efforts import actuator_efforts
 from symofros.simulation.analysis.beam_theory import (

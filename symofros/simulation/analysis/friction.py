@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.errors import SymofrosError
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
 
 # Share of the slope at rest below which friction is taken to have reached what it gives.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from symofros.runtime.calls.kernel import Array
+from symofros.base.arrays import Array
 from symofros.runtime.model import ArrayLike, Model
 
 

@@ -8,9 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arguments import checked
-from symofros.base.arrays import vector
+from symofros.base.arrays import Array, vector
 from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.beam_theory import bendings_in_motion, refuse_beyond
 from symofros.simulation.analysis.kinematics.facing import refuse_opposite

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from symofros.runtime.calls.kernel import Array
+from symofros.base.arrays import Array
 from symofros.runtime.model import ArrayLike, Model
 
 # Speeds from which this is derived and compiled sooner than derivatives in motion are: of a chain of 10 links on

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from symofros.runtime.calls.kernel import Array
+from symofros.base.arrays import Array
 from symofros.runtime.constrained import HALVINGS, LARGEST_STEP, null_space, pseudo_inverse
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.mass_matrix import mass_matrix

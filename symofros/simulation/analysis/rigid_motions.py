@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from symofros.runtime.calls.kernel import Array
+from symofros.base.arrays import Array
 
 Complex = npt.NDArray[np.complex128]
 

@@ -9,10 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike as Numbers
 
 from symofros.base.arguments import checked
-from symofros.base.arrays import real_array
+from symofros.base.arrays import Array, real_array
 from symofros.errors import Problem, ShapeError, SymofrosError
 from symofros.runtime import manifold
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
 from symofros.runtime.unit_quaternions import at_unit_length
 from symofros.simulation.analysis.chart_derivatives import ChartSlopes, chart_slopes

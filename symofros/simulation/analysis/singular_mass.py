@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.errors import SymofrosError
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
 
 _ROUNDING = float(np.finfo(np.float64).eps)

@@ -8,9 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from symofros.base.arguments import checked
-from symofros.base.arrays import numeric
+from symofros.base.arrays import Array, numeric
 from symofros.errors import Problem, SymofrosError
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import null_space, pseudo_inverse
 from symofros.runtime.model import ArrayLike, Model, Output
 from symofros.simulation.analysis.kinematics.facing import refuse_opposite

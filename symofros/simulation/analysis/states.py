@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from symofros.base.arrays import numeric, vector
+from symofros.base.arrays import Array, numeric, vector
 from symofros.errors import Problem, ShapeError
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
 from symofros.runtime.unit_quaternions import at_unit_length
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from importlib import import_module
 from typing import Any
 
+from symofros.base.arrays import Array
 from symofros.errors import Problem, SymofrosError
-from symofros.runtime.calls.kernel import Array
 
 MOST_CURVES = 12  # In one panel; more can't be distinguished.
 

@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.base.atomic import write_atomically
 from symofros.errors import Problem, SymofrosError
-from symofros.runtime.calls.kernel import Array
 
 SUFFIXES = (".npz", ".csv", ".parquet")
 

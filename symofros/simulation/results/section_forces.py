@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.errors import Problem, UnknownNameError, did_you_mean
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
 from symofros.simulation.results.plots import figure_class
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from symofros.base.arrays import Array
 from symofros.runtime.beams import NOTED_ERROR, BeamBending, bending_notes, largest_bending, worst_bendings
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
 from symofros.simulation.analysis.beam_theory import UNAMPLIFIED, amplifications
 from symofros.simulation.analysis.kinematics.postures import limit_notes

@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from symofros.base.arguments import checked
+from symofros.base.arrays import Array
 from symofros.base.html import html_table
 from symofros.base.names import TIME, coordinate_of, speed_column, speed_of, symbol_of
 from symofros.errors import Problem, UnknownNameError, did_you_mean
 from symofros.runtime.beams import BeamBending
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.results.plots import draw

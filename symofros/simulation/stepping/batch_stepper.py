@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from symofros.base.arrays import Array
 from symofros.errors import CompileError
-from symofros.runtime.calls.kernel import Array, LaneOptions
+from symofros.runtime.calls import LaneOptions
 from symofros.runtime.model import Model
 from symofros.simulation.batch_inputs import BatchInputs
 from symofros.simulation.settings import Settings

@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from symofros.runtime.calls.declarations import constants
-from symofros.runtime.calls.kernel import Array
+from symofros.base.arrays import Array
+from symofros.runtime.calls import constants
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from symofros.runtime.calls.kernel import Array
+from symofros.base.arrays import Array
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper

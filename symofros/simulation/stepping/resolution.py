@@ -10,7 +10,7 @@ from functools import cache
 import numpy as np
 import numpy.typing as npt
 
-from symofros.runtime.calls.kernel import Array
+from symofros.base.arrays import Array
 from symofros.simulation.stepping.methods import METHODS, Method, stability_limit
 
 # Relative error of a mode, by its share of the motion, from which a run is remarked upon.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from enum import IntEnum
 
-from symofros.runtime.calls.declarations import constants
+from symofros.runtime.calls import constants
 
 _C = constants()
 

@@ -9,19 +9,17 @@ from typing import Any
 
 import numpy as np
 
-from symofros.base.user_functions import named_function
+from symofros.base.arrays import Array
 from symofros.errors import CompileError
 from symofros.runtime.beams import BeamBending, worst_bendings
-from symofros.runtime.calls.binding import NativeMemory, native_library
-from symofros.runtime.calls.declarations import constants, interface
-from symofros.runtime.calls.kernel import Array, Kernel
-from symofros.runtime.calls.library import CompiledKernel
+from symofros.runtime.calls import CompiledKernel, Kernel, NativeMemory, constants, native_library
 from symofros.runtime.model import Model
 from symofros.simulation.events import Event
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.stepping.methods import Method
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.tableaus import fill_tableau
+from symofros.simulation.user_functions import named_function
 
 # Events recorded between two calls that take them.
 _EVENT_ROWS = 64
@@ -59,13 +57,13 @@ class Stepper:
     """
 
     def __init__(self, model: Model, method: Method, inputs: InputPlan, events: Sequence[Event], par: Array) -> None:
-        self.ffi, self.native = interface(), native_library()
+        self.native, self.memory = native_library(), NativeMemory()
+        self.ffi = self.memory.ffi
         self.model, self.method, self.events, self.par = model, method, events, par
         self.inputs = inputs
         self.same_inputs_again: bool | None = None
         self.failure: BaseException | None = None
         self.beams = model.beams(par)
-        self.memory = NativeMemory()
         self.kernels: dict[str, CompiledKernel] = {}
         self.system = self.ffi.new("sym_system *")
         self.run = self.ffi.new("sym_run *")

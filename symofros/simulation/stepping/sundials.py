@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from symofros.base.arrays import Array
 from symofros.base.measures import Measures
 from symofros.errors import Problem, SymofrosError
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import eliminate, natural_sizes
 from symofros.simulation.stepping.event_search import EventSearch, MetEvent
 from symofros.simulation.stepping.status import Status

@@ -7,12 +7,10 @@ from fractions import Fraction
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from symofros.runtime.calls.binding import NativeMemory
+from symofros.base.arrays import Array
+from symofros.runtime.calls import NativeMemory
 from symofros.simulation.stepping import dop853
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from symofros.runtime.calls.kernel import Array
+from symofros.base.arrays import Array
 from symofros.runtime.constrained import STILL
 
 # Steps of a run that is repeated as a whole; a call takes as long as some hundred steps of a small model.

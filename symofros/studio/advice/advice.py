@@ -10,9 +10,8 @@ from typing import Any, Literal
 
 from symofros.base.atomic import write_atomically
 from symofros.base.options import Options
-from symofros.description.reading import YAML_SUFFIXES
-from symofros.description.system import System
-from symofros.description.yaml.files import write_yaml
+from symofros.description import YAML_SUFFIXES, System
+from symofros.description.yaml import write_yaml
 from symofros.errors import DescriptionError, Problem, UnknownNameError, did_you_mean
 from symofros.studio.advice.scene import Scene
 from symofros.studio.advice.scene_runner import Cost, Stepping

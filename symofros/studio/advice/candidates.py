@@ -9,11 +9,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from symofros.description.beams.beam import DIRECTIONS, STATIONS, Beam, Direction
-from symofros.description.forces import Spring
-from symofros.description.joints.joint import Joint
-from symofros.description.system import System
-from symofros.description.values import as_value
+from symofros.description import DIRECTIONS, STATIONS, Beam, Direction, Joint, Spring, System, as_value
 from symofros.studio.advice import estimators
 from symofros.studio.advice.loads import BeamLoads, Observed
 

@@ -13,7 +13,7 @@ from typing import Literal
 
 import numpy as np
 
-from symofros.runtime.calls.kernel import Array
+from symofros.base.arrays import Array
 
 # Roots of cos x cosh x = -1, squared: frequencies of a cantilever in sqrt(EI / rhoA L^4).
 FREQUENCIES = (

@@ -9,15 +9,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.base.options import Options
 from symofros.compiler import compile_system
-from symofros.description.beams.beam import DIRECTIONS, STATION, Beam, Direction
-from symofros.description.system import Body, System
-from symofros.description.values import Value
-from symofros.expr.expression import evaluate
-from symofros.mechanics.beams.section_law import section_law
-from symofros.mechanics.beams.strains import AXES, TURNING
-from symofros.runtime.calls.kernel import Array
+from symofros.description import DIRECTIONS, STATION, Beam, Body, Direction, System, Value
+from symofros.expr import evaluate
+from symofros.mechanics.beams import AXES, TURNING, section_law
 from symofros.studio.advice import estimators
 from symofros.studio.advice.scene import Scene
 from symofros.studio.advice.scene_runner import ReferenceSolution

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from symofros.description.beams.beam import DIRECTIONS, Beam
-from symofros.description.system import System
+from symofros.description import DIRECTIONS, Beam, System
 
 
 def refined(system: System) -> System:

@@ -11,8 +11,8 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from symofros.base.arguments import CheckedCalls, check_fields, entries_of, shown
+from symofros.base.arrays import Array
 from symofros.errors import DescriptionError, Problem, did_you_mean
-from symofros.runtime.calls.kernel import Array
 from symofros.simulation.results.trajectory import Trajectory
 
 Kind = Literal["position", "coordinate", "speed", "effort"]

@@ -9,10 +9,8 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from symofros.base.arguments import checked
-from symofros.description.reading import read_bytes
-from symofros.description.values import as_value
-from symofros.description.yaml.yaml_nodes import Node, YamlFault
-from symofros.description.yaml.yaml_pieces import compose
+from symofros.description import as_value, read_bytes
+from symofros.description.yaml import Node, YamlFault, compose
 from symofros.errors import DescriptionError, Problem, ShapeError, did_you_mean
 from symofros.simulation.inputs import Signal
 from symofros.studio.advice.scene import KINDS, Output, Scene

@@ -10,10 +10,11 @@ from functools import cached_property
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.base.names import coordinate_of, speed_of
 from symofros.base.options import Options
 from symofros.compiler import compile_system, program_of
-from symofros.description.system import System
+from symofros.description import System
 from symofros.errors import (
     AssemblyError,
     BeamTheoryError,
@@ -23,9 +24,8 @@ from symofros.errors import (
     UnknownNameError,
 )
 from symofros.errors import did_you_mean as near
-from symofros.generator.passes.count import count_program
+from symofros.generator import count_program
 from symofros.runtime.beams import BeamBending, largest_bending
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
 from symofros.simulation.analysis.kinematics.starts import closed_start, stated_names
 from symofros.simulation.results.trajectory import Trajectory

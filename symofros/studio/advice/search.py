@@ -7,8 +7,7 @@ from dataclasses import replace
 
 from symofros.base.arguments import checked
 from symofros.base.options import Options
-from symofros.description.beams.beam import Beam
-from symofros.description.system import System
+from symofros.description import Beam, System
 from symofros.errors import BeamTheoryError, DescriptionError, Problem, SymofrosError, did_you_mean
 from symofros.runtime.beams import bending_notes
 from symofros.studio.advice.advice import Advice, Choice, Verdict

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from symofros.description.system import System
+from symofros.description import System
 from symofros.errors import Problem, SymofrosError
 from symofros.simulation.stepping.methods import METHODS
 from symofros.studio.advice.scene_runner import Cost, SceneRunner, Stepping, Trial

@@ -6,8 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any, get_args
 
-from symofros.description.beams.beam import PRE_STRAINS, Beam, Direction
-from symofros.description.system import System
+from symofros.description import PRE_STRAINS, Beam, Direction, System
 from symofros.runtime.beams import BeamBending, slope_error
 from symofros.studio.advice.candidates import Reduction, changed_beam
 from symofros.studio.advice.loads import BeamLoads

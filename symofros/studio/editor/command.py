@@ -13,10 +13,10 @@ from typing import Any, Literal
 import uvicorn
 
 import symofros
-from symofros.base.garbage import collect_rarely
-from symofros.description.reading import YAML_SUFFIXES, resolved
-from symofros.description.yaml.files import write_yaml
+from symofros.description import YAML_SUFFIXES, resolved
+from symofros.description.yaml import write_yaml
 from symofros.errors import Problem
+from symofros.expr import collect_rarely
 from symofros.studio.editor.document.session import Session
 from symofros.studio.editor.document.workspace import FileError, Workspace
 from symofros.studio.editor.server.app import application

@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from symofros.description.joints.joint_kinds import KINDS
+from symofros.description import KINDS
 
 PAGE_FILE = Path(__file__).with_name("page") / "src" / "model" / "joint_kinds.json"
 

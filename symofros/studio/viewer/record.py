@@ -17,7 +17,7 @@ import numpy as np
 
 from symofros.base.arguments import checked
 from symofros.base.atomic import write_atomically
-from symofros.description.system import System
+from symofros.description import System
 from symofros.diagrams.result import DiagramRun
 from symofros.errors import Problem, SymofrosError, did_you_mean
 from symofros.studio.viewer.drawing.layers import shown_at_first

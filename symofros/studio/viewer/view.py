@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from symofros.base.arguments import checked
-from symofros.description.system import System
+from symofros.description import System
 from symofros.diagrams.result import DiagramRun
 from symofros.loading import load
 from symofros.runtime.model import ArrayLike

@@ -10,7 +10,7 @@ from contextlib import suppress
 from types import TracebackType
 from typing import Any, NamedTuple, Self
 
-from symofros.description.system import System
+from symofros.description import System
 from symofros.runtime.model import ArrayLike
 from symofros.simulation.results.trajectory import Trajectory
 from symofros.studio.viewer.drawing.poses import Mechanism, State

@@ -114,15 +114,7 @@ def test_derivatives_are_those_of_the_filtered_signal() -> None:
 @pytest.mark.parametrize(
     ("make", "found", "remedy"),
     [
-        (lambda: StateSpace(name="s", A=[[1, 2]], B=[[1]], C=[[1, 0]]), "(1, 2)", "shape"),
-        (lambda: StateSpace(name="s", A=[[1]], B=[[1]], C=[[1]], start=[1, 2]), "(2,)", "shape"),
         (lambda: StateSpace(name="s", A=np.eye(201), B=np.ones((201, 1)), C=np.ones((1, 201))), "201", "reduce"),
-        (lambda: TransferFunction(name="f", num=[1, 0], den=[1]), "[1. 0.]", "add a pole"),
-        (lambda: TransferFunction(name="f", num=[1], den=[0, 1]), "[0. 1.]", "leading zeros"),
-        (lambda: Integrator(name="x", start=2.0, high=1.0), "2.0 and 1.0", "exchange"),
-        (lambda: Integrator(name="x", low=math.nan), "nan", "leave it out"),
-        (lambda: Integrator(name="x", reset="up"), "'up'", "use one of"),
-        (lambda: Derivative(name="d", tau=0.0), "0.0", "within"),
     ],
 )
 def test_what_is_wrong_is_said(make: Callable[[], object], found: str, remedy: str) -> None:

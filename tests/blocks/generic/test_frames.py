@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
 from itertools import product
 
 import numpy as np
@@ -14,7 +13,7 @@ import symofros as sf
 from reference_models import MODELS
 from symofros.blocks import FrameTransform, Orientation, OrientationError, Transform
 from symofros.blocks.rotations import EULER
-from tests.blocks.support import refused, run, run_each
+from tests.blocks.support import run, run_each
 
 # Angles at which formulas lose digits: none, tiny, a right angle, half a turn and about it.
 TURNS = np.array(
@@ -144,17 +143,3 @@ def test_frames_of_a_model(rng: np.random.Generator) -> None:
     np.testing.assert_allclose(found["R"], np.swapaxes(R_t, 1, 2) @ R_s, atol=1e-13)
     world = p_s + np.einsum("nij,nj->ni", R_s, u)
     np.testing.assert_allclose(p_t + np.einsum("nij,nj->ni", R_t, found["y"]), world, atol=1e-13)
-
-
-@pytest.mark.parametrize(
-    "make",
-    [
-        lambda: Orientation(name="o", source="quaternions"),
-        lambda: Orientation(name="o", target="euler_zzx"),
-        lambda: OrientationError(name="o", axes="tool"),
-        lambda: Transform(name="x", quantity="twist"),
-        lambda: FrameTransform(name="x", model="m", source="tool", quantity="force"),
-    ],
-)
-def test_what_is_wrong_is_said(make: Callable[[], object]) -> None:
-    assert refused(make, "'").found.startswith("'")

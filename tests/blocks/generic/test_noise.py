@@ -7,7 +7,7 @@ import pytest
 
 from symofros.blocks import Noise
 from symofros.blocks.generic.noise import stream
-from tests.blocks.support import STEP, refused, run
+from tests.blocks.support import STEP, run
 from tests.late import late
 
 stats = late("scipy.stats")
@@ -57,17 +57,3 @@ def test_components_do_not_follow_each_other() -> None:
     found = run(Noise(name="n", seed=1, size=4, period=STEP), t_end=20.0, compare=0)["y"]
     correlation = np.corrcoef(found.T) - np.eye(4)
     assert abs(correlation).max() < 4 / np.sqrt(len(found))
-
-
-@pytest.mark.parametrize(
-    ("fields", "found"),
-    [
-        ({"seed": -1, "period": 1.0}, "-1"),
-        ({"kind": "pink", "period": 1.0}, "'pink'"),
-        ({}, "period None"),
-        ({"size": 2, "scale": [1, 2, 3], "period": 1.0}, "(3,)"),
-        ({"size": 100, "period": 1.0}, "100"),
-    ],
-)
-def test_what_is_wrong_is_said(fields: dict[str, object], found: str) -> None:
-    refused(lambda: Noise(name="n", **fields), found)  # type: ignore[arg-type]

@@ -69,14 +69,6 @@ def test_rates_are_limited_both_ways() -> None:
 @pytest.mark.parametrize(
     ("make", "found", "remedy"),
     [
-        (lambda: Saturation(name="b", low=1, high=0), "1 and 0", "exchange"),
-        (lambda: Quantizer(name="b", step=0), "0", "give another"),
-        (lambda: LookupTable(name="b", x=[0, 0], y=[1, 2]), "[0. 0.]", "sort"),
-        (lambda: LookupTable(name="b", x=[0, 1], y=[1, 2, 3]), "(3,)", "one row"),
-        (lambda: LookupTable(name="b", x=[0, 1], y=[1, 2], outside="hald"), "'hald'", "did you mean 'hold'"),
-        (lambda: Relay(name="b", lower=1, upper=1), "lower 1, upper 1", "Switch"),
-        (lambda: RateLimit(name="b", rising=0, period=1.0), "0", "give another"),
-        (lambda: RateLimit(name="b"), "period None", "give a period"),
         (lambda: run(Saturation(name="b", low=[0, 0]), {"u": np.zeros((2, 3))}), "(2,)", "one an entry"),
     ],
 )

@@ -119,15 +119,6 @@ def make_pick(**fields: object) -> None:
 @pytest.mark.parametrize(
     ("make", "found", "remedy"),
     [
-        (lambda: Gain(name="g", gain=np.zeros((2, 2, 2))), "(2, 2, 2)", "matrix at most"),
-        (lambda: Gain(name="g", gain="fast"), "'fast'", "write numbers"),
-        (lambda: Constant(name="c", value=float("nan")), "nan", "replace"),
-        (lambda: Sum(name="s", signs="+*"), "'+*'", '"+-"'),
-        (lambda: Product(name="s", operations=""), "''", '"*/"'),
-        (lambda: Join(name="j", count=0), "0", "choose one"),
-        (lambda: Reshape(name="r", shape=[2, 0]), "0", "choose one"),
-        (lambda: UnitDelay(name="d"), "period None", "give a period"),
-        (lambda: Hold(name="h"), "period None", "give a period"),
         (lambda: make_pick(entries=["q4"], model="m"), "'q4'", "did you mean"),
         (lambda: make_pick(entries=["q1"]), "['q1']", "name the model"),
         (lambda: make_pick(entries=[10]), "entry 10", "smaller numbers"),

@@ -98,7 +98,7 @@ def test_a_paced_run_takes_its_time() -> None:
     simulation, block = shown(paced=True, stays=False)
     assert simulation.run(0.4, dt=1e-2).cost.seconds > 0.39
     free, _ = shown(stays=False)
-    assert free.run(4.0, dt=1e-2).cost.seconds < 2.0  # On its own, it takes no more than the calls do.
+    assert free.run(60.0, dt=0.1).cost.seconds < 60.0  # On its own, the clock does not hold it back.
 
 
 def test_prescribed_motions_are_shown() -> None:

@@ -10,7 +10,7 @@ import pytest
 import symofros as sf
 from symofros.blocks import Sequence
 from symofros.blocks.inputs import sequences
-from tests.blocks.support import refused, run
+from tests.blocks.support import run
 
 T = np.array([0.0, 0.05, 0.2])
 VALUES = np.array([[1.0, 2.0], [3.0, -2.0], [0.0, 1.0]])
@@ -96,18 +96,3 @@ def test_a_line_longer_than_the_reader_of_lines_takes_is_said(tmp_path: Path) ->
     (tmp_path / "long.csv").write_text("t,y\n0," + "1" * 200_000 + "\n")
     with pytest.raises(sf.DescriptionError, match="larger than field limit"):
         Sequence(name="s", file=str(tmp_path / "long.csv"))
-
-
-@pytest.mark.parametrize(
-    ("fields", "found"),
-    [
-        ({}, "neither"),
-        ({"values": [1], "file": "x.csv"}, "file and values"),
-        ({"t": [0, 1], "values": [1, 2, 3]}, "(3,)"),
-        ({"t": [0, 1], "values": [1, 2], "kind": "cubic"}, "'cubic'"),
-        ({"t": [0, 1], "values": [1, 2], "outputs": {"z": "x"}}, "'x'"),
-        ({"t": [0, 1], "values": [1, 2], "units": {"z": "m"}}, "'z'"),
-    ],
-)
-def test_what_is_wrong_is_said(fields: dict[str, object], found: str) -> None:
-    refused(lambda: Sequence(name="s", **fields), found)  # type: ignore[arg-type]

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 import pytest
 
 from symofros.blocks import Chirp, Pulse, Ramp, Sine, Step
-from tests.blocks.support import refused, run
+from tests.blocks.support import run
 from tests.late import late
 
 signal = late("scipy.signal")
@@ -51,18 +49,3 @@ def test_chirps_are_those_of_scipy(sweep: str, method: str) -> None:
     # A sine of 4 Hz, sampled each 10 ms: y[k+1] + y[k-1] = 2 cos(w T) y[k].
     y = found["y"][-20:]
     np.testing.assert_allclose(y[2:] + y[:-2], 2 * np.cos(2 * np.pi * 4 * 0.01) * y[1:-1], atol=1e-11)
-
-
-@pytest.mark.parametrize(
-    ("make", "found"),
-    [
-        (lambda: Step(name="s", before=[1, 2], after=[1, 2, 3]), "(2,)"),
-        (lambda: Step(name="s", unit="newton"), "newton"),
-        (lambda: Pulse(name="p", every=0.0), "0.0"),
-        (lambda: Sine(name="s", frequency=float("inf")), "inf"),
-        (lambda: Chirp(name="c", first=0.0), "0.0"),
-        (lambda: Chirp(name="c", sweep="quadratic"), "'quadratic'"),
-    ],
-)
-def test_what_is_wrong_is_said(make: Callable[[], object], found: str) -> None:
-    refused(make, found)

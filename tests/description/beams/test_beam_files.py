@@ -39,6 +39,16 @@ def system(**changed: Any) -> sf.System:
         {},
         {"family": "legendre", "foreshortening": False},
         {
+            "theory": "strain",
+            "family": "legendre",
+            "sections": 7,
+            "curvature_y": 0.3,
+            "twist_rate": "0.2*x",
+            "frames": (sf.Frame("tip"), sf.Frame("middle", at=0.5)),
+            "loads": (),
+            "retain": "first_order",
+        },
+        {
             "family": "user",
             "shapes": {
                 "bend_y": ["xi^2", "xi^3*(1 - xi/2)"],

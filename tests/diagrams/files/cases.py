@@ -9,35 +9,7 @@ import reference_models
 
 ARM = Path(reference_models.__file__).parent / "rigid" / "double_pendulum.yaml"
 
-TEXT = """\
-symofros_diagram: 1
-name: held_arm
-models:
-  arm: {file: arm.yaml, start: {q1: 0.5, dq2: 0.1}, parameters: {m2: 0.9}}
-simulation:
-  t_end: 0.2
-  dt: 1.0e-3
-  record: 0.01
-  plots:
-    - {title: Joints, signals: [plant.q]}
-    - ["pd.effort[0]"]
-    - plant.v
-blocks:
-  plant:
-    kind: forward_dynamics
-    model: arm
-    inputs: {u: pd.effort}
-  pd:
-    kind: joint_pd
-    kp: [40, 20]
-    kd: 2
-    period: 0.01
-    inputs:
-      q: plant.q
-      v: plant.v
-      q_desired: plant.q
-outlets: {effort: pd.effort}
-"""
+TEXT = Path(__file__).with_name("held_arm.yaml").read_text()
 
 
 def folder_with(path: Path, text: str = TEXT) -> Path:

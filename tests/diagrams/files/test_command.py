@@ -74,26 +74,6 @@ def test_real_time(tmp_path: Path) -> None:
     assert (tmp_path / "j.png").stat().st_size > 10_000
 
 
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (["--signals", "plant.x"], "has no output 'x'"),
-        (["--signals", "plant.q[7]"], "no such entry"),
-        (["--set", "pd.ki=1"], "no run-time parameter 'pd.ki'"),
-        (["--set", "pd.kp=1,2,3"], "does not fit"),
-        (["--input", "q1=0"], "those of a diagram are blocks"),
-        (["--jitter", "j.png"], "add --realtime"),
-        (["--method", "bdf"], "no method 'bdf'"),
-        (["-o", "r.xlsx"], "can't save as"),
-        (["--plot", "window"], "a window needs a screen"),
-    ],
-)
-def test_what_does_not_fit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: list[str], words: str) -> None:
-    monkeypatch.setenv("MPLBACKEND", "agg")
-    found = run("simulate", folder_with(tmp_path), "0.02", *arguments)
-    assert found.exit_code == 2 and words in found.output, found.output
-
-
 def test_info_shows_what_a_diagram_is(tmp_path: Path) -> None:
     file = folder_with(tmp_path)
     found = run("info", file, "--json")

@@ -343,6 +343,20 @@ def test_what_is_stated_of_a_loop_s_start_is_kept_or_refused(how: str) -> None:
     assert any("model 'bar': start: q2 = -1.2004 was taken as -1.2001" in note for note in run.outcome.notes)
 
 
+def test_a_coordinate_of_zero_is_kept_although_the_projection_keeps_its_speed() -> None:
+    """The bob, 0.8 m and 0.6 m from the pivot, is on a rod of 1.1 m: along the rod both coordinates would change."""
+    across = sf.Joint("x", "prismatic", position=(0.8, 0.6, 0.0), axis=(1, 0, 0))
+    rail = sf.RigidBody("rail", across, sf.Inertia(1.0))
+    bob = sf.RigidBody("bob", sf.Joint("y", "prismatic", "rail", axis=(0, 1, 0)), sf.Inertia(1.0))
+    rod = sf.Rod("rod", ("world", None), ("bob", None), 1.1)
+    system = sf.System("pendulum", (rail, bob), constraints=(rod,))
+    diagram = sf.Diagram("one")
+    diagram.add_model("plant", system, start={"x": 0.0})
+    diagram.add(blocks.ForwardDynamics(name="plant", model="plant"))
+    run = sf.Simulation(diagram).run(0.002, dt=1e-3, record=1e-3)
+    np.testing.assert_allclose(run["plant.q"][0], [0.0, np.sqrt(1.1**2 - 0.8**2) - 0.6], rtol=0, atol=1e-9)
+
+
 @pytest.mark.slow
 def test_a_constraint_that_engages_is_a_plastic_impact() -> None:
     """Open, the loop is the tree; as it closes, the energy lost is that of the speeds lost: a projection by M."""

@@ -14,30 +14,7 @@ from tests.simulation.beam_models import NAMES, at_rest, cantilever_system, colu
 
 SHARES = [-5.0, -2.0, -0.5, 0.0, 0.5, 0.8, 0.9, 0.95]
 # Lines of parameters, coordinates and a time to lines of status, error and the words of a refusal.
-DRIVER = """
-#include <stdio.h>
-#include <stdlib.h>
-#include "cantilever.h"
-int main(void) {
-    const size_t size = sym_instance_size(cantilever_plant());
-    sym_instance *it = sym_instance_init(malloc(size), size, cantilever_plant());
-    double t_end;
-    int i, checks;
-    while (scanf("%d", &checks) == 1) {
-        sym_instance_reset(it);
-        it->check_parameters = checks;
-        for (i = 0; i < CANTILEVER_NPAR; ++i) if (scanf("%lf", &it->par[i]) != 1) return 2;
-        for (i = 0; i < CANTILEVER_NQ; ++i) if (scanf("%lf", &it->q[i]) != 1) return 2;
-        if (scanf("%lf", &t_end) != 1) return 2;
-        (void)sym_instance_prepare(it);
-        const int status = sym_instance_advance(it, t_end, t_end / 200);
-        printf("%d %.17g %s\\n", status, sym_instance_beam_error(it, 0),
-               it->refused < 0 ? "" : it->plant->conditions[it->refused]);
-    }
-    free(it);
-    return 0;
-}
-"""
+DRIVER = Path(__file__).with_name("beams.c").read_text()
 
 
 @pytest.fixture(scope="module")
@@ -81,24 +58,7 @@ def test_exported_diagrams_state_the_error_of_rest(tmp_path: Path) -> None:
     model, rest = at_rest(0.9, 2.0)
     diagram = column_diagram(model, rest.q)
     sf.export(diagram, "c", tmp_path, method="rk4", dt=1e-3, outputs=["first.q"])
-    (tmp_path / "main.c").write_text("""
-#include <stdio.h>
-#include <stdlib.h>
-#include "bench.h"
-int main(void) {
-    const size_t size = sym_program_size(bench_program());
-    sym_program_instance *it = sym_program_init(malloc(size), size, bench_program());
-    int i, j;
-    if (it == NULL || sym_program_advance(it, 0.1) < 0) return 1;
-    for (i = 0; i < it->program->n_parts; ++i)
-        for (j = 0; j < it->parts[i]->plant->n_beams; ++j) printf("%.17g\\n", sym_instance_beam_error(it->parts[i], j));
-    it->par[0] = 0.0;
-    i = sym_program_prepare(it);
-    printf("%d %d\\n", i, sym_program_advance(it, 0.2));
-    free(it);
-    return 0;
-}
-""")
+    (tmp_path / "main.c").write_text(Path(__file__).with_name("beams_of_diagrams.c").read_text())
     program = build(tmp_path, "judge", *sources(tmp_path))
     *errors, refusal = subprocess.run([program], capture_output=True, text=True, check=True).stdout.splitlines()
     assert [float(error) for error in errors] == pytest.approx([rest.bendings[0].error] * 2, rel=1e-6)

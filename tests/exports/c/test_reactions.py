@@ -12,45 +12,9 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from tests.exports.cases import build
+from tests.models import compiled
 
-PROGRAM = Template("""
-#include <stdio.h>
-#include <stdlib.h>
-#include "$name.h"
-static void read(int n, double *x) { int i; for (i = 0; i < n; ++i) if (scanf("%lf", x + i) != 1) exit(2); }
-static void show(int n, const double *x) { int i; for (i = 0; i < n; ++i) printf("%.17g ", x[i]); printf("\\n"); }
-static double pre[2000], q[$nq + 1], v[$nv + 1], a[$nv + 1], u[$nu + 1], lam[$nc + 1], t[1];
-static double efforts[$n + 1], sizes[$n + 1];
-static double out[20 * $nv + 6 * $sections + 20], work[20000];
-static void call(const sym_function *f) {
-    const double *in[] = {pre, q, v, a, u, lam, t};
-    double *outputs[1];
-    outputs[0] = out;
-    f->eval(in, outputs, work);
-    show(f->out[0].rows * f->out[0].cols, out);
-}
-int main(void) {
-    const sym_model *model = ${name}_model();
-    const int32_t actuators[] = {$actuators};
-    double *memory = malloc(${name}_actuator_efforts_size($n) * sizeof *memory);
-    int32_t status;
-    int state, i;
-    if (model->npre > 2000 || sym_work(model) > 20000) return 3;
-    model->init(model->par_default, pre);
-    for (i = 0; i < $joints; ++i) printf("%s ", ${name}_joint_names()[i]);
-    printf("\\n");
-    for (state = 0; state < $states; ++state) {
-        read($nq, q), read($nv, v), read($nv, a), read($nu, u), read($n, sizes), read(1, t);
-        status = ${name}_actuator_efforts(pre, q, v, a, u, t[0], $n, actuators, sizes, efforts, lam, memory);
-        printf("%d\\n", (int)status);
-        show($n, efforts), show($nc, lam);
-        call(sym_find(model, "joint_wrenches", NULL));
-        $prescribed
-    }
-    free(memory);
-    return 0;
-}
-""")
+PROGRAM = Template(Path(__file__).with_name("reactions.c.in").read_text())
 
 # Two motors, each of which is an input.
 DRIVEN = sf.System(
@@ -156,7 +120,7 @@ def test_c_gives_the_reactions_of_python(tmp_path: Path, name: str) -> None:
 
 
 def test_motions_that_actuators_can_not_produce_are_refused(tmp_path: Path) -> None:
-    name, m = "four_bar", sf.compile(MODELS["four_bar"])
+    name, m = "four_bar", compiled("four_bar")
     state = sf.assemble(m, [1.2, -1.0, 1.3], [1.0, 0, 0], held=["q1"])
     a = m.forward_dynamics(state.q, state.v, np.zeros(m.nu))
     sf.export(MODELS[name], "c", tmp_path, frames=[])

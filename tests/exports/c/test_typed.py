@@ -19,39 +19,8 @@ SHOW = """
 #include <stdio.h>
 static void show(int n, const double *x) { for (int i = 0; i < n; ++i) printf("%.17g ", x[i]); printf("\\n"); }
 """
-C = """
-#include "NAME_functions.h"
-SHOW
-int main(void) {
-    static double pre[1000], work[100000], M[NAME_NV * NAME_NV], h[NAME_NV], Q[NAME_NV + 1], T;
-    double q[NAME_NQ], v[NAME_NV], u[NAME_NU + 1] = {0};
-    for (int i = 0; i < NAME_NQ; ++i) q[i] = Q_START[i];
-    for (int i = 0; i < NAME_NV; ++i) v[i] = 0.1 * (i + 1);
-    NAME_prepare(NAME_model()->par_default, pre);
-    NAME_dynamics(pre, q, v, u, 0.25, M, h, Q, work);
-    NAME_kinetic_energy(pre, q, v, &T, work);
-    show(NAME_NV * NAME_NV, M), show(NAME_NV, h), show(1, &T);
-    return 0;
-}
-"""
-CPP = """
-#include "NAME.hpp"
-SHOW
-int main() {
-    NAME_equations equations;
-    NAME_equations::Array<NAME_NQ> q;
-    NAME_equations::Array<NAME_NV> v;
-    NAME_equations::Array<NAME_NU> u;
-    u.setZero();
-    for (int i = 0; i < NAME_NQ; ++i) q[i] = Q_START[i];
-    for (int i = 0; i < NAME_NV; ++i) v[i] = 0.1 * (i + 1);
-    const auto at = equations.dynamics(q, v, u, 0.25);
-    const Eigen::MatrixXd M = at.M.transpose();
-    show(NAME_NV * NAME_NV, M.data()), show(NAME_NV, at.h.data());
-    show(1, equations.kinetic_energy(q, v).T.data());
-    return std::abs(0.5 * v.dot(at.M * v) - equations.kinetic_energy(q, v).T[0]) < 1e-12 ? 0 : 1;
-}
-"""
+C = Path(__file__).with_name("typed.c.in").read_text()
+CPP = Path(__file__).with_name("typed.cpp.in").read_text()
 
 
 @pytest.fixture(scope="module", params=NAMES)

@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 import symofros as sf
 from reference_models import MODELS
 from symofros.__main__ import app
-from tests.models import sampled
+from tests.models import compiled, sampled
 
 SMALL = (
     "pendulum",
@@ -53,7 +53,7 @@ def function(equations: sf.ReadableEquations) -> Callable[..., tuple[Any, ...]]:
 
 @pytest.mark.parametrize("name", sampled(SMALL, FEW))
 def test_the_source_gives_the_compiled_models_numbers(name: str, rng: np.random.Generator) -> None:
-    model = sf.compile(MODELS[name])
+    model = compiled(name)
     written = function(readable(name))
     for _ in range(5):
         q, v = model.random_state(rng)

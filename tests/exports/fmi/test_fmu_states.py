@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import fmpy
@@ -17,19 +18,7 @@ SAME = 1e-12
 # Differences of fourth order by a relative step of 1e-3.
 BY_PARAMETERS = 1e-9
 # The planar robot of all exports, whose stiffness and length may be tuned.
-TUNED = sf.System(
-    "tuned",
-    (
-        sf.RigidBody(
-            "rod",
-            sf.Joint("q1", "revolute", axis=(0, 1, 0), actuated=True),
-            sf.Inertia("m", ("L/2", 0, 0), (0.01, "m*L^2/12", "m*L^2/12")),
-            (sf.Frame("tip", ("L", 0, 0)),),
-        ),
-        sf.RigidBody("bob", sf.Joint("q2", "revolute", "rod", "tip", axis=(0, 1, 0)), sf.Inertia(0.4, (0.3, 0, 0.1))),
-    ),
-    parameters=(sf.Parameter("L", 0.8), sf.Parameter("m", 1.5)),
-)
+TUNED = sf.load(Path(__file__).with_name("tuned.yaml"))
 
 
 @pytest.fixture(scope="module", params=[pytest.param(2, marks=pytest.mark.slow), 3])

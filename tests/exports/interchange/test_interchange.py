@@ -17,37 +17,8 @@ from symofros.mechanics.topology.numbers import Numbers
 from tests.exports.cases import system_of
 
 SAME = 1e-12
-# MuJoCo diagonalises inertias, and gets a moment of 1e-12 where a bar has none.
-MUJOCO = 1e-10
 
-WRIST = sf.System(
-    "wrist",
-    (
-        sf.RigidBody(
-            "slide",
-            sf.Joint("tube", "cylindrical", axis=(0, 1, 1), position=(0.1, 0, 0.2)),
-            sf.Inertia(2.0, (0.1, 0.2, 0), (0.1, 0.2, 0.15, 0.01, 0.02, 0.03)),
-            (sf.Frame("end", (0.3, 0, 0)),),
-        ),
-        sf.RigidBody(
-            "hand",
-            sf.Joint(
-                "cross",
-                "universal",
-                "slide",
-                "end",
-                axis=(1, 0, 0),
-                axis2=(0, 1, 0),
-                rotation=sf.Rotation.rpy(0.3, 0.2, 0.1),
-                elements=(sf.Damper(0.4, coordinate=1),),
-            ),
-            sf.Inertia(1.0, (0.1, 0, 0.2), (0.01, 0.02, 0.015)),
-        ),
-        sf.RigidBody(
-            "puck", sf.Joint("table", "planar", position=(0, 1, 0)), sf.Inertia(1.0, (0.1, 0, 0), (0.1, 0.1, 0.1))
-        ),
-    ),
-)
+WRIST = sf.load(Path(__file__).with_name("wrist.yaml"))
 
 
 def original(name: str) -> sf.System:
@@ -106,23 +77,6 @@ def _angles(engine: pinocchio.Model, q: np.ndarray) -> np.ndarray:
             found += list(q[at : at + joint.nq])
             at += joint.nq
     return np.array(found)
-
-
-@pytest.mark.parametrize("name", ["panda", "four_bar", "wrist", "stanford_arm"])
-def test_mujoco_agrees(tmp_path: Path, name: str, rng: np.random.Generator) -> None:
-    system = original(name)
-    done = sf.export(system, "mjcf", tmp_path)
-    engine = mujoco.MjModel.from_xml_path(str(done.files[0]))
-    data = mujoco.MjData(engine)
-    model = sf.compile(system)
-    for _ in range(3):
-        q, v = model.random_state(rng)
-        data.qpos[:], data.qvel[:] = q, v
-        mujoco.mj_forward(engine, data)
-        M = np.zeros((model.nv, model.nv))
-        mujoco.mj_fullM(engine, data, M)
-        assert np.abs(M - model.mass_matrix(q)).max() < MUJOCO * max(1.0, np.abs(M).max())
-        assert np.abs(data.qfrc_bias - model.bias(q, v)).max() < MUJOCO * max(1.0, np.abs(data.qfrc_bias).max())
 
 
 def test_losses_are_listed(tmp_path: Path) -> None:

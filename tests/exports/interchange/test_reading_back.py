@@ -39,11 +39,6 @@ def linear_damping(joint: sf.Joint, k: int) -> float:
     return sum(float(e.coefficient) for e in joint.elements if isinstance(e, sf.Damper) and e.coordinate == k)  # type: ignore[arg-type]
 
 
-def mass_and_bias(system: sf.System, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    model = sf.compile(system, sf.Options(backend="interpreter"))
-    return model.mass_matrix(q), model.bias(q, v)
-
-
 def close(found: np.ndarray, wanted: np.ndarray, tolerance: float) -> None:
     np.testing.assert_allclose(found, wanted, rtol=0, atol=tolerance * max(1.0, float(np.abs(wanted).max())))
 
@@ -210,42 +205,6 @@ def _bounds(limits: sf.Limits) -> tuple[float | None, ...]:
     """The four numbers, None where they bind nothing."""
     numbers = (limits.lower, limits.upper, limits.velocity or None, limits.effort or None)
     return tuple(None if x is None or abs(x) >= FAR else x for x in numbers)
-
-
-@pytest.mark.parametrize("seed", SAMPLED)
-def test_mjcf_by_our_reader(tmp_path: Path, seed: str) -> None:
-    system = stated_tree(int(seed[4:]), kinds=SERIES)
-    done = sf.export(system, "mjcf", tmp_path)
-    if any("MuJoCo refuses bodies" in note for note in done.notes):
-        return
-    loaded = sf.load(done.files[0])
-    model, back = (sf.compile(one, sf.Options(backend="interpreter")) for one in (system, loaded))
-    # Actuators bear their joints' names, which our reader tells apart from the coordinates.
-    assert {name.removesuffix("_control") for name in back.names.u} == {*model.names.u}
-    assert {*model.names.v} == {*back.names.v}
-    q, v = model.random_state(np.random.default_rng(1))
-    order = [model.names.v.index(name) for name in back.names.v]
-    close(back.mass_matrix(q[order]), model.mass_matrix(q)[np.ix_(order, order)], MUJOCO)
-    close(back.bias(q[order], v[order]), model.bias(q, v)[order], MUJOCO)
-    read = {joint.name: joint.limits or sf.Limits() for joint in joints(loaded)}
-    for joint in joints(system):
-        stated = joint.limits
-        if stated is not None and joint.traits.nv == 1 and stated.lower != stated.upper:
-            found = read[joint.name]
-            assert (found.lower, found.upper) == (stated.lower, stated.upper)
-
-
-@pytest.mark.parametrize("seed", SAMPLED)
-def test_yaml_keeps_all(tmp_path: Path, seed: str) -> None:
-    system = stated_tree(int(seed[4:]), kinds=WITH_BALLS)
-    sf.save(system, tmp_path / "stated.yaml")
-    back = sf.load(tmp_path / "stated.yaml")
-    assert [body.joint for body in back.bodies] == [body.joint for body in system.bodies]
-    model, again = (sf.compile(one, sf.Options(backend="interpreter")) for one in (system, back))
-    q, v = model.random_state(np.random.default_rng(1))
-    assert again.names == model.names
-    np.testing.assert_array_equal(again.mass_matrix(q), model.mass_matrix(q))
-    np.testing.assert_array_equal(again.bias(q, v), model.bias(q, v))
 
 
 @pytest.mark.parametrize("target", ["c", "mex", "sfunction", "fmu2", "fmu3", "wasm", "cuda"])

@@ -20,61 +20,11 @@ from tests.late import require
 from tests.studio.waiting import until
 
 # The double as 16 hexadecimal digits, so that no digit is lost on the way.
-PROGRAM = """
-import { load } from "./NAME.mjs";
-const model = await load(), given = JSON.parse(process.argv[2]);
-const words = (x) => [...new BigUint64Array(x.slice().buffer)].map((b) => b.toString(16));
-const told = (outputs) => Object.fromEntries(Object.entries(outputs).map(([k, x]) => [k, words(x)]));
-const { q, v, u, n, t } = given, robot = model.instance();
-const { nq, nv, nu } = model.sizes, first = { q: q.slice(0, nq), v: v.slice(0, nv), u: u.slice(0, nu) };
-const results = { selftest: model.selftest(), batch: told(model.batch("dynamics", n, { q, v, u })) };
-results.one = told(model.evaluate("dynamics", first));
-for (let k = 0; k < t / 1e-3; ++k) robot.advance((k + 1) * 1e-3, 1e-3);
-results.end = told({ q: robot.q, v: robot.v });
-results.pose = told(robot.evaluate("frame_pose", model.names.frames.at(-1)));
-results.refusals = [];
-const freed = model.prepareBatch("dynamics", 3), gone = model.instance();
-for (const once of [freed, gone, gone]) once.free();
-for (const action of [() => model.find("mass"), () => model.evaluate("dynamics", { q: [1, 2, 3, 4, 5] }),
-  () => model.batch("dynamics", 1.5, {}), () => model.batch("dynamics", 2 ** 31, {}), () => freed.run(),
-  () => gone.q, () => { gone.t = 1; }, () => gone.advance(1), () => gone.evaluate("dynamics"), () => gone.reset()])
-  try { action(); } catch (error) { results.refusals.push(error.message); }
-const use = () => {
-  for (let m = 1; m < 60; ++m) model.batch("dynamics", 100 * m, {});
-  for (let k = 0; k < 200; ++k) { model.instance().free(); model.prepareBatch("dynamics", 500).free(); }
-  return model.wasm.memory.buffer.byteLength;
-};
-results.memory = [use(), use(), use()];
-const kept = model.prepareBatch("dynamics", 4), held = kept.inputs.q;
-held.set([0.1, 0.4, 0.2, 0.3, 0.3, 0.2, 0.4, 0.1]); kept.run();
-results.grown = [kept.outputs.M[0]];
-model.prepareBatch("dynamics", 30000);
-try { held[0] = 9; kept.run(); } catch (error) { results.grown.push(error.message); }
-kept.inputs.q[2] = 0.2; kept.run();
-results.grown.push(kept.outputs.M[0]);
-kept.free();
-try { kept.inputs.q[0] = 9; } catch (error) { results.grown.push(error.message); }
-console.log(JSON.stringify(results));
-"""
+PROGRAM = Path(__file__).with_name("ask.mjs.in").read_text()
 
 
 # How many pixels of the plot have the colours of "speed of q1" and of "q1".
-PLOTTED = """() => {
-  const sheet = document.getElementById("plot"), { width, height } = sheet;
-  const data = sheet.getContext("2d").getImageData(0, 0, width, height).data;
-  const colour = (name) => {
-    const label = [...document.querySelectorAll("#signals label")].find((x) => x.textContent.startsWith(name));
-    return label.dataset.colour.match(/[0-9a-f]{2}/g).map((x) => parseInt(x, 16));
-  };
-  const count = (name) => {
-    const wanted = colour(name);
-    let n = 0;
-    for (let k = 0; k < data.length; k += 4)
-      n += wanted.every((x, i) => Math.abs(x - data[k + i]) < 12) && data[k + 3] > 200;
-    return n;
-  };
-  return { speed: count("speed of q1"), angle: count("q1") };
-}"""
+PLOTTED = Path(__file__).with_name("plotted.js").read_text()
 
 
 def doubles(words: list[str]) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from symofros.expr.edges import ONE, ZERO, Edge
+from symofros.expr.edges import ONE, Edge
 from symofros.expr.graph import Graph
 from symofros.expr.packs.check import check_packs
 from symofros.expr.packs.combine import linear_combination
@@ -33,29 +33,6 @@ def copied(g: Graph, edges: list[Edge], fixed: dict[Edge, float]) -> tuple[Graph
     edges = copy_into(into, g, edges, new)
     check_packs(Program("p", into, {}, ()))
     return into, edges
-
-
-def test_a_pack_has_the_same_lanes_and_terms() -> None:
-    g = Graph()
-    into, edges = copied(g, list(combination(g).lanes), {})
-    (pack,) = into.packs
-    assert list(pack.lanes) == edges
-    assert (set(pack.exact_lanes), set(pack.new_lanes), len(pack.terms)) == (ALL, ALL, 2)
-
-
-def test_lanes_that_are_not_needed_are_empty() -> None:
-    g = Graph()
-    into, edges = copied(g, list(combination(g).lanes[2:5]), {})
-    (pack,) = into.packs
-    assert pack.lanes == (ZERO, ZERO, *edges, ZERO, ZERO, ZERO)
-    assert set(pack.new_lanes) == {2, 3, 4}
-
-
-def test_a_term_whose_factor_becomes_zero_is_dropped() -> None:
-    g = Graph()
-    pack = combination(g)
-    into, _ = copied(g, list(pack.lanes), {g.input("c", 0): 0.0})
-    assert [len(copy.terms) for copy in into.packs] == [1]
 
 
 def test_a_pack_that_becomes_its_operand_is_its_operand() -> None:

@@ -81,23 +81,6 @@ def test_a_term_that_is_no_product_comes_first() -> None:
     assert value_of(chained, at) == value_of(program, at) == 9.0
 
 
-def test_a_sum_that_two_read_stays_one() -> None:
-    g = Graph()
-    x = [g.input("x", i) for i in range(SIZE)]
-    both = g.add(g.mul(x[0], x[1]), g.mul(x[2], x[3]))
-    program = program_of(g, [g.add(both, x[4]), g.add(both, x[5])])
-    chained = chain_sums(program)
-    assert count_program(chained)["f", ""].total == count_program(program)["f", ""].total == 5
-
-
-def test_a_name_outlives_the_pass() -> None:
-    g = Graph()
-    x = [g.input("x", i) for i in range(SIZE)]
-    speed = g.name(g.add(g.mul(x[0], x[1]), g.mul(x[2], x[3])), "speed")
-    chained = chain_sums(program_of(g, [g.add(speed, x[4])]))
-    assert list(chained.graph.label.values()) == ["speed"]
-
-
 _STEPS = st.lists(
     st.tuples(st.sampled_from([ADD, MUL]), st.integers(0, 40), st.integers(0, 40), st.booleans(), st.booleans()),
     min_size=3,

@@ -89,16 +89,6 @@ def test_small_turns_are_integrated_exactly_by_as_many_sections_as_functions(fun
     assert few == pytest.approx(many, rel=1e-13)
 
 
-@pytest.mark.parametrize("direction", ["bend_y", "bend_z"])
-def test_a_constant_curvature_closes_to_a_circle(direction: str) -> None:
-    counts = (1, 0, 0) if direction == "bend_y" else (0, 1, 0)
-    p, R = RodShape(rod(counts, sections=10), {}, [0.5, 1.0]).sections(np.array([2 * np.pi]))
-    across = 1 if direction == "bend_y" else 2
-    assert p[0, across] == pytest.approx(1 / np.pi, abs=1e-5)
-    assert np.abs(p[1]).max() < 1e-12
-    assert pytest.approx(np.eye(3), abs=1e-14) == R[1]
-
-
 def test_small_strains_are_those_of_the_beam_of_second_order(rng: np.random.Generator) -> None:
     """Displacement functions whose second derivatives are 1 and xi, over L, as a user states them.
 

@@ -10,7 +10,6 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import symofros as sf
-from symofros import blocks
 from symofros.mechanics.beams.rod_shape import RodShape
 from tests.exports.cases import build, run
 from tests.mechanics.beams.rods import HUB, STIFF, rod
@@ -90,15 +89,6 @@ START = {"pin": 0.3}
 def moved() -> sf.Trajectory:
     m = sf.compile(PLANE)
     return sf.simulate(m, q0=START, t_end=0.2, method="rk4", dt=1e-3)
-
-
-def test_a_rod_is_a_plant_of_diagrams() -> None:
-    diagram = sf.Diagram("swing")
-    diagram.add_model("plant", PLANE, start=START)
-    diagram.add(blocks.Constant(name="effort", value=[0.0]))
-    diagram.add(blocks.ForwardDynamics(name="plant", model="plant"), u="effort")
-    compiled = sf.Simulation(diagram).run(0.2, dt=1e-3)
-    assert compiled["plant.q"][-1] == pytest.approx(moved().q[-1], abs=1e-12)
 
 
 def test_a_package_in_c_moves_a_rod_as_python_does(tmp_path: Path) -> None:

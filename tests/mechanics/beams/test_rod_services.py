@@ -53,12 +53,6 @@ def test_the_viewer_draws_a_rod_where_its_tip_is() -> None:
     assert R_root @ line.axes(1.0, q[1:])[-1] == pytest.approx(R_tip, abs=1e-14)
 
 
-def test_files_hold_rods(tmp_path: Path) -> None:
-    system = sf.System("s", (rod((2, 1, 1), sections=7, curvature_y=0.3, twist_rate="0.2*x"),))
-    sf.save(system, tmp_path / "rod.yaml")
-    assert sf.load(tmp_path / "rod.yaml") == system
-
-
 def test_what_does_not_serve_rods_refuses_them_in_words(tmp_path: Path) -> None:
     curved = sf.System("s", (rod((1, 0, 0), curvature_z=0.5),))
     with pytest.raises(sf.ExportError, match="rods that URDF can't hold"):

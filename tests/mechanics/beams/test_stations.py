@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -101,14 +100,6 @@ def test_stations_keep_the_identities_of_the_equations(theory: str, rng: np.rand
     assert dJ == pytest.approx(difference, abs=1e-8)
 
 
-@pytest.mark.parametrize("theory", ["strain", "second_order"])
-def test_articulated_bodies_and_factors_of_the_mass_matrix_agree(theory: str, rng: np.random.Generator) -> None:
-    ways = [interpreted(stated(theory), "forward_dynamics", forward_dynamics=way) for way in ("articulated", "factors")]
-    q, v = 0.1 * rng.standard_normal((2, ways[0].nv))
-    one, other = (m.forward_dynamics(q, v, ()) for m in ways)
-    assert np.abs(one - other).max() < 1e-10 * np.abs(other).max()
-
-
 def test_a_closure_at_a_station_is_that_of_its_frame(rng: np.random.Generator) -> None:
     ground = sf.RigidBody("ground", frames=(sf.Frame("post", (0.3, 0.4, 0.1)),))
     closure = sf.Closure("stay", ("ground", "post"), ("rod", "middle"))
@@ -156,8 +147,3 @@ def test_stations_are_refused_off_the_beam_and_on_rigid_bodies() -> None:
         sf.Frame("middle", at=1.5)
     with pytest.raises(sf.DescriptionError, match="beams alone have stations"):
         sf.RigidBody("b", frames=(sf.Frame("middle", at=0.5),))
-
-
-def test_files_hold_stations(tmp_path: Path) -> None:
-    sf.save(stated(), tmp_path / "s.yaml")
-    assert sf.load(tmp_path / "s.yaml") == stated()

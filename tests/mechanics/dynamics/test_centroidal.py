@@ -98,7 +98,7 @@ def test_pinocchio_has_the_same_momentum_and_rate(name: str, rng: np.random.Gene
 
 
 def test_c_is_the_interpreter(rng: np.random.Generator) -> None:
-    c, twin = model("joint_zoo"), model("joint_zoo", "interpreter")
+    c, twin = model("joint_zoo", "c"), model("joint_zoo")
     q, v = c.random_state(rng)
     a = rng.normal(size=c.nv)
     for ours, expected in (

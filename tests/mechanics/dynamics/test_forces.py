@@ -11,13 +11,9 @@ import symofros as sf
 from reference_models.rigid.random_tree import MORE_KINDS, random_tree
 from symofros.description.forces import Connection, Damper, Friction, Load, Potential, Spring, Stop, VirtualPower
 from tests.identities.test_dynamics import DIFFERENCE, STEP
-from tests.models import sampled
+from tests.models import interpreted, sampled
 
 SOLID = sf.Inertia(2.0, (0.1, 0, 0), (1, 1, 1))
-
-
-def interpreted(system: sf.System) -> sf.Model:
-    return sf.compile(system, sf.Options(backend="interpreter"))
 
 
 def slider(*elements: object, **more: object) -> sf.Model:

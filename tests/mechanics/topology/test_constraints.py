@@ -29,6 +29,8 @@ BODIES = (
         (sf.Nonholonomic("k", {"dr": 1.0}), ["'dr' is not a speed"]),
         (sf.Nonholonomic("k", {"dq": "dp"}), ["'dp' may not be used here"]),
         (sf.Nonholonomic("k", {"dq": 0.0, "dp": "p - p"}), ["binds no speed"]),
+        (sf.Coupling("k", "q - dp"), ["'dp' may not be used here"]),
+        (sf.Coupling("k", "q - t"), ["'t' may not be used here"]),
         (sf.Coupling("k", "0*q"), ["binds no coordinate", "changes with a coordinate"]),
         (sf.Coupling("k", "q*p - p*q + 2"), ["binds no coordinate"]),
     ],

@@ -6,7 +6,7 @@ import symofros as sf
 from symofros.expr.graph import Slot
 from symofros.mechanics.topology.limbs import equal_limbs
 from symofros.mechanics.topology.tree import build_tree
-from tests.mechanics.topology.test_tree import SOLID, body
+from tests.mechanics.topology.test_tree import body
 
 
 def joints(stated: sf.System) -> list[list[list[str]]]:
@@ -31,39 +31,6 @@ def test_entries_of_q_v_and_a_stand_in_one_order() -> None:
     ((first, second),) = equal_limbs(tree)
     assert first == tuple(Slot(group, i) for group, size in (("q", 4), ("v", 3), ("a", 3)) for i in range(size))
     assert second == tuple(Slot(slot.group, slot.index + (4 if slot.group == "q" else 3)) for slot in first)
-
-
-def test_zeros_in_other_places_make_other_limbs() -> None:
-    """Two legs turn about x, two about y; a fifth, about a slanted axis, has no equal."""
-    axes = {"a": (1, 0, 0), "b": (0, 1, 0), "c": (-1, 0, 0), "d": (0, -1, 0), "e": (1, 1, 0)}
-    stated = sf.System("s", [body(name, "world", axis=axis) for name, axis in axes.items()])
-    assert joints(stated) == [[["q_a"], ["q_c"]], [["q_b"], ["q_d"]]]
-
-
-def test_limbs_that_are_left_over_are_equal_by_their_joints() -> None:
-    tilted = body("b", "world", position=(0.1, 0, 0.2))
-    assert joints(sf.System("s", [body("a", "world"), tilted])) == [[["q_a"], ["q_b"]]]
-
-
-def test_other_joints_make_other_limbs() -> None:
-    assert joints(sf.System("s", [body("a", "world"), body("b", "world", "prismatic")])) == []
-    longer = sf.System("s", [body("a", "world"), body("b", "world"), body("c", "b")])
-    assert joints(longer) == []
-
-
-def test_fingers_of_equal_hands_go_with_their_hands() -> None:
-    bodies = [body("trunk", "world")]
-    for side in ("l", "r"):
-        bodies.append(body(f"hand_{side}", "trunk"))
-        bodies += [body(f"{side}{k}", f"hand_{side}") for k in range(3)]
-    assert [len(group) for group in joints(sf.System("s", bodies))] == [2]
-    alone = [body("hand", "world"), *(body(f"f{k}", "hand") for k in range(3))]
-    assert [len(group) for group in joints(sf.System("s", alone))] == [3]
-
-
-def test_limbs_without_coordinates_are_no_group() -> None:
-    stated = [sf.RigidBody(name, sf.Joint(f"q_{name}", "revolute", prescribed=True), SOLID) for name in ("a", "b")]
-    assert joints(sf.System("s", stated)) == []
 
 
 def test_deep_limbs_are_no_recursion() -> None:

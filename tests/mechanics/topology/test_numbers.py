@@ -23,3 +23,12 @@ def test_a_matrix_is_refused_or_taken_for_the_nearest_rotation(shear: float) -> 
     if not problems:
         np.testing.assert_allclose(R @ R.T, np.eye(3), rtol=0, atol=1e-15)
         np.testing.assert_allclose(R, np.eye(3), rtol=0, atol=shear)
+
+
+def test_a_rotation_of_what_is_no_number_is_nowhere() -> None:
+    """So that what is made of it is no number either, and the check tells the description's fault in words."""
+    body = sf.RigidBody("b", sf.Joint("q", "revolute"), sf.Inertia(1.0))
+    numbers = Numbers(sf.System("s", [body], [sf.Parameter("a", 1.0)]))
+    for stated in (Rotation("rpy", ("1/(a - a)", 0.0, 0.0)), Rotation("quaternion", (0.0, 0.0, 0.0, 0.0))):
+        R = numbers.rotation(stated)
+        assert R.shape == (3, 3) and np.isnan(R).all()

@@ -110,11 +110,6 @@ def test_a_compile_error_shows_command_and_words(cache: Path) -> None:
     assert not libraries(cache) and not list(cache.glob(".*"))
 
 
-def test_a_named_compiler_must_exist(cache: Path) -> None:
-    with pytest.raises(sf.CompileError, match="'nosuchcc'.*not found"):
-        compiled(random_tree(31), sf.Options(compiler="nosuchcc"))
-
-
 def test_an_unwritable_cache_is_explained(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     blocked = tmp_path / "file"
     blocked.write_text("")

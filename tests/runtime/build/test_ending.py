@@ -13,25 +13,7 @@ from symofros.runtime.build.toolchain import find_toolchain
 from symofros.runtime.calls import extension
 
 # From Python 3.12 on threads that are started while the interpreter waits for others are refused; done here for all.
-SCRIPT = """
-import threading
-from symofros.runtime.calls import extension
-
-ending, start, load = threading.Event(), threading.Thread.start, extension.load
-
-def refusing(thread):
-    if ending.is_set():
-        raise RuntimeError("can't create new thread at interpreter shutdown")
-    start(thread)
-
-def late():
-    ending.wait()
-    return load()
-
-threading._register_atexit(ending.set)
-threading.Thread.start, extension.load = refusing, late
-extension.begin()
-"""
+SCRIPT = Path(__file__).with_name("ending.py.in").read_text()
 
 
 def test_a_script_that_is_over_at_once_leaves_the_extension_built(tmp_path: Path) -> None:

@@ -13,7 +13,8 @@ import pytest
 
 from symofros.native import native_text
 from symofros.runtime.calls import declarations
-from symofros.runtime.calls.declarations import constants, interface
+from symofros.runtime.calls.binding import constants
+from symofros.runtime.calls.declarations import interface
 
 interface_anew = declarations._interface.__wrapped__
 STRUCTS = ("sym_model", "sym_function", "sym_lanes", "sym_strided")

@@ -146,15 +146,6 @@ def test_parameters_of_each_state_in_columns() -> None:
     assert all(np.array_equal(x, y) and is_columns(x) for x, y in zip(found, rows, strict=True))
 
 
-@pytest.mark.parametrize("threads", [2, 3])
-def test_threads_share_columns(threads: int) -> None:
-    q, v, _ = map(np.asfortranarray, given("chain7", 4099))
-    for found, expected in zip(
-        model().with_threads(threads).dynamics(q, v, None), model().dynamics(q, v, None), strict=True
-    ):
-        assert np.array_equal(found, expected)
-
-
 def test_entries_that_are_always_zero_are_written() -> None:
     """Over memory that held other numbers."""
     m, n = model("cart_pole"), library.MANY

@@ -9,6 +9,7 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from tests.models import compiled
 
 G = 9.81
 INTERPRETED = sf.Options(backend="interpreter")
@@ -272,7 +273,7 @@ def test_prescribed_motions_are_no_actuators() -> None:
 
 def test_a_beam_bends_by_the_parameters_that_are_given() -> None:
     """The slope of a displacement is its share of the length: half on a beam twice as long."""
-    model = sf.compile(MODELS["flexible_pendulum"])
+    model = compiled("flexible_pendulum")
     q, rest = model.neutral() + np.array([0.0, 0.01, 0.0, 0.0]), np.zeros(model.nv)
     own, twice = np.array(model.parameter_values), np.array(model.parameter_values)
     twice[model.names.par.index("L")] *= 2.0

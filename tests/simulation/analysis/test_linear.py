@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
@@ -11,6 +10,7 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from tests.late import require
+from tests.models import compiled as model
 from tests.models import sampled
 from validation.adapters.pinocchio import tree as pin_adapter
 from validation.contract.interface import Subject
@@ -21,11 +21,6 @@ CLOSED = {"four_bar": [1.2, -1.2, 1.2], "parallelogram": [1.0, -1.0, 1.0, 1.0], 
 # With friction and inputs, on a floating base, elastic, closed, with conditions that repeat each other.
 SMALL = ("double_pendulum", "cart_pole", "space_arm", "flexible_pendulum", "four_bar", "parallelogram")
 STEP = 1e-4
-
-
-@cache
-def model(name: str) -> sf.Model:
-    return sf.compile(MODELS[name])
 
 
 def without_forces(system: sf.System) -> sf.System:
@@ -143,7 +138,7 @@ class TestEquilibrium:
 
     @pytest.mark.parametrize("turn", [0.4, 1.7, -2.5])
     def test_inputs_replace_the_effort_on_held_coordinates(self, turn: float) -> None:
-        m = sf.compile(MODELS["puma560"])
+        m = model("puma560")
         q = np.linspace(turn, -turn, m.nv)
         rest = sf.equilibrium(m, q, held=m.names.v)
         assert rest.inputs is not None and tuple(rest.inputs) == m.names.u

@@ -11,12 +11,9 @@ from hypothesis import strategies as st
 
 import symofros as sf
 from reference_models import MODELS
+from tests.models import interpreted
 
 SOLID = sf.Inertia(1.3, (0.2, 0.1, -0.3), (1.0, 1.2, 0.9))
-
-
-def interpreted(system: sf.System) -> sf.Model:
-    return sf.compile(system, sf.Options(backend="interpreter"))
 
 
 def floating(noise: np.ndarray, links: int, stiffness: float, damping: float = 0.0) -> sf.System:

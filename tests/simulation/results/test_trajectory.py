@@ -10,14 +10,14 @@ import pyarrow.parquet
 import pytest
 
 import symofros as sf
-from reference_models import MODELS
 from symofros.studio.viewer.playing.motion import read_motion
 from tests.late import require
+from tests.models import compiled
 
 
 @pytest.fixture(scope="module")
 def run() -> sf.Trajectory:
-    model = sf.compile(MODELS["double_pendulum"])
+    model = compiled("double_pendulum")
     return sf.simulate(model, [0.3, 0.1], [0.0, 0.5], 0.1, dt=0.01)
 
 

@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from reference_models import MODELS
 from symofros.simulation.stepping.methods import METHODS
-from tests.models import sampled
+from tests.models import compiled, sampled
 
 # Steps in the first of four runs; each has 1.3 times as many as the one before.
 FIRST = {1: 200, 2: 100, 4: 120}
@@ -28,7 +27,7 @@ SCENES = ("heavy_top", "joint_zoo", "four_bar", "stewart")
 
 @cache
 def scene(name: str) -> tuple[sf.Model, np.ndarray, np.ndarray]:
-    model = sf.compile(MODELS[name])
+    model = compiled(name)
     q, v = model.random_state(np.random.default_rng(3))
     v *= 0.3
     if model.nc:

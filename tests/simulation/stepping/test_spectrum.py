@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from reference_models import MODELS
 from symofros.base.rotations import quaternion_exp, quaternion_product
 from symofros.simulation.inputs import plan_inputs
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.methods import METHODS
 from symofros.simulation.stepping.stepper import Stepper
+from tests.models import compiled
 
 BAR = sf.Inertia(1.0, (0.0, 0.1, -0.5), (0.09, 0.08, 0.02))
 # A bar on a ball joint, and what holds the free bar's end in the same place.
@@ -79,7 +79,7 @@ def test_a_loop_without_freedom_has_no_modes() -> None:
 @pytest.mark.parametrize("method", ["rk4", "generalized_alpha", "rodas4", "semi_implicit_euler"])
 def test_an_overconstrained_mechanism_has_the_modes_of_its_one_freedom(method: str) -> None:
     """Beside its manifold Bricard's conditions have full rank, and would let it move no more."""
-    model = sf.compile(MODELS["bricard"])
+    model = compiled("bricard")
     adaptive = False if method == "rodas4" else None
     for dt in (5e-3, 1e-3):
         run = sf.simulate(model, t_end=2.0, method=method, dt=dt, adaptive=adaptive, output=0.02)

@@ -6,16 +6,15 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from reference_models import MODELS
 from symofros.simulation.inputs import plan_inputs
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.stepper import Stepper
-from tests.models import GUESSES
+from tests.models import GUESSES, compiled
 
 
 def test_states_that_are_only_looked_at_leave_inputs_and_accelerations_of_the_run() -> None:
-    four_bar = sf.compile(MODELS["four_bar"])
+    four_bar = compiled("four_bar")
     start = sf.assemble(four_bar, GUESSES["four_bar"], [1.0, 0.0, 0.0])
     settings = Settings.of(four_bar, SimulationOptions("generalized_alpha", dt=0.01), 1.0)
     push = {name: lambda t, q, v: 1.0 + t + q[0] for name in four_bar.names.u}
@@ -42,7 +41,7 @@ def test_states_that_are_only_looked_at_leave_inputs_and_accelerations_of_the_ru
 @pytest.mark.parametrize("steps", [40, 700, 10000])
 def test_a_run_in_many_pieces_keeps_the_states_of_a_run_in_one_for_its_diagnosis(steps: int) -> None:
     # Each piece ends with a last state; twice as many steps between two states after 128 of them would overflow.
-    pendulum = sf.compile(MODELS["pendulum"])
+    pendulum = compiled("pendulum")
     kept = []
     for pieces in (1, steps):
         settings = Settings.of(pendulum, SimulationOptions("rk4", dt=2.0**-10), 1.0)
@@ -62,7 +61,7 @@ def test_a_run_in_many_pieces_keeps_the_states_of_a_run_in_one_for_its_diagnosis
 @pytest.mark.parametrize("length", [0.8, 1.25])
 def test_rates_at_a_quaternion_of_any_length_are_those_of_its_rotation(length: float) -> None:
     """Integrators of others let lengths drift: accelerations are those of the unit one, its rate scales (section 7)."""
-    top = sf.compile(MODELS["heavy_top"])
+    top = compiled("heavy_top")
     q, v = top.random_state(np.random.default_rng(2))
     settings = Settings.of(top, SimulationOptions("rk4", dt=0.01), 1.0)
     stepper = Stepper(top, settings.method, plan_inputs(top, None), (), top.parameter_values)

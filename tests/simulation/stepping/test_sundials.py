@@ -12,11 +12,12 @@ import symofros as sf
 from reference_models import MODELS
 from symofros.base.measures import FORMULA, OTHER, Measures
 from symofros.simulation.stepping.sundials import combinations
+from tests.models import compiled
 from tests.overconstrained import Bennett
 
 
 def moving(name: str) -> tuple[sf.Model, np.ndarray, np.ndarray]:
-    model = sf.compile(MODELS[name])
+    model = compiled(name)
     q, v = model.random_state(np.random.default_rng(3))
     return model, q, 0.3 * v
 
@@ -34,7 +35,7 @@ def test_it_follows_its_tolerance(name: str, method: str) -> None:
 
 
 def test_output_events_and_laws() -> None:
-    model = sf.compile(MODELS["pendulum"])
+    model = compiled("pendulum")
     run = sf.simulate(
         model,
         [1.0],
@@ -64,7 +65,7 @@ def test_output_events_and_laws() -> None:
 
 
 def test_a_stiff_model_costs_little() -> None:
-    model = sf.compile(MODELS["flyball_governor"])
+    model = compiled("flyball_governor")
     start = [0, np.pi / 6, np.pi / 6, 0.5]
     stiff = sf.simulate(model, start, [6.28, 0, 0, 0], 2.0, method="cvode", rtol=1e-6, atol=1e-7)
     plain = sf.simulate(model, start, [6.28, 0, 0, 0], 2.0, method="dopri5", rtol=1e-6, atol=1e-7)
@@ -73,7 +74,7 @@ def test_a_stiff_model_costs_little() -> None:
 
 
 def test_constraints_by_gains_only() -> None:
-    model = sf.compile(MODELS["slider_crank"])
+    model = compiled("slider_crank")
     closed = sf.assemble(model, [0.3, -0.1, -0.2], [10.0, 0.0, 0.0])
     with pytest.raises(sf.SymofrosError, match="stabilisation='baumgarte'"):
         sf.simulate(model, closed.q, closed.v, method="cvode")
@@ -82,7 +83,7 @@ def test_constraints_by_gains_only() -> None:
 
 
 def test_ends() -> None:
-    model = sf.compile(MODELS["pendulum"])
+    model = compiled("pendulum")
 
     def call(t, q, v):
         if t > 0.2:
@@ -98,7 +99,7 @@ def test_ends() -> None:
 def test_a_missing_package_is_named(monkeypatch: pytest.MonkeyPatch, method: str, module: str) -> None:
     monkeypatch.setitem(sys.modules, f"sksundae.{module}", None)
     with pytest.raises(sf.SymofrosError, match=r"pip install 'symofros\[sundials\]'"):
-        sf.simulate(sf.compile(MODELS["pendulum"]), method=method)
+        sf.simulate(compiled("pendulum"), method=method)
 
 
 def with_redundant_conditions(system: sf.System) -> sf.System:
@@ -128,7 +129,7 @@ def test_ida_keeps_loops_closed_and_follows_projected_steps(name: str) -> None:
 
 def test_ida_rolls() -> None:
     """Conditions on speeds have no condition on positions beside them."""
-    model = sf.compile(MODELS["rolling_disc"])
+    model = compiled("rolling_disc")
     q, v = model.random_state(np.random.default_rng(4))
     closed = sf.assemble(model, q, v)
     exact = sf.simulate(model, closed.q, closed.v, 0.5, method="dop853", rtol=1e-12, atol=1e-13)

@@ -84,11 +84,6 @@ def test_the_spin_up_keeps_foreshortening(spin_up: sf.Advice) -> None:
     assert beam.foreshortening and beam.retain == "first_order"
 
 
-@pytest.mark.slow  # In every run: the rod that spins up.
-def test_the_reduced_robot_keeps_the_tolerance(robot: sf.Advice) -> None:
-    check(robot, {"link1": 5, "link2": 5})
-
-
 @pytest.mark.slow  # In every run: the rod that spins up, and beams that may be rigid or must bend.
 def test_planar_robot(robot: sf.Advice) -> None:
     assert robot.ok and robot.gain >= 3.0

@@ -6,7 +6,6 @@ import json
 from pathlib import Path
 from unittest import mock
 
-import pytest
 from rich.console import Console
 from typer.testing import CliRunner
 
@@ -39,18 +38,3 @@ def test_for_people() -> None:
     assert found.exit_code == 0, found.output
     for words in ("no foreshortening", "refused", "allowed 0.05", "times as many", "measured:"):
         assert words in found.stdout
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (["--scene", "missing.yaml"], "no such file"),
-        (["--scene", MODEL], "unknown entry 'symofros'"),
-        (["--scene", SCENE, "--tolerance", "tight"], "is given no number"),
-        (["--scene", SCENE, "--tolerance", "top=1"], "did you mean 'tip'"),
-        (["--scene", SCENE, "--tolerance", "-1"], "no tolerance"),
-    ],
-)
-def test_what_does_not_fit(arguments: list[str], words: str) -> None:
-    found = run(MODEL, *arguments)
-    assert found.exit_code == 2 and words in found.output

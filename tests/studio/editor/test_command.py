@@ -157,25 +157,6 @@ def test_a_port_that_is_taken_and_a_file_that_is_none_are_told(file: Path, tmp_p
     assert odd.exit_code == 2 and "is not UTF-8" in odd.output
 
 
-@pytest.mark.slow
-def test_a_robot_of_another_format_becomes_a_new_document(tmp_path: Path) -> None:
-    inertial = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
-    joint = '<joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint>'
-    (tmp_path / "arm.urdf").write_text(
-        f'<robot name="r"><link name="a"/><link name="b">{inertial}</link>{joint}</robot>'
-    )
-    with served(str(tmp_path / "arm.urdf")) as (_, client):
-        found = client.get("/api/document").json()
-        assert found["path"] == "arm.yaml" and found["dirty"] and found["problems"] == []
-    for wrong, says in (
-        ("none.urdf", "does not exist"),
-        ("none/arm.yaml", "no such folder"),
-        ("arm.exe", "unknown format"),
-    ):
-        told = CliRunner().invoke(app, ["edit", str(tmp_path / wrong), "--no-browser"])
-        assert told.exit_code == 2 and says in told.output
-
-
 def test_without_its_packages_it_says_which_extra_has_them(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in [name for name in sys.modules if name.startswith("symofros.studio.editor")]:
         monkeypatch.delitem(sys.modules, name)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -14,59 +15,7 @@ ROOT = Path(__file__).parents[3] / "reference_models"
 # Models lie in folders by kind; scenes and diagrams do not.
 FILES = {path.stem: path for path in sorted(ROOT.glob("*/*.yaml"))}
 
-ODD = """\
-# head
-symofros: 1   # version
-
-# about the system
-system:
-  name: "we'ird"   # quoted
-  gravity:
-  - 0
-  - 0
-  - -9.81  # down
-parameters:
-  # lengths
-  L1: {value: 1, unit: m}   # first
-
-  L2:
-    # inner
-    value: 2.0e-1
-    unit: 'm'
-    # tail of L2
-
-  # about L3
-  L3: 3
-inputs: {}
-bodies:
-    a:
-        joint: {kind: revolute,
-                axis: [0,
-                       0, 1],   # z
-                name: qa}
-        frames:
-            tip:
-            other: {}
-    b:    # the second
-        joint:
-          kind: fixed
-          parent: a
-        loads:
-          - force: [1, 2, 3]
-            # about axes
-            axes: world
-          -   at: body
-              torque: [0, "L1, 2", 0]
-          - {force: [0,0,1,], }
-        waive: []
-potentials:
-  v: >
-    L1 * cos(qa)
-  w: |
-    2*L1
-  x: "3*
-    L1"
-"""
+ODD = Path(__file__).with_name("odd.yaml").read_text(encoding="utf-8")
 TEXTS = {name: path.read_text(encoding="utf-8") for name, path in FILES.items()}
 TEXTS |= {"odd": ODD, "crlf": ODD.replace("\n", "\r\n"), "open end": ODD.rstrip("\n")}
 
@@ -74,57 +23,7 @@ TEXTS |= {"odd": ODD, "crlf": ODD.replace("\n", "\r\n"), "open end": ODD.rstrip(
 DATA = {name: YamlText(text).root.plain() for name, text in TEXTS.items()}
 
 # What has a meaning of its own to YAML, or none.
-TROUBLE = (
-    "abc",
-    "L1/2",
-    "",
-    "atan2(a, b)",
-    "- x",
-    "#no",
-    "a: b",
-    "true",
-    "12",
-    "~",
-    "[x]",
-    "a\nb",
-    "it's",
-    '"q"',
-    "x #y",
-    " lead",
-    "trail ",
-    "é",
-    "\U0001f600",
-    "-L/2",
-    "*a",
-    "&b",
-    "!t",
-    "%d",
-    "@",
-    "`",
-    "key:",
-    "?",
-    "? x",
-    "-",
-    "---",
-    "...",
-    "a,b",
-    "{",
-    "}",
-    "\u2028",
-    "\x07",
-    "\ufeff",
-    "<<",
-    "1e5",
-    "0x1f",
-    "\t",
-    "a" * 200,
-    "null",
-    "=",
-    "0\x1b",
-    "a\ufffe",
-    "a\x85b",
-    "a\xa0",
-)
+TROUBLE = json.loads(Path(__file__).with_name("trouble.json").read_text(encoding="utf-8"))
 KEYS = ("a", "b c", "x:", "on", "1", "value", "é", "-", "#", "long" * 9, "parameters", "true")
 
 scalars = st.one_of(

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import io
 import threading
-import time
 from collections.abc import Callable, Iterator
 from importlib import import_module
 from pathlib import Path
@@ -25,12 +24,7 @@ from tests.studio.waiting import PATIENCE, until
 pytestmark = pytest.mark.browser
 
 WIDTH, HEIGHT = 800, 500
-PANEL = '[class*="tabler-icon-cloud"]'  # viser's sign of the connection, at the head of its panel.
 PATIENCE_MS = 1000 * PATIENCE
-# Pictures a second that reached the browser from a model of 22 joints: some 35 on two cores that also render them.
-# A floor far below, for it to be called moving; docs/view.md has what was measured.
-LEAST_RATE = 5.0
-
 Open = Callable[[str], Any]
 
 
@@ -132,60 +126,6 @@ def bow(pixels: np.ndarray) -> float:
     return float(np.linalg.svd(places - places.mean(axis=0), compute_uv=False)[1] / np.sqrt(len(places)))
 
 
-@pytest.mark.slow  # In every run: a beam that bends.
-def test_a_loop_stays_closed_as_it_moves(open_page: Open) -> None:
-    with sf.Viewer(MODELS["four_bar"], port=0) as viewer:
-        viewer.show([1.2, -1.2, 1.2])
-        page = open_page(viewer.url)
-        first = settled(page)
-        viewer.slide(0, 0.7)
-        until(page, lambda: changed(first, image_of(page)).sum() > 300)
-        second = settled(page)
-        mark = next(
-            part.color for part in viewer._scene_state.scene.drawing.parts if part.name.startswith("constraints/")
-        )
-    places = [np.argwhere(colored(image, mark)).mean(axis=0) for image in (first, second)]
-    assert changed(first, second).sum() > 300 and np.linalg.norm(places[1] - places[0]) > 20
-    # One mark, at one place: the closure's two ends are together in both pictures.
-    for image in (first, second):
-        assert np.argwhere(colored(image, mark)).std(axis=0).max() < 15
-
-
-@pytest.mark.slow  # In every run: the editor's pages tell each other.
-def test_two_browsers_see_the_same(open_page: Open) -> None:
-    with sf.Viewer(MODELS["four_bar"], port=0) as viewer:
-        one = open_page(viewer.url)
-        viewer.show([1.2, -1.2, 1.2])
-        other = open_page(viewer.url)
-        until(one, lambda: viewer.clients == 2)
-        until(one, lambda: changed(settled(one), settled(other)).sum() < 100)
-        before = settled(one)
-        viewer.show([0.6, -0.6, 0.6])
-        until(one, lambda: changed(before, image_of(one)).sum() > 300)
-        until(one, lambda: changed(settled(one), settled(other)).sum() < 100)
-
-
-@pytest.mark.slow
-def test_a_model_of_22_joints_moves_as_it_is_pushed(chromium: Any) -> None:
-    page, arrived = chromium.new_page(viewport={"width": WIDTH, "height": HEIGHT}), []
-    page.on("websocket", lambda line: line.on("framereceived", lambda _: arrived.append(1)))
-    with sf.Viewer(MODELS["mss"], port=0) as viewer:
-        assert viewer.mechanism.model.nv == 22
-        page.goto(viewer.url)
-        page.wait_for_selector("canvas", timeout=PATIENCE_MS)
-        before, first = settled(page), len(arrived)
-        q, painted, start = viewer.mechanism.model.neutral(), viewer.painted, time.monotonic()
-        while (t := time.monotonic() - start) < 4.0:
-            q[:] = 0.4 * np.sin(2 * t + np.arange(22))
-            viewer.push(t, q)
-            page.wait_for_timeout(2)
-        shown, received = (viewer.painted - painted) / t, (len(arrived) - first) / t
-        print(f"mss: {shown:.0f} pictures a second shown, {received:.0f} received by the browser")
-        until(page, lambda: changed(before, image_of(page)).sum() > 300)
-    page.close()
-    assert min(shown, received) > LEAST_RATE
-
-
 @pytest.mark.slow
 def test_the_controls_move_the_picture(open_page: Open) -> None:
     with sf.Viewer(MODELS["planar_robot"], port=0) as viewer:
@@ -258,57 +198,6 @@ def test_a_run_of_a_diagram_is_seen_as_it_goes(open_page: Open) -> None:
     until(page, lambda: np.array_equal(block.viewer.state.q, runs[0]["plant.q"][-1]))
     assert runs[0].kept["view3d"]["shown"] == 251 and block.viewer.painted - painted > 251 / 2
     block.close()
-
-
-@pytest.mark.slow  # In every run: the scene's paths, without a page.
-def test_paths_are_seen_beside_it(open_page: Open) -> None:
-    square = [[0.5, 0.3], [1.1, 0.3], [1.1, -0.3], [0.5, -0.3], [0.5, 0.3]]
-    with sf.Viewer(MODELS["planar_robot"], port=0, paths=[("square", square, (200, 0, 200))]) as viewer:
-        viewer.set_layer("ground", False)  # The arrow of gravity is of much the same color.
-        page = open_page(viewer.url)
-        until(page, lambda: colored(image_of(page), (200, 0, 200)).sum() > 100)
-        viewer.set_layer("paths", False)
-        until(page, lambda: colored(image_of(page), (200, 0, 200)).sum() < 10)
-
-
-@pytest.mark.slow  # In every run: the editor's scene follows its file.
-def test_another_system_takes_the_place_of_the_one_before(open_page: Open) -> None:
-    with sf.Viewer(MODELS["planar_robot"], port=0) as viewer:
-        page = open_page(viewer.url)
-        beam = viewer._scene_state.scene.drawing.beams[0].color
-        until(page, lambda: colored(image_of(page), beam).any())
-        viewer.set_system(MODELS["pendulum"])
-        colors = {part.color for part in viewer._scene_state.scene.drawing.parts if part.kind == "bodies"}
-        until(page, lambda: all(colored(image_of(page), color).sum() > 50 for color in colors))
-
-
-@pytest.mark.slow
-def test_it_may_be_embedded(chromium: Any, tmp_path: Path) -> None:
-    """As an editor does: a page of another origin with the viewer in an iframe, and controls of its own."""
-    page = chromium.new_page(viewport={"width": WIDTH, "height": HEIGHT})
-    with sf.Viewer(MODELS["four_bar"], port=0, controls=False) as viewer:
-        (tmp_path / "editor.html").write_text(f'<iframe src="{viewer.url}" width=700 height=450></iframe>')
-        page.goto((tmp_path / "editor.html").as_uri())
-        page.frame_locator("iframe").locator("canvas").first.wait_for(timeout=PATIENCE_MS)
-        until(page, lambda: viewer.clients == 1)
-        before = whole(page)
-        viewer.push(0.0, [1.2, -1.2, 1.2])
-        until(page, lambda: changed(before, whole(page)).sum() > 300)
-        # Nothing lies over the picture, however wide it is.
-        for width in (WIDTH, 2 * WIDTH):
-            page.locator("iframe").evaluate("(frame, width) => { frame.width = width; }", width)
-            page.wait_for_timeout(500)
-            until(page, lambda: not page.frame_locator("iframe").locator(PANEL).first.is_visible())
-        assert page.frame_locator("iframe").get_by_text("exaggeration").count() == 0
-    page.close()
-
-
-def test_a_replay_is_a_page_of_its_own(open_page: Open, tmp_path: Path) -> None:
-    t, q = np.linspace(0, 1, 11), np.zeros((11, 10))
-    q[:, 0] = t
-    page = open_page(sf.record(MODELS["planar_robot"], (t, q), tmp_path / "m.html", rate=10).as_uri())
-    first = image_of(page)
-    until(page, lambda: changed(first, image_of(page)).sum() > 300)
 
 
 @pytest.mark.tools

@@ -7,28 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.models import sampled
 from validation.adapters import ROUTES, differences
-from validation.reporting.charts import SERIES
 
 PACKAGES = {route.package for route in ROUTES.values()} - {""}
 ROOT = Path(__file__).parents[3]
-
-
-@pytest.mark.parametrize("name", sampled(("pinocchio", "mujoco"), ("mujoco",)))
-def test_a_check_with_one_engine_imports_no_other(name: str) -> None:
-    """Each takes seconds to load, and need not be installed."""
-    code = f"""
-import sys
-from validation.checking import Settings
-from validation.inputs.cases import named
-from validation.worker_pool import run_case
-result = run_case(named(["double_pendulum"], False)[0], Settings(5, engines=({name!r},)))
-assert result.ok, result
-print(*sorted({{module.partition(".")[0] for module in sys.modules}}))
-"""
-    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT)
-    assert PACKAGES & set(run.stdout.split()) == {ROUTES[name].package}, run.stderr
 
 
 @pytest.mark.slow
@@ -70,7 +52,3 @@ print(*sorted({{module.partition(".")[0] for module in sys.modules}}))
 """
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT)
     assert PACKAGES & set(run.stdout.split()) == {"pinocchio"}, run.stderr
-
-
-def test_every_engine_has_a_colour_of_its_own_in_figures() -> None:
-    assert len(set(SERIES)) >= len(ROUTES)

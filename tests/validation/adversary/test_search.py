@@ -68,16 +68,6 @@ def test_what_is_known_is_counted_and_passed_over(tmp_path: Path) -> None:
     assert tally.again > 0 and tally.tried == tally.again + tally.agreed
 
 
-def test_finds_by_other_methods_are_others(tmp_path: Path) -> None:
-    scenes = st.fixed_dictionaries({"x": st.integers(0, 1000), "method": st.sampled_from(["one", "two"])})
-    attack, known = replace(FAULTY, scenes=scenes), set[str]()
-    for _ in range(2):
-        find = hunt(attack, tmp_path, 0, Budget(inf, ROUND), Tally(), known)
-        assert find is not None and find.scene["x"] == 37
-        known.add(find.quantity)
-    assert known == {"size, one", "size, two"}
-
-
 def test_an_exception_that_is_no_refusal_is_a_contradiction() -> None:
     def crash(scene: Scene) -> Verdict:
         raise IndexError("out of bounds")
@@ -116,26 +106,3 @@ def test_a_search_goes_on_where_it_ended_and_forgets_what_is_mended(
     monkeypatch.setitem(ATTACKS, "toy", SOUND)
     mended = command("--examples", 20)
     assert mended.exit_code == 0 and json.loads(mended.stdout)["finds"] == []
-
-
-def test_an_interrupt_keeps_what_was_found(
-    command: Callable[..., Result], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    tried = []
-
-    def interrupting(scene: Scene) -> Verdict:
-        tried.append(scene)
-        if len(tried) > 150:
-            raise KeyboardInterrupt
-        return judge(scene)
-
-    monkeypatch.setitem(ATTACKS, "toy", replace(SOUND, judge=interrupting))
-    done = command("--examples", 1000)
-    assert done.exit_code == 130, done.output
-    log = json.loads((tmp_path / "work" / "log.json").read_text())
-    assert log["finds"][0]["scene"] == {"x": 37} and log["attacks"]["toy"]["tried"] == 150
-
-
-def test_an_unknown_attack_is_refused(command: Callable[..., Result]) -> None:
-    done = command("--attack", "toys")
-    assert done.exit_code == 2 and "no attack 'toys'" in done.stderr

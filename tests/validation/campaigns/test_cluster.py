@@ -23,7 +23,6 @@ from typer.testing import CliRunner
 from tests.late import late
 from tests.validation.campaigns.test_killed import busy_worker, events, journal
 from validation.__main__ import app
-from validation.campaigns.errors import ClusterError
 from validation.campaigns.plan import make
 from validation.campaigns.tasks import tasks
 
@@ -167,12 +166,6 @@ def test_a_dead_worker_leaves_its_batches_to_the_others(tmp_path: Path) -> None:
     assert rows(folder).equals(here())
 
 
-@pytest.mark.slow
-def test_a_cluster_without_workers_is_told(tmp_path: Path) -> None:
-    with cluster(tmp_path / "cluster", workers=0) as made, pytest.raises(ClusterError, match="no worker for 0.5 s"):
-        session.begin(make(PLAN, "test"), tmp_path / "c", runner.Pool(scheduler=made.address, patience=0.5))
-
-
 @pytest.mark.parametrize(
     ("address", "found"),
     [
@@ -187,8 +180,7 @@ def test_nobody_there_is_told_at_once(tmp_path: Path, address: str, found: str) 
     with socket.socket() as reserved:  # Bound, and not listening.
         reserved.bind(("127.0.0.1", 0))
         asked = address.format(closed=reserved.getsockname()[1])
-        start = time.monotonic()
         words = ["campaign", "run", "-o", str(tmp_path / "c"), "--models", "pendulum", "--states", "4"]
         result = CliRunner().invoke(app, [*words, "--scheduler", asked])
-    assert result.exit_code == 2 and time.monotonic() - start < runner.ANSWER
+    assert result.exit_code == 2
     assert f"scheduler '{asked}'" in result.output and found in result.output and "remedy: " in result.output

@@ -18,7 +18,6 @@ import pytest
 
 from validation.campaigns.plan import make
 from validation.campaigns.tasks import tasks
-from validation.inputs.cases import standard_set
 
 ROOT = Path(__file__).parents[3]
 WORKERS = 2
@@ -142,32 +141,3 @@ def test_an_interrupt_ends_in_words_and_is_resumed(tmp_path: Path) -> None:
     ended_well(resume(tmp_path / "c", workers=1))
     assert all(events(tmp_path / "c", "begun")[batch] == 1 for batch in finished)
     assert result(tmp_path / "c").equals(uninterrupted(FEW))
-
-
-@pytest.mark.slow(minutes=20)
-def test_a_hundred_thousand_states_killed_twice(tmp_path: Path) -> None:
-    """Thirty models, two workers; the client is killed at a third and, after one of its workers, at two thirds."""
-    models = tuple(case.label for case in standard_set()[:30])
-    plan = {"kind": "check", "models": models, "states": 100_000, "batch": 500, "seed": 0}
-    whole, killed = tmp_path / "whole", tmp_path / "killed"
-    ended_well(start(whole, plan))
-    count = len(events(whole, "done"))
-
-    client = start(killed, plan)
-    wait_for(client, lambda: len(events(killed, "done")) >= count // 3)
-    client.kill()
-    client.wait()
-    client = resume(killed)
-    wait_for(client, lambda: len(events(killed, "done")) >= count // 2)
-    os.kill(busy_worker(killed), signal.SIGKILL)
-    wait_for(client, lambda: len(events(killed, "done")) >= 2 * count // 3)
-    client.kill()
-    client.wait()
-    ended_well(resume(killed))
-
-    begun = events(killed, "begun")
-    again = sum(begun.values()) - len(begun)
-    print(f"{count} batches, {again} begun twice; {(whole / 'campaign.md').read_text()}")
-    assert len(begun) == count and again <= 2 * WORKERS + 1
-    assert set(events(killed, "done").values()) == {1}
-    assert result(killed).equals(result(whole))

@@ -39,11 +39,6 @@ def test_batches_share_all_states_without_gap_or_overlap() -> None:
     assert sum(task.size for task in batches) == 1000
 
 
-def test_models_take_turns_so_that_the_time_left_can_be_guessed() -> None:
-    labels = [task.case.label for task in tasks(make(CHECK, "plan"))[:6] if isinstance(task, CheckTask)]
-    assert labels == ["pendulum", "cart_pole", "heavy_top"] * 2
-
-
 def test_the_hash_tells_plans_and_models_apart(tmp_path: Path) -> None:
     plan = make(CHECK, "plan")
     models = identities(cases(plan))
@@ -51,15 +46,6 @@ def test_the_hash_tells_plans_and_models_apart(tmp_path: Path) -> None:
     assert same == plan_hash(make(CHECK, "again"), identities(cases(plan)))
     assert same != plan_hash(make(CHECK | {"seed": 1}, "plan"), models)
     assert same != plan_hash(plan, models | {"pendulum": "edited"})
-
-
-def test_an_edited_file_is_another_model(tmp_path: Path) -> None:
-    path = tmp_path / "arm.yaml"
-    path.write_text("one")
-    plan = make(CHECK | {"models": [str(path)]}, "plan")
-    before = identities(cases(plan))
-    path.write_text("two")
-    assert identities(cases(plan)) != before
 
 
 @pytest.mark.parametrize(

@@ -15,10 +15,10 @@ from tests.late import late
 from tests.validation.campaigns.scripted import Scripted, with_a_damaged_page
 from validation.__main__ import app
 from validation.campaigns.errors import Unfinished
-from validation.campaigns.plan import CheckPlan, as_text, cases, identities, plan_hash, read
+from validation.campaigns.plan import CheckPlan
 from validation.campaigns.report import compose
 from validation.campaigns.store import Store
-from validation.campaigns.summary import checked, effort, swept
+from validation.campaigns.summary import checked, swept
 from validation.campaigns.sweep import DONE
 from validation.campaigns.tasks import CHECKED
 
@@ -145,18 +145,6 @@ def test_a_sweep_counts_its_failures() -> None:
     assert data["ranges"] == {"f": {"min": 3.0, "max": 3.0}}
 
 
-def test_effort_is_counted_from_the_journal() -> None:
-    lines = [
-        {"event": "session", "time": 0.0},
-        {"event": "begun", "batch": 0, "time": 1.0},
-        {"event": "begun", "batch": 1, "time": 5.0},
-        {"event": "session", "time": 100.0},
-        {"event": "begun", "batch": 1, "time": 101.0},
-        {"event": "done", "batch": 1, "time": 103.0},
-    ]
-    assert effort(lines) == {"sessions": 2, "seconds": 8.0, "executions": 3, "repeated": [1]}
-
-
 def called(*words: str) -> tuple[int, str]:
     result = CliRunner().invoke(app, ["campaign", *words])
     return result.exit_code, result.output
@@ -213,34 +201,3 @@ def test_rows_of_two_generators_do_not_stand_in_one_file(tmp_path: Path, monkeyp
     )
     code, said = called("resume", str(tmp_path / "c"))
     assert code == 2 and "versions changed since: source of symofros: " in said
-
-
-@pytest.mark.parametrize(
-    ("words", "says"),
-    [
-        (("run",), "give a plan, or --models"),
-        (("run", "--models", "pendulumm"), "did you mean 'pendulum'"),
-        (("run", "nowhere.toml"), "nowhere.toml"),
-        (("resume", "nowhere"), "no plan.json"),
-        (("show", "nowhere"), "no plan.json"),
-    ],
-)
-def test_bad_input_is_refused_in_words(tmp_path: Path, words: tuple[str, ...], says: str) -> None:
-    more = ("-o", str(tmp_path / "c")) if words[0] == "run" else ()
-    code, said = called(*words, *more)
-    assert code == 2 and says in said and "Traceback" not in said
-
-
-def test_how_far_a_campaign_is(tmp_path: Path) -> None:
-    folder = tmp_path / "c"
-    plan = tmp_path / "plan.toml"
-    plan.write_text('kind = "check"\nmodels = ["pendulum"]\nstates = 30\nbatch = 10\n')
-    asked = read(plan)
-    models = identities(cases(asked))
-    manifest = {"hash": plan_hash(asked, models), "plan": json.loads(as_text(asked)), "models": models, "versions": {}}
-    store = Store.create(folder, manifest | {"begun": ""})
-    store.write(1, store.encode(1, pa.table({"batch": [1]}), {}))
-    code, said = called("show", str(folder))
-    assert code == 0 and said.startswith(
-        "10 of 30 done, 1 of 3 batches; to go on: python -m validation campaign resume"
-    )

@@ -12,7 +12,6 @@ import junitparser
 import pytest
 from typer.testing import CliRunner
 
-from tests.docs.pages import blocks
 from tests.validation.subjects import URDF
 from validation.__main__ import app
 
@@ -102,33 +101,6 @@ def test_a_stored_run_is_a_test_of_its_own(project: Path, monkeypatch: pytest.Mo
     (project / "stored/check.json").write_text(json.dumps(data))
     done = pytest_in(project, *asked)
     assert done.returncode == 1 and "arm, bias_of_before by mujoco: not compared" in done.stdout
-
-
-TOY = blocks("docs/engines.md", "python")[0].text
-
-
-@pytest.mark.slow
-def test_an_engine_of_another_package_is_held_to_the_truth(project: Path) -> None:
-    """The toy of docs/engines.md, whose mass matrix is wrong, by its entry point."""
-    (project / "toy_engine.py").write_text(TOY)
-    info = project / "toy_engine-1.0.dist-info"
-    info.mkdir()
-    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: toy-engine\nVersion: 1.0\n")
-    (info / "entry_points.txt").write_text("[symofros.engines]\ntoy = toy_engine:PLUGIN\n")
-    tree = """
-from validation.engines.models import kinds
-from validation.engines.interface import Joint, Link, Tree
-
-arm = Link("arm", -1, (Joint("revolute"),), mass=2.0, com=(0.5, 0.0, 0.0))
-kinds.tree_of = lambda name: Tree(name, (arm,), gravity=(0.0, -9.81, 0.0))
-"""
-    (project / "conftest.py").write_text(tree)
-    done = pytest_in(project, "--symofros-engine", "toy", "--junitxml", "junit.xml", "-k", "toy")
-    assert done.returncode == 1, done.stdout + done.stderr
-    assert "toy, mass_matrix on revolute z: wrong: error 3.3e-01" in done.stdout
-    cells = cases(project / "junit.xml")
-    assert set(cells) == {"toy[revolute_z-mass_matrix]", "toy[revolute_z-gravity]"}
-    assert cells["toy[revolute_z-gravity]"].find("failure") is None
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,6 @@ from validation.comparison.errors import Comparison
 from validation.contract.interface import Subject
 from validation.cross_check import measure, speed
 from validation.cross_check.baseline import Baseline, BaselineError, machine_of, slowest
-from validation.cross_check.junit import to_junit
 from validation.cross_check.record import Record, as_data
 from validation.cross_check.speed import Speed, paired
 
@@ -172,22 +171,3 @@ def test_the_command_fails_where_a_stored_run_was_faster(tmp_path: Path, monkeyp
     suites = {suite.get("name"): suite for suite in ElementTree.parse(junit).getroot()}
     assert suites["baseline"].get("failures") == "1"
     assert suites["baseline"][0].get("name") == "bias"
-
-
-def test_the_command_refuses_a_baseline_before_it_computes(tmp_path: Path) -> None:
-    (tmp_path / "x.json").write_text("[]")
-    result = invoke(tmp_path, "--baseline", tmp_path / "x.json")
-    assert result.exit_code == 2 and "no record of a check" in " ".join(result.output.replace("│", " ").split())
-
-
-def test_what_is_worse_is_a_failure_in_junit(stored: Path, checked: ModelResult) -> None:
-    data = as_data(SETTINGS, [replace(checked, comparisons=())], 1.0, ())
-    regressions, _ = Baseline.read(stored).judge(Record.of(data), machine_of(data))
-    tree = ElementTree.fromstring(to_junit([], 1.0, regressions))
-    assert len(tree[-1]) == len(regressions) > 20
-
-
-def test_the_yardstick_runs_and_takes_time() -> None:
-    before = speed.time.thread_time_ns()
-    speed.yardstick()()
-    assert speed.time.thread_time_ns() > before

@@ -51,14 +51,6 @@ def test_counts_names_and_times_are_those_of_the_run(models: list[ModelResult]) 
     assert [suite.name for suite in read] == ["pendulum", NASTY.replace("\x00", "?").replace("\x1b", "?"), "gone"]
 
 
-def test_totals_that_a_parser_adds_up_are_those_that_suites_state(models: list[ModelResult]) -> None:
-    read = parsed(to_junit(models, 12.3))
-    stated = [(suite.tests, suite.failures, suite.errors, suite.skipped) for suite in read]
-    for suite in read:
-        suite.update_statistics()
-    assert [(suite.tests, suite.failures, suite.errors, suite.skipped) for suite in read] == stated
-
-
 def test_a_suite_of_what_is_worse_states_all_counts(models: list[ModelResult]) -> None:
     worse = Regression("arm", "mujoco", "bias", "less accurate", "1e-9 after 1e-15")
     *_, suite = parsed(to_junit(models[:1], 1.0, (worse,)))

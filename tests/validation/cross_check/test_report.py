@@ -79,14 +79,6 @@ def test_names_from_files_can_not_break_the_page(mixed: Data) -> None:
         assert len(columns) <= 1, block
 
 
-def test_good_news(good: ModelResult) -> None:
-    record = as_data(SETTINGS, [good], 1.0, ())
-    page = to_html(record)
-    assert record["ok"] and "comparisons on 1 model agree" in page and "Distribution of relative errors" in page
-    assert "What disagrees" not in page and "What disagrees" not in to_markdown(record)
-    assert "shapes ignored" in page
-
-
 def test_what_independent_engines_compared_is_counted_apart(mixed: Data) -> None:
     """Our own code, read by other compilers or by NumPy, and formulas of ours are no second opinion."""
     own = {"vectors", "interpreted", "description", "formulas", "symofros"}
@@ -143,13 +135,6 @@ def test_the_hash_is_of_the_mechanism() -> None:
     assert base.hash == noted.hash != other.hash
 
 
-def test_a_motion_without_a_verdict_is_no_row_of_the_drift(good: ModelResult) -> None:
-    rows = [Comparison("fast", "symofros", "energy_drift", status, note="why") for status in ("failed", "unsupported")]
-    page = to_html(as_data(SETTINGS, [good, ModelResult("fast", tuple(rows))], 1.0, ()))
-    drifts = page.partition("half the step should leave a sixteenth")[2]
-    assert ">pendulum</td>" in drifts and ">fast</td>" not in drifts.partition("</table>")[0]
-
-
 def test_a_record_survives_its_file(good: ModelResult, mixed: Data) -> None:
     record = Record.of(json.loads(json.dumps(mixed)))
     assert [model.label for model in record.models] == ["pendulum", NASTY, "gone"]
@@ -166,11 +151,6 @@ def test_only_unreadable_models_are_bad_input(good: ModelResult) -> None:
     assert code(compose(data)) == 2
     assert code(compose(as_data(SETTINGS, [good], 1.0, ("later",)))) == 130
     assert code(compose(as_data(SETTINGS, [good], 1.0, ()))) == 0
-
-
-def test_every_engine_has_a_name_in_the_legend(good: ModelResult) -> None:
-    page = to_html(as_data(SETTINGS, [good], 1.0, ()))
-    assert ">interpreted (our own)</text>" in page and ">tolerance</text>" in page
 
 
 def test_an_engine_that_disagrees_alone_is_the_suspect_and_where_several_do_our_c_is(good: ModelResult) -> None:
@@ -191,37 +171,3 @@ def test_an_unreadable_model_is_refused_in_its_parts_and_tags_are_shown(capsys: 
     told = [line.strip(" •") for line in capsys.readouterr().out.splitlines()]
     expected = "r, symofros: load: r.urdf:1: no links", "found: 0 other elements", "rule: at least one <link>"
     assert [line for line in told if line][:4] == [*expected, "remedy: run xacro"]
-
-
-@pytest.mark.parametrize("width", [80, 100])
-def test_the_standard_set_is_one_line_a_model(
-    width: int, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Piped, and on a terminal of 80 columns: of the committed report, by whole rows."""
-    monkeypatch.setattr("validation.reporting.terminal.TABLE_WIDTH", width)
-    monkeypatch.setattr("validation.reporting.terminal.PLAIN_WIDTH", width)
-    data = json.loads((Path(__file__).parents[3] / "reports/check.json").read_text())
-    show(compose(data))
-    *lines, _ = capsys.readouterr().out.splitlines()
-    assert all(len(line) <= width and line == line.rstrip() for line in lines)
-    rows = [line.split() for line in lines]
-    for model in data["models"]:
-        assert sum(row[:1] == [model["model"]] and row[-1] == "agree" for row in rows) == 1, model["model"]
-
-
-def test_lines_of_few_models_are_one_an_engine_and_fit_100_columns(
-    good: ModelResult, capsys: pytest.CaptureFixture[str]
-) -> None:
-    show(compose(as_data(SETTINGS, [good], 1.0, ())))
-    lines = capsys.readouterr().out.splitlines()
-    assert all(len(line) <= 100 for line in lines)
-    engines = {row.engine for row in good.comparisons}
-    assert {line.split()[1] for line in lines if line.startswith(" pendulum ")} == engines
-
-
-def test_what_disagrees_is_said_in_its_line(mixed: Data, capsys: pytest.CaptureFixture[str]) -> None:
-    show(compose(mixed))
-    lines = [line.strip() for line in capsys.readouterr().out.splitlines()]
-    assert [line for line in lines if line.startswith("gone ")][0].split() == ["gone", "failed"]
-    assert [line for line in lines if line.startswith("pendulum ")][0].endswith(" agree")
-    assert any(line.endswith(" disagree") for line in lines) and not any("missed" in line for line in lines)

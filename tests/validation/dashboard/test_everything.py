@@ -19,7 +19,6 @@ from validation.__main__ import app
 from validation.dashboard import everything
 from validation.dashboard.catalogue import TOPICS
 from validation.dashboard.everything import Job
-from validation.dashboard.needs import NEEDS, Needs
 from validation.reporting.command import present
 
 ROOT = Path(__file__).parents[3]
@@ -96,13 +95,6 @@ def test_what_is_of_other_code_or_made_otherwise_is_made_anew(tmp_path: Path, wa
     assert run(tmp_path, "--resume", "--quick").exit_code == 0 and made(tmp_path)[6:] == [*NAMES]
 
 
-@pytest.mark.parametrize("text", ["", "{", "[]", '{"fuzz": 3}', '{"fuzz": {"digest": "x"}}'])
-def test_a_damaged_state_is_no_state(tmp_path: Path, ways: dict[str, str], text: str) -> None:
-    (tmp_path / "work").mkdir()
-    (tmp_path / "work/state.json").write_text(text)
-    assert run(tmp_path, "--resume").exit_code == 0 and made(tmp_path) == [*NAMES]
-
-
 def test_a_report_that_fails_keeps_no_other_from_being_made(tmp_path: Path, ways: dict[str, str]) -> None:
     ways |= {"fuzz": "missed", "mutation": "broken"}
     done = run(tmp_path)
@@ -111,42 +103,6 @@ def test_a_report_that_fails_keeps_no_other_from_being_made(tmp_path: Path, ways
     assert "mutation: failed (1)" in done.output and "ValueError: no such thing" in done.output
     ways.clear()
     assert run(tmp_path, "--resume").exit_code == 0 and made(tmp_path) == ["fuzz", "oracle", "mutation"]
-
-
-def test_what_this_machine_lacks_is_named_with_the_age_of_what_there_is(
-    tmp_path: Path, ways: dict[str, str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    lacking = {"fuzz": Needs(("no_such_package",)), "oracle": Needs(programs=("no-such-program",))}
-    monkeypatch.setattr(everything, "NEEDS", lacking)
-    (tmp_path / "fuzz.json").write_text(json.dumps(FUZZ | {"digest": "other"}))
-    done = run(tmp_path)
-    assert done.exit_code == 0 and made(tmp_path) == ["mutation"]
-    assert (
-        "fuzz: not made, this machine lacks package no_such_package; "
-        "the report that there is: made 2026-11-20 10:00 UTC, older than the code it judges" in done.output
-    )
-    assert "oracle: not made, this machine lacks program no-such-program; there is no report" in done.output
-    assert run(tmp_path, "--only", "fuzz").exit_code == 1
-    listed = run(tmp_path, "--list", "--only", "fuzz")
-    assert listed.exit_code == 0 and "older than the code it judges | - |" in listed.output
-    assert "| package no_such_package |" in listed.output and "| mutation |" not in listed.output
-
-
-def test_only_what_there_is_can_be_asked_for(tmp_path: Path) -> None:
-    result = run(tmp_path, "--only", "fuss")
-    assert result.exit_code == 2 and "no report 'fuss'" in result.output
-
-
-def test_the_table_has_every_report_with_its_command(tmp_path: Path) -> None:
-    result = run(tmp_path, "--list")
-    assert result.exit_code == 0
-    for name in TOPICS:
-        assert f"| {name} | - | - |" in result.output
-    assert f"python -m validation fuzz --output {tmp_path}" in result.output
-    assert f"campaign run --models all --report {tmp_path} -o {tmp_path}/work/campaign-" in result.output
-    assert "--quick" not in result.output and NEEDS.keys() <= TOPICS.keys()
-    quick = run(tmp_path, "--list", "--quick", "--only", "pareto", "--only", "oracle").output
-    assert "pareto --output" in quick and quick.count("--quick") == 1
 
 
 PARENT = """

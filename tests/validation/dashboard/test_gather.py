@@ -8,10 +8,9 @@ from typing import Any
 import pytest
 
 from validation.dashboard.catalogue import TOPICS
-from validation.dashboard.gather import Entry, doubts, gather
+from validation.dashboard.gather import Entry, gather
 from validation.reporting import evidence
 from validation.reporting.figures import Chart
-from validation.reporting.provenance import Provenance
 from validation.reporting.record import Topic
 
 DIGEST = "0123456789abcdef"
@@ -92,32 +91,6 @@ def test_a_broken_report_says_so_and_spares_the_others(tmp_path: Path, text: str
 )
 def test_doubts_are_told(tmp_path: Path, change: dict[str, Any], says: str) -> None:
     assert entry(write(tmp_path, FUZZ | change)).remarks == (says,)
-
-
-def test_what_is_said_of_several_compilers_comes_before_the_default_one() -> None:
-    """The report on timing builds its sides by more than one."""
-    machine = {"compilers": ["gcc 12", "clang 19"], "flags": {"symofros": "-O2", "pinocchio": "-O3"}}
-    rows = dict(Provenance.of({"compiler": "cc", "flags": "-O2", "seconds": 60.0, "machine": machine}).rows)
-    assert rows == {"took": "60 s", "compiler": "gcc 12; clang 19", "flags": "symofros -O2; pinocchio -O3"}
-
-
-def test_a_package_that_is_not_installed_makes_nothing_stale() -> None:
-    origin = Provenance.of(FUZZ | {"versions": {"adams": "1"}})
-    assert doubts(origin, {"numpy": "2.0"}) == []
-
-
-@pytest.mark.parametrize("place", ["top", "machine"])
-def test_origins_are_found_wherever_a_report_keeps_them(place: str) -> None:
-    told = {
-        "date": "2026-01-01",
-        "flags": {"symofros": "-O2", "pinocchio": "-O3"},
-        "versions": {"numpy": "2"},
-        "processor": "Z80",
-    }
-    data = told if place == "top" else {"machine": told}
-    origin = Provenance.of(data)
-    assert (origin.date, origin.machine, origin.versions) == ("2026-01-01", "Z80", {"numpy": "2"})
-    assert ("flags", "symofros -O2; pinocchio -O3") in origin.rows
 
 
 REPORTS = Path(__file__).parents[3] / "reports"

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
 from validation.__main__ import app
-from validation.diagrams import catalogue
 from validation.reporting.findings import Study
 from validation.reporting.plain import restored
 
@@ -27,19 +25,3 @@ def test_the_studies_answer(name: str, tmp_path: Path) -> None:
     assert findings and not missed
     page = (tmp_path / "diagrams.html").read_text()
     assert page.count('role="img"') >= 3 and "Figure 1.1" in page
-
-
-@pytest.mark.slow
-def test_a_miss_is_said(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    from validation.diagrams import threads
-
-    def missed(quick: bool) -> object:
-        study = threads.study(quick)
-        return replace(study, findings=(replace(study.findings[0], high=1.0), *study.findings[1:]))
-
-    monkeypatch.setitem(catalogue.STUDIES, "threads", missed)
-    done = CliRunner().invoke(app, ["diagrams", "--study", "threads", "--quick", "--report", str(tmp_path)])
-    assert done.exit_code == 1
-    assert "missed" in (tmp_path / "diagrams.md").read_text()
-    page = (tmp_path / "diagrams.html").read_text()
-    assert 'role="img"' in page and "Figure 1.1" in page

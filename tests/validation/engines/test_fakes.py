@@ -18,8 +18,6 @@ from validation.engines.matrix import cells
 from validation.engines.models.kinds import tree_of
 from validation.engines.plugins import OWN
 from validation.engines.proving import scripts
-from validation.engines.proving.pruning import pruned
-from validation.engines.proving.shortening import picked, shortened, with_numpy
 from validation.engines.report import compose
 
 ROOT = Path(__file__).parents[3]
@@ -147,23 +145,6 @@ def test_a_script_that_does_not_end_proves_nothing(tmp_path: Path, monkeypatch: 
     path.write_text("while True: pass\n")
     output, failed = scripts.fails(path)
     assert not failed and "no end in 0.5 s" in output
-
-
-def test_an_import_of_all_names_is_kept() -> None:
-    script = "from math import *\nfrom os import sep\nvalue = sqrt(2.0)\n"
-    assert pruned(script) == "from math import *\nvalue = sqrt(2.0)\n"
-
-
-def test_an_empty_script_has_nothing_to_pick() -> None:
-    assert picked("", (0, 0)) is None and picked("# nothing", ()) is None
-
-
-def test_numpy_is_imported_where_it_is_named() -> None:
-    assert with_numpy("value = np.eye(2)") == "import numpy as np\nvalue = np.eye(2)"
-    assert with_numpy("import numpy as np\nvalue = np.eye(2)") == "import numpy as np\nvalue = np.eye(2)"
-    assert with_numpy("value = 2") == "value = 2"
-    script = "from __future__ import annotations\nimport math\nvalue = [0.0, 0.0, 0.0]"
-    exec(compile(shortened(script), "script", "exec"), {})
 
 
 def test_a_plug_in_that_raises_fails_its_test_in_pytest(monkeypatch: pytest.MonkeyPatch) -> None:

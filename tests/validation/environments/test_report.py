@@ -5,18 +5,17 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import asdict, replace
-from importlib import import_module
 from typing import Any
 
 import pytest
 
-from validation.environments import in_node, worker
+from validation.environments import worker
 from validation.environments.in_jax import JAX
 from validation.environments.in_torch import TORCH
-from validation.environments.measure import SETTINGS, take
+from validation.environments.measure import take
 from validation.environments.record import NATIVE, OURS, Absent, Record, Row
 from validation.environments.report import TOPIC
-from validation.reporting import html, markdown
+from validation.reporting import markdown
 from validation.reporting.command import composed
 from validation.reporting.plain import plain
 from validation.reporting.provenance import Provenance
@@ -51,21 +50,6 @@ def test_a_race_is_a_row_of_times_and_ratios() -> None:
     assert "ours is the faster beside 2 of 2 times of peers" in text
     assert "| JAX | 2.0e-14 | 45× to 45× | 73× to 73× |" in text and "| PyTorch | 2.0e-14 | - | - |" in text
     assert "73× JAX: peers' time over ours, median with 1024 states a call" in text
-
-
-def test_the_page_shows_a_figure_of_each_environment_and_says_what_to_see() -> None:
-    page = html.page(report(), Provenance(), "")
-    assert page.count("<figure>") == 2 and "Look at how far to the right" in page
-
-
-def test_who_is_not_there_is_named_with_what_installs_it() -> None:
-    absent = [
-        Absent("casadi", "Pinocchio", "pinocchio.casadi is not installed", "conda install pinocchio"),
-        Absent("wasm", OURS, "Node is not installed", "apt install nodejs"),
-    ]
-    text = markdown.page(report(absent=absent), Provenance(), "")
-    assert "- Pinocchio in CasADi: pinocchio.casadi is not installed; `conda install pinocchio`" in text
-    assert "- WebAssembly: Node is not installed; `apt install nodejs`" in text
 
 
 def test_a_side_that_differs_is_told_at_the_top() -> None:
@@ -119,27 +103,3 @@ def test_a_framework_that_is_missing_is_told_with_its_command(
     worker.work(environment, ["planar2R"], [1], 1, lambda kind, value: told.append((kind, value)))
     ((kind, value),) = told
     assert kind == "absent" and value["who"] == OURS and value["remedy"].startswith("pip install")
-
-
-def test_a_peer_that_is_missing_is_told_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    def found(name: str) -> Any:
-        if name in ("adam.casadi", "pinocchio.casadi"):
-            raise ModuleNotFoundError(name)
-        return import_module(name)
-
-    monkeypatch.setattr(worker, "import_module", found)
-    told: list[tuple[str, Any]] = []
-    casadi = worker.ENVIRONMENTS["casadi"]
-    worker.work(casadi, [], [1], 1, lambda kind, value: told.append((kind, value)))
-    assert [value["who"] for kind, value in told if kind == "absent"] == ["adam", "Pinocchio"]
-
-
-def test_webassembly_says_what_it_lacks(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(in_node.shutil, "which", lambda name: None)
-    told: list[tuple[str, Any]] = []
-    worker.work_in_node(["planar2R"], [1], 1, lambda kind, value: told.append((kind, value)))
-    assert told[0][1]["reason"] == "Node is not installed"
-
-
-def test_every_environment_has_a_process_of_its_own() -> None:
-    assert list(SETTINGS) == ["wasm", "jax", "torch", "casadi"] and set(worker.ENVIRONMENTS) | {"wasm"} == set(SETTINGS)

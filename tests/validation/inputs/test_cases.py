@@ -49,12 +49,6 @@ def test_states_leave_a_tail_behind_vectors_of_every_width() -> None:
     assert all(DEFAULT_STATES % lanes for lanes in (2, 4, 8))
 
 
-def test_what_takes_longest_is_begun_early() -> None:
-    labels = [case.label for case in sorted(standard_set(), key=lambda case: -case.weight)]
-    assert labels.index("flexible_mss") < len(labels) // 4  # The longest of all.
-    assert {"heavy_top", "pendulum", "sampler"} <= set(labels[-6:])
-
-
 def test_a_package_that_is_not_there(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("validation.inputs.cases.ROBOT_PACKAGE", "no-such-package")
     with pytest.raises(FileNotFoundError, match=r"is not installed; pip install 'symofros\[validation\]'"):

@@ -64,19 +64,6 @@ def test_a_fault_is_there_while_it_is_planted_and_only_then(overlay: Overlay) ->
     assert not (overlay.tree.parent / "root" / "symofros" / "__pycache__").exists()
 
 
-def test_the_revision_that_was_copied_outlives_later_ones_of_the_repository(
-    tmp_path: Path, overlay: Overlay, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(overlays, "revision", lambda _: "a later one")
-    again = Overlay(tmp_path / "root", tmp_path / "work")
-    again.close()
-    assert again.revision == overlay.revision != "a later one"
-    (tmp_path / "work" / "revision").unlink()
-    older = Overlay(tmp_path / "root", tmp_path / "work")
-    older.close()
-    assert older.revision == ""
-
-
 def test_faults_of_the_simulation_alone_leave_the_identity_of_the_copy_as_it_is(overlay: Overlay) -> None:
     package = overlay.tree / "symofros"
 

@@ -116,8 +116,3 @@ def test_command_fails_on_disagreement(monkeypatch: pytest.MonkeyPatch, tmp_path
     assert result.exit_code == 1 and "not all agree: loads (lagrange)." in result.stdout
     # A part has a folder of its own, and leaves the whole report as it is.
     assert (tmp_path / "oracle" / "oracle.html").is_file()
-
-
-def test_command_refuses_an_unknown_model() -> None:
-    result = CliRunner().invoke(app, ["oracle", "--model", "planer"])
-    assert result.exit_code == 2 and "no model 'planer'" in result.stderr.replace("\n", " ")

@@ -43,11 +43,6 @@ def test_report_end_to_end(tmp_path: Path) -> None:
     assert again["problems"]["andrews"]["points"] == data["problems"]["andrews"]["points"]
 
 
-def test_an_unknown_problem_is_bad_input() -> None:
-    found = CliRunner().invoke(app, ["pareto", "--problem", "spinup"])
-    assert found.exit_code == 2 and "spin_up" in found.output
-
-
 @pytest.mark.slow
 def test_a_quick_run_of_the_pendulum_fails_nowhere(tmp_path: Path) -> None:
     """It reaches none of the errors at which engines are compared, which is no miss."""

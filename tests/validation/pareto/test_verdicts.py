@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 import math
-import re
 from dataclasses import replace
 
 import pytest
 
 from validation.pareto import verdicts
 from validation.pareto.catalogue import PROBLEMS
-from validation.pareto.figures import MOST, figure
-from validation.pareto.problem import OURS, BenchmarkProblem, Point, Target
+from validation.pareto.problem import OURS, Point, Target
 from validation.pareto.race import Result
-from validation.reporting.charts import draw
-from validation.reporting.numbers import duration
 
 PROBLEM = replace(PROBLEMS["spin_up"], targets=(Target("Exudyn", 1e-2, 200.0),))
 
@@ -63,36 +59,6 @@ def test_below_the_floor_of_second_order_rods_of_ours_count() -> None:
 
 def test_runs_that_did_not_come_to_their_end_are_named() -> None:
     assert any("lost" in said for said in verdicts.refused(result(1e-4, 1e-1)))
-
-
-def test_the_front_is_named_beside_the_figure_and_what_is_far_off_does_not_stretch_it() -> None:
-    found = result(1e-4, 1e-1)
-    far_off = Point(OURS, "none", "euler", "1 s", 1e3, 1e-9)
-    every, methods = (draw(one) for one in figure(PROBLEM, replace(found, points=(far_off, *found.points))).charts)
-    for name in ("3 modes, 20 ms", "8 elements, 1 ms", "floor of second-order beams, first order", "Exudyn", "rk4"):
-        assert f">{name}</text>" in every, name
-    assert "4 elements, 5 ms" not in every and ">euler<" not in methods and ">10⁻⁷<" not in every
-
-
-def test_at_most_eight_methods_are_drawn_and_the_others_are_named() -> None:
-    points = tuple(Point(OURS, "1 mode", f"method{k}", "1 ms", 5e-3, 1e-3 * (k + 1)) for k in range(10))
-    drawn = figure(PROBLEM, replace(result(1e-4, 1e-1), points=points))
-    assert len(re.findall(">method[0-9]</text>", draw(drawn.charts[1]))) == MOST
-    assert "Not drawn: method8, method9;" in drawn.caption
-
-
-@pytest.mark.parametrize(("seconds", "shown"), [(2.0, "2 s"), (3e-3, "3 ms"), (4.56e-5, "45.6 µs"), (math.inf, "-")])
-def test_durations(seconds: float, shown: str) -> None:
-    assert duration(seconds) == shown
-
-
-@pytest.mark.parametrize("problem", PROBLEMS.values(), ids=PROBLEMS)
-def test_problems_say_what_they_compare(problem: BenchmarkProblem) -> None:
-    assert problem.targets and problem.sources and problem.axis.endswith("]")
-    assert all(target.error > problem.trust for target in problem.targets), "references must tell what is asked"
-    assert {target.engine for target in problem.targets} <= {
-        word for e in ("Exudyn", "MuJoCo") for word in [e] if e in problem.tuned
-    }
 
 
 def test_a_quick_run_in_which_nobody_keeps_the_error_is_no_miss() -> None:

@@ -11,7 +11,6 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from symofros.base.functions import FUNCTIONS
-from symofros.base.model_function import cotangents
 from validation.mechanics.assembly import assemble
 from validation.procedures import analyses, batches, catalogue, forces, identities, reactions, runs, steps
 from validation.procedures.catalogue import PROCEDURES, first_scene, judge_procedures
@@ -86,7 +85,7 @@ def test_every_function_with_vector_jacobian_products_is_asked_for() -> None:
     assert set(identities.TRANSPOSED) == {row.transposes for row in FUNCTIONS.values() if row.transposes}
     for name, (inputs, outputs) in identities.TRANSPOSED.items():
         assert tuple(inputs.split()) == tuple(group for group in FUNCTIONS[name].inputs if group not in ("t", "gains"))
-        assert tuple(outputs.split()) == tuple(output.name for output in cotangents(FUNCTIONS[name]).values())
+        assert tuple(outputs.split()) == tuple(output.name for output in FUNCTIONS[name].cotangents.values())
 
 
 def test_wrong_signs_in_momenta_and_second_derivatives_show(monkeypatch: pytest.MonkeyPatch) -> None:

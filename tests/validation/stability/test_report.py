@@ -18,8 +18,8 @@ from validation.reporting.command import Run
 from validation.reporting.findings import Finding
 from validation.stability.catalogue import STUDIES
 from validation.stability.measure import measure
-from validation.stability.report import TOPIC, compose
-from validation.stability.study import Cell, ParameterStudy, Subject, Verdict, survey
+from validation.stability.report import TOPIC
+from validation.stability.study import Cell, Subject, Verdict
 
 # Those whose models other tests compile, and that take less than half a second.
 FEW = ("stick_slip", "spin")
@@ -37,17 +37,6 @@ def quick(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     return folder / "stability" if chosen else folder, data
 
 
-def test_the_catalogue_is_whole() -> None:
-    assert len(STUDIES) >= 14
-    for name, study in STUDIES.items():
-        assert study.question.endswith("?") and study.advice.endswith(".") and study.sources, name
-        assert study.bound > 0 and re.search(r"\[.+\]$", study.quantity), name
-        for grid in (study.x, study.y):
-            assert re.search(r"\[.+\]$", grid.name), f"{name}: an axis has its unit"
-            assert list(grid.values) == sorted(set(grid.values)) and len(grid.few) >= 2, name
-        assert len({subject.name for subject in study.subjects}) == len(study.subjects)
-
-
 def test_every_claim_holds_on_a_coarse_grid(quick: tuple[Path, dict[str, Any]]) -> None:
     _, data = quick
     assert data["ok"] and data["quick"] and not data["failures"] and not data["unfinished"]
@@ -62,17 +51,6 @@ def test_every_claim_holds_on_a_coarse_grid(quick: tuple[Path, dict[str, Any]]) 
                 (v is None) == (e not in ("finished", "event"))
                 for v, e in zip(values.ravel(), ended.ravel(), strict=True)
             ), name
-
-
-def test_the_page_is_whole_and_self_contained(quick: tuple[Path, dict[str, Any]]) -> None:
-    folder, data = quick
-    studies = data["studies"]
-    page, summary = ((folder / f"stability.{kind}").read_text() for kind in ("html", "md"))
-    assert page.count("<figcaption>") == len(studies)
-    assert page.count('role="img"') == sum(len(study["maps"]) for study in studies.values())
-    assert not re.search(r'(src|href)="(?!#)', page) and "<script" not in page and "nan" not in page.lower().split()
-    for name in studies:
-        assert f"python -m validation stability --study {name} --quick" in page and f"--study {name}" in summary
 
 
 def test_a_missed_bound_fails_the_command(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -95,26 +73,3 @@ def test_a_study_that_can_not_be_done_keeps_no_other_from_it(monkeypatch: pytest
     assert (
         not atlas["ok"] and atlas["failures"] == {"spin": "ArithmeticError: no"} and atlas["studies"]["redundant"]["ok"]
     )
-
-
-@pytest.mark.slow
-def test_ctrl_c_keeps_what_is_done(monkeypatch: pytest.MonkeyPatch) -> None:
-    def interrupted(x: float, y: float) -> Cell:
-        raise KeyboardInterrupt
-
-    monkeypatch.setitem(STUDIES, "spin", replace(STUDIES["spin"], subjects=(Subject("s", interrupted),)))
-    atlas = measure(Run(TOPIC), ["redundant", "spin", "deflection"], quick=True)
-    assert list(atlas["studies"]) == ["redundant"] and atlas["unfinished"] == ("spin", "deflection") and not atlas["ok"]
-    assert "Interrupted: spin, deflection" in compose(atlas).summary
-
-
-def test_an_unknown_study_is_refused() -> None:
-    done = CliRunner().invoke(app, ["stability", "--study", "spinn"])
-    assert done.exit_code == 2 and "no study 'spinn'" in done.output
-
-
-def test_progress_is_told_of_every_run() -> None:
-    told: list[int] = []
-    study: ParameterStudy = STUDIES["spin"]
-    survey(study, True, lambda: told.append(1))
-    assert len(told) == study.runs(True)

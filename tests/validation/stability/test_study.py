@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
-from collections import Counter
 from dataclasses import replace
 from typing import Any
 
@@ -12,14 +10,12 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from validation.reporting.charts import draw
 from validation.reporting.command import Run
 from validation.reporting.findings import Finding
-from validation.stability import heatmap
 from validation.stability.closed_loops import baumgarte
 from validation.stability.measure import measure
 from validation.stability.report import TOPIC
-from validation.stability.study import Cell, Grid, Limit, Map, Subject, cell, decades
+from validation.stability.study import Cell, Limit, Map, Subject, cell
 
 
 def a_map(values: list[list[float]], bound: float = 1.0, limits: tuple[Limit, ...] = ()) -> Map:
@@ -58,31 +54,6 @@ class TestMaps:
         run = baumgarte.swing("rk4", 1e-2, 20.0, 0.1)
         kept = cell(run, baumgarte.violation)
         assert kept.ended == "finished" and kept.note == "; ".join(run.outcome.notes)
-
-    def test_picture(self) -> None:
-        grid = Grid("p [-]", (1.0, 10.0, 100.0), (1.0, 100.0))
-        found = a_map(
-            [[0.1, 0.1, 0.1], [0.1, 0.1, 5.0], [0.1, math.nan, 7.0]],
-            limits=(Limit("one", np.array([1.0, 100.0]), lambda x: np.full_like(x, 10.0)),),
-        )
-        svg = draw(heatmap.draw(found, grid, grid, "a < b [m]"))
-        kinds = [[heatmap.cell(one, found.bound)[0] for one in row] for row in found.cells]
-        assert Counter(kind for row in kinds for kind in row) == {"good": 6, "bad": 2, "ended": 1}
-        # The edge: below the two bad columns, left of the middle and of the right one.
-        columns = rows = heatmap.borders(found.x, grid)
-        assert len(heatmap.edge(found.good, columns, rows)) == 4 and columns == pytest.approx(10 ** np.arange(-0.5, 3))
-        for name in ("numbers: decade of the a &lt; b [m]", "at most 1", "more", "ended before (×)", "one"):
-            assert f">{name}</text>" in svg, name
-        # The closed form at 10 runs through the middle row.
-        ((start, end),) = re.findall(
-            r'd="M [\d.]+ ([\d.]+) L [\d.]+ ([\d.]+) " clip-path="[^"]*" style="[^"]*--good', svg
-        )
-        (top, bottom) = re.findall(r'<path d="M [\d.]+ ([\d.]+) L [\d.]+ [\d.]+ L [\d.]+ ([\d.]+)', svg)[1]
-        assert start == end and float(start) == pytest.approx((float(top) + float(bottom)) / 2, abs=0.2)
-
-
-def test_decades() -> None:
-    assert decades(0.1, 10.0, 1) == (0.1, 1.0, 10.0)
 
 
 def test_ctrl_c_within_a_run_ends_the_atlas(monkeypatch: pytest.MonkeyPatch) -> None:

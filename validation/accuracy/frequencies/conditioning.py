@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 import symofros as sf
@@ -31,6 +33,24 @@ def study(quick: bool) -> Study:
             K, M = stiffness_and_mass(m)
             numbers[family][i] = np.linalg.cond(M)
             errors[family][i] = abs(np.sqrt(squares(K, M)[0]) / FIRST - 1.0)
+    findings = _findings(numbers, errors, refused)
+    answer = (
+        f"Monomials lose a digit and a half with every further one: {numbers['polynomial'][3]:.0e} with four, "
+        f"{numbers['polynomial'][6]:.0e} with seven, and are refused with {refused}, in words that name another "
+        f"family. Splines stay at {numbers['spline'][-1]:.0f}, legendre grows as (2n + 3)/5 and is diagonal, "
+        "cantilever modes have the identity."
+    )
+    return Study(
+        "How many functions before the digits go?",
+        answer,
+        (figure(counts, numbers, errors),),
+        tuple(findings),
+        (source("conditioning"),),
+    )
+
+
+def _findings(numbers: Mapping[str, Array], errors: Mapping[str, Array], refused: int) -> list[Finding]:
+    """What is asked of condition numbers, of errors of the first frequency, of the number of functions refused."""
     rows = data("conditioning")["rows"]
     findings = [
         near(
@@ -69,19 +89,7 @@ def study(quick: bool) -> Study:
             reason="its functions are the modes",
         ),
     ]
-    answer = (
-        f"Monomials lose a digit and a half with every further one: {numbers['polynomial'][3]:.0e} with four, "
-        f"{numbers['polynomial'][6]:.0e} with seven, and are refused with {refused}, in words that name another "
-        f"family. Splines stay at {numbers['spline'][-1]:.0f}, legendre grows as (2n + 3)/5 and is diagonal, "
-        "cantilever modes have the identity."
-    )
-    return Study(
-        "How many functions before the digits go?",
-        answer,
-        (figure(counts, numbers, errors),),
-        tuple(findings),
-        (source("conditioning"),),
-    )
+    return findings
 
 
 def figure(counts: Array, numbers: dict[str, Array], errors: dict[str, Array]) -> Figure:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -81,24 +82,7 @@ def study(quick: bool) -> Study:
         family: np.array([euler(family, int(n)) if n <= 7 or family != "polynomial" else np.nan for n in counts])
         for family in FAMILIES
     }
-    findings = [
-        near(f"Euler's load, {family}, 5 functions", float(loads[family][4]), EULER, 1e-3, "π²/4")
-        for family in FAMILIES
-    ]
-    known = reference["convergence_with_modes"]
-    for family, basis in BASES.items():
-        worst = max(
-            (abs(loads[family][n - 1] / known[str(n)][basis] - 1.0), n) for n in range(1, min(len(counts), 7) + 1)
-        )
-        findings.append(
-            near(
-                f"Euler's load, {family}, {worst[1]} functions, against a Ritz solution",
-                float(loads[family][worst[1] - 1]),
-                known[str(worst[1])][basis],
-                1e-8,
-                "the farthest of all numbers of functions",
-            )
-        )
+    findings = _euler(loads, reference["convergence_with_modes"])
     m = heavy(5)
     (K, _), (falling, _) = stiffness_and_mass(m), stiffness_and_mass(m, g=-1.0)
     greenhill = critical(K, K - falling)
@@ -147,6 +131,34 @@ def study(quick: bool) -> Study:
         tuple(findings),
         (source("buckling_cantilever"),),
     )
+
+
+def _euler(loads: Mapping[str, Array], known: Mapping[str, Mapping[str, float]]) -> list[Finding]:
+    """What is asked of Euler's load.
+
+    Args:
+        loads: Loads by family, of 1, 2, ... functions.
+        known: Those of a Ritz solution, by number of functions and basis.
+    """
+    findings = [
+        near(f"Euler's load, {family}, 5 functions", float(loads[family][4]), EULER, 1e-3, "π²/4")
+        for family in FAMILIES
+    ]
+    for family, basis in BASES.items():
+        worst = max(
+            (abs(loads[family][n - 1] / known[str(n)][basis] - 1.0), n)
+            for n in range(1, min(len(loads[family]), 7) + 1)
+        )
+        findings.append(
+            near(
+                f"Euler's load, {family}, {worst[1]} functions, against a Ritz solution",
+                float(loads[family][worst[1] - 1]),
+                known[str(worst[1])][basis],
+                1e-8,
+                "the farthest of all numbers of functions",
+            )
+        )
+    return findings
 
 
 def axial(counts: Array, loads: dict[str, Array], quick: bool, reference: dict[str, Any]) -> Figure:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 import symofros as sf
@@ -96,8 +98,37 @@ def study(quick: bool) -> Study:
     whole, small, moderate = errors["all"], deflection <= SMALL, deflection <= MODERATE
     low = deflection <= 0.05
     lost = first_without_rest(m["all"], float(at[0]))
-    untwisted = float(np.abs(turned["first_order"]).max())
-    findings = (
+    at_loss = float(np.linalg.norm(rod_tips(lost, at)[0][0, 1:]) / Strip().length)
+    findings = _findings(deflection, whole, turned, at_loss)
+    answer = (
+        f"Up to a deflection of {SMALL:g} L the tip is where Exudyn's geometrically exact beam has it to "
+        f"{whole[small].max():.1%} of its displacement, up to {MODERATE:g} L to {whole[moderate].max():.1%}. Bending "
+        f"twists the strip, which is followed with everything kept, to {np.abs(turned['all'][low] - 1).max():.0%} "
+        f"up to 0.05 L, and unknown to first order. Under a load at 60° of {lost:.1f} N the "
+        "second-order strip finds no rest any more: its cubic strain energy has no bottom there. "
+        "A rod by its strains (`theory: strain`) does."
+    )
+    figures = (around(angles, loads, reference, tips_of_loads), growth(deflection, errors))
+    return Study(
+        "Bent both ways and twisted, where does second order fail?",
+        answer,
+        figures,
+        findings,
+        ("Princeton beam: Dowell & Traybar 1975; Exudyn, 32 geometrically exact elements",),
+    )
+
+
+def _findings(deflection: Array, whole: Array, turned: Mapping[str, Array], lost: float) -> tuple[Finding, ...]:
+    """What is asked of the strip under loads at 60 degrees.
+
+    Args:
+        deflection: Deflections over the length.
+        whole: Errors with all terms, over the displacements.
+        turned: Twists over Exudyn's, by order.
+        lost: First deflection over the length at which no rest is found.
+    """
+    small, moderate, low = deflection <= SMALL, deflection <= MODERATE, deflection <= 0.05
+    return (
         Finding(
             "retain: all, deflection up to 0.10 L: largest error over the displacement",
             float(whole[small].max()),
@@ -123,30 +154,19 @@ def study(quick: bool) -> Study:
             0.05,
             reason="cubic strain energy gives it",
         ),
-        Finding("first order: twist over Exudyn's", untwisted, 1e-9, reason="its strain energy is quadratic"),
+        Finding(
+            "first order: twist over Exudyn's",
+            float(np.abs(turned["first_order"]).max()),
+            1e-9,
+            reason="its strain energy is quadratic",
+        ),
         Finding(
             "retain: all, load at 60°: deflection over L, in Exudyn, where our equilibrium is lost",
-            float(np.linalg.norm(rod_tips(lost, at)[0][0, 1:]) / Strip().length),
+            lost,
             0.5,
             0.25,
             "beyond what second order claims",
         ),
-    )
-    answer = (
-        f"Up to a deflection of {SMALL:g} L the tip is where Exudyn's geometrically exact beam has it to "
-        f"{whole[small].max():.1%} of its displacement, up to {MODERATE:g} L to {whole[moderate].max():.1%}. Bending "
-        f"twists the strip, which is followed with everything kept, to {np.abs(turned['all'][low] - 1).max():.0%} "
-        f"up to 0.05 L, and unknown to first order. Under a load at 60° of {lost:.1f} N the "
-        "second-order strip finds no rest any more: its cubic strain energy has no bottom there. "
-        "A rod by its strains (`theory: strain`) does."
-    )
-    figures = (around(angles, loads, reference, tips_of_loads), growth(deflection, errors))
-    return Study(
-        "Bent both ways and twisted, where does second order fail?",
-        answer,
-        figures,
-        findings,
-        ("Princeton beam: Dowell & Traybar 1975; Exudyn, 32 geometrically exact elements",),
     )
 
 

@@ -76,11 +76,6 @@ def plus(A: Matrix, B: Matrix) -> Matrix:
     return [add(a, b) for a, b in zip(A, B, strict=True)]
 
 
-def minus(A: Matrix, B: Matrix) -> Matrix:
-    """The difference of matrices."""
-    return [sub(a, b) for a, b in zip(A, B, strict=True)]
-
-
 def symmetric(entry: Any) -> Matrix:
     """A 3 x 3 matrix of which entry(i, j) is asked for i <= j only."""
     upper = {(i, j): entry(i, j) for i in range(3) for j in range(i, 3)}

@@ -28,7 +28,6 @@ import symofros as sf
 
 from ...contract.conventions import Chart, Slot, times
 from ...contract.interface import States, Subject, Unsupported
-from ...mechanics.assembly import assemble
 from ...mechanics.geometry import Array
 from ...mechanics.quadrature import STATION, gauss_stations
 from ...mechanics.shape_functions import of_family
@@ -118,7 +117,7 @@ def build(subject: Subject, own_weight: bool = False) -> FloatingFrameEngine | U
         return obstacle
     (beam,) = subject.system.bodies
     assert isinstance(beam, sf.Beam)
-    assembly = assemble(subject.system)
+    assembly = subject.assembly
     free, elastic = assembly.movers
     chart = Chart((Slot(free, 0, 0, "free_in_world"), Slot(elastic, 7, 6)), assembly.nq, assembly.nv)
     mesh = _Mesh(beam, subject.system.parameter_values())

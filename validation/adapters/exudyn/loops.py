@@ -24,7 +24,7 @@ import symofros as sf
 from ...contract.conventions import xyzw_to_wxyz
 from ...contract.interface import States, Subject, Unsupported
 from ...mechanics.absolute import Moving, bodies, joint_accelerations, work_rows
-from ...mechanics.assembly import BASE, Assembly, FrameSite, Mover, anchor_name, assemble
+from ...mechanics.assembly import BASE, Assembly, FrameSite, Mover, anchor_name
 from ...mechanics.geometry import Array, Placement, along_z, matrix_quaternion
 from ...mechanics.joint_kinds import PartKind
 from ..closed import AXES
@@ -152,7 +152,7 @@ def _carried(at: _Solved, site: FrameSite) -> Array:
 
 def build(subject: Subject) -> JointedEngine | Unsupported:
     """Exudyn's system of a description with closures and rods."""
-    assembly = assemble(subject.system)
+    assembly = subject.assembly
     obstacle = unrepresented(subject.system, assembly, _JOINTS) or _obstacle(subject.system, assembly)
     if obstacle is not None:
         return obstacle

@@ -19,7 +19,7 @@ from ...contract.interface import States, Subject, Unsupported
 from ...contract.memory import LatestResults
 from ...contract.quantities import TREE_QUANTITIES
 from ...mechanics import carried
-from ...mechanics.assembly import Assembly, FrameSite, assemble
+from ...mechanics.assembly import Assembly, FrameSite
 from ...mechanics.carried import AllSpeeds, Carried
 from ...mechanics.extrapolation import Refined
 from ...mechanics.geometry import Array
@@ -170,7 +170,7 @@ def engine(subject: Subject, name: str) -> MappedEngine | Unsupported:
         subject: Subject, with or without beams.
         name: Name of the engine in tables.
     """
-    assembly = assemble(subject.system)
+    assembly = subject.assembly
     for mover in assembly.movers:
         if mover.kind not in carried.KINDS:
             what = "a section of a beam" if mover.kind == "section" else "a motion by formulas"

@@ -20,7 +20,7 @@ import symofros as sf
 from ...contract.conventions import times
 from ...contract.interface import Engine, States, Subject, Unsupported
 from ...mechanics import carried
-from ...mechanics.assembly import BASE, Assembly, FrameSite, Mover, assemble
+from ...mechanics.assembly import BASE, Assembly, FrameSite, Mover
 from ...mechanics.geometry import Array, Placement, along_z
 from ...mechanics.joint_kinds import PartKind
 from ..reach import armature, unrepresented
@@ -165,7 +165,7 @@ def build(subject: Subject) -> Engine | Unsupported:
     beam = next((body for body in system.bodies if isinstance(body, sf.Beam)), None)
     if beam is not None:
         return Unsupported(f"beam '{beam.name}': left to finite elements, exudyn-beams")
-    assembly = assemble(system)
+    assembly = subject.assembly
     if assembly.moves_no_mass:
         return Unsupported("a joint that moves no mass: its systems are solved, which gives NaN")
     obstacle = unrepresented(system, assembly, carried.KINDS)

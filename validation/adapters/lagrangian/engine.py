@@ -18,7 +18,7 @@ import symofros as sf
 
 from ...contract.interface import States, Subject, TreeEngine, Unsupported
 from ...contract.quantities import FORCES_STATED, TREE_QUANTITIES
-from ...mechanics.assembly import Assembly, assemble
+from ...mechanics.assembly import Assembly
 from ...mechanics.geometry import Array, skew
 from ...mechanics.parts import coordinate_symbols, speed_symbols
 from ..description import StatedForces
@@ -165,7 +165,7 @@ def build(subject: Subject) -> TreeEngine | Unsupported:
     system = subject.system
     if not any(isinstance(body, sf.Beam) for body in system.bodies):
         return Unsupported("no beams: rigid trees are left to faster engines")
-    assembly = assemble(system)
+    assembly = subject.assembly
     obstacle = _obstacle(assembly)
     if obstacle is not None:
         return obstacle

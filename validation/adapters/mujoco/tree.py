@@ -15,7 +15,7 @@ import numpy as np
 from ...contract.conventions import Chart, Encoding, Slot, angular_first_to_linear_first, xyzw_to_wxyz
 from ...contract.interface import States, Subject, TreeEngine, Unsupported
 from ...contract.quantities import TREE_QUANTITIES
-from ...mechanics.assembly import BASE, Assembly, Mover, assemble
+from ...mechanics.assembly import BASE, Assembly, Mover
 from ...mechanics.geometry import Array, Placement, matrix_quaternion
 from ...mechanics.joint_kinds import PartKind
 from ..reach import armature, offered, unrepresented
@@ -192,7 +192,7 @@ class MujocoEngine:
 
 def build(subject: Subject) -> TreeEngine | Unsupported:
     """MuJoCo's model of a description, body by body, with everything fixed to a body merged into it."""
-    assembly = assemble(subject.system)
+    assembly = subject.assembly
     obstacle = unrepresented(subject.system, assembly, _JOINTS)
     if obstacle is not None:
         return obstacle

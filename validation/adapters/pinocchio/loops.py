@@ -16,7 +16,7 @@ import pinocchio as pin
 import symofros as sf
 
 from ...contract.interface import States, Subject, Unsupported
-from ...mechanics.assembly import BASE, Assembly, anchor_name, assemble
+from ...mechanics.assembly import BASE, Assembly, anchor_name
 from ...mechanics.geometry import Array
 from ..closed import AXES
 from . import tree as trees
@@ -172,7 +172,7 @@ def build(subject: Subject) -> LoopEngine | Unsupported:
     tree = trees.build(subject)
     if isinstance(tree, Unsupported):
         return tree
-    model, assembly = tree.model, assemble(subject.system)
+    model, assembly = tree.model, subject.assembly
     closures, ties = [], []
     for i, item in enumerate(subject.system.constraints):
         if not isinstance(item, sf.Closure):

@@ -12,7 +12,7 @@ import pinocchio as pin
 from ...contract.conventions import Chart
 from ...contract.interface import States, Subject, Unsupported
 from ...contract.quantities import TREE_QUANTITIES
-from ...mechanics.assembly import FrameSite, Mass, Mover, assemble
+from ...mechanics.assembly import FrameSite, Mass, Mover
 from ...mechanics.geometry import Array, Placement
 from ...mechanics.joint_kinds import PartKind
 from ..reach import armature, bears_its_weight_alone, offered, unrepresented
@@ -147,7 +147,7 @@ class PinocchioEngine:
 
 def build(subject: Subject) -> PinocchioEngine | Unsupported:
     """Pinocchio's model of a description; it merges what is fixed to a joint's body by itself."""
-    assembly = assemble(subject.system)
+    assembly = subject.assembly
     obstacle = unrepresented(subject.system, assembly, _JOINTS)
     if obstacle is not None:
         return obstacle

@@ -27,8 +27,6 @@ from ..attack import (
 
 TOLERANCE = 1e-10
 ROUNDING = 1e-13
-# Distance from rest that a better solution beside the one returned may save, relative to it.
-SAVED = 1e-3
 _LIMIT = 2.0
 
 

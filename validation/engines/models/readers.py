@@ -87,97 +87,97 @@ def _turned_inertia() -> Link:
 
 def readings() -> dict[str, Reading]:
     """All files, by name."""
-    anchor = (
-        Joint("fixed", p=(0.0, 0.0, 0.7)),
-        Joint("revolute", axis=(0.0, 1.0, 0.0)),
-        Joint("fixed", p=(0.0, 0.1, -0.2)),
-    )
-    unplaced = '<compiler angle="radian"/>'
-    made = [
-        ("urdf: plain", "urdf", _urdf(_FIRST, _SECOND), _BODY, _NEXT),
-        ("urdf: inertial frame turned", "urdf", _urdf(_FIRST, _SECOND, _TURNED_A), _turned_inertia(), _NEXT),
+    made = [("urdf", *row) for row in _urdf_files()] + [("mjcf", *row) for row in _mjcf_files()]
+    return {name: Reading(form, text, _tree(name, a, b)) for form, name, text, a, b in made}
+
+
+def _urdf_files() -> list[tuple[str, str, Link, Link]]:
+    """URDF files: name, text, the two links that it states."""
+    return [
+        ("urdf: plain", _urdf(_FIRST, _SECOND), _BODY, _NEXT),
+        ("urdf: inertial frame turned", _urdf(_FIRST, _SECOND, _TURNED_A), _turned_inertia(), _NEXT),
         (
             "urdf: continuous",
-            "urdf",
             _urdf(_FIRST, _SECOND.replace("revolute", "continuous")),
             _BODY,
             _with(_NEXT, form="unbounded"),
         ),
         (
             "urdf: continuous, oblique",
-            "urdf",
             _urdf(_FIRST.replace("revolute", "continuous"), _SECOND),
             _with(_BODY, form="unbounded"),
             _NEXT,
         ),
         (
             "urdf: axis left out",
-            "urdf",
             _urdf(_FIRST, _SECOND.replace('<axis xyz="0 1 0"/>', "")),
             _BODY,
             _with(_NEXT, axis=(1.0, 0.0, 0.0)),
         ),
-        ("urdf: axis of length 2", "urdf", _urdf(_FIRST.replace("0.6 0 0.8", "1.2 0 1.6"), _SECOND), _BODY, _NEXT),
+        ("urdf: axis of length 2", _urdf(_FIRST.replace("0.6 0 0.8", "1.2 0 1.6"), _SECOND), _BODY, _NEXT),
         (
             "urdf: fixed link with mass",
-            "urdf",
             _urdf(_FIRST, 'fixed|<origin xyz="0 0 0.5"/>'),
             _BODY,
             _with(_NEXT, kind="fixed"),
         ),
         (
             "urdf: prismatic",
-            "urdf",
             _urdf(_FIRST, _SECOND.replace("revolute", "prismatic")),
             _BODY,
             _with(_NEXT, kind="prismatic"),
         ),
         (
             "urdf: mimic",
-            "urdf",
             _urdf(_FIRST, f'{_SECOND}<mimic joint="joint_a" multiplier="2" offset="0.5"/>'),
             _BODY,
             _with(_NEXT, mimics="a", ratio=2.0, offset=0.5),
         ),
-        ("mjcf: plain", "mjcf", _mjcf(_HINGE_A, _HINGE_B), _UNTURNED, _NEXT),
+    ]
+
+
+def _mjcf_files() -> list[tuple[str, str, Link, Link]]:
+    """MJCF files, likewise."""
+    anchor = (
+        Joint("fixed", p=(0.0, 0.0, 0.7)),
+        Joint("revolute", axis=(0.0, 1.0, 0.0)),
+        Joint("fixed", p=(0.0, 0.1, -0.2)),
+    )
+    unplaced = '<compiler angle="radian"/>'
+    return [
+        ("mjcf: plain", _mjcf(_HINGE_A, _HINGE_B), _UNTURNED, _NEXT),
         (
             "mjcf: anchor of a joint",
-            "mjcf",
             _mjcf(_HINGE_A, _HINGE_B.replace("<joint", '<joint pos="0 -0.1 0.2"')),
             _UNTURNED,
             replace(_NEXT, joints=(Joint("fixed", p=(0.0, -0.1, 0.7)), *anchor[1:])),
         ),
         (
             "mjcf: angles in degrees",
-            "mjcf",
             _mjcf(_HINGE_A.replace('0.3">', '0.3" euler="30 0 0">', 1), _HINGE_B, '<compiler angle="degree"/>'),
             _with(_UNTURNED, R=rpy_rotation(math.pi / 6, 0, 0)),
             _NEXT,
         ),
         (
             "mjcf: two joints of a body",
-            "mjcf",
             _mjcf(_HINGE_A, _HINGE_B.replace("<inertial", '<joint type="slide" axis="1 0 0"/><inertial'), unplaced),
             _UNTURNED,
             replace(_NEXT, joints=(*_NEXT.joints, Joint("prismatic", axis=(1.0, 0.0, 0.0)))),
         ),
         (
             "mjcf: armature by default",
-            "mjcf",
             _mjcf(_HINGE_A, _HINGE_B, f'{unplaced}<default><joint armature="0.5"/></default>'),
             _with(_UNTURNED, armature=(0.5,)),
             _with(_NEXT, armature=(0.5,)),
         ),
         (
             "mjcf: ball",
-            "mjcf",
             _mjcf(_HINGE_A, _HINGE_B.replace('<joint axis="0 1 0"/>', '<joint type="ball"/>')),
             _UNTURNED,
             _with(_NEXT, kind="ball"),
         ),
         (
             "mjcf: inertia of geoms",
-            "mjcf",
             _mjcf(
                 _HINGE_A,
                 'pos="0 0 0.5"><joint axis="0 1 0"/><geom type="box" size="0.1 0.2 0.3" pos="0 0.1 0.2" mass="3"/>',
@@ -186,4 +186,3 @@ def readings() -> dict[str, Reading]:
             replace(_NEXT, mass=3.0, inertia=((0.13, 0.0, 0.0), (0.0, 0.1, 0.0), (0.0, 0.0, 0.05))),
         ),
     ]
-    return {name: Reading(form, text, _tree(name, a, b)) for name, form, text, a, b in made}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -49,69 +49,90 @@ def _frame(R: Array, p: Array) -> str:
     return f'pos="{_text(p)}" xyaxes="{_text([*R[:, 0], *R[:, 1]])}"'
 
 
+class _Bodies:
+    """Elements of a tree's bodies, with the slots of their joints, which MuJoCo numbers depth first."""
+
+    def __init__(self, tree: Tree) -> None:
+        self.tree = tree
+        self.children: dict[int, list[int]] = {k: [] for k in range(-1, len(tree.links))}
+        for k, link in enumerate(tree.links):
+            self.children[link.parent].append(k)
+        self.slots: dict[int, tuple[Slot, ...]] = {}
+        self.nq = self.nv = 0
+        self.coupled = {end.link for one in tree.constraints if one.kind == "coupling" for end in one.ends}
+
+    def element(self, k: int) -> str | Unsupported:
+        """The element of a link and of what it carries."""
+        link = self.tree.links[k]
+        steps, (R, p) = series(link.joints)
+        if steps:
+            if not _is_identity(R, p):
+                return Unsupported("a link's frame stands at its joints", offered=False)
+            R, p = steps[0][:2]
+        joints = self._joints(k, steps)
+        if isinstance(joints, Unsupported):
+            return joints
+        inertia = np.array(link.inertia)
+        entries = _text(inertia[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)))
+        inertial = f'<inertial pos="{_text(link.com)}" mass="{link.mass!r}" fullinertia="{entries}"/>'
+        inner = self.elements(k)
+        if isinstance(inner, Unsupported):
+            return inner
+        own = [inertial if link.mass else "", *joints, constrained.sites(self.tree, link.name), *inner]
+        return f'<body name="{link.name}" {_frame(R, p)}>' + "".join(own) + "</body>"
+
+    def elements(self, k: int) -> list[str] | Unsupported:
+        """The elements of a link's children; -1 is the world."""
+        made = []
+        for child in self.children[k]:
+            text = self.element(child)
+            if isinstance(text, Unsupported):
+                return text
+            made.append(text)
+        return made
+
+    def _joints(self, k: int, steps: Sequence[tuple[Array, Array, Joint]]) -> list[str] | Unsupported:
+        """The elements of a link's joints."""
+        link, own, elements = self.tree.links[k], [], []
+        for number, (R, p, joint) in enumerate(steps):
+            if joint.kind not in _CHARTS or joint.form or joint.mimics:
+                return Unsupported(f"no joint of kind {joint.kind} {joint.form}".strip(), offered=False)
+            if number and not _is_identity(R, p):
+                return Unsupported("joints of one body share its frame", offered=False)
+            if joint.kind == "free" and (link.parent >= 0 or not _is_identity(*steps[0][:2])):
+                return Unsupported("a free joint stands in the world", offered=False)
+            chart, nq, nv = _CHARTS[joint.kind]
+            q, v = range(self.nq, self.nq + nq), range(self.nv, self.nv + nv)
+            own.append(Slot(chart, tuple(q), tuple(v)))
+            self.nq, self.nv = q.stop, v.stop
+            armature = f' armature="{joint.armature[0]!r}"' if joint.armature else ""
+            named = f' name="{link.name}"' if link.name in self.coupled else ""
+            for kind, axis in _elements(joint):
+                about = f' axis="{_text(axis)}"' if kind in ("hinge", "slide") else ""
+                elements.append(f'<joint{named} type="{kind}"{about}{armature}/>')
+        self.slots[k] = tuple(own)
+        return elements
+
+
+def _is_identity(R: Array, p: Array) -> bool:
+    return np.array_equal(R, np.eye(3)) and not np.any(p)
+
+
 def document(tree: Tree) -> tuple[str, tuple[tuple[Slot, ...], ...], int, int] | Unsupported:
     """MJCF of a tree, with the slots of its joints, nq and nv.
 
     MuJoCo numbers joints depth first, so links must stand in that order to have their slots in series; others are found
     by walking.
     """
-    opened: dict[int, str] = {}
-    children: dict[int, list[int]] = {k: [] for k in range(-1, len(tree.links))}
-    for k, link in enumerate(tree.links):
-        children[link.parent].append(k)
-    slots: dict[int, tuple[Slot, ...]] = {}
-    counted = [0, 0]
-    coupled = {end.link for one in tree.constraints if one.kind == "coupling" for end in one.ends}
-
-    def body(k: int) -> str | Unsupported:
-        link = tree.links[k]
-        steps, (R_end, p_end) = series(link.joints)
-        if not steps:
-            R, p = R_end, p_end
-        elif not np.array_equal(R_end, np.eye(3)) or np.any(p_end):
-            return Unsupported("a link's frame stands at its joints", offered=False)
-        else:
-            R, p = steps[0][0], steps[0][1]
-        own, elements = [], []
-        for number, (R_step, p_step, joint) in enumerate(steps):
-            if joint.kind not in _CHARTS or joint.form or joint.mimics:
-                return Unsupported(f"no joint of kind {joint.kind} {joint.form}".strip(), offered=False)
-            if number and (not np.array_equal(R_step, np.eye(3)) or np.any(p_step)):
-                return Unsupported("joints of one body share its frame", offered=False)
-            if joint.kind == "free" and (link.parent >= 0 or not np.array_equal(R, np.eye(3)) or np.any(p)):
-                return Unsupported("a free joint stands in the world", offered=False)
-            chart, nq, nv = _CHARTS[joint.kind]
-            own.append(
-                Slot(chart, tuple(range(counted[0], counted[0] + nq)), tuple(range(counted[1], counted[1] + nv)))
-            )
-            counted[0], counted[1] = counted[0] + nq, counted[1] + nv
-            armature = f' armature="{joint.armature[0]!r}"' if joint.armature else ""
-            named = f' name="{link.name}"' if link.name in coupled else ""
-            for kind, axis in _elements(joint):
-                about = f' axis="{_text(axis)}"' if kind in ("hinge", "slide") else ""
-                elements.append(f'<joint{named} type="{kind}"{about}{armature}/>')
-        slots[k] = tuple(own)
-        inertia = np.array(link.inertia)
-        entries = _text(inertia[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)))
-        inertial = f'<inertial pos="{_text(link.com)}" mass="{link.mass!r}" fullinertia="{entries}"/>'
-        inner = [inertial if link.mass else "", *elements, constrained.sites(tree, link.name)]
-        for child in children[k]:
-            text = body(child)
-            if isinstance(text, Unsupported):
-                return text
-            inner.append(text)
-        return f'<body name="{link.name}" {_frame(R, p)}>' + "".join(inner) + "</body>"
-
-    for root in children[-1]:
-        text = body(root)
-        if isinstance(text, Unsupported):
-            return text
-        opened[root] = text
-    bodies = "\n".join([*opened.values(), *filter(None, [constrained.sites(tree, "")])])
+    made = _Bodies(tree)
+    elements = made.elements(-1)
+    if isinstance(elements, Unsupported):
+        return elements
+    bodies = "\n".join([*elements, *filter(None, [constrained.sites(tree, "")])])
     option = f'<option gravity="{_text(tree.gravity)}"/>'
     xml = f'<mujoco model="tree"><compiler angle="radian"/>{option}<worldbody>\n{bodies}\n</worldbody>'
     xml += f"{constrained.elements(tree)}</mujoco>"
-    return xml, tuple(slots[k] for k in range(len(tree.links))), counted[0], counted[1]
+    return xml, tuple(made.slots[k] for k in range(len(tree.links))), made.nq, made.nv
 
 
 def write(tree: Tree) -> Source | Unsupported:

@@ -38,14 +38,6 @@ _CLOSING = ("d = m.createData()",)
 
 
 def _array(values: Any) -> str:
-    if np.array_equal(values, np.eye(3)):
-        return "np.eye(3)"
-    if not np.any(values):
-        return f"np.zeros({np.shape(values) if np.ndim(values) > 1 else len(values)})"
-    if np.ndim(values) == 1 and len(values) == 3 and sorted(values) == [0.0, 0.0, 1.0]:
-        return f"np.eye(3)[{list(values).index(1.0)}]"
-    if np.ndim(values) == 2 and np.array_equal(values, np.diag(np.diagonal(values))):
-        return f"np.diag({np.diagonal(values).tolist()!r})"
     return f"np.array({np.asarray(values, dtype=float).tolist()!r})"
 
 
@@ -69,95 +61,128 @@ def _model(joint: Joint) -> str | Unsupported:
     return "pin.JointModel" + text.format(letter=letter, axis=axis, second=second, radii=radii, pitch=joint.pitch)
 
 
-def write(tree: Tree) -> Source | Unsupported:
-    """Text that builds a tree."""
-    lines = ["import numpy as np", "import pinocchio as pin", "m = pin.Model()"]
-    if tree.gravity != (0.0, 0.0, -9.81):
-        lines.append(f"m.gravity.linear = {_array(tree.gravity)}")
-    slots: list[tuple[Slot, ...]] = []
-    # For each link: variable of its Pinocchio joint, and its placement there.
-    places: list[tuple[str, Array, Array]] = []
-    ids = {link.name: k for k, link in enumerate(tree.links)}
-    nq = nv = 0
-    armature: list[float] = []
-    frames: list[str] = []
-    joints: list[str] = []
-    locked: list[str] = []
-    own_model = attached(tree)
-    for k, link in enumerate(tree.links):
-        m = "m2" if k in own_model else "m"
-        if link.name == tree.attached:
-            lines += ["m2 = pin.Model()"]
-            held, R0, p0 = places[link.parent] if link.parent >= 0 else ("0", np.eye(3), np.zeros(3))
-            lines.append(f"at = m.addFrame(pin.Frame('at', {held}, 0, {_placement(R0, p0)}, pin.FrameType.OP_FRAME))")
-            parent, R0, p0 = "0", np.eye(3), np.zeros(3)
-        else:
-            parent, R0, p0 = places[link.parent] if link.parent >= 0 else ("0", np.eye(3), np.zeros(3))
-        steps, (R_end, p_end) = series(link.joints)
+class _ModelText:
+    """Statements that build a tree's model, collected link by link."""
+
+    def __init__(self, tree: Tree) -> None:
+        self.tree = tree
+        self.lines = ["import numpy as np", "import pinocchio as pin", "m = pin.Model()"]
+        if tree.gravity != (0.0, 0.0, -9.81):
+            self.lines.append(f"m.gravity.linear = {_array(tree.gravity)}")
+        self.slots: list[tuple[Slot, ...]] = []
+        # For each link: variable of its Pinocchio joint, and its placement there.
+        self.places: list[tuple[str, Array, Array]] = []
+        self.ids = {link.name: k for k, link in enumerate(tree.links)}
+        self.nq = self.nv = 0
+        self.armature: list[float] = []
+        self.frames: list[str] = []
+        self.joints: list[str] = []
+        self.locked: list[str] = []
+        self.own_model = attached(tree)
+
+    def add(self, k: int) -> Unsupported | None:
+        """Add a link with its joints, or say what Pinocchio has not of it."""
+        link = self.tree.links[k]
+        parent, R0, p0 = self._parent(k)
+        steps, end = series(link.joints)
         own: list[Slot] = []
         models: list[tuple[str, str]] = []
         for number, (R, p, joint) in enumerate(steps):
-            model = _model(joint)
+            model = self._joint(k, joint, own)
             if isinstance(model, Unsupported):
                 return model
-            _, chart, coordinates, speeds = _MODELS[joint.kind, joint.form]
-            if joint.mimics:
-                followed = ids[joint.mimics]
-                lines += [
-                    f"s{k} = {model}",
-                    f"s{k}.setIndexes(j{followed}, m.idx_qs[j{followed}], m.idx_vs[j{followed}])",
-                ]
-                model = f"pin.JointModelMimic(s{k}, {joint.ratio!r}, {joint.offset!r})"
-                own.append(Slot(chart, slots[followed][0].q, slots[followed][0].v))
-            elif joint.locked is not None:
-                locked.append(f"m.joints[j{k}].idx_q")
-                locked.append(repr(joint.locked))
-            else:
-                own.append(Slot(chart, tuple(range(nq, nq + coordinates)), tuple(range(nv, nv + speeds))))
-                nq, nv = nq + coordinates, nv + speeds
-                armature += joint.armature or (0.0,) * speeds
-            if number == 0:
-                R, p = R0 @ R, p0 + R0 @ p
-            models.append((model, _placement(R, p)))
-        if not models:
-            places.append((parent, R0 @ R_end, p0 + R0 @ p_end))
-        else:
-            model, placement = models[0]
-            if len(models) > 1:
-                lines.append("c = pin.JointModelComposite()")
-                lines += [
-                    f"c.addJoint({one}, {where if n else 'pin.SE3.Identity()'})"
-                    for n, (one, where) in enumerate(models)
-                ]
-                model = "c"
-            lines.append(f"j{k} = {m}.addJoint({parent}, {model}, {placement}, {link.name!r})")
-            if "locked" in tree.transformations:
-                lines.append(f"{m}.addJointFrame(j{k})")
-            places.append((f"j{k}", R_end, p_end))
-        slots.append(tuple(own))
-        name, R, p = places[-1]
+            models.append((model, _placement(*((R0 @ R, p0 + R0 @ p) if number == 0 else (R, p)))))
+        self.slots.append(tuple(own))
+        self.places.append(self._link(k, parent, models, end) if models else (parent, R0 @ end[0], p0 + R0 @ end[1]))
+        name, R, p = self.places[-1]
         inertia = f"pin.Inertia({link.mass!r}, {_array(link.com)}, {_array(link.inertia)})"
-        lines.append(f"{m}.appendBodyToJoint({name}, {inertia}, {_placement(R, p)})")
+        self.lines.append(f"{self._model_of(k)}.appendBodyToJoint({name}, {inertia}, {_placement(R, p)})")
         frame = f"pin.Frame('f{k}', {name}, 0, {_placement(R, p)}, pin.FrameType.OP_FRAME)"
-        frames.append(f"{m}.addFrame({frame})")
-        joints.append(name if not np.any(p) and np.array_equal(R, np.eye(3)) else "")
-    if any(armature):
-        lines.append(f"m.armature = {_array(armature)}")
-    optional: dict[str, tuple[str, ...]] = {"fs": (f"fs = [{', '.join(frames)}]",)}
-    if tree.transformations:
-        lines += [*frames, *_transformed(locked, len(own_model) > 0)]
-        return Source(
-            tuple(lines), tuple(slots), nq, nv, {"fs": (_NAMED_FRAMES.format(len(tree.links)),)}, closing=_CLOSING
-        )
-    if all(joints) and len(set(joints)) == len(joints):
-        optional["js"] = (f"js = [{', '.join(joints)}]",)
+        self.frames.append(f"{self._model_of(k)}.addFrame({frame})")
+        self.joints.append(name if not np.any(p) and np.array_equal(R, np.eye(3)) else "")
+        return None
 
-    def place(end: End) -> tuple[str, str]:
-        joint, R, p = places[ids[end.link]] if end.link else ("0", np.eye(3), np.zeros(3))
+    def _model_of(self, k: int) -> str:
+        """Variable of the model that a link is in."""
+        return "m2" if k in self.own_model else "m"
+
+    def _parent(self, k: int) -> tuple[str, Array, Array]:
+        """Joint that a link hangs on, and its placement there; an attached model begins at its own origin."""
+        link, origin = self.tree.links[k], ("0", np.eye(3), np.zeros(3))
+        place = self.places[link.parent] if link.parent >= 0 else origin
+        if link.name != self.tree.attached:
+            return place
+        held, R0, p0 = place
+        at = f"pin.Frame('at', {held}, 0, {_placement(R0, p0)}, pin.FrameType.OP_FRAME)"
+        self.lines += ["m2 = pin.Model()", f"at = m.addFrame({at})"]
+        return origin
+
+    def _joint(self, k: int, joint: Joint, own: list[Slot]) -> str | Unsupported:
+        """The model of one joint; its slot goes to the link's own."""
+        model = _model(joint)
+        if isinstance(model, Unsupported):
+            return model
+        _, chart, coordinates, speeds = _MODELS[joint.kind, joint.form]
+        if joint.mimics:
+            followed = self.ids[joint.mimics]
+            indices = f"j{followed}, m.idx_qs[j{followed}], m.idx_vs[j{followed}]"
+            self.lines += [f"s{k} = {model}", f"s{k}.setIndexes({indices})"]
+            own.append(Slot(chart, self.slots[followed][0].q, self.slots[followed][0].v))
+            return f"pin.JointModelMimic(s{k}, {joint.ratio!r}, {joint.offset!r})"
+        if joint.locked is not None:
+            self.locked += [f"m.joints[j{k}].idx_q", repr(joint.locked)]
+            return model
+        q, v = range(self.nq, self.nq + coordinates), range(self.nv, self.nv + speeds)
+        own.append(Slot(chart, tuple(q), tuple(v)))
+        self.nq, self.nv = q.stop, v.stop
+        self.armature += joint.armature or (0.0,) * speeds
+        return model
+
+    def _link(
+        self, k: int, parent: str, models: list[tuple[str, str]], end: tuple[Array, Array]
+    ) -> tuple[str, Array, Array]:
+        """Add the joints of a link, several as one composite; where the link is."""
+        (model, placement), *others = models
+        if others:
+            parts = [(model, "pin.SE3.Identity()"), *others]
+            self.lines.append("c = pin.JointModelComposite()")
+            self.lines += [f"c.addJoint({one}, {where})" for one, where in parts]
+            model = "c"
+        m, name = self._model_of(k), self.tree.links[k].name
+        self.lines.append(f"j{k} = {m}.addJoint({parent}, {model}, {placement}, {name!r})")
+        if "locked" in self.tree.transformations:
+            self.lines.append(f"{m}.addJointFrame(j{k})")
+        return f"j{k}", *end
+
+    def place(self, end: End) -> tuple[str, str]:
+        """Joint and placement of a constraint's end."""
+        joint, R, p = self.places[self.ids[end.link]] if end.link else ("0", np.eye(3), np.zeros(3))
         return joint, _placement(R @ np.array(end.R), p + R @ np.array(end.p))
 
-    optional |= constrained.optional(tree.constraints, place)
-    return Source(tuple(lines), tuple(slots), nq, nv, optional, closing=_CLOSING)
+    def source(self) -> Source:
+        """The text with what functions need."""
+        tree, lines, slots = self.tree, self.lines, tuple(self.slots)
+        if any(self.armature):
+            lines.append(f"m.armature = {_array(self.armature)}")
+        if tree.transformations:
+            lines += [*self.frames, *_transformed(self.locked, len(self.own_model) > 0)]
+            named = {"fs": (_NAMED_FRAMES.format(len(tree.links)),)}
+            return Source(tuple(lines), slots, self.nq, self.nv, named, closing=_CLOSING)
+        optional: dict[str, tuple[str, ...]] = {"fs": (f"fs = [{', '.join(self.frames)}]",)}
+        if all(self.joints) and len(set(self.joints)) == len(self.joints):
+            optional["js"] = (f"js = [{', '.join(self.joints)}]",)
+        optional |= constrained.optional(tree.constraints, self.place)
+        return Source(tuple(lines), slots, self.nq, self.nv, optional, closing=_CLOSING)
+
+
+def write(tree: Tree) -> Source | Unsupported:
+    """Text that builds a tree."""
+    text = _ModelText(tree)
+    for k in range(len(tree.links)):
+        obstacle = text.add(k)
+        if obstacle is not None:
+            return obstacle
+    return text.source()
 
 
 _NAMED_FRAMES = "fs = [m.getFrameId(f'f{{k}}') for k in range({})]"

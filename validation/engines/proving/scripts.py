@@ -1,4 +1,4 @@
-"""Red cells as stand-alone scripts: about ten lines that import the engine and NumPy only, and fail."""
+"""Red cells as stand-alone scripts: what the engine was asked, the truth, and an assertion that fails."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import re
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -14,15 +13,11 @@ import numpy as np
 
 from ...contract.raised import Raised, attempted
 from ..functions import FUNCTIONS
-from ..interface import Array, EnginePlugin, Unsupported
+from ..interface import Array, EnginePlugin
 from ..matrix import SEED, Judged, Truths, judged
-from ..plugins.writing.source import WIDTH, SourcePlugin
+from ..plugins.writing.source import SourcePlugin
 from ..workers import Crashed, Job, Worker
-from .folding import folded
-from .pieces import assembled, taken
-from .plainness import plain
-from .pruning import pruned
-from .shortening import picked, shortened, still, with_numpy
+from .pieces import taken
 from .shrink import TRIES, Case, size, smallest
 from .threads import NONE, thread
 
@@ -33,8 +28,6 @@ _TIME = 120.0
 _SHAPES = re.compile(r" \((?:10 )?(?:\d+|L|m|n[qv])(?: \+ m|, (?:10 )?(?:\d+|L|m|n[qv])(?: \+ m)?)*\)")
 # Time to shrink one fault: cases of loops, and digits that are lost, take long to judge.
 _PATIENCE = 60.0
-# A line more is worth as many letters.
-_LINE = 60.0
 # What is said in place of the output of a script where the plug-in has none (`EngineModel.script`).
 NO_SCRIPT = "no script: the plug-in states none"
 
@@ -116,46 +109,20 @@ def shrunk(
             return False
         return one.cell.verdict == red.cell.verdict and one.cell.error >= _KEPT * min(red.cell.error, 1.0)
 
-    cost = _cost(plugin, answer.function)
     first = Case(red.tree, taken(answer.layout, answer.state), red.form, red.text)
     known = (shown or Shown()).of(red)
-    begun = next((case for case in sorted(known, key=cost) if cost(case) < cost(first) and shows(case)), first)
-    case = smallest(begun, shows, tries, cost) if tries else begun
+    begun = next((case for case in sorted(known, key=size) if size(case) < size(first) and shows(case)), first)
+    case = smallest(begun, shows, tries) if tries else begun
     final = asked(case, truths)
     if final.cell.verdict != red.cell.verdict:
         # Where roundings go far, as beside what is singular, nothing is shown: asked of each case.
         end = time.monotonic() + _PATIENCE
-        case = smallest(first, lambda one: shows(one, truths), tries, cost)
+        case = smallest(first, lambda one: shows(one, truths), tries)
         final = asked(case, truths)
     if case is first or final.cell.verdict != red.cell.verdict:
         return red
     known.append(case)
     return final
-
-
-def _cost(plugin: EnginePlugin, function: str) -> Callable[[Case], float]:
-    """What a reader of a case's script has to take in: its letters, and its lines."""
-    if not isinstance(plugin, SourcePlugin):
-        return size
-    known: dict[Case, float] = {}
-
-    def cost(case: Case) -> float:
-        if case not in known:
-            known[case] = _letters(plugin, function, case)
-        return known[case]
-
-    return cost
-
-
-def _letters(plugin: SourcePlugin, function: str, case: Case) -> float:
-    source = plugin.written(case.tree, case.form, case.text)
-    if isinstance(source, Unsupported):
-        return np.inf
-    state = assembled(source, case.pieces)
-    if isinstance(state, Unsupported):
-        return np.inf
-    lines = pruned(plain(source.script(plugin.ways[function].code, state))).splitlines()
-    return float(sum(_LINE * (1 + len(line) // WIDTH) + len(line) for line in lines))
 
 
 def prove(
@@ -169,7 +136,7 @@ def prove(
 ) -> Proof:
     """A script of a red cell, run in a fresh process: the folder's, where it still fails, or else a new one, shrunk.
 
-    Whatever is raised on the way, by the plug-in or by a script that is cut wrongly, is said in place of a proof.
+    Whatever the plug-in raises on the way is said in place of a proof.
     """
     made = attempted(_proved, plugin, red, worker, truths, folder, tries, shown)
     known = thread(plugin.name, red.cell.model, red.cell.function)
@@ -185,48 +152,17 @@ def _proved(
     if path.exists():
         kept = path.read_text(encoding="utf-8")
         output, failed = fails(path)
-        if failed and kept.startswith(_title(plugin, red)) and pruned(kept) == kept:
+        if failed and kept.startswith(_title(plugin, red)):
             return _proof(plugin, red, kept, output, failed, known)
-    small = (
-        _with_script(plugin, red, worker)
-        if red.cell.verdict == "crashes"
-        else shrunk(plugin, red, worker, truths, tries, shown)
-    )
+    crashes = red.cell.verdict == "crashes"
+    small = _with_script(plugin, red, worker) if crashes else shrunk(plugin, red, worker, truths, tries, shown)
     if not small.answer.script.strip():
         return _proof(plugin, red, "", NO_SCRIPT, False, known)
     folder.mkdir(parents=True, exist_ok=True)
-    for script in _variants(plugin, small, known):
-        path.write_text(script, encoding="utf-8")
-        output, failed = fails(path)
-        if failed and _says(output, small):
-            break
+    script = text(plugin, small, known)
+    path.write_text(script, encoding="utf-8")
+    output, failed = fails(path)
     return _proof(plugin, red, script, output, failed, known)
-
-
-def _variants(plugin: EnginePlugin, red: Judged, known: str) -> Iterator[str]:
-    """The script, shorter and plainer ones before it: what is the same to the engine shows when it runs."""
-    merged = text(plugin, _begun(plugin, red), known, merged=True)
-    whole = text(plugin, red, known)
-    made = (
-        still(shortened(pruned(plain(merged)))),
-        shortened(pruned(plain(merged))),
-        still(shortened(pruned(plain(merged, defaults=False)))),
-        shortened(pruned(plain(merged, defaults=False))),
-        plain(merged),
-        plain(whole),
-        whole,
-    )
-    head = "".join(line for line in whole.splitlines(keepends=True) if line.startswith("# "))
-    yield from dict.fromkeys(folded(head + pruned(one).removeprefix(head)) for one in made)
-
-
-def _says(output: str, red: Judged) -> bool:
-    """Whether a script got what the cell's answer was."""
-    said = re.search(r"AssertionError: value = (?:np\.float\d*\()?([^)\s,]*)", output)
-    if red.want is None or said is None:
-        return red.want is None
-    place, value = _worst(red)
-    return place is None or bool(np.isclose(float(said[1]), value[place], rtol=1e-6, atol=1e-12, equal_nan=True))
 
 
 def _with_script(plugin: EnginePlugin, red: Judged, worker: Worker) -> Judged:
@@ -236,14 +172,6 @@ def _with_script(plugin: EnginePlugin, red: Judged, worker: Worker) -> Judged:
     script = answer.script
     if isinstance(answer.value, Crashed) and isinstance(plugin, SourcePlugin):
         script = plugin.building(red.tree, red.form, red.text)
-    return replace(red, answer=replace(red.answer, script=script))
-
-
-def _begun(plugin: EnginePlugin, red: Judged) -> Judged:
-    """A cell whose engine crashes before anything is asked, without what asking needs."""
-    if red.cell.verdict != "crashes" or not isinstance(plugin, SourcePlugin):
-        return red
-    script = plugin.building(red.tree, red.form, red.text, whole=False)
     return replace(red, answer=replace(red.answer, script=script))
 
 
@@ -291,14 +219,13 @@ def _worst(red: Judged) -> tuple[tuple[int, ...] | None, Array]:
     return tuple(int(k) for k in np.unravel_index(int(np.argmax(off)), want.shape)), value
 
 
-def text(plugin: EnginePlugin, red: Judged, known: str, *, merged: bool = False) -> str:
+def text(plugin: EnginePlugin, red: Judged, known: str) -> str:
     """The script of a case: the engine's answer, the truth where it is off most, to 17 digits, and an assertion.
 
     Args:
         plugin: The engine.
         red: The case.
         known: Public thread that knows the fault.
-        merged: Without a line of its own for the answer, which must be an array then.
     """
     function = FUNCTIONS[red.cell.function.partition(":")[0]]
     verdict = {"crashes": "crashes"}.get(red.cell.verdict, f"is {red.cell.verdict}")
@@ -309,24 +236,14 @@ def text(plugin: EnginePlugin, red: Judged, known: str, *, merged: bool = False)
     if red.want is None:
         return f"{head}{red.answer.script}\n"
     place, value = _worst(red)
-    raw = np.asarray(red.answer.value)
-    script = with_numpy(red.answer.script.rstrip(), always=True)
     if place is None:
-        shape = tuple(red.want.value.shape)
-        return f"{head}{script}\nassert np.shape(value) == {shape}, np.shape(value)\n"
-    found = picked(script, place) if merged and raw.shape == value.shape else None
-    if found:
-        script, entry = found
-    elif place:
-        reshaped = f".reshape({value.shape})" if raw.shape != value.shape else ""
-        entry = f"np.array(value){reshaped}[{', '.join(map(str, place))}]"
+        lines = [f"assert np.shape(value) == {red.want.value.shape}, np.shape(value)"]
     else:
-        entry = "np.array(value).item()" if raw.ndim else "value"
-    lines = (
-        f"value, expected = {entry}, {float(red.want.value[place])!r}",
-        f'assert abs(value - expected) <= {red.want.allowed:.1e}, f"{{value = }}, {{expected = }}"',
-    )
-    return head + script + "\n" + "\n".join(lines) + "\n"
+        lines = [
+            f"value, expected = np.reshape(value, {value.shape})[{place}], {float(red.want.value[place])!r}",
+            f'assert abs(value - expected) <= {red.want.allowed:.1e}, f"{{value = }}, {{expected = }}"',
+        ]
+    return "\n".join([head + red.answer.script.rstrip(), "import numpy as np", *lines, ""])
 
 
 def fails(path: Path) -> tuple[str, bool]:

@@ -8,7 +8,6 @@ from typing import Any
 
 from ..interface import IDENTITY, ORIGIN, Joint, Link, Rows, Tree, Vector
 from ..models.formats import texts
-from . import closing, files
 from .pieces import Piece, Pieces
 
 # Cases that are tried for one fault.
@@ -44,28 +43,24 @@ class Case:
     text: str = ""
 
 
-def smallest(
-    case: Case, shows: Callable[[Case], bool], most: int = TRIES, cost: Callable[[Case], float] | None = None
-) -> Case:
+def smallest(case: Case, shows: Callable[[Case], bool], most: int = TRIES) -> Case:
     """A case that shows a fault, of which no simpler neighbour does.
 
     Args:
         case: Case to begin with.
         shows: Whether a case shows the fault.
         most: Bound on the number of cases that are tried.
-        cost: What a reader has to take in; `size` if not stated.
     """
-    cost = cost or size
     tried: set[Case] = set()
-    place, moved, least = 0, False, cost(case)
+    place, moved, least = 0, False, size(case)
     while len(tried) < most:
         for number, candidate in enumerate(_simpler(case)):
-            if number < place or candidate in tried or cost(candidate) >= least:
+            if number < place or candidate in tried or size(candidate) >= least:
                 continue
             tried.add(candidate)
             if shows(candidate):
                 # What came before was refused for the larger case: it comes again when the rest is through.
-                case, least, place, moved = candidate, cost(candidate), number, True
+                case, least, place, moved = candidate, size(candidate), number, True
                 break
             if len(tried) >= most:
                 return case
@@ -92,22 +87,17 @@ def _simpler(case: Case) -> Iterator[Case]:
     if not case.form:
         yield from _simpler_built(case)
         return
-    # A file that a tree was written to is written anew; others are changed where their formats say what that means.
+    # A file that a tree was written to is written anew with the tree; of others the state alone is made simpler.
     if texts(case.tree).get(case.form) == case.text:
         for simpler in _simpler_built(case):
             written = texts(simpler.tree).get(case.form)
             if written:
                 yield replace(simpler, form=case.form, text=written)
         return
-    for file in files.simpler(files.File(case.form, case.text, case.tree, case.pieces)):
-        yield Case(file.tree, file.pieces, case.form, file.text)
     yield from _simpler_states(case)
 
 
 def _simpler_built(case: Case) -> Iterator[Case]:
-    if case.tree.constraints:
-        for tree, pieces in closing.at_zero(case.tree, case.pieces):
-            yield Case(tree, pieces)
     yield from _without_links(case)
     yield from _all_at_once(case)
     yield from _without_joints(case)

@@ -9,7 +9,7 @@ import numpy as np
 
 import symofros as sf
 
-from ... import references, studies
+from ... import references
 from ...adapters.exudyn.steps import Solver
 from ...adapters.exudyn.timed_systems import joint_angles, looped
 from ...mechanics.geometry import Array
@@ -27,7 +27,7 @@ TORQUE = 0.033
 @cache
 def known() -> dict[str, dict[str, float]]:
     """Angles of the hinges at the start and the end, of the IVP test set."""
-    solution: dict[str, dict[str, float]] = References(Path(studies.__file__).parent / "data").data("iftomm")["andrews"]
+    solution: dict[str, dict[str, float]] = References(Path(__file__).parents[1] / "data").data("andrews")
     return solution
 
 

@@ -19,8 +19,7 @@ from ...adapters.pinocchio import steps as pinocchio_steps
 from ...adapters.pinocchio import tree as pinocchio
 from ...contract.interface import Subject, Unsupported
 from ...mechanics.geometry import Array
-from ...studies.simulation import DAMPING, STIFFNESS, TARGET
-from ...timing.models import panda7
+from ...timing.models import DAMPING, STIFFNESS, TARGET, panda7
 from ..contestants.exudyn import ExudynModel
 from ..contestants.mujoco import MujocoModel
 from ..contestants.symofros import SymofrosModel, milliseconds

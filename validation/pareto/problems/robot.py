@@ -28,6 +28,8 @@ START = {name: row[0] for name, row in CONTROL.items()}
 # The tool in the frame of the last joint: flange, then tool.
 TOOL = (0.12, 0.0)
 TOLERANCE = 1e-6
+# Relative tolerances of adaptive methods.
+RTOLS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 FINE, FINE_STEP = 12, 2.5e-4
 
 
@@ -112,8 +114,19 @@ def prepare(quick: bool) -> Prepared:
     )
     rod = far(path(sf.compile(of_rods(6, 2)), method="rodas4", rtol=1e-9, atol=1e-11))
     all_terms = far(path(sf.compile(system(4, retain="all")), method="rodas4", rtol=1e-8, atol=1e-10))
+    contestants = [*_splines(quick), *([] if quick else _richer()), *_by_exudyn(quick)]
+    origin = (
+        f"Exudyn, {FINE} ANCFCable2D elements a strip, extrapolated from steps of {1e3 * FINE_STEP:g} and "
+        f"{500 * FINE_STEP:g} ms; and, sharing no code with it, our robot with rods of 6 functions of curvature and "
+        "2 of stretch for strips by rodas4 at 1e-9"
+    )
+    return Prepared(tuple(contestants), rod, origin, {"first order": first_order, "all terms": all_terms})
+
+
+def _splines(quick: bool) -> list[Contestant]:
+    """Ours by splines, with the terms of each order."""
     contestants: list[Contestant] = []
-    rtols = (1e-3, 1e-5) if quick else (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
+    rtols = (1e-3, 1e-5) if quick else RTOLS
     retained = {"": "first_order", ", all terms": "all"}
     for label, retain in retained.items():
         for count in (2,) if quick else (1, 2, 3):
@@ -124,21 +137,31 @@ def prepare(quick: bool) -> Prepared:
                 contestants += one.by("dop853", rtols[1:4]) + one.by("dopri5", rtols[1:4]) + one.by("cvode", rtols)
                 contestants += one.by("implicit_euler", (5e-3, 1e-3, 2e-4))
                 contestants += one.by("semi_implicit_euler", (2e-3, 1e-3, 5e-4, 2e-4, 1e-4))
-    if not quick:
-        changes: dict[str, dict[str, Any]] = {
-            "2 splines, zeroth order": {"retain": "zeroth_order"},
-            "3 modes": {"bend_y": 3, "family": "clamped_free"},
-            "2 Hermite": {"family": "hermite"},
-        }
-        for label, change in changes.items():
-            one = judged_model(label, sf.compile(system(2, **change)))
-            contestants += one.by("rodas4", rtols[:4]) + one.by("generalized_alpha", (0.02, 0.01, 5e-3))
-        for count, stretch in ((2, 0), (3, 0), (4, 0), (4, 1), (5, 2)):
-            label = f"rods of {count}{f' + {stretch}' * (stretch > 0)} strains"
-            one = judged_model(label, sf.compile(of_rods(count, stretch)))
-            contestants += one.by("rodas4", rtols) + one.by("generalized_alpha", (0.02, 0.01, 5e-3, 2e-3, 1e-3))
-            contestants += [] if stretch else one.by("dop853", rtols[1:4]) + one.by("dopri5", rtols[1:4])
-        contestants += judged_model("rigid strips", sf.compile(system(0))).by("rk4", (0.02, 0.01))
+    return contestants
+
+
+def _richer() -> list[Contestant]:
+    """Ours by other functions, by rods, and rigid."""
+    contestants: list[Contestant] = []
+    changes: dict[str, dict[str, Any]] = {
+        "2 splines, zeroth order": {"retain": "zeroth_order"},
+        "3 modes": {"bend_y": 3, "family": "clamped_free"},
+        "2 Hermite": {"family": "hermite"},
+    }
+    for label, change in changes.items():
+        one = judged_model(label, sf.compile(system(2, **change)))
+        contestants += one.by("rodas4", RTOLS[:4]) + one.by("generalized_alpha", (0.02, 0.01, 5e-3))
+    for count, stretch in ((2, 0), (3, 0), (4, 0), (4, 1), (5, 2)):
+        label = f"rods of {count}{f' + {stretch}' * (stretch > 0)} strains"
+        one = judged_model(label, sf.compile(of_rods(count, stretch)))
+        contestants += one.by("rodas4", RTOLS) + one.by("generalized_alpha", (0.02, 0.01, 5e-3, 2e-3, 1e-3))
+        contestants += [] if stretch else one.by("dop853", RTOLS[1:4]) + one.by("dopri5", RTOLS[1:4])
+    return contestants + judged_model("rigid strips", sf.compile(system(0))).by("rk4", (0.02, 0.01))
+
+
+def _by_exudyn(quick: bool) -> list[Contestant]:
+    """Exudyn's elements and solvers."""
+    contestants: list[Contestant] = []
     for elements in (1, 2) if quick else (1, 2, 3, 4):
         steps = (0.01, 2e-3) if quick else (0.02, 0.01, 5e-3, 2e-3, 1e-3, 5e-4)
         contestants += exudyn(elements).by(Solver(tolerance=TOLERANCE), steps)
@@ -152,12 +175,7 @@ def prepare(quick: bool) -> Prepared:
             contestants += exudyn(elements).by(solver, (5e-4, 2.5e-4, 1.25e-4, 6.25e-5))
         contestants += exudyn(1).by(Solver("TrapezoidalIndex2", tolerance=TOLERANCE), (5e-3, 1e-3))
         contestants += exudyn(1).by(Solver("RK44"), (1e-4,))
-    origin = (
-        f"Exudyn, {FINE} ANCFCable2D elements a strip, extrapolated from steps of {1e3 * FINE_STEP:g} and "
-        f"{500 * FINE_STEP:g} ms; and, sharing no code with it, our robot with rods of 6 functions of curvature and "
-        "2 of stretch for strips by rodas4 at 1e-9"
-    )
-    return Prepared(tuple(contestants), rod, origin, {"first order": first_order, "all terms": all_terms})
+    return contestants
 
 
 PROBLEM = BenchmarkProblem(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cache
 
 import numpy as np
@@ -97,13 +97,52 @@ def judge(maps: Maps) -> Verdict:
     gaps = REAL["rk4"] / edges - 1.0
     slope = -exponent(steps, gaps)
     reached = {method: largest(method, 1e-4) for method in REAL}
+    rk4 = maps["rk4"]
+    best = min(
+        (
+            (value, h, gain)
+            for gain, row in zip(rk4.y, rk4.values, strict=True)
+            for h, value in zip(rk4.x, row, strict=True)
+            if h == rk4.x[-1] and math.isfinite(value)
+        )
+    )
+    euler = maps["euler"]
+    statement = (
+        "With both gains α the constraint decays with a double root -α, so explicit methods hold while α h stays "
+        "below where their stability function leaves the unit disc on the real axis. Measured with h = 0.1 ms, RK4 "
+        f"holds up to α h = {reached['rk4']:.3f}, Dormand-Prince up to {reached['dopri5']:.3f}, Euler up to "
+        f"{reached['euler']:.3f}. With longer steps the edge comes sooner, {edges[1]:.2f} at 1 ms and "
+        f"{edges[0]:.2f} at 10 ms for RK4: a double root moves by the square root of a perturbation, and the gap "
+        f"falls with h to the power {slope:.2f}. These edges are where a run counts as lost, its speed along the rod "
+        "above a tenth of the speed itself, or φ above the bound: a threshold of accuracy, which long steps reach "
+        "before the method's own limit of stability. Below the edge too much gain costs accuracy: at "
+        f"h = {best[1]:.3g} "
+        f"s the constraint is kept best, to {best[0]:.1e}, with α = {best[2]:.3g}/s. Euler keeps the rod only in "
+        f"{euler.good.mean():.0%} of its map, and with no gain at long steps."
+    )
+    see = (
+        f"The black edge runs along the dashed hyperbola. {rk4.stopped} RK4 runs beyond it diverge and say so; "
+        f"{rk4.wrong} come to their end and are wrong. Going down from the edge the violation falls, until at small "
+        "gains it rises again. Euler loses the rod at small gains and long steps."
+    )
+    return Verdict(statement, see, tuple(_findings(maps, reached, slope)))
+
+
+def _findings(maps: Maps, reached: Mapping[str, float], slope: float) -> list[Finding]:
+    """What is asked of the edges.
+
+    Args:
+        maps: Map of each method.
+        reached: Largest gain times step, by method.
+        slope: Exponent of the gap between edge and closed form in the step.
+    """
     known = [row for row in data("pendulum")["gains"] if row["pos_err"] is not None]
     ratios = [
         max(ratio, 1 / ratio)
         for row in known
         for ratio in (off(swing("rk4", row["h"], row["alpha"])) / row["pos_err"],)
     ]
-    findings = (
+    return (
         [
             Finding(
                 f"{method}: α h at the edge with h = 0.1 ms, over {bound:.3f}",
@@ -142,35 +181,6 @@ def judge(maps: Maps) -> Verdict:
             ),
         ]
     )
-    rk4 = maps["rk4"]
-    best = min(
-        (
-            (value, h, gain)
-            for gain, row in zip(rk4.y, rk4.values, strict=True)
-            for h, value in zip(rk4.x, row, strict=True)
-            if h == rk4.x[-1] and math.isfinite(value)
-        )
-    )
-    euler = maps["euler"]
-    statement = (
-        "With both gains α the constraint decays with a double root -α, so explicit methods hold while α h stays "
-        "below where their stability function leaves the unit disc on the real axis. Measured with h = 0.1 ms, RK4 "
-        f"holds up to α h = {reached['rk4']:.3f}, Dormand-Prince up to {reached['dopri5']:.3f}, Euler up to "
-        f"{reached['euler']:.3f}. With longer steps the edge comes sooner, {edges[1]:.2f} at 1 ms and "
-        f"{edges[0]:.2f} at 10 ms for RK4: a double root moves by the square root of a perturbation, and the gap "
-        f"falls with h to the power {slope:.2f}. These edges are where a run counts as lost, its speed along the rod "
-        "above a tenth of the speed itself, or φ above the bound: a threshold of accuracy, which long steps reach "
-        "before the method's own limit of stability. Below the edge too much gain costs accuracy: at "
-        f"h = {best[1]:.3g} "
-        f"s the constraint is kept best, to {best[0]:.1e}, with α = {best[2]:.3g}/s. Euler keeps the rod only in "
-        f"{euler.good.mean():.0%} of its map, and with no gain at long steps."
-    )
-    see = (
-        f"The black edge runs along the dashed hyperbola. {rk4.stopped} RK4 runs beyond it diverge and say so; "
-        f"{rk4.wrong} come to their end and are wrong. Going down from the edge the violation falls, until at small "
-        "gains it rises again. Euler loses the rod at small gains and long steps."
-    )
-    return Verdict(statement, see, tuple(findings))
 
 
 STUDY = ParameterStudy(

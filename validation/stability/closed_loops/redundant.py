@@ -97,21 +97,7 @@ def measure(stabilisation: str) -> Callable[[float, float], Cell]:
 
 def judge(maps: Maps) -> Verdict:
     """Ranks, accelerations, and where misfits are refused."""
-    wrong_ranks, spread = 0, 0.0
-    for kind, (rows, rank) in RANKS.items():
-        m = linkage(kind)
-        q, v = four_bars.state(m, 1.0, 0.5)
-        assembled = sf.assemble(m, q, v)
-        wrong_ranks += (m.nc, assembled.rank) != (rows, rank)
-        if kind in (BALL, HINGE):
-            a, b = (each.forward_dynamics(q, v, np.zeros(0)) for each in (m, linkage(PIN)))
-            spread = max(spread, float(np.abs(a - b).max()))
-    known = data("bricard")
-    bricard = sf.compile(MODELS["bricard"])
-    rest, still = bricard.neutral(), np.zeros(bricard.nv)
-    wrong_ranks += (bricard.nc, sf.assemble(bricard, rest).rank) != (known["rows"], known["rank"])
-    accelerations = bricard.forward_dynamics(rest, still, np.zeros(bricard.nu))
-    apart = float(np.abs(accelerations - known["accelerations"]).max())
+    wrong_ranks, spread, apart = _at_one_state()
     projected = maps["projection"]
     silent = sum(runs.wrong for runs in maps.values())
     rows_good = {kind: projected.good[k] for k, kind in enumerate(ROWS)}
@@ -158,6 +144,26 @@ def judge(maps: Maps) -> Verdict:
         "does not, because nothing in it is redundant."
     )
     return Verdict(statement, see, findings)
+
+
+def _at_one_state() -> tuple[int, float, float]:
+    """Kinds with wrong ranks; how far accelerations are apart with redundant rows, and from the known ones."""
+    wrong_ranks, spread = 0, 0.0
+    for kind, (rows, rank) in RANKS.items():
+        m = linkage(kind)
+        q, v = four_bars.state(m, 1.0, 0.5)
+        assembled = sf.assemble(m, q, v)
+        wrong_ranks += (m.nc, assembled.rank) != (rows, rank)
+        if kind in (BALL, HINGE):
+            a, b = (each.forward_dynamics(q, v, np.zeros(0)) for each in (m, linkage(PIN)))
+            spread = max(spread, float(np.abs(a - b).max()))
+    known = data("bricard")
+    bricard = sf.compile(MODELS["bricard"])
+    rest, still = bricard.neutral(), np.zeros(bricard.nv)
+    wrong_ranks += (bricard.nc, sf.assemble(bricard, rest).rank) != (known["rows"], known["rank"])
+    accelerations = bricard.forward_dynamics(rest, still, np.zeros(bricard.nu))
+    apart = float(np.abs(accelerations - known["accelerations"]).max())
+    return wrong_ranks, spread, apart
 
 
 STUDY = ParameterStudy(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -136,24 +136,41 @@ def unlucky() -> dict[str, float]:
 def judge(maps: Maps) -> Verdict:
     """Which ways hold."""
     always, sometimes, never = rows(maps)
-    two = maps["N = 2"]
-    known = data("four_bars")
-    exact = max(
-        four_bars.tip_error(int(n), float(t), np.array([row["B0x"][t], row["B0y"][t]]))
-        for n, row in known["exact"].items()
-        for t in (1, 5, 10)
+    near, noted = unlucky(), share_of_notes(maps)
+    errors = np.concatenate([runs.at(y=WAYS.labels.index("projection")) for runs in maps.values()])
+    findings = (*_of_ways(maps, always, errors, near), *_of_known(noted))
+    wrong = sum(runs.wrong for runs in maps.values())
+    stopped = sum(runs.stopped for runs in maps.values())
+    defaults = maps["N = 2"].at(y=WAYS.labels.index("MuJoCo, its defaults"))
+    statement = (
+        "Flat, the linkage may leave on another branch, and what drift or rounding has left by then decides. "
+        f"Through all steps of both maps hold: {', '.join(always)}. At some steps: "
+        f"{', '.join(sometimes) or 'none'}. At none: {', '.join(never) or 'none'}. Projection stays within "
+        f"{errors.max():.1e} m. MuJoCo's default closures miss by {defaults.min():.1f} to {defaults.max():.1f} m, "
+        "because they lose energy, not because of the posture. A start in the flat posture is reported, and "
+        f"{noted:.0%} of our runs that pass it note how close they came. A step that all but lands in it loses "
+        "decades: "
+        f"the worst of four such leave {near['projection']:.0e} m with projection and {near['baumgarte']:.0e} m "
+        "with gains of 20/s."
     )
-    contradictions = sum(
-        (row["ok"] and (row["tip_err"] or 0.0) <= BOUND) != bool(good(row["alpha"], row["h"])) for row in known["gains"]
+    see = (
+        f"Rows are ways, columns are steps. Blue rows hold; above them and below, {stopped} runs stop with an "
+        f"outcome, but {wrong} come to their end on the wrong branch or out of phase, and only a check of energy or "
+        "of the step tells."
     )
-    near = unlucky()
-    flat = four_bars.linkage(2)
-    still = simulate(flat, *four_bars.state(flat, 0.0, 0.0), 0.01)
-    reported = float(any("singular posture" in note for note in still.outcome.notes))
-    noted = share_of_notes(maps)
-    level = WAYS.labels.index("projection")
-    errors = np.concatenate([runs.at(y=level) for runs in maps.values()])
-    findings = (
+    return Verdict(statement, see, findings)
+
+
+def _of_ways(maps: Maps, always: Sequence[str], errors: Array, near: Mapping[str, float]) -> tuple[Finding, ...]:
+    """What is asked of each way.
+
+    Args:
+        maps: Maps of all ways.
+        always: Ways that hold at all steps.
+        errors: Distances of all runs by projection [m].
+        near: Distances after steps that all but land in the flat posture [m].
+    """
+    return (
         Finding(
             "projection: largest distance over all steps [m]",
             float(errors.max()),
@@ -173,7 +190,7 @@ def judge(maps: Maps) -> Verdict:
             "ways by Baumgarte's gains of 20/s and more that fail somewhere",
             float(
                 sum(
-                    f"Baumgarte {g:g}/s" in map(WAYS.label, two.y) and f"Baumgarte {g:g}/s" not in always
+                    f"Baumgarte {g:g}/s" in map(WAYS.label, maps["N = 2"].y) and f"Baumgarte {g:g}/s" not in always
                     for g in GAINS
                     if 20.0 <= g <= 100.0
                 )
@@ -187,6 +204,24 @@ def judge(maps: Maps) -> Verdict:
             0.2,
             reason="drift decides, at times rightly",
         ),
+    )
+
+
+def _of_known(noted: float) -> tuple[Finding, ...]:
+    """What is known of the motion, and what runs say of themselves; `noted` is the share of ours that do."""
+    known = data("four_bars")
+    exact = max(
+        four_bars.tip_error(int(n), float(t), np.array([row["B0x"][t], row["B0y"][t]]))
+        for n, row in known["exact"].items()
+        for t in (1, 5, 10)
+    )
+    contradictions = sum(
+        (row["ok"] and (row["tip_err"] or 0.0) <= BOUND) != bool(good(row["alpha"], row["h"])) for row in known["gains"]
+    )
+    flat = four_bars.linkage(2)
+    still = simulate(flat, *four_bars.state(flat, 0.0, 0.0), 0.01)
+    reported = float(any("singular posture" in note for note in still.outcome.notes))
+    return (
         Finding(
             "N = 2: known verdicts on gains 5, 20 and 100/s that ours contradict",
             float(contradictions),
@@ -197,26 +232,6 @@ def judge(maps: Maps) -> Verdict:
         Finding("share of our runs through it that hold and say so", noted, 1.0, 1.0, "nothing is silently wrong"),
         Finding("exact motion against the known one, largest distance [m]", exact, 1e-9, reason="the same equation"),
     )
-    wrong = sum(runs.wrong for runs in maps.values())
-    stopped = sum(runs.stopped for runs in maps.values())
-    defaults = two.at(y=WAYS.labels.index("MuJoCo, its defaults"))
-    statement = (
-        "Flat, the linkage may leave on another branch, and what drift or rounding has left by then decides. "
-        f"Through all steps of both maps hold: {', '.join(always)}. At some steps: "
-        f"{', '.join(sometimes) or 'none'}. At none: {', '.join(never) or 'none'}. Projection stays within "
-        f"{errors.max():.1e} m. MuJoCo's default closures miss by {defaults.min():.1f} to {defaults.max():.1f} m, "
-        "because they lose energy, not because of the posture. A start in the flat posture is reported, and "
-        f"{noted:.0%} of our runs that pass it note how close they came. A step that all but lands in it loses "
-        "decades: "
-        f"the worst of four such leave {near['projection']:.0e} m with projection and {near['baumgarte']:.0e} m "
-        "with gains of 20/s."
-    )
-    see = (
-        f"Rows are ways, columns are steps. Blue rows hold; above them and below, {stopped} runs stop with an "
-        f"outcome, but {wrong} come to their end on the wrong branch or out of phase, and only a check of energy or "
-        "of the step tells."
-    )
-    return Verdict(statement, see, findings)
 
 
 def good(gain: float, h: float) -> bool:

@@ -15,6 +15,8 @@ from typing import Any
 import cffi
 import numpy as np
 
+import symofros as sf
+
 from ...contract.conventions import Chart
 from ...contract.interface import Subject, Unsupported
 from ...mechanics.assembly import Assembly
@@ -146,7 +148,7 @@ def pinocchio_loops(task: Task, functions: Sequence[str], warn: Callable[[str], 
 
 def _ties_text(task: Task) -> str:
     """How Pinocchio's rigid constraints close the loops, for `validation/native/loop_closed.cpp`."""
-    from ...adapters.pinocchio import loops as pinocchio_loops
+    from ...adapters.pinocchio import loops as pinocchio_loops  # Who lacks Pinocchio has the rest.
 
     engine = pinocchio_loops.build(Subject(task.label, task.system))
     if isinstance(engine, Unsupported):
@@ -160,7 +162,7 @@ def mujoco_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
     Raises:
         Skipped: MuJoCo has no such model, or is not installed.
     """
-    from ...adapters.mujoco import tree as mujoco
+    from ...adapters.mujoco import tree as mujoco  # Who lacks MuJoCo has the rest.
 
     if task.system.constraints:
         raise Skipped("its closures are soft: accelerations are others")
@@ -302,8 +304,6 @@ class _Converted:
     def _bias(self, h_e: Array) -> Array:
         """Free joints turn the axes of their speeds, which M has a part in: ours says which."""
         assert self.chart is not None
-        import symofros as sf
-
         chart, q, v = self.chart, self.task.states.q, self.task.states.v
         M = sf.compile(self.task.system).mass_matrix(q)
         T = chart.transform(q)

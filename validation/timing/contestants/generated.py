@@ -30,8 +30,8 @@ def casadi_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
     Raises:
         Skipped: The recursions have no equations for the model.
     """
-    from ...adapters.casadi import code as casadi_code
-    from ...adapters.casadi import tree as casadi_tree
+    from ...adapters.casadi import code as casadi_code  # Who lacks CasADi has the rest.
+    from ...adapters.casadi import tree as casadi_tree  # As above.
 
     if task.assembly.nv > MOST_DERIVED and any(name.endswith(("derivatives", "vjp")) for name in functions):
         raise Skipped(f"derivatives are made up to {MOST_DERIVED} degrees of freedom, beyond which they take minutes")
@@ -68,7 +68,7 @@ def sympy_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
             f"{task.assembly.nv} degrees of freedom: Kane's equations by SymPy are made up to {MOST_KANE}, "
             "beyond which generation takes minutes; see the costs"
         )
-    from .kane import FUNCTIONS, kane_source
+    from .kane import FUNCTIONS, kane_source  # SymPy's mechanics take a second.
 
     yield from _built(task, [name for name in functions if name in FUNCTIONS], partial(kane_source, task.system))
 

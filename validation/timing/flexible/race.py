@@ -6,16 +6,15 @@ chosen before anything else imports Exudyn.
 
 from __future__ import annotations
 
-import json
 import os
-import subprocess
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields
-from typing import Any, Self
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 from symofros.harness import worker_command
 
+from ...reporting.plain import restored
 from ..contestants.programs import BuildError
+from ..processes import WorkerError, follow, message
 
 LABEL = "planar_robot"
 # Shape functions a strip: as the model states it, and finer.
@@ -52,13 +51,6 @@ class FlexibleTiming:
     ratio: float
     corrected: float
 
-    @classmethod
-    def of(cls, row: Mapping[str, Any]) -> Self:
-        """What the worker printed as JSON."""
-        values: Iterator[Any] = (row[item.name] for item in fields(cls))
-        arguments: list[Any] = [tuple(value) if isinstance(value, list) else value for value in values]
-        return cls(*arguments)
-
 
 def run_flexible(repeats: int, counts: Sequence[int] = COUNTS, calls: int = CALLS) -> list[FlexibleTiming]:
     """Time in a process of its own, pinned to one processor, with Exudyn's fast module.
@@ -73,8 +65,15 @@ def run_flexible(repeats: int, counts: Sequence[int] = COUNTS, calls: int = CALL
     """
     command = worker_command(_WORKER, [str(repeats), str(calls), *map(str, counts)])
     environment = {**os.environ, "EXUDYN_MODULE": "fast"}
-    done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
-    if done.returncode != 0:
-        raise BuildError(f"{LABEL} against Exudyn: {(done.stderr.strip() or 'no word').splitlines()[-1]}")
-    # Exudyn announces its fast module before.
-    return [FlexibleTiming.of(row) for row in json.loads(done.stdout.splitlines()[-1])]
+    rows: list[FlexibleTiming] = []
+
+    def take(line: str) -> None:
+        kind, value = message(line)  # Exudyn announces its fast module, too.
+        if kind == "row":
+            rows.append(restored(FlexibleTiming, value))
+
+    try:
+        follow(command, take, environment)
+    except WorkerError as error:
+        raise BuildError(f"{LABEL} against Exudyn: the worker {error}") from None
+    return rows

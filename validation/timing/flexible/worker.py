@@ -1,11 +1,11 @@
 """Times the planar flexible robot, ours and Exudyn's in turn: `python -m validation.timing.flexible.worker`.
 
-Arguments: repeats, evaluations a repeat, shape functions a strip (one or more). Prints `FlexibleTiming`s as JSON.
+Arguments: repeats, evaluations a repeat, shape functions a strip (one or more). Prints {"row": ...} of each
+`FlexibleTiming`.
 """
 
 from __future__ import annotations
 
-import json
 import os
 import sys
 from collections.abc import Callable, Iterable
@@ -19,6 +19,7 @@ import numpy as np
 from ...adapters.exudyn.planar import smallest
 from ...adapters.exudyn.system import Part
 from ...mechanics.assembly import assemble
+from ..processes import say
 from .equal_accuracy import NotTheSameError, Pair, pairs, robot
 from .loop import GeneratedLoop
 from .race import FlexibleTiming
@@ -97,7 +98,7 @@ if __name__ == "__main__":
         os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
     repeats, calls, *counts = map(int, sys.argv[1:])
     try:
-        timed = measure(repeats, counts, calls)
+        for row in measure(repeats, counts, calls):
+            say("row", asdict(row))
     except NotTheSameError as error:
         sys.exit(str(error))
-    print(json.dumps([asdict(row) for row in timed]))

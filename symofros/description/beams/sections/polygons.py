@@ -128,10 +128,10 @@ def _unusable(stated: str, rule: str) -> Problem:
 def _geometry(rings: tuple[tuple[Point, ...], ...], poisson: float) -> _Geometry:
     """A section by finite elements, scaled to unit area first, since meshes have absolute tolerances."""
     try:
-        from sectionproperties.analysis import Section as Elements
-        from sectionproperties.pre import Geometry
-        from sectionproperties.pre import Material as Elastic
-        from shapely import Polygon
+        from sectionproperties.analysis import Section as Elements  # An extra.
+        from sectionproperties.pre import Geometry  # Of the same extra.
+        from sectionproperties.pre import Material as Elastic  # Of the same extra.
+        from shapely import Polygon  # Of the same extra.
     except ImportError:
         found, rule = "no module sectionproperties", "sections of this outline are meshed"
         raise DescriptionError(Problem.of_extra("section: no mesher is installed", found, rule, "sections")) from None

@@ -11,10 +11,10 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
+from symofros.base.arrays import Array
 from symofros.description.values import Term, Value
 from symofros.expr.expression import evaluate
 
-Array = npt.NDArray[np.float64]
 Kind = Literal["rectangle", "ellipse", "tube"]
 
 # The sum of 1/n^5 over odd n: 31/32 zeta(5).

@@ -11,10 +11,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.program.layout import Place
 from symofros.diagrams.wiring import Wired
-from symofros.runtime.calls.kernel import Array
 from symofros.simulation.results.outcome import Outcome
 
 # Samples before the end that are looked at, and how often the steps are refined there: with steps so fine, what grows

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from symofros.base.user_functions import raised_where
+from symofros.base.arrays import Array
 from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.program.layout import Layout
 from symofros.diagrams.run.engaging import engaged_apart, engaging_notes
@@ -15,7 +15,6 @@ from symofros.diagrams.run.examination.faults import fault_at
 from symofros.diagrams.run.examination.joint_limits import joint_limit_notes
 from symofros.diagrams.run.loop import Loop
 from symofros.runtime.beams import BeamBending, bending_notes, largest_bending
-from symofros.runtime.calls.kernel import Array
 from symofros.simulation.analysis.beam_theory import UNAMPLIFIED, amplifications
 from symofros.simulation.events import event_notes
 from symofros.simulation.results.examination.step_size import examine_steps, remedy, step_size_note
@@ -23,6 +22,7 @@ from symofros.simulation.results.outcome import Kind, Outcome
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.resolution import Resolution
 from symofros.simulation.stepping.status import Status
+from symofros.simulation.user_functions import raised_where
 
 _ENDS: dict[int, tuple[Kind, str, str]] = {
     Status.DIVERGED: ("diverged", "a state has grown without bound", "a smaller dt; look for gains that are too high"),

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.run.examination.step_check import Repeat, States
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.manifold import retract
 from symofros.runtime.model import Model
 from symofros.simulation.results.examination.repetition import HALVINGS, SETTLED
@@ -144,7 +144,11 @@ def _is_numerical(
     """Whether finer steps change what the intervals gain in which most energy is doubtful."""
     gained, kinetic = doubts.gained, doubts.kinetic
     sizes = np.maximum.accumulate(np.maximum(kinetic[1:], 1e-300))
-    chosen = np.argsort(-np.abs(gained) if doubts.evident else -np.abs(gained) - doubts.unseen)[:_REPEATED]
+    doubtful = np.abs(gained) if doubts.evident else np.abs(gained) + doubts.unseen
+    # A contact that throws a body off makes all later intervals gain more than it did: the one that gained most beside
+    # the motion before it is looked at, too.
+    beside = doubtful[1:] / sizes[:-1]
+    chosen = np.unique([*np.argsort(-doubtful)[:_REPEATED], *(1 + np.argsort(-beside)[:1])])
     share = _CHANGED_MOTION * float(kinetic.max())
     if doubts.evident:
         share = min(_CHANGED * float(np.abs(gained[chosen]).sum()), share)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.run.block_functions import Blocks
-from symofros.runtime.calls.kernel import Array
 
 # Size of a state that makes what is computed of it overflow.
 _EXPLODED = 1e100

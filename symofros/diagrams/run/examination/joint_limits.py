@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from symofros.base.arrays import Array
 from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.program.layout import Part
-from symofros.generator.record import joint_limits
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.record import JointLimit
 from symofros.simulation.analysis.kinematics.postures import limit_notes
 
@@ -40,6 +39,6 @@ def _limits(resolved: Resolved, part: Part) -> Iterator[JointLimit]:
     for name in part.blocks:
         if name in layout.q:
             first = {"q": layout.q[name].start - part.q.start, "v": layout.v[name].start - part.v.start}
-            for limit in joint_limits(models.tree(resolved.pieces[name].block.mechanism())):
+            for limit in models.record(resolved.pieces[name].block.mechanism()).joint_limits:
                 if limit.of in first:
                     yield limit._replace(entry=first[limit.of] + limit.entry)

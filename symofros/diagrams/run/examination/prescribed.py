@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.wiring import Source
-from symofros.runtime.calls.kernel import Array
 from symofros.simulation.prescribed_motions import recorded_notes
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.settings import UNIT_TOLERANCE

@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.diagrams.program.layout import Layout
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import STILL
 from symofros.runtime.manifold import difference
 from symofros.simulation.results.examination.energy_balance import EXPLODED

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from symofros.expr.edges import ONE, ZERO, Edge
+from symofros.expr.factors import SingularMatrixError
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Vec3
 from symofros.mechanics.dynamics.acceleration import Acceleration, Wrench, base_to_tip, no_wrench, velocities
@@ -23,7 +24,6 @@ from symofros.mechanics.dynamics.forward.articulated_inertia import (
     acceleration_from_parent,
     wrench_in_parent,
 )
-from symofros.mechanics.dynamics.forward.factors import SingularMassMatrixError
 from symofros.mechanics.dynamics.jourdain import link_wrenches, subtree_wrenches
 from symofros.mechanics.kinematics.joint import PartialVelocity
 from symofros.mechanics.kinematics.links import MovingLink, TreeKinematics
@@ -51,7 +51,7 @@ def articulated_acceleration(
         v', one edge a speed (nv).
 
     Raises:
-        SingularMassMatrixError: A pivot is the number zero.
+        SingularMatrixError: A pivot is the number zero.
     """
     motions, biases = velocities(kinematics)
     wrenches, direct = link_wrenches(kinematics, inertias, rotors, motions, [ZERO] * kinematics.nv)
@@ -75,7 +75,7 @@ def articulated_solution(
         x (nv).
 
     Raises:
-        SingularMassMatrixError: A pivot is the number zero.
+        SingularMatrixError: A pivot is the number zero.
     """
     g, zero = kinematics.g, Vec3(kinematics.g)
     still = [Acceleration(zero, zero) for _ in kinematics.links]
@@ -272,7 +272,7 @@ class _FreeJoint:
         in_parent: Whether that body is the parent.
 
     Raises:
-        SingularMassMatrixError: A pivot is the number zero.
+        SingularMatrixError: A pivot is the number zero.
     """
 
     def __init__(
@@ -294,7 +294,7 @@ class _FreeJoint:
         for k in reversed(range(6, len(rows))):
             row, pivot = rows[k], rows[k][k]
             if pivot == ZERO:
-                raise SingularMassMatrixError(v + k - 6)
+                raise SingularMatrixError(v + k - 6)
             inverse = g.div(ONE, pivot)
             ratios = [_quotient(g, edge, pivot, inverse) for edge in row[:k]]
             for i in range(k):

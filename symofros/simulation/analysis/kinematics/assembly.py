@@ -11,10 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arguments import checked
-from symofros.base.arrays import vector
+from symofros.base.arrays import Array, vector
 from symofros.base.measures import LENGTH, ROTATION, TRANSLATION
 from symofros.errors import AssemblyError, Problem, UnknownNameError, did_you_mean
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import (
     LARGEST_STEP,
     LEAST_SIZE,

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.errors import ActuationError, Problem
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import STILL, residual_weights
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.kinematics.facing import refuse_opposite

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.errors import AssemblyError, Problem
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
 
 

@@ -9,10 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arguments import checked
+from symofros.base.arrays import Array
 from symofros.base.measures import ANGLE, LENGTH, Measures
 from symofros.errors import AssemblyError, Problem, SymofrosError
 from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import pseudo_inverse
 from symofros.runtime.model import ArrayLike, Model
 from symofros.runtime.unit_quaternions import at_unit_length

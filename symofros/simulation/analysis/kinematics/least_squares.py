@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from symofros.runtime.calls.kernel import Array
+from symofros.base.arrays import Array
 from symofros.runtime.constrained import LARGEST_STEP, pseudo_inverse
 from symofros.runtime.model import Model
 from symofros.simulation.analysis.kinematics.assembly import Indices

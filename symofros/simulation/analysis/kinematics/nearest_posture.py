@@ -12,8 +12,8 @@ from typing import Protocol
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.base.rotations import screw_displacement
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import LARGEST_STEP, null_space, pseudo_inverse
 from symofros.runtime.model import Model
 from symofros.simulation.analysis.kinematics.assembly import Indices

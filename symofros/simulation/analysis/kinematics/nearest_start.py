@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.errors import AssemblyError
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import LARGEST_STEP, null_space
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.kinematics.assembly import (

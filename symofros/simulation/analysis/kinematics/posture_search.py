@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from symofros.runtime.calls.kernel import Array
+from symofros.base.arrays import Array
 from symofros.simulation.analysis.kinematics.assembly import Indices
 from symofros.simulation.analysis.kinematics.facing import facings
 from symofros.simulation.analysis.kinematics.least_squares import End, FreeLimits, damped_least_squares, polished

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from symofros.runtime.calls.kernel import Array
+from symofros.base.arrays import Array
 from symofros.runtime.model import Model
 from symofros.runtime.record import JointLimit
 
@@ -133,14 +133,16 @@ def nearest_to_singular(
     """Where the conditions were closest to repeating each other.
 
     Between records that are far apart, weak conditions are looked for on the straight way from one to the next, which
-    the motion does not take: what is found there is asked for along the motion itself.
+    the motion does not take: what is found there is asked for along the motion itself, and stands where short steps
+    can't follow that.
 
     Args:
         model: Model with constraints.
         states: Recorded t (n), q (n, nq), v (n, nv), u (n, nu).
         par: Run-time parameters (npar).
         rank: Rank of the constraints at regular postures.
-        motion: States of the motion between two records, by their numbers, in short steps; None where it is not known.
+        motion: States of the motion between two records, by their numbers, in short steps; None where it is not known,
+            no states where short steps fail at the constraints.
 
     Returns:
         When, and the smallest singular value of G there over its largest in the run; None where it stayed above NEAR.
@@ -172,8 +174,12 @@ def nearest_to_singular(
         doubted = [int(part[k]) for k in np.argsort(straight) if straight[k] < NEAR * largest]
         for k in list(dict.fromkeys(k for k in doubted if k + 1 < len(rows)))[:ASKED]:
             along = motion(int(rows[k]), int(rows[k + 1]))
-            if along is not None and len(along[0]):
+            if along is None:
+                continue
+            if len(along[0]):
                 found.append(_least(weakest([along[0], along[1], along[3]]), along[0]))
+            else:
+                found.append(_least(straight[part == k], between[0][part == k]))
     size, when = min(found)
     return (when, size / largest) if size < NEAR * largest else None
 

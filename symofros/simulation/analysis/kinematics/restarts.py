@@ -10,8 +10,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.base.measures import ROTATION, TRANSLATION
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
 from symofros.simulation.analysis.kinematics.assembly import Indices
 from symofros.simulation.analysis.kinematics.nearest_posture import coordinate_limits

@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.base.names import coordinate_of, speed_of
 from symofros.errors import AssemblyError, Problem
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
 from symofros.runtime.unit_quaternions import at_unit_length
 from symofros.simulation.analysis.kinematics.assembly import assemble

@@ -10,10 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arguments import CheckedCalls
-from symofros.base.arrays import real_array
+from symofros.base.arrays import Array, real_array
 from symofros.base.measures import ANGLE, LENGTH, Measures
 from symofros.errors import Problem, ShapeError, SymofrosError
-from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
 
 # Deviation of a target's matrix from a rotation, max |R R^T - 1|, up to which the nearest rotation stands for it.

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from symofros.runtime.calls.kernel import Array
+from symofros.base.arrays import Array
 from symofros.runtime.manifold import retract
 from symofros.runtime.model import Model
 from symofros.simulation.results.examination.input_faults import input_fault

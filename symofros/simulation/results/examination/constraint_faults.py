@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.errors import SymofrosError
-from symofros.runtime.calls.kernel import Array
 from symofros.simulation.analysis.kinematics.postures import (
     MOST_BETWEEN,
     Jump,
@@ -84,6 +84,7 @@ def near_singular(stepper: Stepper, settings: Settings, states: Sequence[Array])
         if settings.realtime or not same_inputs_again(stepper, settings, states):
             return None
         part = float(t[last] - t[first]) / MOST_BETWEEN
-        return in_short_steps(stepper, settings, (t[first], q[first], v[first]), float(t[last]), part)[1]
+        status, along = in_short_steps(stepper, settings, (t[first], q[first], v[first]), float(t[last]), part)
+        return [x[:0] for x in along] if status < 0 and status in _SINGULAR_ENDS else along
 
     return nearest_to_singular(stepper.model, states, stepper.par, int(stepper.run.rank_max), motion)

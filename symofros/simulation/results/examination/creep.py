@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from symofros.runtime.calls.kernel import Array
+from symofros.base.arrays import Array
 from symofros.simulation.analysis.friction import friction_curve
 from symofros.simulation.analysis.mass_matrix import mass_matrix
 from symofros.simulation.stepping.stepper import Stepper

@@ -8,8 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.runtime.beams import BeamBending, bending_notes, largest_bending
-from symofros.runtime.calls.kernel import Array
 from symofros.simulation.analysis.beam_theory import UNAMPLIFIED, amplifications
 from symofros.simulation.analysis.kinematics.postures import limit_notes
 from symofros.simulation.analysis.singular_mass import ADVICE, singular_mass

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from symofros.runtime.calls.kernel import Array
+from symofros.base.arrays import Array
 from symofros.runtime.manifold import retract
 from symofros.simulation.results.examination.energy_norm import energies_of
 from symofros.simulation.results.examination.paths import path_within

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.errors import SymofrosError
-from symofros.runtime.calls.kernel import Array
 from symofros.simulation.stepping.stepper import Stepper
 
 

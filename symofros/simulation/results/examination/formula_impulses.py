@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from symofros.runtime.calls.kernel import Array
+from symofros.base.arrays import Array
 from symofros.simulation.results.examination.energy_norm import energy_norms
 from symofros.simulation.results.examination.input_impulses import AT_END, POINTS, RATE, evaluated, nodes
 from symofros.simulation.settings import Settings

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from symofros.base.user_functions import raised_where
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.settings import UNIT_TOLERANCE
 from symofros.simulation.stepping.stepper import InputValueError, Stepper
+from symofros.simulation.user_functions import raised_where
 
 # Size of a state that makes feedback overflow.
 _EXPLODED = 1e100

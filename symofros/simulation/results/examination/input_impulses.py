@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from symofros.runtime.calls.kernel import Array
+from symofros.base.arrays import Array
 from symofros.runtime.manifold import retract
 from symofros.simulation.inputs import held_samples
 from symofros.simulation.results.examination.energy_norm import energy_norms

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from symofros.runtime.calls.kernel import Array
+from symofros.base.arrays import Array
 from symofros.runtime.manifold import chart_coordinates, chart_rate, retract
 from symofros.simulation.stepping.stepper import Stepper
 

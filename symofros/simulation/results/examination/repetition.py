@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from symofros.runtime.calls.kernel import Array
+from symofros.base.arrays import Array
 from symofros.runtime.manifold import retract
 from symofros.simulation.inputs import Callback
 from symofros.simulation.results.examination.energy_norm import energies_of, energy_norms, metrics

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.errors import SymofrosError
-from symofros.runtime.calls.kernel import Array
 from symofros.simulation.analysis.kinematics.postures import worst_violation
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.results.examination.creep import creep_note

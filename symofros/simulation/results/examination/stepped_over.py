@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from symofros.runtime.calls.kernel import Array
+from symofros.base.arrays import Array
 from symofros.simulation.results.examination.energy_norm import metrics, norms_in
 from symofros.simulation.results.examination.paths import path_within
 from symofros.simulation.results.examination.repetition import (

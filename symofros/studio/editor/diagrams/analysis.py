@@ -7,8 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from symofros.description.reading import in_order
-from symofros.description.system import System
+from symofros.description import System, in_order
 from symofros.diagrams.block import Ports
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.files.reader import read_diagram

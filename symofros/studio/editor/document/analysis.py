@@ -7,13 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from symofros.base.units import parse
-from symofros.description.reading import in_order
-from symofros.description.system import System
-from symofros.description.yaml.files import DIAGRAM, read_yaml
-from symofros.description.yaml.yaml_nodes import YamlFault
+from symofros.description import System, in_order
+from symofros.description.yaml import DIAGRAM, YamlFault, read_yaml
 from symofros.errors import DescriptionError, Problem
-from symofros.mechanics.topology.graph import find_problems
-from symofros.mechanics.topology.units import unit_problems
+from symofros.mechanics.topology import find_problems, unit_problems
 from symofros.studio.editor.diagrams.analysis import analyse_diagram
 from symofros.studio.editor.document.diagram import diagram
 from symofros.studio.editor.document.element_lines import element_lines

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from symofros.description.beams.beam import DIRECTIONS, STRAINS
-from symofros.description.joints.joint import WORLD
-from symofros.description.yaml.schema import default_joint_name
+from symofros.description import DIRECTIONS, STRAINS, WORLD
+from symofros.description.yaml import default_joint_name
 
 GROUND = "world"  # The id of the block of the ground, whatever the body without a joint is called.
 # Ports that no frame names: where a body's joint arrives, and the body frame.

@@ -5,11 +5,10 @@ from __future__ import annotations
 from pathlib import Path as File
 from typing import Any
 
-from symofros.description.parser import ExpressionError, parse
-from symofros.description.values import as_value, symbols
-from symofros.description.yaml.yaml_nodes import YamlFault, scalar_of
+from symofros.description import ExpressionError, as_value, parse, symbols
+from symofros.description.yaml import YamlFault, scalar_of
 from symofros.errors import Problem
-from symofros.expr.expression import Expression, evaluate
+from symofros.expr import Expression, evaluate
 from symofros.studio.editor.document.analysis import analyse
 from symofros.studio.editor.document.document import refuse_text
 from symofros.studio.editor.document.meaning import Analysis

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from math import isfinite
 from typing import Any
 
-from symofros.description.system import System
+from symofros.description import System
 
 Json = dict[str, Any]
 

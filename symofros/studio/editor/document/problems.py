@@ -8,9 +8,8 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from symofros.description.parser import ExpressionError, parse
-from symofros.description.yaml.faults import line_of, path_of, problem_of
-from symofros.description.yaml.schema import NativeFile, default_joint_name
+from symofros.description import ExpressionError, parse
+from symofros.description.yaml import NativeFile, default_joint_name, line_of, path_of, problem_of
 from symofros.errors import Problem, first_of
 from symofros.studio.editor.editing.data_edits import Path
 from symofros.studio.editor.editing.formulas import formulas

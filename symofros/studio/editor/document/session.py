@@ -7,8 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from symofros.description.reading import MODEL_SUFFIXES
-from symofros.description.system import System
+from symofros.description import MODEL_SUFFIXES, System
 from symofros.studio.editor.document.document import EditedDocument, StaleError, refuse_text
 from symofros.studio.editor.document.expressions import check_field
 from symofros.studio.editor.document.figures.beam_figures import beam_figures

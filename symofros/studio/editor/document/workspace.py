@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from symofros.base.atomic import write_atomically
-from symofros.description.reading import MODEL_SUFFIXES, YAML_SUFFIXES, kind_of
-from symofros.description.yaml.files import MAX_BYTES
+from symofros.description import MODEL_SUFFIXES, YAML_SUFFIXES, kind_of
+from symofros.description.yaml import MAX_BYTES
 from symofros.diagrams.files.kind import is_diagram
 from symofros.errors import Problem, SymofrosError
 

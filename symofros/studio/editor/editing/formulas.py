@@ -6,9 +6,9 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from symofros.base.names import symbol_in
-from symofros.description.parser import ExpressionError, tokenize
-from symofros.description.yaml.schema import json_schema
-from symofros.expr.expression import spelled
+from symofros.description import ExpressionError, tokenize
+from symofros.description.yaml import json_schema
+from symofros.expr import spelled
 from symofros.studio.editor.editing.data_edits import Path
 
 _FORMULA = "#/$defs/Formula"

@@ -6,20 +6,11 @@ from collections.abc import Iterator
 from typing import Any
 
 from symofros.base.names import TIME, rate_symbol, symbol_of
-from symofros.description.beams.beam import STATION
-from symofros.description.joints.joint import WORLD, Joint
-from symofros.description.joints.joint_kinds import KINDS
-from symofros.description.yaml.files import DIAGRAM
-from symofros.description.yaml.schema import default_joint_name
+from symofros.description import KINDS, STATION, WORLD, Joint
+from symofros.description.yaml import DIAGRAM, default_joint_name
 from symofros.errors import DescriptionError
-from symofros.expr.expression import CONSTANTS
-from symofros.mechanics.topology.coordinates import (
-    coordinate_symbols,
-    rate_keys,
-    rate_symbols,
-    speed_keys,
-    speed_symbols,
-)
+from symofros.expr import CONSTANTS
+from symofros.mechanics.topology import coordinate_symbols, rate_keys, rate_symbols, speed_keys, speed_symbols
 from symofros.studio.editor.editing.data_edits import Edit, Path, edited, fault
 from symofros.studio.editor.editing.diagram_renaming import renaming_in_diagram
 from symofros.studio.editor.editing.formulas import formulas, with_names

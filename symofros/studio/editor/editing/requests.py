@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple, get_args
 
-from symofros.description.yaml.yaml_nodes import MAX_DEPTH, scalar_of
+from symofros.description.yaml import MAX_DEPTH, scalar_of
 from symofros.errors import Problem
 from symofros.studio.editor.editing.data_edits import Edit, EditError, Op, Path
 from symofros.studio.editor.editing.yaml_rendering import WHOLE, Typed

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from symofros.description.yaml.yaml_nodes import Node, YamlFault
+from symofros.description.yaml import Node, YamlFault
 from symofros.studio.editor.editing.data_edits import Edit, Path, edited, fault, same
 from symofros.studio.editor.editing.renaming import renaming
 from symofros.studio.editor.editing.yaml_spans import YamlText, yaml_text_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from symofros.description.yaml.yaml_nodes import scalar_of
+from symofros.description.yaml import scalar_of
 from symofros.studio.editor.editing.data_edits import Path
 
 WIDTH = 110

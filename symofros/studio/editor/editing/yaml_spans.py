@@ -6,8 +6,7 @@ import re
 from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
 
-from symofros.description.yaml.yaml_nodes import Node
-from symofros.description.yaml.yaml_pieces import compose_text
+from symofros.description.yaml import Node, compose_text
 from symofros.studio.editor.editing.data_edits import Path
 
 _BREAK = re.compile(r"\r\n|\n|\r")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from symofros.description.yaml.yaml_nodes import Node
+from symofros.description.yaml import Node
 from symofros.studio.editor.editing.data_edits import Edit, Path, place
 from symofros.studio.editor.editing.yaml_rendering import STEP, block, inline, is_block, scalar
 from symofros.studio.editor.editing.yaml_spans import Span, YamlText

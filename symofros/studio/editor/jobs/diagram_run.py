@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from symofros.base.arrays import Array
 from symofros.diagrams.result import DiagramRun
 from symofros.diagrams.run.plots import plots_of
 from symofros.diagrams.settings import Plot
@@ -18,7 +19,6 @@ from symofros.diagrams.simulation import Simulation
 from symofros.diagrams.wiring import Source, Wired
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.beams import BEAM_LIMIT
-from symofros.runtime.calls.kernel import Array
 from symofros.studio.editor.jobs.bent_beams import bent_beams
 from symofros.studio.editor.jobs.request import Json, Tell, diagram_of
 

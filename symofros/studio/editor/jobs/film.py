@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from symofros.description.system import System
+from symofros.description import System
 from symofros.errors import SymofrosError
 from symofros.studio.editor.editing.data_edits import EditError, refusal
 from symofros.studio.editor.jobs.run_states import states_of

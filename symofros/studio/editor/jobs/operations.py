@@ -19,12 +19,12 @@ import symofros as sf
 from symofros.base.functions import exported
 from symofros.base.names import quoted, speed_column, speed_of, symbol_of
 from symofros.compiler import Compilation, compile_system
-from symofros.description.yaml.files import write_yaml
+from symofros.description.yaml import write_yaml
 from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
 from symofros.exports.folder import check_same
-from symofros.generator.passes.count import count_program
+from symofros.generator import count_program
 from symofros.harness import command_line
-from symofros.mechanics.topology.tree import SpanningTree, build_tree
+from symofros.mechanics.topology import SpanningTree, build_tree
 from symofros.simulation.analysis.kinematics.starts import closed_start
 from symofros.simulation.simulate import prepare_run
 from symofros.studio.editor.jobs.bent_beams import bent_beams

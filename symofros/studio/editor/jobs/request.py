@@ -8,13 +8,12 @@ from pathlib import Path
 from queue import SimpleQueue
 from typing import Any
 
-from symofros.description.reading import in_order
-from symofros.description.system import System
-from symofros.description.yaml.files import read_yaml
+from symofros.description import System, in_order
+from symofros.description.yaml import read_yaml
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.files.reader import read_diagram
 from symofros.errors import DescriptionError
-from symofros.mechanics.topology.graph import find_problems
+from symofros.mechanics.topology import find_problems
 
 Json = dict[str, Any]
 ORDERS = ("pause", "resume", "stop")

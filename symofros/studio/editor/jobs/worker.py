@@ -62,10 +62,10 @@ def _serve(request: Json, tell: Tell) -> None:
 def task(kind: str) -> Callable[[Json, Tell], Any]:
     """What a kind of work is; each brings its own imports, which the others do not pay for."""
     if kind == "run":
-        from symofros.studio.editor.jobs.diagram_run import run_diagram
+        from symofros.studio.editor.jobs.diagram_run import run_diagram  # With the library of blocks.
 
         return run_diagram
-    from symofros.studio.editor.jobs import operations
+    from symofros.studio.editor.jobs import operations  # With exports and advice.
 
     return operations.TASKS[kind]
 

@@ -21,7 +21,7 @@ from starlette.routing import Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp
 
-from symofros.description.yaml.yaml_nodes import YamlFault
+from symofros.description.yaml import YamlFault
 from symofros.errors import Problem
 from symofros.studio.editor.document.document import StaleError
 from symofros.studio.editor.document.figures.shape_curves import curves

@@ -12,7 +12,7 @@ from urllib.request import urlopen
 import numpy as np
 
 from symofros.base.measures import ANGLE, LENGTH
-from symofros.description.system import System
+from symofros.description import System
 from symofros.errors import Problem, SymofrosError
 from symofros.studio.editor.editing.data_edits import EditError, four_parts, refusal
 from symofros.studio.editor.jobs.bent_beams import bent_beams

@@ -59,10 +59,9 @@ class Relay:
 
 
 async def _joined(browser: WebSocket, address: str) -> None:
-    # Only here: the package comes with viser, and the editor starts without either.
-    from websockets.asyncio.client import connect
-    from websockets.exceptions import WebSocketException
-    from websockets.typing import Subprotocol
+    from websockets.asyncio.client import connect  # Comes with viser; the editor starts without either.
+    from websockets.exceptions import WebSocketException  # As above.
+    from websockets.typing import Subprotocol  # As above.
 
     offered = [Subprotocol(name) for name in browser.scope["subprotocols"]]
     try:

@@ -8,11 +8,9 @@ from fractions import Fraction
 
 import numpy as np
 
-from symofros.description.beams.beam import Beam
-from symofros.mechanics.beams.deformation import Deformation, deformation_of
-from symofros.mechanics.beams.fields import Field, Monomial
-from symofros.mechanics.beams.rod_shape import RodShape
-from symofros.studio.viewer.drawing.meshes import Array
+from symofros.base.arrays import Array
+from symofros.description import Beam
+from symofros.mechanics.beams import Deformation, Field, Monomial, RodShape, deformation_of
 
 STATIONS = 17  # Of a beam, ends included: four an arch of the fourth mode. Each costs two messages a picture.
 

@@ -16,7 +16,8 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from symofros.studio.viewer.drawing.meshes import Array, Faces, Mesh, merged
+from symofros.base.arrays import Array
+from symofros.studio.viewer.drawing.meshes import Faces, Mesh, merged
 
 # Rotations from the axes of a file to ours, z upwards.
 _UPWARDS = {

@@ -7,8 +7,9 @@ from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.studio.viewer.drawing.centre_line import CentreLine, RodLine
-from symofros.studio.viewer.drawing.meshes import Array, Mesh
+from symofros.studio.viewer.drawing.meshes import Mesh
 
 Kind = Literal["bodies", "inertias", "joints", "constraints", "paths", "visuals"]
 KINDS: tuple[Kind, ...] = get_args(Kind)

@@ -17,12 +17,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from symofros.description.beams.beam import STATION, Beam
-from symofros.description.constraints import Closure, KnifeEdge, Rod, Rolling
-from symofros.description.forces import Anchor, Connection
-from symofros.description.system import RigidBody
-from symofros.mechanics.topology.numbers import Numbers
-from symofros.mechanics.topology.tree import BASE, Link, NamedFrame, Placement, SpanningTree, frame_of
+from symofros.base.arrays import Array
+from symofros.description import STATION, Anchor, Beam, Closure, Connection, KnifeEdge, RigidBody, Rod, Rolling
+from symofros.mechanics.topology import BASE, Link, NamedFrame, Numbers, Placement, SpanningTree, frame_of
 from symofros.studio.viewer.drawing.centre_line import CentreLine, RodLine
 from symofros.studio.viewer.drawing.drawing import (
     Color,
@@ -34,7 +31,7 @@ from symofros.studio.viewer.drawing.drawing import (
     Triad,
 )
 from symofros.studio.viewer.drawing.inertia_box import inertia_box, longest_edges
-from symofros.studio.viewer.drawing.meshes import Array, Mesh, axes_along, box, cylinder, disc, ellipse, merged, sphere
+from symofros.studio.viewer.drawing.meshes import Mesh, axes_along, box, cylinder, disc, ellipse, merged, sphere
 from symofros.studio.viewer.drawing.visual_meshes import visual_mesh
 
 # Distinct on white and on grey, also to people with red-green blindness.

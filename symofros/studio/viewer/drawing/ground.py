@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.studio.viewer.drawing.drawing import Color, Drawing
-from symofros.studio.viewer.drawing.meshes import Array
 
 GRAVITY_COLOR: Color = (200, 60, 160)
 _ARROW = 0.15  # Of the mechanism's size.

@@ -6,10 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from symofros.description.system import RigidBody, System
-from symofros.mechanics.topology.numbers import Numbers
-from symofros.mechanics.topology.physics import moments_about_center
-from symofros.studio.viewer.drawing.meshes import Array
+from symofros.base.arrays import Array
+from symofros.description import RigidBody, System
+from symofros.mechanics.topology import Numbers, moments_about_center
 
 
 class InertiaBox(NamedTuple):

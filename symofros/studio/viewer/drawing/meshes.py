@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from symofros.base.arrays import Array
 from symofros.errors import Problem, SymofrosError
 
-Array = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int64]
 
 _SIDES = 12  # Of anything round: few enough for hundreds of them in a browser.

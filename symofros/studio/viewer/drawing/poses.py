@@ -8,14 +8,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from symofros.base.arrays import real_array
+from symofros.base.arrays import Array, real_array
 from symofros.base.options import Options
 from symofros.compiler import compile_system
-from symofros.description.constraints import Closure, Rolling
-from symofros.description.system import System
+from symofros.description import Closure, Rolling, System
 from symofros.errors import AssemblyError, Problem, ShapeError
-from symofros.mechanics.topology.numbers import Numbers
-from symofros.mechanics.topology.tree import SpanningTree, build_tree, frame_of
+from symofros.mechanics.topology import Numbers, SpanningTree, build_tree, frame_of
 from symofros.runtime.beams import BeamBending
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.beam_theory import bendings_in_motion
@@ -23,7 +21,7 @@ from symofros.simulation.analysis.kinematics.assembly import assemble
 from symofros.studio.viewer.drawing.drawing import Drawing, DrawnBeam, DrawnConnector, LinkPoint
 from symofros.studio.viewer.drawing.geometry import draw, landmarks
 from symofros.studio.viewer.drawing.inertia_box import longest_edges
-from symofros.studio.viewer.drawing.meshes import Array, axes_along
+from symofros.studio.viewer.drawing.meshes import axes_along
 from symofros.studio.viewer.drawing.tracks import Track, track_part
 
 _LEAST_SIZE = 1e-6  # [m]; what is smaller is drawn as if it were a metre, for want of anything to go by.

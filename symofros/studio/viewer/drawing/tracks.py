@@ -7,10 +7,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.errors import Problem, ShapeError
-from symofros.mechanics.topology.tree import BASE
+from symofros.mechanics.topology import BASE
 from symofros.studio.viewer.drawing.drawing import Color, DrawnPart
-from symofros.studio.viewer.drawing.meshes import Array, Mesh, axes_along, ellipse, tube
+from symofros.studio.viewer.drawing.meshes import Mesh, axes_along, ellipse, tube
 
 _COLORS: tuple[Color, ...] = ((204, 51, 17), (30, 30, 30), (0, 119, 187), (238, 119, 51))
 # Shares of the mechanism's size.

@@ -11,10 +11,10 @@ from pathlib import Path
 
 import numpy as np
 
-from symofros.description.reading import kind_of
-from symofros.description.visual import Visual
+from symofros.base.arrays import Array
+from symofros.description import Visual, kind_of
 from symofros.studio.viewer.drawing.collada import read_collada
-from symofros.studio.viewer.drawing.meshes import Array, Mesh, box, cylinder, merged, sphere
+from symofros.studio.viewer.drawing.meshes import Mesh, box, cylinder, merged, sphere
 
 MOST_BYTES = 64 << 20
 MOST_FACES = 500_000

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.simulation.results.section_forces import COMPONENTS, SectionForces
 from symofros.simulation.results.trajectory import Trajectory
-from symofros.studio.viewer.drawing.meshes import Array
 
 _NOTHING = "none"
 _COLORS = {"smallest": "#7a7a7a", "largest": "#7a7a7a", "now": "#1f77b4"}

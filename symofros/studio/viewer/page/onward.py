@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from symofros.description.system import System
+from symofros.base.arrays import Array
+from symofros.description import System
 from symofros.errors import Problem, SymofrosError
 from symofros.exports.exporting import export
 from symofros.simulation.results.trajectory import Trajectory
 from symofros.simulation.stepping.methods import METHODS
-from symofros.studio.viewer.drawing.meshes import Array
 
 # How a simulation steps: as of `export`.
 Stepping = Mapping[str, Any]

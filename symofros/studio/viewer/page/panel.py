@@ -8,9 +8,9 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.studio.viewer.drawing.drawing import Drawing
 from symofros.studio.viewer.drawing.layers import LAYERS
-from symofros.studio.viewer.drawing.meshes import Array
 from symofros.studio.viewer.page.force_plot import ForcePlot
 from symofros.studio.viewer.playing.player import Player
 from symofros.studio.viewer.playing.sliders import Slider

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from symofros.studio.viewer.drawing.meshes import Array
+from symofros.base.arrays import Array
 from symofros.studio.viewer.page.page_head import VISER_TITLE, fragment, page_head
 from symofros.studio.viewer.render.camera import Camera
 from symofros.studio.viewer.render.scale_bar import LONGEST, UNITS

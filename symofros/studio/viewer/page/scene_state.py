@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.errors import Problem, UnknownNameError, did_you_mean
 from symofros.studio.viewer.drawing.drawing import Drawing, same_geometry
 from symofros.studio.viewer.drawing.layers import shown_at_first
-from symofros.studio.viewer.drawing.meshes import Array
 from symofros.studio.viewer.drawing.poses import Mechanism, Posture, State
 from symofros.studio.viewer.page.viser_scene import ViserScene
 from symofros.studio.viewer.playing.coordinate_units import coordinate_units

@@ -7,8 +7,8 @@ import time
 from collections.abc import Callable, Collection, Mapping
 from typing import Any
 
+from symofros.base.arrays import Array
 from symofros.runtime.beams import BeamBending, bending_notes
-from symofros.studio.viewer.drawing.meshes import Array
 from symofros.studio.viewer.drawing.poses import Mechanism, State
 from symofros.studio.viewer.page.panel import Panel
 from symofros.studio.viewer.page.scene_state import SceneState

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from symofros.errors import Problem, UnknownNameError, did_you_mean
-from symofros.mechanics.topology.tree import BASE
+from symofros.mechanics.topology import BASE
 from symofros.studio.viewer.drawing.drawing import Color, Drawing, DrawnBeam, DrawnConnector, DrawnPart
 from symofros.studio.viewer.drawing.ground import GRAVITY_COLOR, cell_of, gravity_arrow
 from symofros.studio.viewer.drawing.layers import LAYERS

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from symofros.mechanics.beams.deformation import deformation_of
-from symofros.mechanics.beams.strains import strains_of
-from symofros.mechanics.topology.coordinates import joint_units
-from symofros.mechanics.topology.tree import SpanningTree
+from symofros.mechanics.beams import deformation_of, strains_of
+from symofros.mechanics.topology import SpanningTree, joint_units
 
 
 def coordinate_units(tree: SpanningTree) -> dict[str, str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from symofros.description.system import System
+from symofros.description import System
 from symofros.diagrams.block import Block
 from symofros.diagrams.result import DiagramRun
 from symofros.errors import Problem, UnknownNameError, did_you_mean

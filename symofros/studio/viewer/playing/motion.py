@@ -14,13 +14,12 @@ from typing import NamedTuple, NoReturn
 import numpy as np
 import numpy.typing as npt
 
-from symofros.base.arrays import numeric
+from symofros.base.arrays import Array, numeric
 from symofros.base.names import TIME, symbol_of
-from symofros.base.npz import TooLargeError, read_npz
 from symofros.errors import Problem, ShapeError, SymofrosError
 from symofros.runtime.model import ArrayLike, Model
+from symofros.simulation.results.npz import TooLargeError, read_npz
 from symofros.simulation.results.trajectory import Trajectory
-from symofros.studio.viewer.drawing.meshes import Array
 
 SUFFIXES = (".npz", ".csv", ".parquet")
 # Half a gigabyte.

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.runtime.model import Model
-from symofros.studio.viewer.drawing.meshes import Array
 
 
 class Slider(NamedTuple):

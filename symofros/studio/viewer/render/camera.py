@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.studio.viewer.drawing.drawing import Drawing
-from symofros.studio.viewer.drawing.meshes import Array
 
 # From the mechanism's middle, in the world: planar mechanisms lie in x-z or in x-y, and are seen well from here.
 _FROM = np.array([0.45, -1.0, 0.6])

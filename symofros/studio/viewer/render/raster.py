@@ -10,9 +10,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from symofros.base.arrays import Array
 from symofros.studio.viewer.drawing.drawing import Drawing
 from symofros.studio.viewer.drawing.ground import GRAVITY_COLOR, gravity_arrow, ground_lines
-from symofros.studio.viewer.drawing.meshes import Array, Mesh, cone, cylinder, tube
+from symofros.studio.viewer.drawing.meshes import Mesh, cone, cylinder, tube
 from symofros.studio.viewer.drawing.poses import Posture, beam_sweep, connector_sweep
 from symofros.studio.viewer.page.viser_scene import SEE_THROUGH
 from symofros.studio.viewer.render.camera import Camera

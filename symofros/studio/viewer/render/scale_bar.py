@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from symofros.studio.viewer.drawing.meshes import Array
+from symofros.base.arrays import Array
 
 LONGEST = 0.3  # Of the picture's height.
 UNITS = ((1000.0, "km"), (1.0, "m"), (0.01, "cm"), (0.001, "mm"), (1e-6, "µm"))

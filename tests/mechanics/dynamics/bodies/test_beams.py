@@ -37,17 +37,6 @@ def states(m: sf.Model, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarra
 
 @pytest.mark.parametrize("retain", ORDERS)
 @pytest.mark.parametrize("name", NAMES)
-def test_kinetic_energy_is_half_the_speeds_times_the_momenta(name: str, retain: str, rng: np.random.Generator) -> None:
-    m = model(name, retain)
-    q, v = states(m, rng)
-    M = m.mass_matrix(q)
-    assert np.array_equal(M, np.swapaxes(M, -1, -2))
-    assert np.linalg.eigvalsh(M).min() > 0.0
-    np.testing.assert_allclose(m.kinetic_energy(q, v), 0.5 * np.einsum("ni,nij,nj->n", v, M, v), rtol=ROUNDING)
-
-
-@pytest.mark.parametrize("retain", ORDERS)
-@pytest.mark.parametrize("name", NAMES)
 def test_forward_undoes_inverse(name: str, retain: str, rng: np.random.Generator) -> None:
     """Ties M, by composite bodies, to M a + h, by accelerations: they share no term."""
     m = model(name, retain)

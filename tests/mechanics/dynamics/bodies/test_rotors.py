@@ -10,7 +10,7 @@ import pytest
 import symofros as sf
 from reference_models.rigid.random_tree import random_tree
 from symofros.description.forces import Rotor
-from tests.models import sampled
+from tests.models import interpreted, sampled
 
 RATIO, AXIAL, TRANSVERSE, MASS = 37.0, 3e-4, 2e-4, 0.6
 # Ratios squared multiply the rotor's inertia; rounding is relative to the largest entry.
@@ -19,10 +19,6 @@ ROUNDING = 1e-12
 
 def moving(system: sf.System) -> list[sf.RigidBody]:
     return [body for body in system.bodies if body.joint is not None]
-
-
-def interpreted(system: sf.System) -> sf.Model:
-    return sf.compile(system, sf.Options(backend="interpreter"))
 
 
 @pytest.mark.parametrize("seed", sampled(range(6), (0, 1)))

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 import symofros as sf
-from symofros.description.yaml.files import read_yaml
+from tests.models import interpreted
 from validation.checking import Settings, check
 from validation.contract.interface import Subject
 
@@ -23,10 +21,6 @@ def arm(*couplings: sf.Coupling, **changes: object) -> sf.System:
         sf.RigidBody("c", sf.Joint("q3", "prismatic", "b", axis=(1, 0, 0)), LEVER),
     )
     return sf.System("arm", bodies, (sf.Parameter("ratio", 2.5),), constraints=couplings)
-
-
-def interpreted(system: sf.System) -> sf.Model:
-    return sf.compile(system, sf.Options(backend="interpreter"))
 
 
 GEAR = sf.Coupling("gear", "q2 - ratio*q1 - 0.25")
@@ -76,23 +70,3 @@ def test_engines_agree_about_couplings() -> None:
     result = check(Subject("arm", arm(GEAR, CAM)), Settings(states=5, engines=("pinocchio", "exudyn-loops")))
     assert result.ok, [row for row in result.comparisons if row.status == "disagree"]
     assert any(row.quantity == "constraint_bias" and row.status == "agree" for row in result.comparisons)
-
-
-def test_files_hold_couplings(tmp_path: Path) -> None:
-    system = arm(CAM, GEAR)
-    sf.save(system, tmp_path / "arm.yaml")
-    assert read_yaml(tmp_path / "arm.yaml").system == system
-
-
-@pytest.mark.parametrize(
-    ("residual", "said"),
-    [
-        ("q2 - q9", "unknown symbol 'q9'"),
-        ("q2 - dq1", "'dq1' may not be used here"),
-        ("q2 - t", "'t' may not be used here"),
-        ("2.0", "binds no coordinate"),
-    ],
-)
-def test_what_is_no_condition_on_coordinates_is_refused(residual: str, said: str) -> None:
-    with pytest.raises(sf.DescriptionError, match=said):
-        sf.compile(arm(sf.Coupling("gear", residual)), sf.Options(backend="interpreter"))

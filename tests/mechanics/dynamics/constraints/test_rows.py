@@ -151,14 +151,16 @@ class TestMultipliers:
         assert np.abs(M @ a + m.bias(at.q, at.v) - G.T @ lam).max() < 1e-9
         assert np.abs(G @ a - m.constraint_bias(at.q, at.v)).max() < 1e-9
 
+    @pytest.mark.parametrize("form", ["multipliers", "null_space"])
     @pytest.mark.parametrize("backend", ["c", "interpreter"])
-    def test_no_acceleration(self, backend: str) -> None:
+    def test_no_acceleration(self, backend: str, form: str) -> None:
         bars = [
             sf.RigidBody("a", sf.Joint("q1", "revolute"), SOLID, (sf.Frame("e", (1, 0, 0)),)),
             sf.RigidBody("b", sf.Joint("q2", "revolute", "a", "e"), None, (), ("massless_tip",)),
         ]
         rail = sf.Closure("rail", ("world", None), ("a", "e"), ("y",))
-        m = sf.compile(sf.System("s", tuple(bars), constraints=(rail,)), sf.Options(functions=_SOLVED, backend=backend))  # type: ignore[arg-type]
+        options = sf.Options(functions=_SOLVED, backend=backend, constraints=form)  # type: ignore[arg-type]
+        m = sf.compile(sf.System("s", tuple(bars), constraints=(rail,)), options)
         a, _, rank = m.constrained_dynamics([0.0, 0.3], [0.0, 0.0], [])
         assert np.all(np.isnan(a)) and rank == -1
 

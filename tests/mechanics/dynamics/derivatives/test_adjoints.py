@@ -9,7 +9,6 @@ import pytest
 
 import symofros as sf
 from symofros.base.functions import FUNCTIONS
-from symofros.base.model_function import cotangents
 from symofros.compiler import Compilation
 from symofros.generator.passes.count import count_operations
 from symofros.mechanics.dynamics.applied.forces import coordinate_rates
@@ -55,7 +54,7 @@ def test_products_are_the_changes_of_the_weighted_sum(case: str, name: str, rng:
     m = m.with_parameter_checks(False)
     weights = {
         group: rng.normal(size=outputs(0.0)[of.name].shape)
-        for group, of in cotangents(row).items()
+        for group, of in row.cotangents.items()
         if of.name in outputs(0.0)
     }
     products = m.vjp(name, frame, **at, **weights)
@@ -65,7 +64,7 @@ def test_products_are_the_changes_of_the_weighted_sum(case: str, name: str, rng:
         np.sum(
             weight * (8 * (outputs(h)[of] - outputs(-h)[of]) - (outputs(2 * h)[of] - outputs(-2 * h)[of])) / (12 * h)
         )
-        for of, weight in ((cotangents(row)[group].name, weight) for group, weight in weights.items())
+        for of, weight in ((row.cotangents[group].name, weight) for group, weight in weights.items())
     ]
     size = sum(float(np.abs(products[group]).sum()) for group in products)
     assert along == pytest.approx(sum(terms), rel=1e-7, abs=1e-8 * max(1.0, size))
@@ -141,7 +140,7 @@ def test_a_transposed_cotangent_is_refused_though_it_has_as_many_entries(rng: np
     m = model("double_pendulum")
     frame, q = m.names.frames[-1], np.array([0.3, -0.2])
     J_bar = rng.normal(size=(6, m.nv))
-    group = next(iter(cotangents(FUNCTIONS["frame_jacobian"])))
+    group = next(iter(FUNCTIONS["frame_jacobian"].cotangents))
     m.vjp("frame_jacobian", frame, q=q, **{group: J_bar})
     with pytest.raises(sf.ShapeError, match=r"\(\.\.\., 6, nv\)"):
         m.vjp("frame_jacobian", frame, q=q, **{group: J_bar.T})

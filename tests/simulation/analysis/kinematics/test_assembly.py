@@ -10,6 +10,7 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from reference_models.closed.spatial import delta_guess, stewart_guess
+from tests.models import compiled
 
 FUNCTIONS = sf.Options(
     functions=("constraint", "constraint_rate", "constraint_jacobian", "constraint_bias", "frame_pose")
@@ -134,7 +135,7 @@ def test_a_guess_where_constraints_are_not_smooth() -> None:
 
 
 def test_a_guess_with_a_quaternion_that_is_no_rotation_is_refused() -> None:
-    model = sf.compile(MODELS["rolling_disc"])
+    model = compiled("rolling_disc")
     guess = model.neutral()
     ball = next(s for s in model.record.segments if s.kind != "linear")
     first = ball.q + ball.translations

@@ -73,6 +73,10 @@ def test_what_is_met_between_two_records_does_not_depend_on_the_unit_of_length(s
     close = nearest_to_singular(m, recorded(m, times, q), m.parameter_values, m.nc, along)
     assert close is not None and close[1] == pytest.approx(np.sin(lowest), rel=0.7)
     assert nearest_to_singular(m, recorded(m, times, q), m.parameter_values, m.nc, nothing_between) is None
+    stands = nearest_to_singular(
+        m, recorded(m, times, q), m.parameter_values, m.nc, lambda first, last: [x[:0] for x in along(first, last)]
+    )
+    assert stands is not None and stands[1] < 0.05, "where short steps can't follow, the straight way counts"
 
 
 A, B, SPEED = 0.3, 1.0, 20.0

@@ -11,7 +11,7 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from symofros.runtime.calls.kernel import Array
-from tests.models import sampled
+from tests.models import compiled, sampled
 
 FUNCTIONS = sf.Options(functions=("frame_pose", "frame_jacobian"))
 CROSSED = 0.1
@@ -140,7 +140,7 @@ def within_limits(m: sf.Model, q: Array) -> bool:
 )
 def test_every_pose_that_exists_is_found_whatever_the_joints(name: str) -> None:
     """Free, ball, planar, prismatic joints and loops, from the default start: postures drawn within their limits."""
-    m, rng = sf.compile(MODELS[name]), np.random.default_rng(2)
+    m, rng = compiled(name), np.random.default_rng(2)
     frame = m.names.frames[-1]
     for _ in range(8):
         q = m.random_state(rng)[0]

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from reference_models import MODELS
-from tests.models import GUESSES, sampled
+from tests.models import GUESSES, compiled, sampled
 
 RIGHT = 1e-9
 TIGHT: dict[str, Any] = {"rtol": 1e-11, "atol": 1e-13}
@@ -55,7 +54,7 @@ REFUSED = {("spinning_beam", "variational")}
 @cache
 def start(name: str) -> tuple[sf.Model, np.ndarray, np.ndarray]:
     """A model, and a motion's beginning: pushed, on the constraints."""
-    model = sf.compile(MODELS[name])
+    model = compiled(name)
     rng = np.random.default_rng(7)
     if model.nc:
         first = sf.assemble(model, GUESSES.get(name, model.neutral()), 0.3 * rng.standard_normal(model.nv))

@@ -26,6 +26,18 @@ blocks:
 """
 
 
+SMALL = pytest.mark.parametrize(("width", "height"), [(640, 380), (375, 667)], ids=["zoomed to 200 %", "phone"])
+
+
+def look(page: Page, faults: Callable[[], list[str]], width: int) -> None:
+    """Nothing is wrong with the page, nor wider than the window; the head's buttons can be scrolled into it."""
+    assert faults() == []
+    fits(page, width)
+    for button in page.get_by_role("banner").get_by_role("button").all():
+        button.scroll_into_view_if_needed()
+        lies_within(button, width)
+
+
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_the_page_and_its_windows(
     serve: Callable[..., Server],
@@ -90,7 +102,7 @@ def test_a_diagram_and_its_windows(serve: Callable[..., Server], page: Page, fau
     assert faults() == []
 
 
-@pytest.mark.parametrize(("width", "height"), [(640, 380), (375, 667)], ids=["zoomed to 200 %", "phone"])
+@SMALL
 def test_small_pages(
     serve: Callable[..., Server],
     page: Page,
@@ -103,15 +115,7 @@ def test_small_pages(
     page.set_viewport_size({"width": width, "height": height})
     server = serve("robot.yaml", source=MODELS / "flexible" / "planar_robot.yaml")
     steps.open_editor(page, server.url)
-
-    def look() -> None:
-        assert faults() == []
-        fits(page, width)
-        for button in page.get_by_role("banner").get_by_role("button").all():
-            button.scroll_into_view_if_needed()
-            lies_within(button, width)
-
-    look()
+    look(page, faults, width)
     picture(f"small-{width}")
     steps.open_window(page, "bodies/link1")
     assert faults() == []
@@ -124,11 +128,11 @@ def test_small_pages(
     steps.fill(page, "Duration", "0.3")
     steps.window(page).get_by_role("button", name="Simulate").click()
     expect(steps.results(page).get_by_role("img").first).to_be_visible(timeout=60_000)
-    look()
+    look(page, faults, width)
     picture(f"small-results-{width}")
 
 
-@pytest.mark.parametrize(("width", "height"), [(640, 380), (375, 667)], ids=["zoomed to 200 %", "phone"])
+@SMALL
 def test_a_diagram_on_small_pages(
     serve: Callable[..., Server],
     page: Page,
@@ -140,15 +144,7 @@ def test_a_diagram_on_small_pages(
     page.set_viewport_size({"width": width, "height": height})
     server = serve("drawn.yaml", content=DRAWN)
     steps.open_editor(page, server.url)
-
-    def look() -> None:
-        assert faults() == []
-        fits(page, width)
-        for button in page.get_by_role("banner").get_by_role("button").all():
-            button.scroll_into_view_if_needed()
-            lies_within(button, width)
-
-    look()
+    look(page, faults, width)
     picture(f"small-diagram-{width}")
     steps.open_window(page, "blocks/slow")
     assert faults() == []
@@ -160,7 +156,7 @@ def test_a_diagram_on_small_pages(
     steps.window(page).get_by_role("button", name="Run").click()
     expect(steps.results(page).get_by_text("s of computing")).to_be_visible(timeout=60_000)
     lies_within(steps.results(page).locator("figure.plot").first, width)
-    look()
+    look(page, faults, width)
     picture(f"small-diagram-run-{width}")
 
 

@@ -152,19 +152,6 @@ def test_text_and_diagram_stay_in_step(
     expect(text).to_contain_text("body:")
 
 
-def test_a_change_of_another_page_is_seen(serve: Callable[..., Server], page: Page, chromium: Browser) -> None:
-    server = serve("arm.yaml", source=PENDULUM)
-    other = chromium.new_page()
-    for each in (page, other):
-        steps.open_editor(each, server.url)
-    set_parameter(page, "m1", "2.5")
-    value(other, "m1")("2.5")
-    set_parameter(other, "L1", "0.6")
-    value(page, "L1")("0.6")
-    value(page, "m1")("2.5")
-    other.close()
-
-
 @pytest.mark.parametrize("how", ["edit", "text"])
 def test_a_stale_change_is_made_again_on_the_newest_document(
     serve: Callable[..., Server], page: Page, chromium: Browser, how: str
@@ -302,21 +289,6 @@ def test_a_problem_leads_to_its_field(
     expect(steps.window(page).get_by_role("alert")).to_contain_text("unknown symbol 'm3'")
 
 
-def test_a_frame_and_a_coordinate_are_renamed_everywhere(serve: Callable[..., Server], page: Page) -> None:
-    server = serve("arm.yaml", source=PENDULUM)
-    steps.open_editor(page, server.url)
-    steps.open_window(page, "bodies/upper")
-    steps.window(page).get_by_label("Joint name", exact=True).fill("shoulder")
-    steps.tab(page, "Frames")
-    steps.fill(page, "Name of frames elbow", "joint2")
-    steps.accept(page)
-    expect(steps.block(page, "bodies/upper")).to_contain_text("shoulder")
-    steps.problems(page, 0)
-    steps.saved(page)
-    text = server.file.read_text()
-    assert "frame: joint2" in text and "elbow" not in text and "name: shoulder" in text
-
-
 def test_a_file_that_changes_on_disk_is_told_and_taken(serve: Callable[..., Server], page: Page) -> None:
     server = serve("arm.yaml", source=PENDULUM)
     steps.open_editor(page, server.url)
@@ -363,25 +335,6 @@ def test_results_of_an_earlier_model_say_so_and_what_can_not_be_read_stays_visib
     steps.problems(page, 0)
     steps.run(page, "Compile")
     expect(steps.results(page)).not_to_contain_text("The model has changed since", timeout=60_000)
-
-
-def test_a_problem_opens_the_page_of_its_field_and_a_page_has_no_hint_of_another(
-    serve: Callable[..., Server], page: Page, tmp_path: Path
-) -> None:
-    source = tmp_path / "wrong.txt"
-    source.write_text(PENDULUM.read_text().replace("mass: m2,", "mass: m3,"))
-    server = serve("arm.yaml", source=source)
-    steps.open_editor(page, server.url)
-    page.get_by_role("banner").get_by_role("button", name="1 problem").click()
-    steps.results(page).get_by_role("button", name="m3").click()
-    alert = steps.window(page).get_by_role("alert")
-    expect(alert).to_contain_text("unknown symbol 'm3'")
-    expect(alert.get_by_role("button", name="Add input m3")).to_be_visible()
-    steps.window(page).get_by_label("Mass", exact=True).focus()
-    hint = steps.window(page).locator(".hint")
-    expect(hint).not_to_be_empty()
-    steps.tab(page, "Joint")
-    expect(hint).to_be_empty()
 
 
 def test_a_new_file_is_no_fault_and_fits_a_narrow_page(serve: Callable[..., Server], page: Page) -> None:

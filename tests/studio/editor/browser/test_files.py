@@ -23,7 +23,6 @@ URDF = """<robot name="arm">
   <joint name="slew" type="continuous"><parent link="base"/><child link="boom"/><axis xyz="0 0 1"/></joint>
 </robot>
 """
-JOB = 60_000
 
 
 def menu(page: Page, title: str, command: str) -> None:
@@ -40,17 +39,6 @@ def test_a_urdf_is_imported(serve: Callable[..., Server], page: Page, tmp_path: 
     chooser.value.set_files(tmp_path / "robot.urdf")
     expect(steps.block(page, "bodies/boom")).to_contain_text("slew")
     expect(page.get_by_role("heading", level=1)).to_contain_text("unsaved")
-
-
-def test_a_model_is_exported(serve: Callable[..., Server], page: Page, tmp_path: Path) -> None:
-    server = serve("arm.yaml", source=PENDULUM)
-    steps.open_editor(page, server.url)
-    steps.run(page, "Export")
-    steps.window(page).get_by_role("radio", name="urdf").check()
-    steps.fill(page, "Folder", "out")
-    steps.window(page).get_by_role("button", name="Export").click()
-    expect(steps.results(page)).to_contain_text("out/", timeout=JOB)
-    assert list((tmp_path / "out").rglob("*.urdf"))
 
 
 @pytest.mark.parametrize("kind", ["SVG", "PNG"])

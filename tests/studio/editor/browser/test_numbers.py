@@ -10,13 +10,10 @@ from playwright.sync_api import Page, expect
 
 from tests.studio.editor.browser import steps
 from tests.studio.editor.browser.conftest import Server
-from tests.studio.waiting import until
 
 pytestmark = pytest.mark.browser
 
 MODELS = Path(__file__).parents[4] / "reference_models"
-NAME = "m_payload_of_arm"
-WHOLE = "(element) => element.scrollWidth <= element.clientWidth"
 
 
 def test_numbers_beyond_the_range_and_too_many_modes_are_refused(serve: Callable[..., Server], page: Page) -> None:
@@ -40,14 +37,3 @@ def test_numbers_beyond_the_range_and_too_many_modes_are_refused(serve: Callable
     page.get_by_role("banner").get_by_role("button", name="1 problem").click()
     expect(steps.results(page)).to_contain_text("99")
     expect(modes).to_have_count(0)
-
-
-def test_names_are_shown_whole(serve: Callable[..., Server], page: Page) -> None:
-    text = (MODELS / "rigid" / "double_pendulum.yaml").read_text().replace("m2", NAME)
-    server = serve("arm.yaml", content=text)
-    steps.open_editor(page, server.url)
-    cell = page.get_by_label(f"Name of {NAME}", exact=True)
-    expect(cell).to_have_value(NAME)
-    until(page, lambda: bool(cell.evaluate(WHOLE)))
-    for block in page.locator(".react-flow__node .block-name").all():
-        until(page, lambda block=block: bool(block.evaluate(WHOLE)))

@@ -218,24 +218,3 @@ def test_a_change_is_not_made_to_a_document_that_another_page_has_opened(
     expect(page.get_by_role("banner").get_by_text("unsaved")).to_have_count(0)
     assert (tmp_path / "other.yaml").read_text() == OTHER
     other.close()
-
-
-def test_two_servers_share_nothing(server: Server, serve: Callable[..., Server], page: Page, tmp_path: Path) -> None:
-    """One after the other in one page, and side by side."""
-    (tmp_path / "elsewhere").mkdir()
-    second = serve("elsewhere/driven.yaml", content=DRIVEN, token="of-the-second")
-    steps.open_editor(page, server.url)
-    beside = page.context.new_page()
-    steps.open_editor(beside, second.url)
-    steps.block(page, "bodies/upper").click()
-    value = page.get_by_label("Value of m1", exact=True)
-    value.fill("2.5")
-    value.press("Enter")
-    expect(page.get_by_role("banner").get_by_text("unsaved")).to_be_visible()
-    expect(beside.get_by_role("banner").get_by_text("unsaved")).to_have_count(0)
-    expect(steps.block(beside, "bodies/arm")).to_be_visible()
-    page.goto(second.url)
-    expect(steps.block(page, "bodies/arm")).to_be_visible()
-    page.goto(server.url)
-    expect(page.get_by_label("Value of m1", exact=True)).to_have_value("2.5")
-    beside.close()

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import re
 from functools import reduce
+from pathlib import Path
 from typing import Any
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from ruamel.yaml import YAML
 
 from symofros.studio.editor.editing.data_edits import Edit, EditError, edited, same
 from symofros.studio.editor.editing.yaml_edits import apply, trace
@@ -113,64 +115,12 @@ def edit(op: Any, *path: str | int, value: Any = None, key: str = "", index: int
     return Edit(op, path, value, key, index)
 
 
-FIRST = """\
-          - force: [1, 2, 3]
-            # about axes
-            axes: world
-          -   at: body
-              torque: [0, "L1, 2", 0]
-"""
-SECOND = "          - {force: [0,0,1,], }\n"
-
-# What is written where: edit, a part of the odd text, what stands there afterwards.
-EXAMPLES = (
-    (
-        edit("set", "parameters", "L1", "value", value=2.5),
-        "{value: 1, unit: m}   # first",
-        "{value: 2.5, unit: m}   # first",
-    ),
-    (edit("set", "parameters", "L2", "unit", value="cm"), "unit: 'm'", "unit: 'cm'"),
-    (edit("set", "parameters", "L3", value={"value": 3, "unit": "kg"}), "  L3: 3\n", "  L3: {value: 3, unit: kg}\n"),
-    (edit("set", "parameters", "L2", value=7), "  L2:\n    # inner\n    value: 2.0e-1\n    unit: 'm'\n", "  L2: 7\n"),
-    (edit("remove", "parameters", "L3"), "  # about L3\n  L3: 3\n", ""),
-    (edit("remove", "parameters", "L2", "unit"), "    unit: 'm'\n    # tail of L2\n", "    # tail of L2\n"),
-    (edit("insert", "parameters", key="L0", value=1, index=0), "  # lengths\n", "  L0: 1\n  # lengths\n"),
-    (edit("insert", "parameters", key="L4", value=4), "  L3: 3\n", "  L3: 3\n\n  L4: 4\n"),
-    (edit("set", "inputs", "f", "unit", value="N"), "inputs: {}\n", "inputs:\n  f: {unit: N}\n"),
-    (edit("set", "inputs", value=None), "inputs: {}\n", "inputs: null\n"),
-    (edit("rename", "bodies", "b", key="c d"), "    b:    # the second", "    c d:    # the second"),
-    (edit("remove", "bodies", "a", "frames", "tip"), "            tip:\n", ""),
-    (
-        edit("set", "bodies", "a", "frames", "tip", "position", value=[1, 0, 0]),
-        "tip:\n",
-        "tip: {position: [1, 0, 0]}\n",
-    ),
-    (
-        edit("set", "bodies", "a", "joint", "axis", 1, value=1),
-        "[0,\n                       0, 1]",
-        "[0,\n                       1, 1]",
-    ),
-    (edit("remove", "bodies", "a", "joint", "name"), ",   # z\n                name: qa}", "}"),
-    (edit("remove", "bodies", "b", "loads", 2, "force"), "{force: [0,0,1,], }", "{}"),
-    (edit("remove", "bodies", "b", "loads", 1, "at"), "-   at: body\n              torque", "-   torque"),
-    (
-        edit("insert", "bodies", "b", "loads", 0, key="at", value="body", index=0),
-        "- force: [1, 2, 3]",
-        "- at: body\n            force: [1, 2, 3]",
-    ),
-    (edit("insert", "bodies", "b", "waive", value="massless_tip"), "waive: []", "waive: [massless_tip]"),
-    (edit("insert", "bodies", "b", "loads", 2, "force", value=5), "[0,0,1,]", "[0,0,1, 5,]"),
-    (edit("set", "system", "gravity", value=[0, 0, 0]), "-9.81  # down", "0  # down"),
-    (edit("move", "bodies", "b", "loads", 2, index=0), FIRST + SECOND, SECOND + FIRST),
-    (edit("set", "potentials", "v", value="L3"), "v: >\n    L1 * cos(qa)\n", "v: L3\n"),
-)
+EXAMPLES = YAML(typ="safe").load(Path(__file__).with_name("written.yaml"))
 
 
-@pytest.mark.parametrize(
-    ("change", "old", "new"), EXAMPLES, ids=lambda x: "/".join(map(str, x.path)) if isinstance(x, Edit) else ""
-)
-def test_what_is_written(change: Edit, old: str, new: str) -> None:
-    done = apply(ODD, change)
+@pytest.mark.parametrize(("op", "path", "more", "old", "new"), EXAMPLES)
+def test_what_is_written(op: str, path: list[str | int], more: dict[str, Any], old: str, new: str) -> None:
+    done = apply(ODD, edit(op, *path, **more))
     assert ODD.count(old) == 1
     assert done == ODD.replace(old, new)
 

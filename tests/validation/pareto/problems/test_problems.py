@@ -55,22 +55,6 @@ def test_the_chain_of_links_converges_with_the_square_of_their_length() -> None:
     assert float(np.abs(rod.tip(soft, t, 6) - fine).max()) < errors[1] / 3.0
 
 
-@pytest.mark.slow  # In every run: references agree, and sides of a problem move alike.
-def test_the_spin_up_is_one_motion() -> None:
-    mine = spin_up.judged_model("3 modes", spin_up.model(3)).measured(method="rk4", dt=0.02)
-    assert 5e-4 < mine.error < 2e-3 and mine.seconds > 0
-    lost = spin_up.judged_model("x", spin_up.model(3, foreshortening=False, retain="all")).measured(
-        method="rk4", dt=0.02
-    )
-    assert lost.ended or not lost.error < 1.0, "without foreshortening it runs away"
-
-
-@pytest.mark.slow  # In every run: the chain of links converges, and rods against Exudyn's exact elements.
-def test_the_spin_up_of_a_chain_of_links_is_that_of_the_reference() -> None:
-    """A program that shares nothing with either side."""
-    assert spin_up.far(rod.tip(spin_up.ROD, spin_up.TIMES, 16), spin_up.reference()) < 2e-4
-
-
 @pytest.mark.slow  # In every run: rods against Exudyn's exact elements.
 def test_rods_come_within_a_hundred_thousandth_of_the_references() -> None:
     """The largest shares of deflection, effect of flexibility, length that are left at steps that are fine enough."""

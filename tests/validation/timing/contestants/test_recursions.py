@@ -11,15 +11,11 @@ import reference_models
 import symofros as sf
 from reference_models.rigid.chain import chain
 from tests.models import sampled
-from validation.adapters.casadi.code import operations
 from validation.adapters.casadi.links import in_world
 from validation.adapters.casadi.tree import CasadiTree
-from validation.mechanics.assembly import assemble
 from validation.mechanics.geometry import Array
-from validation.timing.contestants.engines import tree_text
 from validation.timing.contestants.generated import casadi_loops
 from validation.timing.contestants.symofros import our_loops
-from validation.timing.models import arm
 from validation.timing.race import error
 from validation.timing.task import Task, task
 
@@ -132,15 +128,6 @@ def test_world_axes_give_the_same_inertia() -> None:
     np.testing.assert_allclose(*(np.array(M(q)) for M in both), rtol=1e-12, atol=1e-13)
 
 
-@pytest.mark.slow
-def test_operations_of_newton_euler_grow_linearly_and_of_composite_bodies_with_the_square() -> None:
-    def total(n: int, name: str) -> int:
-        return sum(operations(CasadiTree(chain(n, symbolic=False)).function(name, 0)).values())
-
-    assert total(16, "bias") - total(12, "bias") == total(12, "bias") - total(8, "bias")
-    assert total(24, "mass_matrix") > 2.5 * total(12, "mass_matrix")
-
-
 def test_what_recursions_are_not_for_is_named() -> None:
     with pytest.raises(ValueError, match="a rotor|no .* joint"):
         CasadiTree(reference_models.MODELS["joint_zoo"])
@@ -163,13 +150,6 @@ def test_kanes_c_agrees_with_ours(joints: int, names: tuple[str, ...]) -> None:
         assert off < TOLERANCE.get(loop.function, 1e-12), (loop.function, loop.variant)
 
 
-def test_a_model_goes_over_as_numbers() -> None:
-    text = tree_text(assemble(arm(3))).splitlines()
-    assert text[0] == "symofros-tree 1" and text[2] == "bodies 3"
-    # body, parent, kind, axis 3, R 9, p 3, mass, p_BC 3, J 9, moments 3, axes 9
-    assert [len(line.split()) for line in text[3:]] == [3 + 3 + 9 + 3 + 1 + 3 + 9 + 3 + 9] * 3
-
-
 @pytest.mark.slow  # In every run: single states by the same recursions.
 def test_batches_compute_what_single_states_do() -> None:
     """Over a last block that is not full."""
@@ -178,15 +158,6 @@ def test_batches_compute_what_single_states_do() -> None:
     assert error(rows.results(), one.results()) < 1e-13
     assert error(columns.results(), one.results()) < 1e-13
     assert 1e-9 < error(floats.results(), one.results()) < 1e-5
-
-
-@pytest.mark.slow  # In every run: closures as numbers.
-def test_closed_loops_are_timed_at_closed_postures() -> None:
-    given = task("four_bar", 100)
-    model = sf.compile(given.system, sf.Options(backend="interpreter"))
-    assert np.abs(model.constraint(given.states.q)).max() < 1e-9
-    (loop,) = our_loops(given, ["forward_dynamics"])
-    assert loop.results().shape == (100, 3)
 
 
 def test_closures_go_over_as_numbers() -> None:

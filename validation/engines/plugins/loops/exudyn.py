@@ -28,6 +28,12 @@ _X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 # Of conditions that are no polynomials, with steps of 4e-3: rounding over the step, and its sixth power.
 _DIFFERENCE = 1e-9
 _FREE = [0] * 6
+# Motions along all axes, which need no frame of their own -> what is blocked.
+_SLIDING = {
+    "slide slide slide": [0, 0, 0, 1, 1, 1],
+    "slide slide slide ball": _FREE,
+    "slide slide slide hinge hinge hinge": _FREE,
+}
 
 
 class _Step(NamedTuple):
@@ -120,11 +126,7 @@ def _native(steps: list[_Step]) -> _Native | None:
             return _Native([0, 1, 1, 0, 0, 0])
         case "slide slide hinge" if axes == [_X, _Y, _Z]:
             return _Native([0, 0, 1, 1, 1, 0])
-        case "slide slide slide":
-            return _Native([0, 0, 0, 1, 1, 1])
-        case "slide slide slide ball" | "slide slide slide hinge hinge hinge":
-            return _Native(_FREE)
-    return None
+    return _Native(_SLIDING[shape]) if shape in _SLIDING else None
 
 
 _NODES = {"": "EP", ":Rxyz": "Rxyz", ":RotVecLG": "RotVecLG"}

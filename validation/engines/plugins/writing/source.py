@@ -23,8 +23,6 @@ OPTIONAL = {
     "axes": "not for trees without constraints",
     "am": "not for constraints of this kind",
 }
-# Longest line of a script.
-WIDTH = 120
 _INPUTS = ("q", "v", "a", "tau", "v2", "q2")
 
 
@@ -78,15 +76,12 @@ class Source:
         """The statements that build the tree, state what the code needs, and run it."""
         code = self.spelled(code)
         used = [name for name in _INPUTS if name in identifiers(code)]
-        # A line of one name says no more than that the name is used.
-        run = [line for line in code.split("\n") if not line.isidentifier()]
-        return "\n".join([*self.text(code), *_assignments({name: getattr(state, name) for name in used}), *run])
+        given = [f"{name} = np.array({getattr(state, name).tolist()!r})" for name in used]
+        return "\n".join([*self.text(), *given, code])
 
-    def text(self, code: str = "") -> tuple[str, ...]:
-        """The statements that some code needs; all without code."""
-        used = identifiers(code)
-        chosen = [lines for name, lines in self.optional.items() if not code or name in used]
-        return (*self.lines, *(line for lines in chosen for line in lines), *self.closing)
+    def text(self) -> tuple[str, ...]:
+        """The statements that build the tree, with all that functions need."""
+        return (*self.lines, *(line for lines in self.optional.values() for line in lines), *self.closing)
 
 
 class SourceModel:
@@ -123,16 +118,6 @@ class SourceModel:
     def script(self, function: str, state: State) -> str:
         """The text that the call runs, with the state that it needs (`EngineModel`)."""
         return self._source.script(self._ways[function].code, state)
-
-
-def _assignments(values: Mapping[str, Array]) -> list[str]:
-    """Statements that assign vectors, one where a line holds them."""
-    texts = {
-        name: f"np.array({value.tolist()!r})" if np.any(value) else f"np.zeros({len(value)})"
-        for name, value in values.items()
-    }
-    joined = f"{', '.join(texts)} = {', '.join(texts.values())}"
-    return [joined] if texts and len(joined) <= WIDTH else [f"{name} = {text}" for name, text in texts.items()]
 
 
 def identifiers(code: str) -> set[str]:
@@ -207,17 +192,16 @@ class SourcePlugin:
             return self.write(tree)
         return self.write_reading(tree, form, text) if self.write_reading else Unsupported("", offered=False)
 
-    def building(self, tree: Tree, form: str = "", text: str = "", *, whole: bool = True) -> str:
+    def building(self, tree: Tree, form: str = "", text: str = "") -> str:
         """The text that would build a tree, or have a file read; "" for none.
 
         Args:
             tree: The tree.
             form: Format of the file; "" for none.
             text: The file.
-            whole: With what only functions need.
         """
         made = self.written(tree, form, text)
-        return "" if isinstance(made, Unsupported) else "\n".join(made.text("" if whole else "pass"))
+        return "" if isinstance(made, Unsupported) else "\n".join(made.text())
 
     def _made(self, source: Source | Unsupported) -> EngineModel | Unsupported:
         if not self.version():

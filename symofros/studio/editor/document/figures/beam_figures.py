@@ -8,11 +8,10 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from symofros.description.beams.beam import CENTERS
-from symofros.description.values import Value
-from symofros.description.yaml.schema_beam import BeamEntry
+from symofros.description import CENTERS, Value
+from symofros.description.yaml import BeamEntry
 from symofros.errors import DescriptionError
-from symofros.expr.expression import Expression, evaluate
+from symofros.expr import Expression, evaluate
 from symofros.runtime.beams import BEAM_LIMIT, NOTED_ERROR, slope_of_error
 from symofros.studio.editor.editing.data_edits import refusal
 

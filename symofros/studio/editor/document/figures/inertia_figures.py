@@ -8,12 +8,10 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
-from symofros.description.system import RigidBody, System
-from symofros.description.yaml.schema import InertiaEntry
-from symofros.description.yaml.schema_solid import SolidEntry
+from symofros.description import RigidBody, System
+from symofros.description.yaml import InertiaEntry, SolidEntry
 from symofros.errors import DescriptionError
-from symofros.mechanics.topology.numbers import Numbers
-from symofros.mechanics.topology.physics import moments_about_center
+from symofros.mechanics.topology import Numbers, moments_about_center
 from symofros.studio.editor.editing.data_edits import refusal
 
 Json = dict[str, Any]

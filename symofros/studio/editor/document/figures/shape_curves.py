@@ -6,11 +6,9 @@ from typing import Any, get_args
 
 import numpy as np
 
-from symofros.description.beams.beam import Direction, Family, Samples, UserShape
-from symofros.description.values import as_value
+from symofros.description import Direction, Family, Samples, UserShape, as_value
 from symofros.errors import DescriptionError, Problem, did_you_mean
-from symofros.mechanics.beams.shape_functions import MAX_MODES, FamilyError, shapes
-from symofros.mechanics.beams.strains import strain_functions
+from symofros.mechanics.beams import MAX_MODES, FamilyError, shapes, strain_functions
 from symofros.studio.editor.editing.data_edits import EditError
 
 POINTS = 65

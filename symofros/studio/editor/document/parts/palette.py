@@ -5,9 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import symofros
-from symofros.description.yaml.schema import json_schema
-from symofros.description.yaml.schema_section import SectionEntry
-from symofros.description.yaml.schema_solid import SolidEntry
+from symofros.description.yaml import SectionEntry, SolidEntry, json_schema
 from symofros.exports.exporting import TARGETS
 from symofros.simulation.stepping.methods import METHODS
 from symofros.studio.editor.diagrams.palette import diagram_catalogue

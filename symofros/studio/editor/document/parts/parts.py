@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from symofros.description.yaml.schema import VERSION, default_joint_name
+from symofros.description.yaml import VERSION, default_joint_name
 from symofros.studio.editor.editing.data_edits import SECTIONS, Edit, Path, edited, fault, same
 from symofros.studio.editor.editing.formulas import formulas, names_in
 from symofros.studio.editor.editing.renaming import anchors, renaming, speeds_as_keys, symbols_of, taken

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from symofros.description.yaml.yaml_nodes import YamlFault
+from symofros.description.yaml import YamlFault
 from symofros.errors import Problem
 from symofros.studio.editor.document.parts.parts import extracted
 from symofros.studio.editor.document.workspace import FileError, Workspace, identifier, read_text, write

@@ -1,0 +1,36 @@
+"""A plain run takes other cases of large tests each day, and the same again by the word that it names."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import SimpleNamespace
+
+from tests import draw
+
+CASES = [f"tests/a.py::many[{k}]" for k in range(20)] + ["tests/a.py::few[1]", "tests/b.py::cheap[1]"]
+SECONDS = {"a.py::many": 0.25, "a.py::few": 3.0}
+
+
+def test_as_many_cases_are_drawn_as_fit_into_a_second_and_others_on_other_days() -> None:
+    gone = draw.left_out(CASES, SECONDS, "2026-11-27")
+    assert len(gone) == 16 and gone < set(CASES[:20]) and gone == draw.left_out(CASES[::-1], SECONDS, "2026-11-27")
+    assert gone != draw.left_out(CASES, SECONDS, "2026-11-28")
+    days = [draw.left_out(CASES, SECONDS, str(day)) for day in range(60)]
+    assert set.intersection(*days) == set(), "a case has no day"
+    files = sum(draw.is_optimised(f"{k}.py", "2026-11-27") for k in range(800))
+    assert 60 < files < 140 and draw.is_optimised("a.py", "x") == draw.is_optimised("a.py", "x")
+
+
+def test_times_are_measured_of_tests_that_take_more_than_a_second(tmp_path: Path) -> None:
+    file = tmp_path / "seconds.txt"
+    file.write_text("# head\n0.5 a.py::gone\n0.5 a.py::many\n")
+    measurement = draw.Measurement(file)
+    for case, duration, skipped in [
+        (CASES[0], 0.2, False),
+        (CASES[0], 0.1, False),
+        *((c, 0.0, True) for c in CASES[1:]),
+    ]:
+        measurement.pytest_runtest_logreport(SimpleNamespace(nodeid=case, duration=duration, skipped=skipped))
+    measurement.pytest_runtest_logreport(SimpleNamespace(nodeid=CASES[-1], duration=0.2, skipped=False))
+    measurement.pytest_sessionfinish()
+    assert draw.read(file.read_text()) == {"a.py::gone": 0.5, "a.py::many": 0.3}

@@ -1,0 +1,34 @@
+"""Scripts of red cells: those of the report, and the smaller trees and states that new ones are made of."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from validation.engines.models.formats import formats, texts
+from validation.engines.models.kinds import tree_of
+from validation.engines.models.readers import readings
+from validation.engines.plugins import OWN
+
+SCRIPTS = sorted((Path(__file__).parents[3] / "reports" / "engines").glob("*.py"))
+
+
+@pytest.mark.parametrize("path", SCRIPTS, ids=lambda path: path.stem)
+def test_stored_script_compiles_and_ends_by_an_assertion_or_a_crash(path: Path) -> None:
+    text = path.read_text()
+    compile(text, path.name, "exec")
+    assert text.startswith("# ") and (" crashes (" in text.partition("\n")[0]) != ("\nassert " in text)
+
+
+def test_files_that_are_written_from_trees_are_told_from_others() -> None:
+    known = formats()["urdf of six oblique hinges"]
+    assert texts(known.tree)["urdf"] == known.text
+    assert all(texts(one.tree).get(one.form) != one.text for one in readings().values())
+
+
+def test_armature_is_on_every_axis_that_states_it() -> None:
+    """Newton's joints of several axes had none, and were called wrong for it."""
+    for kind, axes in (("universal with armature", 2), ("planar with armature", 3)):
+        text = OWN["newton"].building(tree_of(kind))  # type: ignore[attr-defined]
+        assert text.count("armature=0.75") == axes
