@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from itertools import combinations, pairwise
 from numbers import Real
 from typing import Any, Literal, get_args
@@ -448,10 +448,6 @@ class Beam:
             | {label: tuple(map(change, getattr(self, label))) for label in CENTERS}
             | {"stiffness": tuple(tuple(map(change, row)) for row in self.stiffness)}
         )
-
-    def plain_values(self) -> list[tuple[str, Value]]:
-        """What may depend on parameters only, by label."""
-        return [(item.name, getattr(self, item.name)) for item in fields(self) if item.name in ("length", "damping")]
 
 
 def stiffness_rows(stated: Any, label: str) -> tuple[tuple[Value, ...], ...]:
