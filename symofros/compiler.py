@@ -28,9 +28,11 @@ from symofros.description.system import System
 from symofros.errors import CompileError, CompilerMissingWarning, DescriptionError, InconsistentModelWarning, Problem
 from symofros.expr.program import Program
 from symofros.generator.beams import beams_at
+from symofros.generator.codegen.cuda import device_code
 from symofros.generator.codegen.model import model_source
 from symofros.generator.held_beams import held_beams, may_be_held
 from symofros.generator.instants import has_instants, instants_at
+from symofros.generator.passes.count import Operations, count_program
 from symofros.generator.programs import ProgramBuilder, requested
 from symofros.generator.record import GENERATOR as GENERATOR
 from symofros.generator.record import model_record
@@ -44,6 +46,7 @@ from symofros.mechanics.topology.tree import SpanningTree, build_tree
 from symofros.runtime.beams import ElasticBeam
 from symofros.runtime.build.toolchain import NO_COMPILER, Toolchain, find_toolchain
 from symofros.runtime.calls.kernel import Array, LaneOptions, Precision, Unit
+from symofros.runtime.cuda.device_code import DeviceCode
 from symofros.runtime.functions import Key
 from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord
@@ -180,6 +183,15 @@ class Compilation:
         """The requested functions, optimised."""
         return self.programs.program(self.requests)
 
+    @property
+    def operations(self) -> dict[Key, Operations]:
+        """Operations of each requested function, keyed by (name, frame), and of the stage "init"."""
+        return count_program(self.program)
+
+    def device_code(self, precision: Precision, c_name: str) -> DeviceCode:
+        """The requested functions as kernels for graphics processors; see `source`."""
+        return device_code(self.program, self.record, GENERATOR, precision, c_name)
+
     def source(self, c_name: str | None = None, lanes: LaneOptions | None = None) -> str:
         """C text of the requested functions.
 
@@ -210,7 +222,7 @@ class Compilation:
     def model_by_vectors(self, functions: Collection[str]) -> Model:
         """Some of the requested functions, which C evaluates for several states at a time, in one library."""
         units = self._units(find_toolchain(self.options.compiler))
-        return self._model(units, None, units.by_vectors(self.requests, functions))
+        return self._model(units, None, units.by_vectors(self.requests, functions), tell=False)
 
     def interpreted_model(self) -> Model:
         """The requested functions on the NumPy interpreter, by the program that C is written of."""
@@ -225,6 +237,7 @@ class Compilation:
         units: UnitCompiler,
         on_demand: Callable[[Sequence[Key], Callable[[], None] | None], Unit] | None,
         *made: Unit,
+        tell: bool = True,
     ) -> Model:
         return Model(
             self.record,
@@ -236,6 +249,7 @@ class Compilation:
             origin=partial(compile_system, self.system, self.options),
             device_code=units.device_code,
             instants=instants_at(self.tree),
+            routes=units.routes if tell else None,
         )
 
     def library(self, precision: Precision = "double") -> tuple[Path, str]:

@@ -12,11 +12,12 @@ from typing import Any
 from symofros.base.arguments import checked
 from symofros.base.atomic import write_atomically
 from symofros.base.sources import Source as Source
+from symofros.description.imported.options import SNAP_TOL, Dissipation, ImportOptions, LimitsAs
 from symofros.description.packages import Folders, Packages
 from symofros.description.reading import MODEL_SUFFIXES, USD_SUFFIXES, YAML_SUFFIXES, Reading, in_order
 from symofros.description.remarks import note
 from symofros.description.system import WAIVERS, System
-from symofros.description.urdf.reader import SNAP_TOL, read_urdf
+from symofros.description.urdf.reader import read_urdf
 from symofros.errors import Argument, DescriptionError, Problem, did_you_mean
 from symofros.mechanics.topology.graph import find_problems, name_problems
 from symofros.mechanics.topology.numbers import Numbers
@@ -27,9 +28,14 @@ from symofros.mechanics.topology.units import unit_problems
 _PATHS = "check the path; a relative one starts at the current folder"
 _READABLE = (*MODEL_SUFFIXES, ".xacro", ".world")
 _URDF, _SDF = (".urdf", ".xacro"), (".sdf", ".world")
+_IMPORTED = (*_URDF, *_SDF, ".xml", *USD_SUFFIXES)
+_ALL_IMPORTED = "URDF, xacro, SDF, MJCF and USD"
+_UNASKED: tuple[Any, ...] = (None, False, {}, "data")
 # Argument -> formats that have a use for it, their suffixes, what to do about another.
 _OF_FORMATS = {
-    "floating_base": ("URDF", _URDF, "give the base a free joint in the file"),
+    "floating_base": (_ALL_IMPORTED, _IMPORTED, "give the base a free joint in the file"),
+    "dissipation": (_ALL_IMPORTED, _IMPORTED, "state dampers and friction among the elements of the joints"),
+    "limits": (_ALL_IMPORTED, _IMPORTED, "state stops among the elements of the joints"),
     "mimic": ("URDF", _URDF, "leave it out"),
     "arguments": ("xacro", (".xacro",), "leave it out"),
     "packages": ("URDF, xacro, SDF and MJCF", (*_URDF, *_SDF, ".xml"), "leave it out, or put the files in one folder"),
@@ -46,6 +52,8 @@ def load(
     mimic: bool = False,
     arguments: Mapping[str, str] | None = None,
     packages: Mapping[str, str | os.PathLike[str]] | None = None,
+    dissipation: Dissipation | None = None,
+    limits: LimitsAs = "data",
 ) -> System:
     """Read a description and check it.
 
@@ -55,13 +63,16 @@ def load(
     Args:
         path: Native YAML (.yaml, .yml), URDF (.urdf), xacro (.xacro; needs the package xacro), SDFormat (.sdf,
             .world), MJCF (.xml; needs the package mujoco) or USD (.usd, .usda, .usdc, .usdz; needs usd-core).
-        floating_base: URDF only: put a free joint under the root link.
-        snap_tol: All but YAML: numbers this close to exact ones are made exact (`read_urdf`, `read_mjcf`).
+        floating_base: All but YAML: put the body that stands on the ground onto a free joint.
+        snap_tol: All but YAML: numbers this close to exact ones are made exact (`ImportOptions`).
         waive: Checks that every body is allowed to fail (WAIVERS), such as "massless_tip".
         mimic: URDF only: couple joints that mimic others to them (`Coupling`); otherwise they stay independent.
         arguments: xacro only: values of its <xacro:arg>.
         packages: Name -> further folder that the description's files may be read from: packages of xacro and URDF by
             their names, models of SDFormat or folders that hold some; of MJCF under any name. Not for YAML and USD.
+        dissipation: All but YAML: what of the file's passive losses is kept: "none"; "viscous", its dampers; "all", dry
+            friction too, as smoothed Coulomb friction. By default "none" of URDF, and "viscous" of the others.
+        limits: All but YAML: "data", or "stops": limits of coordinates push back, as hard as the inertias suggest.
 
     Returns:
         The system; its `notes` say what an importer ignored or changed, where units of formulas do not fit, and which
@@ -69,18 +80,16 @@ def load(
 
     Raises:
         DescriptionError: With every problem of the file and of the mechanism it describes.
+        ArgumentError: `dissipation`, `limits` or `snap_tol` is none of its choices.
     """
-    asked = Asked(floating_base, snap_tol, mimic, arguments or {}, packages or {})
+    asked = Asked(floating_base, snap_tol, mimic, dissipation, limits, arguments or {}, packages or {})
     return _checked(_waived(_read(Path(path), asked), waive))[0]
 
 
 @dataclass(frozen=True)
-class Asked:
+class Asked(ImportOptions):
     """How a file is to be read, as in `load`."""
 
-    floating_base: bool = False
-    snap_tol: float = SNAP_TOL
-    mimic: bool = False
     arguments: Mapping[str, str] = field(default_factory=dict)
     packages: Folders = field(default_factory=dict)
 
@@ -150,31 +159,41 @@ def _read(file: Path, asked: Asked) -> Reading:
         raise DescriptionError(_missing(file))
     suffix = file.suffix.lower()
     _refuse_idle(file, suffix, asked)
-    packages, snap_tol = Packages(file, asked.packages), asked.snap_tol
+    if suffix in _IMPORTED:
+        try:
+            return _accept_inertias(_imported(file, suffix, asked))
+        except DescriptionError as error:
+            return Reading(None, error.problems)
+    from symofros.description.yaml.files import read_yaml  # No foreign format waits for it: pydantic takes 0.2 s.
+
+    return read_yaml(file)
+
+
+def _imported(file: Path, suffix: str, asked: Asked) -> Reading:
+    """A file of a foreign format.
+
+    Raises:
+        DescriptionError: It can't be read.
+    """
+    packages = Packages(file, asked.packages)
     if suffix in _URDF:
         text = None
         if suffix == ".xacro":
             from symofros.description.urdf.xacro_files import expanded  # As other readers, below.
 
             text = expanded(file, asked.arguments, packages)
-        base, mimic = asked.floating_base, asked.mimic
-        reading = read_urdf(file, floating_base=base, snap_tol=snap_tol, mimic=mimic, text=text, packages=packages)
-        return _accept_inertias(reading)
+        return read_urdf(file, asked, text=text, packages=packages)
     if suffix == ".xml":
         from symofros.description.mjcf.reader import read_mjcf  # No format waits for the reader of another.
 
-        return _accept_inertias(read_mjcf(file, snap_tol=snap_tol, packages=packages))
+        return read_mjcf(file, asked, packages=packages)
     if suffix in _SDF:
         from symofros.description.sdf.reader import read_sdf  # As above.
 
-        return _accept_inertias(read_sdf(file, snap_tol=snap_tol, packages=packages))
-    if suffix in USD_SUFFIXES:
-        from symofros.description.usd.reader import read_usd  # As above.
+        return read_sdf(file, asked, packages=packages)
+    from symofros.description.usd.reader import read_usd  # As above.
 
-        return _accept_inertias(read_usd(file, snap_tol=snap_tol))
-    from symofros.description.yaml.files import read_yaml  # As above: pydantic takes a fifth of a second.
-
-    return read_yaml(file)
+    return read_usd(file, asked)
 
 
 def _refuse_idle(file: Path, suffix: str, asked: Asked) -> None:
@@ -184,7 +203,7 @@ def _refuse_idle(file: Path, suffix: str, asked: Asked) -> None:
         DescriptionError: There is one.
     """
     for name, (formats, suffixes, remedy) in _OF_FORMATS.items():
-        if getattr(asked, name) and suffix not in suffixes:
+        if getattr(asked, name) not in _UNASKED and suffix not in suffixes:
             rule = "other descriptions state it themselves, or have no such thing"
             argument = Argument(name, key="NAME" if name in ("arguments", "packages") else "")
             what = f"{name} applies to {formats} files only"

@@ -34,7 +34,16 @@ def pytest_addoption(parser: Any) -> None:
         "a plug-in (entry point symofros.engines) is held to the truth on each kind of joint that it has",
     )
     group.addoption("--symofros-tier", choices=TIERS, default="standard", help="how much is checked (standard)")
-    group.addoption("--symofros-floating-base", action="store_true", help="put a free joint under the root of URDFs")
+    group.addoption(
+        "--symofros-floating-base", action="store_true", help="put what stands on the ground onto a free joint"
+    )
+    group.addoption(
+        "--symofros-dissipation",
+        metavar="WHAT",
+        default="",
+        help="what to keep of files' passive losses: none, viscous, all (dry friction, too)",
+    )
+    group.addoption("--symofros-limits", metavar="HOW", default="", help="what limits of coordinates are: data, stops")
     group.addoption(
         "--symofros-waive",
         action="append",

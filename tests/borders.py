@@ -31,8 +31,8 @@ class Taken(NamedTuple):
 
     Attributes:
         user: Module that imports.
-        module: Module that it imports from, or imports whole.
-        name: Name; empty where the module itself is imported.
+        module: Module that it imports from, or imports whole and reads.
+        name: Name; empty of a module that is imported whole and handed on.
     """
 
     user: str
@@ -69,24 +69,22 @@ def names_offered(path: Path) -> frozenset[str]:
 
 
 def taken(root: Path, user: str, path: Path, known: Mapping[str, Path]) -> Iterator[Taken]:
-    """Names that a module imports of known ones, and what it reads of `symofros` under another name (`sf.load`)."""
-    aliases: set[str] = set()
+    """Names that a module imports of known ones, and what it reads of those that it imports whole (`sf.load`)."""
+    whole: dict[str, str] = {}
     for node in import_statements(path):
         if isinstance(node, ast.Import):
-            aliases |= {alias.asname or alias.name for alias in node.names if alias.name == "symofros"}
-            yield from (Taken(user, a.name, "") for a in node.names if a.name in known and a.name != "symofros")
+            whole |= {alias.asname or alias.name: alias.name for alias in node.names if alias.name in known}
             continue
         module = absolute(path, node, root)
-        for alias in node.names:
-            if module not in known:
-                continue
+        for alias in node.names if module in known else ():
             if f"{module}.{alias.name}" in known and alias.name not in names_offered(known[module]):
-                yield Taken(user, f"{module}.{alias.name}", "")
+                whole[alias.asname or alias.name] = f"{module}.{alias.name}"
             else:
                 yield Taken(user, module, alias.name)
-    for read in ast.walk(ast.parse(path.read_text())) if aliases else ():
-        if isinstance(read, ast.Attribute) and isinstance(read.value, ast.Name) and read.value.id in aliases:
-            yield Taken(user, "symofros", read.attr)
+    reads = [node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Attribute)] if whole else []
+    read = [(whole[x.value.id], x.attr) for x in reads if isinstance(x.value, ast.Name) and x.value.id in whole]
+    unread = set(whole.values()) - {module for module, _ in read} - {"symofros"}
+    yield from (Taken(user, *item) for item in (*read, *((module, "") for module in sorted(unread))))
 
 
 def part(module: str) -> str:

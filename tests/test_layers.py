@@ -37,12 +37,12 @@ ALLOWED = table("""
     native:
     expr: base errors
     description: base errors expr
-    mechanics.beams: errors expr description
+    mechanics.beams: expr description
     mechanics.topology: base errors expr description mechanics.beams
-    mechanics.kinematics: base errors expr description mechanics.beams mechanics.topology
+    mechanics.kinematics: base expr description mechanics.beams mechanics.topology
     mechanics.dynamics: base errors expr description mechanics.beams mechanics.topology
         mechanics.kinematics
-    generator.passes: base expr
+    generator.passes: expr
     # Declarations and constants are read from the headers of native.
     runtime: base errors native
     generator.codegen: base native expr generator.passes runtime
@@ -58,11 +58,11 @@ ALLOWED = table("""
         generator.codegen runtime
     generator.programs: base errors expr mechanics.topology mechanics.kinematics mechanics.dynamics
         generator.passes generator.codegen
-    generator.units: base errors native expr description mechanics.dynamics generator.passes runtime
+    generator.units: base errors native expr mechanics.dynamics generator.passes runtime
         generator.codegen generator.record generator.programs
-    compiler: base errors expr description mechanics.topology mechanics.dynamics runtime generator.codegen
-        generator.record generator.beams generator.held_beams generator.instants generator.programs
-        generator.units
+    compiler: base errors expr description mechanics.topology mechanics.dynamics runtime generator.passes
+        generator.codegen generator.record generator.beams generator.held_beams generator.instants
+        generator.programs generator.units
     loading: base errors description mechanics.topology
     # What follows are the wings, which take of these folders what the waist offers; see `WAIST`.
     simulation: base errors native runtime
@@ -79,12 +79,12 @@ ALLOWED = table("""
     # Models in other frameworks, each of them imported by its own module alone.
     interop: base errors native expr description compiler runtime simulation
     # Advice compiles and simulates reduced systems, and counts what they take; rods tell what their sections resist.
-    studio.advice: base errors expr description mechanics.beams generator runtime compiler simulation
+    studio.advice: base errors expr description mechanics.beams runtime compiler simulation
     # The picture compiles its own frame poses, plays trajectories, and closes loops; beams lend their shape.
     studio.viewer: base errors description mechanics.beams mechanics.topology runtime compiler loading
         simulation diagrams exports
     # The editor checks documents itself, and hands the rest to workers that use the front doors.
-    studio.editor: base errors expr description mechanics.beams mechanics.topology generator
+    studio.editor: base errors expr description mechanics.beams mechanics.topology
         runtime compiler simulation diagrams diagrams.files exports studio.viewer harness __init__
     # Passes left out in turn, for studies: their context managers reach into every stage.
     generator.ablation: base expr mechanics.kinematics mechanics.dynamics generator.passes generator.codegen
@@ -205,6 +205,25 @@ def test_wings_import_of_the_core_what_the_waist_offers() -> None:
     beside = sorted(taken[module] for module in taken.keys() - waist.keys())
     assert not beside, "\n".join(f"{user}: '{name}' of {module} is not on the waist" for user, module, name in beside)
     assert waist.keys() <= taken.keys(), "the waist offers what nobody takes"
+
+
+def test_an_import_beside_the_waist_is_seen(tmp_path: Path) -> None:
+    lines = (
+        "from symofros.mechanics.topology.tree import Link",
+        "from symofros.mechanics import topology",
+        "topology.go()",
+    )
+    for name, text in {"mechanics/topology/tree.py": "", "blocks/lights.py": "\n".join(lines)}.items():
+        file = tmp_path / "symofros" / name
+        file.parent.mkdir(parents=True)
+        for folder in (file.parent, file.parent.parent):
+            (folder / "__init__.py").touch()
+        file.write_text(text)
+    seen = over_the_waist(tmp_path)
+    assert [item[1:] for item in seen] == [
+        ("symofros.mechanics.topology.tree", "Link"),
+        ("symofros.mechanics.topology", "go"),
+    ]
 
 
 def test_folders_of_the_waist_offer_what_wings_take() -> None:

@@ -126,7 +126,7 @@ def urdf(folder: Path, content: str) -> tuple[str, ...]:
 @pytest.mark.parametrize(
     ("content", "said"),
     [
-        (CHAIN.format("continuous", AXIS + DAMPED), "damping and friction ignored"),
+        (CHAIN.format("continuous", AXIS + DAMPED), "damping of joints ignored"),
         (CHAIN.format("continuous", LONG_AXIS), "axes that are not unit vectors are normalised"),
         (CHAIN.format("planar", AXIS + LIMIT), "limits of planar joints ignored"),
         (CHAIN.format("continuous", AXIS) + '<gazebo><link name="c"/></gazebo>', "<link> in <gazebo> ignored"),

@@ -36,7 +36,7 @@ def check(
         states: Number of random states.
         seed: Seed of the states.
         engines: Names of the engines to compare with; None: all.
-        floating_base: Whether a URDF file gets a free joint under its root.
+        floating_base: Whether what stands on the ground goes onto a free joint; not of native files.
 
     Returns:
         What was compared. It is true if an independent engine was asked and everything agrees; printed, it is a table.

@@ -29,13 +29,14 @@ class Options(metaclass=CheckedCalls):
         compiler: Path or name of the C compiler; None: $CC, cc, gcc, clang, then the ziglang package.
         constraints: How forward dynamics keeps them: "multipliers" solves for the forces first, by M^-1;
             "null_space" for the accelerations that are left free, without M^-1: more accurate where M is nearly
-            singular, and usually slower (docs/theory/constraints.md, section 8).
+            singular, and usually slower (docs/theory/constraints.md, section 8). Derivatives and projection go by
+            multipliers, whatever is chosen here.
         forward_dynamics: How trees are solved: by "factors" of the mass matrix; by "articulated" bodies, which lose
             hundreds of times fewer digits where light links carry heavy loads; "auto", the cheaper by count
             (docs/theory/rigid.md, section 7). "articulated" also holds for the first derivatives, vector-Jacobian
             products and `linearize`, whose code is then up to twice as long ("auto": factors); models with rotors
             that it can't serve are refused. Constraints, Hessians of forward dynamics and implicit steps need M
-            itself: they are solved by factors, whatever is chosen here.
+            itself: they are solved by factors, whatever is chosen here. `Model.routes` tells what was chosen and why.
         batch: How large batches are evaluated: "vector", several states at once, by code that is compiled for each
             function when its first batch of 512 states or more arrives (docs/theory/code.md); or "loop", one by one.
         packs: Whether values of one state formed by the same operations share vectors: entries of a row of M, say, or

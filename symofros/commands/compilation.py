@@ -8,15 +8,14 @@ from pathlib import Path
 from typing import Any
 
 from symofros.base.atomic import write_atomically
-from symofros.base.c_names import identifier
 from symofros.base.functions import DEFAULT_FUNCTIONS
+from symofros.base.names import identifier
 from symofros.base.options import Options
 from symofros.commands.reading import ReadingOptions
 from symofros.commands.shared import refuse, refusing_descriptions
 from symofros.compiler import Compilation, inconsistencies
 from symofros.errors import SymofrosError
 from symofros.expr import collect_rarely
-from symofros.generator import count_program
 from symofros.loading import Source, load_with_sources
 from symofros.native import native_text
 from symofros.runtime.build import find_toolchain, note_prepared
@@ -81,6 +80,5 @@ def _write(compilation: Compilation, text: str, output: Path) -> dict[str, Any]:
     files = [output / f"{identifier(compilation.system.name)}.c", output / "symofros_model.h"]
     for file, content in zip(files, (text, native_text("model/symofros_model.h")), strict=True):
         write_atomically(file, content)
-    counts = count_program(compilation.program)
-    operations = sum(count.total for key, count in counts.items() if key[0] != "init")
+    operations = sum(count.total for key, count in compilation.operations.items() if key[0] != "init")
     return {"operations": operations, "bytes": len(text), "files": list(map(str, files))}

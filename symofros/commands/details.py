@@ -5,17 +5,13 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
 from rich.table import Table
 
 from symofros.description import Beam
-from symofros.mechanics.beams import stations
-from symofros.mechanics.topology import Numbers, SpanningTree, section_values
+from symofros.mechanics.topology import Numbers, SpanningTree, beam_mass
 
 # Frames of a model that are named; the rest are counted.
 _FRAMES = 20
-# Gauss nodes for the mass of a beam.
-_POINTS = 16
 
 
 def details(tree: SpanningTree) -> dict[str, Any]:
@@ -30,7 +26,7 @@ def details(tree: SpanningTree) -> dict[str, Any]:
         }
         inertia = None if isinstance(body, Beam) else body.inertia
         if isinstance(body, Beam):
-            stated["mass"] = _finite(_mass(body, numbers))
+            stated["mass"] = _finite(beam_mass(body, numbers))
         elif inertia is not None:
             stated["mass"] = _finite(numbers.value(inertia.mass))
             stated["center_of_mass"] = [_finite(x) for x in numbers.values(inertia.center_of_mass)]
@@ -72,13 +68,6 @@ def frames_line(facts: dict[str, Any]) -> str:
     names = facts["frames"]
     rest = f", … ({len(names)} in all; --json lists them)" if len(names) > _FRAMES else ""
     return f"frames: {', '.join(names[:_FRAMES])}{rest}"
-
-
-def _mass(beam: Beam, numbers: Numbers) -> float:
-    """Mass of a beam, by Gauss's quadrature where its section changes."""
-    xi, w = stations((0.0, 1.0), _POINTS)
-    along = section_values(beam, beam.rhoA, np.array(xi), numbers.parameters)[0]
-    return numbers.value(beam.length) * float(along @ np.array(w))
 
 
 def _finite(value: float) -> float | None:

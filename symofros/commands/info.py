@@ -10,7 +10,8 @@ from rich.table import Table
 from rich.tree import Tree
 
 import symofros as sf
-from symofros.base.functions import DEFAULT_FRAME_FUNCTIONS, DEFAULT_FUNCTIONS
+from symofros.base.functions import DEFAULT_FRAME_FUNCTIONS, DEFAULT_FUNCTIONS, FUNCTIONS
+from symofros.base.routes import ROUTES, Choice
 from symofros.commands.details import details, frames_line, tables
 from symofros.commands.reading import ReadingOptions, reads_models
 from symofros.commands.shared import OF_A_DIAGRAM, AsJson, FilePath, Network, load, refuse
@@ -31,6 +32,9 @@ def info(
     operations: Annotated[
         bool, typer.Option("--operations", help="Also derive every function and count its operations.")
     ] = False,
+    routes: Annotated[
+        bool, typer.Option("--routes", help="Also derive every function and tell by which methods, and why.")
+    ] = False,
     as_json: AsJson = False,
 ) -> None:
     """Show a model: tree, sizes, masses, limits, parameters; or a diagram: blocks, rates, order."""
@@ -46,6 +50,7 @@ def info(
     system = load(model, reading)
     tree = build_tree(system)
     counts = _counts(system, tree.frames[-1].name) if operations else {}
+    choices = _choices(system) if routes else {}
     names = tree.coordinates
     sizes = {"nq": len(names.q), "nv": len(names.v), "nu": len(names.u), "npar": len(names.par)}
     facts = details(tree)
@@ -53,6 +58,8 @@ def info(
         stated = {"name": system.name, **sizes, **facts, "notes": list(system.notes)}
         if operations:
             stated["operations"] = {name: _by_kind(count) for name, count in counts.items()}
+        if routes:
+            stated["routes"] = {name: [choice.as_dict() for choice in of] for name, of in choices.items()}
         print(json.dumps(stated, indent=1))
         return
     out.print(_draw(tree))
@@ -63,6 +70,8 @@ def info(
         out.print(shown)
     if operations:
         out.print(_operations(counts))
+    if routes:
+        out.print(_routes(choices))
     for note in system.notes:
         out.print(f"note: {note}", markup=False, highlight=False, soft_wrap=True)
 
@@ -70,11 +79,36 @@ def info(
 def _counts(system: sf.System, frame: str) -> dict[str, Operations]:
     """Operations of every function, keyed by its name, and the frame of frame functions."""
     from symofros.compiler import Compilation  # The generator takes as long to import as all that is shown without it.
-    from symofros.generator import count_program  # Part of it.
 
     compilation = Compilation(system, sf.Options(functions=DEFAULT_FUNCTIONS))
     compilation.request(DEFAULT_FRAME_FUNCTIONS, [frame])
-    return {" of ".join(filter(None, key)): count for key, count in count_program(compilation.program).items()}
+    return {" of ".join(filter(None, key)): count for key, count in compilation.operations.items()}
+
+
+def _choices(system: sf.System) -> dict[str, tuple[Choice, ...]]:
+    """Methods of every function, as a model has them that makes each when it is first called."""
+    of_trees = (name for name in DEFAULT_FUNCTIONS if system.constraints or not FUNCTIONS[name].constrained_only)
+    told = sf.compile(system).routes
+    return {name: told[name] for name in of_trees}
+
+
+def _routes(choices: dict[str, tuple[Choice, ...]]) -> Table:
+    """The choices among several methods, and which functions they are for."""
+    functions: dict[tuple[str, str, str], dict[str, list[str]]] = {}
+    for name, of in choices.items():
+        for choice in of:
+            if choice.others:
+                others = [f"{route.method}:\n{route.option}" for route in choice.others if route.option]
+                key = choice.quantity, choice.method, "\n".join([choice.reason, *(f"else {other}" for other in others)])
+                functions.setdefault(key, {}).setdefault(choice.counted, []).append(name)
+    table = Table(title="Methods where there are several (--json tells all)")
+    table.add_column("method", width=39, overflow="fold")  # Options stand in one line.
+    table.add_column("functions: figures", overflow="fold")
+    for key in sorted(functions, key=lambda key: [*ROUTES].index(key[0])):
+        quantity, method, reason = key
+        lines = (", ".join(names) + (f": {counted}" if counted else "") for counted, names in functions[key].items())
+        table.add_row(f"{quantity}: {method}\n{reason}", "\n".join(lines), end_section=True)
+    return table
 
 
 def _operations(counts: dict[str, Operations]) -> Table:

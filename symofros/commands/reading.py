@@ -21,8 +21,9 @@ from symofros.errors import Problem, SymofrosError
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 # Parameter of a command that takes all options below.
 PARAMETER = "reading"
-# Formats whose files name no packages; stated here, as what reads them is not loaded for a cached answer.
+# Stated here, as what reads them is not loaded for a cached answer: formats whose files name no packages, and our own.
 _OF_ONE_PLACE = (".yaml", ".yml", ".usd", ".usda", ".usdc", ".usdz")
+_NATIVE = (".yaml", ".yml")
 _QUOTED = re.compile(QUOTED_NAME, re.ASCII)
 
 
@@ -31,11 +32,13 @@ class ReadingOptions:
     """Options of `sf.load`; hashable, as `sf.load` has them where they are mappings or lists.
 
     Attributes:
-        floating_base: Whether a free joint goes under a URDF's root link.
+        floating_base: Whether the body that stands on the ground goes onto a free joint.
         mimic: Whether joints of a URDF that mimic others are coupled to them.
         waive: Checks that every body may fail.
         packages: Names and folders of packages.
         arguments: Names and values of xacro's arguments.
+        dissipation: What is kept of passive losses; "" for what the format keeps by default.
+        limits: What limits of coordinates are; "" for data.
         prefix: Beginning of the names of the options that state all this.
     """
 
@@ -44,6 +47,8 @@ class ReadingOptions:
     waive: tuple[str, ...] = ()
     packages: tuple[tuple[str, str], ...] = ()
     arguments: tuple[tuple[str, str], ...] = ()
+    dissipation: str = ""
+    limits: str = ""
     prefix: str = "--"
 
     @property
@@ -59,7 +64,14 @@ class ReadingOptions:
         own = self if suffix == ".xacro" else replace(self, arguments=())
         if suffix in _OF_ONE_PLACE:
             own = replace(own, packages=())
-        return own if suffix in (".urdf", ".xacro") else replace(own, floating_base=False, mimic=False)
+        if suffix in _NATIVE:
+            own = replace(own, floating_base=False, dissipation="", limits="")
+        return own if suffix in (".urdf", ".xacro") else replace(own, mimic=False)
+
+    @property
+    def changes_forces(self) -> bool:
+        """Whether an engine that reads the file by itself has other passive forces."""
+        return bool(self.dissipation or self.limits)
 
     def without(self, names: Collection[str]) -> ReadingOptions:
         """The same without options of some names."""
@@ -89,7 +101,10 @@ class ReadingOptions:
 
 # As a command states them.
 _OPTIONS: dict[str, tuple[Any, Any]] = {
-    "floating_base": (bool, typer.Option("--floating-base", help="Put a free joint under a URDF's root link.")),
+    "floating_base": (
+        bool,
+        typer.Option("--floating-base", help="Put the body that stands on the ground onto a free joint."),
+    ),
     "mimic": (bool, typer.Option("--mimic", help="Couple the joints of a URDF that mimic others to them.")),
     "waive": (
         list[str],
@@ -109,6 +124,25 @@ _OPTIONS: dict[str, tuple[Any, Any]] = {
         list[str],
         typer.Option("--argument", metavar="NAME=VALUE", help="An argument of a xacro file; repeatable."),
     ),
+    "dissipation": (
+        str,
+        typer.Option(
+            "--dissipation",
+            metavar="WHAT",
+            help="What to keep of a file's passive losses: none (as of URDF by default), viscous (dampers, as of MJCF, "
+            "SDF and USD), or all (dry friction, too).",
+            show_default=False,
+        ),
+    ),
+    "limits": (
+        str,
+        typer.Option(
+            "--limits",
+            metavar="HOW",
+            help="What limits of coordinates are: data (the default), or stops that push back.",
+            show_default=False,
+        ),
+    ),
 }
 
 
@@ -119,6 +153,8 @@ def reading_of(
     waive: Iterable[str] = (),
     packages: Iterable[str] = (),
     arguments: Iterable[str] = (),
+    dissipation: str = "",
+    limits: str = "",
     prefix: str = "--",
 ) -> ReadingOptions:
     """Options as they are stated, NAME=TEXT where they are pairs.
@@ -129,6 +165,8 @@ def reading_of(
         waive: As there.
         packages: Pairs of names and folders.
         arguments: Pairs of names and values.
+        dissipation: As in `ReadingOptions`, like the next one.
+        limits: As there.
         prefix: Beginning of the options' names, for the problem.
 
     Raises:
@@ -136,7 +174,8 @@ def reading_of(
     """
     named = _named(pairs(packages, f"{prefix}package", "hand_description=../hand_description"))
     given = _named(pairs(arguments, f"{prefix}argument", "gripper=true", empty=True))
-    return ReadingOptions(floating_base, mimic, tuple(waive), tuple(named.items()), tuple(given.items()), prefix)
+    mappings = tuple(named.items()), tuple(given.items())
+    return ReadingOptions(floating_base, mimic, tuple(waive), *mappings, dissipation, limits, prefix)
 
 
 def _named(stated: dict[str, str]) -> dict[str, str]:
@@ -175,7 +214,7 @@ def reads_models(command: _Command) -> _Command:
     parameters = [parameter for parameter in signature.parameters.values() if parameter.name != PARAMETER]
     keyword = inspect.Parameter.KEYWORD_ONLY
     for name, (kind, option) in _OPTIONS.items():
-        default: Any = False if kind is bool else []
+        default: Any = {bool: False, str: ""}.get(kind, [])
         parameters.append(inspect.Parameter(name, keyword, default=default, annotation=Annotated[kind, option]))
 
     @wraps(command)

@@ -1,16 +1,19 @@
-"""How a loop is closed that a tree of links has no place for: the words of remedies."""
+"""How a loop is closed that a tree of links has no place for: what closures block, and the words of remedies."""
 
 from __future__ import annotations
 
-# Type of a joint -> what its closure blocks, of frames whose z lies along the axis.
-_BLOCKED = {
-    "revolute": "rotations=('x', 'y')",
-    "continuous": "rotations=('x', 'y')",
-    "prismatic": "translations=('x', 'y'), rotations=('x', 'y', 'z')",
-    "fixed": "rotations=('x', 'y', 'z')",
-    "ball": "",
-    "universal": "rotations=('z',)",
-    "planar": "translations=('z',), rotations=('x', 'y')",
+from symofros.description.constraints import AXES, AxisName
+
+# Type of a joint -> translations and rotations that its closure blocks, of frames whose z lies along the axis.
+BLOCKED: dict[str, tuple[tuple[AxisName, ...], tuple[AxisName, ...]]] = {
+    "revolute": (AXES, ("x", "y")),
+    "continuous": (AXES, ("x", "y")),
+    "prismatic": (("x", "y"), AXES),
+    "cylindrical": (("x", "y"), ("x", "y")),
+    "planar": (("z",), ("x", "y")),
+    "universal": (AXES, ("z",)),
+    "ball": (AXES, ()),
+    "fixed": (AXES, AXES),
 }
 
 
@@ -23,11 +26,13 @@ def closing_remedy(name: str, kind: str, parent: str, child: str) -> str:
         parent: Name of its parent.
         child: Name of its child.
     """
-    if kind not in _BLOCKED:
+    if kind not in BLOCKED:
         why = "a floating joint binds nothing" if kind in ("floating", "free") else "no closure does what its type does"
         return f"drop the joint '{name}': {why}"
     ends = [f"({body!r}, '{name}_{side}')" for body, side in ((parent, "first"), (child, "second"))]
-    call = ", ".join(filter(None, (repr(name), *ends, _BLOCKED[kind])))
+    translations, rotations = BLOCKED[kind]
+    blocked = [f"translations={translations}"] * (translations != AXES) + [f"rotations={rotations}"] * bool(rotations)
+    call = ", ".join((repr(name), *ends, *blocked))
     axis = "z across both axes" if kind == "universal" else "z along its axis"
     return (
         f"leave joint '{name}' out, and close its loop in Python by sf.Closure({call}) among the constraints of the "

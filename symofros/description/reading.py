@@ -9,7 +9,7 @@ from pathlib import Path
 
 from symofros.base.sources import Source
 from symofros.description.system import System
-from symofros.errors import ArgumentError, DescriptionError, Problem
+from symofros.errors import DescriptionError, Problem
 
 # Of native descriptions; stated here, where no parser of YAML is loaded for it.
 YAML_SUFFIXES = (".yaml", ".yml")
@@ -109,17 +109,6 @@ def refuse_size(path: Path, data: bytes, limit: int) -> None:
                 "check that it is the file you meant",
             )
         )
-
-
-def check_snap_tol(snap_tol: float) -> None:
-    """Refuse a tolerance that would change what a file states.
-
-    Raises:
-        ArgumentError: It is not a small number.
-    """
-    if not 0.0 <= snap_tol < 0.1:
-        rule = "0 <= snap_tol < 0.1, so that it absorbs rounding only"
-        raise ArgumentError(Problem("snap_tol is not a small number", str(snap_tol), rule, "leave it out"))
 
 
 def fresh_name(wanted: str, taken: set[str]) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -32,3 +33,9 @@ class Visual:
     rotation: Rotation = IDENTITY
     color: tuple[int, int, int] | None = None
     file: str = ""
+
+
+def color_of(shares: Sequence[float]) -> tuple[int, int, int]:
+    """Red, green and blue, 0 to 255, of shares from 0 to 1; what follows these is not looked at."""
+    red, green, blue = (round(255 * min(max(float(share), 0.0), 1.0)) for share in shares[:3])
+    return red, green, blue

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import DescriptionError, Problem
 
 MAX_DEPTH = 100
 MAX_TEXT = 4096
@@ -46,10 +46,6 @@ class Element:
         return next(self.all(tag), None)
 
 
-class XmlFault(SymofrosError):
-    """A problem of an XML document after which reading can't go on."""
-
-
 def parse_xml(data: bytes, file: str) -> Element:
     """Read an XML document.
 
@@ -58,7 +54,7 @@ def parse_xml(data: bytes, file: str) -> Element:
         file: File name, for the problem.
 
     Raises:
-        XmlFault: Not well-formed, too deep, or with a document type (the only way to define entities).
+        DescriptionError: Not well-formed, too deep, or with a document type (the only way to define entities).
     """
     builder = _Builder(file)
     try:
@@ -67,7 +63,7 @@ def parse_xml(data: bytes, file: str) -> Element:
         syntax_error = f"{expat.ErrorString(error.code)}, column {error.offset + 1}"
         if builder.open:
             syntax_error += f"; <{builder.open[-1].tag:.60}> of line {builder.open[-1].line} is not closed"
-        raise XmlFault(
+        raise DescriptionError(
             Problem(
                 "the text is not well-formed XML",
                 syntax_error,
@@ -77,7 +73,7 @@ def parse_xml(data: bytes, file: str) -> Element:
             )
         ) from None
     except (LookupError, ValueError) as error:
-        raise XmlFault(
+        raise DescriptionError(
             Problem(
                 "the text's encoding is unknown",
                 str(error),
@@ -102,8 +98,8 @@ class _Builder:
         self.parser.CharacterDataHandler = self.characters
         self.parser.buffer_text = True
 
-    def fault(self, what: str, found: str, rule: str, remedy: str) -> XmlFault:
-        return XmlFault(Problem(what, found, rule, remedy, f"{self.file}:{self.parser.CurrentLineNumber}"))
+    def fault(self, what: str, found: str, rule: str, remedy: str) -> DescriptionError:
+        return DescriptionError(Problem(what, found, rule, remedy, f"{self.file}:{self.parser.CurrentLineNumber}"))
 
     def doctype(self, name: str, *_: object) -> None:
         raise self.fault(

@@ -10,7 +10,8 @@ from string import Template
 
 import numpy as np
 
-from symofros.base.c_names import c_string, identifier
+from symofros.base.arrays import Array
+from symofros.base.names import c_string, identifier
 from symofros.diagrams.external_block import ExternalBlock
 from symofros.diagrams.program.compiled import (
     Resolved,
@@ -19,6 +20,7 @@ from symofros.diagrams.program.compiled import (
     reads_accelerations,
     record_of,
 )
+from symofros.diagrams.program.fused_functions import Fuser
 from symofros.diagrams.program.lowered_block import watched
 from symofros.diagrams.wiring import Source
 from symofros.errors import ExportError, Problem
@@ -71,48 +73,15 @@ def write_diagram(
     Raises:
         ExportError: The diagram calls Python, or the folder is not ours.
     """
+    _refuse(resolved, stepping)
     wired, layout = resolved.wired, resolved.layout
-    external = [name for name, block in wired.blocks.items() if isinstance(block, ExternalBlock)]
-    if external:
-        raise ExportError(
-            Problem(
-                f"diagram '{wired.name}': no C program",
-                f"block '{external[0]}' calls Python",
-                "a program of its own has no Python in it",
-                "leave the block out",
-            )
-        )
-    if stepping.method.kind not in ("explicit", "semi_implicit"):
-        raise ExportError(
-            Problem(
-                f"diagram '{wired.name}': method '{stepping.method.name}'",
-                "an implicit method",
-                "diagrams step by explicit methods",
-                "use rk4 or dopri5",
-            )
-        )
     name = identifier(wired.name)
     sources = [wired.output(text) for text in outputs]
     write = fuser(resolved)
-    models = wired.models
-    stated = [(model, place) for (block, model), place in layout.parameters.items() if not block]
     files: dict[str, str] = {f"{name}.h": _header(name, wired.name, generator)}
     first = first_motion(resolved, outputs, stepping)
-    for i, (part, (q, v)) in enumerate(zip(layout.parts, first.starts, strict=True)):
-        record, c_name = record_of(resolved, part), f"{name}_part{i}"
-        text = model_source(run_passes(with_instants(write.motion(part))), record, generator, c_name=c_name)
-        material = PartMaterial(
-            c_name,
-            record,
-            stepping,
-            (),
-            tuple(q.tolist()),
-            tuple(v.tolist()),
-            part_beams(resolved, part, np.array(layout.par)),
-            tuple(Judged(models.system(model), models.record(model).par_names, place.start) for model, place in stated),
-            generator,
-        )
-        files |= {f"{c_name}.c": text, f"{c_name}.h": _part_header(c_name), f"{c_name}_plant.c": plant_text(material)}
+    for i, (q, v) in enumerate(first.starts):
+        files |= _part_files(resolved, write, i, (q, v), stepping, generator)
     instants = run_passes(write.samples(resolved.schedule.sets, sources))
     files[f"{name}_instants.c"] = model_source(
         instants, record_of(resolved, None), generator, c_name=f"{name}_instants"
@@ -138,6 +107,66 @@ def write_diagram(
     files["symofros_diagram.c"] = amalgamated("diagrams/symofros_diagram.c")
     closed_form = () if layout.condition_names else ("no constraints: accelerations are in closed form",)
     return write_folder(folder, "c", name, files, generator, (*closed_form, *first.notes))
+
+
+def _refuse(resolved: Resolved, stepping: Stepping) -> None:
+    """Refuse what no program of its own does.
+
+    Raises:
+        ExportError: The diagram calls Python, or steps by an implicit method.
+    """
+    wired = resolved.wired
+    external = [name for name, block in wired.blocks.items() if isinstance(block, ExternalBlock)]
+    if external:
+        raise ExportError(
+            Problem(
+                f"diagram '{wired.name}': no C program",
+                f"block '{external[0]}' calls Python",
+                "a program of its own has no Python in it",
+                "leave the block out",
+            )
+        )
+    if stepping.method.kind not in ("explicit", "semi_implicit"):
+        raise ExportError(
+            Problem(
+                f"diagram '{wired.name}': method '{stepping.method.name}'",
+                "an implicit method",
+                "diagrams step by explicit methods",
+                "use rk4 or dopri5",
+            )
+        )
+
+
+def _part_files(
+    resolved: Resolved, write: Fuser, number: int, start: tuple[Array, Array], stepping: Stepping, generator: str
+) -> dict[str, str]:
+    """Name -> text of the files of one part.
+
+    Args:
+        resolved: The diagram.
+        write: Writes functions of its parts.
+        number: Number of the part.
+        start: Its first q, v.
+        stepping: How it steps.
+        generator: Name and version.
+    """
+    layout, models, part = resolved.layout, resolved.wired.models, resolved.layout.parts[number]
+    record, c_name = record_of(resolved, part), f"{identifier(resolved.wired.name)}_part{number}"
+    stated = [(model, place) for (block, model), place in layout.parameters.items() if not block]
+    q, v = start
+    material = PartMaterial(
+        c_name,
+        record,
+        stepping,
+        (),
+        tuple(q.tolist()),
+        tuple(v.tolist()),
+        part_beams(resolved, part, np.array(layout.par)),
+        tuple(Judged(models.system(model), models.record(model).par_names, place.start) for model, place in stated),
+        generator,
+    )
+    text = model_source(run_passes(with_instants(write.motion(part))), record, generator, c_name=c_name)
+    return {f"{c_name}.c": text, f"{c_name}.h": _part_header(c_name), f"{c_name}_plant.c": plant_text(material)}
 
 
 def _header(name: str, title: str, generator: str) -> str:

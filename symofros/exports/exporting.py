@@ -12,9 +12,8 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from symofros.base.arguments import checked
-from symofros.base.c_names import identifier
 from symofros.base.functions import FRAME_FUNCTIONS, exported
-from symofros.base.names import coordinate_of, speed_of
+from symofros.base.names import coordinate_of, identifier, speed_of
 from symofros.base.options import Options
 from symofros.compiler import GENERATOR, Compilation, compile_system
 from symofros.description import Beam, System

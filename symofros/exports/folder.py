@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from symofros.base.atomic import write_atomically
-from symofros.base.c_names import identifier
+from symofros.base.names import identifier
 from symofros.errors import ExportError, Problem
 
 MANIFEST = "symofros-export.json"

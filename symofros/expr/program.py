@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from math import prod
 
+from symofros.base.routes import Choice
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph, Slot
 
@@ -55,6 +56,7 @@ class Function:
         solver: Routine that takes the outputs and gives the results, if there is one: forward dynamics under
             constraints computes M, r, G, c and returns a, lam and the rank.
         summary: One line for people; "" for a part of another function.
+        choices: Methods by which its outputs are formed, where there are several.
     """
 
     name: str
@@ -63,6 +65,7 @@ class Function:
     outputs: tuple[Output, ...]
     solver: Solver | None = None
     summary: str = ""
+    choices: tuple[Choice, ...] = ()
 
     @property
     def returns(self) -> tuple[tuple[str, tuple[int, ...]], ...]:

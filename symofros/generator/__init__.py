@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from symofros.generator.codegen.cuda import device_code as device_code
 from symofros.generator.codegen.interpreted import InterpretedUnit as InterpretedUnit
 from symofros.generator.codegen.interpreted import formula_instants as formula_instants
 from symofros.generator.codegen.model import model_source as model_source
@@ -10,5 +9,4 @@ from symofros.generator.codegen.solvers import ROUTINES as ROUTINES
 from symofros.generator.passes import run_passes as run_passes
 from symofros.generator.passes.count import Operations as Operations
 from symofros.generator.passes.count import count_operations as count_operations
-from symofros.generator.passes.count import count_program as count_program
 from symofros.runtime.cuda.device_code import DeviceCode as DeviceCode

@@ -4,24 +4,26 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Sequence
-from functools import cached_property
+from dataclasses import replace
+from functools import cached_property, partial
 
 from symofros.base.functions import FUNCTIONS
 from symofros.base.options import Options
+from symofros.base.routes import ROUTES, Choice, choose, taken
 from symofros.errors import DescriptionError, Problem, UnknownNameError, did_you_mean
 from symofros.expr.graph import Graph
 from symofros.expr.program import Function, Output, Program
-from symofros.generator.codegen.effort import cheapest
+from symofros.generator.codegen.effort import effort
 from symofros.generator.passes import run_passes
 from symofros.mechanics.dynamics.constraints.rows import retracted
 from symofros.mechanics.dynamics.equations import Equations
-from symofros.mechanics.dynamics.functions import Methods, Request, form_program, forward_methods
+from symofros.mechanics.dynamics.functions import Methods, Request, form_program
 from symofros.mechanics.kinematics.links import tree_kinematics
 from symofros.mechanics.topology.tree import SpanningTree
 
 # What a C text or a library holds where the options name no functions.
 _DEFAULT = (Request("dynamics"),)
-_FORWARD = Request("forward_dynamics")
+_FORWARD, _ACCELERATION = Request("forward_dynamics"), "acceleration of trees"
 
 
 class ProgramBuilder:
@@ -65,10 +67,12 @@ class ProgramBuilder:
             return self._latest[1]
 
     @property
-    def forward_method(self) -> str:
-        """The cheaper way to the forward dynamics, by count of operations: "articulated" or "factors"."""
+    def trees(self) -> Choice:
+        """The route of the acceleration of a tree: as the options ask, or by count of operations."""
+        if self.tree.system.constraints:
+            return Methods().trees
         with self._lock:
-            return self._cheapest[0]
+            return self._counted[0]
 
     def formulas(self, function: str, frame: str = "") -> Program:
         """One function as it is formed, for a graph that takes its formulas over; all share a graph.
@@ -78,8 +82,8 @@ class ProgramBuilder:
             frame: Frame of a function of frames.
         """
         equations = self._taken_over
-        method = self.forward_method if function == _FORWARD.name else "factors"
-        return form_program(equations, [Request(function, frame)], Methods(trees=method))
+        methods = Methods(self.trees) if function == _FORWARD.name else Methods()
+        return form_program(equations, [Request(function, frame)], methods)
 
     @cached_property
     def _taken_over(self) -> Equations:
@@ -94,29 +98,34 @@ class ProgramBuilder:
         return Program(self.tree.system.name, kinematics.g, sizes, (function,))
 
     def _formed(self, requests: tuple[Request, ...]) -> Program:
-        method: str = self._options.forward_dynamics
-        if method == "auto":
-            if _FORWARD not in requests:
-                return self._optimised(requests, "factors")
-            method, alone = self._cheapest
-            if alone is not None and requests == (_FORWARD,):
-                return alone
-        return self._optimised(requests, method)
+        if _FORWARD not in requests:
+            return self._optimised(requests, Methods().trees)
+        choice = self.trees
+        counted = None if self.tree.system.constraints else self._counted[1]
+        return counted if counted is not None and requests == (_FORWARD,) else self._optimised(requests, choice)
 
     @cached_property
-    def _cheapest(self) -> tuple[str, Program | None]:
-        """The cheaper way to the forward dynamics, and their program where there were several to be counted."""
-        methods = forward_methods(self.equations())
-        if len(methods) == 1:
-            return methods[0], None
-        programs = {method: self._optimised((_FORWARD,), method) for method in methods}
-        method = cheapest(programs)
-        return method, programs[method]
+    def _counted(self) -> tuple[Choice, Program | None]:
+        """The route of the acceleration of a tree, and its program where several were counted."""
+        programs: dict[str, Program] = {}
 
-    def _optimised(self, requests: Sequence[Request], method: str) -> Program:
+        def spent(method: str) -> float:
+            programs[method] = self._optimised((_FORWARD,), taken(_ACCELERATION, method))
+            return effort(programs[method], programs[method].functions[0])
+
+        figures = {f"{method}_effort": partial(spent, method) for method in ROUTES[_ACCELERATION]}
+        asked = self._options.forward_dynamics.replace("auto", "")
+        choice = choose(_ACCELERATION, self.equations().route_figures | figures, asked)
+        program = programs.get(choice.method)
+        if program is None:
+            return choice, None
+        return choice, replace(program, functions=(replace(program.functions[0], choices=(choice,)),))
+
+    def _optimised(self, requests: Sequence[Request], trees: Choice) -> Program:
         # Derivatives have many columns, which favour the factors: articulated bodies where they are asked for by name.
-        slopes = "articulated" if self._options.forward_dynamics == "articulated" else "factors"
-        methods = Methods(self._options.constraints, method, slopes)
+        asked = self._options.forward_dynamics
+        under_constraints = self._options.constraints.replace("multipliers", "")
+        methods = Methods(trees, "articulated" if asked == "articulated" else "", under_constraints)
         return run_passes(form_program(self.equations(), requests, methods))
 
 

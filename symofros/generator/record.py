@@ -9,7 +9,7 @@ from symofros.base.names import TIME
 from symofros.base.options import Options
 from symofros.description.beams.beam import Beam
 from symofros.description.constraints import AXES, Closure
-from symofros.description.forces import Friction
+from symofros.description.forces import Friction, Stop
 from symofros.description.system import System
 from symofros.description.values import symbols
 from symofros.expr.expression import evaluate
@@ -88,7 +88,7 @@ def model_record(tree: SpanningTree, options: Options) -> ModelRecord:
 
 
 def joint_limits(tree: SpanningTree) -> tuple[JointLimit, ...]:
-    """Limits of joints that state them. Zero is no limit of speed or effort: files of kinematics alone state it."""
+    """Limits of joints that no stop keeps. Zero is no limit of speed or effort: files of kinematics alone state it."""
     inputs = {name: i for i, name in enumerate(tree.coordinates.u)}
     stated = []
     for link in tree.links:
@@ -96,7 +96,8 @@ def joint_limits(tree: SpanningTree) -> tuple[JointLimit, ...]:
         if limits is None or link.joint.prescribed:
             continue
         speeds = range(link.v[0], sum(link.v))
-        if limits.lower is not None or limits.upper is not None:
+        stopped = any(isinstance(element, Stop) for element in link.joint.elements)
+        if (limits.lower is not None or limits.upper is not None) and not stopped:
             lower = -math.inf if limits.lower is None else limits.lower
             upper = math.inf if limits.upper is None else limits.upper
             stated += [JointLimit("q", i, lower, upper) for i in range(link.q[0], sum(link.q))]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -11,13 +11,14 @@ from typing import Any
 
 import numpy as np
 
-from symofros.base.c_names import identifier
+from symofros.base.names import identifier
 from symofros.base.options import Options
+from symofros.base.routes import Choice, choose
 from symofros.errors import CompileError
-from symofros.expr.program import Program
+from symofros.expr.program import Function, Program
 from symofros.generator.codegen.cuda import device_code
 from symofros.generator.codegen.interpreted import InterpretedUnit
-from symofros.generator.codegen.model import Packs, model_source
+from symofros.generator.codegen.model import Packs, model_source, model_text
 from symofros.generator.passes import run_passes
 from symofros.generator.programs import ProgramBuilder
 from symofros.generator.record import GENERATOR
@@ -54,6 +55,7 @@ class UnitCompiler:
         self._programs, self._record, self._options, self._toolchain = programs, record, options, toolchain
         # Dataclasses print every field, so that this states all that a text depends on besides the request.
         self._recipe = repr((programs.tree.system, options, np.__version__))
+        self._told: dict[tuple[Request, ...], dict[Key, tuple[Choice, ...]]] = {}
         # Units may be asked for by several threads: C compilers run beside each other, graphs are formed in turn.
         self._generating = threading.Lock()
 
@@ -113,6 +115,25 @@ class UnitCompiler:
             program = self._programs.program((Request(*key),))
             return device_code(program, self._record, GENERATOR, precision)
 
+    def routes(self, keys: Sequence[Key]) -> Mapping[Key, tuple[Choice, ...]]:
+        """The methods of the functions of one unit, found as its text is written."""
+        requests = tuple(Request(*key) for key in keys)
+        with self._generating:
+            if requests not in self._told:
+                program = self._programs.program(requests)
+                choices = {(function.name, function.frame): function.choices for function in program.functions}
+                if self._toolchain is not None:
+                    choices = model_text(program, self._record, GENERATOR, packs=self._packs).choices
+                    for f in program.functions:
+                        choices[f.name, f.frame] += (self._batches(f),)
+                self._told[requests] = choices
+            return self._told[requests]
+
+    def _batches(self, function: Function) -> Choice:
+        """How large batches of a function are evaluated."""
+        asked = "state by state" if self._options.batch == "loop" else ""
+        return choose("large batches", {"by_routine": function.solver is not None}, asked)
+
     @property
     def symbol(self) -> str:
         """Name of the exported function of the model's libraries."""
@@ -168,7 +189,7 @@ class UnitCompiler:
         def compile_in_lanes(key: Key, lanes: LaneOptions) -> CompiledKernel | None:
             def alone() -> Program:
                 function = next(f for f in program().functions if (f.name, f.frame) == key)
-                if function.solver is not None:
+                if self._batches(function).method != "lanes":
                     raise _SolverError
                 return replace(program(), functions=(function,))
 

@@ -22,8 +22,8 @@ from typing import Any
 
 from symofros.base.arguments import check_argument
 from symofros.base.atomic import write_atomically
-from symofros.base.c_names import identifier
 from symofros.base.functions import FUNCTIONS
+from symofros.base.names import identifier
 from symofros.base.options import Options
 from symofros.compiler import Compilation
 from symofros.description import System

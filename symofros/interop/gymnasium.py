@@ -21,8 +21,8 @@ from symofros.base.arrays import Array
 from symofros.compiler import compile_system
 from symofros.description import Inertia, Input, Joint, RigidBody, System, as_value
 from symofros.errors import Problem
+from symofros.runtime.manifold import at_unit_length
 from symofros.runtime.model import Model
-from symofros.runtime.unit_quaternions import at_unit_length
 from symofros.simulation.simulate_batch import simulate_batch
 
 gymnasium = rules.framework("gymnasium", "gymnasium")

@@ -12,6 +12,7 @@ import numpy as np
 
 from symofros.base.arguments import check_argument
 from symofros.base.functions import FRAME_FUNCTIONS, FUNCTIONS, INPUTS, MODEL_FUNCTIONS, generated_with
+from symofros.base.routes import Choice
 from symofros.errors import ParameterError, Problem, ShapeError, SymofrosError
 from symofros.runtime.arguments import Arguments
 from symofros.runtime.arguments import ArrayLike as ArrayLike
@@ -23,8 +24,8 @@ from symofros.runtime.calls.layout import by_columns, flat, states
 from symofros.runtime.calls.library import CompiledKernel
 from symofros.runtime.calls.single import SingleCall, SingleCalls, single_call
 from symofros.runtime.cuda.device_code import DeviceCode
+from symofros.runtime.manifold import at_unit_length
 from symofros.runtime.record import ModelRecord
-from symofros.runtime.unit_quaternions import at_unit_length
 
 Key = tuple[str, str]
 ParameterCheck = Callable[[Array], Sequence[Problem]]
@@ -63,6 +64,7 @@ class Functions(Arguments):
         device_code: Generates kernels of a function, for graphics processors; None where there is no description.
         instants: Gives the instants at which formulas of time bend, jump or change fast, the model's own and those of
             laws, from laws, parameters (npar), start and end of a run; None where no formulas are known.
+        routes: Tells the methods of the functions of one unit; None where there is no description.
     """
 
     def __init__(
@@ -79,6 +81,7 @@ class Functions(Arguments):
         origin: Callable[[], Functions] | None = None,
         device_code: Callable[[Key, Precision], DeviceCode] | None = None,
         instants: Callable[[Sequence[Any], Array, float, float], Array] | None = None,
+        routes: Callable[[tuple[Key, ...]], Mapping[Key, tuple[Choice, ...]]] | None = None,
     ) -> None:
         check_argument("Model: record", record, ModelRecord)
         super().__init__(record, np.array(record.par_default if par is None else par, dtype=np.float64))
@@ -91,6 +94,7 @@ class Functions(Arguments):
         self._device_code = device_code
         self._beams_at = beams
         self._instants_of = instants
+        self._routes_of = routes
         self._kernels: dict[Key, Kernel] = {key: kernel for unit in units for key, kernel in unit.kernels.items()}
         self._prepared: dict[Key, Array] = {}
         self._single_calls = SingleCalls()
@@ -148,6 +152,7 @@ class Functions(Arguments):
             self._origin,
             self._device_code,
             self._instants_of,
+            self._routes_of,
         )
         other._kernels = self._kernels  # Shared, so that what either compiles serves both.
         return other
@@ -189,11 +194,14 @@ class Functions(Arguments):
         """The shared libraries of the functions made so far; none of those that are interpreted."""
         return frozenset(kernel.library for kernel in self._kernels.values() if isinstance(kernel, CompiledKernel))
 
-    def _kernel(self, name: str, frame: str, rule: str) -> Kernel:
-        """A function whose name a user gave, of a frame that exists."""
+    def _check_name(self, name: str, frame: str, rule: str) -> None:
         known = FRAME_FUNCTIONS if frame else MODEL_FUNCTIONS
         if not isinstance(name, str) or name not in known:
             raise self._unknown("function", str(name)[:80], known, rule)
+
+    def _kernel(self, name: str, frame: str, rule: str) -> Kernel:
+        """A function whose name a user gave, of a frame that exists."""
+        self._check_name(name, frame, rule)
         return self._kernels.get((name, frame)) or self._make(name, frame)
 
     def evaluate(
@@ -354,7 +362,16 @@ class Functions(Arguments):
         return self._prepared[key]
 
     def _make(self, name: str, frame: str, meanwhile: Callable[[], None] | None = None) -> Kernel:
-        if self._build is None:
+        together = self._unit_of(name, frame)
+        assert self._build is not None, "what a model of chosen functions has is made"
+        self._kernels.update(self._build(together, meanwhile).kernels)
+        return self._kernels[name, frame]
+
+    def _unit_of(self, name: str, frame: str) -> tuple[Key, ...]:
+        """Keys of the functions that are made in one unit with a function, itself among them."""
+        if self._build is not None:
+            return ((name, frame),) if frame else tuple((other, "") for other in generated_with(name, self.nc > 0))
+        if (name, frame) not in self._kernels:
             what = f"{name} of frame '{frame}'" if frame else name
             raise SymofrosError(
                 Problem(
@@ -364,6 +381,4 @@ class Functions(Arguments):
                     "add it to the options, or leave functions out to have each made when first called",
                 )
             )
-        together = ((name, frame),) if frame else tuple((other, "") for other in generated_with(name, self.nc > 0))
-        self._kernels.update(self._build(together, meanwhile).kernels)
-        return self._kernels[name, frame]
+        return tuple(self._kernels)

@@ -6,19 +6,24 @@ stepping loops is written of it (`generator/codegen/manifold.py`).
 A chart's coordinates theta (nv) about a configuration q0 are the differences of linear coordinates, the rotation
 vectors of quaternions, and for poses the displacement in the axes of q0 and the rotation vector
 (docs/theory/simulation.md).
+
+The equations hold for unit quaternions: results would err by twice the deviation of a length. So every function that
+takes a state looks at them here: near unit length they are taken divided by their length, others are no rotations and
+refused.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import hypot
 
 import numpy as np
+import numpy.typing as npt
 
 from symofros.base.arrays import Array
 from symofros.base.rotations import (
     common_type,
     conjugate,
-    normalized,
     quaternion_exp,
     quaternion_log,
     quaternion_product,
@@ -27,7 +32,17 @@ from symofros.base.rotations import (
     screw_displacement,
     screw_twist,
 )
+from symofros.base.rotations import normalized as unit_quaternion
+from symofros.errors import Problem, ShapeError
+from symofros.native import native_number
+from symofros.runtime.calls.extension import UNIT_ROUNDING, begin, type_at_hand
+from symofros.runtime.calls.kernel import Numbers
 from symofros.runtime.record import ModelRecord, Segment
+
+# Deviation from unit length up to which a quaternion counts as a rotation written in few digits.
+UNIT_TOLERANCE = native_number("stepping/system.c", "SYM_QUATERNION_TOLERANCE")
+# Numbers of a batch from which on another thread makes what looks at the next one faster than NumPy does.
+_MANY = 1024
 
 
 def integrate(segments: Sequence[Segment], q: Array, dq: Array) -> Array:
@@ -150,7 +165,7 @@ def random_state(record: ModelRecord, rng: np.random.Generator) -> tuple[Array, 
     for segment in record.segments:
         if segment.kind != "linear":
             start = segment.q + segment.translations
-            q[start : start + 4] = normalized(rng.standard_normal(4))
+            q[start : start + 4] = unit_quaternion(rng.standard_normal(4))
     return q, rng.standard_normal(len(record.v_names))
 
 
@@ -165,9 +180,106 @@ def _pose_speeds(segment: Segment) -> tuple[slice, slice]:
 
 
 def _rotated(quaternion: Array, w: Array) -> Array:
-    return normalized(quaternion_product(quaternion, quaternion_exp(w)))
+    return unit_quaternion(quaternion_product(quaternion, quaternion_exp(w)))
 
 
 def _rotation_between(a: Array, b: Array) -> Array:
     """The rotation vector from one orientation to another, in the axes of both."""
     return quaternion_log(quaternion_product(conjugate(a), b))
+
+
+def at_unit_length(record: ModelRecord, group: str, given: Numbers, name: str = "") -> Numbers:
+    """Coordinates or inputs with their quaternions at unit length, in a copy where one was off by more than rounding.
+
+    What is not finite stays as it is: it propagates to what depends on it.
+
+    Args:
+        record: What is known of the model.
+        group: What they are: "q" or "u"; of others there are no quaternions.
+        given: Coordinates (..., nq) or inputs (..., nu).
+        name: What messages call them.
+
+    Raises:
+        ShapeError: A quaternion is no rotation: its length is not 1 to UNIT_TOLERANCE. With the one that is off most.
+    """
+    firsts = record.quaternions.get(group, ())
+    if not firsts or are_unit(given, firsts):
+        return given
+    result = given
+    for first in firsts:
+        quaternions = given[..., first : first + 4]
+        squares = _squared_lengths(quaternions)
+        off = (np.abs(squares - 1.0) > _rounding(given)) & np.isfinite(quaternions).all(axis=-1)
+        if not off.any():
+            continue
+        lengths = np.sqrt(squares[off])
+        deviations = np.abs(lengths - 1.0)
+        worst = int(np.argmax(deviations))
+        if not deviations[worst] <= UNIT_TOLERANCE:
+            raise _no_rotation(record, group, first, name or group, quaternions, np.argwhere(off)[worst])
+        if result is given:
+            result = given.copy(order="K")
+        result[..., first : first + 4][off] /= lengths[:, np.newaxis]
+    return result
+
+
+def normalized(record: ModelRecord, q: Numbers) -> Numbers:
+    """Configurations (..., nq) with each quaternion divided by its length.
+
+    Raises:
+        ShapeError: A quaternion is zero.
+    """
+    result = np.array(q, order="K")
+    for first in record.quaternions.get("q", ()):
+        quaternions = result[..., first : first + 4]
+        largest = np.abs(quaternions).max(axis=-1, keepdims=True)
+        if (largest == 0.0).any():
+            raise _no_rotation(record, "q", first, "q", quaternions, np.argwhere(largest[..., 0] == 0.0)[0])
+        with np.errstate(invalid="ignore"):  # Of what is not finite.
+            quaternions /= largest  # Squares of the quotients neither overflow nor vanish.
+            quaternions /= np.linalg.norm(quaternions, axis=-1, keepdims=True)
+    return result
+
+
+def are_unit(numbers: Numbers, firsts: tuple[int, ...]) -> bool:
+    """Whether quaternions are known to be of unit length, up to rounding.
+
+    Args:
+        numbers: Arrays of coordinates or inputs (..., n).
+        firsts: First index of each quaternion.
+    """
+    by_extension = type_at_hand()
+    if by_extension is not None and numbers.dtype == np.float64:
+        return bool(by_extension.are_unit(numbers, firsts))
+    if numbers.size >= _MANY:
+        begin()
+    deviations = [np.abs(_squared_lengths(numbers[..., first : first + 4]) - 1.0) for first in firsts]
+    return not any(bool((deviation > _rounding(numbers)).any()) for deviation in deviations)
+
+
+def _squared_lengths(quaternions: Numbers) -> Numbers:
+    wide = quaternions.astype(np.float64, copy=False)
+    with np.errstate(over="ignore", invalid="ignore"):
+        return np.asarray(np.einsum("...i,...i->...", wide, wide))
+
+
+def _rounding(numbers: Numbers) -> float:
+    """Deviation of squared lengths that is rounding, in the precision of these numbers."""
+    return UNIT_ROUNDING * float(np.finfo(numbers.dtype).eps / np.finfo(np.float64).eps)
+
+
+def _no_rotation(
+    record: ModelRecord, group: str, first: int, name: str, quaternions: Numbers, place: npt.NDArray[np.intp]
+) -> ShapeError:
+    """The quaternion at a place of some (..., 4) is none."""
+    length = hypot(*quaternions[tuple(place)].tolist())
+    of_batch = f" in row {', '.join(map(str, place))}" if len(place) else ""
+    divide = "model.normalized(q) divides by it" if group == "q" else "divide by it"
+    return ShapeError(
+        Problem(
+            f"model '{record.name}': {name} holds a quaternion that is no rotation",
+            f"length {length:.6g} of {', '.join(record.vectors[group][first : first + 4])}{of_batch}",
+            f"quaternions are of unit length, to {UNIT_TOLERANCE:g}",
+            divide if length else "a body that is not turned has (0, 0, 0, 1), as in model.neutral()",
+        )
+    )

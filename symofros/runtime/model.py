@@ -30,6 +30,7 @@ from symofros.runtime.methods.linear import Output as Output
 from symofros.runtime.methods.linear import StateMatrices as StateMatrices
 from symofros.runtime.methods.momentum import MomentumFunctions
 from symofros.runtime.methods.reactions import ReactionFunctions
+from symofros.runtime.methods.routes import RouteFunctions
 
 
 class Model(
@@ -41,6 +42,7 @@ class Model(
     IdentificationFunctions,
     MomentumFunctions,
     ReactionFunctions,
+    RouteFunctions,
 ):
     """The equations of one mechanism, ready to be evaluated.
 

@@ -11,9 +11,9 @@ import numpy.typing as npt
 from symofros.base.arrays import Array, numeric, real_array
 from symofros.errors import AssemblyError, Problem, ShapeError, SymofrosError, UnknownNameError
 from symofros.native import native_number
+from symofros.runtime.manifold import UNIT_TOLERANCE as UNIT_TOLERANCE
+from symofros.runtime.manifold import at_unit_length
 from symofros.runtime.model import ArrayLike, Model
-from symofros.runtime.unit_quaternions import UNIT_TOLERANCE as UNIT_TOLERANCE
-from symofros.runtime.unit_quaternions import at_unit_length
 from symofros.simulation.analysis.kinematics.facing import refuse_opposite
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.options import SimulationOptions

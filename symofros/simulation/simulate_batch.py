@@ -14,8 +14,8 @@ from symofros.base.arguments import checked
 from symofros.base.arrays import Array, real_array
 from symofros.errors import Problem, ShapeError, SymofrosError
 from symofros.runtime.calls import flat
+from symofros.runtime.manifold import at_unit_length
 from symofros.runtime.model import ArrayLike, Model
-from symofros.runtime.unit_quaternions import at_unit_length
 from symofros.simulation.analysis.kinematics.facing import facings
 from symofros.simulation.batch_inputs import Shape, sort_inputs
 from symofros.simulation.inputs import Inputs

@@ -135,6 +135,19 @@ def test_info_tells_the_mass_of_a_tapered_beam(tmp_path: Path) -> None:
     assert body["mass"] == pytest.approx(4.0)
 
 
+def test_info_tells_which_methods_were_chosen(monkeypatch: pytest.MonkeyPatch) -> None:
+    """All in JSON, what was chosen among several in a table of 80 columns."""
+    told = json.loads(invoke("info", CART_POLE, "--routes", "--json").output)["routes"]
+    (acceleration, *_) = told["forward_dynamics"]
+    assert acceleration["quantity"] == "acceleration of trees" and acceleration["figures"]["factors_effort"] > 0
+    assert not {"project", "constraint", "forward_dynamics_vjp"} & told.keys() and told["kinetic_energy"]
+    monkeypatch.setenv("COLUMNS", "80")
+    shown = invoke("info", CART_POLE, "--routes").output
+    assert f"acceleration of trees: {acceleration['method']}" in shown and "…" not in shown
+    table = shown[shown.index("Methods where") :]
+    assert "│ inertia forces:" not in table and max(map(len, table.splitlines())) == 80 and table.rstrip().endswith("┘")
+
+
 def test_info_derives_no_function_unasked(monkeypatch: pytest.MonkeyPatch) -> None:
     def derived(*_: Any) -> None:
         raise AssertionError("info derived a function")

@@ -130,9 +130,12 @@ def test_an_option_without_use_is_named_as_it_is_typed(tmp_path: Path) -> None:
 
 
 def test_options_that_a_format_has_not_are_left_out_for_several_files() -> None:
-    stated = reading_of(floating_base=True, mimic=True, waive=["massless_tip"], arguments=["a=b"])
-    assert stated.fit_for(Path("a.xml")) == ReadingOptions(waive=("massless_tip",))
-    assert stated.fit_for(Path("a.urdf")) == ReadingOptions(True, True, ("massless_tip",))
+    forces = {"dissipation": "all", "limits": "stops"}
+    stated = reading_of(floating_base=True, mimic=True, waive=["massless_tip"], arguments=["a=b"], **forces)
+    assert stated.fit_for(Path("a.yaml")) == ReadingOptions(waive=("massless_tip",))
+    for suffix in ("xml", "sdf", "usda"):
+        assert stated.fit_for(Path(f"a.{suffix}")) == ReadingOptions(True, waive=("massless_tip",), **forces)
+    assert stated.fit_for(Path("a.urdf")) == ReadingOptions(True, True, ("massless_tip",), **forces)
     assert stated.fit_for(Path("a.xacro")) == stated
 
 

@@ -21,12 +21,6 @@ def test_a_missing_file_suggests_its_neighbours(tmp_path: Path) -> None:
         sf.load(tmp_path / "robt.yaml")
 
 
-def test_floating_base_is_for_urdf(tmp_path: Path) -> None:
-    sf.save(MODELS["pendulum"], tmp_path / "p.yaml")
-    with pytest.raises(sf.DescriptionError, match="floating_base"):
-        sf.load(tmp_path / "p.yaml", floating_base=True)
-
-
 def test_save_is_atomic_and_particular(tmp_path: Path) -> None:
     with pytest.raises(sf.DescriptionError, match="written"):
         sf.save(MODELS["pendulum"], tmp_path / "p.urdf")

@@ -174,7 +174,7 @@ def test_rounded_numbers_are_made_exact_unless_asked_not_to(tmp_path: Path) -> N
         ('<keyframe><key qpos="1"/></keyframe>', "<keyframe> ignored"),
         ('<extension><plugin plugin="mujoco.pid"/></extension>' + FLOOR, "contacts ignored"),
         ('<option density="1.2" viscosity="0.1"/>', "forces of the medium ignored"),
-        ('<default><joint frictionloss="0.1"/></default>', "frictionloss ignored"),
+        ('<default><joint frictionloss="0.1"/></default>', "dry friction of joints ignored"),
         ('<default><joint range="-1 1"/></default>', "limits kept as data"),
         ('<default><joint stiffness="1 2"/></default>', "quadratic stiffness ignored"),
         ('<default><joint damping="1 2 3"/></default>', "damping of higher order ignored"),
@@ -302,11 +302,6 @@ def test_a_line_of_an_included_file(tmp_path: Path) -> None:
 def test_without_mujoco_the_remedy_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "mujoco", None)
     assert "pip install 'symofros[mjcf]'" in faults(write(tmp_path, world(PENDULUM)))
-
-
-def test_floating_base_is_not_for_mjcf(tmp_path: Path) -> None:
-    with pytest.raises(sf.DescriptionError, match="floating_base applies to URDF files only"):
-        sf.load(write(tmp_path, world(PENDULUM)), floating_base=True)
 
 
 # Hostile files.

@@ -228,6 +228,14 @@ def test_the_density_of_a_shape_comes_before_that_of_its_body_and_a_mass_before_
     assert mass("float physics:mass = 7", "float physics:density = 20", density=10.0) == 7.0
 
 
+def test_a_body_that_states_no_mass_and_has_no_shapes_is_massless(load: Load) -> None:
+    swung = joint("Revolute", "hinge", "", "mark", axis="Y")
+    system = load(stage(body("mark"), body("arm", **ARM), swung, joint("Revolute", "elbow", "mark", "arm", axis="Z")))
+    mark, made = system.bodies
+    assert isinstance(mark, sf.RigidBody) and mark.inertia is None and made.inertia is not None
+    assert any("bodies without mass and without collision shapes are massless" in note for note in system.notes)
+
+
 @pytest.mark.parametrize("axis", "XYZ")
 @pytest.mark.parametrize("kind", ["Cylinder", "Capsule", "Cone"])
 def test_integrals_over_bodies_of_revolution_are_those_over_their_slices(kind: str, axis: str) -> None:

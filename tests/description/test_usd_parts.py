@@ -128,6 +128,10 @@ def of_joint(kind: Callable[..., str], *entries: str, **physics: Any) -> tuple[s
     [
         ((body("arm", CUBE, mass=2.0), REVOLUTE()), "masses, centres or moments of inertia taken from"),
         ((body("arm", CUBE, **ARM), REVOLUTE()), ""),
+        (
+            (body("arm", **ARM), REVOLUTE(), body("mark"), joint("Fixed", "f", "arm", "mark")),
+            "bodies without mass and without collision shapes are massless",
+        ),
         ((*of_joint(REVOLUTE), SCENE, prim("PhysicsScene", "other")), "physics scenes after the first ignored"),
         ((*of_joint(REVOLUTE), SCENE), ""),
         (
@@ -139,10 +143,10 @@ def of_joint(kind: Callable[..., str], *entries: str, **physics: Any) -> tuple[s
         (of_joint(REVOLUTE, breakForce=math.inf), ""),
         ((*of_joint(REVOLUTE), joint("", "idle", "", "arm")), "joints that bind nothing ignored"),
         (of_joint(SPHERICAL, "float newton:damping = 0.1"), "damping of joints of several coordinates ignored"),
-        (of_joint(SPHERICAL, "float physxJoint:jointFriction = 0.1"), "dry friction of joints ignored"),
+        (of_joint(SPHERICAL, "float physxJoint:jointFriction = 0.1"), "friction coefficients of joints ignored"),
         (of_joint(SPHERICAL, "float newton:friction = 0", "float newton:damping = 0"), ""),
         (of_joint(PLANAR, "float newton:damping = 0.1"), "damping of joints of several coordinates ignored"),
-        (of_joint(PLANAR, "float newton:friction = 0.1"), "dry friction of joints ignored"),
+        (of_joint(PLANAR, "float newton:friction = 0.1"), "dry friction of joints of several coordinates"),
         (of_joint(PLANAR, "float newton:armature = 0.1"), "armature of planar joints ignored"),
         (of_joint(PLANAR), ""),
     ],

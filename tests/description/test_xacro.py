@@ -246,24 +246,8 @@ def test_guard_refuses_descriptors_and_writing(tmp_path: Path, attempt: str) -> 
     assert "leaves the folders" in worker(code + attempted)
 
 
-LIBRARY = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:property name="L" value="0.5"/>
-<xacro:macro name="rod" params="name length:=${L} mass:=1 *origin **extra prefix:=^|left_ tag:=^">
-<link name="${prefix}${name}_${tag}" mass="${mass*length}"><xacro:insert_block name="origin"/>
-<xacro:insert_block name="extra"/></link></xacro:macro></robot>"""
-USES = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:arg name="n" default="3"/>
-<xacro:include filename="library.xacro" ns="lib"/><xacro:include filename="lib*.xacro"/>
-<xacro:property name="tag" value="T"/><xacro:property name="lazy" value="${later*2}"/>
-<xacro:property name="later" value="21"/><xacro:property name="eager" value="${later+1}" lazy_eval="false"/>
-<xacro:property name="y" value="${xacro.load_yaml('values.yaml')}"/>
-<xacro:property name="block"><a/><b/></xacro:property>
-<xacro:lib.rod name="x" length="${lib.L}"><origin xyz="0 0 ${lib.L}"/><more><q/>${lazy}</more></xacro:lib.rod>
-<xacro:rod name="y" prefix="right_"><origin/><more/></xacro:rod>
-<xacro:call macro="rod" name="z"><origin/><more><k/></more></xacro:call>
-<xacro:macro name="count" params="i"><xacro:if value="${i > 0}"><c i="${i}"/><xacro:count i="${i-1}"/></xacro:if>
-<xacro:property name="up" value="${7*6}" scope="parent"/></xacro:macro><xacro:count i="$(arg n)"/>
-<xacro:unless value="${y.arm.length == 0.7}"><never/></xacro:unless><xacro:insert_block name="block"/>
-<v a="${y.arm.joints[0].limit} ${y['angle']} ${up} ${eager} $(eval n + 1) $${x} ${'%0.3f' % pi} ${-7 % 3} ${None}"/>
-</robot>"""
+LIBRARY = Path(__file__).with_name("library.xacro").read_text()
+USES = Path(__file__).with_name("uses.xacro").read_text()
 
 
 def test_trusted_files_expand_as_by_xacro_itself(tmp_path: Path) -> None:

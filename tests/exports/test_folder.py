@@ -9,7 +9,7 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from symofros.base.c_names import identifier
+from symofros.base.names import identifier
 from symofros.exports.folder import MANIFEST, check_same, write_folder
 
 PENDULUM = MODELS["pendulum"]

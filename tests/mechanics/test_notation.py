@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 import symofros
-from symofros.base.c_names import local_name
+from symofros.base.names import local_name
 
 PACKAGE = Path(symofros.__file__).parent
 NOTATION = (PACKAGE / "NOTATION.md").read_text(encoding="utf-8")

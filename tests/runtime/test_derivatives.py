@@ -159,7 +159,7 @@ def test_the_routine_gives_what_generated_elimination_gives(
     monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path))  # What is kept there was made by a generator as it is.
     options = sf.Options(("forward_dynamics_derivatives",))
     generated = sf.compile(MODELS[name], options)
-    monkeypatch.setattr("symofros.mechanics.dynamics.functions._MOST_STEPS", -1)
+    monkeypatch.setattr("symofros.base.routes.MOST_STEPS", -1)
     by_routine = sf.compile(MODELS[name], options)
     assert Compilation(MODELS[name], options).program.functions[0].solver is not None
     q, v = generated.random_state(np.random.default_rng(11))

@@ -12,7 +12,7 @@ import pytest
 
 import symofros as sf
 from symofros.runtime.calls import extension
-from symofros.runtime.unit_quaternions import UNIT_TOLERANCE, are_unit, at_unit_length
+from symofros.runtime.manifold import UNIT_TOLERANCE, are_unit, at_unit_length
 from tests.interop.turning import SYSTEMS, turns
 
 Array = np.ndarray
@@ -48,7 +48,7 @@ def m(request: pytest.FixtureRequest, name: str, monkeypatch: pytest.MonkeyPatch
     if request.param == "extension" and made is None:
         pytest.skip("needs the headers of Python")
     monkeypatch.setattr("symofros.runtime.calls.single.call_type", lambda _: made)
-    monkeypatch.setattr("symofros.runtime.unit_quaternions.type_at_hand", lambda: made)
+    monkeypatch.setattr("symofros.runtime.manifold.type_at_hand", lambda: made)
     return model(name, "interpreter" if request.param == "interpreter" else "c").with_parameters()
 
 

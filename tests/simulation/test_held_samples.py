@@ -104,6 +104,20 @@ def test_steps_that_samples_fall_within_are_held_against_half_of_that(cart: sf.M
     assert not along.outcome.notes
 
 
+@pytest.mark.parametrize("method", [*ADAPTIVE, "cvode", "cvode_adams", "ida"])
+def test_a_short_pulse_is_not_stepped_over(cart: sf.Model, method: str) -> None:
+    """Half a second of rest, then 2 N s within a millisecond, where steps are a hundred times as long."""
+    pulse = sf.Signal([0.0, 0.5, 0.501], [0.0, 2000.0, 0.0], "hold")
+    F, rest = cart.names.u[0], cart.neutral()
+    run = sf.simulate(cart, rest, t_end=1.0, u={F: pulse}, method=method)
+    state: tuple[np.ndarray, ...] = (rest,)
+    for force, time in ((0.0, 0.5), (2000.0, 0.001), (0.0, 0.499)):
+        piece = sf.simulate(cart, *state, t_end=time, u={F: force}, method="dop853", rtol=1e-12, atol=1e-13)
+        state = piece.q[-1], piece.v[-1]
+    assert np.abs(state[1]).max() > 1.0
+    np.testing.assert_allclose(run.v[-1], state[1], rtol=0, atol=1e-3)
+
+
 @pytest.mark.parametrize("method", ["rk4", "dopri5", "cvode"])
 @pytest.mark.parametrize("before", [1, 2, 3])
 @pytest.mark.parametrize("instants", INSTANTS)

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 import symofros as sf
 
 from ..reporting import provenance
+from ..reporting.command import progress_bar
 from ..reporting.evidence import digest
 from .errors import PlanError, StoreError, Unfinished
 from .plan import Plan, SweepPlan, as_text, cases, identities, make, plan_hash
@@ -116,23 +116,14 @@ def _complete(store: Store, plan: Plan, pool: Pool) -> None:
 def _bar(size: int, before: int) -> Iterator[Callable[[Task], None]]:
     """On the error stream: a bar with rate and time left for a terminal, a line every tenth for a file."""
     console = Console(stderr=True)
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TextColumn("{task.fields[rate]}"),
-        TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
-        shown = bar.add_task("starting", total=size, completed=before, rate="")
+    with progress_bar(console) as bar:
+        shown = bar.add_task("starting", total=size, completed=before)
 
         def done(task: Task) -> None:
             past = bar.tasks[0]
             tenth = int(10 * past.completed / size)
-            rate = f"{past.speed:.0f}/s" if past.speed else ""
-            bar.update(shown, advance=task.size, description=task.title, rate=rate)
+            rate = f", {past.speed:.0f}/s" if past.speed else ""
+            bar.update(shown, advance=task.size, description=f"{task.title}{rate}")
             if not console.is_terminal and int(10 * past.completed / size) > tenth:
                 console.print(f"{past.completed:.0f} of {size}", markup=False)
 

@@ -199,11 +199,11 @@ def _cases(models: list[str], config: Any) -> list[Case]:
 
 def _reading(config: Any) -> ReadingOptions:
     """How the options say that models are read."""
-    floating_base, waive, packages = (
-        config.getoption(f"--symofros-{name}") for name in ("floating-base", "waive", "package")
-    )
+    options = {"packages": "package", "floating_base": "floating-base"}
+    options |= {name: name for name in ("waive", "dissipation", "limits")}
+    stated = {name: config.getoption(f"--symofros-{option}") for name, option in options.items()}
     try:
-        return reading_of(floating_base=floating_base, waive=waive, packages=packages, prefix="--symofros-")
+        return reading_of(**stated, prefix="--symofros-")
     except sf.SymofrosError as error:
         raise pytest.UsageError(str(error)) from None
 

@@ -83,9 +83,9 @@ def _findings(run: sf.DiagramRun, gap: Array, sway: float, same: float, at: int)
         Finding(
             "hand off the point just before [m]",
             float(gap[at - 1]),
-            0.1,
+            1e-3,
             1e-5,
-            "the mount sways from the arm's own motion; the grip takes up the rest as a plastic impact",
+            "the mount sways from the arm's own motion; a grip takes up a thousandth at most, as a plastic impact",
         ),
         Finding(
             "multipliers before the grip, largest [N, N m]",

@@ -20,7 +20,7 @@ from .models import hostile, kinds, loops, transformed
 from .models.formats import formats
 from .models.readers import Reading, readings
 from .plugins import OWN
-from .proving.scripts import Proof, Shown, prove
+from .proving.scripts import Proof, Prover
 from .proving.shrink import TRIES
 from .workers import Job, Worker, registry
 
@@ -114,10 +114,10 @@ def proofs(
     tries: int = TRIES,
 ) -> list[tuple[Proof, tuple[str, ...]]]:
     """A proven script for each fault, with the names of all trees that show it; `tries` bounds the shrinking."""
-    results, shown = [], Shown()
+    results, prover = [], Prover(worker, folder, tries)
     for group in fault_groups(cells):
         first = group[0]
-        proof = prove(plugins[first.cell.engine], first, worker, Truths(), folder, tries, shown)
+        proof = prover.prove(plugins[first.cell.engine], first)
         results.append((proof, tuple(one.cell.model for one in group)))
         after(proof)
     return results

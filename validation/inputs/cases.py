@@ -59,7 +59,10 @@ class Case:
             return Subject(self.label, references.MODELS[self.label])
         system = sf.load(self.path, **self.reading.keywords)
         suffix = self.path.suffix.lower()
-        if suffix not in (".xml", ".urdf"):
+        # An engine's own reading has the passive forces that it finds in the file, and no others.
+        if suffix not in (".xml", ".urdf") or self.reading.changes_forces:
+            return Subject(self.label, system)
+        if suffix == ".xml" and self.reading.floating_base:
             return Subject(self.label, system)
         verbatim = sf.load(self.path, **self.reading.keywords, snap_tol=0.0)
         if suffix == ".xml":

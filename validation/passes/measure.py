@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 import shutil
 import tempfile
 import time
@@ -23,7 +22,8 @@ from .. import references
 from ..mechanics.geometry import Array
 from ..reporting.command import Run, known
 from ..reporting.record import Data
-from ..timing.contestants.arrays import Arrays, loops
+from ..timing.contestants.arrays import loops
+from ..timing.contestants.library import Library
 from ..timing.models import TIMED_MODELS
 from ..timing.race import error, race
 from ..timing.task import Loop
@@ -134,20 +134,10 @@ class _Variant:
             self._open(Path(shutil.copy(path, private)), symbol)
 
     def _open(self, path: Path, symbol: str) -> None:
-        ffi, native = loops()
-        self._library = ctypes.CDLL(str(path))  # Stays loaded as long as this.
-        address = ctypes.cast(self._library[symbol], ctypes.c_void_p).value
-        model = ffi.cast("const sym_model *(*)(void)", address)()
-        self.nv = int(model.nv)
-        pre = np.zeros(model.npre + 1)
-        model.init(model.par_default, ffi.from_buffer("double[]", pre))
-        entry, given = model.functions[0], {"pre": pre[: model.npre], **_states(model.nq, model.nv, model.nu)}
-        inputs = [
-            given.get(ffi.string(item.name).decode(), np.zeros(item.rows * item.cols))
-            for item in getattr(entry, "in")[0 : entry.n_in]
-        ]
-        sizes = [item.rows * item.cols for item in entry.out[0 : entry.n_out]]
-        self._function, self._arrays = model.functions + 0, Arrays(inputs, sizes, (int(entry.work), 0))
+        self._library, native = Library(path, symbol), loops()[1]
+        model = self._library.model
+        self.nv, self._function = int(model.nv), model.functions + 0
+        self._arrays = self._library.arrays({"pre": self._library.pre, **_states(model.nq, model.nv, model.nu)})
         run = partial(native.loop_eval, self._function, self._arrays.overwritten())
         self.loop = Loop(_FUSED, "", run, self.results)
 

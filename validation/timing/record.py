@@ -69,24 +69,18 @@ class Entry(Labelled):
 
 
 @dataclass(frozen=True)
-class Made(Labelled):
-    """What a generated function costs to make and to run.
+class Cost:
+    """What it takes to make a function, and what it takes to run it.
 
     Attributes:
-        model, nv, function: Generated function, with the degrees of freedom of its model.
-        by: Who generated it; variant: how it was built.
-        time: Median, nanoseconds a state.
-        generation, compilation: Seconds.
-        text, code, constants, memory: Bytes.
-        operations: Numbers of operations by kind.
+        generation: Time from the description to C text [s].
+        compilation: Time from C text to machine code [s].
+        text: Bytes of C.
+        code: Bytes of machine code; constants: of constants.
+        operations: Executed: "mul", "add", "div", "call".
+        memory: Bytes read and written by one call: inputs, constants made in advance, outputs.
     """
 
-    model: str
-    nv: int
-    function: str
-    by: str
-    variant: str
-    time: float
     generation: float
     compilation: float
     text: int
@@ -99,6 +93,24 @@ class Made(Labelled):
     def total(self) -> int:
         """Operations of all kinds."""
         return sum(self.operations.values())
+
+
+@dataclass(frozen=True)
+class Made(Labelled, Cost):
+    """What a generated function costs to make and to run.
+
+    Attributes:
+        model, nv, function: Generated function, with the degrees of freedom of its model.
+        by: Who generated it; variant: how it was built.
+        time: Median, nanoseconds a state.
+    """
+
+    model: str
+    nv: int
+    function: str
+    by: str
+    variant: str
+    time: float
 
 
 @dataclass(frozen=True)

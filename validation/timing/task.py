@@ -15,6 +15,7 @@ from ..inputs.sampling import sample
 from ..mechanics.assembly import Assembly, assemble
 from ..mechanics.geometry import Array
 from .models import TIMED_MODELS
+from .record import Cost
 
 STATES = 1000
 # Of the integrators: short, so that a motion of STATES steps stays near its start, and both sides' ends comparable [s].
@@ -26,28 +27,6 @@ NEAR, SEARCHED = 0.3, 2000
 WORST_CONDITION = 1e6
 # That state of the sample where a motion starts: after the special ones.
 START = 10
-
-
-@dataclass(frozen=True)
-class Cost:
-    """What it takes to make a function, and what it takes to run it.
-
-    Attributes:
-        generation: Time from the description to C text [s].
-        compilation: Time from C text to machine code [s].
-        text: Bytes of C.
-        code: Bytes of machine code; constants: of constants.
-        operations: Executed: "mul", "add", "div", "call".
-        memory: Bytes read and written by one call: inputs, constants made in advance, outputs.
-    """
-
-    generation: float
-    compilation: float
-    text: int
-    code: int
-    constants: int
-    operations: Mapping[str, int]
-    memory: int
 
 
 @dataclass(frozen=True)

@@ -106,7 +106,13 @@ def _function(given: Task, job: Job, function: str, say: Say) -> None:
         if loop.cost is not None:
             by = peers.get(name, NAME)
             made_by = Made(
-                job.model, given.assembly.nv, function, by, loop.variant, times[name].median, **vars(loop.cost)
+                **vars(loop.cost),
+                model=job.model,
+                nv=given.assembly.nv,
+                function=function,
+                by=by,
+                variant=loop.variant,
+                time=times[name].median,
             )
             say("cost", asdict(made_by))
 

@@ -18,8 +18,8 @@ from symofros.base.names import symbol_of
 from symofros.description.constraints import AXES, Closure, Coupling
 from symofros.description.forces import Anchor
 from symofros.description.frames import Frame
+from symofros.description.imported.geometry import Exact, rotation_of
 from symofros.description.joints.joint import WORLD
-from symofros.description.mjcf.geometry import Exact, rotation_of
 from symofros.description.mjcf.names import Names
 from symofros.description.remarks import Remarks
 from symofros.description.values import Term

@@ -7,7 +7,7 @@ from pathlib import Path, PurePosixPath, PureWindowsPath
 
 from symofros.description.packages import MOST_SHOWN, Packages
 from symofros.description.reading import read_bytes, resolved
-from symofros.description.xml_nodes import MAX_DEPTH, Element, XmlFault, parse_xml
+from symofros.description.xml_nodes import MAX_DEPTH, Element, parse_xml
 from symofros.errors import Argument, DescriptionError, Problem
 
 MAX_BYTES = 16 << 20
@@ -37,7 +37,7 @@ class Folder:
         """The main file with its includes in their places.
 
         Raises:
-            XmlFault: A file is no XML.
+            DescriptionError: A file is no XML.
             DescriptionError: A file can't be read, or all together are too large.
         """
         root = self._parsed(resolved(self.main), str(self.main))
@@ -100,7 +100,7 @@ class Folder:
     def _expand(self, element: Element, folder: Path, depth: int) -> None:
         """Put what is included in the place of each <include>."""
         if depth > MAX_DEPTH:
-            raise XmlFault(
+            raise DescriptionError(
                 Problem(
                     f"nested deeper than {MAX_DEPTH}, includes counted",
                     f"<{element.tag:.60}>",

@@ -12,7 +12,7 @@ MuJoCo's: T(a) J(-ref) before a joint and T(-a) behind it. Each joint but the la
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,10 +20,11 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.base.rotations import matrix_product
-from symofros.description.forces import Damper, JointElement, Spring
+from symofros.description.forces import Spring
+from symofros.description.imported.geometry import Exact, about
+from symofros.description.imported.tree import ImportedJoint, Resistance
 from symofros.description.joints.joint import WORLD, Joint, Limits
 from symofros.description.joints.joint_kinds import JointKindName
-from symofros.description.mjcf.geometry import Exact, about
 from symofros.description.mjcf.names import Names
 from symofros.description.remarks import Remarks
 from symofros.description.values import Value
@@ -39,12 +40,10 @@ class Chain:
     """Where a body is, at the references of its joints, as seen from what carries it; it is moved on joint by joint.
 
     Attributes:
-        parent: Name of the body that carries.
-        p: Position of Bo in that body's frame (3,) [m].
+        p: Position of Bo in the carrying body's frame (3,) [m].
         R: Rotation from that frame to B (3, 3).
     """
 
-    parent: str
     p: Array
     R: Array
 
@@ -87,7 +86,7 @@ class JointReader:
         self.remarks = remarks
         self.exact = exact
 
-    def free(self, j: int, chain: Chain) -> Joint:
+    def free(self, j: int, chain: Chain) -> ImportedJoint:
         """A free joint: its coordinates say where the body is in the world, wherever the model puts it first."""
         chain.p, chain.R = np.zeros(3), np.eye(3)
         armature = self._armature(j)
@@ -96,9 +95,9 @@ class JointReader:
                 "armature of free joints acts along body axes, without MuJoCo's gyroscopic part", "joint", self.names[j]
             )
         self._remark(j)
-        return Joint(self.names[j], "free", WORLD, elements=tuple(self._elements(j)), armature=armature)
+        return ImportedJoint(Joint(self.names[j], "free", armature=armature), self._resistances(j))
 
-    def joint(self, j: int, chain: Chain) -> Joint:
+    def joint(self, j: int, chain: Chain) -> ImportedJoint:
         """A hinge, slide or ball, placed on the chain's parent; the chain is left at what the joint moves."""
         m, kind = self.model, int(self.model.jnt_type[j])
         axis = np.array(m.jnt_axis[j])
@@ -117,10 +116,10 @@ class JointReader:
         kinds: dict[int, JointKindName] = {BALL: "ball", SLIDE: "prismatic", HINGE: hinge}
         self._remark(j)
         chain.p, chain.R = -anchor, np.eye(3)
-        return Joint(
+        made = Joint(
             self.names[j],
             kinds[kind],
-            chain.parent,
+            WORLD,
             None,
             position,
             rotation,
@@ -128,9 +127,9 @@ class JointReader:
             actuated=efforts.actuated,
             effort=efforts.formulas,
             limits=limits,
-            elements=tuple(self._elements(j)),
             armature=self._armature(j),
         )
+        return ImportedJoint(made, self._resistances(j))
 
     def _armature(self, j: int) -> float:
         # One number for all speeds of a joint, like its damping.
@@ -142,37 +141,37 @@ class JointReader:
         lower, upper = (float(bound) if np.isfinite(bound) else None for bound in self.model.jnt_range[j])
         return Limits(lower, upper)
 
-    def _elements(self, j: int) -> Iterator[JointElement]:
-        """Springs and dampers, with MuJoCo's higher orders where ours have them.
+    def _resistances(self, j: int) -> tuple[Resistance, ...]:
+        """What resists each speed, with MuJoCo's higher orders where ours have them.
 
         MuJoCo: F = -(k x + k2 x^2 + k3 x^3) with x = q - springref, and F = -(d v + d2 v |v| + d3 v^3).
         """
         m, dof, name = self.model, int(self.model.jnt_dofadr[j]), self.names[j]
-        simple = m.jnt_type[j] in (SLIDE, HINGE)
-        k, (k2, k3) = float(m.jnt_stiffness[j]), map(float, m.jnt_stiffnesspoly[j])
-        if (k or k2 or k3) and not m.opt.disableflags & _NO_SPRINGS:
-            if simple:
-                if k or k3:
-                    yield Spring(k, float(m.qpos_spring[m.jnt_qposadr[j]]), k3)
-                if k2:
-                    self.remarks.add("quadratic stiffness ignored", "joint", name)
-            else:
-                self.remarks.add("stiffness of ball and free joints ignored", "joint", name)
+        simple = bool(m.jnt_type[j] in (SLIDE, HINGE))
         d, (d2, d3) = float(m.dof_damping[dof]), map(float, m.dof_dampingpoly[dof])
         if m.opt.disableflags & _NO_DAMPERS:
-            return
-        if d or (d2 and simple):
-            for i in range(_SPEEDS[int(m.jnt_type[j])]):
-                yield Damper(d, d2 if simple else 0.0, i)
+            d = d2 = d3 = 0.0
         if d3 or (d2 and not simple):
             self.remarks.add("damping of higher order ignored", "joint", name)
+        friction = float(m.dof_frictionloss[dof])
+        one = Resistance(self._spring(j, simple), d, d2 if simple else 0.0, friction)
+        return (one,) * _SPEEDS[int(m.jnt_type[j])]
+
+    def _spring(self, j: int, simple: bool) -> Spring | None:
+        m, name = self.model, self.names[j]
+        k, (k2, k3) = float(m.jnt_stiffness[j]), map(float, m.jnt_stiffnesspoly[j])
+        if not (k or k2 or k3) or m.opt.disableflags & _NO_SPRINGS:
+            return None
+        if not simple:
+            self.remarks.add("stiffness of ball and free joints ignored", "joint", name)
+            return None
+        if k2:
+            self.remarks.add("quadratic stiffness ignored", "joint", name)
+        return Spring(k, float(m.qpos_spring[m.jnt_qposadr[j]]), k3) if k or k3 else None
 
     def _remark(self, j: int) -> None:
         m, name = self.model, self.names[j]
-        if np.any(m.dof_frictionloss[m.jnt_dofadr[j]]):
-            self.remarks.add("frictionloss ignored, a constraint in MuJoCo", "joint", name)
-        if m.jnt_limited[j]:
-            what = "limits of ball joints ignored" if m.jnt_type[j] == BALL else "limits kept as data, without a stop"
-            self.remarks.add(what, "joint", name)
+        if m.jnt_limited[j] and m.jnt_type[j] == BALL:
+            self.remarks.add("limits of ball joints ignored", "joint", name)
         if m.jnt_springyield[j] and (m.jnt_stiffness[j] or np.any(m.jnt_stiffnesspoly[j])):
             self.remarks.add("yield of springs ignored", "joint", name)

@@ -1,8 +1,8 @@
-"""MuJoCo's compiled model -> System: bodies in MuJoCo's order, joints by `mjcf_joints`, and remarks on the rest."""
+"""MuJoCo's compiled model -> neutral tree: bodies in MuJoCo's order, and remarks on what is left out."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,16 +10,18 @@ import numpy as np
 
 from symofros.description.forces import Load
 from symofros.description.frames import Frame
-from symofros.description.joints.joint import WORLD, Joint
+from symofros.description.imported.geometry import Exact, rotation_of
+from symofros.description.imported.options import ImportOptions
+from symofros.description.imported.tree import ImportedBody, ImportedTree
+from symofros.description.joints.joint import WORLD
 from symofros.description.mjcf.actuators import ActuatorReader
 from symofros.description.mjcf.equalities import EqualityReader
-from symofros.description.mjcf.geometry import Exact, rotation_of
 from symofros.description.mjcf.joints import FREE, Chain, JointReader
 from symofros.description.mjcf.names import Names
 from symofros.description.mjcf.numbers import infinite_numbers
 from symofros.description.mjcf.visuals import visuals_of
 from symofros.description.remarks import Remarks
-from symofros.description.system import Inertia, RigidBody, System
+from symofros.description.system import Inertia
 from symofros.errors import DescriptionError
 
 _NO_CONTACTS, _NO_GRAVITY = 1 << 4, 1 << 7  # mjDSBL_CONTACT, mjDSBL_GRAVITY
@@ -41,20 +43,20 @@ class Stated:
 
 
 class Importer:
-    """Turns one compiled model into a description.
+    """Turns one compiled model into a neutral tree.
 
     Args:
         model: An MjModel.
         stated: Entries of the document that the compiled model does not keep.
         remarks: Remarks on what is ignored or changed.
-        snap_tol: Tolerance of snapping, as in `read_mjcf`.
+        options: How it is read.
     """
 
-    def __init__(self, model: Any, stated: Stated, remarks: Remarks, snap_tol: float) -> None:
+    def __init__(self, model: Any, stated: Stated, remarks: Remarks, options: ImportOptions) -> None:
         self.model = model
         self.stated = stated
         self.remarks = remarks
-        self.exact = Exact(snap_tol)
+        self.options, self.exact = options, Exact(options.snap_tol)
         self.bodies = Names("body", [model.body(i).name for i in range(model.nbody)])
         self.joints = Names("joint", [model.joint(i).name for i in range(model.njnt)])
         self.sites = Names("site", [model.site(i).name for i in range(model.nsite)])
@@ -63,8 +65,8 @@ class Importer:
         off = model.opt.disableflags & _NO_GRAVITY
         self.gravity = np.zeros(3) if off else np.array(model.opt.gravity)
 
-    def system(self) -> System:
-        """The description.
+    def tree(self) -> ImportedTree:
+        """The bodies of the model.
 
         Raises:
             DescriptionError: Numbers of the model are not finite.
@@ -76,53 +78,46 @@ class Importer:
         equalities = EqualityReader(self.model, self.bodies, self.joints, self.sites, self.remarks, self.exact)
         frames = self._frames()
         for i, more in equalities.frames.items():
-            frames[i] = (*frames.get(i, ()), *more)
-        bodies = [RigidBody(WORLD, frames=frames.get(0, ()))]
-        for i in range(1, self.model.nbody):
-            bodies += self._body(i, frames.get(i, ()))
+            frames.setdefault(i, []).extend(more)
+        bodies = [self._body(i) for i in range(1, self.model.nbody)]
         self._remark_ignored()
-        origin = {("system",): file, **places}
-        gravity = self.exact.vector(self.gravity)
-        if self.exact.changed:
-            self.remarks.add(
-                f"numbers within {self.exact.tolerance:g} of exact ones made exact",
-                "number",
-                f"{self.exact.changed} of them",
-            )
-        return System(
+        return ImportedTree(
             self.stated.name,
-            tuple(bodies),
+            self.options,
+            file,
+            limits_act=True,
+            noun="body",
+            remarks=self.remarks,
+            exact=self.exact,
+            bodies=bodies,
+            frames={self.bodies[i] if i else WORLD: own for i, own in frames.items()},
+            gravity=self.exact.vector(self.gravity),
             inputs=tuple(self.actuators.inputs),
             constraints=equalities.constraints,
-            gravity=gravity,
-            notes=self.remarks.notes(),
-            origin=origin,
+            origin={("system",): file, **places},
             visuals=visuals_of(self.model, self.bodies.__getitem__),
         )
 
-    def _body(self, i: int, frames: tuple[Frame, ...]) -> Iterator[RigidBody]:
-        """A body, after the massless ones that carry it from joint to joint."""
+    def _body(self, i: int) -> ImportedBody:
+        """A body with its chain of joints."""
         m, name = self.model, self.bodies[i]
         indices = range(int(m.body_jntadr[i]), int(m.body_jntadr[i] + m.body_jntnum[i]))
-        chain = Chain(self.bodies[int(m.body_parentid[i])], np.array(m.body_pos[i]), rotation_of(m.body_quat[i]))
+        chain = Chain(np.array(m.body_pos[i]), rotation_of(m.body_quat[i]))
         if m.body_mocapid[i] >= 0:
             self.remarks.add("mocap bodies stay where the model puts them", "body", name)
-        joint: Joint | None = None
-        for j in indices:
-            if joint is not None:
-                carrier = self.bodies.fresh(f"{name}_at_{joint.name}")
-                yield RigidBody(carrier, joint)
-                chain.parent = carrier
-            joint = self.reader.free(j, chain) if m.jnt_type[j] == FREE else self.reader.joint(j, chain)
-        if joint is not None and chain.is_offset:
-            # A body turns about an anchor that is not its origin: the origin is fixed to what turns there.
-            carrier = self.bodies.fresh(f"{name}_at_{joint.name}")
-            yield RigidBody(carrier, joint)
-            chain.parent, joint = carrier, None
-        if joint is None:
-            fixed = self.joints.fresh(f"{name}_fixed")
-            joint = Joint(fixed, "fixed", chain.parent, None, *self.exact.placement(chain.p, chain.R))
-        yield RigidBody(name, joint, self._inertia(i), frames, loads=self._loads(i))
+        free = any(m.jnt_type[j] == FREE for j in indices)
+        joints = tuple(self.reader.free(j, chain) if free else self.reader.joint(j, chain) for j in indices)
+        # A body turns about an anchor that is not its origin: the origin is fixed to what turns there.
+        placement = self.exact.placement(chain.p, chain.R) if chain.is_offset or not joints else None
+        parent = int(m.body_parentid[i])
+        return ImportedBody(
+            name,
+            self._inertia(i),
+            self.bodies[parent] if parent else WORLD,
+            joints,
+            placement,
+            loads=self._loads(i),
+        )
 
     def _inertia(self, i: int) -> Inertia | None:
         m = self.model
@@ -140,14 +135,13 @@ class Importer:
             return acting
         return (Load((x, y, z), at="center_of_mass", axes="world"), *acting)
 
-    def _frames(self) -> dict[int, tuple[Frame, ...]]:
-        """Sites, by the index of their body."""
+    def _frames(self) -> dict[int, list[Frame]]:
+        """Sites, by the index of their body; the world, with or without any."""
         m = self.model
-        frames: dict[int, tuple[Frame, ...]] = {}
+        frames: dict[int, list[Frame]] = {0: []}
         for s in range(m.nsite):
             frame = Frame(self.sites[s], *self.exact.placement(np.array(m.site_pos[s]), rotation_of(m.site_quat[s])))
-            body = int(m.site_bodyid[s])
-            frames[body] = (*frames.get(body, ()), frame)
+            frames.setdefault(int(m.site_bodyid[s]), []).append(frame)
         return frames
 
     def _remark_ignored(self) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from symofros.description.reading import fresh_name
+
 
 class Names:
     """The names of all things of a kind.
@@ -23,7 +25,4 @@ class Names:
 
     def fresh(self, wanted: str) -> str:
         """The wanted name, with underscores behind it while it is taken; it is taken then."""
-        while wanted in self._taken:
-            wanted += "_"
-        self._taken.add(wanted)
-        return wanted
+        return fresh_name(wanted, self._taken)

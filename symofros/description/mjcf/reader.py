@@ -15,47 +15,44 @@ from pathlib import Path
 from typing import Any
 from xml.sax.saxutils import quoteattr
 
+from symofros.description.imported.building import reading_of
+from symofros.description.imported.options import DEFAULT_OPTIONS, ImportOptions
 from symofros.description.mjcf.files import Folder
 from symofros.description.mjcf.meshes import Meshes
 from symofros.description.mjcf.model import Importer, Stated
 from symofros.description.mjcf.sections import Sections
 from symofros.description.packages import Packages
-from symofros.description.reading import Reading, check_snap_tol, in_order
+from symofros.description.reading import Reading
 from symofros.description.remarks import Remarks
-from symofros.description.xml_nodes import Element, XmlFault
+from symofros.description.xml_nodes import Element
 from symofros.errors import DescriptionError, Problem
 
 _LINE = re.compile(r",? ?line (\d+)")
 MAX_WARNINGS = 10
 
 
-def read_mjcf(path: str | os.PathLike[str], *, snap_tol: float, packages: Packages | None = None) -> Reading:
+def read_mjcf(
+    path: str | os.PathLike[str], options: ImportOptions = DEFAULT_OPTIONS, *, packages: Packages | None = None
+) -> Reading:
     """Read an MJCF file; needs the package `mujoco`.
 
     Args:
         path: The main file; what it includes, and the meshes that give inertia, lie in its folder or below.
-        snap_tol: Lengths this close to 0 [m], and entries of axes and rotations this close to 0 or +-1, are made
-            exact.
+        options: How it is read.
         packages: Further folders that its files may be read from.
 
     Returns:
         The system, and every problem.
 
     Raises:
-        ArgumentError: `snap_tol` is not a small number.
+        DescriptionError: The file can't be read.
     """
-    check_snap_tol(snap_tol)
     folder, remarks = Folder(Path(path), packages), Remarks()
-    try:
-        document = vetted(folder, remarks)
-        if folder.problems:
-            return Reading(None, in_order(folder.problems))
-        model = compiled(document, remarks)
-        return Reading(Importer(model, document.stated, remarks, snap_tol).system())
-    except XmlFault as error:
-        return Reading(None, (error.problem,))
-    except DescriptionError as error:
-        return Reading(None, error.problems)
+    document = vetted(folder, remarks)
+    if folder.problems:
+        raise DescriptionError(folder.problems)
+    model = compiled(document, remarks)
+    return reading_of(Importer(model, document.stated, remarks, options).tree())
 
 
 @dataclass(frozen=True)
@@ -79,8 +76,7 @@ def vetted(folder: Folder, remarks: Remarks) -> Document:
     """Read the model's files and keep what describes a tree; the folder collects the faults.
 
     Raises:
-        XmlFault: A file is no XML.
-        DescriptionError: The main file can't be read, is too large, or is no MJCF.
+        DescriptionError: The main file can't be read, is too large, is no XML, or is no MJCF.
     """
     root = folder.document()
     if root.tag != "mujoco":

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from symofros.description.mjcf.geometry import rotation_of
+from symofros.description.imported.geometry import rotation_of
 from symofros.description.values import Rotation
-from symofros.description.visual import MOST_VISUALS, Visual, VisualKind
+from symofros.description.visual import MOST_VISUALS, Visual, VisualKind, color_of
 
 _SEEN = 3  # Groups that MuJoCo's own viewer shows at first are those below.
 # mjtGeom -> our kind, and which of its three sizes that has, by what factor: MuJoCo states half lengths.
@@ -40,10 +40,8 @@ def visuals_of(model: Any, name: Callable[[int], str]) -> dict[str, tuple[Visual
         if not np.all(np.isfinite(numbers)) or min(size) <= 0.0:
             continue
         x, y, z = (float(p) for p in model.geom_pos[i])
-        red, green, blue = (round(255 * min(max(float(share), 0.0), 1.0)) for share in rgba[:3])
         body = name(int(model.geom_bodyid[i]))
-        visual = Visual(
-            shape, size, (x, y, z), Rotation.matrix(rotation_of(model.geom_quat[i]).tolist()), (red, green, blue)
-        )
+        turned = Rotation.matrix(rotation_of(model.geom_quat[i]).tolist())
+        visual = Visual(shape, size, (x, y, z), turned, color_of(rgba.tolist()))
         visuals[body] = (*visuals.get(body, ()), visual)
     return visuals

@@ -18,7 +18,7 @@ from symofros.description.packages import MOST_SHOWN, Packages
 from symofros.description.reading import read_bytes, resolved
 from symofros.description.sdf.frames import MODEL
 from symofros.description.sdf.values import SdfValues
-from symofros.description.xml_nodes import Element, XmlFault, parse_xml
+from symofros.description.xml_nodes import Element, parse_xml
 from symofros.errors import Argument, DescriptionError, Problem
 
 MAX_BYTES = 16 << 20
@@ -170,7 +170,7 @@ class Includes:
             return self.packages.file("model.sdf", folder)
         try:
             root = parse_xml(read_bytes(config, MAX_BYTES), str(config))
-        except (XmlFault, DescriptionError):
+        except DescriptionError:
             return self.packages.file("model.sdf", folder)
         files = [(_version(child), child.text) for child in root.all("sdf") if child.text and "\0" not in child.text]
         name = max(files, default=(0, "model.sdf"))[1]
@@ -186,7 +186,7 @@ class Includes:
         try:
             content = read_bytes(file, MAX_BYTES)
             root = parse_xml(content, str(file))
-        except (XmlFault, DescriptionError) as error:
+        except DescriptionError as error:
             refusal = error.problems[0]
             self.values.add(replace(refusal, what=f"an included model: {refusal.what}"))
             return None

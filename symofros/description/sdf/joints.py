@@ -13,18 +13,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from symofros.base.arrays import Array
-from symofros.description.closing import closing_remedy
-from symofros.description.constraints import AXES, AxisName, Closure, Coupling, mimicry
-from symofros.description.forces import Damper, JointElement, Spring
+from symofros.description.closing import BLOCKED, closing_remedy
+from symofros.description.constraints import Closure, Coupling, mimicry
+from symofros.description.forces import Spring
 from symofros.description.frames import Frame
+from symofros.description.imported.geometry import Exact
+from symofros.description.imported.tree import ImportedBody, ImportedJoint, Placement, Resistance
 from symofros.description.joints.joint import WORLD, Joint, Limits
 from symofros.description.joints.joint_kinds import KINDS, JointKindName
-from symofros.description.mjcf.geometry import Exact
 from symofros.description.pose import Pose
 from symofros.description.sdf.frames import Frames
 from symofros.description.sdf.values import SdfValues
-from symofros.description.values import Vector
+from symofros.description.values import IDENTITY, Vector
 from symofros.description.xml_nodes import Element
 from symofros.errors import did_you_mean
 
@@ -38,14 +38,7 @@ _KINDS: dict[str, JointKindName] = {
     "ball": "ball",
     "fixed": "fixed",
 }
-# Kind -> translations and rotations that it blocks, of a frame whose z axis is the joint's; of what can close a loop.
-_BLOCKED: dict[JointKindName, tuple[tuple[AxisName, ...], tuple[AxisName, ...]]] = {
-    "revolute": (AXES, ("x", "y")),
-    "continuous": (AXES, ("x", "y")),
-    "prismatic": (("x", "y"), AXES),
-    "ball": (AXES, ()),
-    "fixed": (AXES, AXES),
-}
+_CLOSING = ("revolute", "continuous", "prismatic", "ball", "fixed")
 _REVOLUTION = 2.0 * math.pi
 
 
@@ -115,8 +108,8 @@ class JointReader:
             self.joints[name] = SdfJoint(name, element, scope, kind, ends[0], ends[1])
             self.frames.add(name, element, scope, ends[1], ends[1])
 
-    def placed(self, joint: SdfJoint, child: str, parent: str) -> tuple[Joint, Array]:
-        """A joint of the tree, whose D is at J with the axes of the child; and p_CJ, zero where D is the child's frame.
+    def carried(self, joint: SdfJoint, child: str, parent: str) -> ImportedBody:
+        """A link with its joint, whose D is at J with the axes of the link.
 
         Args:
             joint: The joint.
@@ -126,12 +119,17 @@ class JointReader:
         C, J = self.frames.relative(child, parent), self.frames.relative(joint.name, child)
         # A shift is the same wherever it is anchored.
         offset = np.zeros(3) if joint.kind in ("prismatic", "fixed") else np.array(self.exact.vector(J.p))
-        position, rotation = self.exact.placement((C @ Pose(offset, np.eye(3))).p, C.R)
-        kind, carrier = joint.kind, parent or WORLD
+        made = self._made(joint, child, self.exact.placement((C @ Pose(offset, np.eye(3))).p, C.R))
+        held = (self.exact.vector(-offset), IDENTITY) if any(offset) else None
+        return ImportedBody(child, parent=parent, joints=(made,), placement=held)
+
+    def _made(self, joint: SdfJoint, child: str, placement: Placement) -> ImportedJoint:
+        """The joint itself, at its place on what carries it."""
+        kind, (position, rotation) = joint.kind, placement
         if "axis" not in KINDS[kind].entries:
             if kind == "ball" and joint.element.first("axis"):
                 self.values.remarks.add("axes of ball joints (damping, limits) ignored", "joint", joint.name)
-            return Joint(joint.name, kind, carrier, None, position, rotation), offset
+            return ImportedJoint(Joint(joint.name, kind, position=position, rotation=rotation))
         axes = [axis for tag in ("axis", "axis2") if (axis := joint.element.first(tag)) is not None]
         if len(axes) < (2 if kind == "universal" else 1):
             self.values.fault(
@@ -141,7 +139,7 @@ class JointReader:
                 "a universal joint and a revolute2 have <axis> and <axis2>, others <axis>",
                 "add it",
             )
-            return Joint(joint.name, kind, carrier, None, position, rotation), offset
+            return ImportedJoint(Joint(joint.name, kind, position=position, rotation=rotation))
         directions = [self._direction(joint, axis, child) for axis in axes]
         limits = [self._limits(joint, axis) for axis in axes]
         if kind == "revolute" and limits[0] == Limits(None, None, limits[0].velocity, limits[0].effort):
@@ -154,7 +152,7 @@ class JointReader:
         made = Joint(
             joint.name,
             kind,
-            carrier,
+            WORLD,
             None,
             position,
             rotation,
@@ -163,22 +161,20 @@ class JointReader:
             limits=limits[0] if kind != "universal" else None,
             axis2=directions[-1] if kind == "universal" else (0.0, 1.0, 0.0),
             pitch=self._pitch(joint) if kind == "screw" else 0.0,
-            elements=tuple(e for k, axis in enumerate(axes) for e in self._elements(joint, axis, k)),
         )
-        return made, offset
+        return ImportedJoint(made, tuple(self._resistance(joint, axis) for axis in axes))
 
-    def closing(self, joint: SdfJoint) -> tuple[Closure, dict[str, Frame]] | None:
-        """The closure of a joint whose child another joint carries, with the frames that it needs on the two links."""
+    def closing(self, joint: SdfJoint, on: dict[str, list[Frame]]) -> Closure | None:
+        """The closure of a joint whose child another joint carries; the frames that it needs go onto the two links."""
         bodies = {label: self.frames.body(getattr(joint, label)) for label in ("parent", "child")}
         self._closing.add(joint.name)
-        blocked = _BLOCKED.get(joint.kind)
-        if blocked is None:
+        if joint.kind not in _CLOSING:
             instead = closing_remedy(joint.name, joint.kind, *bodies.values())
             self.values.fault(
                 joint.element,
                 f"joint '{joint.name}' closes a loop",
                 f"type '{joint.element.attributes.get('type')}'",
-                f"a loop is closed by one of {', '.join(_BLOCKED)}",
+                f"a loop is closed by one of {', '.join(_CLOSING)}",
                 f"let another joint of the loop be the last one, or {instead}",
             )
             return None
@@ -192,12 +188,11 @@ class JointReader:
             x = np.cross(np.eye(3)[int(np.argmin(np.abs(z)))], z)
             x, z = x / np.linalg.norm(x), z / np.linalg.norm(z)
             R = np.column_stack([x, np.cross(z, x), z])
-        frames = {}
         for label, body in bodies.items():
             pose = self.frames.relative(joint.name, body) @ Pose(np.zeros(3), R)
-            frames[body] = Frame(f"{joint.name}_{label}", *self.exact.placement(*pose))
-        first, second = ((body, frames[body].name) for body in bodies.values())
-        return Closure(joint.name, first, second, *blocked), frames
+            on.setdefault(body, []).append(Frame(f"{joint.name}_{label}", *self.exact.placement(*pose)))
+        first, second = ((body, f"{joint.name}_{label}") for label, body in bodies.items())
+        return Closure(joint.name, first, second, *BLOCKED[joint.kind])
 
     def couplings(self) -> Iterator[Coupling]:
         """What <mimic> states."""
@@ -287,19 +282,13 @@ class JointReader:
             return 0.0
         return new / _REVOLUTION if new else -1.0 / old
 
-    def _elements(self, joint: SdfJoint, axis: Element, k: int) -> Iterator[JointElement]:
-        """Springs and dampers of an axis."""
+    def _resistance(self, joint: SdfJoint, axis: Element) -> Resistance:
+        """Spring, damping and friction of an axis."""
         dynamics = axis.first("dynamics")
         if dynamics is None:
-            return
-        owner = f"joint '{joint.name}'"
+            return Resistance()
         damping, friction, rest, stiffness = (
-            self.values.one(dynamics, tag, owner, 0.0)
+            self.values.one(dynamics, tag, f"joint '{joint.name}'", 0.0)
             for tag in ("damping", "friction", "spring_reference", "spring_stiffness")
         )
-        if stiffness:
-            yield Spring(stiffness, rest, coordinate=k)
-        if damping:
-            yield Damper(damping, coordinate=k)
-        if friction:
-            self.values.remarks.add("dry friction of joints ignored", "joint", joint.name)
+        return Resistance(Spring(stiffness, rest) if stiffness else None, damping, friction=friction)

@@ -11,23 +11,23 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from symofros.base.sources import Source
-from symofros.description.constraints import Closure
 from symofros.description.forces import Load
 from symofros.description.frames import Frame
-from symofros.description.joints.joint import WORLD, Joint
-from symofros.description.mjcf.geometry import Exact
+from symofros.description.imported.building import reading_of
+from symofros.description.imported.geometry import Exact
+from symofros.description.imported.options import DEFAULT_OPTIONS, ImportOptions
+from symofros.description.imported.tree import GRAVITY, ImportedBody, ImportedTree
+from symofros.description.joints.joint import WORLD
 from symofros.description.packages import Packages
-from symofros.description.reading import Reading, check_snap_tol, fresh_name, in_order, read_bytes, resolved
-from symofros.description.remarks import Remarks
+from symofros.description.reading import Reading, read_bytes, resolved
 from symofros.description.sdf.frames import MODEL, SEPARATOR, Frames
 from symofros.description.sdf.includes import Includes
 from symofros.description.sdf.joints import JointReader, SdfJoint
 from symofros.description.sdf.values import SdfValues
 from symofros.description.sdf.visuals import as_urdf
-from symofros.description.system import RigidBody, System
 from symofros.description.urdf.visuals import Visuals
 from symofros.description.visual import Visual
-from symofros.description.xml_nodes import Element, XmlFault, parse_xml
+from symofros.description.xml_nodes import Element, parse_xml
 from symofros.errors import DescriptionError, Problem
 
 MAX_BYTES = 16 << 20
@@ -40,43 +40,38 @@ _SILENT = frozenset(
 _READ = frozenset({"model", "link", "joint", "frame"})
 # Gravity of a <world> that states none [m/s^2].
 _GRAVITY = (0.0, 0.0, -9.8)
-_GRAVITY_OF_SYSTEMS = (0.0, 0.0, -9.81)  # Default of System.
 
 
-def read_sdf(path: str | os.PathLike[str], *, snap_tol: float, packages: Packages | None = None) -> Reading:
+def read_sdf(
+    path: str | os.PathLike[str], options: ImportOptions = DEFAULT_OPTIONS, *, packages: Packages | None = None
+) -> Reading:
     """Read an SDFormat file, of version 1.5 or later.
 
     Args:
         path: The file; one <model>, or a <world> of models.
-        snap_tol: Lengths this close to 0 [m], and entries of axes and rotations this close to 0 or +-1, are made
-            exact.
+        options: How it is read.
         packages: Further folders that its files may be read from.
 
     Returns:
         The system, and every problem.
 
     Raises:
-        ArgumentError: `snap_tol` is not a small number.
+        DescriptionError: The file can't be read.
     """
-    check_snap_tol(snap_tol)
     file = os.fspath(path)
-    values = SdfValues(file, snap_tol)
-    try:
-        readable = packages or Packages(Path(path))
-        includes = Includes(readable, values)
-        content = read_bytes(Path(path), MAX_BYTES)
-        root = parse_xml(content, file)
-        if includes.version(root) is not None:
-            includes.expand(root, readable.folder, (resolved(Path(path)),))
-        # What refers to a model that is not there is no fault of its own.
-        world = None if values.problems else _world(root, values)
-        system = _Importer(readable, values, world).system() if world is not None else None
-    except XmlFault as error:
-        return Reading(None, (error.problem,))
-    except DescriptionError as error:
-        return Reading(None, error.problems)
-    sources = (Source.of(Path(path), content), *includes.sources)
-    return Reading(None if values.problems else system, in_order(values.problems), sources=sources)
+    values = SdfValues(file, options.snap_tol)
+    readable = packages or Packages(Path(path))
+    includes = Includes(readable, values)
+    content = read_bytes(Path(path), MAX_BYTES)
+    root = parse_xml(content, file)
+    if includes.version(root) is not None:
+        includes.expand(root, readable.folder, (resolved(Path(path)),))
+    # What refers to a model that is not there is no fault of its own.
+    world = None if values.problems else _world(root, values)
+    tree = None if world is None else _Importer(readable, values, world, options).tree()
+    if tree is None:
+        raise DescriptionError(values.problems)
+    return reading_of(tree, (Source.of(Path(path), content), *includes.sources))
 
 
 def _world(root: Element, values: SdfValues) -> Element | None:
@@ -95,8 +90,8 @@ def _world(root: Element, values: SdfValues) -> Element | None:
 
 
 class _Importer:
-    def __init__(self, packages: Packages, values: SdfValues, world: Element) -> None:
-        self.values, self.world = values, world
+    def __init__(self, packages: Packages, values: SdfValues, world: Element, options: ImportOptions) -> None:
+        self.values, self.world, self.options = values, world, options
         self.exact = Exact(values.snap_tol)
         self.frames = Frames(values, world)
         self.joints = JointReader(values, self.frames, self.exact)
@@ -106,12 +101,12 @@ class _Importer:
         self.static: set[str] = set()
         self.origin: dict[tuple[str, ...], str] = {("system",): values.where(world)}
 
-    def system(self) -> System:
-        """The description; faults are noted on the way."""
+    def tree(self) -> ImportedTree | None:
+        """The bodies of the file; None after faults, which are noted."""
         models = list(self.world.all("model"))
         if not models:
             self.values.fault(self.world, "there is no model", "no <model>", "a file holds a model", "add one")
-            return System("")
+            return None
         # A single model's names stand as they are; those of several have the model's name before them.
         alone = len(models) == 1 and self.world.tag == "sdf"
         for model in models:
@@ -119,26 +114,21 @@ class _Importer:
         self.scope(self.world, "", self.world.tag == "world")
         self.frames.check()
         if self.values.problems:
-            return System("")
-        bodies, closures, frames = self.tree()
-        placed = [self.with_frames(body, frames) for body in bodies]
-        base = [RigidBody(WORLD, frames=tuple(frames[WORLD]))] if frames.get(WORLD) else []
-        couplings = tuple(self.joints.couplings())
-        remarks: Remarks = self.values.remarks
-        if self.exact.changed:
-            text = f"numbers within {self.exact.tolerance:g} of exact ones made exact"
-            remarks.add(text, "number", f"{self.exact.changed} of them")
-        return System(
-            models[0].attributes.get("name", "model")
-            if len(models) == 1
-            else self.world.attributes.get("name", "world"),
-            (*base, *placed),
+            return None
+        named = models[0].attributes.get("name", "model")
+        tree = ImportedTree(
+            named if len(models) == 1 else self.world.attributes.get("name", "world"),
+            self.options,
+            self.values.where(self.world),
+            remarks=self.values.remarks,
+            exact=self.exact,
             gravity=self.gravity(),
-            constraints=(*closures, *couplings),
-            notes=remarks.notes(),
             origin=self.origin,
-            visuals={name: shapes for name, link in self.links.items() if (shapes := self.shapes(name, link))},
+            problems=self.values.problems,
         )
+        self.grow(tree)
+        tree.visuals = {name: shapes for name, link in self.links.items() if (shapes := self.shapes(name, link))}
+        return tree
 
     def model(self, model: Element, scope: str, around: str) -> None:
         """Take up a model: its frame, and what is in it.
@@ -217,8 +207,8 @@ class _Importer:
             if self.values.truth(self.values.text(element, tag, "false"), element, f"link '{name}'"):
                 self.values.remarks.add(f"<{tag}> ignored", "link", name)
 
-    def tree(self) -> tuple[list[RigidBody], list[Closure], dict[str, list[Frame]]]:
-        """Bodies depth first, closures, and the frames of bodies by their names."""
+    def grow(self, tree: ImportedTree) -> None:
+        """Add bodies depth first, constraints, and frames."""
         above: dict[str, tuple[SdfJoint, str]] = {}
         below: dict[str, list[str]] = {}
         closing: list[SdfJoint] = []
@@ -244,21 +234,14 @@ class _Importer:
             else:
                 above[child] = joint, parent
                 below.setdefault(parent, []).append(child)
-        frames: dict[str, list[Frame]] = {}
-        closures = []
-        for joint in closing:
-            made = self.joints.closing(joint)
-            if made is not None:
-                closures.append(made[0])
-                for body, frame in made[1].items():
-                    frames.setdefault(body, []).append(frame)
+        closures = [made for joint in closing if (made := self.joints.closing(joint, tree.frames)) is not None]
         for name, node in self.frames.nodes.items():
             if node.element.tag == "frame":
                 body = self.frames.body(name)
-                frames.setdefault(body, []).append(
-                    Frame(name, *self.exact.placement(*self.frames.relative(name, body)))
-                )
-        return list(self.bodies(above, below)), closures, frames
+                frame = Frame(name, *self.exact.placement(*self.frames.relative(name, body)))
+                tree.frames.setdefault(body, []).append(frame)
+        tree.bodies = list(self.bodies(above, below))
+        tree.constraints = (*closures, *self.joints.couplings())
 
     @staticmethod
     def carries(child: str, parent: str, above: dict[str, tuple[SdfJoint, str]]) -> bool:
@@ -267,61 +250,39 @@ class _Importer:
             parent = above[parent][1]
         return parent == child
 
-    def bodies(self, above: dict[str, tuple[SdfJoint, str]], below: dict[str, list[str]]) -> Iterator[RigidBody]:
+    def bodies(self, above: dict[str, tuple[SdfJoint, str]], below: dict[str, list[str]]) -> Iterator[ImportedBody]:
         """The bodies, depth first, children in the order of the file."""
-        taken = {*self.joints.joints, *self.links}
         stack = [name for name in reversed(list(self.links)) if name not in above or above[name][1] == WORLD]
         while stack:
             name = stack.pop()
             stack.extend(reversed(below.get(name, [])))
-            if name not in above:
-                yield self.body(name, self.root_joint(name, taken))
-                continue
-            joint, offset = self.joints.placed(above[name][0], name, above[name][1])
-            if any(offset):
-                # A link that moves about a point that is not its origin.
-                carrier = fresh_name(f"{name}_at_{joint.name}", taken)
-                yield RigidBody(carrier, joint)
-                held = fresh_name(f"{name}_fixed", taken)
-                joint = Joint(held, "fixed", carrier, None, self.exact.vector(-offset))
-            yield self.body(name, joint)
+            body = self.root(name) if name not in above else self.joints.carried(above[name][0], name, above[name][1])
+            element = self.links[name]
+            body.inertia = self.values.mass_properties(element, name)
+            if not self.values.truth(self.values.text(element, "gravity", "true"), element, f"link '{name}'"):
+                self.values.remarks.add("gravity of links is switched off by a load", "link", name)
+                mass = float(body.inertia.mass) if isinstance(body.inertia.mass, float) else 0.0
+                x, y, z = (-mass * g for g in self.gravity())
+                body.loads = (Load((x, y, z), at="center_of_mass", axes="world"),)
+            yield body
 
     def is_static(self, link: str) -> bool:
         """Whether a link is of a static model, or the world."""
         return link == WORLD or any(not scope or link.startswith(scope + SEPARATOR) for scope in self.static)
 
-    def root_joint(self, name: str, taken: set[str]) -> Joint:
-        """The joint of a link that the file states none for: it floats, unless its model is static."""
+    def root(self, name: str) -> ImportedBody:
+        """A link that no joint holds: it floats, unless its model is static."""
         if self.is_static(name):
             self.values.remarks.add("links of static models are fixed to the world", "link", name)
-            placement = self.exact.placement(*self.frames.relative(name, WORLD))
-            return Joint(fresh_name(f"{name}_fixed", taken), "fixed", WORLD, None, *placement)
+            return ImportedBody(name, placement=self.exact.placement(*self.frames.relative(name, WORLD)))
         self.values.remarks.add("links without a joint to the world float", "link", name)
-        return Joint(fresh_name(f"{name}_floating", taken), "free", WORLD)
-
-    def body(self, name: str, joint: Joint) -> RigidBody:
-        """A link with its joint."""
-        element, owner = self.links[name], f"link '{name}'"
-        inertia = self.values.mass_properties(element, name)
-        loads: tuple[Load, ...] = ()
-        if not self.values.truth(self.values.text(element, "gravity", "true"), element, owner):
-            self.values.remarks.add("gravity of links is switched off by a load", "link", name)
-            mass = float(inertia.mass) if isinstance(inertia.mass, float) else 0.0
-            x, y, z = (-mass * g for g in self.gravity())
-            loads = (Load((x, y, z), at="center_of_mass", axes="world"),)
-        return RigidBody(name, joint, inertia, loads=loads)
+        return ImportedBody(name, floats=True)
 
     def gravity(self) -> tuple[float, float, float]:
         """Acceleration of gravity: the world's, or, of a model by itself, that of our descriptions [m/s^2]."""
-        default = _GRAVITY if self.world.tag == "world" else _GRAVITY_OF_SYSTEMS
+        default = _GRAVITY if self.world.tag == "world" else GRAVITY
         x, y, z = self.values.given(self.world, "gravity", "the world", default)
         return x, y, z
-
-    @staticmethod
-    def with_frames(body: RigidBody, frames: dict[str, list[Frame]]) -> RigidBody:
-        """The body with its frames."""
-        own = tuple(frames.get(body.name, ()))
-        return RigidBody(body.name, body.joint, body.inertia, own, loads=body.loads) if own else body
 
     def shapes(self, name: str, link: Element) -> tuple[Visual, ...]:
         """What a link looks like."""

@@ -8,11 +8,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from symofros.base.rotations import normalized, quaternion_matrix
-from symofros.description.mjcf.geometry import about
+from symofros.description.imported.geometry import roll_pitch_yaw, stated_rotation
 from symofros.description.pose import IDENTITY_POSE, Pose
 from symofros.description.system import Inertia
 from symofros.description.urdf.values import Values, finite_numbers
-from symofros.description.values import Rotation
 from symofros.description.xml_nodes import Element
 from symofros.errors import Problem
 
@@ -142,9 +141,8 @@ class SdfValues(Values):
                 self.remarks.add("quaternions that are no unit quaternions normalized", "pose", owner)
             return Pose(np.array(numbers[:3]), quaternion_matrix(normalized(quaternion)))
         degrees = self.truth(element.attributes.get("degrees", "false"), element, owner)
-        roll, pitch, yaw = (math.radians(angle) if degrees else angle for angle in numbers[3:])
-        x, y, z = np.eye(3)
-        return Pose(np.array(numbers[:3]), about(z, yaw) @ about(y, pitch) @ about(x, roll))
+        angles = [math.radians(angle) if degrees else angle for angle in numbers[3:]]
+        return Pose(np.array(numbers[:3]), roll_pitch_yaw(angles))
 
     def mass_properties(self, link: Element, name: str) -> Inertia:
         """Inertia of a link; what is not stated has SDFormat's defaults, 1 kg and a unit matrix."""
@@ -175,6 +173,5 @@ class SdfValues(Values):
                 "state it so, and drop the attribute",
             )
         x, y, z = map(float, pose.p)
-        R = pose.R
-        turned = Rotation() if np.array_equal(R, np.eye(3)) else Rotation.matrix(R.tolist())
-        return Inertia(self.one(element, "mass", owner, 1.0), (x, y, z), moments, rotation=turned)
+        mass = self.one(element, "mass", owner, 1.0)
+        return Inertia(mass, (x, y, z), moments, rotation=stated_rotation(pose.R))

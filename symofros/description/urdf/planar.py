@@ -6,7 +6,7 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.base.rotations import skew
-from symofros.description.mjcf.geometry import about
+from symofros.description.imported.geometry import matrix_of
 from symofros.description.values import Rotation, Vector
 
 
@@ -24,9 +24,7 @@ def planar_frames(rotation: Rotation, axis: Vector) -> tuple[Rotation, Rotation 
     R = _turn_to(n / np.linalg.norm(n)) if n.any() else np.eye(3)
     if np.array_equal(R, np.eye(3)):
         return rotation, None
-    roll, pitch, yaw = (float(angle) for angle in rotation.values if isinstance(angle, float))
-    x, y, z = np.eye(3)
-    placed = about(z, yaw) @ about(y, pitch) @ about(x, roll) @ R
+    placed = matrix_of(rotation) @ R
     return Rotation.matrix(placed.tolist()), Rotation.matrix(R.T.tolist())
 
 

@@ -1,11 +1,12 @@
 """URDF in, as Pinocchio understands it: links are bodies, joints carry them, the root is the base.
 
-What a rigid tree has no place for (collisions, damping, transmissions) is ignored, and System.notes says so.
+What a rigid tree has no place for (collisions, transmissions) is ignored, and System.notes says so.
 Joints that mimic others are independent, as Pinocchio has them by default, or coupled where that is asked for.
 """
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
@@ -14,26 +15,26 @@ from pathlib import Path
 from symofros.base.sources import Source
 from symofros.description.closing import closing_remedy
 from symofros.description.constraints import Coupling, mimicry
+from symofros.description.imported.building import system_of
+from symofros.description.imported.options import DEFAULT_OPTIONS, ImportOptions
+from symofros.description.imported.tree import ImportedBody, ImportedJoint, ImportedTree, Resistance
 from symofros.description.joints.joint import WORLD, Joint
 from symofros.description.joints.joint_kinds import KINDS
 from symofros.description.packages import Packages
-from symofros.description.reading import Reading, check_snap_tol, fresh_name, in_order, read_bytes
-from symofros.description.system import Inertia, RigidBody, System
+from symofros.description.reading import Reading, read_bytes
+from symofros.description.system import Inertia
 from symofros.description.urdf.extras import remark_extras
 from symofros.description.urdf.planar import planar_frames
 from symofros.description.urdf.values import Values, finite_numbers
 from symofros.description.urdf.visuals import Visuals
-from symofros.description.values import Rotation, Vector
+from symofros.description.values import ORIGIN, Rotation, Vector
 from symofros.description.visual import Visual
-from symofros.description.xml_nodes import Element, XmlFault, parse_xml
+from symofros.description.xml_nodes import Element, parse_xml
 from symofros.errors import DescriptionError, Problem, did_you_mean
 
 MAX_BYTES = 16 << 20
-# Rounding of the last printed digit of a double: snapping by default must not change a model by more than that, because
-# imports are compared with other engines' at 1e-12. Who knows that a file's 1.5708 means pi/2 passes 1e-4.
-SNAP_TOL = 1e-14
 MAX_LINKS = 10_000
-ROOT_JOINT = "root_joint"
+ROOT_JOINT = "root_joint"  # As in Pinocchio.
 
 _PLANAR = "planar"  # Written as its three simple joints, which more programs read; read by its name.
 _KINDS = {row.urdf: row for row in KINDS.values() if row.urdf is not None} | {_PLANAR: KINDS["planar"]}
@@ -41,10 +42,8 @@ _KINDS = {row.urdf: row for row in KINDS.values() if row.urdf is not None} | {_P
 
 def read_urdf(
     path: str | os.PathLike[str],
+    options: ImportOptions = DEFAULT_OPTIONS,
     *,
-    floating_base: bool = False,
-    snap_tol: float = SNAP_TOL,
-    mimic: bool = False,
     text: bytes | None = None,
     packages: Packages | None = None,
 ) -> Reading:
@@ -52,10 +51,7 @@ def read_urdf(
 
     Args:
         path: The file.
-        floating_base: Put the root link on a free joint; otherwise it is the base and never moves.
-        snap_tol: Angles this close to a multiple of pi/2 [rad], positions this close to 0 [m] and entries of an axis
-            this close to 0 or +-1 are taken for exact, because files carry rounded digits.
-        mimic: Couple joints that mimic others to them; otherwise their coordinates stay independent.
+        options: How it is read. Without a floating base the root link is the base and never moves.
         text: URDF that was made of the file (xacro), whose lines problems then name.
         packages: Folders that its files may be read from; its own by default.
 
@@ -63,31 +59,22 @@ def read_urdf(
         The system without the links that could not be read, and every problem.
 
     Raises:
-        ArgumentError: `snap_tol` is not a small number.
+        DescriptionError: The file can't be read.
     """
-    check_snap_tol(snap_tol)
     file = os.fspath(path) if text is None else f"{os.fspath(path)} (expanded)"
-    try:
-        content = read_bytes(Path(path), MAX_BYTES) if text is None else text
-        root = parse_xml(content, file)
-    except XmlFault as error:
-        return Reading(None, (error.problem,))
-    except DescriptionError as error:
-        return Reading(None, error.problems)
+    content = read_bytes(Path(path), MAX_BYTES) if text is None else text
+    root = parse_xml(content, file)
     if root.tag != "robot":
-        problem = Problem(
-            "the file is not a URDF",
-            f"the root element is <{root.tag:.60}>",
-            "the root element is <robot>",
-            "check that it is the file you meant",
-            f"{file}:{root.line}",
+        raise DescriptionError(
+            Problem(
+                "the file is not a URDF",
+                f"the root element is <{root.tag:.60}>",
+                "the root element is <robot>",
+                "check that it is the file you meant",
+                f"{file}:{root.line}",
+            )
         )
-        return Reading(None, (problem,))
-    try:
-        readable = packages or Packages(Path(path))
-        reading = _Importer(readable, Values(file, snap_tol), root, floating_base, mimic).reading()
-    except DescriptionError as error:
-        return Reading(None, error.problems)
+    reading = _Importer(packages or Packages(Path(path)), Values(file, options.snap_tol), root, options).reading()
     return replace(reading, sources=(Source.of(Path(path), content),)) if text is None else reading
 
 
@@ -98,18 +85,17 @@ class _Link:
     element: Element
     inertia: Inertia | None
     parent: str | None = None
-    joint: Joint | None = None
+    joint: ImportedJoint | None = None
     children: list[str] = field(default_factory=list)
 
 
 class _Importer:
-    def __init__(self, packages: Packages, values: Values, robot: Element, floating_base: bool, mimic: bool) -> None:
+    def __init__(self, packages: Packages, values: Values, robot: Element, options: ImportOptions) -> None:
         self.values = values
         self.visuals = Visuals(packages, robot, values.remarks)
         self.looks: dict[str, tuple[Visual, ...]] = {}
         self.robot = robot
-        self.floating_base = floating_base
-        self.mimic = mimic
+        self.options, self.mimic = options, options.mimic
         self.couplings: list[Coupling] = []
         self.links: dict[str, _Link] = {}
         self.broken: set[str] = set()
@@ -122,7 +108,7 @@ class _Importer:
         count = sum(1 for _ in self.robot.all("link"))
         if count > MAX_LINKS:
             self.values.fault(self.robot, "too many links", f"{count} links", f"at most {MAX_LINKS}", "split the robot")
-            return Reading(None, tuple(self.values.problems))
+            raise DescriptionError(self.values.problems)
         for element in self.robot.all("link"):
             self.link(element)
         for element in self.robot.all("joint"):
@@ -135,20 +121,23 @@ class _Importer:
                 "a robot has at least one <link>",
                 "expand the file's macros first (xacro)?",
             )
-        bodies = tuple(self.bodies())
         remark_extras(self.robot, self.values.remarks)
-        problems = in_order(self.values.problems)
         if not self.links:
-            return Reading(None, problems)
-        system = System(
+            raise DescriptionError(self.values.problems)
+        tree = ImportedTree(
             name,
-            bodies,
+            self.options,
+            self.values.where(self.robot),
+            dissipation="none",
+            floating_joint=ROOT_JOINT,
+            remarks=self.values.remarks,
+            bodies=list(self.bodies()),
             constraints=tuple(self.couplings),
-            notes=self.values.remarks.notes(),
             origin=self.origin,
             visuals={name: shapes for name, shapes in self.looks.items() if shapes},
+            problems=self.values.problems,
         )
-        return Reading(system, problems, frozenset(self.broken))
+        return Reading(system_of(tree), tuple(tree.problems), frozenset(self.broken))
 
     def link(self, element: Element) -> None:
         name = self.values.attribute(element, "name", "a link")
@@ -179,7 +168,7 @@ class _Importer:
         name = self.values.attribute(element, "name", "a joint") or "?"
         owner = f"joint '{name}'"
         parent, child = self.end(element, "parent", owner), self.end(element, "child", owner)
-        joint = self.joint_noun(element, name, parent or "?")
+        joint = self.joint_noun(element, name)
         if child is None:
             return
         link = self.links.get(child)
@@ -207,9 +196,9 @@ class _Importer:
         if joint is None or len(self.values.problems) > before:
             self.broken.add(child)
             return
-        link.joint = joint
+        link.joint = ImportedJoint(joint, self.resistances(element, joint))
         self.origin["joint", name] = self.values.where(element)
-        self.remark_ignored(element, name)
+        self.mimicking(element, name)
 
     def end(self, element: Element, tag: str, owner: str) -> str | None:
         """The link at one end of a joint."""
@@ -225,7 +214,7 @@ class _Importer:
             return None
         return self.values.attribute(inner, "link", owner)
 
-    def joint_noun(self, element: Element, name: str, parent: str) -> Joint | None:
+    def joint_noun(self, element: Element, name: str) -> Joint | None:
         owner = f"joint '{name}'"
         stated = self.values.attribute(element, "type", owner)
         position, rotation = self.values.origin(element, owner)
@@ -241,28 +230,44 @@ class _Importer:
                 )
             return None
         if stated == _PLANAR:
-            return self.planar(element, name, parent, position, rotation)
+            return self.planar(element, name, position, rotation)
         if "axis" not in kind.entries:
-            return Joint(name, kind.name, parent, position=position, rotation=rotation)
+            return Joint(name, kind.name, position=position, rotation=rotation)
         limits = self.values.limits(element, "limits" in kind.entries, owner)
         axis = self.values.axis(element, owner)
         # What follows another joint has no motor of its own.
         alone = not (self.mimic and element.first("mimic"))
-        return Joint(name, kind.name, parent, None, position, rotation, axis, actuated=alone, limits=limits)
+        return Joint(name, kind.name, WORLD, None, position, rotation, axis, actuated=alone, limits=limits)
 
-    def planar(self, element: Element, name: str, parent: str, position: Vector, rotation: Rotation) -> Joint:
+    def planar(self, element: Element, name: str, position: Vector, rotation: Rotation) -> Joint:
         """A planar joint: its coordinates lie in x and y of P, whose z is the axis; passive, as a floating one is."""
         if element.first("limit") is not None:
             self.values.remarks.add("limits of planar joints ignored", "joint", name)
         placed, turned = planar_frames(rotation, self.values.axis(element, f"joint '{name}'"))
         if turned is not None:
             self.turned[name] = turned
-        return Joint(name, "planar", parent, position=position, rotation=placed)
+        return Joint(name, "planar", position=position, rotation=placed)
 
-    def remark_ignored(self, element: Element, name: str) -> None:
+    def resistances(self, element: Element, joint: Joint) -> tuple[Resistance, ...]:
+        """Damping and friction; what is no number counts as stated, and is refused where it is asked for."""
         dynamics = element.first("dynamics")
-        if dynamics is not None and any(self.is_nonzero(text) for text in dynamics.attributes.values()):
-            self.values.remarks.add("damping and friction ignored", "joint", name)
+        stated = {} if dynamics is None else dynamics.attributes
+        damping, friction = (
+            number[0] if (number := finite_numbers(stated.get(name, "0"), 1)) else math.nan
+            for name in ("damping", "friction")
+        )
+        if any(finite_numbers(stated[name], 1) != (0.0,) for name in stated.keys() - {"damping", "friction"}):
+            text = "entries of <dynamics> other than damping and friction ignored"
+            self.values.remarks.add(text, "joint", joint.name)
+        if joint.traits.nv == 1:
+            return (Resistance(damping=damping, friction=friction),)
+        if damping or friction:
+            text = "damping and friction of fixed, planar and floating joints ignored"
+            self.values.remarks.add(text, "joint", joint.name)
+        return ()
+
+    def mimicking(self, element: Element, name: str) -> None:
+        """Couple a joint that mimics another one, where that is asked for."""
         mimic = element.first("mimic")
         if mimic is not None and not self.mimic:
             text = "mimic ignored, the coordinate stays independent (mimic=True of load, or --mimic, couples it)"
@@ -301,28 +306,9 @@ class _Importer:
         named = (element for element in self.robot.all("joint") if element.attributes.get("name") == joint)
         return next((element.attributes.get("type", "none") for element in named), "none")
 
-    @staticmethod
-    def is_nonzero(text: str) -> bool:
-        try:
-            return float(text) != 0.0
-        except ValueError:
-            return True
-
-    def bodies(self) -> Iterator[RigidBody]:
+    def bodies(self) -> Iterator[ImportedBody]:
         """The bodies, depth first, children in the order of the file; what no root reaches comes last."""
         roots = [name for name, link in self.links.items() if link.parent is None]
-        # With several roots none floats: each stays a base, and that there are several is found by the topology.
-        floating = roots[0] if self.floating_base and len(roots) == 1 else None
-        if self.floating_base and roots in ([], [WORLD]):
-            cause = f"the root link is '{WORLD}', which is the ground" if roots else "each link has a parent"
-            self.values.fault(
-                self.robot,
-                "no root link that could float",
-                cause,
-                "a floating robot has a root link",
-                "drop floating_base",
-            )
-            floating = None
         done: set[str] = set()
         for start in (*roots, *self.links):
             stack = [start]
@@ -331,28 +317,17 @@ class _Importer:
                 if name in done:
                     continue
                 done.add(name)
-                stack.extend(reversed(self.links[name].children))
-                if name not in self.broken:
-                    yield from self.body(name, name == floating)
-
-    def body(self, name: str, floating: bool) -> Iterator[RigidBody]:
-        """A link with its joint, after the massless body that carries it where their axes differ."""
-        link = self.links[name]
-        if floating:
-            taken = {other.joint.name for other in self.links.values() if other.joint is not None}
-            root_joint = ROOT_JOINT
-            while root_joint in taken:
-                root_joint += "_"
-            self.origin["joint", root_joint] = self.values.where(link.element)
-            yield RigidBody(name, Joint(root_joint, "free", WORLD), link.inertia)
-        elif link.parent is None and link.inertia is not None:
-            self.values.remarks.add("inertia of the base dropped, it never moves", "link", name)
-            yield RigidBody(name)
-        elif link.joint is not None and link.joint.name in self.turned:
-            taken = {*self.links, *(other.joint.name for other in self.links.values() if other.joint is not None)}
-            carrier, held = (fresh_name(f"{name}_{what}", taken) for what in (f"at_{link.joint.name}", "fixed"))
-            yield RigidBody(carrier, link.joint)
-            fixed = Joint(held, "fixed", carrier, rotation=self.turned[link.joint.name])
-            yield RigidBody(name, fixed, link.inertia)
-        else:
-            yield RigidBody(name, link.joint, link.inertia)
+                link = self.links[name]
+                stack.extend(reversed(link.children))
+                if name in self.broken:
+                    continue
+                joints = () if link.joint is None else (link.joint,)
+                turned = self.turned.get(joints[0].joint.name) if joints else None
+                yield ImportedBody(
+                    name,
+                    link.inertia,
+                    link.parent or WORLD,
+                    joints,
+                    None if turned is None else (ORIGIN, turned),
+                    is_ground=link.parent is None,
+                )

@@ -17,7 +17,7 @@ from symofros.description.reading import resolved
 from symofros.description.remarks import Remarks
 from symofros.description.urdf.values import finite_numbers
 from symofros.description.values import Rotation
-from symofros.description.visual import MOST_VISUALS, Visual, VisualKind
+from symofros.description.visual import MOST_VISUALS, Visual, VisualKind, color_of
 from symofros.description.xml_nodes import Element
 
 Color = tuple[int, int, int]
@@ -126,7 +126,4 @@ class Visuals:
 def _color(material: Element) -> Color | None:
     color = material.first("color")
     shares = finite_numbers(color.attributes.get("rgba", ""), 4) if color is not None else None
-    if shares is None:
-        return None
-    red, green, blue = (round(255 * min(max(share, 0.0), 1.0)) for share in shares[:3])
-    return red, green, blue
+    return None if shares is None else color_of(shares)

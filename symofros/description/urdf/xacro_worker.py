@@ -164,12 +164,20 @@ def expanded(file: str, folders: list[str], packages: Mapping[str, str], argumen
     if unused:
         declared = ", ".join(sorted(used)[:12]) or "none"
         raise expressions.Refusal(f"no <xacro:arg> is called '{unused[0]:.60}'; there are: {declared:.300}")
-    text = str(document.toprettyxml(indent=" "))
+    return writable(document.toprettyxml(indent=" "))
+
+
+def writable(text: str) -> str:
+    """The text, if a file can hold it.
+
+    Raises:
+        Refusal: It is too long, or no Unicode.
+    """
     if len(text) > MAX_BYTES:
         raise expressions.Refusal(f"it expands to {len(text)} characters, more than {MAX_BYTES}")
     if any("\ud800" <= character <= "\udfff" for character in text):
         raise expressions.Refusal("it expands to a text with half of a surrogate pair, which no file holds")
-    return text
+    return str(text)
 
 
 def unfolded(value: Any, file: str) -> Any:

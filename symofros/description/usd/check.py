@@ -46,25 +46,33 @@ def faults(stage: Mapping[str, Any]) -> Iterator[Fault]:
         if not (isinstance(stage[unit], float) and stage[unit] > 0.0):
             yield Fault("", f"{unit}PerUnit", stage[unit], "a finite number above zero")
     for row in (*stage["bodies"], *stage["joints"], *stage["shapes"], *stage["scenes"]):
-        path = row["path"]
-        for name, value in (*row.items(), *row.get("sizes", {}).items()):
-            if name in _SIZES and value not in (None, []):
-                yield from _numbers(path, name, value, _SIZES[name], name in _UNBOUNDED)
-            elif name == "axis" and value is not None and value not in ("X", "Y", "Z"):
-                yield Fault(path, name, value, "X, Y or Z")
-        for name in _PAIRS:
-            for value in row.get(name, ()):
-                if value is not None:
-                    yield from _numbers(path, name, value, 3 if name == "moving" else 1, name != "moving")
-        for freedom, limits in row.get("limits", {}).items():
-            for value in limits:
-                if value is not None:
-                    yield from _numbers(path, f"limit {freedom}", value, 1, True)
-        for drive in row.get("drives", {}).values():
-            if drive["maxForce"] is not None:
-                yield from _numbers(path, "maxForce", drive["maxForce"], 1, True)
-        for name, value in row.get("extensions", {}).items():
-            yield from _numbers(path, name, value, 1, True)
+        yield from _stated(row)
+        yield from _bounds(row)
+
+
+def _stated(row: Mapping[str, Any]) -> Iterator[Fault]:
+    """Sizes, places and axes."""
+    path = row["path"]
+    for name, value in (*row.items(), *row.get("sizes", {}).items()):
+        if name in _SIZES and value not in (None, []):
+            yield from _numbers(path, name, value, _SIZES[name], name in _UNBOUNDED)
+        elif name == "axis" and value is not None and value not in ("X", "Y", "Z"):
+            yield Fault(path, name, value, "X, Y or Z")
+    for name in _PAIRS:
+        for value in row.get(name, ()):
+            if value is not None:
+                yield from _numbers(path, name, value, 3 if name == "moving" else 1, name != "moving")
+
+
+def _bounds(row: Mapping[str, Any]) -> Iterator[Fault]:
+    """Limits, drives, and what extensions of the format state: one number each, infinities among them."""
+    limits = ((f"limit {freedom}", value) for freedom, pair in row.get("limits", {}).items() for value in pair)
+    drives = (("maxForce", drive["maxForce"]) for drive in row.get("drives", {}).values())
+    for name, value in (*limits, *drives):
+        if value is not None:
+            yield from _numbers(row["path"], name, value, 1, True)
+    for name, value in row.get("extensions", {}).items():
+        yield from _numbers(row["path"], name, value, 1, True)
 
 
 def _numbers(path: str, name: str, value: Any, count: int, may_be_infinite: bool) -> Iterator[Fault]:

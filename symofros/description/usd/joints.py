@@ -9,39 +9,32 @@ the joint turns, a massless body at the joint carries C.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.description.constraints import AXES, AxisName, Closure, Constraint, Rod
-from symofros.description.forces import Damper, JointElement
+from symofros.description.closing import BLOCKED
+from symofros.description.constraints import Closure, Constraint, Rod
+from symofros.description.forces import Anchor
 from symofros.description.frames import Frame
-from symofros.description.joints.joint import Joint, Limits
+from symofros.description.imported.geometry import Exact
+from symofros.description.imported.tree import ImportedJoint, Placement, Resistance
+from symofros.description.joints.joint import WORLD, Joint, Limits
 from symofros.description.joints.joint_kinds import JointKindName
-from symofros.description.mjcf.geometry import Exact
-from symofros.description.pose import IDENTITY_POSE, Pose
+from symofros.description.pose import Pose
 from symofros.description.remarks import Remarks
 from symofros.description.usd.masses import Units
 
 Motion = Literal["fixed", "revolute", "prismatic", "cylindrical", "planar", "ball", "none"]
 _AXIS = {"X": 0, "Y": 1, "Z": 2}
 _FREEDOMS = ("transX", "transY", "transZ", "rotX", "rotY", "rotZ")
-# What a closure blocks, of a frame whose z axis is the joint's.
-_BLOCKED: dict[Motion, tuple[tuple[AxisName, ...], tuple[AxisName, ...]]] = {
-    "fixed": (AXES, AXES),
-    "revolute": (AXES, ("x", "y")),
-    "prismatic": (("x", "y"), AXES),
-    "cylindrical": (("x", "y"), ("x", "y")),
-    "planar": (("z",), ("x", "y")),
-    "ball": (AXES, ()),
-}
 # Entries that extensions of UsdPhysics have for the same, the first that is authored counts.
 _ARMATURE = ("physxJoint:armature", "newton:armature")
 _VELOCITY = ("physxJoint:maxJointVelocity", "newton:velocityLimit")
-_FRICTION = ("physxJoint:jointFriction", "newton:friction")
+_COEFFICIENT = "physxJoint:jointFriction"
 
 
 @dataclass(frozen=True)
@@ -127,12 +120,11 @@ class JointMaker:
     def __init__(self, units: Units, exact: Exact, remarks: Remarks, driven_only: bool) -> None:
         self.units, self.exact, self.remarks, self.driven_only = units, exact, remarks, driven_only
 
-    def placed(self, joint: UsdJoint, parent: str, is_reversed: bool) -> tuple[Joint, Pose]:
-        """A joint of the tree, and the child C in its frame D: not the identity where a massless body carries C.
+    def placed(self, joint: UsdJoint, is_reversed: bool) -> tuple[ImportedJoint, Placement | None]:
+        """A joint of the tree, and the child C in its frame D; None where that is C's own.
 
         Args:
             joint: The joint.
-            parent: Name of the parent.
             is_reversed: Whether its second body is the parent.
         """
         own, other = joint.frames[::-1] if is_reversed else joint.frames
@@ -145,75 +137,74 @@ class JointMaker:
             position, rotation = self.exact.placement(own.p, own.R)
             if self._armature(joint):
                 self.remarks.add("armature of planar joints ignored", "joint", joint.name)
-            elements = tuple(self._elements(joint, 3))
-            return Joint(joint.name, kind, parent, None, position, rotation, elements=elements), other.inverse()
+            made = Joint(joint.name, kind, position=position, rotation=rotation)
+            return ImportedJoint(made, self._resistances(joint, 3)), self._held(other.inverse())
         R = own.R @ other.R.T
         axis = self.exact.direction(other.R @ e)
         if kind in ("fixed", "prismatic"):  # A shift is the same wherever it is anchored.
             position, rotation = self.exact.placement(own.p - R @ other.p, R)
-            held = IDENTITY_POSE
+            held = None
         else:
             position, rotation = self.exact.placement(own.p, R)
-            held = Pose(-other.p, np.eye(3))
+            held = self._held(Pose(-other.p, np.eye(3)))
         if kind in ("fixed", "ball"):
-            made = Joint(
-                joint.name,
-                kind,
-                parent,
-                None,
-                position,
-                rotation,
-                elements=tuple(self._elements(joint, 3)) if kind == "ball" else (),
-                armature=self._armature(joint) if kind == "ball" else 0.0,
-            )
-            return made, held
+            armature = self._armature(joint) if kind == "ball" else 0.0
+            made = Joint(joint.name, kind, position=position, rotation=rotation, armature=armature)
+            return ImportedJoint(made, self._resistances(joint, 3) if kind == "ball" else ()), held
         if kind == "revolute" and joint.bounds == (-math.inf, math.inf):
             kind = "continuous"
         made = Joint(
             joint.name,
             kind,
-            parent,
+            WORLD,
             None,
             position,
             rotation,
             axis,
             actuated=kind != "cylindrical" and self._is_actuated(joint),
             limits=self._limits(joint, kind) if kind in ("revolute", "prismatic") else None,
-            elements=tuple(self._elements(joint, 2 if kind == "cylindrical" else 1)),
             armature=self._armature(joint),
         )
-        return made, held
+        return ImportedJoint(made, self._resistances(joint, made.traits.nv)), held
 
-    def closing(self, joint: UsdJoint, names: tuple[str, str]) -> tuple[Constraint, list[tuple[str, Frame]]]:
-        """The closure of a joint that no tree needs, with the frames that it stands on.
+    def _held(self, pose: Pose) -> Placement | None:
+        """A body's place in the frame that its joint moves; None where it is that frame."""
+        position, rotation = self.exact.placement(pose.p, pose.R)
+        return (position, rotation) if any(position) or not rotation.is_identity else None
+
+    def closing(self, joint: UsdJoint, names: tuple[str, str], on: dict[str, list[Frame]]) -> Constraint:
+        """The closure of a joint that no tree needs.
 
         Args:
             joint: The joint.
             names: Names of its bodies.
+            on: Takes the frames that it stands on, by body.
         """
         self.remarks.add("joints that close loops have no coordinate, input, damper or limit", "joint", joint.name)
         turned = Pose(np.zeros(3), _with_z(np.eye(3)[joint.axis]))
-        frames = [
-            (name, Frame(f"{joint.name}_{label}", *self.exact.placement((pose @ turned).p, (pose @ turned).R)))
-            for name, pose, label in zip(names, joint.frames, ("first", "second"), strict=True)
-        ]
-        first, second = ((name, frame.name) for name, frame in frames)
-        return Closure(joint.name, first, second, *_BLOCKED[joint.motion]), frames
+        first, second = self._anchors(joint, names, [pose @ turned for pose in joint.frames], on)
+        return Closure(joint.name, first, second, *BLOCKED[joint.motion])
 
-    def rod(self, joint: UsdJoint, names: tuple[str, str], length: float) -> tuple[Constraint, list[tuple[str, Frame]]]:
+    def rod(self, joint: UsdJoint, names: tuple[str, str], length: float, on: dict[str, list[Frame]]) -> Constraint:
         """A joint that keeps a distance.
 
         Args:
             joint: The joint.
             names: Names of its bodies.
             length: The distance, in the stage's unit.
+            on: Takes the frames that it stands on, by body.
         """
-        frames = [
-            (name, Frame(f"{joint.name}_{label}", self.exact.vector(pose.p)))
-            for name, pose, label in zip(names, joint.frames, ("first", "second"), strict=True)
-        ]
-        first, second = ((name, frame.name) for name, frame in frames)
-        return Rod(joint.name, first, second, length * self.units.meters), frames
+        first, second = self._anchors(joint, names, [Pose(pose.p, np.eye(3)) for pose in joint.frames], on)
+        return Rod(joint.name, first, second, length * self.units.meters)
+
+    def _anchors(
+        self, joint: UsdJoint, names: tuple[str, str], poses: Sequence[Pose], on: dict[str, list[Frame]]
+    ) -> Iterator[Anchor]:
+        """Frames of a constraint on its two bodies."""
+        for name, pose, label in zip(names, poses, ("first", "second"), strict=True):
+            frame = Frame(f"{joint.name}_{label}", *self.exact.placement(pose.p, pose.R))
+            on.setdefault(name, []).append(frame)
+            yield name, frame.name
 
     def _is_actuated(self, joint: UsdJoint) -> bool:
         drives = joint.row["drives"]
@@ -240,7 +231,7 @@ class JointMaker:
             self.remarks.add(f"negative limits of {what} taken for none", "joint", joint.name)
         return bound if 0.0 <= bound < math.inf else None
 
-    def _effort(self, kind: JointKindName) -> float:
+    def _effort(self, kind: str) -> float:
         """Newtons, or newton metres, in the stage's unit of efforts."""
         return self.units.kilograms * self.units.meters ** (1 if kind == "prismatic" else 2)
 
@@ -248,17 +239,19 @@ class JointMaker:
         stated = _first(joint, _ARMATURE) or 0.0
         return stated * (self.units.kilograms if joint.motion == "prismatic" else self.units.inertia)
 
-    def _elements(self, joint: UsdJoint, speeds: int) -> Iterator[JointElement]:
-        """Dampers; what extensions state of other passive efforts is remarked."""
-        if _first(joint, _FRICTION):
-            self.remarks.add("dry friction of joints ignored", "joint", joint.name)
-        damping = joint.row["extensions"].get("newton:damping")
-        if damping and speeds > 1:
-            self.remarks.add("damping of joints of several coordinates ignored", "joint", joint.name)
-        elif damping:
-            turns = joint.motion != "prismatic"
-            per_unit = math.degrees(1.0) * self.units.inertia if turns else self.units.kilograms
-            yield Damper(float(damping) * per_unit)
+    def _resistances(self, joint: UsdJoint, speeds: int) -> tuple[Resistance, ...]:
+        """Damping and friction, which extensions state of joints of one coordinate."""
+        damping, friction = (_first(joint, (name,)) or 0.0 for name in ("newton:damping", "newton:friction"))
+        if _first(joint, (_COEFFICIENT,)):
+            self.remarks.add("friction coefficients of joints ignored, which scale with the load", "joint", joint.name)
+        if speeds > 1:
+            for what, value in (("damping", damping), ("dry friction", friction)):
+                if value:
+                    self.remarks.add(f"{what} of joints of several coordinates ignored", "joint", joint.name)
+            return ()
+        turns = joint.motion != "prismatic"
+        per_unit = math.degrees(1.0) * self.units.inertia if turns else self.units.kilograms
+        return (Resistance(damping=damping * per_unit, friction=friction * self._effort(joint.motion)),)
 
 
 def _first(joint: UsdJoint, names: tuple[str, ...]) -> float | None:

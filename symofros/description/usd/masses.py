@@ -68,14 +68,13 @@ class Masses:
         units: Units of the stage.
         placements: Placement of each body and shape in the world, by path.
         remarks: Remarks on what is assumed.
-
-    Attributes:
-        problems: What is wrong.
+        problems: Takes what is wrong.
     """
 
-    def __init__(self, units: Units, placements: Mapping[str, Affine], remarks: Remarks) -> None:
-        self.units, self.placements, self.remarks = units, placements, remarks
-        self.problems: list[Problem] = []
+    def __init__(
+        self, units: Units, placements: Mapping[str, Affine], remarks: Remarks, problems: list[Problem]
+    ) -> None:
+        self.units, self.placements, self.remarks, self.problems = units, placements, remarks, problems
 
     def of(self, body: Mapping[str, Any], name: str, shapes: Sequence[Mapping[str, Any]], where: str) -> Inertia | None:
         """The inertia of a body; None of one without mass.

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,12 +16,14 @@ import numpy as np
 
 from symofros.description.constraints import Constraint
 from symofros.description.frames import Frame
-from symofros.description.joints.joint import WORLD, Joint
-from symofros.description.mjcf.geometry import Exact
+from symofros.description.imported.building import reading_of
+from symofros.description.imported.geometry import Exact
+from symofros.description.imported.options import DEFAULT_OPTIONS, ImportOptions
+from symofros.description.imported.tree import ImportedBody, ImportedTree
+from symofros.description.joints.joint import WORLD
 from symofros.description.pose import IDENTITY_POSE, Pose
-from symofros.description.reading import Reading, check_snap_tol, fresh_name
+from symofros.description.reading import Reading, fresh_name
 from symofros.description.remarks import Remarks
-from symofros.description.system import RigidBody, System
 from symofros.description.usd.check import faults
 from symofros.description.usd.joints import JointMaker, UsdJoint, motion_of, number
 from symofros.description.usd.masses import Masses, Units
@@ -48,36 +49,28 @@ _KNOWN = frozenset(
 _POSTURE = 1e-5
 
 
-def read_usd(path: str | os.PathLike[str], *, snap_tol: float) -> Reading:
+def read_usd(path: str | os.PathLike[str], options: ImportOptions = DEFAULT_OPTIONS) -> Reading:
     """Read a USD file.
 
     Args:
         path: Root layer: .usd, .usda, .usdc, .usdz.
-        snap_tol: Lengths this close to 0 [m], and entries of axes and rotations this close to 0 or +-1, are made
-            exact.
+        options: How it is read.
 
     Returns:
         The system, and every problem.
 
     Raises:
-        ArgumentError: `snap_tol` is not a small number.
+        DescriptionError: The file can't be read.
     """
-    check_snap_tol(snap_tol)
     file = os.fspath(path)
-    try:
-        stage = stage_of(path)
-        bad = tuple(
-            Problem(f"{name} of <{prim}> can't be read", f"{value!r:.80}", rule, "mend the value", f"{file}:<{prim}>")
-            for prim, name, value, rule in faults(stage)
-        )
-        if bad:
-            return Reading(None, bad)
-        importer = _Importer(file, stage, snap_tol)
-        system = importer.system()
-    except DescriptionError as error:
-        return Reading(None, error.problems)
-    problems = (*importer.problems, *importer.masses.problems)
-    return Reading(None if problems else system, problems)
+    stage = stage_of(path)
+    bad = tuple(
+        Problem(f"{name} of <{prim}> can't be read", f"{value!r:.80}", rule, "mend the value", f"{file}:<{prim}>")
+        for prim, name, value, rule in faults(stage)
+    )
+    if bad:
+        raise DescriptionError(bad)
+    return reading_of(_Importer(file, stage, options).tree(), notes=tuple(_told(stage["warnings"])))
 
 
 def _told(warnings: Sequence[str]) -> Iterator[str]:
@@ -88,16 +81,16 @@ def _told(warnings: Sequence[str]) -> Iterator[str]:
 
 
 class _Importer:
-    def __init__(self, file: str, stage: Mapping[str, Any], snap_tol: float) -> None:
-        self.file, self.stage = file, stage
+    def __init__(self, file: str, stage: Mapping[str, Any], options: ImportOptions) -> None:
+        self.file, self.stage, self.options = file, stage, options
         self.units = Units(float(stage["meters"]), float(stage["kilograms"]))
-        self.exact, self.remarks = Exact(snap_tol), Remarks()
+        self.exact, self.remarks = Exact(options.snap_tol), Remarks()
         self.problems: list[Problem] = []
         placements = stage["placements"]
         self.placements = {path: affine(rows, self.units.meters) for path, rows in placements.items()}
         self.bodies: dict[str, Mapping[str, Any]] = {body["path"]: body for body in stage["bodies"]}
         self.names = names_of(self.bodies)
-        self.masses = Masses(self.units, self.placements, self.remarks)
+        self.masses = Masses(self.units, self.placements, self.remarks, self.problems)
         drives = any(joint["drives"] for joint in stage["joints"])
         self.maker = JointMaker(self.units, self.exact, self.remarks, drives)
 
@@ -105,12 +98,15 @@ class _Importer:
         """Place in the file."""
         return f"{self.file}:<{path}>"
 
-    def system(self) -> System | None:
-        """The description; problems are noted on the way."""
+    def tree(self) -> ImportedTree:
+        """The bodies of the stage; problems are noted on the way.
+
+        Raises:
+            DescriptionError: There is no body, or some have no frame.
+        """
         if not self.bodies:
             rule, remedy = "a mechanism has prims with PhysicsRigidBodyAPI", "apply UsdPhysics to the stage"
-            self.problems.append(Problem("there is no rigid body", "no such prim", rule, remedy, self.file))
-            return None
+            raise DescriptionError(Problem("there is no rigid body", "no such prim", rule, remedy, self.file))
         for path, name in self.names.items():
             self._remark_body(self.bodies[path], name)
             if not self.placements[path].is_rigid:
@@ -119,31 +115,30 @@ class _Importer:
                 what = f"body '{name}' has no frame"
                 self.problems.append(Problem(what, stated, rule, remedy, self.where(path)))
         if self.problems:
-            return None
+            raise DescriptionError(self.problems)
         joints = list(self._joints())
         fixed = [path for path, body in self.bodies.items() if body["enabled"] is False or body["kinematic"]]
-        tree, closing = spanning_tree(list(self.bodies), joints, fixed, self._roots())
-        constraints, frames = self._constraints(closing)
-        shapes = self._shapes()
-        bodies = [
-            replace(body, frames=(*body.frames, *frames.get(body.name, ()))) for body in self._tree(tree, fixed, shapes)
-        ]
-        base = [RigidBody(WORLD, frames=tuple(frames[WORLD]))] if WORLD in frames else []
-        self._remark_posture(tree)
-        gravity = self._gravity()
-        if self.exact.changed:
-            text = f"numbers within {self.exact.tolerance:g} of exact ones made exact"
-            self.remarks.add(text, "number", f"{self.exact.changed} of them")
+        edges, closing = spanning_tree(list(self.bodies), joints, fixed, self._roots())
+        frames: dict[str, list[Frame]] = {}
+        constraints = tuple(self._constraints(closing, frames))
+        bodies = list(self._bodies(edges, fixed, self._shapes()))
+        self._remark_posture(edges)
         origin: dict[tuple[str, ...], str] = {("body", name): self.where(path) for path, name in self.names.items()}
         origin |= {(what, joint.name): joint.where for joint in joints for what in ("joint", "constraint")}
-        return System(
+        return ImportedTree(
             self.stage["name"] or Path(self.file).stem,
-            (*base, *bodies),
-            gravity=gravity,
-            constraints=tuple(constraints),
-            notes=(*self.remarks.notes(), *_told(self.stage["warnings"])),
+            self.options,
+            self.file,
+            noun="body",
+            remarks=self.remarks,
+            exact=self.exact,
+            bodies=bodies,
+            frames=frames,
+            gravity=self._gravity(),
+            constraints=constraints,
             origin=origin,
             visuals=self._visuals(),
+            problems=self.problems,
         )
 
     def _remark_body(self, body: Mapping[str, Any], name: str) -> None:
@@ -219,55 +214,36 @@ class _Importer:
         """Bodies from which articulations are counted."""
         return [path for root in self.stage["roots"] for path in self.bodies if path == root]
 
-    def _tree(self, tree: Iterable[Edge], fixed: list[str], shapes: Mapping[str, list[Any]]) -> Iterator[RigidBody]:
+    def _bodies(
+        self, edges: Iterable[Edge], fixed: list[str], shapes: Mapping[str, list[Any]]
+    ) -> Iterator[ImportedBody]:
         """The bodies, parents first."""
-        taken = {*self.names.values(), WORLD}
-        joint_names = {edge.joint.name for edge in tree if edge.joint is not None}
-        for edge in tree:
+        for edge in edges:
             name = self.names[edge.child]
             inertia = self.masses.of(self.bodies[edge.child], name, shapes.get(edge.child, []), self.where(edge.child))
-            if edge.joint is None:
-                yield RigidBody(name, self._root_joint(edge.child, name, fixed, joint_names), inertia)
-                continue
-            parent = self.names.get(edge.parent, WORLD)
-            joint, held = self.maker.placed(edge.joint, parent, edge.is_reversed)
-            position, rotation = self.exact.placement(held.p, held.R)
-            if any(position) or not rotation.is_identity:
-                # A body that moves about a point that is not its origin.
-                carrier = fresh_name(f"{name}_at_{joint.name}", taken)
-                yield RigidBody(carrier, joint)
-                joint = Joint(fresh_name(f"{name}_fixed", joint_names), "fixed", carrier, None, position, rotation)
-            yield RigidBody(name, joint, inertia)
+            if edge.joint is not None:
+                joint, placement = self.maker.placed(edge.joint, edge.is_reversed)
+                yield ImportedBody(name, inertia, self.names.get(edge.parent, WORLD), (joint,), placement)
+            elif edge.child in fixed:
+                self.remarks.add("bodies that are kinematic or not enabled are fixed to the world", "body", name)
+                pose = self.placements[edge.child].pose
+                yield ImportedBody(name, inertia, placement=self.exact.placement(pose.p, pose.R))
+            else:
+                self.remarks.add("bodies without a joint to the world float", "body", name)
+                yield ImportedBody(name, inertia, floats=True)
 
-    def _root_joint(self, path: str, name: str, fixed: list[str], taken: set[str]) -> Joint:
-        """The joint of a body that no other joint holds."""
-        if path in fixed:
-            self.remarks.add("bodies that are kinematic or not enabled are fixed to the world", "body", name)
-            pose = self.placements[path].pose
-            return Joint(
-                fresh_name(f"{name}_fixed", taken), "fixed", WORLD, None, *self.exact.placement(pose.p, pose.R)
-            )
-        self.remarks.add("bodies without a joint to the world float", "body", name)
-        return Joint(fresh_name(f"{name}_floating", taken), "free", WORLD)
-
-    def _constraints(self, closing: Iterable[UsdJoint]) -> tuple[list[Constraint], dict[str, list[Frame]]]:
-        """Constraints of the joints that no tree needs, with their frames by body."""
-        constraints: list[Constraint] = []
-        frames: dict[str, list[Frame]] = {}
+    def _constraints(self, closing: Iterable[UsdJoint], frames: dict[str, list[Frame]]) -> Iterator[Constraint]:
+        """Constraints of the joints that no tree needs; their frames are added to those of bodies."""
         for joint in closing:
             names = (self.names.get(joint.ends[0], WORLD), self.names.get(joint.ends[1], WORLD))
-            if joint.row["kind"] == "distance":
-                least, most = (number(bound, -1.0) for bound in joint.row["distances"])
-                if not least == most > 0.0:
-                    self.remarks.add("bounds of distances ignored", "joint", joint.name)
-                    continue
-                constraint, own = self.maker.rod(joint, names, most)
+            if joint.row["kind"] != "distance":
+                yield self.maker.closing(joint, names, frames)
+                continue
+            least, most = (number(bound, -1.0) for bound in joint.row["distances"])
+            if least == most > 0.0:
+                yield self.maker.rod(joint, names, most, frames)
             else:
-                constraint, own = self.maker.closing(joint, names)
-            constraints.append(constraint)
-            for name, frame in own:
-                frames.setdefault(name, []).append(frame)
-        return constraints, frames
+                self.remarks.add("bounds of distances ignored", "joint", joint.name)
 
     def _shapes(self) -> dict[str, list[Any]]:
         """Collision shapes of each body."""

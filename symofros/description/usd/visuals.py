@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from symofros.base.arrays import Array
+from symofros.description.imported.geometry import stated_rotation
 from symofros.description.pose import Pose
 from symofros.description.usd.placement import Affine
-from symofros.description.values import IDENTITY, Rotation
-from symofros.description.visual import Visual
+from symofros.description.visual import Visual, color_of
 
 # Rotation that lays z along an axis.
 _TO_AXIS: dict[str, Array] = {
@@ -57,6 +57,6 @@ def visual(shape: Mapping[str, Any], body: Pose, placed: Affine) -> Visual | Non
         drawn.kind,
         drawn.size,
         (px, py, pz),
-        IDENTITY if np.array_equal(R, np.eye(3)) else Rotation.matrix(R.tolist()),
-        None if color is None else tuple(round(255.0 * min(max(part, 0.0), 1.0)) for part in color),
+        stated_rotation(R),
+        None if color is None else color_of(color),
     )

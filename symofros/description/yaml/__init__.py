@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from symofros.description.yaml.faults import line_of as line_of
-from symofros.description.yaml.faults import path_of as path_of
-from symofros.description.yaml.faults import problem_of as problem_of
+from symofros.description.yaml.faults import placed_problems as placed_problems
 from symofros.description.yaml.files import DIAGRAM as DIAGRAM
 from symofros.description.yaml.files import MAX_BYTES as MAX_BYTES
 from symofros.description.yaml.files import read_yaml as read_yaml

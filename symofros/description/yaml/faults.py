@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
+from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from symofros.description.yaml.schema import VERSION, json_schema
@@ -43,15 +44,28 @@ _KINDS = {
 }
 
 
-def path_of(error: ErrorDetails) -> Path:
+def placed_problems(error: ValidationError, root: Node, file: str, data: Any) -> list[tuple[Problem, Path]]:
+    """What pydantic finds wrong, and where in the data each is.
+
+    Args:
+        error: What validation raised.
+        root: The document, for lines.
+        file: Name of the file, for messages.
+        data: What was validated.
+    """
+    faults = error.errors(include_url=False)
+    return [(problem_of(fault, f"{file}:{_line_of(fault, root)}", data), _path_of(fault)) for fault in faults]
+
+
+def _path_of(error: ErrorDetails) -> Path:
     """Where in the data the error is; pydantic marks one of a key itself by a last item "[key]"."""
     loc = error["loc"]
     return loc[:-1] if loc and loc[-1] == "[key]" else loc
 
 
-def line_of(error: ErrorDetails, root: Node) -> int:
+def _line_of(error: ErrorDetails, root: Node) -> int:
     """The line of a wrong key or value; of the mapping's key where an entry is missing."""
-    path = path_of(error)
+    path = _path_of(error)
     if error["type"] == "missing":
         return root.at(path[:-1]).key_line
     node = root.at(path)
@@ -66,7 +80,7 @@ def problem_of(error: ErrorDetails, where: str, data: Any) -> Problem:
         where: "file:line" of it.
         data: What was validated.
     """
-    path = path_of(error)
+    path = _path_of(error)
     context = error.get("ctx", {})
     kind = error["type"]
     if kind == "problem":

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -17,7 +17,7 @@ from symofros.description.forces import Connection, Potential, VirtualPower
 from symofros.description.reading import YAML_SUFFIXES, in_order, kind_of, read_bytes, refuse_size, resolved
 from symofros.description.reading import Reading as Reading
 from symofros.description.system import Body, Input, Parameter, System
-from symofros.description.yaml.faults import line_of, path_of, problem_of
+from symofros.description.yaml.faults import placed_problems
 from symofros.description.yaml.schema import BodyEntry, InputEntry, NativeFile, SystemEntry, default_joint_name
 from symofros.description.yaml.yaml_nodes import Node, YamlFault
 from symofros.description.yaml.yaml_pieces import compose
@@ -234,34 +234,23 @@ class _Merger:
         elif file.system is not None:
             self.system = file.system
             self.origin["system",] = system_line
-        for name, parameter in (file.parameters or {}).items():
-            if self.is_new("parameters", name, root, shown):
-                self.parameters.append(parameter.build(name=name))
-        for name, entry in (file.inputs or {}).items():
-            if self.is_new("inputs", name, root, shown):
-                self.inputs.append((entry or InputEntry()).build(name=name))
-        for name, body in (file.bodies or {}).items():
-            if self.is_new("bodies", name, root, shown):
-                self.bodies.append((body or BodyEntry()).build(name))
-                self.origin |= dict(_body_origin(self.bodies[-1], root, shown))
-        for name, connection in (file.connections or {}).items():
-            if self.is_new("connections", name, root, shown):
-                self.connections.append(connection.build(name=name))
-        for name, forces in (file.virtual_power or {}).items():
-            if self.is_new("virtual_power", name, root, shown):
-                self.virtual_power.append(VirtualPower(name, tuple(forces.items())))
-        for name, energy in (file.potentials or {}).items():
-            if self.is_new("potentials", name, root, shown):
-                self.potentials.append(Potential(name, energy))
-        for name, closure in (file.closures or {}).items():
-            if self.is_new("closures", name, root, shown):
-                self.constraints.append(closure.build(name))
-        for name, residual in (file.couplings or {}).items():
-            if self.is_new("couplings", name, root, shown):
-                self.constraints.append(Coupling(name, residual))
-        for name, condition in (file.nonholonomic or {}).items():
-            if self.is_new("nonholonomic", name, root, shown):
-                self.constraints.append(condition.build(name))
+
+        def fresh(section: str) -> Iterator[tuple[str, Any]]:
+            """The entries of a section that no other file has."""
+            entries: Mapping[str, Any] = getattr(file, section) or {}
+            return (item for item in entries.items() if self.is_new(section, item[0], root, shown))
+
+        self.parameters += [parameter.build(name=name) for name, parameter in fresh("parameters")]
+        self.inputs += [(entry or InputEntry()).build(name=name) for name, entry in fresh("inputs")]
+        for name, body in fresh("bodies"):
+            self.bodies.append((body or BodyEntry()).build(name))
+            self.origin |= dict(_body_origin(self.bodies[-1], root, shown))
+        self.connections += [connection.build(name=name) for name, connection in fresh("connections")]
+        self.virtual_power += [VirtualPower(name, tuple(forces.items())) for name, forces in fresh("virtual_power")]
+        self.potentials += [Potential(name, energy) for name, energy in fresh("potentials")]
+        self.constraints += [closure.build(name) for name, closure in fresh("closures")]
+        self.constraints += [Coupling(name, residual) for name, residual in fresh("couplings")]
+        self.constraints += [condition.build(name) for name, condition in fresh("nonholonomic")]
 
     def is_new(self, section: str, name: str, root: Node, shown: str) -> bool:
         """Record where a named thing stands; whether no other file has one of that name."""
@@ -306,10 +295,10 @@ def _validate(root: Node, shown: str) -> tuple[NativeFile | None, list[Problem],
     try:
         return NativeFile.model_validate(data), [], set()
     except ValidationError as error:
-        faults = error.errors(include_url=False)
-    problems = first_of(problem_of(fault, f"{shown}:{line_of(fault, root)}", data) for fault in faults)
+        placed = placed_problems(error, root, shown, data)
+    problems = first_of(problem for problem, _ in placed)
     broken: set[str] = set()
-    for path in map(path_of, faults):
+    for _, path in placed:
         section = path[0] if path else ""
         if section in _SECTIONS and len(path) > 1:
             broken |= _names_of(str(section), str(path[1]), data[section].pop(path[1], None))

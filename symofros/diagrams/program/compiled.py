@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.base.c_names import identifier
+from symofros.base.names import identifier
 from symofros.base.options import Options
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.order import groups_in_motion, order_of

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.diagrams.block import Block, Crossing, EvaluationContext, Port, Terms, Values
+from symofros.diagrams.block import Block, Crossing, Environment, EvaluationContext, Port, Terms, Values
 from symofros.diagrams.external_block import ExternalBlock
 from symofros.diagrams.tensor import Tensor
 from symofros.diagrams.wiring import Wired, surroundings
@@ -102,43 +102,13 @@ def piece_of(wired: Wired, name: str) -> Piece:
         DescriptionError: Its formulas don't fit its ports.
     """
     block, known = wired.blocks[name], surroundings(wired, name)
+    parameters = block.parameters()
+    _refuse_missing(name, block, parameters)
     g = Graph()
     states, memory = _arrays(block.states(known)), _arrays(block.memory(known))
-    parameters = block.parameters()
-    for key, value in parameters.items():
-        if np.any(np.isnan(value)):  # Of None, too.
-            raise DescriptionError(
-                Problem(
-                    f"block '{name}': {key} is not a number",
-                    f"{getattr(block, key)}"[:80],
-                    "a parameter is one number or an array of them",
-                    "state it",
-                )
-            )
     mechanism = block.mechanism()
-    nq = nv = 0
-    q0, v0 = np.zeros(0), np.zeros(0)
-    nc = 0
-    if mechanism:
-        record = wired.models.record(mechanism)
-        nq, nv, nc = len(record.q_names), len(record.v_names), record.nc
-        q0, v0 = known.start(mechanism)
-    at = EvaluationContext(
-        g,
-        Tensor.inputs(g, "t", ()),
-        {port.name: _given(g, wired, name, port) for port in wired.ports[name].inputs},
-        {key: Tensor.inputs(g, STATE + key, value.shape) for key, value in states.items()},
-        {key: Tensor.inputs(g, MEMORY + key, value.shape) for key, value in memory.items()},
-        {key: Tensor.inputs(g, PARAMETER + key, value.shape) for key, value in parameters.items()},
-        Tensor.inputs(g, "q", (nq,)),
-        Tensor.inputs(g, "v", (nv,)),
-        Tensor.inputs(g, "gains", (2 * nc,)),
-        lambda model, function, frame="", **groups: wired.models.call(g, model, function, frame, **groups),
-        wired.models.solved,
-        Tensor.inputs(g, "a", (nv,)),
-        Tensor.inputs(g, "lam", (nc,)),
-        known,
-    )
+    q0, v0 = known.start(mechanism) if mechanism else (np.zeros(0), np.zeros(0))
+    at = _context(g, wired, name, known, (states, memory, parameters))
     terms = block.motion(at)
     if terms.a is not None:  # Else they are known after the constraints' equations are solved.
         at = replace(at, a=terms.a)
@@ -165,6 +135,59 @@ def piece_of(wired: Wired, name: str) -> Piece:
     else:
         needs = {port: piece.inputs_of(value.flat) for port, value in outputs.items()}
     return replace(piece, needs=needs | {port: frozenset() for port in block.samples()})
+
+
+def _refuse_missing(name: str, block: Block, parameters: Mapping[str, Array]) -> None:
+    """Refuse parameters that are no numbers.
+
+    Raises:
+        DescriptionError: One is none.
+    """
+    for key, value in parameters.items():
+        if np.any(np.isnan(value)):  # Of None, too.
+            raise DescriptionError(
+                Problem(
+                    f"block '{name}': {key} is not a number",
+                    f"{getattr(block, key)}"[:80],
+                    "a parameter is one number or an array of them",
+                    "state it",
+                )
+            )
+
+
+def _context(
+    g: Graph, wired: Wired, name: str, known: Environment, own: Sequence[Mapping[str, Array]]
+) -> EvaluationContext:
+    """What a block's formulas read.
+
+    Args:
+        g: Graph of the block.
+        wired: The diagram.
+        name: The block.
+        known: What it knows of the diagram.
+        own: Its states, memory and parameters.
+    """
+    mechanism, (states, memory, parameters) = wired.blocks[name].mechanism(), own
+    nq = nv = nc = 0
+    if mechanism:
+        record = wired.models.record(mechanism)
+        nq, nv, nc = len(record.q_names), len(record.v_names), record.nc
+    return EvaluationContext(
+        g,
+        Tensor.inputs(g, "t", ()),
+        {port.name: _given(g, wired, name, port) for port in wired.ports[name].inputs},
+        {key: Tensor.inputs(g, STATE + key, value.shape) for key, value in states.items()},
+        {key: Tensor.inputs(g, MEMORY + key, value.shape) for key, value in memory.items()},
+        {key: Tensor.inputs(g, PARAMETER + key, value.shape) for key, value in parameters.items()},
+        Tensor.inputs(g, "q", (nq,)),
+        Tensor.inputs(g, "v", (nv,)),
+        Tensor.inputs(g, "gains", (2 * nc,)),
+        lambda model, function, frame="", **groups: wired.models.call(g, model, function, frame, **groups),
+        wired.models.solved,
+        Tensor.inputs(g, "a", (nv,)),
+        Tensor.inputs(g, "lam", (nc,)),
+        known,
+    )
 
 
 def _arrays(values: Mapping[str, object]) -> dict[str, Array]:

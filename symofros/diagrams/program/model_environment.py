@@ -18,9 +18,9 @@ from symofros.diagrams.program.variants import FRICTION, friction_only
 from symofros.diagrams.tensor import Tensor
 from symofros.errors import DescriptionError, ParameterError, Problem, ShapeError, did_you_mean
 from symofros.expr import Edge, Factors, Graph, Program, copy_into
+from symofros.runtime.manifold import at_unit_length
 from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord
-from symofros.runtime.unit_quaternions import at_unit_length
 from symofros.simulation.analysis.kinematics.starts import closed_start, stated_names
 from symofros.simulation.analysis.state_space import StateSpace, state_space
 

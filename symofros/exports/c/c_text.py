@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from symofros.base.c_names import c_string
+from symofros.base.names import c_string
 
 _WIDTH = 8
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from symofros.base.c_names import c_string
+from symofros.base.names import c_string
 from symofros.description import Beam
 from symofros.exports.c.c_package import model_files
 from symofros.exports.c.c_text import comment

@@ -7,7 +7,7 @@ from math import prod
 from string import Template
 from textwrap import wrap
 
-from symofros.base.c_names import function_symbols
+from symofros.base.names import function_symbols
 from symofros.exports.functions import NamedFunction
 from symofros.exports.material import Material
 from symofros.native import native_text

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from string import Template
 
-from symofros.base.c_names import identifier
 from symofros.base.functions import FRAME_FUNCTIONS
+from symofros.base.names import identifier
 from symofros.base.options import Options
 from symofros.compiler import GENERATOR, Compilation
 from symofros.description import Beam, System
@@ -15,7 +15,7 @@ from symofros.exports.c.c_text import comment, doubles
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.functions import NamedFunction, cell, functions_table, names_table
 from symofros.exports.limits import joints_of, limits_note
-from symofros.generator import DeviceCode, device_code
+from symofros.generator import DeviceCode
 from symofros.native import header_files, native_text
 from symofros.runtime.calls import Precision
 
@@ -55,9 +55,7 @@ def write_cuda_package(system: System, name: str | None, frames: Sequence[str] |
     program, record = made.program, made.record
     c_name = identifier(name or record.name)
     prefixes: dict[Precision, str] = {"double": c_name, "single": f"{c_name}_single"}
-    codes = {
-        precision: device_code(program, record, GENERATOR, precision, prefix) for precision, prefix in prefixes.items()
-    }
+    codes = {precision: made.device_code(precision, prefix) for precision, prefix in prefixes.items()}
     left_out = [function.name for function in program.functions if function.solver is not None]
     fields = {
         "name": c_name,

@@ -10,8 +10,7 @@ from functools import cached_property
 from typing import Any
 
 from symofros.base.arguments import checked
-from symofros.base.c_names import identifier
-from symofros.base.names import TIME
+from symofros.base.names import TIME, identifier
 from symofros.base.options import Options
 from symofros.compiler import GENERATOR, Compilation
 from symofros.description import Parameter, System, Value, as_vector

@@ -13,7 +13,7 @@ from pathlib import Path
 from string import Template
 from uuid import UUID
 
-from symofros.base.c_names import c_string
+from symofros.base.names import c_string
 from symofros.errors import ExportError, Problem
 from symofros.exports.c.c_package import model_files
 from symofros.exports.c.c_text import comment, strings

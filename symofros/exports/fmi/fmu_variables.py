@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import accumulate
 
 from symofros.exports.material import Material
 from symofros.mechanics.topology import coordinate_names
@@ -48,112 +49,118 @@ def quoted(name: str) -> str:
     return "'" + _UNQUOTED.sub("_", name) + "'"
 
 
+@dataclass(frozen=True)
+class _Numbering:
+    """First references of the groups of variables.
+
+    Attributes:
+        q, v, dq, dv, u, par, lam, energy, frames: First reference of coordinates, speeds, their rates, inputs,
+            parameters, multipliers, energies, positions of frames.
+    """
+
+    q: int
+    v: int
+    dq: int
+    dv: int
+    u: int
+    par: int
+    lam: int
+    energy: int
+    frames: int
+
+    @classmethod
+    def of(cls, material: Material) -> _Numbering:
+        record = material.record
+        nq, nv = len(record.q_names), len(record.v_names)
+        sizes = (1, nq, nv, nq, nv, len(record.u_names), len(record.par_names), record.nc, 2)
+        return cls(*accumulate(sizes))
+
+
 def variables(material: Material) -> list[Variable]:
     """All of them."""
-    listed: list[Variable] = []
-    for variable in _variables(material):
-        assert variable.reference == len(listed)
-        listed.append(variable)
+    at, units = _Numbering.of(material), _units(material)
+    listed = [Variable(0, "time", "independent", "continuous", unit="s")]
+    for group in (_states(material, at, units), _rates(material, at, units), _given(material, at, units)):
+        listed += group
+    listed += _local(material, at)
+    listed += _positions(material, at)
+    assert [variable.reference for variable in listed] == list(range(len(listed)))
     return _distinct(listed)
 
 
-def _variables(material: Material) -> Iterator[Variable]:
+def _states(material: Material, at: _Numbering, units: Mapping[str, str]) -> Iterator[Variable]:
+    """Coordinates and speeds."""
     record = material.record
-    nq, nv, nu = len(record.q_names), len(record.v_names), len(record.u_names)
-    at_q, at_v = 1, 1 + nq
-    at_u = at_v + nv + nq + nv
-    units = _units(material)
     # A loop's start is brought onto the constraints, so it is a guess.
     initial = "approx" if record.nc else "exact"
-    yield Variable(0, "time", "independent", "continuous", unit="s")
-    for i, name in enumerate(record.q_names):
-        yield Variable(
-            at_q + i,
-            f"q.{quoted(name)}",
-            "output",
-            "continuous",
-            initial,
-            material.q_start[i],
-            units.get(name, ""),
-            depends=(at_q + i,),
-        )
-    for i, name in enumerate(record.v_names):
-        yield Variable(
-            at_v + i,
-            f"v.{quoted(name)}",
-            "output",
-            "continuous",
-            initial,
-            material.v_start[i],
-            _per(units.get(name, ""), "s"),
-            depends=(at_v + i,),
-        )
-    rates = _rate_dependencies(material, at_q, at_v)
-    for i, name in enumerate(record.q_names):
-        yield Variable(
-            at_v + nv + i,
-            f"der(q.{quoted(name)})",
-            "local",
-            "continuous",
-            "calculated",
-            unit=_per(units.get(name, ""), "s"),
-            derivative=at_q + i,
-            depends=rates[i],
-        )
-    for i, name in enumerate(record.v_names):
-        yield Variable(
-            at_v + nv + nq + i,
-            f"der(v.{quoted(name)})",
-            "local",
-            "continuous",
-            "calculated",
-            unit=_per(units.get(name, ""), "s2"),
-            derivative=at_v + i,
-        )
+    groups = (
+        ("q", at.q, record.q_names, material.q_start, lambda unit: unit),
+        ("v", at.v, record.v_names, material.v_start, lambda unit: _per(unit, "s")),
+    )
+    for group, first, names, start, unit_of in groups:
+        for i, name in enumerate(names):
+            reference, unit = first + i, unit_of(units.get(name, ""))
+            label = f"{group}.{quoted(name)}"
+            yield Variable(reference, label, "output", "continuous", initial, start[i], unit, depends=(reference,))
+
+
+def _rates(material: Material, at: _Numbering, units: Mapping[str, str]) -> Iterator[Variable]:
+    """Their derivatives by time."""
+    rates = _rate_dependencies(material, at.q, at.v)
+    groups = (
+        ("q", at.dq, at.q, material.record.q_names, "s", rates),
+        ("v", at.dv, at.v, material.record.v_names, "s2", dict[int, tuple[int, ...]]()),
+    )
+    for group, first, state, names, time, depends in groups:
+        for i, name in enumerate(names):
+            yield Variable(
+                first + i,
+                f"der({group}.{quoted(name)})",
+                "local",
+                "continuous",
+                "calculated",
+                unit=_per(units.get(name, ""), time),
+                derivative=state + i,
+                depends=depends.get(i),
+            )
+
+
+def _given(material: Material, at: _Numbering, units: Mapping[str, str]) -> Iterator[Variable]:
+    """Inputs and parameters."""
+    record = material.record
+    efforts = len(record.u_names) - record.driven
     for i, name in enumerate(record.u_names):
-        yield Variable(
-            at_u + i,
-            f"u.{quoted(name)}",
-            "input",
-            "continuous",
-            "",
-            record.u_default[i],
-            _effort(units.get(name, "")) if i < nu - record.driven else "",
-        )
-    reference = at_u + nu
+        unit = _effort(units.get(name, "")) if i < efforts else ""
+        yield Variable(at.u + i, f"u.{quoted(name)}", "input", "continuous", "", record.u_default[i], unit)
     stated = {parameter.name: parameter for parameter in material.system.parameters}
     for i, name in enumerate(record.par_names):
         unit, about = (stated[name].unit, stated[name].description) if name in stated else ("", "")
-        yield Variable(
-            reference + i,
-            f"par.{quoted(name)}",
-            "parameter",
-            "tunable",
-            "exact",
-            record.par_default[i],
-            unit,
-            about=about,
-        )
-    reference += len(record.par_names)
-    for i, name in enumerate(record.constraint_names):
-        yield Variable(reference + i, f"lam.{quoted(name)}", "local", "continuous", "calculated")
-    reference += record.nc
+        label, value = f"par.{quoted(name)}", record.par_default[i]
+        yield Variable(at.par + i, label, "parameter", "tunable", "exact", value, unit, about=about)
+
+
+def _local(material: Material, at: _Numbering) -> Iterator[Variable]:
+    """Multipliers and energies."""
+    for i, name in enumerate(material.record.constraint_names):
+        yield Variable(at.lam + i, f"lam.{quoted(name)}", "local", "continuous", "calculated")
     for i, kind in enumerate(("kinetic", "potential")):
-        yield Variable(reference + i, f"energy.{kind}", "local", "continuous", "calculated", unit="J")
-    reference += 2
-    prescribed = tuple(range(at_u + nu - record.driven, at_u + nu))
-    for frame in material.outputs:
+        yield Variable(at.energy + i, f"energy.{kind}", "local", "continuous", "calculated", unit="J")
+
+
+def _positions(material: Material, at: _Numbering) -> Iterator[Variable]:
+    """Positions of frames; prescribed motions move them, too."""
+    prescribed = tuple(range(at.par - material.record.driven, at.par))
+    for k, frame in enumerate(material.outputs):
         for i, axis in enumerate("xyz"):
             yield Variable(
-                reference + i,
+                at.frames + 3 * k + i,
                 f"p.{quoted(frame)}.{axis}",
                 "output",
                 "continuous",
                 "calculated",
                 unit="m",
-                depends=_moved_by(material, frame, i, at_q) + prescribed,
+                depends=_moved_by(material, frame, i, at.q) + prescribed,
             )
-        reference += 3
 
 
 def _distinct(variables: list[Variable]) -> list[Variable]:

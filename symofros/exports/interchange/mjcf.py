@@ -10,7 +10,7 @@ from xml.etree import ElementTree as Tree
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.base.c_names import identifier
+from symofros.base.names import identifier
 from symofros.base.rotations import matrix_product
 from symofros.description import Anchor, Closure, Damper, Joint, Limits, Spring, System
 from symofros.exports.folder import Exported, write_folder

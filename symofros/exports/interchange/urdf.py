@@ -10,7 +10,7 @@ from xml.etree import ElementTree as Tree
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.base.c_names import identifier
+from symofros.base.names import identifier
 from symofros.description import Damper, Joint, JointElement, Limits, System
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.interchange.couplings import PolynomialCoupling, polynomial_couplings

@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterable, Sequence
 from string import Template
 
-from symofros.base.c_names import function_symbols, identifier
+from symofros.base.names import function_symbols, identifier
 from symofros.base.rotations import TINY
 from symofros.expr.program import Function, Program
 from symofros.generator.codegen import trigonometry

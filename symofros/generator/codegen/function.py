@@ -9,11 +9,14 @@ import re
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from itertools import accumulate, groupby
+from typing import Literal
 
+from symofros.base.routes import Choice, choose
 from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.program import Output, Program
-from symofros.generator.codegen.effort import PackGain, pack_gain
+from symofros.generator.codegen.effort import pack_figures
 from symofros.generator.codegen.limbs.plan import LimbPlan
 from symofros.generator.codegen.loops import Item, Loop, loop_lines, with_loops
 from symofros.generator.codegen.packs import PackPlan, Store
@@ -21,6 +24,9 @@ from symofros.generator.codegen.statements import Statement, StatementWriter
 from symofros.generator.codegen.trigonometry import block_lines
 from symofros.runtime.calls.kernel import LaneOptions, Precision
 
+# Which packs a text has: those of functions that are faster with them by count, or all, as
+# functions have that a routine finishes; where there are any, equal limbs share vectors, too.
+Packs = Literal["none", "where they pay", "all"]
 MAX_STATEMENTS = 1000
 # Past this length, shorter chunks compile twice as fast and run as fast (measured on a 52-link chain, gcc 12); below
 # it, long chunks run faster, because fewer values pass through memory.
@@ -40,10 +46,12 @@ class FunctionText:
     Attributes:
         code: Definitions of its chunks and of the function that calls them.
         work: Scratch: doubles, or vectors of a function on vectors.
+        choices: How it is written.
     """
 
     code: str
     work: int
+    choices: tuple[Choice, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -78,11 +86,13 @@ class FunctionWriter:
         inputs: Names of the input arrays, in order.
         outputs: Outputs to be stored, in order.
         given: Whether parameter-only values are read from `pre` (false for the init function itself).
-        packs: Whether values formed by the same operations share vectors.
+        packs: Which values formed by the same operations share vectors.
         limbs: Whether values of equal limbs do.
+        by_routine: Whether a routine finishes what the function computes.
 
     Attributes:
-        pack_gain: Whether the function is faster with its packs than without.
+        has_packs: Whether it forms vectors of packs.
+        choices: How values share vectors, and how equal parts are written.
     """
 
     def __init__(
@@ -92,8 +102,9 @@ class FunctionWriter:
         inputs: Sequence[str],
         outputs: Sequence[Output],
         given: bool = True,
-        packs: bool = False,
+        packs: Packs = "none",
         limbs: bool = False,
+        by_routine: bool = False,
     ) -> None:
         self.c_name = c_name
         self.inputs = tuple(inputs)
@@ -102,19 +113,32 @@ class FunctionWriter:
         pre = program.pre if given else {}
         stores = [Store(o.name, i, edge) for o in outputs for i, edge in enumerate(o.edges) if edge != 0]
         graph, nodes = program.graph, needed_nodes(program.graph, edges, pre)
-        plan = PackPlan(graph, nodes, pre, edges) if packs and graph.packs else None
-        self.pack_gain: PackGain = "clear" if plan is None else pack_gain(plan, len(nodes), stores)
+        plan = PackPlan(graph, nodes, pre, edges) if packs != "none" and graph.packs else None
+        figures = pack_figures(plan, len(nodes), stores) | {"by_routine": by_routine}
+        self.has_packs = plan is not None and bool(plan.vectors)
+        asked = {"none": "scalars", "where they pay": "", "all": "timed" if self.has_packs else ""}[packs]
+        vectors = choose("values by vectors", figures, asked)
         nodes, plans = (nodes, []) if plan is None else (plan.nodes, [plan])
         self.writer = StatementWriter(graph, nodes, pre, stores, plans)
         self.statements = self.writer.statements()
-        self._items = with_loops(self.writer, self.statements)
+        looped, spared = with_loops(self.writer, self.statements)
+        of_limbs = cache(lambda: LimbPlan(graph, nodes, pre, edges, program.limbs, plan))
         # Loops leave less to be compiled than vectors, which stay out of them.
-        if limbs and program.limbs and not any(isinstance(item, Loop) for item in self._items):
-            of_limbs = LimbPlan(graph, nodes, pre, edges, program.limbs, plan)
-            if of_limbs.spared:
-                self.writer = StatementWriter(graph, nodes, pre, stores, [*plans, of_limbs])
-                self.statements = self.writer.statements()
-                self._items = list(self.statements)
+        parts = choose(
+            "equal parts",
+            {
+                "statements": sum(max(1, len(statement.nodes)) for statement in self.statements),
+                "repeated_statements": spared,
+                "limb_groups": len(program.limbs) if limbs else 0,
+                "operations": len(nodes),
+                "spared_by_limbs": lambda: of_limbs().spared,
+            },
+        )
+        if parts.method == "limbs":
+            self.writer = StatementWriter(graph, nodes, pre, stores, [*plans, of_limbs()])
+            self.statements = self.writer.statements()
+        self._items = looped if parts.method == "loops" else list(self.statements)
+        self.choices: tuple[Choice, Choice] = vectors, parts
 
     def text(self) -> FunctionText:
         """The C text for one state: chunk functions, then the function that unpacks pointers and calls them."""
@@ -126,7 +150,7 @@ class FunctionWriter:
         arguments = ", ".join([*self.inputs, *(output.name for output in self.outputs), "work"])
         body += [f"    {self.c_name}_{i}({arguments});" for i in range(len(parts))]
         head = f"static void {self.c_name}(const double *const *in, double *const *out, double *restrict work) {{"
-        return FunctionText("\n".join([*parts, head, *body, "}"]), chunked.work)
+        return FunctionText("\n".join([*parts, head, *body, "}"]), chunked.work, self.choices)
 
     def text_on_vectors(self, lanes: LaneOptions) -> FunctionText:
         """The C text for several states, one in each lane of a vector; of a writer without packs.

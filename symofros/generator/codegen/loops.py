@@ -14,13 +14,11 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate
 
+from symofros.base import routes
 from symofros.generator.codegen.statements import NUMBER, VARIABLE, Leaf, Statement, StatementWriter
 
 # A loop has this many iterations at least, and spares so many variables.
 FEWEST, LEAST_SPARED = 6, 24
-# All loops of a function spare so many, and at least this share of all: where little repeats, loops only cut straight
-# code in pieces (M of a chain of 52 joints, of which 2 % was spared, took 15 % longer).
-LEAST_IN_ALL, LEAST_SHARE = 200, 0.5
 # Statements of a body at most, statements that a repetition is recognised by, places where it is looked for.
 _LONGEST, SEED, _PLACES = 400, 4, 16
 _MARK = re.compile("@(\\w+)")
@@ -94,16 +92,16 @@ Item = Statement | Loop
 LinesOf = Callable[[Statement, StatementWriter], list[str]]
 
 
-def with_loops(writer: StatementWriter, statements: Sequence[Statement]) -> list[Item]:
-    """The statements, runs that repeat as loops; as they are where loops would spare few.
+def with_loops(writer: StatementWriter, statements: Sequence[Statement]) -> tuple[list[Item], int]:
+    """The statements, runs that repeat as loops, and how many of them loops leave out.
 
     Args:
         writer: Writer of the statements.
         statements: Statements of one function in order.
     """
     weights = [max(1, len(statement.nodes)) for statement in statements]
-    if sum(weights) <= LEAST_IN_ALL:
-        return list(statements)
+    if sum(weights) <= routes.LEAST_REPEATED:
+        return list(statements), 0
     shapes, leaves = _shapes(writer, statements)
     items: list[Item] = []
     spared, at = 0, 0
@@ -113,8 +111,7 @@ def with_loops(writer: StatementWriter, statements: Sequence[Statement]) -> list
         items.append(Loop([statements[i : i + period] for i in starts], [leaves[i : i + period] for i in starts]))
         at = start + period * count
         spared += sum(weights[start + period : at])
-    pays = spared >= max(LEAST_IN_ALL, LEAST_SHARE * sum(weights))
-    return [*items, *statements[at:]] if pays else list(statements)
+    return [*items, *statements[at:]], spared
 
 
 def _shapes(writer: StatementWriter, statements: Sequence[Statement]) -> tuple[list[int], list[list[Leaf]]]:

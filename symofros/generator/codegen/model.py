@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from itertools import groupby
 from string import Template
 from textwrap import wrap
-from typing import Literal
+from typing import NamedTuple
 
-from symofros.base.c_names import c_string, identifier
+from symofros.base.names import c_string, identifier
+from symofros.base.routes import Choice
 from symofros.expr.edges import Edge
 from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.program import Function, Output, Program
 from symofros.generator.codegen import lanes, trigonometry
 from symofros.generator.codegen.function import FunctionText, FunctionWriter
+from symofros.generator.codegen.function import Packs as Packs
 from symofros.generator.codegen.limbs.vector import TYPES
-from symofros.generator.codegen.solvers import routines, sparse_systems, with_solver
+from symofros.generator.codegen.solvers import routines, solves_system, sparse_systems, with_solver
 from symofros.generator.codegen.sparse import SparseSystem
 from symofros.generator.passes.count import count_program
 from symofros.native import native_text
@@ -28,9 +30,18 @@ _INIT = "init_par"
 _WIDTH, _SPACE = 112, "\x00"
 # Names of parameters that a value without a name is described by.
 _MOST_NAMES = 4
-# Which packs a text has: those of functions that are faster with them by count, or all;
-# where there are any, equal limbs share vectors, too.
-Packs = Literal["none", "where they pay", "all"]
+
+
+class ModelText(NamedTuple):
+    """The C file of a program.
+
+    Attributes:
+        code: Its text.
+        choices: Methods by which each function is formed and written, where there are several, keyed by name and frame.
+    """
+
+    code: str
+    choices: dict[tuple[str, str], tuple[Choice, ...]]
 
 
 def model_source(
@@ -41,7 +52,19 @@ def model_source(
     c_name: str | None = None,
     packs: Packs = "none",
 ) -> str:
-    """The C file of a program.
+    """The C file of a program; arguments as of `model_text`."""
+    return model_text(program, record, generator, in_lanes, c_name, packs).code
+
+
+def model_text(
+    program: Program,
+    record: ModelRecord,
+    generator: str,
+    in_lanes: LaneOptions | None = None,
+    c_name: str | None = None,
+    packs: Packs = "none",
+) -> ModelText:
+    """The C file of a program, and how its functions are written.
 
     Args:
         program: Staged program.
@@ -55,44 +78,23 @@ def model_source(
     """
     name = c_name or identifier(record.name)
     vectors = in_lanes if any(function.solver is None for function in program.functions) else None
-    texts = [
-        "\n".join(
-            [
-                *legend(
-                    record,
-                    "parameters -> pre, all that depends on them alone",
-                    ["par"],
-                    described=_described_pre(program, record),
-                ),
-                _init_function(program, name),
-            ]
-        )
-    ]
-    rows, sparse = [], sparse_systems(program)
+    described = _described_pre(program, record)
+    head = legend(record, "parameters -> pre, all that depends on them alone", ["par"], described=described)
+    texts = ["\n".join([*head, _init_function(program, name)])]
+    rows, (sparse, system) = [], sparse_systems(program)
     for i, function in enumerate(program.functions):
         c_function = f"{name}_{identifier(function.name)}_f{i}"
-        text, row = _one_function(program, record, function, c_function, vectors, packs, sparse.get(function.name))
+        chosen = (*function.choices, *([system] if system is not None and solves_system(function) else []))
+        solved = sparse.get(function.name)
+        text, row = _one_function(program, record, function, c_function, vectors, packs, solved, chosen)
         texts.append(text)
         rows.append(row)
-    return Template(native_text("model/model.c.in")).substitute(
+    code = Template(native_text("model/model.c.in")).substitute(
         title=comment(record.name),
         generator=generator,
         hash=record.hash,
         operations=operations_text(program),
-        functions="\n\n".join(
-            [
-                *trigonometry.routines(texts, vectors is not None),
-                *([lanes.routines(vectors)] if vectors is not None else []),
-                *([native_text("model/pack.c.in")] if any("sym_pack " in text for text in texts) else []),
-                *(
-                    [native_text("model/limbs.c.in")]
-                    if any(f"{t} " in text for t in TYPES.values() for text in texts)
-                    else []
-                ),
-                *routines(program, bool(sparse)),
-                *texts,
-            ]
-        ),
+        functions="\n\n".join([*_called(texts, vectors), *routines(program, bool(sparse)), *texts]),
         tables="\n".join(
             [*(row.tables for row in rows), _function_table(name, rows), *_lane_table(name, rows, vectors)]
         ),
@@ -113,6 +115,18 @@ def model_source(
         par_default=_numbers(record.par_default),
         q_neutral=_numbers(record.q_neutral),
     )
+    return ModelText(code, {(f.name, f.frame): row.choices for f, row in zip(program.functions, rows, strict=True)})
+
+
+def _called(texts: Sequence[str], vectors: LaneOptions | None) -> Iterator[str]:
+    """Texts of what functions of vectors, sines and cosines call."""
+    yield from trigonometry.routines(texts, vectors is not None)
+    if vectors is not None:
+        yield lanes.routines(vectors)
+    if any("sym_pack " in text for text in texts):
+        yield native_text("model/pack.c.in")
+    if any(f"{kind} " in text for kind in TYPES.values() for text in texts):
+        yield native_text("model/limbs.c.in")
 
 
 def operations_text(program: Program) -> str:
@@ -152,11 +166,13 @@ class _Row:
         tables: Text of the tables of its arrays.
         row: Row of the table of functions.
         lanes: Row of the table of functions on vectors.
+        choices: How the function is written.
     """
 
     tables: str
     row: str
     lanes: str
+    choices: tuple[Choice, ...]
 
 
 def legend(
@@ -232,25 +248,23 @@ def _one_function(
     in_lanes: LaneOptions | None,
     packs: Packs,
     sparse: SparseSystem | None,
+    chosen: tuple[Choice, ...],
 ) -> tuple[str, _Row]:
-    """The code of a function, with its rows of tables."""
+    """The code of a function, with its rows of tables; `chosen` is how it is formed."""
     inputs = ["pre", *function.inputs]
     vectors, scratch = [], 0
     if function.solver is not None:
         in_lanes = None
-        text = with_solver(program, c_name, function, function.solver, packs != "none", sparse)
+        text = with_solver(program, c_name, function, function.solver, packs, sparse)
     else:
-        vectors_of_state = packs != "none"
-        writer = FunctionWriter(
-            program, c_name, inputs, function.outputs, packs=vectors_of_state, limbs=vectors_of_state
-        )
-        if packs == "where they pay" and writer.pack_gain != "clear":
+        writer = FunctionWriter(program, c_name, inputs, function.outputs, packs=packs, limbs=packs != "none")
+        if writer.has_packs and writer.choices[0].method not in ("packs", "timed"):
             without = FunctionWriter(program, c_name, inputs, function.outputs, limbs=True)
             text = _text_of_one_state(writer, without)
         else:
             text = writer.text()
         if in_lanes is not None:
-            scalars = FunctionWriter(program, c_name, inputs, function.outputs) if vectors_of_state else writer
+            scalars = FunctionWriter(program, c_name, inputs, function.outputs) if packs != "none" else writer
             on_vectors = scalars.text_on_vectors(in_lanes)
             strided = lanes.strided(c_name, program, function, on_vectors.work, in_lanes)
             vectors = ["#if SYM_LANES > 1", on_vectors.code, strided, "#endif"]
@@ -268,7 +282,7 @@ def _one_function(
         f"static const sym_array {c_name}_out[] = {{{arrays_out}}};"
     )
     of_lanes = f"    {{sizeof(sym_number), SYM_OWN, {work}, {c_name}_lanes}}" if vectors else "    {0, 0, 0, NULL}"
-    return code, _Row(tables, _row(function, c_name, len(inputs), work), of_lanes)
+    return code, _Row(tables, _row(function, c_name, len(inputs), work), of_lanes, chosen + text.choices)
 
 
 def _text_of_one_state(packed: FunctionWriter, without: FunctionWriter) -> FunctionText:
@@ -279,11 +293,12 @@ def _text_of_one_state(packed: FunctionWriter, without: FunctionWriter) -> Funct
         without: Writer of the function without packs.
     """
     plain = without.text()
-    if packed.pack_gain == "none":
-        return plain
+    vectors, _ = packed.choices
+    if vectors.method == "scalars":
+        return replace(plain, choices=(vectors, *plain.choices[1:]))
     text = packed.text()
     code = "\n".join(["#if SYM_PART < 8", text.code, "#else", plain.code, "#endif"])
-    return FunctionText(code, max(text.work, plain.work))
+    return FunctionText(code, max(text.work, plain.work), (vectors, *plain.choices[1:]))
 
 
 def _row(function: Function, c_name: str, n_in: int, work: int) -> str:

@@ -6,8 +6,9 @@ import re
 from collections.abc import Callable, Sequence
 from functools import cache, partial
 
+from symofros.base.routes import Choice
 from symofros.expr.program import Function, Output, Program, Solver
-from symofros.generator.codegen.function import FunctionText, FunctionWriter
+from symofros.generator.codegen.function import FunctionText, FunctionWriter, Packs
 from symofros.generator.codegen.sparse import SparseSystem
 from symofros.native import native_text
 
@@ -35,17 +36,25 @@ ROUTINES: dict[str, tuple[str, ...]] = {
 _OF_SYSTEMS = ("constrained", "project")
 
 
-def sparse_systems(program: Program) -> dict[str, SparseSystem]:
-    """Patterns of each function that solves for constrained motion, by its name; none where full matrices do better."""
-    systems = {}
-    for function in program.functions:
-        if function.solver is not None and function.solver.routine in _OF_SYSTEMS:
-            by_name = {output.name: output for output in function.outputs}
-            system = SparseSystem.of(by_name["M"], by_name["G"])
-            if system is None:
-                return {}
-            systems[function.name] = system
-    return systems
+def solves_system(function: Function) -> bool:
+    """Whether a function solves for constrained motion, with full matrices or with packed ones."""
+    return function.solver is not None and function.solver.routine in _OF_SYSTEMS
+
+
+def sparse_systems(program: Program) -> tuple[dict[str, SparseSystem], Choice | None]:
+    """Patterns of each function that solves for constrained motion, by its name, and the route of all of them.
+
+    There are no patterns where full matrices do better in one of them, and no route where no function is of the kind.
+    """
+    systems: dict[str, SparseSystem] = {}
+    route: Choice | None = None
+    for function in filter(solves_system, program.functions):
+        by_name = {output.name: output for output in function.outputs}
+        system, route = SparseSystem.of(by_name["M"], by_name["G"])
+        if system is None:
+            return {}, route
+        systems[function.name] = system
+    return systems, route
 
 
 def routines(program: Program, sparse: bool) -> list[str]:
@@ -61,7 +70,7 @@ def with_solver(
     c_name: str,
     function: Function,
     solver: Solver,
-    vectors: bool = False,
+    packs: Packs = "none",
     sparse: SparseSystem | None = None,
 ) -> FunctionText:
     """The C text of a function and of its parts, and the call of the routine that finishes it.
@@ -71,13 +80,13 @@ def with_solver(
         c_name: Name of the C function.
         function: Function whose outputs generated code computes.
         solver: Routine that finishes it.
-        vectors: Whether values formed by the same operations, and those of equal limbs, share vectors.
+        packs: Whether values formed by the same operations, and those of equal limbs, share vectors.
         sparse: Patterns of M and G, where these are packed.
     """
 
     def text(name: str, inputs: tuple[str, ...], outputs: Sequence[Output]) -> FunctionText:
-        writer = FunctionWriter(program, f"{c_name}_{name}", ["pre", *inputs], outputs, packs=vectors, limbs=vectors)
-        return writer.text()
+        limbs, c_function = packs != "none", f"{c_name}_{name}"
+        return FunctionWriter(program, c_function, ["pre", *inputs], outputs, True, packs, limbs, True).text()
 
     terms = text("terms", function.inputs, function.outputs if sparse is None else sparse.packed(function.outputs))
     parts = [text(part.name, part.inputs, part.outputs) for part in solver.parts]
@@ -85,7 +94,8 @@ def with_solver(
     head = f"static void {c_name}(const double *const *in, double *const *out, double *restrict work) {{"
     body, work = _CALLS[solver.routine](c_name, function, needs, sparse)
     body = [*_tables(solver, sparse), *body]
-    return FunctionText("\n".join([terms.code, *(part.code for part in parts), head, *body, "}"]), work)
+    code = "\n".join([terms.code, *(part.code for part in parts), head, *body, "}"])
+    return FunctionText(code, work, max(terms, *parts, key=lambda text: len(text.code)).choices)
 
 
 def _tables(solver: Solver, sparse: SparseSystem | None) -> list[str]:

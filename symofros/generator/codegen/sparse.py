@@ -10,11 +10,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import accumulate, chain
 
+from symofros.base.routes import Choice, choose, table_pays
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.program import Output
-
-# Operations of the full matrices that one by tables may take the time of, with margin for what is gained by neither.
-_WORTH = 8
 
 
 @dataclass(frozen=True)
@@ -92,32 +90,41 @@ class SparseSystem:
     reach: tuple[tuple[int, ...], ...]
 
     @staticmethod
-    def of(M: Output, G: Output) -> SparseSystem | None:
-        """The patterns of these matrices; None where full ones are as fast.
+    def of(M: Output, G: Output) -> tuple[SparseSystem | None, Choice]:
+        """The patterns of these matrices, None where full ones are as fast; and that choice.
 
         Args:
             M: (n, n).
             G: (m, n).
         """
+        full = 3 * G.shape[0] ** 2 * G.shape[1]
+        system, products = SparseSystem._worth(M, G, full)
+        route = choose("constrained system", {"table_products": products, "full_products": full})
+        return system if route.method == "sparse" else None, route
+
+    @staticmethod
+    def _worth(M: Output, G: Output, full: int) -> tuple[SparseSystem | None, int]:
+        """The patterns with the products of a solution; without them, a part of the products that is too much."""
         m, n = G.shape
         mass = Pattern.filled(
             [[row for row in range(k + 1, n) if _entry(M, n - 1 - row, n - 1 - k) != ZERO] for k in range(n)]
         )
         speeds = [tuple(k for k in range(n) if _entry(G, i, n - 1 - k) != ZERO) for i in range(m)]
         reach = [mass.reached(row) for row in speeds]
-        full = 3 * m * m * n
-        if _WORTH * (mass.updates + sum(len(mass.columns[k]) for row in reach for k in row)) > full:
-            return None
+        products = mass.updates + sum(len(mass.columns[k]) for row in reach for k in row)
+        if not table_pays(products, full):
+            return None, products
         neighbours = _neighbours(reach, n)
-        if _WORTH * sum(map(len, neighbours)) > full:
-            return None
+        products = sum(map(len, neighbours))
+        if not table_pays(products, full):
+            return None, products
         order = _least_degrees(neighbours)
         place = {condition: j for j, condition in enumerate(order)}
         schur = Pattern.filled([{place[i] for i in neighbours[c] if place[i] > place[c]} for c in order])
         system = SparseSystem(
             mass, schur, tuple(order), tuple(speeds[c] for c in order), tuple(reach[c] for c in order)
         )
-        return system if _WORTH * system.operations <= full else None
+        return system, system.operations
 
     @property
     def operations(self) -> int:

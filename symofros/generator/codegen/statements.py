@@ -12,7 +12,7 @@ from copy import copy
 from dataclasses import dataclass
 from heapq import merge
 
-from symofros.base.c_names import local_name
+from symofros.base.names import local_name
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph, Slot
 from symofros.expr.ops import ADD, DIV, MUL, OPS, STOP_GRADIENT

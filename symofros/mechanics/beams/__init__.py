@@ -6,7 +6,6 @@ from symofros.mechanics.beams.deformation import Deformation as Deformation
 from symofros.mechanics.beams.deformation import deformation_of as deformation_of
 from symofros.mechanics.beams.fields import Field as Field
 from symofros.mechanics.beams.fields import Monomial as Monomial
-from symofros.mechanics.beams.quadrature import stations as stations
 from symofros.mechanics.beams.rod_shape import RodShape as RodShape
 from symofros.mechanics.beams.section_law import section_law as section_law
 from symofros.mechanics.beams.shape_functions import MAX_MODES as MAX_MODES

@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import cached_property
 
+from symofros.base.routes import Choice
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.ops import STOP_GRADIENT
 from symofros.mechanics.dynamics.applied.forces import stored_energy
 from symofros.mechanics.dynamics.bodies.inertia import inertia_inputs
 from symofros.mechanics.dynamics.centroidal import central_mass, centroidal_momentum, centroidal_rate
 from symofros.mechanics.dynamics.coriolis import coriolis_matrix
+from symofros.mechanics.dynamics.derivatives import recursion
 from symofros.mechanics.dynamics.derivatives.differentiation import by_configuration, by_inputs
-from symofros.mechanics.dynamics.derivatives.recursion import inertia_force_derivatives, is_recursive
 from symofros.mechanics.dynamics.energy import kinetic_energy, potential_energy
 from symofros.mechanics.dynamics.equations_of_motion import EquationsOfMotion
 from symofros.mechanics.dynamics.forward.articulated import articulated_response, balances_by_link
@@ -42,6 +43,11 @@ class Equations(EquationsOfMotion):
         """Derivatives of some edges by the run-time parameters."""
         return by_inputs(self.kinematics, edges, "par", len(self.tree.coordinates.par))
 
+    @cached_property
+    def slopes_route(self) -> Choice:
+        """Method of the derivatives of the inertia forces by q and v."""
+        return recursion.route(self.kinematics, self.rotors)
+
     def _slopes(self, balance: Callable[[Sequence[Edge]], list[Edge]], a: Sequence[Edge]) -> tuple[Matrix, Matrix]:
         """Derivatives of a balance by q and by v at constant a, those of rigid trees' inertia forces by recursion.
 
@@ -49,10 +55,12 @@ class Equations(EquationsOfMotion):
             balance: Gives the balance for the inertia forces, in whose first rows they are added.
             a: Acceleration (nv).
         """
-        if not is_recursive(self.kinematics, self.rotors):
+        if self.slopes_route.method == "graph":
             edges = balance(self.inertia_forces(a))
             return self.by_q(edges), self.by_v(edges)
-        inertial = inertia_force_derivatives(self.kinematics, self._mass_matrix, self._inertias[0], a, self.gravity)
+        inertial = recursion.inertia_force_derivatives(
+            self.kinematics, self._mass_matrix, self._inertias[0], a, self.gravity
+        )
         others = balance([ZERO] * self.nv)
         by_q, by_v = self.by_q(others), self.by_v(others)
         for slopes, rows in zip((by_q, by_v), inertial, strict=True):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import cached_property
@@ -124,18 +124,18 @@ class EquationsOfMotion:
         return self.factors.solve(self.force_minus_bias)
 
     @property
-    def is_articulated(self) -> bool:
-        """Whether each joint concerns its link and its parent alone, rotors included."""
-        return all(is_local(self.kinematics, rotor) for rotor in self.rotors)
+    def route_figures(self) -> dict[str, float | Callable[[], float]]:
+        """Figures by which methods of forward dynamics apply: rotors that tie more than neighbours."""
+        return {"distant_rotors": sum(not is_local(self.kinematics, rotor) for rotor in self.rotors)}
 
     @cached_property
     def articulated(self) -> list[Edge]:
         """Acceleration v' by articulated bodies (nv).
 
         Raises:
-            DescriptionError: As for `factors`; or not `is_articulated`.
+            DescriptionError: As for `factors`; or a rotor ties more than neighbours.
         """
-        if not self.is_articulated:
+        if self.route_figures["distant_rotors"]:
             raise DescriptionError(
                 Problem(
                     f"system '{self.tree.system.name}': forward dynamics by articulated bodies",

@@ -8,9 +8,9 @@ from itertools import chain
 from typing import Any, NamedTuple
 
 from symofros.base.functions import FUNCTIONS, INPUTS, ModelFunction, OutputArray, size_of
+from symofros.base.routes import Choice, choose, taken
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.instants import operands_function
-from symofros.expr.packs.pack import WIDTH
 from symofros.expr.program import Function, Output, Program, Solver
 from symofros.expr.substitute import substitute
 from symofros.mechanics.beams.integrals import at_middle
@@ -20,6 +20,7 @@ from symofros.mechanics.dynamics.constraints.wrenches import acts_on_bodies
 from symofros.mechanics.dynamics.derivatives.adjoints import weighted_derivatives
 from symofros.mechanics.dynamics.derivatives.hessians import hessian, stacked
 from symofros.mechanics.dynamics.derivatives.second_derivatives import hessian_vector_product, second_derivatives
+from symofros.mechanics.dynamics.derivatives.second_derivatives import route as by_two_speeds_route
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.dynamics.frame_equations import FrameEquations
 from symofros.mechanics.topology.formulas import timed_values
@@ -38,19 +39,19 @@ class Methods(NamedTuple):
     """Methods of forward dynamics.
 
     Attributes:
-        constraints: Method under constraints: "multipliers" or "null_space".
-        trees: Method for trees: "articulated" or "factors".
-        slopes: Method for the first derivatives of forward dynamics of trees: "articulated" or "factors".
+        trees: Route of the acceleration of trees.
+        slopes: Method asked for of its first derivatives and adjoints: "articulated", or "" for none.
+        constraints: Method asked for under constraints, as in Options.
     """
 
-    constraints: str = "multipliers"
-    trees: str = "factors"
-    slopes: str = "factors"
+    trees: Choice = taken("acceleration of trees", "factors")
+    slopes: str = ""
+    constraints: str = ""
 
 
 _DEFAULT = Methods()
-# Steps of elimination, eight columns each, up to which the derivatives are solved for by generated code.
-_MOST_STEPS = 12000
+# Outputs with the derivatives of inertia forces by q and v.
+_BY_STATE = ("residual_by_q", "residual_by_v", "inverse_dynamics_by_q", "inverse_dynamics_by_v")
 
 
 def form_program(equations: Equations, requests: Sequence[Request], methods: Methods = _DEFAULT) -> Program:
@@ -74,13 +75,6 @@ def form_program(equations: Equations, requests: Sequence[Request], methods: Met
     )
     groups = {group: size_of(size, known) for group, (size, _) in INPUTS.items()}
     return Program(equations.tree.system.name, equations.g, groups, functions, limbs=equal_limbs(equations.tree))
-
-
-def forward_methods(equations: Equations) -> tuple[str, ...]:
-    """The ways to form forward dynamics, the most accurate first; under constraints there is one."""
-    if equations.tree.system.constraints:
-        return ("factors",)
-    return ("articulated", "factors") if equations.is_articulated else ("factors",)
 
 
 def _sizes(e: Equations) -> dict[str, int]:
@@ -112,7 +106,13 @@ def _function(e: Equations, request: Request, methods: Methods, known: Mapping[s
     source: Any = FrameEquations(e, e.tree.frame(request.frame)) if row.of_frame else e
     outputs = tuple(_output(array, getattr(source, array.source), known) for array in row.outputs)
     implicit = tuple(name for name in e.implicit_inputs if name not in row.inputs)
-    return Function(row.name, request.frame, (*row.inputs, *implicit), outputs)
+    choices = (choose("inertia forces"),) if row.name == "inverse_dynamics" else _slopes_routes(e, row)
+    return Function(row.name, request.frame, (*row.inputs, *implicit), outputs, choices=choices)
+
+
+def _slopes_routes(e: Equations, row: ModelFunction) -> tuple[Choice, ...]:
+    """The route of the inertia forces' derivatives among a function's outputs, once these are formed."""
+    return (e.slopes_route,) if any(array.source in _BY_STATE for array in row.outputs) else ()
 
 
 def _transposed(e: Equations, row: ModelFunction, of: Function, methods: Methods, known: Mapping[str, int]) -> Function:
@@ -126,23 +126,24 @@ def _transposed(e: Equations, row: ModelFunction, of: Function, methods: Methods
         slopes = tuple(_output(array, gradient[group], known) for array, group in zip(row.outputs, by, strict=True))
         part = Function("slopes", "", (*FUNCTIONS["residual_derivatives"].inputs, "a_bar", "lam_bar"), slopes)
         solver = Solver("transpose", _returns(row, known), (part,), measures_of(e.tree))
-        return Function(row.name, "", inputs, _constrained_terms(e, e.gamma), solver)
+        choices = (choose("derivatives of constrained motion"),)
+        return Function(row.name, "", inputs, _constrained_terms(e, e.gamma), solver, choices=choices)
     groups = {array.name: group for group, array in FUNCTIONS[row.transposes].cotangents.items()}
     weighted = [(output, groups[output.name]) for output in of.outputs]
     weights = [e.g.input(group, k) for output, group in weighted for k in range(len(output.edges))]
+    choice = choose("vector-Jacobian product")
     if of.name == "forward_dynamics":
-        gradient = _forward_gradient(e, methods, weights, by)
+        choice = choose("adjoint of the acceleration", e.route_figures, methods.slopes)
+        gradient = _forward_gradient(e, choice.method, weights, by)
     else:
         gradient = weighted_derivatives(e.kinematics, of.edges(), weights, by)
     outputs = tuple(_output(array, gradient[group], known) for array, group in zip(row.outputs, by, strict=True))
-    return Function(row.name, of.frame, inputs, outputs)
+    return Function(row.name, of.frame, inputs, outputs, choices=(choice,))
 
 
-def _forward_gradient(
-    e: Equations, methods: Methods, weights: Sequence[Edge], by: Sequence[str]
-) -> dict[str, list[Edge]]:
+def _forward_gradient(e: Equations, method: str, weights: Sequence[Edge], by: Sequence[str]) -> dict[str, list[Edge]]:
     """Gradient of w . a of a tree, a = M^-1 (Q - h), as -mu . dR/dx of the balance R = M a + h - Q (eq. 10)."""
-    if methods.trees == "articulated":
+    if method == "articulated":
         a, mu = e.articulated, e.articulated_solution(weights)
     else:
         a, mu = e.acceleration, e.factors.solve(weights)
@@ -176,13 +177,14 @@ def _returns(row: ModelFunction, known: Mapping[str, int]) -> tuple[tuple[str, t
 def _forward_dynamics(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[str, int]) -> Function:
     """Forward dynamics: accelerations of a tree; under constraints the terms, for a solver that copes with any rank."""
     if not e.tree.system.constraints:
-        a = e.articulated if methods.trees == "articulated" else e.acceleration
-        return Function(row.name, "", tuple(group for group in row.inputs if group != "gains"), (_vector("a", a),))
-    routine = {"multipliers": "constrained", "null_space": "null_space"}[methods.constraints]
+        a = e.articulated if methods.trees.method == "articulated" else e.acceleration
+        inputs = tuple(group for group in row.inputs if group != "gains")
+        return Function(row.name, "", inputs, (_vector("a", a),), choices=(methods.trees,))
+    choice = choose("constrained motion", asked=methods.constraints)
+    routine = {"multipliers": "constrained", "null_space": "null_space"}[choice.method]
     terms = (*_constrained_terms(e, e.gamma_baumgarte), *_residuals(e))
-    return Function(
-        row.name, "", row.inputs, terms, Solver(routine, _returns(row, known), (_move(e),), measures_of(e.tree))
-    )
+    solver = Solver(routine, _returns(row, known), (_move(e),), measures_of(e.tree))
+    return Function(row.name, "", row.inputs, terms, solver, choices=(choice,))
 
 
 def _constrained_terms(e: Equations, right: Sequence[Edge]) -> tuple[Output, ...]:
@@ -197,16 +199,20 @@ def _jacobian(e: Equations) -> Output:
 
 def _forward_slopes(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[str, int]) -> Function:
     """Derivatives of forward dynamics: da/dx = -M^-1 dR/dx at the motion that a = M^-1 (Q - h) makes."""
-    if methods.slopes == "articulated" and not e.constraints:
-        return _articulated_slopes(e, row, known)
+    if e.constraints:
+        return _forward_slopes_by_routine(e, row, choose("derivatives of constrained motion"), known)
     columns = sum(array.sizes(known)[1] for array in row.outputs)
-    if e.constraints or e.factors.entries * columns > _MOST_STEPS * WIDTH:
-        return _forward_slopes_by_routine(e, row, known)
+    steps = {} if methods.slopes else {"elimination_steps": e.factors.entries * columns}
+    choice = choose("derivatives of the acceleration", steps | e.route_figures, methods.slopes)
+    if choice.method == "articulated":
+        return replace(_articulated_slopes(e, row, known), choices=(choice,))
+    if choice.method == "routine":
+        return _forward_slopes_by_routine(e, row, choice, known)
     outputs = []
     for array in row.outputs:
         solved = e.factors.solve_columns(e.slopes_in_motion(array.name))
         outputs.append(_matrix(array.name, (e.nv, array.sizes(known)[1]), [[-edge for edge in of] for of in solved]))
-    return Function(row.name, "", row.inputs, tuple(outputs))
+    return Function(row.name, "", row.inputs, tuple(outputs), choices=(choice, *_slopes_routes(e, row)))
 
 
 def _articulated_slopes(e: Equations, row: ModelFunction, known: Mapping[str, int]) -> Function:
@@ -221,7 +227,7 @@ def _articulated_slopes(e: Equations, row: ModelFunction, known: Mapping[str, in
     return Function(row.name, "", row.inputs, tuple(outputs))
 
 
-def _forward_slopes_by_routine(e: Equations, row: ModelFunction, known: Mapping[str, int]) -> Function:
+def _forward_slopes_by_routine(e: Equations, row: ModelFunction, choice: Choice, known: Mapping[str, int]) -> Function:
     """Derivatives with constraints, or where generated code would be long: terms and slopes, for a routine."""
     if not e.constraints:
         e.refuse_massless()
@@ -229,7 +235,9 @@ def _forward_slopes_by_routine(e: Equations, row: ModelFunction, known: Mapping[
     # The routine calls this part with the inputs of the residual, in that order.
     part = Function("slopes", "", FUNCTIONS["residual_derivatives"].inputs, slopes)
     solver = Solver("differentiate", _returns(row, known), (part,), measures_of(e.tree))
-    return Function(row.name, "", row.inputs, _constrained_terms(e, e.gamma), solver)
+    return Function(
+        row.name, "", row.inputs, _constrained_terms(e, e.gamma), solver, choices=(choice, *_slopes_routes(e, row))
+    )
 
 
 def _forward_hessian(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[str, int]) -> Function:
@@ -251,7 +259,8 @@ def _forward_hessian(e: Equations, row: ModelFunction, methods: Methods, known: 
         Function("curvature", "", (*inputs, "a_bar", "lam_bar"), outputs),
     )
     solver = Solver("hessian", _returns(row, known), parts, measures_of(e.tree))
-    return Function(row.name, "", row.inputs, _constrained_terms(e, e.gamma), solver)
+    choices = (choose("second derivatives of the motion"), e.slopes_route)
+    return Function(row.name, "", row.inputs, _constrained_terms(e, e.gamma), solver, choices=choices)
 
 
 def _inverse_hessian(e: Equations) -> list[list[list[Edge]]]:
@@ -323,16 +332,20 @@ def _mass_pattern(e: Equations) -> list[tuple[int, int]]:
 
 
 def _formed(
-    form: Callable[[Equations], Sequence[Any]],
+    form: Callable[[Equations], Sequence[Any]], routes: Callable[[Equations], tuple[Choice, ...]]
 ) -> Callable[[Equations, ModelFunction, Methods, Mapping[str, int]], Function]:
     """Builder of a function all of whose outputs are formed together."""
 
     def build(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[str, int]) -> Function:
         outputs = tuple(_output(array, value, known) for array, value in zip(row.outputs, form(e), strict=True))
         implicit = tuple(name for name in e.implicit_inputs if name not in row.inputs)
-        return Function(row.name, "", (*row.inputs, *implicit), outputs)
+        return Function(row.name, "", (*row.inputs, *implicit), outputs, choices=routes(e))
 
     return build
+
+
+def _weighted(_: Equations) -> tuple[Choice, ...]:
+    return (choose("weighted second derivatives"),)
 
 
 def _rest_stiffness(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[str, int]) -> Function:
@@ -368,10 +381,12 @@ _BUILDERS: dict[str, _Builder] = {
     "forward_dynamics_by_par": _forward_slopes,
     "mass_matrix_values": _mass_matrix_values,
     "mass_matrix_pattern": _mass_matrix_pattern,
-    "inverse_dynamics_second_derivatives": _formed(second_derivatives),
-    "inverse_dynamics_hessian": _formed(_inverse_hessian),
+    "inverse_dynamics_second_derivatives": _formed(
+        second_derivatives, lambda e: (by_two_speeds_route(e), e.slopes_route)
+    ),
+    "inverse_dynamics_hessian": _formed(_inverse_hessian, _weighted),
     "forward_dynamics_hessian": _forward_hessian,
-    "inverse_dynamics_hvp": _formed(hessian_vector_product),
+    "inverse_dynamics_hvp": _formed(hessian_vector_product, _weighted),
     "project": _project,
     "rest_stiffness": _rest_stiffness,
     "rest_forces": _rest_forces,

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from symofros.mechanics.topology.beams import section_values as section_values
+from symofros.mechanics.topology.beams import beam_mass as beam_mass
 from symofros.mechanics.topology.conditions import Condition as Condition
 from symofros.mechanics.topology.coordinates import coordinate_names as coordinate_names
 from symofros.mechanics.topology.coordinates import coordinate_symbols as coordinate_symbols
 from symofros.mechanics.topology.coordinates import joint_units as joint_units
-from symofros.mechanics.topology.coordinates import rate_keys as rate_keys
-from symofros.mechanics.topology.coordinates import rate_symbols as rate_symbols
-from symofros.mechanics.topology.coordinates import speed_keys as speed_keys
+from symofros.mechanics.topology.coordinates import motion_symbols as motion_symbols
 from symofros.mechanics.topology.coordinates import speed_symbols as speed_symbols
 from symofros.mechanics.topology.graph import find_problems as find_problems
 from symofros.mechanics.topology.numbers import Numbers as Numbers

@@ -226,6 +226,13 @@ def section_values(beam: Beam, value: Value, xi: Array, values: Mapping[str, Arr
     return np.array(np.broadcast_to(along, np.broadcast_shapes(np.shape(along), x.shape)))
 
 
+def beam_mass(beam: Beam, numbers: Numbers) -> float:
+    """Mass of a beam [kg], by Gauss's quadrature where its section changes."""
+    xi, w = stations((0.0, 1.0), _POINTS[0])
+    along = section_values(beam, beam.rhoA, np.array(xi), numbers.parameters)[0]
+    return numbers.value(beam.length) * float(along @ np.array(w))
+
+
 def least_stiffness(beam: Beam, values: Mapping[str, Array | float]) -> tuple[Array, Array]:
     """Least eigenvalue of a matrix of stiffness, its diagonal scaled to one, and its station x [m] (states).
 

@@ -76,6 +76,12 @@ def rate_keys(joint: Joint) -> tuple[str, ...]:
     return tuple(rate_symbol(name, 2) for name in coordinate_names(joint))
 
 
+def motion_symbols(joint: Joint) -> tuple[str, ...]:
+    """All that formulas may call the coordinates of a joint, its speeds and their rates, in one order for all names."""
+    of_motion = (coordinate_symbols, speed_symbols, rate_symbols, speed_keys, rate_keys)
+    return tuple(name for names in of_motion for name in names(joint))
+
+
 @dataclass(frozen=True)
 class CoordinateMap:
     """Index map: names to indices of q, v, u, par.

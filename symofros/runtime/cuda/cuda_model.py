@@ -19,8 +19,8 @@ from symofros.runtime.cuda.driver import Driver, driver
 from symofros.runtime.cuda.nvrtc import KernelUsage, compile_cuda, usage_of
 from symofros.runtime.cuda.receivers import receivers, strided_result
 from symofros.runtime.cuda.streams import is_captured, refused_in_capture, stream_handle
+from symofros.runtime.manifold import at_unit_length
 from symofros.runtime.record import ModelRecord
-from symofros.runtime.unit_quaternions import at_unit_length
 
 Key = tuple[str, str]
 

@@ -8,7 +8,7 @@ from symofros.base.arguments import check_argument
 from symofros.runtime import manifold
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.functions import ArrayLike, Functions
-from symofros.runtime.unit_quaternions import at_unit_length, normalized
+from symofros.runtime.manifold import at_unit_length, normalized
 
 
 class ConfigurationFunctions(Functions):

@@ -12,8 +12,8 @@ from symofros.base.arguments import checked
 from symofros.base.arrays import Array, real_array
 from symofros.errors import Problem, ShapeError, SymofrosError
 from symofros.runtime import manifold
+from symofros.runtime.manifold import at_unit_length
 from symofros.runtime.model import ArrayLike, Model
-from symofros.runtime.unit_quaternions import at_unit_length
 from symofros.simulation.analysis.chart_derivatives import ChartSlopes, chart_slopes
 from symofros.simulation.settings import first_configuration, vector
 from symofros.simulation.stepping.methods import METHODS, method_meant

@@ -6,8 +6,8 @@ import numpy as np
 
 from symofros.base.arrays import Array, numeric, vector
 from symofros.errors import Problem, ShapeError
+from symofros.runtime.manifold import at_unit_length
 from symofros.runtime.model import ArrayLike, Model
-from symofros.runtime.unit_quaternions import at_unit_length
 
 
 def given_configuration(model: Model, q: ArrayLike) -> Array:

@@ -13,7 +13,7 @@ import numpy as np
 from symofros.base.arrays import Array
 from symofros.base.names import coordinate_of, speed_of
 from symofros.base.options import Options
-from symofros.compiler import compile_system, program_of
+from symofros.compiler import Compilation, compile_system
 from symofros.description import System
 from symofros.errors import (
     AssemblyError,
@@ -24,7 +24,6 @@ from symofros.errors import (
     UnknownNameError,
 )
 from symofros.errors import did_you_mean as near
-from symofros.generator import count_program
 from symofros.runtime.beams import BeamBending, largest_bending
 from symofros.runtime.model import Model
 from symofros.simulation.analysis.kinematics.starts import closed_start, stated_names
@@ -260,7 +259,7 @@ class SceneRunner:
         known = self._counts.setdefault(repr(system), {})
         new = [name for name in functions if name not in known]
         if new:
-            counted = count_program(program_of(system, new))
+            counted = Compilation(system, Options(tuple(new))).operations
             known.update({name: counted[name, ""].total for name in new})
         return {name: known[name] for name in functions}
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import pytest
 
+from symofros.base.routes import SHORT, TIE, choose
 from symofros.expr.edges import ONE, Edge
 from symofros.expr.graph import Graph, Slot
 from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.packs.combine import linear_combination
 from symofros.expr.packs.pack import WIDTH, Pack
 from symofros.expr.program import Function, Output, Program
-from symofros.generator.codegen.effort import PACKED, SHORT, TIE, cheapest, effort, pack_gain
+from symofros.generator.codegen.effort import PACKED, effort, pack_figures
 from symofros.generator.codegen.packs import PackPlan, Store
 
 
@@ -53,19 +54,26 @@ def test_constants_and_parameters_cost_nothing() -> None:
 
 
 @pytest.mark.parametrize(
-    ("first", "second", "name"), [(100, 100, "first"), (104, 100, "first"), (107, 100, "second"), (90, 100, "first")]
+    ("first", "second", "name"),
+    [(100, 100, "articulated"), (104, 100, "articulated"), (107, 100, "factors"), (90, 100, "articulated")],
 )
 def test_the_cheapest_and_ties(first: int, second: int, name: str) -> None:
     assert 1.04 < TIE < 1.07
-    assert cheapest({"first": chained(first), "second": chained(second)}) == name
-    assert cheapest({"only": chained(first)}) == "only"
+    figures = {
+        "distant_rotors": 0,
+        "articulated_effort": spent(chained(first)),
+        "factors_effort": spent(chained(second)),
+    }
+    assert choose("acceleration of trees", figures).method == name
+    assert choose("acceleration of trees", {"distant_rotors": 1}).method == "factors"
 
 
 def gain(g: Graph, edges: list[Edge]) -> str:
     """Whether packs pay in a function with these outputs."""
     stores = [Store("y", i, edge) for i, edge in enumerate(edges)]
     nodes = needed_nodes(g, edges)
-    return pack_gain(PackPlan(g, nodes, {}, edges), len(nodes), stores)
+    figures = pack_figures(PackPlan(g, nodes, {}, edges), len(nodes), stores)
+    return choose("values by vectors", figures | {"by_routine": False}).method
 
 
 def repeated(g: Graph, times: int) -> tuple[Edge, ...]:
@@ -79,14 +87,14 @@ def repeated(g: Graph, times: int) -> tuple[Edge, ...]:
 
 def test_packs_pay_where_more_is_computed_than_put_into_lanes() -> None:
     g = Graph()
-    assert gain(g, list(repeated(g, 8))) == "clear"
+    assert gain(g, list(repeated(g, 8))) == "packs"
 
 
 def test_packs_do_not_pay_where_all_is_put_in_for_one_operation() -> None:
     """Eight numbers are put into lanes and eight are read one by one, for two operations on a pack."""
     g = Graph()
     lanes = repeated(g, 1)
-    assert gain(g, [g.mul(g.input("v", i), lane) for i, lane in enumerate(lanes)]) == "none"
+    assert gain(g, [g.mul(g.input("v", i), lane) for i, lane in enumerate(lanes)]) == "scalars"
 
 
 def test_lanes_that_are_stored_together_cost_nothing() -> None:
@@ -94,12 +102,12 @@ def test_lanes_that_are_stored_together_cost_nothing() -> None:
     g = Graph()
     lanes = repeated(g, 1)
     others = [g.mul(g.input("v", i), g.input("v", i + 1)) for i in range(160)]
-    assert gain(g, [*others, *lanes]) == "in doubt"
-    assert gain(g, [*others, *(g.mul(g.input("v", i), lane) for i, lane in enumerate(lanes))]) == "none"
+    assert gain(g, [*others, *lanes]) == "by processor"
+    assert gain(g, [*others, *(g.mul(g.input("v", i), lane) for i, lane in enumerate(lanes))]) == "scalars"
 
 
 def test_packs_of_long_functions_are_not_judged() -> None:
     g = Graph()
     lanes = repeated(g, 1)
     long = [g.mul(lanes[i % WIDTH], g.input("v", i)) for i in range(SHORT)]
-    assert gain(g, long) == "clear"
+    assert gain(g, long) == "packs"

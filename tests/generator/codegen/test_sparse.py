@@ -26,7 +26,7 @@ FORWARD = ("forward_dynamics", "project")
 
 def system_of(system: sf.System, function: str = "forward_dynamics") -> SparseSystem:
     stated = Compilation(system, sf.Options(functions=FORWARD))
-    return sparse_systems(stated.program)[function]
+    return sparse_systems(stated.program)[0][function]
 
 
 @st.composite
@@ -93,14 +93,14 @@ def test_the_work_grows_as_the_loops_do(family: type) -> None:
 def test_few_loops_stay_with_full_matrices(name: str) -> None:
     """There their loops over contiguous rows are faster."""
     stated = Compilation(MODELS[name], sf.Options(functions=FORWARD))
-    assert sparse_systems(stated.program) == {}
+    assert sparse_systems(stated.program)[0] == {}
     assert "sym_sparse" not in model_source(stated.program, stated.record, "test").replace("struct sym_sparse", "")
 
 
 def test_packed_matrices_hold_every_entry() -> None:
     stated = Compilation(n_four_bar(6), sf.Options(functions=("forward_dynamics",)))
     (function,) = stated.program.functions
-    sparse = sparse_systems(stated.program)["forward_dynamics"]
+    sparse = sparse_systems(stated.program)[0]["forward_dynamics"]
     for full, packed in zip(function.outputs, sparse.packed(function.outputs), strict=True):
         lower = _lower(full) if full.name == "M" else full.edges
         assert sorted(filter(None, lower)) == sorted(filter(None, packed.edges)), full.name

@@ -28,7 +28,7 @@ IN_PINOCCHIO = ("double_pendulum", "space_arm", "heavy_top", "joint_zoo", "torqu
 
 @pytest.mark.parametrize("name", SAMPLE)
 def test_momentum_is_linear_in_the_speeds_and_moves_the_mass_centre(name: str, rng: np.random.Generator) -> None:
-    m = model(name, "interpreter")
+    m = model(name)
     q, v = m.random_state(rng)
     a = rng.normal(size=m.nv)
     A, h = m.centroidal_momentum_matrix(q), m.centroidal_momentum(q, v)
@@ -75,7 +75,7 @@ def test_pinocchio_has_the_same_momentum_and_rate(name: str, rng: np.random.Gene
     pin = require("pinocchio", "validation")
     engine = trees.build(Subject(name, MODELS[name]))
     assert isinstance(engine, trees.PinocchioEngine)
-    m = model(name, "interpreter")
+    m = model(name)
     q, v = m.random_state(rng)
     a = rng.normal(size=m.nv)
     T, data = engine.chart.transform(q[None])[0], engine.model.createData()

@@ -102,6 +102,13 @@ def test_a_urdf_brings_its_text_and_its_digits(tmp_path: Path, floating_base: bo
     assert any(b.joint and b.joint.kind == "free" for b in subject.system.bodies) == floating_base
 
 
+@pytest.mark.parametrize("reading", [ReadingOptions(dissipation="viscous"), ReadingOptions(limits="stops")])
+def test_who_reads_a_urdf_by_itself_is_not_asked_about_other_forces(tmp_path: Path, reading: ReadingOptions) -> None:
+    path = tmp_path / "arm.urdf"
+    path.write_text(URDF)
+    assert Case("arm", path, reading).load().urdf is None
+
+
 def test_a_file_that_is_missing(tmp_path: Path) -> None:
     with pytest.raises((sf.DescriptionError, OSError), match="nowhere"):
         Case("nowhere", tmp_path / "nowhere.urdf").load()

@@ -36,7 +36,7 @@ def made(
     model: str = "panda", function: str = "dynamics", by: str = "symofros", time: float = 100.0, operations: int = 1000
 ) -> Made:
     counts = {"mul": operations // 2, "add": operations // 2, "div": 0, "call": 0}
-    return Made(model, 7, function, by, "gcc -O3", time, 0.01, 0.3, 40000, 9000, 500, counts, 640)
+    return Made(0.01, 0.3, 40000, 9000, 500, counts, 640, model, 7, function, by, "gcc -O3", time)
 
 
 def cubic() -> Record:

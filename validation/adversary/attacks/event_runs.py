@@ -135,10 +135,14 @@ def judge(scene: Scene) -> Verdict:
     if not claimed_good(run):
         return refused(run.outcome)
     found, claim = np.array([one.t for one in run.events]), f"'{run.outcome}', without a note"
-    number = compared("number of events that are missed or told twice", abs(len(found) - len(exact)), 0.5, claim)
-    if len(found) != len(exact) or not len(exact):
+    # Of a motion that is late the last crossings may lie behind the end.
+    least = int(np.count_nonzero(exact < span - allowed))
+    missed = abs(len(found) - min(max(len(found), least), len(exact)))
+    number = compared("number of events that are missed or told twice", missed, 0.5, claim)
+    if missed or not len(found):
         return number
-    return worst(number, compared("time of an event", float(np.abs(found - exact).max()), allowed, claim))
+    errors = np.abs(found - exact[: len(found)])
+    return worst(number, compared("time of an event", float(errors.max()), allowed, claim))
 
 
 ATTACK = Attack(

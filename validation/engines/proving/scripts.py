@@ -66,103 +66,83 @@ class Proof:
 
 
 @dataclass
-class Shown:
-    """Cases that show faults, by engine and model: the next fault of theirs is looked for there first.
+class Prover:
+    """Writes scripts of red cells, and runs them.
 
     Attributes:
-        cases: The cases.
+        worker: Process that the engines run in.
+        folder: Folder of the scripts.
+        tries: Bound on the cases that are tried to shrink each fault.
+        shown: Cases that show faults, by engine and model: the next fault of theirs is looked for there first.
     """
 
-    cases: dict[tuple[str, str], list[Case]] = field(default_factory=dict)
+    worker: Worker
+    folder: Path
+    tries: int = TRIES
+    shown: dict[tuple[str, str], list[Case]] = field(default_factory=dict)
 
-    def of(self, red: Judged) -> list[Case]:
-        """Those of a red cell's engine and model."""
-        return self.cases.setdefault((red.cell.engine, red.cell.model), [])
+    def prove(self, plugin: EnginePlugin, red: Judged) -> Proof:
+        """A script of a red cell, run in a fresh process: the folder's where it still fails, else one of a shrunk case.
 
+        Whatever the plug-in raises on the way is said in place of a proof.
+        """
+        made = attempted(self._proved, plugin, red)
+        return _proof(plugin, red, "", f"no script: {made.words}", False) if isinstance(made, Raised) else made
 
-def shrunk(
-    plugin: EnginePlugin,
-    red: Judged,
-    worker: Worker,
-    truths: Truths,
-    tries: int = TRIES,
-    shown: Shown | None = None,
-) -> Judged:
-    """The smallest case that shows the fault of a red cell; of a crash, the case itself."""
-    answer = red.answer
-    if answer.layout is None or answer.state is None or red.cell.verdict not in ("wrong", "imprecise"):
-        return red
-    # A fault that is no matter of rounding is seen without asking how far roundings go.
-    quick = Truths(perturbations=0) if red.cell.verdict == "wrong" else truths
-    job = Job(plugin.name, red.tree, (answer.function,), form=red.form)
-    end = time.monotonic() + _PATIENCE
-
-    def asked(case: Case, how: Truths) -> Judged:
-        return next(judged(plugin, replace(job, tree=case.tree, pieces=case.pieces, text=case.text), how, worker))
-
-    def shows(case: Case, how: Truths = quick) -> bool:
-        if time.monotonic() > end:
-            return False
-        try:
-            one = asked(case, how)
-        except (ArithmeticError, ValueError, RuntimeError):  # Singular there, or of no size, here or in the worker.
-            return False
-        return one.cell.verdict == red.cell.verdict and one.cell.error >= _KEPT * min(red.cell.error, 1.0)
-
-    first = Case(red.tree, taken(answer.layout, answer.state), red.form, red.text)
-    known = (shown or Shown()).of(red)
-    begun = next((case for case in sorted(known, key=size) if size(case) < size(first) and shows(case)), first)
-    case = smallest(begun, shows, tries) if tries else begun
-    final = asked(case, truths)
-    if final.cell.verdict != red.cell.verdict:
-        # Where roundings go far, as beside what is singular, nothing is shown: asked of each case.
-        end = time.monotonic() + _PATIENCE
-        case = smallest(first, lambda one: shows(one, truths), tries)
-        final = asked(case, truths)
-    if case is first or final.cell.verdict != red.cell.verdict:
-        return red
-    known.append(case)
-    return final
-
-
-def prove(
-    plugin: EnginePlugin,
-    red: Judged,
-    worker: Worker,
-    truths: Truths,
-    folder: Path,
-    tries: int = TRIES,
-    shown: Shown | None = None,
-) -> Proof:
-    """A script of a red cell, run in a fresh process: the folder's, where it still fails, or else a new one, shrunk.
-
-    Whatever the plug-in raises on the way is said in place of a proof.
-    """
-    made = attempted(_proved, plugin, red, worker, truths, folder, tries, shown)
-    known = thread(plugin.name, red.cell.model, red.cell.function)
-    return _proof(plugin, red, "", f"no script: {made.words}", False, known) if isinstance(made, Raised) else made
-
-
-def _proved(
-    plugin: EnginePlugin, red: Judged, worker: Worker, truths: Truths, folder: Path, tries: int, shown: Shown | None
-) -> Proof:
-    name = red.cell.function
-    known = thread(plugin.name, red.cell.model, name)
-    path = folder / file_of(red)
-    if path.exists():
-        kept = path.read_text(encoding="utf-8")
+    def _proved(self, plugin: EnginePlugin, red: Judged) -> Proof:
+        path = self.folder / file_of(red)
+        if path.exists():
+            kept = path.read_text(encoding="utf-8")
+            output, failed = fails(path)
+            if failed and kept.startswith(_title(plugin, red)):
+                return _proof(plugin, red, kept, output, failed)
+        crashes = red.cell.verdict == "crashes"
+        small = _with_script(plugin, red, self.worker) if crashes else self.shrunk(plugin, red)
+        if not small.answer.script.strip():
+            return _proof(plugin, red, "", NO_SCRIPT, False)
+        self.folder.mkdir(parents=True, exist_ok=True)
+        script = text(plugin, small, thread(plugin.name, red.cell.model, red.cell.function))
+        path.write_text(script, encoding="utf-8")
         output, failed = fails(path)
-        if failed and kept.startswith(_title(plugin, red)):
-            return _proof(plugin, red, kept, output, failed, known)
-    crashes = red.cell.verdict == "crashes"
-    small = _with_script(plugin, red, worker) if crashes else shrunk(plugin, red, worker, truths, tries, shown)
-    if not small.answer.script.strip():
-        return _proof(plugin, red, "", NO_SCRIPT, False, known)
-    folder.mkdir(parents=True, exist_ok=True)
-    script = text(plugin, small, known)
-    path.write_text(script, encoding="utf-8")
-    output, failed = fails(path)
-    return _proof(plugin, red, script, output, failed, known)
+        return _proof(plugin, red, script, output, failed)
+
+    def shrunk(self, plugin: EnginePlugin, red: Judged) -> Judged:
+        """The smallest case that shows the fault of a red cell; of a crash, the case itself."""
+        answer, truths = red.answer, Truths()
+        if answer.layout is None or answer.state is None or red.cell.verdict not in ("wrong", "imprecise"):
+            return red
+        # A fault that is no matter of rounding is seen without asking how far roundings go.
+        quick = Truths(perturbations=0) if red.cell.verdict == "wrong" else truths
+        job = Job(plugin.name, red.tree, (answer.function,), form=red.form)
+        end = time.monotonic() + _PATIENCE
+
+        def asked(case: Case, how: Truths) -> Judged:
+            stated = replace(job, tree=case.tree, pieces=case.pieces, text=case.text)
+            return next(judged(plugin, stated, how, self.worker))
+
+        def shows(case: Case, how: Truths = quick) -> bool:
+            if time.monotonic() > end:
+                return False
+            try:
+                one = asked(case, how)
+            except (ArithmeticError, ValueError, RuntimeError):  # Singular, or of no size, here or in the worker.
+                return False
+            return one.cell.verdict == red.cell.verdict and one.cell.error >= _KEPT * min(red.cell.error, 1.0)
+
+        first = Case(red.tree, taken(answer.layout, answer.state), red.form, red.text)
+        known = self.shown.setdefault((red.cell.engine, red.cell.model), [])
+        begun = next((case for case in sorted(known, key=size) if size(case) < size(first) and shows(case)), first)
+        case = smallest(begun, shows, self.tries) if self.tries else begun
+        final = asked(case, truths)
+        if final.cell.verdict != red.cell.verdict:
+            # Where roundings go far, as beside what is singular, nothing is shown: asked of each case.
+            end = time.monotonic() + _PATIENCE
+            case = smallest(first, lambda one: shows(one, truths), self.tries)
+            final = asked(case, truths)
+        if case is first or final.cell.verdict != red.cell.verdict:
+            return red
+        known.append(case)
+        return final
 
 
 def _with_script(plugin: EnginePlugin, red: Judged, worker: Worker) -> Judged:
@@ -175,7 +155,7 @@ def _with_script(plugin: EnginePlugin, red: Judged, worker: Worker) -> Judged:
     return replace(red, answer=replace(red.answer, script=script))
 
 
-def _proof(plugin: EnginePlugin, red: Judged, script: str, output: str, failed: bool, known: str) -> Proof:
+def _proof(plugin: EnginePlugin, red: Judged, script: str, output: str, failed: bool) -> Proof:
     cell = red.cell
     return Proof(
         engine=plugin.name,
@@ -189,7 +169,7 @@ def _proof(plugin: EnginePlugin, red: Judged, script: str, output: str, failed: 
         text=script,
         output=output,
         proven=failed,
-        thread=known,
+        thread=thread(plugin.name, cell.model, cell.function),
     )
 
 

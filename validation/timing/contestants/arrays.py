@@ -77,17 +77,21 @@ class Arrays:
         inputs: Each (n, size), or (size,) where all states share it.
         sizes: Sizes of the outputs.
         scratch: Doubles and integers that the function works with.
+
+    Attributes:
+        inputs, sizes, scratch: The same.
+        count: Number of states.
     """
 
     def __init__(self, inputs: Sequence[Array], sizes: Sequence[int], scratch: tuple[int, int]) -> None:
         self._ffi, self._kept = loops()[0], []  # type: tuple[Any, list[Any]]
-        self._inputs, self.sizes, self._scratch = inputs, tuple(sizes), scratch
+        self.inputs, self.sizes, self.scratch = inputs, tuple(sizes), scratch
         self.count = max(len(array) for array in inputs if array.ndim == 2)
 
     @property
     def memory(self) -> int:
         """Bytes that one call reads and writes."""
-        read = sum(int(array.shape[-1]) for array in self._inputs)
+        read = sum(int(array.shape[-1]) for array in self.inputs)
         return 8 * (sum(self.sizes) + read)
 
     def overwritten(self, states: int = 1) -> Any:
@@ -102,14 +106,14 @@ class Arrays:
 
     def _filled(self, outputs: Sequence[Array], keep: bool) -> Any:
         ffi, filled = self._ffi, self._ffi.new("loop_arrays *")
-        filled.n, filled.n_in, filled.n_out, filled.keep = self.count, len(self._inputs), len(outputs), int(keep)
-        strides = [array.shape[1] if array.ndim == 2 else 0 for array in self._inputs]
-        pointers = self._keep(ffi.new("double *[]", [self._pointer(x) for x in self._inputs]))
+        filled.n, filled.n_in, filled.n_out, filled.keep = self.count, len(self.inputs), len(outputs), int(keep)
+        strides = [array.shape[1] if array.ndim == 2 else 0 for array in self.inputs]
+        pointers = self._keep(ffi.new("double *[]", [self._pointer(x) for x in self.inputs]))
         setattr(filled, "in", pointers)  # A keyword of Python.
         filled.stride = self._keep(ffi.new("size_t[]", strides))
         filled.out = self._keep(ffi.new("double *[]", [self._pointer(x) for x in outputs]))
         filled.size = self._keep(ffi.new("size_t[]", list(self.sizes)))
-        doubles, integers = self._scratch
+        doubles, integers = self.scratch
         filled.work = self._pointer(aligned_zeros(doubles))
         filled.iwork = self._keep(ffi.new("long long[]", integers + 1))
         return self._keep(filled)

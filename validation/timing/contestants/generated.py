@@ -10,7 +10,8 @@ from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 
 from ...mechanics.geometry import Array
-from ..task import Cost, Loop, Task
+from ..record import Cost
+from ..task import Loop, Task
 from .arrays import Arrays, Turns, loops
 from .programs import Built, Compiler, Skipped, build, compilers, copies
 from .source import Source

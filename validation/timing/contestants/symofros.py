@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
@@ -15,9 +14,11 @@ import symofros as sf
 from symofros.tools import Precision, count_program, find_toolchain, fixed_step_loop
 
 from ...mechanics.geometry import Array
-from ..task import START, STEP, Cost, Loop, Task
-from .arrays import Arrays, Turns, loops
+from ..record import Cost
+from ..task import START, STEP, Loop, Task
+from .arrays import Turns, loops
 from .blocks import Blocks
+from .library import Library
 from .programs import BuildError, Compiler, build, copies, source
 
 NAME = "symofros"
@@ -80,25 +81,14 @@ class _Generated:
         start = time.thread_time()  # Now that the library is in the cache, what is left is to make its text.
         self.path, symbol = sf.compile_library(task.system, options, precision)
         self.seconds = time.thread_time() - start
-        ffi, _ = loops()
-        self._libraries = [ctypes.CDLL(str(copy)) for copy in copies(self.path)]
-        addresses = [ctypes.cast(library[symbol], ctypes.c_void_p).value for library in self._libraries]
-        models = [ffi.cast("const sym_model *(*)(void)", address)() for address in addresses]
-        model = models[0]
-        pre = np.zeros(model.npre + 1)
-        model.init(model.par_default, ffi.from_buffer("double[]", pre))
-        self.functions: list[Any] = [each.functions + 0 for each in models]
-        self.lanes: list[Any] = [each.lanes for each in models]
-        states, entry = task.states, model.functions[0]
-        given = {"pre": pre[: model.npre], "q": states.q, "v": states.v, "a": states.a, "u": states.u}
+        self._libraries = [Library(copy, symbol) for copy in copies(self.path)]
+        self.functions: list[Any] = [each.model.functions + 0 for each in self._libraries]
+        self.lanes: list[Any] = [each.model.lanes for each in self._libraries]
+        states = task.states
+        given = {"pre": self._libraries[0].pre, "q": states.q, "v": states.v, "a": states.a, "u": states.u}
         given |= {"tau_bar": states.applied, "a_bar": states.a}  # Cotangents: any numbers, CasADi's as well.
-        names = [ffi.string(item.name).decode() for item in getattr(entry, "in")[0 : entry.n_in]]
-        entered = [item.rows * item.cols for item in getattr(entry, "in")[0 : entry.n_in]]
-        sizes = [item.rows * item.cols for item in entry.out[0 : entry.n_out]]
-        self.inputs = [given.get(item, np.zeros(size)) for item, size in zip(names, entered, strict=True)]
-        self.sizes, self.work = sizes, int(entry.work)
-        self.arrays = Arrays(self.inputs, sizes, (self.work, 0))
-        fitting = _KEPT // (8 * max(1, sum(sizes))) // _LEAST_BLOCK * _LEAST_BLOCK
+        self.arrays = self._libraries[0].arrays(given)
+        fitting = _KEPT // (8 * max(1, sum(self.arrays.sizes))) // _LEAST_BLOCK * _LEAST_BLOCK
         self.block = min(BLOCK, len(task.states), max(_LEAST_BLOCK, fitting))
 
 
@@ -116,7 +106,7 @@ def _by_state(task: Task, name: str) -> Loop:
 def _by_columns(task: Task, name: str, variant: str, precision: Precision) -> Loop:
     made, native = _Generated(task, name, "vector", precision), loops()[1]
     dtype = np.float32 if precision == "single" else np.float64
-    blocks = Blocks(made.inputs, made.sizes, made.work, made.block, dtype)
+    blocks = Blocks(made.arrays.inputs, made.arrays.sizes, made.arrays.scratch[0], made.block, dtype)
     filled = blocks.overwritten()
 
     def results() -> Array:

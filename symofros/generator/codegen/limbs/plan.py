@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Sequence
 
+from symofros.base import routes
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
 from symofros.expr.numerics.evaluate import needed_nodes
@@ -19,8 +20,6 @@ from symofros.generator.codegen.packs import PackPlan, Vector
 _TRIGONOMETRIC = frozenset(("sin", "cos"))
 # Operations in one statement at most.
 _MAX_INLINE = 8
-# Vectors are formed where they spare this share of a function's operations.
-LEAST_SHARE = 0.08
 
 
 class LimbPlan:
@@ -61,7 +60,7 @@ class LimbPlan:
         search = Counterparts(graph, nodes, given, {*needed_nodes(graph, sines, given), *self._pack_of_node})
         for group in limbs:
             search.find(group, max(TYPES))
-        self._rows, least = search.rows, LEAST_SHARE * len(nodes)
+        self._rows, least = search.rows, routes.LIMB_SHARE * len(nodes)
         if sum(len(row.nodes) - 1 for row in self._rows.by_leader.values()) <= least:
             self._rows.remove(tuple(self._rows.by_leader))
         self._remove_cycles(nodes)

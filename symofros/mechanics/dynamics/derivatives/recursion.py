@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from symofros.base.routes import Choice, choose
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.graph import Graph
 from symofros.expr.packs.combine import linear_combination
@@ -33,9 +34,13 @@ from symofros.mechanics.kinematics.links import TreeKinematics
 from symofros.mechanics.topology.tree import BASE
 
 
-def is_recursive(kinematics: TreeKinematics, rotors: Sequence[MovingRotor]) -> bool:
-    """Whether the recursion holds: no beam deforms, and no rotor's spin acts on a link that moves."""
-    return all(beam.tip is None for beam in kinematics.beams) and all(rotor.carrier == BASE for rotor in rotors)
+def route(kinematics: TreeKinematics, rotors: Sequence[MovingRotor]) -> Choice:
+    """Whether the recursion serves: no beam deforms, and no rotor's spin acts on a link that moves."""
+    figures = {
+        "elastic_beams": sum(beam.tip is not None for beam in kinematics.beams),
+        "moving_rotors": sum(rotor.carrier != BASE for rotor in rotors),
+    }
+    return choose("derivatives of inertia forces", figures)
 
 
 @dataclass(frozen=True)
@@ -59,7 +64,7 @@ def inertia_force_derivatives(
     """Derivatives of M v' + h by q, along the motion of each speed, and by v.
 
     Args:
-        kinematics: Kinematics of a tree that `is_recursive`.
+        kinematics: Kinematics of a tree whose `route` is the recursion.
         mass: Mass matrix, whose momenta on their way to the base are used.
         inertias: Inertia of each link.
         v_rate: v' (nv), which stays as it is.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from itertools import product
 
+from symofros.base.routes import Choice, choose
 from symofros.expr.derivative import along, directional
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.graph import Graph
@@ -24,7 +25,7 @@ Tensor = list[list[list[Edge]]]
 def second_derivatives(e: Equations) -> tuple[Tensor, ...]:
     """Second derivatives of the inverse dynamics by (q, q), (v, v), (q, v) and (a, q) (nv x nv x nv each, eq. 11)."""
     kinematics, by_v, by_mass = e.kinematics, e.inverse_dynamics_by_v, of_mass_matrix(e.kinematics, e.M)
-    if _is_kinetic(e):
+    if route(e).method == "mass matrix":
         by_speeds = _sum(e.g, of_bias(kinematics, e.M, by_mass), by_two_speeds(kinematics, e.passive_slopes))
     else:
         by_speeds = by_two_speeds(kinematics, by_v)
@@ -111,10 +112,13 @@ def along_direction(kinematics: TreeKinematics, edges: Sequence[Edge]) -> list[E
     return directional(g, edges, seeds)
 
 
-def _is_kinetic(e: Equations) -> bool:
+def route(e: Equations) -> Choice:
     """Whether h follows from v.M v/2, as (11a) has it; M and h of beams agree to the order of their theory."""
-    turning = any(is_on_turning_axes(e.kinematics, rotor) for rotor in e.rotors)
-    return all(beam.tip is None for beam in e.kinematics.beams) and not turning
+    figures = {
+        "elastic_beams": sum(beam.tip is not None for beam in e.kinematics.beams),
+        "turning_rotors": sum(is_on_turning_axes(e.kinematics, rotor) for rotor in e.rotors),
+    }
+    return choose("inverse dynamics by two speeds", figures)
 
 
 def _sum(g: Graph, one: Tensor, other: Tensor) -> Tensor:

@@ -14,8 +14,8 @@ from symofros.base.measures import ANGLE, LENGTH, Measures
 from symofros.errors import AssemblyError, Problem, SymofrosError
 from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
 from symofros.runtime.constrained import pseudo_inverse
+from symofros.runtime.manifold import at_unit_length
 from symofros.runtime.model import ArrayLike, Model
-from symofros.runtime.unit_quaternions import at_unit_length
 from symofros.simulation.analysis.beam_theory import bendings_in_motion
 from symofros.simulation.analysis.kinematics.assembly import free_speeds
 from symofros.simulation.analysis.kinematics.posture_search import STARTS, Posture, PostureSearch

@@ -11,8 +11,8 @@ import numpy as np
 from symofros.base.arrays import Array
 from symofros.base.names import coordinate_of, speed_of
 from symofros.errors import AssemblyError, Problem
+from symofros.runtime.manifold import at_unit_length
 from symofros.runtime.model import ArrayLike, Model
-from symofros.runtime.unit_quaternions import at_unit_length
 from symofros.simulation.analysis.kinematics.assembly import assemble
 from symofros.simulation.analysis.kinematics.nearest_start import Instant, nearest_posture_to, nearest_speeds_to
 from symofros.simulation.settings import CLOSED

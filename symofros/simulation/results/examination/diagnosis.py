@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from symofros.simulation.results.examination.step_size import examine_run, remed
 from symofros.simulation.results.outcome import Kind, Outcome
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.loops import Recorded
+from symofros.simulation.stepping.resolution import Mode
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
 
@@ -54,6 +55,47 @@ def _amplified(stepper: Stepper, states: Sequence[Array]) -> tuple[BeamBending, 
     return stepper.amplified_bendings(amplifications(stepper.model, states, stepper.par))
 
 
+@dataclass(frozen=True)
+class _End:
+    """A run at its end.
+
+    Attributes:
+        stepper: Stepper at its last state.
+        settings: Settings of the run.
+        status: Status of the stepper.
+        interrupted: Whether Ctrl-C ended it.
+        states: All that it recorded: t, q, v, u.
+        start: Initial q, v.
+        most_bent: The beam that bends most, if there is one.
+        notes: Notes of the run.
+        fault: Input that is no number, in words; "" for none.
+        mode: Mode of the motion that the step follows worst, if one was looked for.
+    """
+
+    stepper: Stepper
+    settings: Settings
+    status: int
+    interrupted: bool
+    states: Sequence[Array]
+    start: tuple[Array, Array]
+    most_bent: BeamBending | None
+    notes: tuple[str, ...]
+    fault: str
+    mode: Mode | None
+
+    def outcome(self, kind: Kind, reason: str, advice: str = "") -> Outcome:
+        return Outcome(kind, self.stepper.state[0], reason, advice, self.notes)
+
+    @property
+    def failed(self) -> bool:
+        """Whether the states themselves are wrong."""
+        return _has_failed(self.status, self.fault)
+
+
+def _has_failed(status: int, fault: str) -> bool:
+    return status in (Status.DIVERGED, Status.BEYOND_THEORY) and not fault
+
+
 def _outcome(
     stepper: Stepper,
     recorded: Recorded,
@@ -62,102 +104,150 @@ def _outcome(
     start: tuple[Array, Array],
     bendings: tuple[BeamBending, ...],
 ) -> Outcome:
-    status, interrupted = recorded.status, recorded.interrupted
-    t, q, v = stepper.state
-    most_bent, limit = largest_bending(bendings), settings.beam_limit
-    run, notes = (
-        stepper.run,
-        _notes(stepper, settings, states, () if status == Status.BEYOND_THEORY else bendings),
-    )  # Else the reason says it.
+    status = recorded.status
+    told = () if status == Status.BEYOND_THEORY else bendings  # Else the reason says it.
+    notes = _notes(stepper, settings, states, told)
     fault = input_fault(stepper) if status < 0 else ""
-    failed = status in (Status.DIVERGED, Status.BEYOND_THEORY) and not fault
-    steps = _steps_meant(settings) if failed else int(run.steps)
+    failed = _has_failed(status, fault)
+    steps = _steps_meant(settings) if failed else int(stepper.run.steps)
     mode, remarks = examine_run(stepper, settings, start, states, steps, ended_well=status >= 0, failed=failed)
-    notes = (*notes, *remarks)
+    most_bent = largest_bending(bendings)
+    end = _End(
+        stepper, settings, status, recorded.interrupted, states, start, most_bent, (*notes, *remarks), fault, mode
+    )
+    told_by = (_stopped, _without_direction, _grown, _stuck, _unconstrained, _beyond_theory, _unfinished, _violating)
+    for said in told_by:
+        outcome = said(end)
+        if outcome is not None:
+            return outcome
+    return end.outcome("finished", f"{int(stepper.run.steps)} steps of {settings.method.name}")
 
-    def outcome(kind: Kind, reason: str, advice: str = "") -> Outcome:
-        return Outcome(kind, t, reason, advice, notes)
 
-    failure = stepper.failure
-    if interrupted or isinstance(failure, KeyboardInterrupt):
-        return outcome("interrupted", "Ctrl-C; the part up to here is kept")
-    if status == Status.TERMINAL_EVENT:
-        return outcome("event", f"event '{stepper.events[run.terminal_event].name}'")
-    if status == Status.CALLBACK_FAILED:
-        return replace(outcome("input failed", *input_failure(failure)), failure=failure)
-    if fault:
-        return outcome(
+def _stopped(end: _End) -> Outcome | None:
+    """By Ctrl-C, an event, an input."""
+    failure = end.stepper.failure
+    if end.interrupted or isinstance(failure, KeyboardInterrupt):
+        return end.outcome("interrupted", "Ctrl-C; the part up to here is kept")
+    if end.status == Status.TERMINAL_EVENT:
+        return end.outcome("event", f"event '{end.stepper.events[end.stepper.run.terminal_event].name}'")
+    if end.status == Status.CALLBACK_FAILED:
+        return replace(end.outcome("input failed", *input_failure(failure)), failure=failure)
+    if end.fault:
+        return end.outcome(
             "input failed",
-            fault,
+            end.fault,
             "inputs that are finite, quaternions among them of unit length, at all times and states of the run",
         )
-    turning = jump(stepper, status)
-    if turning is not None:
-        lost = f"; {lost_energy(stepper)}" if status == Status.ENERGY_LOST else ""
-        return outcome(
-            "singular",
-            f"'{turning.name}' has no definite direction here: its row of G changes at once, by {turning.turn:.3g}"
-            f" of its size{lost}",
-            "end the run by a terminal event before it; a disc that lies flat, for example, has no lowest point",
-        )
-    if failed and mode is not None and mode.amplified:
-        reason = f"the step is past the limit of stability of '{settings.method.name}'; {_largest(stepper, q, v)}"
-        return outcome("diverged", reason, remedy(mode, settings.method))
-    massless = _massless(stepper, start, q, v) if status == Status.DIVERGED else ""
+    return None
+
+
+def _without_direction(end: _End) -> Outcome | None:
+    """At a posture in which a row of G is not continuous."""
+    turning = jump(end.stepper, end.status)
+    if turning is None:
+        return None
+    lost = f"; {lost_energy(end.stepper)}" if end.status == Status.ENERGY_LOST else ""
+    return end.outcome(
+        "singular",
+        f"'{turning.name}' has no definite direction here: its row of G changes at once, by {turning.turn:.3g}"
+        f" of its size{lost}",
+        "end the run by a terminal event before it; a disc that lies flat, for example, has no lowest point",
+    )
+
+
+def _grown(end: _End) -> Outcome | None:
+    """With states that have grown without bound."""
+    settings, (_, q, v) = end.settings, end.stepper.state
+    if end.failed and end.mode is not None and end.mode.amplified:
+        reason = f"the step is past the limit of stability of '{settings.method.name}'; {_largest(end.stepper, q, v)}"
+        return end.outcome("diverged", reason, remedy(end.mode, settings.method))
+    if end.status != Status.DIVERGED:
+        return None
+    massless = _massless(end.stepper, end.start, q, v)
     if massless:
-        return outcome("singular", massless, ADVICE)
-    if status == Status.DIVERGED:
-        return outcome("diverged", f"a state has grown without bound; {_largest(stepper, q, v)}", _steady(settings))
-    if status == Status.SINGULAR:
-        return outcome(
+        return end.outcome("singular", massless, ADVICE)
+    return end.outcome("diverged", f"a state has grown without bound; {_largest(end.stepper, q, v)}", _steady(settings))
+
+
+def _stuck(end: _End) -> Outcome | None:
+    """At a step that can't be taken."""
+    settings, (_, q, v) = end.settings, end.stepper.state
+    if end.status == Status.SINGULAR:
+        return end.outcome(
             "singular",
             "the mass matrix is singular beyond what the constraints bind",
             "give every speed an inertia or a constraint",
         )
-    if status == Status.STEP_TOO_SMALL:
-        return outcome(
+    if end.status == Status.STEP_TOO_SMALL:
+        return end.outcome(
             "step too small",
             f"rtol = {settings.rtol:g}, atol = {settings.atol:g} ask for steps below"
-            f" rounding; {_largest(stepper, q, v)}",
+            f" rounding; {_largest(end.stepper, q, v)}",
             "look for a force that jumps or a singular posture here; loosen rtol",
         )
-    if status == Status.NO_CONVERGENCE:
-        return outcome("not converged", "the equations of an implicit step were not solved", "a smaller dt")
-    if status == Status.PROJECTION_FAILED:
+    if end.status == Status.NO_CONVERGENCE:
+        return end.outcome("not converged", "the equations of an implicit step were not solved", "a smaller dt")
+    return None
+
+
+def _unconstrained(end: _End) -> Outcome | None:
+    """With constraints that projection no longer keeps."""
+    stepper = end.stepper
+    if end.status == Status.PROJECTION_FAILED:
         t_open, q_open, _ = stepper.evaluation_point
         phi = stepper.model.constraint(q_open, u=stepper.inputs_now, par=stepper.par, t=t_open)
         worst = int(np.argmax(np.where(np.isnan(phi), math.inf, np.abs(phi))))
         name = stepper.model.names.constraints[worst]
-        return outcome(
+        return end.outcome(
             "constraints lost",
             f"'{name}' is off by {abs(phi[worst]):.3g} and projection does not mend it",
             "a smaller step; the loop may be stretched to its end",
         )
-    if status == Status.ENERGY_LOST:
-        return outcome(
+    if end.status == Status.ENERGY_LOST:
+        return end.outcome(
             "constraints lost",
             lost_energy(stepper),
             "a smaller step; look for a posture near here in which the loops are singular",
         )
-    if most_bent is not None and (status == Status.BEYOND_THEORY or (status >= 0 and most_bent.error > limit)):
-        reason = f"{most_bent}; the limit is {100.0 * limit:g} %"
-        return outcome("beyond theory", reason, f"{most_bent.remedy}; or move the limit, beam_limit=...")
-    if status == Status.RUNNING and t < float(run.t_end):
-        done, h = f"max_steps: {int(run.steps)} steps are done", float(run.next_step)
-        if settings.adaptive and h < _CREEP * (settings.t_end - settings.t0):
-            look = "look for a singular posture or a force that has no bound here; for stiff models, an implicit method"
-            return outcome("interrupted", f"{done}, and the next would be {h:.2g} s long", look)
-        return outcome("interrupted", done)
-    broken = violation(stepper, states, settings.project)
-    if broken is not None:
-        return Outcome(
+    return None
+
+
+def _beyond_theory(end: _End) -> Outcome | None:
+    """With a beam bent further than its theory holds."""
+    most_bent, limit = end.most_bent, end.settings.beam_limit
+    if most_bent is None:
+        return None
+    if end.status != Status.BEYOND_THEORY and not (end.status >= 0 and most_bent.error > limit):
+        return None
+    reason = f"{most_bent}; the limit is {100.0 * limit:g} %"
+    return end.outcome("beyond theory", reason, f"{most_bent.remedy}; or move the limit, beam_limit=...")
+
+
+def _unfinished(end: _End) -> Outcome | None:
+    """After the most steps."""
+    run, settings = end.stepper.run, end.settings
+    if end.status != Status.RUNNING or not end.stepper.state[0] < float(run.t_end):
+        return None
+    done, h = f"max_steps: {int(run.steps)} steps are done", float(run.next_step)
+    if settings.adaptive and h < _CREEP * (settings.t_end - settings.t0):
+        look = "look for a singular posture or a force that has no bound here; for stiff models, an implicit method"
+        return end.outcome("interrupted", f"{done}, and the next would be {h:.2g} s long", look)
+    return end.outcome("interrupted", done)
+
+
+def _violating(end: _End) -> Outcome | None:
+    """With a condition on speeds that was not kept."""
+    broken = violation(end.stepper, end.states, end.settings.project)
+    if broken is None:
+        return None
+    return replace(
+        end.outcome(
             "constraints lost",
-            broken.t,
             f"from here on '{broken.name}' is not kept: G v - b is {broken.share:.3g} of coefficient times speed",
             "stabilisation='projection'; a smaller step; look for a posture in which the constraints are singular",
-            notes,
-        )
-    return outcome("finished", f"{int(run.steps)} steps of {settings.method.name}")
+        ),
+        t=broken.t,
+    )
 
 
 def _steps_meant(settings: Settings) -> int:

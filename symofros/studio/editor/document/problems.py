@@ -9,7 +9,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from symofros.description import ExpressionError, parse
-from symofros.description.yaml import NativeFile, default_joint_name, line_of, path_of, problem_of
+from symofros.description.yaml import NativeFile, default_joint_name, placed_problems
 from symofros.errors import Problem, first_of
 from symofros.studio.editor.editing.data_edits import Path
 from symofros.studio.editor.editing.formulas import formulas
@@ -41,10 +41,7 @@ def schema_problems(source: YamlText, file: str) -> dict[Problem, Path]:
     try:
         NativeFile.model_validate(source.data)
     except ValidationError as error:
-        faults = error.errors(include_url=False)
-        placed = {
-            problem_of(fault, f"{file}:{line_of(fault, source.root)}", source.data): path_of(fault) for fault in faults
-        }
+        placed = dict(placed_problems(error, source.root, file, source.data))
         return {problem: placed.get(problem, ()) for problem in first_of(placed)}
     return {}
 

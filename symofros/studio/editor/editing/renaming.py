@@ -10,7 +10,7 @@ from symofros.description import KINDS, STATION, WORLD, Joint
 from symofros.description.yaml import DIAGRAM, default_joint_name
 from symofros.errors import DescriptionError
 from symofros.expr import CONSTANTS
-from symofros.mechanics.topology import coordinate_symbols, rate_keys, rate_symbols, speed_keys, speed_symbols
+from symofros.mechanics.topology import motion_symbols
 from symofros.studio.editor.editing.data_edits import Edit, Path, edited, fault
 from symofros.studio.editor.editing.diagram_renaming import renaming_in_diagram
 from symofros.studio.editor.editing.formulas import formulas, with_names
@@ -132,11 +132,9 @@ def symbols_of(joint: dict[str, Any], name: str) -> tuple[str, ...]:
     if kind not in KINDS or KINDS[kind].user_defined:
         return ()
     try:
-        stated = Joint(name, kind=kind)
+        return motion_symbols(Joint(name, kind=kind))
     except DescriptionError:
         return ()
-    of_motion = (coordinate_symbols, speed_symbols, rate_symbols, speed_keys, rate_keys)
-    return tuple(name for names in of_motion for name in names(stated))
 
 
 def taken(data: Any) -> set[str]:

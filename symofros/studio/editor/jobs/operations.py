@@ -22,7 +22,6 @@ from symofros.compiler import Compilation, compile_system
 from symofros.description.yaml import write_yaml
 from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
 from symofros.exports.folder import check_same
-from symofros.generator import count_program
 from symofros.harness import command_line
 from symofros.mechanics.topology import SpanningTree, build_tree
 from symofros.simulation.analysis.kinematics.starts import closed_start
@@ -42,7 +41,7 @@ def compile_model(request: Json, tell: Tell) -> Json:
     compilation = Compilation(system)
     compilation.request(exported(bool(system.constraints), ("dynamics", "constraints")))
     tell(1, 4, "deriving the equations")
-    program = compilation.program
+    counted = compilation.operations
     tell(2, 4, "writing C")
     text = compilation.source()
     generated = time.perf_counter()
@@ -54,7 +53,7 @@ def compile_model(request: Json, tell: Tell) -> Json:
     done = time.perf_counter()
     counts = {
         key[0]: {"mul": n.mul, "add": n.add, "div": n.div, "call": n.call, "total": n.total}
-        for key, n in count_program(program).items()
+        for key, n in counted.items()
         if key[0] != "init"
     }
     names = model.names

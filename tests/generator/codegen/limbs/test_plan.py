@@ -88,7 +88,7 @@ def test_the_cheaper_forward_dynamics_is_chosen_with_limbs_in_mind() -> None:
         program = Compilation(quadruped(), sf.Options(functions=("forward_dynamics",), forward_dynamics=method)).program
         counts[method] = effort(program, program.functions[0])
     assert counts["articulated"] < counts["factors"]
-    assert ProgramBuilder(build_tree(quadruped()), sf.Options()).forward_method == "articulated"
+    assert ProgramBuilder(build_tree(quadruped()), sf.Options()).trees.method == "articulated"
 
 
 @pytest.mark.parametrize("name", ["chain22", "puma560", "four_bar"])

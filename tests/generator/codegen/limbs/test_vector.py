@@ -10,6 +10,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from symofros.base import routes
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
 from symofros.expr.numerics.evaluate import evaluate_edges
@@ -17,7 +18,6 @@ from symofros.expr.ops import STOP_GRADIENT
 from symofros.expr.program import Output, Program
 from symofros.generator.codegen import function
 from symofros.generator.codegen.function import FunctionWriter
-from symofros.generator.codegen.limbs import plan as plans
 from symofros.native import native_text
 from tests.generator.codegen.limbs.graphs import JOINTS, cubed, of_limbs, program
 from tests.generator.codegen.test_loops import compiled
@@ -154,7 +154,7 @@ def assert_exact(made: tuple[Program, tuple[Output, ...]], folder: Path, seed: i
     stated, (output,) = made
     q = np.random.default_rng(seed).uniform(0.5, 1.5, stated.sizes["q"])
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(plans, "LEAST_SHARE", 0.0)
+        patch.setattr(routes, "LIMB_SHARE", 0.0)
         patch.setattr(function, "MAX_STATEMENTS", 10)
         text = FunctionWriter(stated, "f", ["q"], [output], limbs=True).text()
     run = compiled(native_text("model/limbs.c.in") + text.code, text.work, folder)

@@ -9,6 +9,7 @@ import pytest
 
 import symofros as sf
 from symofros.base.functions import FUNCTIONS
+from symofros.base.routes import taken
 from symofros.compiler import Compilation
 from symofros.generator.passes.count import count_operations
 from symofros.mechanics.dynamics.applied.forces import coordinate_rates
@@ -112,7 +113,8 @@ def test_the_sweep_costs_at_most_four_operations_for_each_one(case: str) -> None
         frame = tree.frames[-1].name if FUNCTIONS[name].of_frame and tree.frames else ""
         if FUNCTIONS[name].of_frame and not frame:
             continue
-        methods = Methods(trees="articulated" if e.is_articulated else "factors")
+        way = "factors" if e.route_figures["distant_rotors"] else "articulated"
+        methods = Methods(taken("acceleration of trees", way), way)
         program = form_program(e, [Request(name, frame), Request(f"{name}_vjp", frame)], methods)
         of, sweep = (count_operations(program.graph, function.edges()).total for function in program.functions)
         # What is linear in an input adds cotangents, and takes no operation itself; N of q' = N v is swept, too.

@@ -14,6 +14,7 @@ from reference_models import MODELS
 from reference_models.rigid.chain import INERTIAL, chain
 from reference_models.rigid.random_tree import MORE_KINDS, SERIES_KINDS, random_tree
 from symofros.base.functions import FUNCTIONS
+from symofros.base.routes import taken
 from symofros.compiler import Compilation
 from symofros.expr.numerics.precise import evaluate_precisely
 from symofros.expr.program import Program
@@ -27,7 +28,7 @@ from tests.models import sampled
 
 SLOPES, REVERSE, BY_PAR = "forward_dynamics_derivatives", "forward_dynamics_vjp", "forward_dynamics_by_par"
 FOLLOWING = ("forward_dynamics", SLOPES, REVERSE, BY_PAR)
-WAYS = {"factors": Methods(), "articulated": Methods(trees="articulated", slopes="articulated")}
+WAYS = {"factors": Methods(), "articulated": Methods(taken("acceleration of trees", "articulated"), "articulated")}
 # Small trees of every kind: free and ball joints, prescribed motions, rotors, springs, run-time parameters, beams.
 TREES = ("double_pendulum", "gyroscope", "friction_arm", "space_arm", "planar_robot", "heavy_top", "joint_zoo")
 # Rounding times the condition of M.

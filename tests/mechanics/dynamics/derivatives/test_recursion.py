@@ -15,7 +15,6 @@ from symofros.expr.edges import Edge
 from symofros.expr.numerics.evaluate import evaluate_edges, needed_nodes
 from symofros.expr.program import Program
 from symofros.mechanics.dynamics.derivatives.differentiation import by_configuration, by_inputs
-from symofros.mechanics.dynamics.derivatives.recursion import is_recursive
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.topology.tree import build_tree
 from tests.models import SAMPLE, model, system
@@ -43,7 +42,7 @@ def numbers(e: Equations, matrix: Matrix, state: dict[str, np.ndarray]) -> np.nd
 def test_they_are_those_of_the_graph(name: str, rng: np.random.Generator) -> None:
     """Each kind of joint, branches, parameters, several speeds of a joint, at states that move and turn."""
     e, m = Equations(build_tree(system(name))), model(name, "interpreter")
-    assert is_recursive(e.kinematics, e.rotors)
+    assert e.slopes_route.method == "recursion"
     q, v = m.random_state(rng)
     state = {"q": q, "v": v, "a": rng.normal(size=m.nv), "par": np.array(m.record.par_default), "t": np.zeros(1)}
     for recursive, differentiated in zip(*both(e), strict=True):
@@ -67,7 +66,7 @@ def test_a_base_in_fast_flight_costs_no_digits(rng: np.random.Generator) -> None
 
 def test_a_spinning_rotor_on_a_link_is_left_to_the_graph() -> None:
     e = Equations(build_tree(MODELS["gyroscope"]))
-    assert not is_recursive(e.kinematics, e.rotors)
+    assert e.slopes_route.method == "graph"
     recursive, differentiated = both(e)
     assert recursive == differentiated
 

@@ -16,6 +16,7 @@ import symofros as sf
 from reference_models import MODELS
 from reference_models.rigid.chain import INERTIAL, chain
 from reference_models.rigid.random_tree import MORE_KINDS, SERIES_KINDS, random_tree
+from symofros.base.routes import taken
 from symofros.description.forces import Rotor
 from symofros.expr.numerics.precise import evaluate_precisely
 from symofros.expr.program import Program
@@ -23,7 +24,7 @@ from symofros.generator.codegen.interpreted import InterpretedUnit
 from symofros.generator.passes import run_passes
 from symofros.generator.passes.count import Operations, count_program
 from symofros.mechanics.dynamics.equations import Equations
-from symofros.mechanics.dynamics.functions import Methods, Request, form_program, forward_methods
+from symofros.mechanics.dynamics.functions import Methods, Request, form_program
 from symofros.mechanics.topology.tree import build_tree
 from tests.mechanics.beams.cases import CASES
 from tests.models import sampled
@@ -112,14 +113,15 @@ def geared(carrier: str | None) -> sf.System:
 
 @pytest.mark.parametrize("carrier", ["b1", "world"])
 def test_rotors_on_the_parent_or_at_rest_stay_local(carrier: str) -> None:
-    assert forward_methods(Equations(build_tree(geared(carrier)))) == WAYS
+    assert Equations(build_tree(geared(carrier))).route_figures["distant_rotors"] == 0
     assert difference(geared(carrier)) < TOLERANCE
 
 
 @pytest.mark.parametrize("carrier", ["b0", "b2"])
 def test_rotors_on_a_third_body_need_the_factors(carrier: str) -> None:
     """Its own link counts as one: the rotor turns with what it drives."""
-    assert forward_methods(Equations(build_tree(geared(carrier)))) == ("factors",)
+    (choice,) = sf.compile(geared(carrier), sf.Options(backend="interpreter")).routes[NAME]
+    assert choice.method == "factors" and choice.figures == {"distant_rotors": 1.0} and choice.others == ()
     with pytest.raises(sf.DescriptionError, match=r"rotor.*\n.*\n.*remedy.*'factors'"):
         interpreted(geared(carrier), "articulated")
 
@@ -142,9 +144,13 @@ def test_both_methods_refuse_the_same_massless_speeds() -> None:
 
 
 @cache
+def by(way: Way) -> Methods:
+    return Methods(taken("acceleration of trees", way))
+
+
 def program(links: int, way: Way) -> Program:
     """Forward dynamics of a chain whose inertias are run-time parameters."""
-    return run_passes(form_program(Equations(build_tree(chain(links))), [Request(NAME)], Methods(trees=way)))
+    return run_passes(form_program(Equations(build_tree(chain(links))), [Request(NAME)], by(way)))
 
 
 def counted(links: int, way: Way) -> Operations:
@@ -217,9 +223,7 @@ def test_auto_is_what_was_measured_to_be_faster(make: Callable[[], sf.System], w
     """docs/theory/code.md, section 2, states the times."""
     system = make()
     ours = count_program(sf.program_of(system, [NAME]))[NAME, ""]
-    alone = run_passes(form_program(Equations(build_tree(system)), [Request(NAME)], Methods(trees=way)))
+    alone = run_passes(form_program(Equations(build_tree(system)), [Request(NAME)], by(way)))
     assert ours == count_program(alone)[NAME, ""]
-    other = run_passes(
-        form_program(Equations(build_tree(system)), [Request(NAME)], Methods(trees=WAYS[way == "articulated"]))
-    )
+    other = run_passes(form_program(Equations(build_tree(system)), [Request(NAME)], by(WAYS[way == "articulated"])))
     assert ours != count_program(other)[NAME, ""]

@@ -34,6 +34,15 @@ def test_a_force_that_depends_on_time_is_work(method: str, force: str) -> None:
     assert run.v[-1, 0] == pytest.approx(exact, rel=1e-5) and not run.outcome.notes, run.outcome
 
 
+@pytest.mark.parametrize("step", [0.2, 0.5])
+def test_energy_that_steps_make_is_noted(step: float) -> None:
+    """A free oscillator of 1 rad/s by Euler's explicit method gains a share of h^2 a step."""
+    spring = sf.Joint("x", "prismatic", axis=(1, 0, 0), elements=(sf.Spring(1.0),))
+    model = sf.compile(sf.System("oscillator", (sf.RigidBody("b", spring, sf.Inertia(1.0)),)))
+    run = sf.simulate(model, [1.0], t_end=20.0, method="euler", dt=step)
+    assert run.outcome.notes and run.energy[-1] > 2.0 * run.energy[0]
+
+
 def on_a_slide(mass: float, *elements: sf.Spring | sf.Damper) -> sf.Model:
     """A mass that slides."""
     slide = sf.Joint("x", "prismatic", axis=(1, 0, 0), elements=elements)

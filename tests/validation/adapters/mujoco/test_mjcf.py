@@ -123,7 +123,10 @@ def test_it_is_for_mjcf_only() -> None:
 @pytest.mark.slow
 def test_the_command_lines(tmp_path: Path) -> None:
     path = write(tmp_path, MODELS["reference_and_spring_reference"])
-    assert named([str(path)], ReadingOptions(floating_base=True)) == [Case("model", path)]
+    # Where it is read with other joints or forces than it states, MuJoCo's own reading is no second opinion.
+    for reading in (ReadingOptions(True), ReadingOptions(dissipation="none"), ReadingOptions(limits="stops")):
+        assert named([str(path)], reading) == [Case("model", path, reading)]
+        assert Case("model", path, reading).load().mjcf is None
     run = CliRunner().invoke(app, ["check", str(path), "--states", "5", "--json", "--report", str(tmp_path / "r")])
     rows = json.loads(run.stdout)["comparisons"]
     assert run.exit_code == 0, run.stdout

@@ -122,17 +122,33 @@ def _carried(body: Any, parent: str | None, frame: str | None) -> Any:
 
 def _distinct(data: Any, part: Json) -> Json:
     """The part with names that the document does not have yet."""
+    for rename in (_distinct_symbols, _distinct_bodies, _distinct_joints, _distinct_relations):
+        part = rename(data, part)
+    return part
+
+
+def _distinct_symbols(data: Any, part: Json) -> Json:
+    """Parameters and inputs: one that is there and is the same stays."""
     names = taken(data)
     for section in ("parameters", "inputs"):
         there = _mapping(data, section)
         for name, entry in list(_mapping(part, section).items()):
             if name in names and not (name in there and same(there[name], entry)):
                 part = _renamed(part, (section, name), _free(name, names | taken(part)))
+    return part
+
+
+def _distinct_bodies(data: Any, part: Json) -> Json:
     for name in list(_mapping(part, "bodies")):
         bodies = {*_mapping(data, "bodies"), *_mapping(part, "bodies")}
         if name in _mapping(data, "bodies"):
             part = _renamed(part, ("bodies", name), _free(name, bodies))
-    joints = _joints(data)
+    return part
+
+
+def _distinct_joints(data: Any, part: Json) -> Json:
+    """Joints and their coordinates."""
+    names, joints = taken(data), _joints(data)
     for name, body in list(_mapping(part, "bodies").items()):
         joint = _mapping(body, "joint")
         own = str(joint.get("name", default_joint_name(name)))
@@ -142,6 +158,11 @@ def _distinct(data: Any, part: Json) -> Json:
         for i, symbol in enumerate(stated if isinstance(stated, list) else []):
             if symbol in names:
                 part = _renamed(part, ("bodies", name, "joint", "coordinates", i), _free(symbol, names | taken(part)))
+    return part
+
+
+def _distinct_relations(data: Any, part: Json) -> Json:
+    """What stands between bodies: connections, constraints, forces."""
     for section in _BETWEEN:
         for name in list(_mapping(part, section)):
             if name in _mapping(data, section):

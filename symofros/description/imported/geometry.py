@@ -1,8 +1,9 @@
-"""Placements of a compiled MJCF model: quaternions, turns, and exact numbers for rounded ones."""
+"""Placements in foreign files: quaternions, turns, angles, and exact numbers for rounded ones."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,23 @@ def rotation_of(quaternion: Any) -> Array:
 def about(axis: Array, angle: float) -> Array:
     """The rotation matrix (3, 3) by an angle [rad] about a unit axis (3,), the same on every machine."""
     return axis_rotation(axis, nearest("cos", angle), nearest("sin", angle))
+
+
+def roll_pitch_yaw(angles: Sequence[float]) -> Array:
+    """The rotation matrix (3, 3) of fixed-axis roll, pitch and yaw [rad]: Rz(yaw) Ry(pitch) Rx(roll)."""
+    x, y, z = (about(axis, angle) for axis, angle in zip(np.eye(3), angles, strict=True))
+    return np.asarray(z @ y @ x)
+
+
+def matrix_of(rotation: Rotation) -> Array:
+    """The matrix (3, 3) of a rotation that a reader made of numbers: by angles or by its entries."""
+    numbers = [float(value) for value in rotation.values if isinstance(value, int | float)]
+    return roll_pitch_yaw(numbers) if rotation.kind == "rpy" else np.reshape(numbers, (3, 3))
+
+
+def stated_rotation(R: Array) -> Rotation:
+    """A rotation matrix (3, 3) as a description states it; none for the identity."""
+    return IDENTITY if np.array_equal(R, np.eye(3)) else Rotation.matrix(R.tolist())
 
 
 class Exact:
@@ -57,8 +75,7 @@ class Exact:
 
     def rotation(self, R: Array) -> Rotation:
         """A rotation matrix (3, 3): zeros and ones."""
-        R = nearest_rotation(self._snapped(R, (0.0, 1.0, -1.0)))
-        return IDENTITY if np.array_equal(R, np.eye(3)) else Rotation.matrix(R.tolist())
+        return stated_rotation(nearest_rotation(self._snapped(R, (0.0, 1.0, -1.0))))
 
     def placement(self, p: Array, R: Array) -> tuple[Vector, Rotation]:
         """A position and a rotation."""

@@ -1,0 +1,266 @@
+"""Routes: what the table says is what decides, what is told is what is generated, and options obey."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import symofros as sf
+from reference_models import MODELS
+from reference_models.closed.four_bars import n_four_bar
+from reference_models.rigid.random_tree import random_tree
+from symofros.base import routes
+from symofros.base.route import Choice, Route
+from symofros.base.routes import ROUTES, choose
+from symofros.compiler import Compilation
+from symofros.generator import units
+from symofros.generator.codegen.model import model_text
+from tests.generator.codegen.limbs.test_plan import quadruped
+
+ROOT = Path(__file__).parents[2]
+PAGE = ROOT / "docs/operations.md"
+ROWS = [route for methods in ROUTES.values() for route in methods.values()]
+FORWARD, SLOPES, BY_PAR = "forward_dynamics", "forward_dynamics_derivatives", "forward_dynamics_by_par"
+REVERSE, HESSIAN = "forward_dynamics_vjp", "forward_dynamics_hessian"
+# Of each row: a function, a model where it takes that route, and the options that this needs.
+CASES: dict[tuple[str, str], tuple[str, str, dict[str, object]]] = {
+    ("inertia forces", "recursion"): ("inverse_dynamics", "double_pendulum", {}),
+    ("acceleration of trees", "articulated"): (FORWARD, "planar_robot", {}),
+    ("acceleration of trees", "factors"): (FORWARD, "puma560", {}),
+    ("constrained motion", "multipliers"): (FORWARD, "four_bar", {}),
+    ("constrained motion", "null_space"): (FORWARD, "four_bar", {"constraints": "null_space"}),
+    ("constrained system", "sparse"): (FORWARD, "many four-bars", {}),
+    ("constrained system", "dense"): (FORWARD, "four_bar", {}),
+    ("derivatives of the acceleration", "articulated"): (SLOPES, "heavy_top", {"forward_dynamics": "articulated"}),
+    ("derivatives of the acceleration", "factors"): (SLOPES, "heavy_top", {}),
+    ("derivatives of the acceleration", "routine"): (SLOPES, "heavy_top", {}),  # With a lower limit.
+    ("adjoint of the acceleration", "articulated"): (REVERSE, "heavy_top", {"forward_dynamics": "articulated"}),
+    ("adjoint of the acceleration", "factors"): (REVERSE, "heavy_top", {}),
+    ("derivatives of constrained motion", "multipliers"): (SLOPES, "four_bar", {"constraints": "null_space"}),
+    ("second derivatives of the motion", "multipliers"): (HESSIAN, "double_pendulum", {}),
+    ("derivatives of inertia forces", "recursion"): ("inverse_dynamics_derivatives", "double_pendulum", {}),
+    ("derivatives of inertia forces", "graph"): ("inverse_dynamics_derivatives", "gyroscope", {}),
+    ("inverse dynamics by two speeds", "mass matrix"): ("inverse_dynamics_second_derivatives", "double_pendulum", {}),
+    ("inverse dynamics by two speeds", "graph"): ("inverse_dynamics_second_derivatives", "flexible_pendulum", {}),
+    ("weighted second derivatives", "forward over reverse"): ("inverse_dynamics_hvp", "double_pendulum", {}),
+    ("vector-Jacobian product", "reverse sweep"): ("bias_vjp", "double_pendulum", {}),
+    ("values by vectors", "packs"): (FORWARD, "chain7", {}),
+    ("values by vectors", "scalars"): (FORWARD, "puma560", {}),
+    ("values by vectors", "by processor"): ("dynamics", "chain7", {}),
+    ("values by vectors", "timed"): (FORWARD, "puma560", {"tune": True}),
+    ("equal parts", "loops"): ("constraint_jacobian", "many four-bars", {}),
+    ("equal parts", "limbs"): ("dynamics", "quadruped", {}),
+    ("equal parts", "one by one"): ("dynamics", "double_pendulum", {}),
+    ("large batches", "lanes"): ("dynamics", "double_pendulum", {}),
+    ("large batches", "state by state"): (FORWARD, "four_bar", {}),
+}
+
+
+def system(name: str) -> sf.System:
+    made: dict[str, Callable[[], sf.System]] = {"many four-bars": lambda: n_four_bar(20), "quadruped": quadruped}
+    return made[name]() if name in made else MODELS[name]
+
+
+def told(model: sf.Model, function: str) -> dict[str, Choice]:
+    """The choices of a function by quantity."""
+    return {choice.quantity: choice for choice in model.routes[function]}
+
+
+def test_each_row_has_a_case() -> None:
+    assert CASES.keys() == {(row.quantity, row.method) for row in ROWS}
+
+
+@pytest.mark.parametrize("row", CASES, ids=" - ".join)
+def test_a_model_takes_the_route_and_another_does_not(row: tuple[str, str], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where a quantity has one method there is no other case; elsewhere each case takes none of the other rows."""
+    function, name, options = CASES[row]
+    if row[1] == "routine":
+        monkeypatch.setattr(routes, "MOST_STEPS", -1)
+    choice = told(sf.compile(system(name), sf.Options(**options)), function)[row[0]]  # type: ignore[arg-type]
+    assert choice.method == row[1] and choice.route in ROWS
+    assert choice.asked == bool(options and row[0] != "derivatives of constrained motion")
+    assert choice.route not in choice.others
+
+
+def test_the_last_row_of_each_quantity_serves_always() -> None:
+    for quantity, methods in ROUTES.items():
+        unconditional = [row.method for row in methods.values() if row.applies == "always"]
+        assert unconditional, quantity
+        assert [*methods.values()][-1].applies == "always" or quantity == "values by vectors"  # Scalars: no vectors.
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: f"{row.quantity} - {row.method}")
+def test_the_theory_is_where_the_row_says(row: Route) -> None:
+    page, section, *equations = row.theory.split(", ")
+    text = (ROOT / "docs/theory" / page).read_text(encoding="utf-8")
+    assert re.search(rf"^##+ {re.escape(section)}\.? ", text, re.MULTILINE), row.theory
+    for number in re.findall(r"\(\d+a?\)", " ".join(equations)):
+        assert re.search(rf" {re.escape(number)}$", text, re.MULTILINE), f"{row.theory}: {number}"
+
+
+def test_an_unknown_quantity_method_or_figure_is_an_error() -> None:
+    for quantity, asked in (("nothing", ""), ("acceleration of trees", "nothing"), ("acceleration of trees", "")):
+        with pytest.raises(KeyError):
+            choose(quantity, {}, asked)
+
+
+@pytest.mark.parametrize("way", ["articulated", "factors"])
+def test_all_relatives_of_forward_dynamics_follow_the_option(way: str) -> None:
+    """First derivatives, in forward and reverse mode, of parameters too; second ones say that they can't."""
+    model = sf.compile(MODELS["heavy_top"], sf.Options(forward_dynamics=way))  # type: ignore[arg-type]
+    for function in (FORWARD, SLOPES, BY_PAR, REVERSE):
+        assert model.routes[function][0].method == way, function
+    assert model.routes[HESSIAN][0].route.chosen.endswith("whatever is asked of the motion")
+    together = (FORWARD, SLOPES, REVERSE)
+    chosen = sf.Options(together, (), forward_dynamics=way, backend="interpreter")  # type: ignore[arg-type]
+    of_chosen = sf.compile(MODELS["heavy_top"], chosen).routes
+    assert [of_chosen[function][0].method for function in together] == [way] * 3
+
+
+def test_the_adjoint_does_not_depend_on_what_is_generated_beside_it() -> None:
+    """By count the planar robot's acceleration goes by articulated bodies; its derivatives keep the factors."""
+    chosen = sf.Options((FORWARD, REVERSE), (), backend="interpreter")
+    beside, alone = sf.compile(MODELS["planar_robot"], chosen), sf.compile(MODELS["planar_robot"])
+    assert beside.routes[FORWARD][0].method == alone.routes[FORWARD][0].method == "articulated"
+    assert beside.routes[REVERSE][0].method == alone.routes[REVERSE][0].method == "factors"
+
+
+@pytest.mark.parametrize("function", [FORWARD, SLOPES, REVERSE])
+def test_graphics_processors_take_the_method_of_the_function(function: str) -> None:
+    """The kernel's text is another one by each method, and that of "auto" is the one that is told."""
+    texts = {}
+    for way in ("articulated", "factors", "auto"):
+        made = Compilation(MODELS["planar_robot"], sf.Options(forward_dynamics=way))
+        code = made._units(None).device_code((function, ""), "double").text
+        texts[way] = code.replace(made.record.hash, "")
+    method = sf.compile(MODELS["planar_robot"]).routes[function][0].method
+    assert texts["articulated"] != texts["factors"] and texts["auto"] == texts[method]
+
+
+# What the text of a function has if it tells one of these quantities with their methods, and only then.
+MARKERS: dict[str, set[tuple[str, str]]] = {
+    r"\bsym_system_solve\b": {("constrained motion", "multipliers")},
+    r"\bsym_null_space\b": {("constrained motion", "null_space")},
+    r"static const struct sym_sparse sparse": {("constrained system", "sparse")},
+    r"\bsym_(differentiate|transpose)\(": {
+        ("derivatives of the acceleration", "routine"),
+        ("derivatives of constrained motion", "multipliers"),
+    },
+    r"\bsym_hessian\(": {("second derivatives of the motion", "multipliers")},
+    r"#if SYM_PART < 8": {("values by vectors", "by processor")},
+    r"\bsym_pack \w+ =": {("values by vectors", "packs"), ("values by vectors", "by processor")},
+    r"for \(.* < \d+; ": {("equal parts", "loops")},
+    r"\bsym_(pair|quad) \w+ =": {("equal parts", "limbs")},
+}
+
+
+def check_markers(of: sf.System, function: str, asked: dict[str, object]) -> None:
+    """What a model tells of a function is in its text, and what it does not tell is not."""
+    options = sf.Options((function,), (), **asked)  # type: ignore[arg-type]
+    made = Compilation(of, options)
+    text = model_text(made.program, made.record, "test", packs="where they pay").code
+    text = text[text.index("_init_par(") :]  # Without the routines that stand before it.
+    choices = {(choice.quantity, choice.method) for choice in sf.compile(of, asked_for(options)).routes[function]}
+    for marker, rows in MARKERS.items():
+        assert bool(re.search(marker, text)) == bool(choices & rows), (function, marker, choices)
+
+
+def asked_for(options: sf.Options) -> sf.Options:
+    """The same, of a model that compiles what is called."""
+    return replace(options, functions=None, frames=None)
+
+
+@settings(max_examples=6)
+@given(seed=st.integers(0, 10**6), n=st.integers(1, 6))
+def test_what_random_trees_tell_is_in_their_text(seed: int, n: int) -> None:
+    """The method of the acceleration by text: that of "auto" is the one of the method told, to the character."""
+    tree = random_tree(seed, n)
+    for function in (FORWARD, SLOPES):
+        check_markers(tree, function, {})
+    method = told(sf.compile(tree), FORWARD)["acceleration of trees"].method
+    texts = {}
+    for way in ("auto", "articulated", "factors"):
+        made = Compilation(tree, sf.Options((FORWARD,), (), forward_dynamics=way))
+        texts[way] = made.source().replace(made.record.hash, "")
+    assert texts["auto"] == texts[method]
+
+
+@pytest.mark.parametrize(
+    ("name", "function"),
+    [("four_bar", FORWARD), ("four_bar", SLOPES), ("four_bar", REVERSE), ("many four-bars", FORWARD)]
+    + [("many four-bars", "constraint"), ("quadruped", "dynamics"), ("double_pendulum", HESSIAN)],
+)
+def test_what_is_told_is_in_the_text(name: str, function: str) -> None:
+    check_markers(system(name), function, {})
+
+
+def test_the_null_space_is_in_the_text() -> None:
+    check_markers(MODELS["four_bar"], FORWARD, {"constraints": "null_space"})
+
+
+def test_a_model_from_the_cache_tells_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Cold, warm, and before the first call; a warm model has generated nothing to be called."""
+    monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path))
+    ahead = sf.compile(MODELS["cart_pole"])
+    told_ahead = ahead.routes[FORWARD]
+    assert dict(ahead.routes) == {} and len(ahead.routes) == 0
+    cold = sf.compile(MODELS["cart_pole"])
+    cold.forward_dynamics([0.1, 0.2], [0.0, 0.0], np.zeros(cold.nu))
+    monkeypatch.setattr(units, "model_source", lambda *_, **__: pytest.fail("a known model was generated again"))
+    warm = sf.compile(MODELS["cart_pole"])
+    warm.forward_dynamics([0.1, 0.2], [0.0, 0.0], np.zeros(warm.nu))
+    assert dict(warm.routes) == dict(cold.routes) == {FORWARD: told_ahead}
+    assert str(warm.routes).startswith(f"{FORWARD}\n  acceleration of trees: ")
+
+
+def test_frames_are_named_with_their_function_and_others_refused() -> None:
+    model = sf.compile(MODELS["double_pendulum"])
+    frame = model.names.frames[-1]
+    model.frame_pose(frame, model.neutral())
+    assert [*model.routes] == [f"frame_pose of {frame}"]
+    with pytest.raises(sf.UnknownNameError, match="no function 'foward_dynamics'(?s:.)*forward_dynamics"):
+        model.routes["foward_dynamics"]
+    chosen = sf.compile(MODELS["double_pendulum"], sf.Options(("bias",), (), backend="interpreter"))
+    assert [*chosen.routes] == ["bias"]
+    with pytest.raises(sf.SymofrosError, match="was not generated"):
+        chosen.routes[FORWARD]
+
+
+def test_choices_are_plain_data_too() -> None:
+    (choice, *_) = sf.compile(MODELS["puma560"]).routes[FORWARD]
+    stated = json.loads(json.dumps(choice.as_dict()))
+    assert (
+        stated["method"] == "factors" and stated["figures"]["articulated_effort"] > stated["figures"]["factors_effort"]
+    )
+    assert stated["others"] == [{"method": "articulated", "option": "Options(forward_dynamics='articulated')"}]
+
+
+def page_table() -> str:
+    """The table as the page shows it."""
+    lines = [
+        "| quantity | method | applies | is taken when | keeps | theory | asked for by |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    for quantity, methods in ROUTES.items():
+        for i, row in enumerate(methods.values()):
+            asked = f"`{row.option}`" if row.option else ""
+            cells = ["" if i else quantity, row.method, row.applies, row.chosen, row.accuracy, row.theory, asked]
+            lines.append(f"| {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
+def test_the_page_shows_the_table(request: pytest.FixtureRequest) -> None:
+    page = PAGE.read_text(encoding="utf-8")
+    (shown,) = re.findall(r"^\| quantity \| method \|(?:.*\n)+?(?=\n)", page, re.MULTILINE)
+    if request.config.getoption("--update-golden"):
+        PAGE.write_text(page.replace(shown, page_table() + "\n"), encoding="utf-8")
+    else:
+        assert shown == page_table() + "\n", "python -m pytest tests/generator/test_routes.py --update-golden"
