@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from typing import Literal
 
 from symofros.base.arguments import CheckedCalls, check_fields
+
+# Options that are still accepted: the value that asks for something, and what to do instead.
+_WITHOUT_EFFECT = (
+    ("tune", True, "one build is made; choose another by compiler= and flags="),
+    ("processors", "any", "libraries are for this machine's processor; flags= with another -march is for others"),
+)
 
 
 @dataclass(frozen=True)
@@ -34,12 +41,10 @@ class Options(metaclass=CheckedCalls):
             function when its first batch of 512 states or more arrives (docs/theory/code.md); or "loop", one by one.
         packs: Whether values of one state formed by the same operations share vectors: entries of a row of M, say, or
             what is computed for each of several equal legs.
-        tune: Whether to try compilers, flags and packs on each unit, and keep what is fastest on this machine: some six
-            compilations instead of one, the first time; the choice is kept in the cache. Results are those of the
-            chosen build, and of another within rounding.
-        processors: "native" compiles for this machine's processor; "any" for all of its family, AVX-512, AVX2 and the
-            oldest in one library, which chooses when it is loaded: thrice the compilation, for folders and images
-            that several kinds of machines share.
+        tune: Without effect, which True is warned of: one build is made, which `compiler` and `flags` choose.
+        processors: Without effect, which "any" is warned of: libraries are compiled for this machine's processor. A
+            cache folder may be shared, since each kind of processor has libraries of its own there; for a library that
+            other processors load, state `flags`, such as ("-O2", "-march=x86-64-v2").
     """
 
     functions: tuple[str, ...] | None = None
@@ -60,3 +65,7 @@ class Options(metaclass=CheckedCalls):
             if isinstance(getattr(self, name), list):
                 object.__setattr__(self, name, tuple(getattr(self, name)))
         check_fields(self)
+        for name, asked, instead in _WITHOUT_EFFECT:
+            if getattr(self, name) == asked:
+                # Whoever calls Options stands behind its __init__ and its metaclass.
+                warnings.warn(f"Options({name}={asked!r}) has no effect: {instead}", FutureWarning, stacklevel=4)

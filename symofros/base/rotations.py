@@ -1,11 +1,13 @@
-"""Rotations in NumPy: unit quaternions (x, y, z, w), rotation vectors and matrices, with any leading batch dimensions.
+"""Rotations: unit quaternions (x, y, z, w), rotation vectors and matrices, with any leading batch dimensions.
 
-The definition on the graph is `expr.quaternion`; a test compares the two, and the C of native/stepping/manifold.c.
+The one definition of them. Formulas of quaternions and rotation vectors are free of branches, so that arrays of numbers
+take them as they are, and so do arrays of objects with arithmetic and methods `sqrt`, `sin`, `cos`, `tan`, `arctan2`,
+`choose`: with the terms of `expr.terms` they become formulas of the graph, of which the C of stepping loops is written.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -22,7 +24,7 @@ def skew(w: Array) -> Array:
 
 def cross(a: Array, b: Array) -> Array:
     """The products a x b (..., 3): the bits of `numpy.cross`, in less than half its time for a few vectors."""
-    product = np.empty(np.broadcast_shapes(a.shape, b.shape))
+    product = np.empty(np.broadcast_shapes(a.shape, b.shape), dtype=common_type(a, b))
     product[..., 0] = a[..., 1] * b[..., 2] - a[..., 2] * b[..., 1]
     product[..., 1] = a[..., 2] * b[..., 0] - a[..., 0] * b[..., 2]
     product[..., 2] = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
@@ -73,9 +75,15 @@ def axis_rotation(axis: Array, cosine: float, sine: float) -> Array:
 
 
 def quaternion_matrix(quaternion: Array) -> Array:
-    """The rotation matrix (3, 3) of a unit quaternion (4,)."""
-    K = skew(quaternion[:3])
-    return np.asarray(np.eye(3) + 2.0 * quaternion[3] * K + 2.0 * matrix_product(K, K))
+    """The rotation matrices (..., 3, 3) of unit quaternions (..., 4)."""
+    x, y, z, w = (quaternion[..., i : i + 1] for i in range(4))
+    tx, ty, tz = x + x, y + y, z + z
+    xx, yy, zz, xy, xz, yz = tx * x, ty * y, tz * z, tx * y, tx * z, ty * z
+    wx, wy, wz = tx * w, ty * w, tz * w
+    first = 1.0 - (yy + zz), xy - wz, xz + wy
+    second = xy + wz, 1.0 - (xx + zz), yz - wx
+    third = xz - wy, yz + wx, 1.0 - (xx + yy)
+    return np.concatenate([*first, *second, *third], axis=-1).reshape((*quaternion.shape[:-1], 3, 3))
 
 
 def rotate(quaternion: Array, x: Array) -> Array:
@@ -99,21 +107,25 @@ def conjugate(quaternion: Array) -> Array:
 
 def normalized(quaternion: Array) -> Array:
     """The quaternions (..., 4) divided by their length."""
-    return np.asarray(quaternion / np.linalg.norm(quaternion, axis=-1, keepdims=True))
+    return np.asarray(quaternion / np.sqrt(np.sum(quaternion * quaternion, axis=-1, keepdims=True)))
+
+
+def quaternion_rate(quaternion: Array, w: Array) -> Array:
+    """The rates (..., 4) of quaternions of any length at angular velocities w (..., 3) in the rotated frame."""
+    return 0.5 * quaternion_product(quaternion, np.concatenate([w, np.zeros_like(w[..., :1])], axis=-1))
 
 
 def quaternion_exp(w: Array) -> Array:
     """The unit quaternions (..., 4) of rotation vectors (..., 3) [rad]."""
-    angle = np.linalg.norm(w, axis=-1, keepdims=True)
-    return np.concatenate([_half_sinc(angle) * w, np.cos(angle / 2)], axis=-1)
+    half = 0.5 * _length(w)
+    return np.concatenate([0.5 * np.sin(half) / half * w, np.cos(half)], axis=-1)
 
 
 def quaternion_log(quaternion: Array) -> Array:
-    """The rotation vectors (..., 3), of at most pi, of unit quaternions (..., 4) [rad]."""
-    upper = np.where(quaternion[..., 3:] < 0.0, -quaternion, quaternion)
-    size = np.linalg.norm(upper[..., :3], axis=-1, keepdims=True)
-    safe = np.where(size == 0.0, 1.0, size)
-    return np.asarray(np.where(size == 0.0, 2.0, 2.0 * np.arctan2(size, upper[..., 3:]) / safe) * upper[..., :3])
+    """The rotation vectors (..., 3), of at most pi, of quaternions (..., 4) of any length [rad]."""
+    upper = choose(quaternion[..., 3:], 1.0, -1.0) * quaternion
+    size = _length(upper[..., :3])
+    return np.asarray(2.0 * np.arctan2(size, upper[..., 3:]) / size * upper[..., :3])
 
 
 def screw_displacement(w: Array, v: Array) -> Array:
@@ -121,18 +133,25 @@ def screw_displacement(w: Array, v: Array) -> Array:
 
     J v = v + A w x v + B w x (w x v), A = (1 - cos a)/a^2, B = (a - sin a)/a^3, a = |w|.
     """
-    angle = np.linalg.norm(w, axis=-1, keepdims=True)
-    A = 2.0 * _half_sinc(angle) ** 2  # 1 - cos a = 2 sin^2(a/2): no digits cancel.
-    closed = _where_large(angle, lambda a: (a - np.sin(a)) / a**3)
-    B = np.where(angle < _SERIES, _polynomial(angle, 1 / 6, -1 / 120, 1 / 5040, -1 / 362880), closed)
+    angle, a, small = _angles(w)
+    half_sinc = np.sin(0.5 * angle) / angle
+    A = 2.0 * half_sinc * half_sinc  # 1 - cos a = 2 sin^2(a/2): no digits cancel.
+    closed = (a - np.sin(a)) / (a * a * a)
+    B = choose(small, _polynomial(angle, small, 1 / 6, -1 / 120, 1 / 5040, -1 / 362880), closed)
     wv = cross(w, v)
     return np.asarray(v + A * wv + B * cross(w, wv))
 
 
 def screw_twist(w: Array, p: Array) -> Array:
-    """The v (..., 3) with screw_displacement(w, v) = p: v = p - w x p / 2 + C w x (w x p)."""
+    """The v (..., 3) with screw_displacement(w, v) = p: v = p - w x p / 2 + C w x (w x p).
+
+    C = (1 - (a/2) cot(a/2))/a^2 of a = |w|.
+    """
+    angle, a, small = _angles(w)
+    closed = (1.0 - 0.5 * a / np.tan(0.5 * a)) / (a * a)
+    C = choose(small, _polynomial(angle, small, 1 / 12, 1 / 720, 1 / 30240, 1 / 1209600), closed)
     wp = cross(w, p)
-    return np.asarray(p - 0.5 * wp + _tangent_factor(w) * cross(w, wp))
+    return np.asarray(p - 0.5 * wp + C * cross(w, wp))
 
 
 def rotation_vector_rate(theta: Array, w: Array) -> Array:
@@ -143,31 +162,44 @@ def rotation_vector_rate(theta: Array, w: Array) -> Array:
     return screw_twist(-theta, w)
 
 
-# Angle [rad] below which four terms of the series are exact to rounding, and closed forms lose digits.
-_SERIES = 0.1
+def choose(sign: Array, at_least_zero: Any, below: Any) -> Array:
+    """One of two arrays, or numbers, entry by entry: the first where `sign` is at least zero."""
+    if sign.dtype == object:
+        return np.asarray(_choose_terms(sign, at_least_zero, below))
+    return np.asarray(np.where(sign >= 0.0, at_least_zero, below))
 
 
-def _half_sinc(angle: Array) -> Array:
-    """The function sin(a/2)/a, which loses no digits but at zero."""
-    zero = angle == 0.0
-    return np.asarray(np.where(zero, 0.5, np.sin(angle / 2) / np.where(zero, 1.0, angle)))
+_choose_terms = np.frompyfunc(lambda sign, at_least_zero, below: sign.choose(at_least_zero, below), 3, 1)
 
 
-def _tangent_factor(w: Array) -> Array:
-    """The function C = (1 - (a/2) cot(a/2))/a^2 of a = |w|."""
-    angle = np.linalg.norm(w, axis=-1, keepdims=True)
-    closed = _where_large(angle, lambda a: (1.0 - a / 2.0 / np.tan(a / 2.0)) / a**2)
-    series = _polynomial(angle, 1 / 12, 1 / 720, 1 / 30240, 1 / 1209600)
-    return np.asarray(np.where(angle < _SERIES, series, closed))
+def common_type(*arrays: Array) -> np.dtype[Any]:
+    """The type of what is made of these arrays: objects where one of them holds objects, or else doubles."""
+    return np.dtype(object if any(array.dtype == object for array in arrays) else np.float64)
 
 
-def _where_large(angle: Array, function: Callable[[Array], Array]) -> Array:
-    return function(np.where(angle < _SERIES, 1.0, angle))
+# Added to a squared length: its root, 1e-150, is lost beside any other length, and leaves sin(a)/a at 1 where a is 0.
+TINY = 1e-300
+# Square of the angle [rad] below which four terms of the series are exact to rounding, and closed forms lose digits.
+_SERIES = 0.01
 
 
-def _polynomial(angle: Array, *coefficients: float) -> Array:
-    """The polynomial in the angle's square."""
-    square, total = angle * angle, np.zeros_like(angle)
-    for coefficient in reversed(coefficients):
+def _length(v: Array) -> Array:
+    """The Euclidean norms (..., 1), never zero."""
+    return np.asarray(np.sqrt(np.sum(v * v, axis=-1, keepdims=True) + TINY))
+
+
+def _angles(w: Array) -> tuple[Array, Array, Array]:
+    """The angles of rotation vectors; the same, but 1 where the series holds; what is at least zero where it does."""
+    angle = _length(w)
+    small = _SERIES - angle * angle
+    return angle, choose(small, 1.0, angle), small
+
+
+def _polynomial(angle: Array, small: Array, *coefficients: float) -> Array:
+    """The polynomial in the angle's square; at zero where the series doesn't hold, so that nothing overflows."""
+    angle = choose(small, angle, 0.0)
+    square = angle * angle
+    total: Any = coefficients[-1]
+    for coefficient in reversed(coefficients[:-1]):
         total = total * square + coefficient
-    return total
+    return np.asarray(total)

@@ -1,52 +1,31 @@
 """Rotations as formulas without branches: matrices, quaternions (x, y, z, w), rotation vectors, Euler angles.
 
-Where a formula has a removable singularity, a number far below rounding is added under a square root, which leaves
-sin(a)/a and its like at 1 where a is 0.
+Formulas of quaternions and rotation vectors are those of `symofros.base.rotations`.
 """
 
 from __future__ import annotations
 
-import numpy as np
-
+from symofros.base.rotations import TINY, quaternion_exp, quaternion_log, quaternion_matrix
 from symofros.diagrams.tensor import Tensor, joined, stacked
-from symofros.expr import Quaternion
 
-# Its root is 1e-150: lost beside any length that is not zero itself.
-_TINY = 1e-300
-# Square of the angle below which a series of four terms is exact to rounding [rad^2].
-_SERIES = 0.01
 # Axes of the three turns, applied left to right as matrices: R = R_a(x1) R_b(x2) R_c(x3).
 EULER = tuple(a + b + c for a in "xyz" for b in "xyz" for c in "xyz" if b not in (a, c))
 
 
 def length(v: Tensor) -> Tensor:
     """The Euclidean norm, never zero."""
-    return ((v * v).sum() + _TINY).apply("sqrt")
-
-
-def skew(w: Tensor) -> Tensor:
-    """The matrix (3, 3) of w x."""
-    zero = w[0] * 0.0
-    rows = [[zero, -w[2], w[1]], [w[2], zero, -w[0]], [-w[1], w[0], zero]]
-    return stacked([joined(row) for row in rows])
+    return ((v * v).sum() + TINY).apply("sqrt")
 
 
 def matrix_of_vector(w: Tensor) -> Tensor:
-    """R = exp([w]) of a rotation vector w (3) [rad]: Rodrigues' formula."""
-    angle = length(w)
-    half = (0.5 * angle).apply("sin") / (0.5 * angle)
-    K = skew(w)
-    return (angle.apply("sin") / angle) * K + (0.5 * half * half) * (K @ K) + np.eye(3)
+    """R = exp([w]) of a rotation vector w (3) [rad]."""
+    return Tensor.of_terms(w.g, quaternion_matrix(quaternion_exp(w.terms)))
 
 
 def matrix_of_quaternion(quaternion: Tensor) -> Tensor:
     """R (3, 3) of a quaternion (4) of any length."""
-    unit = _quaternion(quaternion / length(quaternion))
-    return Tensor.of(quaternion.g, unit.matrix.entries, (3, 3))
-
-
-def _quaternion(tensor: Tensor) -> Quaternion:
-    return Quaternion.of(tensor.g, *tensor.flat)
+    unit = quaternion / length(quaternion)
+    return Tensor.of_terms(quaternion.g, quaternion_matrix(unit.terms))
 
 
 def quaternion_of_matrix(R: Tensor) -> Tensor:
@@ -81,19 +60,9 @@ def _upper(quaternion: Tensor) -> Tensor:
     return quaternion * (2.0 * quaternion[3].apply("step") - 1.0)
 
 
-def vector_of_quaternion(quaternion: Tensor) -> Tensor:
-    """The rotation vector (3), of at most pi, of a quaternion (4) of any length [rad]."""
-    return Tensor.of(quaternion.g, _quaternion(quaternion).logarithm, (3,))
-
-
 def vector_of_matrix(R: Tensor) -> Tensor:
     """The rotation vector (3), of at most pi, of a rotation (3, 3) [rad]."""
-    return vector_of_quaternion(quaternion_of_matrix(R))
-
-
-def rotation_between(a: Tensor, b: Tensor) -> Tensor:
-    """The rotation vector (3), in body axes, from one unit quaternion (4) to another [rad]."""
-    return Tensor.of(a.g, (_quaternion(a).conjugate * _quaternion(b)).logarithm, (3,))
+    return Tensor.of_terms(R.g, quaternion_log(quaternion_of_matrix(R).terms))
 
 
 def matrix_of_euler(angles: Tensor, sequence: str) -> Tensor:
@@ -141,25 +110,9 @@ _ALIGNED = 1e-14
 
 
 def _pair(a: Tensor, b: Tensor) -> Tensor:
-    return (a * a + b * b + _TINY).apply("sqrt")
+    return (a * a + b * b + TINY).apply("sqrt")
 
 
 def error_vector(R_desired: Tensor, R: Tensor) -> Tensor:
     """The rotation vector (3) that takes R to R_desired, in world axes [rad]."""
     return vector_of_matrix(R_desired @ R.T)
-
-
-def position_of_step(w: Tensor, shift: Tensor) -> Tensor:
-    """The linear part (3) of the step that turns by w (3) and leads to a position (3): the inverse left Jacobian.
-
-    J^-1 p = p - w x p / 2 + c w x (w x p), c = (1 - (a/2) cot(a/2)) / a^2, a = |w|, by its series where a is small.
-    """
-    angle = length(w)
-    half, a2 = 0.5 * angle, angle * angle
-    series = 1.0 / 12.0 + a2 * (1.0 / 720.0 + a2 * (1.0 / 30240.0 + a2 / 1209600.0))
-    # Where the series holds, the other formula must still be finite: it is at one radian.
-    large = (a2 - _SERIES).apply("step")
-    safe = half * large + 0.5 * (1.0 - large)
-    closed = (1.0 - safe * safe.apply("cos") / safe.apply("sin")) / (4.0 * safe * safe)
-    once = w.cross(shift)
-    return shift - 0.5 * once + (large * closed + (1.0 - large) * series) * w.cross(once)

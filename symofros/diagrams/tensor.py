@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from symofros.expr import Edge, Graph
+from symofros.expr import Edge, Graph, Terms, edges_of, terms
 
 Edges = npt.NDArray[np.object_]
 
@@ -48,6 +48,16 @@ class Tensor:
         """An array of numbers."""
         array = np.asarray(values, dtype=np.float64)
         return Tensor.of(g, (g.constant(float(value)) for value in array.reshape(-1)), array.shape)
+
+    @staticmethod
+    def of_terms(g: Graph, array: Terms) -> Tensor:
+        """What a formula over terms gave."""
+        return Tensor.of(g, edges_of(g, array), array.shape)
+
+    @property
+    def terms(self) -> Terms:
+        """The entries as an array that NumPy's formulas take, such as those of `symofros.base.rotations`."""
+        return terms(self.g, self.flat).reshape(self.shape)
 
     @property
     def shape(self) -> tuple[int, ...]:

@@ -26,5 +26,7 @@ from symofros.expr.program import Function as Function
 from symofros.expr.program import Output as Output
 from symofros.expr.program import Program as Program
 from symofros.expr.program import Solver as Solver
-from symofros.expr.quaternion import Quaternion as Quaternion
 from symofros.expr.substitute import copy_into as copy_into
+from symofros.expr.terms import Terms as Terms
+from symofros.expr.terms import edges_of as edges_of
+from symofros.expr.terms import terms as terms

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Collection, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -18,7 +17,6 @@ from symofros.base.routes import Choice, choose
 from symofros.errors import CompileError
 from symofros.expr.program import Function, Program
 from symofros.generator.codegen.cuda import device_code
-from symofros.generator.codegen.dispatch import dispatch_source
 from symofros.generator.codegen.interpreted import InterpretedUnit
 from symofros.generator.codegen.model import Packs, model_source, model_text
 from symofros.generator.passes import run_passes
@@ -30,7 +28,6 @@ from symofros.native import native_text
 from symofros.runtime.build.build import build_library, recall_library
 from symofros.runtime.build.progress import Progress
 from symofros.runtime.build.toolchain import NO_COMPILER, Toolchain
-from symofros.runtime.build.tuning import Build, builds, fastest
 from symofros.runtime.calls.kernel import SHARED_PARAMETERS, LaneOptions, Precision, Unit
 from symofros.runtime.calls.library import CompiledKernel, CompiledUnit
 from symofros.runtime.cuda.device_code import DeviceCode
@@ -109,12 +106,8 @@ class UnitCompiler:
         """
         assert self._toolchain is not None, "an interpreted model has no library"
         program = self._programs.program(requests)
-
-        def build_one(build: Build) -> Path:
-            source = model_source(program, self._record, GENERATOR, lanes, packs=self._packs(build))
-            return build_library(source, _header(), build.toolchain, build.flags, self._dispatch, self.symbol)
-
-        return self._build(build_one, self._toolchain, lanes)
+        source = model_source(program, self._record, GENERATOR, lanes, packs=self._packs)
+        return build_library(source, _header(), self._toolchain, self._options.flags)
 
     def device_code(self, key: Key, precision: Precision) -> DeviceCode:
         """The kernels of a function, for graphics processors; none where a solver finishes it."""
@@ -124,14 +117,13 @@ class UnitCompiler:
 
     def routes(self, keys: Sequence[Key]) -> Mapping[Key, tuple[Choice, ...]]:
         """The methods of the functions of one unit, found as its text is written."""
-        requests, options = tuple(Request(*key) for key in keys), self._options
+        requests = tuple(Request(*key) for key in keys)
         with self._generating:
             if requests not in self._told:
                 program = self._programs.program(requests)
                 choices = {(function.name, function.frame): function.choices for function in program.functions}
                 if self._toolchain is not None:
-                    packs = self._packs(Build(self._toolchain, options.flags, options.packs))
-                    choices = model_text(program, self._record, GENERATOR, packs=packs).choices
+                    choices = model_text(program, self._record, GENERATOR, packs=self._packs).choices
                     for f in program.functions:
                         choices[f.name, f.frame] += (self._batches(f),)
                 self._told[requests] = choices
@@ -148,9 +140,8 @@ class UnitCompiler:
         return f"{identifier(self._record.name)}_model"
 
     @property
-    def _dispatch(self) -> str:
-        """C that chooses among kinds of processors, where a library is for several."""
-        return dispatch_source(self.symbol) if self._options.processors == "any" else ""
+    def _packs(self) -> Packs:
+        return "where they pay" if self._options.packs else "none"
 
     def _unit(
         self, request: object, names: str, form: Callable[[], Program], meanwhile: Callable[[], None] | None = None
@@ -175,30 +166,19 @@ class UnitCompiler:
     ) -> CompiledUnit:
         progress = Progress(self._record.name, names)
 
-        def source(build: Build) -> str:
+        def source() -> str:
             with self._generating:
                 progress.begin("generating")
                 # Of a unit on vectors, the code for one state is never called.
-                packs = self._packs(build) if lanes is None else "none"
+                packs: Packs = self._packs if lanes is None else "none"
                 text = model_source(program(), self._record, GENERATOR, lanes, packs=packs)
             progress.begin("compiling")
             if meanwhile is not None:
                 meanwhile()
             return text
 
-        def recall_one(build: Build) -> Path:
-            return recall_library(
-                f"{self._recipe}{request!r}{build.packs}",
-                lambda: source(build),
-                _header(),
-                build.toolchain,
-                build.flags,
-                self._dispatch,
-                self.symbol,
-            )
-
         with progress:
-            path = self._build(recall_one, toolchain, lanes)
+            path = recall_library(f"{self._recipe}{request!r}", source, _header(), toolchain, self._options.flags)
         return CompiledUnit(path, self.symbol, self._record.hash, in_lanes)
 
     def _in_lanes(
@@ -222,24 +202,6 @@ class UnitCompiler:
                 return None
 
         return compile_in_lanes
-
-    def _build(self, build_one: Callable[[Build], Path], toolchain: Toolchain, lanes: LaneOptions | None) -> Path:
-        """One build as the options have it; or, to tune, the fastest of several."""
-        options = self._options
-        if not options.tune:
-            return build_one(Build(toolchain, options.flags, options.packs))
-        first, *others = builds(options, toolchain, lanes is not None)
-        libraries = [build_one(first)]
-        for build in others:
-            with suppress(CompileError):  # It was only worth a try.
-                libraries.append(build_one(build))
-        return fastest(libraries, lambda path: CompiledUnit(path, self.symbol, self._record.hash))
-
-    def _packs(self, build: Build) -> Packs:
-        """Packs of a build: where builds are timed, all or none; or else where they pay by count."""
-        if not build.packs:
-            return "none"
-        return "all" if self._options.tune else "where they pay"
 
 
 def _header() -> str:

@@ -1,5 +1,8 @@
 """The configuration manifold: integrate, difference, sampling (conventions of Pinocchio), and its charts.
 
+The one definition of the manifold, over arrays of numbers or of terms, as `symofros.base.rotations` says; the C of
+stepping loops is written of it (`generator/codegen/manifold.py`).
+
 A chart's coordinates theta (nv) about a configuration q0 are the differences of linear coordinates, the rotation
 vectors of quaternions, and for poses the displacement in the axes of q0 and the rotation vector
 (docs/theory/simulation.md).
@@ -19,6 +22,7 @@ import numpy.typing as npt
 
 from symofros.base.arrays import Array
 from symofros.base.rotations import (
+    common_type,
     conjugate,
     quaternion_exp,
     quaternion_log,
@@ -65,7 +69,8 @@ def retract(segments: Sequence[Segment], q0: Array, theta: Array) -> Array:
     """The configurations (..., nq) at coordinates theta (..., nv) of the charts about q0 (..., nq)."""
     if _is_flat(segments):
         return np.asarray(q0 + theta)
-    q = np.empty(np.broadcast_shapes(q0.shape[:-1], theta.shape[:-1]) + (q0.shape[-1],))
+    shape = (*np.broadcast_shapes(q0.shape[:-1], theta.shape[:-1]), q0.shape[-1])
+    q = np.empty(shape, dtype=common_type(q0, theta))
     for segment in segments:
         i, j, n = segment.q, segment.v, segment.size
         if segment.kind == "linear":
@@ -91,7 +96,7 @@ def difference(segments: Sequence[Segment], q0: Array, q1: Array) -> Array:
     if _is_flat(segments):
         return np.asarray(q1 - q0)
     nv = sum(segment.speeds for segment in segments)
-    dq = np.empty(np.broadcast_shapes(q0.shape[:-1], q1.shape[:-1]) + (nv,))
+    dq = np.empty((*np.broadcast_shapes(q0.shape[:-1], q1.shape[:-1]), nv), dtype=common_type(q0, q1))
     for segment in segments:
         i, j, n = segment.q, segment.v, segment.size
         if segment.kind == "linear":
@@ -122,7 +127,7 @@ def chart_rate(segments: Sequence[Segment], theta: Array, v: Array) -> Array:
     """The rates of theta (..., nv) in a chart, where the speeds are v (..., nv)."""
     if _is_flat(segments):
         return np.array(v if v.shape == theta.shape else np.broadcast_arrays(theta, v)[1])
-    rate = np.empty(np.broadcast_shapes(theta.shape, v.shape))
+    rate = np.empty(np.broadcast_shapes(theta.shape, v.shape), dtype=common_type(theta, v))
     for segment in segments:
         j, n = segment.v, segment.size
         if segment.kind == "linear":

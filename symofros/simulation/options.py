@@ -14,7 +14,6 @@ from symofros.errors import Problem, UnknownNameError, did_you_mean, near_name
 from symofros.runtime.beams import BEAM_LIMIT
 
 Stabilisation = Literal["projection", "baumgarte", "none"]
-STABILISATIONS = ("projection", "baumgarte", "none")
 # What the functions that take these options by name call their own arguments.
 _CALL = ("q0", "v0", "t_end", "u", "par")
 # Names that other tools have for options and arguments, in small letters, by ours: by spelling, `t` would be near `t0`.

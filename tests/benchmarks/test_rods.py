@@ -48,14 +48,13 @@ class Loop:
         self.least = min(self.least, (time.perf_counter_ns() - start) / STATES)
 
 
-@pytest.mark.parametrize("tune", [pytest.param(True, marks=pytest.mark.slow), False], ids=["tuned", "default"])
 @pytest.mark.parametrize("case", CASES)
-def test_a_rod_beside_a_beam_of_first_order(benchmark: BenchmarkFixture, case: str, tune: bool) -> None:
+def test_a_rod_beside_a_beam_of_first_order(benchmark: BenchmarkFixture, case: str) -> None:
     inertia = {"rhoI_y": 0.0, "rhoI_z": 0.0}
     first, exact = (
         Loop(
             sf.System("s", (rod(CASES[case], sf.Joint("base", "free"), theory=theory, **inertia),)),
-            sf.Options(("dynamics",), tune=tune),
+            sf.Options(("dynamics",)),
         )
         for theory in ("second_order", "strain")
     )

@@ -16,6 +16,10 @@ SYM_EXPORT void chart_rates(int32_t n, const int32_t *segments, const double *th
     sym_system s = system_of(n, segments);
     sym_chart_rate(&s, theta, v, rate);
 }
+SYM_EXPORT void coordinates(int32_t n, const int32_t *segments, const double *q0, const double *q1, double *theta) {
+    sym_system s = system_of(n, segments);
+    sym_chart_coordinates(&s, q0, q1, theta);
+}
 SYM_EXPORT void rates(int32_t n, const int32_t *segments, double *q, const double *v, double *rate) {
     sym_system s = system_of(n, segments);
     s.q = q;

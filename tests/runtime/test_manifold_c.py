@@ -1,4 +1,4 @@
-"""The configuration manifold of the stepping loop's C against that of NumPy, which is tested against the graph's."""
+"""The configuration manifold of the stepping loop's C, which is written of NumPy's formulas, against these."""
 
 from __future__ import annotations
 
@@ -12,11 +12,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from symofros.generator.codegen.manifold import rotations_text
 from symofros.native import native_text
 from symofros.runtime.build.build import build_library
 from symofros.runtime.build.toolchain import DEFAULT_FLAGS, find_toolchain
 from symofros.runtime.calls.binding import constants
-from symofros.runtime.manifold import chart_rate, integrate, retract
+from symofros.runtime.manifold import chart_coordinates, chart_rate, integrate, retract
 from tests.runtime.test_manifold import (
     ANGLES,
     NQ,
@@ -33,10 +34,16 @@ from tests.runtime.test_manifold import (
 _INTERFACE = """
 void retracted(int32_t n, const int32_t *segments, const double *q0, const double *theta, double *q);
 void chart_rates(int32_t n, const int32_t *segments, const double *theta, const double *v, double *rate);
+void coordinates(int32_t n, const int32_t *segments, const double *q0, const double *q1, double *theta);
 void rates(int32_t n, const int32_t *segments, double *q, const double *v, double *rate);
 void displacements(int32_t n, const int32_t *segments, double *theta);
 """
 _WRAPPER = Path(__file__).with_name("manifold_wrapper.c").read_text()
+
+
+def test_the_file_is_what_the_formulas_give() -> None:
+    """Written anew by python -m symofros.generator.codegen.manifold."""
+    assert native_text("stepping/rotations.c") == rotations_text()
 
 
 @cache
@@ -78,6 +85,16 @@ def test_the_loop_has_the_rates_of_charts_that_numpy_has(seed: int, first: float
     theta, v, rate = step(rng, (first, second)), rng.uniform(-1.0, 1.0, NV), np.empty(NV)
     call("chart_rates", theta, v, rate)
     np.testing.assert_allclose(rate, chart_rate(SEGMENTS, theta, v), atol=3 * ROUNDING, rtol=0)
+
+
+@given(SEEDS, ANGLES, ANGLES)
+@settings(max_examples=80)
+def test_the_loop_has_the_coordinates_of_charts_that_numpy_has(seed: int, first: float, second: float) -> None:
+    rng = np.random.default_rng(seed)
+    q0, theta = configuration(rng), np.empty(NV)
+    q1 = retract(SEGMENTS, q0, step(rng, (first, second)))
+    call("coordinates", q0, q1, theta)
+    np.testing.assert_allclose(theta, chart_coordinates(SEGMENTS, q0, q1), atol=ROUNDING, rtol=1e-15)
 
 
 @given(SEEDS)

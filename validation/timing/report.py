@@ -22,12 +22,11 @@ LIMITS = (
     compared with ours, to 1e-12 of the largest entry (1e-9 where a system is solved), and sides that differ are not
     timed. Cells hold minimum and median over the repeats, in nanoseconds a state; ratios are of medians, theirs to
     ours. Machines are noisy: quote a ratio rather than a time.""",
-    """Ours is generated C, one state after the other, in the fastest of its builds by gcc and clang
-    (Options(tune=True); beyond 400 speeds in the default one), and by vectors in calls of 64 states, or of as many as
-    keep their results within 384 KiB: by rows, by columns, and by columns of floats (checked to 5e-4). Copies of our
-    library, of CasADi's and of SymPy's compute in turn, because where code happens to lie matters. Pinocchio is its own
-    headers, compiled in the run by gcc and by clang, in the faster of its two conventions; MuJoCo is its wheel's
-    library; CasADi is the C of its
+    """Ours is generated C, one state after the other, in the build that users get by default, and by vectors in calls
+    of 64 states, or of as many as keep their results within 384 KiB: by rows, by columns, and by columns of floats
+    (checked to 5e-4). Copies of our library, of CasADi's and of SymPy's compute in turn, because where code happens to
+    lie matters. Pinocchio is its own headers, compiled in the run by gcc and by clang, in the faster of its two
+    conventions; MuJoCo is its wheel's library; CasADi is the C of its
     composite-rigid-body, Newton-Euler and articulated-body recursions, SymPy Kane's equations with common
     subexpressions, both in the best of four builds (gcc and clang, -O3 with and without -ffast-math). Friction and
     springs in joints are taken out.""",

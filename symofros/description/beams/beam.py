@@ -390,10 +390,6 @@ class Beam:
             | {"stiffness": tuple(tuple(map(change, row)) for row in self.stiffness)}
         )
 
-    def plain_values(self) -> list[tuple[str, Value]]:
-        """What may depend on parameters only, by label."""
-        return [(item.name, getattr(self, item.name)) for item in fields(self) if item.name in ("length", "damping")]
-
 
 def _is_count(stated: Any, least: int) -> bool:
     return isinstance(stated, int) and not isinstance(stated, bool) and stated >= least

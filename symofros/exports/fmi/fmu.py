@@ -29,6 +29,8 @@ _MACHINES = {"x86_64": "x86_64", "amd64": "x86_64", "aarch64": "aarch64", "arm64
 _SYSTEMS = {"linux": ("linux", ".so"), "darwin": ("darwin", ".dylib"), "win32": ("windows", ".dll")}
 _OLD_NAMES = {("x86_64", "linux"): "linux64", ("x86_64", "darwin"): "darwin64", ("x86_64", "windows"): "win64"}
 _HEADERS = ("symofros_fmu.h", "symofros_fmi.h")
+# Included by the files of both versions' interfaces.
+_COMMON = "symofros_fmi_shared.h"
 # As FMI 3 asks of sources; functions of a shared library have no prefix. In FMI 2 importers define FMI2_FUNCTION_PREFIX
 # where sources of several units go into one program.
 _PREFIXED = Template("""\
@@ -57,7 +59,7 @@ def _write(material: Material, folder: Path, version: int) -> Exported:
     sources = model_files(material)
     token = _token(material, sources, version)
     sources[f"{name}_fmi{version}.c"] = _glue(material, version, token)
-    for file in (*_HEADERS, *_INTERFACE[version]):
+    for file in (*_HEADERS, _COMMON, *_INTERFACE[version]):
         sources[file] = native_text(f"exports/{file}")
     library = shared_library(sources, f"{name}_fmi{version}.c", [fmi_headers()], _SHARED[version])
     place, suffix = _platform(version)

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Sequence
 from string import Template
 
 from symofros.base.names import function_symbols, identifier
+from symofros.base.rotations import TINY
 from symofros.expr.program import Function, Program
 from symofros.generator.codegen import trigonometry
 from symofros.generator.codegen.function import FunctionWriter
@@ -20,7 +21,7 @@ from symofros.generator.codegen.model import comment, legend, operations_text
 from symofros.native import native_text
 from symofros.runtime.calls.kernel import Precision, Signature
 from symofros.runtime.cuda.device_code import BLOCK, DeviceCode, DeviceKernel
-from symofros.runtime.record import ModelRecord
+from symofros.runtime.record import ModelRecord, Segment
 
 _REAL: dict[Precision, str] = {"double": "double", "single": "float"}
 # A hand-written function of the device with the comment above it.
@@ -138,15 +139,15 @@ def _rollout(name: str, record: ModelRecord, functions: Sequence[Function], prec
     turning = any(segment.kind != "linear" for segment in record.segments)
     rotations = native_text("stepping/rotations.c").replace("double", "sym_number") if turning else ""
     if precision == "single":
-        rotations = _DECIMAL.sub(r"\g<0>f", rotations)
-    segments = record.segments
+        # A float has no 1e-300; its 1e-30 is lost beside any angle that sin(a)/a would notice.
+        rotations = _DECIMAL.sub(r"\g<0>f", rotations.replace(repr(TINY), "1e-30"))
     return Template(native_text("cuda/rollout.cu.in")).substitute(
         name=name,
         nq=max(1, len(record.q_names)),
         nv=max(1, len(record.v_names)),
         rotations=rotations,
-        retract="\n".join(_RETRACTED[s.kind].substitute(q=s.q, v=s.v, size=s.size) for s in segments),
-        chart_rate="\n".join(_CHART_RATE[s.kind].substitute(v=s.v, size=s.size) for s in segments),
+        retract="\n".join(map(_retracted, record.segments)),
+        chart_rate="\n".join(map(_chart_rate, record.segments)),
         stage=_forward_arguments(forward, "stage_q", "stage_v"),
         present=_forward_arguments(forward, "q", "v"),
     )
@@ -158,25 +159,17 @@ def _forward_arguments(forward: Function, q: str, v: str) -> str:
     return ", ".join(["pre", *(places[group] for group in forward.inputs), "a, 1"])
 
 
-# A segment's part of q1 = q0 (+) theta and of the rate of theta, as in native/stepping/manifold.c.
-_RETRACTED = {
-    "linear": Template("    for (i = 0; i < $size; ++i) q1[$q + i] = q0[$q + i] + theta[$v + i];"),
-    "quaternion": Template(
-        "    sym_quaternion_exp(theta + $v, rotation);\n    sym_quaternion_product(q0 + $q, rotation, q1 + $q);"
-    ),
-    "pose": Template(
-        "    sym_rotate(q0 + $q + 3, theta + $v, displacement);\n"
-        "    for (i = 0; i < 3; ++i) q1[$q + i] = q0[$q + i] + displacement[i];\n"
-        "    sym_quaternion_exp(theta + $v + 3, rotation);\n"
-        "    sym_quaternion_product(q0 + $q + 3, rotation, q1 + $q + 3);"
-    ),
-}
-_CHART_RATE = {
-    "linear": Template("    for (i = 0; i < $size; ++i) rate[$v + i] = v[$v + i];"),
-    "quaternion": Template("    sym_rotation_vector_rate(theta + $v, v + $v, rate + $v);"),
-    "pose": Template(
-        "    sym_quaternion_exp(theta + $v + 3, rotation);\n"
-        "    sym_rotate(rotation, v + $v, rate + $v);\n"
-        "    sym_rotation_vector_rate(theta + $v + 3, v + $v + 3, rate + $v + 3);"
-    ),
-}
+def _retracted(segment: Segment) -> str:
+    """A segment's part of q1 = q0 (+) theta, as in native/stepping/manifold.c."""
+    q, v = segment.q, segment.v
+    if segment.kind == "linear":
+        return f"    for (i = 0; i < {segment.size}; ++i) q1[{q} + i] = q0[{q} + i] + theta[{v} + i];"
+    return f"    sym_retract_{segment.kind}(q0 + {q}, theta + {v}, q1 + {q});"
+
+
+def _chart_rate(segment: Segment) -> str:
+    """A segment's part of the rate of theta."""
+    v = segment.v
+    if segment.kind == "linear":
+        return f"    for (i = 0; i < {segment.size}; ++i) rate[{v} + i] = v[{v} + i];"
+    return f"    sym_chart_rate_{segment.kind}(theta + {v}, v + {v}, rate + {v});"

@@ -24,8 +24,8 @@ from symofros.generator.codegen.statements import Statement, StatementWriter
 from symofros.generator.codegen.trigonometry import block_lines
 from symofros.runtime.calls.kernel import LaneOptions, Precision
 
-# Which packs a text has: those of functions that are faster with them by count, or all, for builds that are timed and
-# for functions that a routine finishes; where there are any, equal limbs share vectors, too.
+# Which packs a text has: those of functions that are faster with them by count, or all, as
+# functions have that a routine finishes; where there are any, equal limbs share vectors, too.
 Packs = Literal["none", "where they pay", "all"]
 MAX_STATEMENTS = 1000
 # Past this length, shorter chunks compile twice as fast and run as fast (measured on a 52-link chain, gcc 12); below

@@ -1,9 +1,13 @@
 /* FMI 2.0 over symofros_fmi.h. Written by hand. */
+#define FMI(name) fmi2##name
+#define FMI_INSTANCE fmi2Component
+#define FMI_REAL fmi2Real
+#define FMI_STATE fmi2FMUstate
+#define FMI_STATES(verb) fmi2##verb##FMUstate
+#define FMI_STATES_SIZE fmi2SerializedFMUstateSize
+#define FMI_DESERIALIZE fmi2DeSerializeFMUstate
 
-static const char *category(fmi2Status status) {
-    if (status == fmi2Warning) return "logStatusWarning";
-    return status == fmi2Discard ? "logStatusDiscard" : "logStatusError";
-}
+static const char *category(fmi2Status status);
 
 static fmi2Status say(const fmu *f, fmi2Status status, const char *message) {
     fmi2CallbackLogger logger;
@@ -14,19 +18,7 @@ static fmi2Status say(const fmu *f, fmi2Status status, const char *message) {
     return status;
 }
 
-static fmi2Status outcome(const fmu *f, int found) {
-    if (found == FMU_OK) return fmi2OK;
-    if (found == FMU_BEYOND_THEORY) return say(f, fmi2Discard, f->message);
-    if (found == FMU_NOT_DIFFERENTIATED) return say(f, fmi2Error, f->message);
-    return say(f, found == FMU_SINGULAR ? fmi2Discard : fmi2Error, fmi_message(found));
-}
-
-#define ANSWER(found) \
-    fmu *f = c; \
-    return f == NULL ? fmi2Error : outcome(f, found)
-#define ALLOWED(condition) \
-    if (f == NULL) return fmi2Error; \
-    if (!(condition)) return outcome(f, FMU_WRONG_MODE)
+#include "symofros_fmi_shared.h"
 
 const char *fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
 const char *fmi2GetVersion(void) { return fmi2Version; }
@@ -57,11 +49,6 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
     return f;
 }
 
-void fmi2FreeInstance(fmi2Component c) {
-    fmu *f = c;
-    if (f != NULL) f->release(f);
-}
-
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2Real tolerance, fmi2Real start,
                                fmi2Boolean has_stop, fmi2Real stop) {
     ANSWER(fmi_prepare(f, has_tolerance, tolerance, start, has_stop, stop));
@@ -72,18 +59,6 @@ fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
     ALLOWED(f->phase == FMU_INSTANTIATED);
     f->phase = FMU_INITIALISING;
     return fmi2OK;
-}
-
-fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
-    ANSWER(fmi_exit_initialisation(f));
-}
-
-fmi2Status fmi2Terminate(fmi2Component c) {
-    ANSWER(fmi_terminate(f));
-}
-
-fmi2Status fmi2Reset(fmi2Component c) {
-    ANSWER(fmi_reset(f));
 }
 
 fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t n, fmi2Real value[]) {
@@ -109,30 +84,6 @@ NONE(fmi2SetInteger, const fmi2Integer)
 NONE(fmi2SetBoolean, const fmi2Boolean)
 NONE(fmi2SetString, const fmi2String)
 
-fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *state) {
-    ANSWER(fmi_save(f, state));
-}
-
-fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
-    ANSWER(fmi_load(f, state));
-}
-
-fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *state) {
-    ANSWER(fmi_forget(state));
-}
-
-fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t *size) {
-    ANSWER(fmi_size(f, state, size));
-}
-
-fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size) {
-    ANSWER(fmi_pack(f, state, bytes, size));
-}
-
-fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate *state) {
-    ANSWER(fmi_unpack(f, bytes, size, state));
-}
-
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknown[], size_t n_unknown,
                                         const fmi2ValueReference known[], size_t n_known, const fmi2Real seed[],
                                         fmi2Real sensitivity[]) {
@@ -140,10 +91,6 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
 }
 
 /* Model Exchange. */
-
-fmi2Status fmi2EnterEventMode(fmi2Component c) {
-    ANSWER(fmi_event_mode(f));
-}
 
 fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *info) {
     fmu *f = c;
@@ -155,45 +102,8 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *info) {
     return fmi2OK;
 }
 
-fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) {
-    ANSWER(fmi_continuous_mode(f));
-}
-
-fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean final, fmi2Boolean *event, fmi2Boolean *terminate) {
-    fmu *f = c;
-    (void)final;
-    ALLOWED(!f->cosim && f->phase == FMU_CONTINUOUS);
-    *event = *terminate = fmi2False;
-    if (sym_instance_judge_beams(f->instance) != 0) *terminate = fmi2True;
-    if (fmu_note_bending(f)) say(f, fmi2Warning, f->message);
-    return fmi2OK;
-}
-
-fmi2Status fmi2SetTime(fmi2Component c, fmi2Real t) {
-    ANSWER(fmi_set_time(f, t));
-}
-
-fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t n) {
-    ANSWER(fmi_set_states(f, x, n));
-}
-
-fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real x[], size_t n) {
-    ANSWER(fmi_get_states(f, x, n));
-}
-
 fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real derivatives[], size_t n) {
     ANSWER(fmi_get_rates(f, derivatives, n));
-}
-
-fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real indicators[], size_t n) {
-    fmu *f = c;
-    (void)indicators;
-    ALLOWED(!f->cosim && n == 0);
-    return fmi2OK;
-}
-
-fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real nominals[], size_t n) {
-    ANSWER(fmi_nominals(f, nominals, n));
 }
 
 /* Co-Simulation. */

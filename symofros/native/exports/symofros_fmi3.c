@@ -1,9 +1,13 @@
 /* FMI 3.0 over symofros_fmi.h. Written by hand. */
+#define FMI(name) fmi3##name
+#define FMI_INSTANCE fmi3Instance
+#define FMI_REAL fmi3Float64
+#define FMI_STATE fmi3FMUState
+#define FMI_STATES(verb) fmi3##verb##FMUState
+#define FMI_STATES_SIZE fmi3SerializedFMUStateSize
+#define FMI_DESERIALIZE fmi3DeserializeFMUState
 
-static const char *category(fmi3Status status) {
-    if (status == fmi3Warning) return "logStatusWarning";
-    return status == fmi3Discard ? "logStatusDiscard" : "logStatusError";
-}
+static const char *category(fmi3Status status);
 
 static fmi3Status say(const fmu *f, fmi3Status status, const char *message) {
     fmi3LogMessageCallback logger;
@@ -12,19 +16,7 @@ static fmi3Status say(const fmu *f, fmi3Status status, const char *message) {
     return status;
 }
 
-static fmi3Status outcome(const fmu *f, int found) {
-    if (found == FMU_OK) return fmi3OK;
-    if (found == FMU_BEYOND_THEORY) return say(f, fmi3Discard, f->message);
-    if (found == FMU_NOT_DIFFERENTIATED) return say(f, fmi3Error, f->message);
-    return say(f, found == FMU_SINGULAR ? fmi3Discard : fmi3Error, fmi_message(found));
-}
-
-#define ANSWER(found) \
-    fmu *f = c; \
-    return f == NULL ? fmi3Error : outcome(f, found)
-#define ALLOWED(condition) \
-    if (f == NULL) return fmi3Error; \
-    if (!(condition)) return outcome(f, FMU_WRONG_MODE)
+#include "symofros_fmi_shared.h"
 
 const char *fmi3GetVersion(void) { return fmi3Version; }
 
@@ -81,11 +73,6 @@ fmi3Instance fmi3InstantiateScheduledExecution(fmi3String name, fmi3String token
     return NULL;
 }
 
-void fmi3FreeInstance(fmi3Instance c) {
-    fmu *f = c;
-    if (f != NULL) f->release(f);
-}
-
 fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean has_tolerance, fmi3Float64 tolerance,
                                        fmi3Float64 start, fmi3Boolean has_stop, fmi3Float64 stop) {
     fmu *f = c;
@@ -96,22 +83,6 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean has_tolerance
     return outcome(f, found);
 }
 
-fmi3Status fmi3ExitInitializationMode(fmi3Instance c) {
-    ANSWER(fmi_exit_initialisation(f));
-}
-
-fmi3Status fmi3EnterEventMode(fmi3Instance c) {
-    ANSWER(fmi_event_mode(f));
-}
-
-fmi3Status fmi3Terminate(fmi3Instance c) {
-    ANSWER(fmi_terminate(f));
-}
-
-fmi3Status fmi3Reset(fmi3Instance c) {
-    ANSWER(fmi_reset(f));
-}
-
 fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t n, fmi3Float64 value[], size_t nv) {
     ANSWER(n != nv ? FMU_WRONG_MODE : fmi_get(f, vr, n, value));
 }
@@ -119,30 +90,6 @@ fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t 
 fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t n, const fmi3Float64 value[],
                           size_t nv) {
     ANSWER(n != nv ? FMU_WRONG_MODE : fmi_set(f, vr, n, value));
-}
-
-fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState *state) {
-    ANSWER(fmi_save(f, state));
-}
-
-fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState state) {
-    ANSWER(fmi_load(f, state));
-}
-
-fmi3Status fmi3FreeFMUState(fmi3Instance c, fmi3FMUState *state) {
-    ANSWER(fmi_forget(state));
-}
-
-fmi3Status fmi3SerializedFMUStateSize(fmi3Instance c, fmi3FMUState state, size_t *size) {
-    ANSWER(fmi_size(f, state, size));
-}
-
-fmi3Status fmi3SerializeFMUState(fmi3Instance c, fmi3FMUState state, fmi3Byte bytes[], size_t size) {
-    ANSWER(fmi_pack(f, state, bytes, size));
-}
-
-fmi3Status fmi3DeserializeFMUState(fmi3Instance c, const fmi3Byte bytes[], size_t size, fmi3FMUState *state) {
-    ANSWER(fmi_unpack(f, bytes, size, state));
 }
 
 fmi3Status fmi3GetDirectionalDerivative(fmi3Instance c, const fmi3ValueReference unknown[], size_t n_unknown,
@@ -181,45 +128,8 @@ fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean *again, fmi3Bool
 
 /* Model Exchange. */
 
-fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance c) {
-    ANSWER(fmi_continuous_mode(f));
-}
-
-fmi3Status fmi3CompletedIntegratorStep(fmi3Instance c, fmi3Boolean final, fmi3Boolean *event, fmi3Boolean *terminate) {
-    fmu *f = c;
-    (void)final;
-    ALLOWED(!f->cosim && f->phase == FMU_CONTINUOUS);
-    *event = *terminate = fmi3False;
-    if (sym_instance_judge_beams(f->instance) != 0) *terminate = fmi3True;
-    if (fmu_note_bending(f)) say(f, fmi3Warning, f->message);
-    return fmi3OK;
-}
-
-fmi3Status fmi3SetTime(fmi3Instance c, fmi3Float64 t) {
-    ANSWER(fmi_set_time(f, t));
-}
-
-fmi3Status fmi3SetContinuousStates(fmi3Instance c, const fmi3Float64 x[], size_t n) {
-    ANSWER(fmi_set_states(f, x, n));
-}
-
-fmi3Status fmi3GetContinuousStates(fmi3Instance c, fmi3Float64 x[], size_t n) {
-    ANSWER(fmi_get_states(f, x, n));
-}
-
 fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance c, fmi3Float64 derivatives[], size_t n) {
     ANSWER(fmi_get_rates(f, derivatives, n));
-}
-
-fmi3Status fmi3GetEventIndicators(fmi3Instance c, fmi3Float64 indicators[], size_t n) {
-    fmu *f = c;
-    (void)indicators;
-    ALLOWED(!f->cosim && n == 0);
-    return fmi3OK;
-}
-
-fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance c, fmi3Float64 nominals[], size_t n) {
-    ANSWER(fmi_nominals(f, nominals, n));
 }
 
 fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance c, size_t *n) {

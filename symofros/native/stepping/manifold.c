@@ -7,39 +7,39 @@ static void sym_retract(const sym_system *system, const double *q0, const double
     for (s = 0; s < system->n_segments; ++s) {
         const sym_segment *seg = &system->segments[s];
         const double *a = q0 + seg->q, *x = theta + seg->v;
-        double *b = q + seg->q, rotation[4], displacement[3];
+        double *b = q + seg->q;
         if (seg->kind == SYM_SEGMENT_LINEAR) {
             for (i = 0; i < seg->size; ++i) b[i] = a[i] + x[i];
-        } else if (seg->kind == SYM_SEGMENT_QUATERNION) {
-            sym_quaternion_exp(x, rotation);
-            sym_quaternion_product(a, rotation, b);
-        } else {
-            sym_rotate(a + 3, x, displacement);
-            for (i = 0; i < 3; ++i) b[i] = a[i] + displacement[i];
-            sym_quaternion_exp(x + 3, rotation);
-            sym_quaternion_product(a + 3, rotation, b + 3);
-        }
+        } else if (seg->kind == SYM_SEGMENT_QUATERNION)
+            sym_retract_quaternion(a, x, b);
+        else
+            sym_retract_pose(a, x, b);
+    }
+}
+
+/* theta <- the coordinates of configuration q in the chart about q0: the inverse of sym_retract. */
+static void sym_chart_coordinates(const sym_system *system, const double *q0, const double *q, double *theta) {
+    int s, i;
+    for (s = 0; s < system->n_segments; ++s) {
+        const sym_segment *seg = &system->segments[s];
+        const double *a = q0 + seg->q, *b = q + seg->q;
+        double *x = theta + seg->v;
+        if (seg->kind == SYM_SEGMENT_LINEAR) {
+            for (i = 0; i < seg->size; ++i) x[i] = b[i] - a[i];
+        } else if (seg->kind == SYM_SEGMENT_QUATERNION)
+            sym_chart_coordinates_quaternion(a, b, x);
+        else
+            sym_chart_coordinates_pose(a, b, x);
     }
 }
 
 /* Twists (v, w) of poses in theta become displacements in place: those of the screw motion with constant twist in unit
- * time, v + A w x v + B w x (w x v). */
+ * time. */
 static void sym_twist_to_displacement(const sym_system *system, double *theta) {
-    int k, i;
+    int k;
     for (k = 0; k < system->n_segments; ++k) {
-        const sym_segment *seg = &system->segments[k];
-        double *v = theta + seg->v, cross[3], cross_cross[3];
-        const double *w = v + 3;
-        double angle2, angle, half, A, B;
-        if (seg->kind != SYM_SEGMENT_POSE) continue;
-        angle2 = w[0] * w[0] + w[1] * w[1] + w[2] * w[2], angle = sqrt(angle2);
-        half = angle < 1e-4 ? 0.5 - angle2 / 48.0 : sin(0.5 * angle) / angle;
-        A = 2.0 * half * half; /* (1 - cos(angle)) / angle2, which loses digits at small angles */
-        B = angle < 1e-2 ? 1.0 / 6.0 - angle2 / 120.0 + angle2 * angle2 / 5040.0
-                         : (angle - sin(angle)) / (angle2 * angle);
-        sym_cross(w, v, cross);
-        sym_cross(w, cross, cross_cross);
-        for (i = 0; i < 3; ++i) v[i] += A * cross[i] + B * cross_cross[i];
+        double *twist = theta + system->segments[k].v;
+        if (system->segments[k].kind == SYM_SEGMENT_POSE) sym_twist_to_displacement_pose(twist, twist);
     }
 }
 
@@ -49,16 +49,12 @@ static void sym_chart_rate(const sym_system *system, const double *theta, const 
     for (s = 0; s < system->n_segments; ++s) {
         const sym_segment *seg = &system->segments[s];
         const int k = seg->v;
-        double rotation[4];
-        if (seg->kind == SYM_SEGMENT_LINEAR) {
+        if (seg->kind == SYM_SEGMENT_LINEAR)
             memcpy(rate + k, v + k, (size_t)seg->size * sizeof *rate);
-        } else if (seg->kind == SYM_SEGMENT_QUATERNION) {
-            sym_rotation_vector_rate(theta + k, v + k, rate + k);
-        } else {
-            sym_quaternion_exp(theta + k + 3, rotation);
-            sym_rotate(rotation, v + k, rate + k);
-            sym_rotation_vector_rate(theta + k + 3, v + k + 3, rate + k + 3);
-        }
+        else if (seg->kind == SYM_SEGMENT_QUATERNION)
+            sym_chart_rate_quaternion(theta + k, v + k, rate + k);
+        else
+            sym_chart_rate_pose(theta + k, v + k, rate + k);
     }
 }
 
@@ -90,15 +86,6 @@ static void sym_normalize_quaternions(sym_system *s) {
         size = sqrt(size);
         for (i = 0; i < 4; ++i) p[i] /= size;
     }
-}
-
-/* Rate of a quaternion p of any length at angular velocity w: p' = p w / 2. */
-static void sym_quaternion_rate(const double *p, const double *w, double *rate) {
-    double c[3];
-    int i;
-    sym_cross(p, w, c);
-    for (i = 0; i < 3; ++i) rate[i] = 0.5 * (p[3] * w[i] + c[i]);
-    rate[3] = -0.5 * (p[0] * w[0] + p[1] * w[1] + p[2] * w[2]);
 }
 
 /* Rate N(q) w at the configuration of the evaluation point; q: the same one, with quaternions of any length. */

@@ -2,38 +2,6 @@
  * (docs/theory/simulation.md, section 8). States are scaled, x = (theta, h (v - v_0)), so that the eigenvalues are those
  * of h times the linearised motion. */
 
-/* The rotation vector that turns unit quaternion a into b: exp(theta / 2) = a^-1 b. */
-static void sym_rotation_between(const double *a, const double *b, double *theta) {
-    const double inverse[4] = {-a[0], -a[1], -a[2], a[3]};
-    double turn[4], size, scale;
-    int i;
-    sym_quaternion_product(inverse, b, turn);
-    size = sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]);
-    scale = turn[3] < 0.0 ? -2.0 : 2.0; /* of the two that are this rotation the shorter one */
-    if (size > 0.0) scale *= atan2(size, fabs(turn[3])) / size;
-    for (i = 0; i < 3; ++i) theta[i] = scale * turn[i];
-}
-
-/* theta <- the coordinates of configuration q in the chart about q0: the inverse of sym_retract. */
-static void sym_chart_coordinates(const sym_system *s, const double *q0, const double *q, double *theta) {
-    int32_t k, i;
-    for (k = 0; k < s->n_segments; ++k) {
-        const sym_segment *seg = &s->segments[k];
-        const double *a = q0 + seg->q, *b = q + seg->q;
-        double *x = theta + seg->v, back[4], displacement[3];
-        if (seg->kind == SYM_SEGMENT_LINEAR) {
-            for (i = 0; i < seg->size; ++i) x[i] = b[i] - a[i];
-        } else if (seg->kind == SYM_SEGMENT_QUATERNION) {
-            sym_rotation_between(a, b, x);
-        } else {
-            for (i = 0; i < 3; ++i) displacement[i] = b[i] - a[i], back[i] = -a[3 + i];
-            back[3] = a[6];
-            sym_rotate(back, displacement, x);
-            sym_rotation_between(a + 3, b + 3, x + 3);
-        }
-    }
-}
-
 /* Whether changes are brought back onto the constraints, as a motion has none that leave them. The way by which gains pull
  * it back is known without looking. */
 static int32_t sym_keeps_to_constraints(const sym_system *s) { return s->nc > 0 && s->project.function != NULL; }

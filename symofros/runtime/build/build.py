@@ -1,16 +1,15 @@
 """C text -> shared library, cached by content.
 
-The key covers the C text, the header, flags, compiler and processor, or the processor's family where the library is for
-any of it. A library is compiled in a private folder and renamed into place, so that concurrent processes and killed
-compilations never leave a broken one behind; a damaged one is compiled anew. A second key spares the C text: what was
-asked for, of which state of this package; its file names the library.
+The key covers the C text, the header, flags, compiler and processor. A library is compiled in a private folder and
+renamed into place, so that concurrent processes and killed compilations never leave a broken one behind; a damaged one
+is compiled anew. A second key spares the C text: what was asked for, of which state of this package; its file names the
+library.
 """
 
 from __future__ import annotations
 
 import hashlib
 import os
-import platform
 import re
 import sys
 import tempfile
@@ -20,14 +19,7 @@ from pathlib import Path
 from symofros.base.stored import keep, stored_text
 from symofros.runtime.build.cache import cache_folder, create_cache_folder, install, is_intact, unusable
 from symofros.runtime.build.identity import CODE_IDENTITY
-from symofros.runtime.build.toolchain import (
-    SHARED_FLAGS,
-    Toolchain,
-    call_compiler,
-    cpu_identity,
-    kinds,
-    stated_flags,
-)
+from symofros.runtime.build.toolchain import SHARED_FLAGS, Toolchain, call_compiler, cpu_identity, stated_flags
 
 _SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 _FILE_NAME = re.compile(r"[0-9a-f]{32}\.\w+")
@@ -42,8 +34,6 @@ def recall_library(
     header: str,
     toolchain: Toolchain,
     flags: Sequence[str] | None = None,
-    dispatch: str = "",
-    symbol: str = "",
 ) -> Path:
     """The library of what a recipe states; its C text is only asked for where no library is known.
 
@@ -53,18 +43,16 @@ def recall_library(
         header: Header, as of `build_library`, like the others.
         toolchain: The compiler.
         flags: Flags in place of the default ones.
-        dispatch: C text that chooses among kinds of processors.
-        symbol: The exported function.
 
     Raises:
         CompileError: As for `build_library`.
     """
     folder = cache_folder()
-    known = folder / f"{cache_key(toolchain, flags, dispatch, recipe, CODE_IDENTITY, header)}.known"
+    known = folder / f"{cache_key(toolchain, flags, recipe, CODE_IDENTITY, header)}.known"
     name = stored_text(known, file_name)
     if name is not None and is_intact(folder / name):
         return folder / name
-    library = build_library(source(), header, toolchain, flags, dispatch, symbol)
+    library = build_library(source(), header, toolchain, flags)
     keep(known, library.name)
     return library
 
@@ -80,26 +68,20 @@ def file_name(text: str) -> str:
     return text
 
 
-def cache_key(toolchain: Toolchain, flags: Sequence[str] | None, dispatch: str, *parts: str) -> str:
+def cache_key(toolchain: Toolchain, flags: Sequence[str] | None, *parts: str) -> str:
     """Name, without its suffix, of what some texts lead to with a compiler, its flags and this processor.
 
     Args:
         toolchain: The compiler.
         flags: Flags in place of the default ones.
-        dispatch: C text that chooses among kinds of processors; none: for this machine's alone.
         parts: The texts.
     """
-    suited = platform.machine() if dispatch else cpu_identity()
-    stated = [*parts, dispatch, *_chosen(toolchain, flags, dispatch), *SHARED_FLAGS, toolchain.identity, suited]
+    stated = [*parts, "", *_chosen(toolchain, flags), *SHARED_FLAGS, toolchain.identity, cpu_identity()]
     return hashlib.sha256("\0".join(stated).encode()).hexdigest()[:32]
 
 
-def _chosen(toolchain: Toolchain, flags: Sequence[str] | None, dispatch: str) -> tuple[str, ...]:
-    """The flags of all kinds: where there are several, none is the machine's own."""
-    if flags is not None:
-        return tuple(flags)
-    kept = tuple(flag for flag in toolchain.default_flags if not (dispatch and flag.startswith("-march")))
-    return (*kept, *stated_flags())
+def _chosen(toolchain: Toolchain, flags: Sequence[str] | None) -> tuple[str, ...]:
+    return tuple(flags) if flags is not None else (*toolchain.default_flags, *stated_flags())
 
 
 def build_library(
@@ -107,8 +89,6 @@ def build_library(
     header: str,
     toolchain: Toolchain,
     flags: Sequence[str] | None = None,
-    dispatch: str = "",
-    symbol: str = "",
 ) -> Path:
     """The shared library of a C file, compiled unless it is in the cache.
 
@@ -117,13 +97,11 @@ def build_library(
         header: Text of symofros_model.h.
         toolchain: The compiler.
         flags: Flags in place of the default ones.
-        dispatch: Text of the C file that chooses among the kinds of processors; none: for this machine's alone.
-        symbol: The exported function, which each kind has under a name of its own.
 
     Raises:
         CompileError: The compiler failed, with its command and messages; or the cache folder can't be used.
     """
-    key, chosen = cache_key(toolchain, flags, dispatch, source, header), _chosen(toolchain, flags, dispatch)
+    key = cache_key(toolchain, flags, source, header)
     folder = cache_folder()
     library = folder / f"{key}{_SUFFIX}"
     if is_intact(library):
@@ -131,11 +109,8 @@ def build_library(
     try:
         create_cache_folder(folder)
         with tempfile.TemporaryDirectory(prefix=f".{key[:8]}-", dir=folder) as private:
-            _write(Path(private), {"symofros_model.h": header, "model.c": source, "dispatch.c": dispatch})
-            if dispatch:
-                _compile_for_any(Path(private), toolchain, chosen, symbol)
-            else:
-                _compile(Path(private), toolchain, chosen)
+            _write(Path(private), {"symofros_model.h": header, "model.c": source})
+            _compile(Path(private), toolchain, _chosen(toolchain, flags))
             os.replace(Path(private) / "model.c", folder / f"{key}.c")
             install(Path(private) / f"model{_SUFFIX}", library)
     except OSError as error:
@@ -154,19 +129,4 @@ def _compile(private: Path, toolchain: Toolchain, flags: tuple[str, ...]) -> Non
         call_compiler(command, f"model{_SUFFIX}", private, _REMEDY)
         return
     call_compiler([*toolchain.command, *flags, *SHARED_FLAGS, "-c", "model.c"], "model.o", private, _REMEDY)
-    _link(private, toolchain, ["model.o"])
-
-
-def _compile_for_any(private: Path, toolchain: Toolchain, flags: tuple[str, ...], symbol: str) -> None:
-    """The model for each kind of processor, and what chooses."""
-    objects = ["dispatch.o"]
-    call_compiler([*toolchain.command, *SHARED_FLAGS, "-c", "dispatch.c"], objects[0], private, _REMEDY)
-    for name, _, extra in kinds():
-        stated = [*flags, *extra, f"-D{symbol}={symbol}_{name}", *SHARED_FLAGS]
-        objects.append(f"{name}.o")
-        call_compiler([*toolchain.command, *stated, "-c", "model.c"], objects[-1], private, _REMEDY)
-    _link(private, toolchain, objects)
-
-
-def _link(private: Path, toolchain: Toolchain, objects: list[str]) -> None:
-    call_compiler([*toolchain.command, "-shared", *objects, "-lm"], f"model{_SUFFIX}", private, _REMEDY)
+    call_compiler([*toolchain.command, "-shared", "model.o", "-lm"], f"model{_SUFFIX}", private, _REMEDY)

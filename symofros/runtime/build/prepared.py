@@ -100,7 +100,7 @@ def _file_name(description: Path, request: str, toolchain: Toolchain) -> str:
     # Files that are included lie in the folder by which the description is opened, or below.
     place = os.path.realpath(description.parent), description.name, os.path.realpath(description)
     recipe = repr(("description", place, request, sys.version, *map(_installation, _PACKAGES)))
-    return f"{cache_key(toolchain, None, '', recipe, CODE_IDENTITY)}.known"
+    return f"{cache_key(toolchain, None, recipe, CODE_IDENTITY)}.known"
 
 
 def _installation(package: str) -> str:

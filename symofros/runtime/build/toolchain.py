@@ -41,22 +41,6 @@ GCC_FLAGS = (
 )
 _GCC_VERSIONS = range(8, 16)
 _GCC = re.compile(r"^.*\) (\d+)\..*$(?s:.*)Free Software Foundation", re.MULTILINE)
-# Kinds of x86 processors, the best first: name, what it must have, its flags.
-KINDS: tuple[tuple[str, tuple[str, ...], tuple[str, ...]], ...] = (
-    (
-        "avx512",
-        ("avx512f", "avx512dq", "avx512vl", "avx2", "fma"),
-        (
-            "-mavx512f",
-            "-mavx512dq",
-            "-mavx512vl",
-            "-mavx2",
-            "-mfma",
-        ),
-    ),
-    ("avx2", ("avx2", "fma"), ("-mavx2", "-mfma")),
-    ("baseline", (), ()),
-)
 SHARED_FLAGS = ("-shared", "-fPIC", "-fvisibility=hidden", "-std=gnu99")
 _SHOWN_LINES = 12
 # For one call [s]. The largest models of the suite take a minute; a compiler that waits for something never ends.
@@ -264,11 +248,6 @@ def _end_group(process: subprocess.Popen[bytes]) -> None:
         return
     with contextlib.suppress(ProcessLookupError):
         os.killpg(process.pid, signal.SIGKILL)
-
-
-def kinds() -> tuple[tuple[str, tuple[str, ...], tuple[str, ...]], ...]:
-    """The kinds of processors that code for any machine of this family is compiled for, the best first."""
-    return KINDS if platform.machine().lower() in ("x86_64", "amd64") else KINDS[-1:]
 
 
 @cache

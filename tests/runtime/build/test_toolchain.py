@@ -15,7 +15,7 @@ from symofros.errors import Problem
 from symofros.exports.c.compiling import shared_library
 from symofros.runtime.build import toolchain
 from symofros.runtime.build.build import build_library
-from symofros.runtime.build.toolchain import GCC_FLAGS, find_toolchain, kinds
+from symofros.runtime.build.toolchain import GCC_FLAGS, find_toolchain
 from tests.late import SHELL
 
 
@@ -110,12 +110,9 @@ def test_flags_of_gcc_are_given_to_gcc_alone(
     named = find_toolchain()
     assert named is not None and named.gcc == gcc
     build_library("int x;\n", "", named)
-    build_library("int y;\n", "", named, dispatch="int z;\n", symbol="model")
     build_library("int z;\n", "", named, flags=("-O1",))
     calls = [set(GCC_FLAGS) & set(line.split()) for line in told.read_text().splitlines()]
-    of_model = set(flags)
-    # One library for this machine; what chooses, the kinds of processors, the link; flags that a model states.
-    assert calls == [of_model, set(), *[of_model] * len(kinds()), set(), set()]
+    assert calls == [set(flags), set()]  # The default flags, and those that a model states.
 
 
 def test_a_program_that_the_machine_can_t_run_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -41,8 +41,6 @@ _ENDLESS = 1e6
 # Speeds up to which derivatives of forward dynamics are timed by vectors: beyond, their code takes minutes to compile,
 # and of long chains a solver finishes them.
 MOST_BY_VECTORS = 10
-# Speeds up to which all builds are tried: those of longer rows of loops take a quarter of an hour to compile.
-MOST_TUNED = 400
 
 
 def our_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
@@ -78,9 +76,7 @@ class _Generated:
     def __init__(
         self, task: Task, name: str, batch: Literal["vector", "loop"], precision: Precision = "double"
     ) -> None:
-        # The fastest of our builds, as of the peers'.
-        tuned = task.assembly.nv <= MOST_TUNED
-        options = sf.Options((name,), _frames(task, name), batch=batch, tune=tuned)
+        options = sf.Options((name,), _frames(task, name), batch=batch)
         sf.compile_library(task.system, options, precision)
         start = time.thread_time()  # Now that the library is in the cache, what is left is to make its text.
         self.path, symbol = sf.compile_library(task.system, options, precision)
