@@ -122,8 +122,8 @@ class Dynamics:
         self._coordinates = Coordinates(known.record.segments, _OPERATIONS)
         source = _source(compilation, c_name, {self.names[name]: each for name, each in wanted.items()}, second_order)
         self._build = partial(build_library, header=native_text("model/symofros_model.h"), toolchain=toolchain)
-        self._c_name, self._source, self._symbol = c_name, source, f"{c_name}_model"
-        self.library: Path = self._build(source, symbol=self._symbol)
+        self._c_name, self._source = c_name, source
+        self.library: Path = self._build(source)
         self.functions = {name: casadi.external(own, str(self.library)) for name, own in self.names.items()}
 
     def write_acados_library(self, folder: str | os.PathLike[str]) -> str:
@@ -138,7 +138,7 @@ class Dynamics:
         Raises:
             CompileError: The C compiler refused.
         """
-        built = self._build(f"#define casadi_int int\n{self._source}", symbol=self._symbol)
+        built = self._build(f"#define casadi_int int\n{self._source}")
         place = Path(folder)
         place.mkdir(parents=True, exist_ok=True)
         write_atomically(place / f"lib{self._c_name}.so", built.read_bytes())
