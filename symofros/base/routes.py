@@ -260,16 +260,6 @@ _quantity(
         when=_packs_cost,
     ),
     Route(
-        "timed",
-        "asked for only: packs or scalars, whichever ran faster on this machine",
-        _BITS,
-        "code.md, 2",
-        _SHARING,
-        "Options(tune=True)",
-        lambda f: f["vectors"] > 0,
-        _never,
-    ),
-    Route(
         "by processor",
         "in between: packs on vectors of up to 256 bits, scalars on wider ones",
         _BITS,

@@ -55,7 +55,6 @@ CASES: dict[tuple[str, str], tuple[str, str, dict[str, object]]] = {
     ("values by vectors", "packs"): (FORWARD, "chain7", {}),
     ("values by vectors", "scalars"): (FORWARD, "puma560", {}),
     ("values by vectors", "by processor"): ("dynamics", "chain7", {}),
-    ("values by vectors", "timed"): (FORWARD, "puma560", {"tune": True}),
     ("equal parts", "loops"): ("constraint_jacobian", "many four-bars", {}),
     ("equal parts", "limbs"): ("dynamics", "quadruped", {}),
     ("equal parts", "one by one"): ("dynamics", "double_pendulum", {}),

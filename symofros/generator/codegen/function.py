@@ -116,7 +116,7 @@ class FunctionWriter:
         plan = PackPlan(graph, nodes, pre, edges) if packs != "none" and graph.packs else None
         figures = pack_figures(plan, len(nodes), stores) | {"by_routine": by_routine}
         self.has_packs = plan is not None and bool(plan.vectors)
-        asked = {"none": "scalars", "where they pay": "", "all": "timed" if self.has_packs else ""}[packs]
+        asked = {"none": "scalars", "where they pay": "", "all": "packs" if self.has_packs else ""}[packs]
         vectors = choose("values by vectors", figures, asked)
         nodes, plans = (nodes, []) if plan is None else (plan.nodes, [plan])
         self.writer = StatementWriter(graph, nodes, pre, stores, plans)

@@ -258,7 +258,7 @@ def _one_function(
         text = with_solver(program, c_name, function, function.solver, packs, sparse)
     else:
         writer = FunctionWriter(program, c_name, inputs, function.outputs, packs=packs, limbs=packs != "none")
-        if writer.has_packs and writer.choices[0].method not in ("packs", "timed"):
+        if writer.has_packs and writer.choices[0].method != "packs":
             without = FunctionWriter(program, c_name, inputs, function.outputs, limbs=True)
             text = _text_of_one_state(writer, without)
         else:
