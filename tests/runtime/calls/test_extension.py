@@ -218,4 +218,4 @@ def test_an_extension_that_does_not_compile_is_told_and_done_without(
     monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path / "cache"))
     with caplog.at_level("INFO", "symofros"):
         assert extension.load.__wrapped__() is None
-    assert "plain calls are batches of one state" in caplog.text and "other headers" in caplog.text
+    assert "plain calls go through NumPy" in caplog.text and "other headers" in caplog.text

@@ -27,7 +27,7 @@ FUNCTIONS = {
 
 @pytest.fixture(params=["extension", "c", "interpreter"])
 def m(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> sf.Model:
-    """A model with calls by the extension, and by batches of one state, of compiled and of interpreted functions."""
+    """A model with calls by the extension, of compiled functions through NumPy, and of interpreted ones."""
     if request.param == "extension" and extension.load() is None:
         pytest.skip("needs the headers of Python")
     call_type = extension.load() if request.param == "extension" else None
@@ -123,13 +123,12 @@ def test_a_wrong_size_is_refused_after_a_right_one(m: sf.Model, size: int) -> No
 
 
 def test_numbers_of_any_kind_take_the_short_way_with_time_and_places(
-    m: sf.Model, monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator, request: pytest.FixtureRequest
+    m: sf.Model, monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator
 ) -> None:
     """Lists, names and other numbers are converted, and computed as one state: no batch is made of them."""
     given = state(m, rng)
     expected = m.dynamics(given["q"], given["v"], given["u"], t=0.25)
-    if "extension" in request.node.name:
-        monkeypatch.setattr("symofros.runtime.calls.library.CompiledKernel.run", None)
+    monkeypatch.setattr("symofros.runtime.calls.library.CompiledKernel.run", None)
     named = dict(zip(m.names.q, given["q"], strict=True))
     M = np.zeros((m.nv, m.nv))
     for q, t in ((given["q"].tolist(), 0.25), (named, np.float64(0.25)), (given["q"].astype(object), np.array(0.25))):
