@@ -1,4 +1,5 @@
 /* What Python loads: integrator, batches, diagrams and their threads, as one library. */
+#define SYM_ANALYSIS
 #include "stepping/integrator.c"
 #include "stepping/spectrum.c"
 #include "symofros_batch.h"

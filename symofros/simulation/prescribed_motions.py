@@ -21,8 +21,9 @@ from symofros.simulation.inputs import InputPlan
 # Largest difference between a rate and what its integral changes by, as a share of the larger of them: of formulas,
 # which differences resolve to some 1e-6; of samples, whose chords miss a tenth of a sine with eight samples a period.
 OF_FORMULAS, OF_SAMPLES = 1e-3, 0.2
-# Instants at which formulas are looked at; half the way between the two values of a difference, as a share of the run.
-_INSTANTS, _HALF = 16, 1e-7
+# Instants at which formulas are looked at; half the way between the two values of a difference, as a share of the run,
+# and the longer one that a contradiction must stand.
+_INSTANTS, _HALF, _LONGER = 16, 1e-7, 1e-5
 # Intervals between samples that are looked at, evenly chosen of all.
 _INTERVALS = 400
 
@@ -95,8 +96,12 @@ def contradiction(
     times = {index: t for index, t, _, _ in plan.signals}
     for rated in rated_inputs(model.record):
         sampled = [times[i] for i in (*rated.position, *rated.rate) if i in times]
-        intervals = _between_samples(sampled, span) if sampled else _around_instants(span)
-        found = _compared(model, rated, inputs_at, intervals, OF_SAMPLES if sampled else OF_FORMULAS)
+        if sampled:
+            found = _compared(model, rated, inputs_at, _between_samples(sampled, span), OF_SAMPLES)
+        else:
+            # Terms that nearly cancel round by more than the position tells: over longer intervals that is less.
+            found = _compared(model, rated, inputs_at, _around_instants(span, _HALF), OF_FORMULAS)
+            found = found and _compared(model, rated, inputs_at, _around_instants(span, _LONGER), OF_FORMULAS)
         if found is not None:
             return found
     return None
@@ -175,10 +180,10 @@ def _largest(means: Array, stated: Array) -> float:
     return max(float(np.nanmax(np.abs(means), initial=0.0)), float(np.abs(stated).max(initial=0.0)))
 
 
-def _around_instants(span: tuple[float, float]) -> list[tuple[float, float]]:
-    """Short intervals around instants that are drawn, the same for the same run."""
+def _around_instants(span: tuple[float, float], share: float) -> list[tuple[float, float]]:
+    """Intervals around instants that are drawn, the same for the same run; half of one: a share of the run."""
     begin, end = span
-    half = max(_HALF * (end - begin), 1e-9 * max(abs(begin), abs(end)))
+    half = max(share * (end - begin), 1e-9 * max(abs(begin), abs(end)))
     instants = begin + half + (end - begin - 2.0 * half) * np.random.default_rng(0).random(_INSTANTS)
     return [(float(t - half), float(t + half)) for t in instants]
 

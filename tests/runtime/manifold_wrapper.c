@@ -1,3 +1,4 @@
+#define SYM_ANALYSIS
 #include <math.h>
 #include <string.h>
 #include "symofros_stepper.h"

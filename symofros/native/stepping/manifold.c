@@ -17,6 +17,7 @@ static void sym_retract(const sym_system *system, const double *q0, const double
     }
 }
 
+#ifdef SYM_ANALYSIS /* of the library that Python loads */
 /* theta <- the coordinates of configuration q in the chart about q0: the inverse of sym_retract. */
 static void sym_chart_coordinates(const sym_system *system, const double *q0, const double *q, double *theta) {
     int s, i;
@@ -32,6 +33,7 @@ static void sym_chart_coordinates(const sym_system *system, const double *q0, co
             sym_chart_coordinates_pose(a, b, x);
     }
 }
+#endif
 
 /* Twists (v, w) of poses in theta become displacements in place: those of the screw motion with constant twist in unit
  * time. */

@@ -94,25 +94,6 @@ static void sym_chart_rate_quaternion(const double *theta, const double *v, doub
     rate[0] = t14, rate[1] = t15, rate[2] = t16;
 }
 
-static void sym_chart_coordinates_quaternion(const double *q0, const double *q1, double *theta) {
-    const double t0 = ((q0[3] * q1[0]) - (q0[0] * q1[3])) - ((q0[1] * q1[2]) - (q0[2] * q1[1]));
-    const double t1 = ((q0[3] * q1[1]) - (q0[1] * q1[3])) - ((q0[2] * q1[0]) - (q0[0] * q1[2]));
-    const double t2 = ((q0[3] * q1[2]) - (q0[2] * q1[3])) - ((q0[0] * q1[1]) - (q0[1] * q1[0]));
-    const double t3 = (q0[3] * q1[3]) + ((q0[2] * q1[2]) + ((q0[0] * q1[0]) + (q0[1] * q1[1])));
-    const double t4 = sym_step(t3);
-    const double t5 = t4 - (1.0 - t4);
-    const double t6 = t0 * t5;
-    const double t7 = t1 * t5;
-    const double t8 = t2 * t5;
-    const double t9 = sqrt((((t8 * t8) + ((t6 * t6) + (t7 * t7))) + 1e-300));
-    const double t10 = atan2(t9, (t3 * t5));
-    const double t11 = (t10 * 2.0) / t9;
-    const double t12 = t6 * t11;
-    const double t13 = t7 * t11;
-    const double t14 = t8 * t11;
-    theta[0] = t12, theta[1] = t13, theta[2] = t14;
-}
-
 static void sym_retract_pose(const double *q0, const double *theta, double *q) {
     const double t0 = ((q0[4] * theta[2]) - (q0[5] * theta[1])) * 2.0;
     const double t1 = ((q0[5] * theta[0]) - (q0[3] * theta[2])) * 2.0;
@@ -176,6 +157,27 @@ static void sym_chart_rate_pose(const double *theta, const double *v, double *ra
     rate[0] = t12, rate[1] = t13, rate[2] = t14, rate[3] = t28, rate[4] = t29, rate[5] = t30;
 }
 
+#ifdef SYM_ANALYSIS
+
+static void sym_chart_coordinates_quaternion(const double *q0, const double *q1, double *theta) {
+    const double t0 = ((q0[3] * q1[0]) - (q0[0] * q1[3])) - ((q0[1] * q1[2]) - (q0[2] * q1[1]));
+    const double t1 = ((q0[3] * q1[1]) - (q0[1] * q1[3])) - ((q0[2] * q1[0]) - (q0[0] * q1[2]));
+    const double t2 = ((q0[3] * q1[2]) - (q0[2] * q1[3])) - ((q0[0] * q1[1]) - (q0[1] * q1[0]));
+    const double t3 = (q0[3] * q1[3]) + ((q0[2] * q1[2]) + ((q0[0] * q1[0]) + (q0[1] * q1[1])));
+    const double t4 = sym_step(t3);
+    const double t5 = t4 - (1.0 - t4);
+    const double t6 = t0 * t5;
+    const double t7 = t1 * t5;
+    const double t8 = t2 * t5;
+    const double t9 = sqrt((((t8 * t8) + ((t6 * t6) + (t7 * t7))) + 1e-300));
+    const double t10 = atan2(t9, (t3 * t5));
+    const double t11 = (t10 * 2.0) / t9;
+    const double t12 = t6 * t11;
+    const double t13 = t7 * t11;
+    const double t14 = t8 * t11;
+    theta[0] = t12, theta[1] = t13, theta[2] = t14;
+}
+
 static void sym_chart_coordinates_pose(const double *q0, const double *q1, double *theta) {
     const double t0 = ((q0[6] * q1[3]) - (q0[3] * q1[6])) - ((q0[4] * q1[5]) - (q0[5] * q1[4]));
     const double t1 = ((q0[6] * q1[4]) - (q0[4] * q1[6])) - ((q0[5] * q1[3]) - (q0[3] * q1[5]));
@@ -234,3 +236,5 @@ static void sym_chart_coordinates_pose(const double *q0, const double *q1, doubl
     const double t54 = (t41 + (t44 * t51)) - (t48 * ((t12 * t50) - (t13 * t49)));
     theta[0] = -t52, theta[1] = -t53, theta[2] = -t54, theta[3] = t12, theta[4] = t13, theta[5] = t14;
 }
+
+#endif
