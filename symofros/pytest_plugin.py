@@ -36,7 +36,9 @@ def pytest_addoption(parser: Any) -> None:
     )
     group.addoption("--symofros-tier", choices=TIERS, default="standard", help="how much is checked (standard)")
     for item in OPTIONS:
-        stated = {"action": "append", "default": []} if item.default == () else {"default": item.default}
+        stated: dict[str, Any] = {"default": item.default}
+        if item.default == ():
+            stated = {"action": "append", "default": []}
         if item.default is False:
             stated = {"action": "store_true"}
         else:
