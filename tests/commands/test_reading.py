@@ -110,7 +110,7 @@ def test_backquotes_hold_a_name_together_and_are_no_part_of_it() -> None:
     assert pairs(["d`a=b`=1"], "--set", "q1=1") == {"d`a=b`": "1"}
     for option in ({"packages": ["a="]}, {"arguments": ["=a"]}):
         with pytest.raises(SymofrosError, match="no name and value"):
-            reading_of(**option)
+            reading_of(**option)  # type: ignore[arg-type]
 
 
 def test_options_of_remedies_are_read_back() -> None:
@@ -217,7 +217,7 @@ def test_a_picture_says_what_it_leaves_out(tmp_path: Path) -> None:
     assert [axis.get_title() for axis in run.plot("q13").axes][0] == ""
 
 
-_STATED = {bool: True, str: "all", tuple: (("a", "b"),)}
+_STATED: dict[type, Any] = {bool: True, str: "all", tuple: (("a", "b"),)}
 
 
 @pytest.mark.parametrize(
